@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace pulsecast {
+
+/// A setting that cannot be. Thrown when the stage that holds it is made, never later.
+class SettingError : public std::invalid_argument {
+ public:
+  SettingError(std::string field, double value, std::string unit, std::string allowed)
+      : std::invalid_argument(message(field, value, unit, allowed)),
+        field_(std::move(field)),
+        unit_(std::move(unit)),
+        allowed_(std::move(allowed)),
+        value_(value) {}
+
+  [[nodiscard]] const std::string& field() const noexcept { return field_; }      ///< as in `Scanner::pulse_rate`
+  [[nodiscard]] double value() const noexcept { return value_; }                  ///< what was given, in `unit()`
+  [[nodiscard]] const std::string& unit() const noexcept { return unit_; }        ///< SI symbol; empty if the value is a mere number
+  [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< the range that would do, in words
+
+ private:
+  static std::string message(std::string_view field, double value, std::string_view unit, std::string_view allowed) {
+    std::ostringstream text;
+    text << field << " is " << value << (unit.empty() ? "" : " ") << unit << ", but must be " << allowed;
+    return text.str();
+  }
+
+  std::string field_, unit_, allowed_;
+  double value_;
+};
+
+/// A file that is missing, malformed, truncated or cannot be written. Thrown by adapters only.
+class FileError : public std::runtime_error {
+ public:
+  /// `place` is where in the file, as in "line 12" or "byte 375"; empty if it concerns the file as a whole.
+  FileError(std::string path, std::string place, std::string problem)
+      : std::runtime_error(path + (place.empty() ? "" : ", " + place) + ": " + problem),
+        path_(std::move(path)),
+        place_(std::move(place)),
+        problem_(std::move(problem)) {}
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] const std::string& place() const noexcept { return place_; }
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< what is wrong and what was expected
+
+ private:
+  std::string path_, place_, problem_;
+};
+
+}  // namespace pulsecast

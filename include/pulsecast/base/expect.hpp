@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cassert>
+#include <cmath>
+#include <string_view>
+
+#include <pulsecast/base/error.hpp>
+
+/// A condition that only a bug of the caller can break; checked in debug builds, on the hot path too.
+#define PULSECAST_EXPECT(condition) assert(condition)
+
+namespace pulsecast {
+
+/// Refuses a setting that is not finite or not greater than zero.
+inline void expect_positive(std::string_view field, double value, std::string_view unit) {
+  if (!(value > 0) || !std::isfinite(value)) throw SettingError(std::string(field), value, std::string(unit), "finite and greater than 0");
+}
+
+/// Refuses a setting that is not finite or less than zero.
+inline void expect_not_negative(std::string_view field, double value, std::string_view unit) {
+  if (!(value >= 0) || !std::isfinite(value)) throw SettingError(std::string(field), value, std::string(unit), "finite and at least 0");
+}
+
+/// Refuses a setting that is not finite.
+inline void expect_finite(std::string_view field, double value, std::string_view unit) {
+  if (!std::isfinite(value)) throw SettingError(std::string(field), value, std::string(unit), "finite");
+}
+
+/// Refuses a setting outside the closed interval [low, high].
+inline void expect_within(std::string_view field, double value, double low, double high, std::string_view unit) {
+  if (value >= low && value <= high) return;
+  std::ostringstream allowed;
+  allowed << "from " << low << " to " << high;
+  throw SettingError(std::string(field), value, std::string(unit), allowed.str());
+}
+
+/// Asks a stage's settings whether they can be, if they have a say: `void validate() const` throws a `SettingError`.
+template <class Settings>
+[[nodiscard]] Settings validated(Settings settings) {
+  if constexpr (requires { settings.validate(); }) settings.validate();
+  return settings;
+}
+
+}  // namespace pulsecast

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include <pulsecast/base/tick.hpp>
+
+namespace pulsecast {
+
+/// What a random number is drawn for; numbers for different purposes are independent.
+enum class Purpose : std::uint32_t {
+  range_noise,
+  position_noise,
+  attitude_noise,
+  free_path,
+  receiver_noise,
+  scene,  ///< making of scenes
+};
+
+/// The full name of a random number: the same key gives the same number, on any thread, in any order.
+struct RandomKey {
+  std::uint64_t seed = 0;
+  PulseIndex pulse = 0;
+  std::uint32_t subray = 0;
+  Purpose purpose = Purpose::scene;
+};
+
+/// Four random words from a counter and a key. Source: Salmon, Moraes, Dror & Shaw 2011, Philox4x32-10.
+[[nodiscard]] constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
+                                                            std::array<std::uint32_t, 2> key) noexcept {
+  for (int round = 0; round < 10; ++round) {
+    const std::uint64_t a = std::uint64_t{0xD2511F53} * counter[0];
+    const std::uint64_t b = std::uint64_t{0xCD9E8D57} * counter[2];
+    counter = {static_cast<std::uint32_t>(b >> 32) ^ counter[1] ^ key[0], static_cast<std::uint32_t>(b),
+               static_cast<std::uint32_t>(a >> 32) ^ counter[3] ^ key[1], static_cast<std::uint32_t>(a)};
+    key[0] += 0x9E3779B9;
+    key[1] += 0xBB67AE85;
+  }
+  return counter;
+}
+
+/// The four random words of a key.
+[[nodiscard]] constexpr std::array<std::uint32_t, 4> random_words(const RandomKey& k) noexcept {
+  return philox(
+      {static_cast<std::uint32_t>(k.pulse), static_cast<std::uint32_t>(k.pulse >> 32), k.subray, static_cast<std::uint32_t>(k.purpose)},
+      {static_cast<std::uint32_t>(k.seed), static_cast<std::uint32_t>(k.seed >> 32)});
+}
+
+/// A number in the open interval (0, 1), so that its logarithm is finite; 52 random bits.
+[[nodiscard]] constexpr double uniform(const RandomKey& key) noexcept {
+  const auto words = random_words(key);
+  const std::uint64_t bits = (std::uint64_t{words[0]} << 20) | (words[1] >> 12);
+  return (static_cast<double>(bits) + 0.5) * 0x1p-52;
+}
+
+/// Quantile of the standard normal distribution, p in (0, 1); relative error about 1e-16.
+/// Source: Wichura 1988, algorithm AS 241 (PPND16).
+[[nodiscard]] inline double normal_quantile(double p) noexcept {
+  const double q = p - 0.5;
+  if (std::fabs(q) <= 0.425) {
+    const double r = 0.180625 - q * q;
+    return q *
+           (((((((2.5090809287301226727e3 * r + 3.3430575583588128105e4) * r + 6.7265770927008700853e4) * r + 4.5921953931549871457e4) * r +
+               1.3731693765509461125e4) *
+                  r +
+              1.9715909503065514427e3) *
+                 r +
+             1.3314166789178437745e2) *
+                r +
+            3.3871328727963666080e0) /
+           (((((((5.2264952788528545610e3 * r + 2.8729085735721942674e4) * r + 3.9307895800092710610e4) * r + 2.1213794301586595867e4) * r +
+               5.3941960214247511077e3) *
+                  r +
+              6.8718700749205790830e2) *
+                 r +
+             4.2313330701600911252e1) *
+                r +
+            1.0);
+  }
+  double r = std::sqrt(-std::log(q < 0 ? p : 1 - p));
+  double x;
+  if (r <= 5) {
+    r -= 1.6;
+    x = (((((((7.74545014278341407640e-4 * r + 2.27238449892691845833e-2) * r + 2.41780725177450611770e-1) * r + 1.27045825245236838258e0) *
+                r +
+            3.64784832476320460504e0) *
+               r +
+           5.76949722146069140550e0) *
+              r +
+          4.63033784615654529590e0) *
+             r +
+         1.42343711074968357734e0) /
+        (((((((1.05075007164441684324e-9 * r + 5.47593808499534494600e-4) * r + 1.51986665636164571966e-2) * r +
+             1.48103976427480074590e-1) *
+                r +
+            6.89767334985100004550e-1) *
+               r +
+           1.67638483018380384940e0) *
+              r +
+          2.05319162663775882187e0) *
+             r +
+         1.0);
+  } else {
+    r -= 5;
+    x = (((((((2.01033439929228813265e-7 * r + 2.71155556874348757815e-5) * r + 1.24266094738807843860e-3) * r +
+             2.65321895265761230930e-2) *
+                r +
+            2.96560571828504891230e-1) *
+               r +
+           1.78482653991729133580e0) *
+              r +
+          5.46378491116411436990e0) *
+             r +
+         6.65790464350110377720e0) /
+        (((((((2.04426310338993978564e-15 * r + 1.42151175831644588870e-7) * r + 1.84631831751005468180e-5) * r +
+             7.86869131145613259100e-4) *
+                r +
+            1.48753612908506148525e-2) *
+               r +
+           1.36929880922735805310e-1) *
+              r +
+          5.99832206555887937690e-1) *
+             r +
+         1.0);
+  }
+  return q < 0 ? -x : x;
+}
+
+/// A draw from the standard normal distribution, by inversion: the same on every standard library.
+[[nodiscard]] inline double normal(const RandomKey& key) noexcept { return normal_quantile(uniform(key)); }
+
+}  // namespace pulsecast

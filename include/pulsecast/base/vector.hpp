@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/ext/quaternion_double.hpp>
+#include <glm/ext/quaternion_geometric.hpp>
+#include <glm/ext/quaternion_trigonometric.hpp>
+#include <glm/ext/vector_double2.hpp>
+#include <glm/ext/vector_double3.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+/// Vectors and rotations. GLM is named in this header only.
+namespace pulsecast {
+
+using Vec2 = glm::dvec2;
+using Vec3 = glm::dvec3;
+
+/// A rotation as a unit quaternion; `rotation * vector` turns the vector.
+using Rotation = glm::dquat;
+
+using glm::conjugate;
+using glm::cross;
+using glm::dot;
+using glm::length;
+using glm::normalize;
+using std::numbers::pi;
+
+inline constexpr Vec3 right{1, 0, 0};    ///< +x of the world (east), a body and an instrument
+inline constexpr Vec3 forward{0, 1, 0};  ///< +y: north, and where a beam leaves
+inline constexpr Vec3 up{0, 0, 1};       ///< +z
+
+inline const Rotation no_rotation{1, 0, 0, 0};
+
+/// The right-handed rotation about an axis of any length but zero, by an angle [rad].
+[[nodiscard]] inline Rotation rotation_about(const Vec3& axis, double angle) noexcept { return glm::angleAxis(angle, normalize(axis)); }
+
+[[nodiscard]] inline bool finite(const Vec3& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+[[nodiscard]] inline Vec3 min(const Vec3& a, const Vec3& b) noexcept {
+  return {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
+}
+
+[[nodiscard]] inline Vec3 max(const Vec3& a, const Vec3& b) noexcept {
+  return {a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
+}
+
+/// The largest of the three magnitudes.
+[[nodiscard]] inline double max_norm(const Vec3& v) noexcept {
+  return std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
+}
+
+}  // namespace pulsecast

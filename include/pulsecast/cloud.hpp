@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <pulsecast/echo.hpp>
+
+namespace pulsecast {
+
+/// A point cloud in memory: a sink that keeps every echo, column by column.
+struct Cloud {
+  std::vector<Vec3> points;  ///< in the world [m]
+  std::vector<Echo> echoes;
+  std::vector<PulseIndex> pulses;  ///< the pulse that each belongs to
+  std::vector<Tick> ticks;         ///< when that pulse left, since the survey's start
+
+  void operator()(const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots)
+      for (const Echo& echo : batch.echoes_of(shot)) {
+        points.push_back(point_of(shot, echo));
+        echoes.push_back(echo);
+        pulses.push_back(shot.index);
+        ticks.push_back(shot.tick);
+      }
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return points.size(); }
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+/// Sends the pulses of a laser through a moving optic, or turns a whole instrument with a head:
+/// `Deflector{RotatingHead{...}, Deflector{PolygonMirror{...}, Scanner{...}}}`.
+template <class Moving, class Source>
+requires(Optic<Moving>&& BeamSource<Source>) || (Head<Moving> && InstrumentSource<Source>)class Deflector {
+ public:
+  Deflector(Moving moving, Source source) : moving_(validated(std::move(moving))), source_(validated(std::move(source))) {}
+
+  [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
+  [[nodiscard]] Tick duration() const noexcept { return source_.duration(); }
+
+  [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept {
+    const auto inner = source_.pulse(i);
+    if (!inner) return std::nullopt;
+    if constexpr (requires {
+                    { moving_.open(inner->tick) } noexcept -> std::same_as<bool>;
+                  })
+      if (!moving_.open(inner->tick)) return std::nullopt;
+    return transformed(moving_.at(inner->tick), *inner);
+  }
+
+  [[nodiscard]] const Moving& moving() const noexcept { return moving_; }
+  [[nodiscard]] const Source& source() const noexcept { return source_; }
+
+ private:
+  Moving moving_;
+  Source source_;
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+/// The nearest reflection, as it is: range without a waveform, for robotics and visibility.
+struct FirstHit {
+  double threshold = 0;  ///< weaker reflections are not seen [W]
+
+  void validate() const { expect_not_negative("FirstHit::threshold", threshold, "W"); }
+
+  struct Workspace {
+    Echo echo;
+  };
+
+  [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
+
+  [[nodiscard]] Detection detect(const Laser&, std::span<Reflection> reflections, Workspace& workspace) const noexcept {
+    const Reflection* first = nullptr;
+    for (const Reflection& r : reflections)
+      if (r.power >= threshold && (!first || r.range < first->range)) first = &r;
+    if (!first) return {};
+    workspace.echo =
+        Echo{.range = first->range, .amplitude = first->power, .object = first->object, .classification = first->classification};
+    return {{&workspace.echo, 1}, {}, 0};
+  }
+};
+
+static_assert(Detector<FirstHit>);
+
+}  // namespace pulsecast

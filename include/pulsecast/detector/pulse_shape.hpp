@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+namespace pulsecast {
+
+/// A laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge at t = 0, here scaled to a peak of 1, which stands at 2 tau.
+/// Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5, with tau = full width at half maximum / 3.5.
+struct PulseShape {
+  double tau;  ///< [s]
+
+  /// `divisor`: full width at half maximum by tau. Solving for the half maximum gives 3.395; the literature says 3.5.
+  explicit PulseShape(double pulse_length, double divisor = 3.5) noexcept : tau(pulse_length / divisor) {}
+
+  static constexpr double peak = 2;  ///< when the peak comes, since the leading edge [tau]
+  static constexpr double to_unit_peak = std::numbers::e * std::numbers::e / 4;
+
+  /// Standard deviation in time [s]: the shape is a gamma distribution of order 3.
+  [[nodiscard]] double deviation() const noexcept { return std::numbers::sqrt3 * tau; }
+
+  /// Power at time t since the peak [s]; 1 at t = 0.
+  [[nodiscard]] double operator()(double t) const noexcept {
+    const double u = t / tau + peak;
+    return u > 0 ? u * u * std::exp(-u) * to_unit_peak : 0;
+  }
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/pulse.hpp>
+
+namespace pulsecast {
+
+/// Extinction of the air [1/m] for a wavelength [m] and a visibility [m]; none if the visibility is infinite.
+/// Source: Kruse, McGlauchlin & McQuistan 1962: 3.91/V (lambda / 0.55 um)^-q per km, V in km.
+[[nodiscard]] inline double extinction(double wavelength, double visibility) noexcept {
+  const double v = visibility * 1e-3;
+  const double q = v > 50 ? 1.6 : v > 6 ? 1.3 : 0.585 * std::cbrt(v);
+  return 3.91 / v * std::pow(wavelength / 0.55e-6, -q) * 1e-3;
+}
+
+/// The receiving half of an instrument, and the air before it.
+struct Receiver {
+  double diameter = 0.15;                                      ///< of the aperture [m]
+  double efficiency = 0.99;                                    ///< of the optics, both ways
+  double visibility = 23e3;                                    ///< meteorological; infinite for no atmosphere [m]
+  double range_min = 0;                                        ///< nearer than this, nothing is received [m]
+  double range_max = std::numeric_limits<double>::infinity();  ///< farther than this, nothing is received [m]
+
+  void validate() const {
+    expect_positive("Receiver::diameter", diameter, "m");
+    expect_within("Receiver::efficiency", efficiency, 0, 1, "");
+    expect_within("Receiver::visibility", visibility, 1, std::numeric_limits<double>::infinity(), "m");
+    expect_not_negative("Receiver::range_min", range_min, "m");
+    expect_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
+  }
+
+  [[nodiscard]] bool in_gate(double range) const noexcept { return range >= range_min && range <= range_max; }
+};
+
+/// From the power of a pulse to the power that a subray brings back.
+/// Source: laser radar equation for an extended target, Jelalian 1992; in the form of Winiwarter et al. 2021.
+class LinkBudget {
+ public:
+  LinkBudget(const Receiver& receiver, const Laser& laser) noexcept
+      : gain_(laser.peak_power * receiver.diameter * receiver.diameter * receiver.efficiency / 4),
+        extinction_(extinction(laser.wavelength, receiver.visibility)) {}
+
+  /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in `Hit`) at a range [m].
+  [[nodiscard]] double power(double share, double backscatter, double range) const noexcept {
+    return gain_ * share * backscatter / (range * range) * std::exp(-2 * extinction_ * range);
+  }
+
+ private:
+  double gain_, extinction_;
+};
+
+}  // namespace pulsecast

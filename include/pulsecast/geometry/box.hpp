@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <limits>
+
+#include <pulsecast/base/vector.hpp>
+
+namespace pulsecast {
+
+/// An axis-aligned box; as made, the empty one, which every extension replaces.
+struct Box {
+  Vec3 min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  Vec3 max = -min;
+
+  [[nodiscard]] bool empty() const noexcept { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
+  [[nodiscard]] Vec3 centre() const noexcept { return min * 0.5 + max * 0.5; }
+  [[nodiscard]] Vec3 size() const noexcept { return max - min; }
+
+  void extend(const Vec3& p) noexcept { min = pulsecast::min(min, p), max = pulsecast::max(max, p); }
+  void extend(const Box& b) noexcept { min = pulsecast::min(min, b.min), max = pulsecast::max(max, b.max); }
+
+  /// Half of the surface, the measure of how likely a ray is to meet it; 0 if empty [m^2].
+  [[nodiscard]] double half_area() const noexcept {
+    if (empty()) return 0;
+    const Vec3 s = size();
+    return s.x * s.y + s.y * s.z + s.z * s.x;
+  }
+
+  friend bool operator==(const Box&, const Box&) = default;
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/geometry/ray.hpp>
+
+namespace pulsecast {
+
+/// Number of a primitive in its geometry.
+using PrimitiveIndex = std::uint32_t;
+
+/// Rays from one origin into a narrow cone: the subrays of one pulse, or a part of them. A single ray is a bundle of one.
+/// Structure of arrays, filled up with idle lanes to a multiple of `lanes`, so that loops over it turn into SIMD.
+/// All directions have the same length: 1 in the world, 1/scale inside an instance, so that a range means metres of the world everywhere.
+struct RayBundle {
+  static constexpr std::size_t capacity = 64;
+  static constexpr std::size_t lanes = 8;
+
+  using Column = std::array<double, capacity>;
+
+  alignas(64) Column x, y, z;  ///< directions
+  Vec3 origin{};               ///< common to all [m]
+  double direction_length = 1;
+  double near = 0;                                       ///< nothing is met at this range or before it [m]
+  double far = std::numeric_limits<double>::infinity();  ///< nothing is met beyond this range [m]
+  std::size_t size = 0;                                  ///< rays in use, at most `capacity`
+
+  double wavelength = 1.064e-6;  ///< of the light [m]
+  Tick tick;                     ///< when the pulse left
+  std::uint64_t seed = 0;        ///< names, with the next two, every random number that tracing may draw
+  PulseIndex pulse = 0;
+  std::uint32_t first_subray = 0;  ///< number of ray 0 among the subrays of its pulse
+
+  [[nodiscard]] std::size_t padded_size() const noexcept { return (size + lanes - 1) / lanes * lanes; }
+  [[nodiscard]] Vec3 direction(std::size_t j) const noexcept { return {x[j], y[j], z[j]}; }
+  [[nodiscard]] Ray ray(std::size_t j) const noexcept { return {origin, direction(j), near, far}; }
+
+  void set_direction(std::size_t j, const Vec3& d) noexcept { x[j] = d.x, y[j] = d.y, z[j] = d.z; }
+
+  /// Makes the idle lanes copies of the last ray, as every reader of `padded_size()` rays expects. Call it when the directions are set.
+  void pad() noexcept {
+    PULSECAST_EXPECT(size > 0 && size <= capacity);
+    for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
+  }
+};
+
+/// The bundle of one ray.
+[[nodiscard]] inline RayBundle bundle_of(const Ray& ray) noexcept {
+  RayBundle rays;
+  rays.origin = ray.origin, rays.near = ray.near, rays.far = ray.far, rays.size = 1;
+  rays.set_direction(0, ray.direction);
+  rays.pad();
+  return rays;
+}
+
+/// The nearest primitive that each ray of a bundle has met so far. On exactly equal range the smallest identity wins.
+struct Nearest {
+  static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+
+  alignas(64) std::array<double, RayBundle::capacity> range;  ///< [m]; `far` if nothing was met
+  alignas(
+      64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< part in the upper half, primitive in the lower; `none` if nothing was met
+  std::uint64_t part = 0;                                     ///< of what is being tested, in the upper half
+
+  explicit Nearest(const RayBundle& rays) noexcept {
+    for (std::size_t j = 0; j < rays.padded_size(); ++j) {
+      range[j] = j < rays.size ? rays.far : -std::numeric_limits<double>::infinity();  // an idle lane meets nothing
+      id[j] = none;
+    }
+  }
+
+  [[nodiscard]] bool met(std::size_t j) const noexcept { return id[j] != none; }
+  [[nodiscard]] std::uint32_t part_of(std::size_t j) const noexcept { return static_cast<std::uint32_t>(id[j] >> 32); }
+  [[nodiscard]] PrimitiveIndex primitive_of(std::size_t j) const noexcept { return static_cast<PrimitiveIndex>(id[j]); }
+
+  /// Takes note that ray j meets a primitive of the current part, if that is nearer than what it met before.
+  void offer(std::size_t j, double at, PrimitiveIndex primitive) noexcept {
+    const std::uint64_t candidate = part | primitive;
+    if (at < range[j] || (at == range[j] && candidate < id[j])) range[j] = at, id[j] = candidate;
+  }
+
+  /// The range beyond which no ray of the bundle can find anything nearer.
+  [[nodiscard]] double limit(const RayBundle& rays) const noexcept {
+    double last = -std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < rays.padded_size(); ++j) last = range[j] > last ? range[j] : last;
+    return last;
+  }
+};
+
+}  // namespace pulsecast

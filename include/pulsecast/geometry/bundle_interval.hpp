@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include <pulsecast/geometry/box.hpp>
+#include <pulsecast/geometry/bundle.hpp>
+
+namespace pulsecast {
+
+/// The nearest number of type Real that is not greater.
+template <std::floating_point Real>
+[[nodiscard]] Real round_down(double value) noexcept {
+  const Real r = static_cast<Real>(value);
+  return static_cast<double>(r) > value ? std::nextafter(r, -std::numeric_limits<Real>::infinity()) : r;
+}
+
+/// The nearest number of type Real that is not less.
+template <std::floating_point Real>
+[[nodiscard]] Real round_up(double value) noexcept {
+  const Real r = static_cast<Real>(value);
+  return static_cast<double>(r) < value ? std::nextafter(r, std::numeric_limits<Real>::infinity()) : r;
+}
+
+/// A box of type Real, in coordinates relative to the centre of an accelerator; never smaller than the box that it stands for.
+template <std::floating_point Real>
+struct BoundingBox {
+  Real min[3], max[3];
+
+  static BoundingBox around(const Box& box, const Vec3& centre) noexcept {
+    BoundingBox b;
+    for (int k = 0; k < 3; ++k) {
+      // the subtraction itself rounds, by at most half an ulp of its result
+      const double low = box.min[k] - centre[k], high = box.max[k] - centre[k];
+      b.min[k] = round_down<Real>(low - std::fabs(low) * std::numeric_limits<double>::epsilon());
+      b.max[k] = round_up<Real>(high + std::fabs(high) * std::numeric_limits<double>::epsilon());
+    }
+    return b;
+  }
+};
+
+/// A whole bundle against boxes and planes, by interval arithmetic. An answer may be too cautious, never too bold: where any ray
+/// of the bundle meets a primitive in double precision, no box around that primitive is passed over.
+template <std::floating_point Real>
+class BundleInterval {
+ public:
+  struct Span {
+    Real entry, exit;
+    [[nodiscard]] bool empty() const noexcept { return !(entry <= exit); }
+  };
+
+  /// `bounds` is what the accelerator holds, `centre` what its boxes are relative to.
+  BundleInterval(const RayBundle& rays, const Box& bounds, const Vec3& centre) noexcept : near_(round_down<Real>(rays.near)) {
+    // Primitive tests round in double relative to the coordinates in play: a hit may lie this far outside of its box.
+    const double scale = std::max(max_norm(rays.origin), std::max(max_norm(bounds.min), max_norm(bounds.max)));
+    const double slack = 64 * std::numeric_limits<double>::epsilon() * scale;
+    const RayBundle::Column* columns[3] = {&rays.x, &rays.y, &rays.z};
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax_element(columns[k]->begin(), columns[k]->begin() + static_cast<std::ptrdiff_t>(rays.size));
+      const double o = rays.origin[k] - centre[k];
+      Axis& axis = axes_[k];
+      axis.origin_low = round_down<Real>(o - slack), axis.origin_high = round_up<Real>(o + slack);
+      axis.sense = *low > 0 ? 1 : *high < 0 ? -1 : 0;
+      const double most = std::max(std::fabs(*low), std::fabs(*high)), least = std::min(std::fabs(*low), std::fabs(*high));
+      axis.slowness_low = slowness(most, 1 - tolerance), axis.slowness_high = slowness(least, 1 + tolerance);
+      if (axis.sense == 0) {  // rays go both ways, or not at all
+        axis.slowness_low = *high > 0 ? slowness(*high, 1 - tolerance) : infinity;
+        axis.slowness_high = *low < 0 ? slowness(-*low, 1 - tolerance) : infinity;
+      }
+    }
+  }
+
+  /// +1 or -1 if all rays go that way along axis k, else 0.
+  [[nodiscard]] int sense(int k) const noexcept { return axes_[k].sense; }
+
+  /// The stretch of range over which any ray may be inside the box; empty if none can be.
+  [[nodiscard]] Span inside(const BoundingBox<Real>& box) const noexcept {
+    Span span{near_, std::numeric_limits<Real>::max()};
+    for (int k = 0; k < 3; ++k) clip(span, axes_[k], box.min[k], box.max[k]);
+    return span;
+  }
+
+  /// The stretch of range over which rays may cross the plane at `position` along axis k, whose sense must not be 0.
+  [[nodiscard]] Span crossing(int k, Real position) const noexcept {
+    const Axis& a = axes_[k];
+    const Real low = a.sense > 0 ? position - a.origin_high : a.origin_low - position;
+    const Real high = a.sense > 0 ? position - a.origin_low : a.origin_high - position;
+    return {lower(low, a), upper(high, a)};
+  }
+
+ private:
+  /// Slowness is range per metre along the axis. Where the sense is 0, `slowness_low` is the least of the rays that go up and
+  /// `slowness_high` the least of those that go down.
+  struct Axis {
+    Real origin_low, origin_high, slowness_low, slowness_high;
+    int sense;
+  };
+
+  static constexpr Real infinity = std::numeric_limits<Real>::infinity();
+  static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+
+  /// Finite, so that times zero it is zero.
+  static Real slowness(double speed, double factor) noexcept {
+    return static_cast<Real>(std::min(factor / speed, static_cast<double>(std::numeric_limits<Real>::max())));
+  }
+
+  static Real lower(Real distance, const Axis& a) noexcept { return distance * (distance > 0 ? a.slowness_low : a.slowness_high); }
+  static Real upper(Real distance, const Axis& a) noexcept { return distance * (distance > 0 ? a.slowness_high : a.slowness_low); }
+
+  static void clip(Span& span, const Axis& a, Real low, Real high) noexcept {
+    if (a.sense > 0) {
+      span.entry = std::max(span.entry, lower(low - a.origin_high, a));
+      span.exit = std::min(span.exit, upper(high - a.origin_low, a));
+    } else if (a.sense < 0) {
+      span.entry = std::max(span.entry, lower(a.origin_low - high, a));
+      span.exit = std::min(span.exit, upper(a.origin_high - low, a));
+    } else {
+      if (low > a.origin_high) span.entry = std::max(span.entry, (low - a.origin_high) * a.slowness_low);
+      if (high < a.origin_low) span.entry = std::max(span.entry, (a.origin_low - high) * a.slowness_high);
+    }
+  }
+
+  Real near_;
+  Axis axes_[3];
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+/// How an instrument sits on its platform.
+struct Mount {
+  Vec3 lever_arm{};                  ///< of the instrument's origin, in the frame of the body [m]
+  Rotation boresight = no_rotation;  ///< from the instrument to the body
+
+  void validate() const {
+    expect_finite("Mount::lever_arm (length)", length(lever_arm), "m");
+    expect_within("Mount::boresight (norm)", length(boresight), 1 - 1e-9, 1 + 1e-9, "");
+  }
+
+  [[nodiscard]] Pose<frame::Instrument, frame::Body> pose() const noexcept { return {boresight, lever_arm}; }
+};
+
+/// Carries an instrument through the world. The lever arm turns with the body.
+template <Trajectory Path, InstrumentSource Source>
+class Platform {
+ public:
+  Platform(Path path, Mount mount, Source source)
+      : path_(validated(std::move(path))), mount_(validated(mount)), source_(std::move(source)) {}
+
+  [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
+  [[nodiscard]] Tick duration() const noexcept { return source_.duration(); }
+
+  [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+    const auto inner = source_.pulse(i);
+    if (!inner) return std::nullopt;
+    const Pulse<frame::Body> on_body = transformed(mount_.pose(), *inner);
+    Pulse<frame::World> out = transformed(path_.at(inner->tick), on_body);
+    const Vec3 d = on_body.direction();
+    out.scan_angle = std::atan2(d.x, -d.z);
+    return out;
+  }
+
+  [[nodiscard]] const Path& trajectory() const noexcept { return path_; }
+  [[nodiscard]] const Mount& mount() const noexcept { return mount_; }
+  [[nodiscard]] const Source& source() const noexcept { return source_; }
+
+ private:
+  Path path_;
+  Mount mount_;
+  Source source_;
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+/// Stands still.
+struct Tripod {
+  Vec3 position{};     ///< of its foot, in the world [m]
+  double heading = 0;  ///< clockwise from north, as a compass shows it [rad]
+
+  void validate() const {
+    expect_finite("Tripod::position (x)", position.x, "m");
+    expect_finite("Tripod::position (y)", position.y, "m");
+    expect_finite("Tripod::position (z)", position.z, "m");
+    expect_finite("Tripod::heading", heading, "rad");
+  }
+
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick) const noexcept { return {rotation_about(up, -heading), position}; }
+};
+
+static_assert(Trajectory<Tripod>);
+
+}  // namespace pulsecast

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/tick.hpp>
+
+namespace pulsecast {
+
+/// What a laser sends, in the terms of its data sheet.
+struct Laser {
+  double wavelength = 1.064e-6;  ///< [m]
+  double peak_power = 4;         ///< of a pulse [W]
+  double pulse_length = 4e-9;    ///< full width at half maximum [s]
+  double divergence = 0.3e-3;    ///< full angle at 1/e^2 of the peak irradiance [rad]
+};
+
+/// One laser pulse, as seen from a frame.
+template <class Frame>
+struct Pulse {
+  PulseIndex index = 0;           ///< slot in the source that was asked
+  Tick tick;                      ///< when it leaves, since the survey's start
+  Pose<frame::Beam, Frame> pose;  ///< where it leaves, and how it is turned
+  Laser laser;
+  double scan_angle = 0;     ///< about the body's forward axis: 0 down, positive to the right, in [-pi, pi] [rad]; set by a platform
+  std::uint16_t leg = 0;     ///< number of the leg that it belongs to, from 0
+  std::uint8_t channel = 0;  ///< number of the emitter in a device of several, from 0
+
+  [[nodiscard]] const Vec3& origin() const noexcept { return pose.position; }
+  [[nodiscard]] Vec3 direction() const noexcept { return pose.rotation * forward; }
+};
+
+/// The pulse as seen from a frame that surrounds its own.
+template <class Outer, class Inner>
+[[nodiscard]] Pulse<Outer> transformed(const Pose<Inner, Outer>& outer_from_inner, const Pulse<Inner>& p) noexcept {
+  return {p.index, p.tick, outer_from_inner * p.pose, p.laser, p.scan_angle, p.leg, p.channel};
+}
+
+}  // namespace pulsecast

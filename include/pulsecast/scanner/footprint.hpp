@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+/// The axis of the beam alone: for sensors whose footprint does not matter.
+struct SingleRay {
+  [[nodiscard]] std::size_t size() const noexcept { return 1; }
+  [[nodiscard]] Vec2 offset(std::size_t) const noexcept { return {0, 0}; }
+  [[nodiscard]] double share(std::size_t) const noexcept { return 1; }
+};
+
+/// Concentric circles about a central ray; circle i holds floor(2 pi i) subrays. Each circle stands for the ring of the beam
+/// between the middles to its neighbours, and its subrays share the energy of that ring. The outermost ring ends at the 1/e^2 radius.
+/// Source: Winiwarter et al. 2021 for the numbers; the radii are our own, so that rings tile the footprint.
+class RingFootprint {
+ public:
+  /// `circles`: the central ray counts as the first; 3 circles are 19 subrays.
+  explicit RingFootprint(std::size_t circles = 3) {
+    expect_within("RingFootprint::circles", static_cast<double>(circles), 1, 1000, "");
+    const double n = static_cast<double>(circles);
+    for (std::size_t i = 0; i < circles; ++i) {
+      const double radius = static_cast<double>(i) / (n - 0.5);
+      const double inner = i == 0 ? 0 : radius - 0.5 / (n - 0.5), outer = radius + 0.5 / (n - 0.5);
+      const auto count = i == 0 ? std::size_t{1} : static_cast<std::size_t>(std::floor(2 * pi * static_cast<double>(i)));
+      // share of a Gaussian beam between two radii. Source: irradiance exp(-2 r^2 / w^2), integrated
+      const double ring = std::exp(-2 * inner * inner) - std::exp(-2 * outer * outer);
+      for (std::size_t k = 0; k < count; ++k) {
+        const double angle = 2 * pi * static_cast<double>(k) / static_cast<double>(count);
+        offsets_.push_back({radius * std::sin(angle), radius * std::cos(angle)});
+        shares_.push_back(ring / static_cast<double>(count));
+      }
+    }
+    const double sum = std::accumulate(shares_.begin(), shares_.end(), 0.0);
+    for (double& share : shares_) share /= sum;
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return offsets_.size(); }
+  [[nodiscard]] Vec2 offset(std::size_t j) const noexcept { return offsets_[j]; }
+  [[nodiscard]] double share(std::size_t j) const noexcept { return shares_[j]; }
+
+ private:
+  std::vector<Vec2> offsets_;
+  std::vector<double> shares_;
+};
+
+/// Subrays of equal energy on a sunflower's spiral: the golden angle from one to the next, radii at the quantiles of a Gaussian beam.
+/// Source: Vogel 1979 for the spiral; radius from inverting 1 - exp(-2 r^2 / w^2).
+class SunflowerFootprint {
+ public:
+  explicit SunflowerFootprint(std::size_t subrays = 19) {
+    expect_within("SunflowerFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
+    const double n = static_cast<double>(subrays);
+    const double golden_angle = pi * (3 - std::sqrt(5.0));
+    for (std::size_t j = 0; j < subrays; ++j) {
+      const double energy_inside = (static_cast<double>(j) + 0.5) / n;
+      const double radius = subrays == 1 ? 0 : std::sqrt(-0.5 * std::log1p(-energy_inside));
+      const double angle = golden_angle * static_cast<double>(j);
+      offsets_.push_back({radius * std::sin(angle), radius * std::cos(angle)});
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return offsets_.size(); }
+  [[nodiscard]] Vec2 offset(std::size_t j) const noexcept { return offsets_[j]; }
+  [[nodiscard]] double share(std::size_t) const noexcept { return 1 / static_cast<double>(offsets_.size()); }
+
+ private:
+  std::vector<Vec2> offsets_;
+};
+
+static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<SunflowerFootprint>);
+
+/// The direction of a subray in the frame of its beam: unit, along +y for no offset.
+/// `offset` is in units of the beam's 1/e^2 radius, which stands at half the divergence [rad] in the far field.
+[[nodiscard]] inline Vec3 subray_direction(const Vec2& offset, double divergence) noexcept {
+  const double radius = std::hypot(offset.x, offset.y);
+  if (radius == 0) return forward;
+  const double angle = radius * divergence / 2;
+  const double aside = std::sin(angle) / radius;
+  return {aside * offset.x, std::cos(angle), aside * offset.y};
+}
+
+}  // namespace pulsecast

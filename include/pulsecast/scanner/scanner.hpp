@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+/// A pulsed laser at a constant rate: the innermost stage of every pipeline.
+struct Scanner {
+  double pulse_rate = 100e3;      ///< pulses a second [Hz]
+  PulseIndex pulses = 1'000'000;  ///< how many slots the scan lasts
+  Laser laser{};
+
+  void validate() const {
+    using namespace literals;
+    expect_positive("Scanner::pulse_rate", pulse_rate, "Hz");
+    expect_positive("Laser::wavelength", laser.wavelength, "m");
+    expect_positive("Laser::peak_power", laser.peak_power, "W");
+    expect_positive("Laser::pulse_length", laser.pulse_length, "s");
+    expect_within("Laser::divergence", laser.divergence, 0, 30_deg, "rad");
+  }
+
+  [[nodiscard]] PulseIndex size() const noexcept { return pulses; }
+  [[nodiscard]] Tick duration() const noexcept { return Tick::of(pulses, pulse_rate); }
+
+  [[nodiscard]] std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept {
+    Pulse<frame::Beam> p;
+    p.index = i, p.tick = Tick::of(i, pulse_rate), p.laser = laser;
+    return p;
+  }
+};
+
+static_assert(BeamSource<Scanner>);
+
+}  // namespace pulsecast

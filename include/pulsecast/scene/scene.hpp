@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <span>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pulsecast/accel/bvh.hpp>
+#include <pulsecast/scene/part.hpp>
+
+namespace pulsecast {
+
+/// Parts of the given kinds of geometry, and no code for any other kind: `Scene<TriangleMesh<>>`.
+template <Geometry... Shapes>
+class Scene {
+ public:
+  using Part = pulsecast::Part<Shapes...>;
+
+  explicit Scene(std::vector<Part> parts) : parts_(std::move(parts)), index_(boxes(parts_)) {}
+
+  [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
+  [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
+
+  /// Memory held, every shared geometry counted once [byte].
+  [[nodiscard]] std::size_t memory() const {
+    std::size_t bytes = index_.memory() + parts_.capacity() * sizeof(Part);
+    std::set<const void*> counted;
+    for (const Part& part : parts_)
+      std::visit([&](const auto& shape) { bytes += counted.insert(shape.get()).second ? shape->memory() : 0; }, part.geometry);
+    return bytes;
+  }
+
+  /// What each ray of the bundle meets first. Parts are met where they stand; the tie between parts goes to the first in the list.
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+    Nearest nearest(rays);
+    const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
+      for (const PrimitiveIndex p : found) {
+        nearest.part = std::uint64_t{p} << 32;
+        const Part& part = parts_[p];
+        part.placement.identity() ? closest_in(part, rays, nearest) : closest_in(part, part.placement.to_local(rays), nearest);
+      }
+    };
+    index_.closest(rays, test, nearest);
+    describe(rays, nearest, hits);
+  }
+
+ private:
+  static std::vector<Box> boxes(const std::vector<Part>& parts) {
+    std::vector<Box> boxes;
+    boxes.reserve(parts.size());
+    for (const Part& part : parts) {
+      part.placement.validate();
+      boxes.push_back(std::visit(
+          [&](const auto& shape) {
+            if (!shape) throw SettingError("Part::geometry (number)", 0, "", "1");
+            const double materials = part.materials ? static_cast<double>(part.materials->size()) : 0;
+            expect_within("Part::materials (number)", materials, static_cast<double>(shape->material_count()), 4294967295.0, "");
+            return part.placement.box(shape->bounds());
+          },
+          part.geometry));
+    }
+    return boxes;
+  }
+
+  static void closest_in(const Part& part, const RayBundle& rays, Nearest& nearest) noexcept {
+    std::visit([&](const auto& shape) noexcept { shape->closest(rays, nearest); }, part.geometry);
+  }
+
+  void describe(const RayBundle& rays, const Nearest& nearest, std::span<Hit> hits) const noexcept {
+    constexpr std::size_t nothing = std::size_t(-1);
+    std::size_t at = nothing;  // the part whose frame `local` is in: neighbours mostly meet the same
+    RayBundle local;
+    for (std::size_t j = 0; j < rays.size; ++j) {
+      hits[j] = Hit{};
+      if (!nearest.met(j)) continue;
+      const Part& part = parts_[nearest.part_of(j)];
+      if (at != nearest.part_of(j)) {
+        at = nearest.part_of(j);
+        local = part.placement.identity() ? rays : part.placement.to_local(rays);
+      }
+      const Surface surface =
+          std::visit([&](const auto& shape) noexcept { return shape->surface(nearest.primitive_of(j), local, j); }, part.geometry);
+      const Material& material = (*part.materials)[surface.material];
+      const double cosine = std::fabs(dot(surface.normal, local.direction(j))) / local.direction_length;
+      Hit& hit = hits[j];
+      hit.range = nearest.range[j];
+      hit.cos_incidence = surface.normal == Vec3{} ? 1 : cosine < 1 ? cosine : 1;
+      hit.backscatter = material.backscatter(hit.cos_incidence);
+      hit.object = part.object, hit.classification = material.classification;
+    }
+  }
+
+  std::vector<Part> parts_;
+  Bvh<float> index_;
+};
+
+}  // namespace pulsecast

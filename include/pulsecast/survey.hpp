@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/radiometry.hpp>
+#include <pulsecast/scanner/footprint.hpp>
+
+namespace pulsecast {
+
+/// What came of one pulse slot. The spans stay valid until the workspace is used again; the shot's places in a batch are not set.
+struct Outcome {
+  Shot shot;
+  std::span<const Echo> echoes;
+  std::span<const float> waveform;
+  std::size_t hits = 0;  ///< subrays that met something
+};
+
+/// The whole of a simulation, as a pure function from a pulse index to echoes. Made once; from then on nothing in it changes, so that
+/// pulses may be asked for in any order and from any number of threads. The map is referred to, not copied, and must live as long.
+template <WorldSource Source, Footprint Pattern, Target Map, Detector Instrument>
+class Survey {
+ public:
+  Survey(Source source, Pattern footprint, const Map& map, Receiver receiver, Instrument detector, std::uint64_t seed = 0)
+      : source_(std::move(source)),
+        footprint_(std::move(footprint)),
+        map_(&map),
+        receiver_(validated(receiver)),
+        detector_(validated(std::move(detector))),
+        seed_(seed) {}
+
+  Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would be gone
+
+  /// The scratch memory of one worker.
+  struct Workspace {
+    std::vector<Reflection> reflections;
+    std::vector<Vec3> fan;  ///< directions of the subrays in the frame of the beam
+    double fan_divergence;  ///< that the fan is made for [rad]
+    decltype(std::declval<const Instrument&>().workspace(0)) detector;
+  };
+
+  [[nodiscard]] Workspace workspace() const {
+    const std::size_t n = footprint_.size();
+    Workspace w{{}, std::vector<Vec3>(n), std::numeric_limits<double>::quiet_NaN(), detector_.workspace(n)};
+    w.reflections.reserve(n);
+    return w;
+  }
+
+  [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
+  [[nodiscard]] std::size_t subrays() const noexcept { return footprint_.size(); }
+  [[nodiscard]] const Source& source() const noexcept { return source_; }
+  [[nodiscard]] const Instrument& detector() const noexcept { return detector_; }
+
+  /// Between two samples of a waveform; 0 if the detector has none [s].
+  [[nodiscard]] double sample_interval() const noexcept {
+    if constexpr (requires { detector_.sample_interval(); })
+      return detector_.sample_interval();
+    else
+      return 0;
+  }
+
+  /// What pulse i brings back.
+  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
+    Outcome out;
+    out.shot.index = i;
+    const auto pulse = source_.pulse(i);
+    if (!pulse) return out.shot.fate = Fate::blocked, out;
+    out.shot = {.index = i,
+                .tick = pulse->tick,
+                .origin = pulse->origin(),
+                .direction = pulse->direction(),
+                .scan_angle = pulse->scan_angle,
+                .leg = pulse->leg,
+                .channel = pulse->channel};
+
+    const LinkBudget budget(receiver_, pulse->laser);
+    out.hits = trace(*pulse, budget, w);
+    if (w.reflections.empty()) return out.shot.fate = out.hits > 0 ? Fate::out_of_range : Fate::missed, out;
+
+    const Detection detection = detector_.detect(pulse->laser, w.reflections, w.detector);
+    for (Echo& echo : detection.echoes) echo.reflectance = echo.amplitude / budget.power(1, 1, echo.range);
+    out.echoes = detection.echoes;
+    out.waveform = detection.waveform;
+    out.shot.waveform_start = detection.waveform_start;
+    out.shot.fate = detection.echoes.empty() ? Fate::below_threshold : Fate::returned;
+    return out;
+  }
+
+ private:
+  /// Fills in the reflections that pass the range gate; returns how many subrays met anything.
+  std::size_t trace(const Pulse<frame::World>& pulse, const LinkBudget& budget, Workspace& w) const noexcept {
+    if (w.fan_divergence != pulse.laser.divergence) {
+      for (std::size_t j = 0; j < w.fan.size(); ++j) w.fan[j] = subray_direction(footprint_.offset(j), pulse.laser.divergence);
+      w.fan_divergence = pulse.laser.divergence;
+    }
+    w.reflections.clear();
+    std::size_t met = 0;
+    RayBundle rays;
+    rays.origin = pulse.origin();
+    rays.wavelength = pulse.laser.wavelength, rays.tick = pulse.tick, rays.seed = seed_, rays.pulse = pulse.index;
+    const Vec3 x = pulse.pose.direction(right), y = pulse.pose.direction(forward), z = pulse.pose.direction(up);
+    std::array<Hit, RayBundle::capacity> hits;
+    for (std::size_t first = 0; first < w.fan.size(); first += rays.size) {
+      rays.first_subray = static_cast<std::uint32_t>(first);
+      rays.size = std::min(RayBundle::capacity, w.fan.size() - first);
+      for (std::size_t j = 0; j < rays.size; ++j) {
+        const Vec3& d = w.fan[first + j];
+        rays.set_direction(j, x * d.x + y * d.y + z * d.z);
+      }
+      rays.pad();
+      ask(rays, hits);
+      for (std::size_t j = 0; j < rays.size; ++j) {
+        const Hit& hit = hits[j];
+        if (!hit.met()) continue;
+        ++met;
+        if (receiver_.in_gate(hit.range))
+          w.reflections.push_back(
+              {hit.range, budget.power(footprint_.share(first + j), hit.backscatter, hit.range), hit.object, hit.classification});
+      }
+    }
+    return met;
+  }
+
+  void ask(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+    if constexpr (BundleTarget<Map>)
+      map_->closest(rays, hits);
+    else
+      for (std::size_t j = 0; j < rays.size; ++j) hits[j] = map_->closest_hit(rays.ray(j)).value_or(Hit{});
+  }
+
+  Source source_;
+  Pattern footprint_;
+  const Map* map_;
+  Receiver receiver_;
+  Instrument detector_;
+  std::uint64_t seed_;
+};
+
+}  // namespace pulsecast
