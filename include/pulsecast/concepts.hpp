@@ -32,9 +32,15 @@ concept Motion = std::copyable<M> && requires(const M m, Tick t) {
 };
 
 /// What a laser beam passes on its way out: a mirror, a prism, a fibre.
-/// It may also close: `{ o.open(tick) } noexcept -> bool` tells whether a pulse gets out at that time.
 template <class O>
 concept Optic = Motion<O, frame::Beam, frame::Instrument>;
+
+/// A moving thing that lets light out at some times only. An optic or head need not be gated.
+/// Law: as for `Motion`.
+template <class M>
+concept Gated = requires(const M m, Tick t) {
+  { m.open(t) } noexcept -> std::same_as<bool>;
+};
 
 /// What turns a whole instrument that already deflects its beam.
 template <class H>

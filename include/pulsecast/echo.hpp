@@ -48,7 +48,7 @@ enum class Fate : std::uint8_t {
 /// A pulse that was sent, as the instrument reports it.
 struct Shot {
   PulseIndex index = 0;
-  Tick tick;                 ///< when it left, since the survey's start
+  Tick tick{};               ///< when it left, since the survey's start
   Vec3 origin{};             ///< in the world [m]
   Vec3 direction{};          ///< unit, in the world
   double scan_angle = 0;     ///< as in `Pulse` [rad]

@@ -21,9 +21,9 @@ struct Laser {
 template <class Frame>
 struct Pulse {
   PulseIndex index = 0;           ///< slot in the source that was asked
-  Tick tick;                      ///< when it leaves, since the survey's start
-  Pose<frame::Beam, Frame> pose;  ///< where it leaves, and how it is turned
-  Laser laser;
+  Tick tick{};                    ///< when it leaves, since the survey's start
+  Pose<frame::Beam, Frame> pose{};///< where it leaves, and how it is turned
+  Laser laser{};
   double scan_angle = 0;     ///< about the body's forward axis: 0 down, positive to the right, in [-pi, pi] [rad]; set by a platform
   std::uint16_t leg = 0;     ///< number of the leg that it belongs to, from 0
   std::uint8_t channel = 0;  ///< number of the emitter in a device of several, from 0

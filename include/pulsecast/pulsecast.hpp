@@ -4,6 +4,10 @@
 
 /// Everything but the adapters.
 
+#include <pulsecast/accel/bvh.hpp>
+#include <pulsecast/accel/kd_tree.hpp>
+#include <pulsecast/accel/linear.hpp>
+#include <pulsecast/accel/sah.hpp>
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/frame.hpp>
@@ -37,5 +41,6 @@
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/scene.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
 #include <pulsecast/version.hpp>

@@ -35,8 +35,8 @@ struct RunOptions {
   PulseIndex first = 0;                                     ///< the first slot to do
   PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< the slot after the last, at most the survey's size
   PulseIndex stride = 1;                                    ///< every so many-th slot only: a preview
-  std::function<void(const Progress&)> progress;            ///< called after every batch, one call at a time, on any thread
-  std::stop_token stop;                                     ///< ends the run early; what was delivered is whole up to there
+  std::function<void(const Progress&)> progress{};          ///< called after every batch, one call at a time, on any thread
+  std::stop_token stop{};                                   ///< ends the run early; what was delivered is whole up to there
 };
 
 /// What a run came to.

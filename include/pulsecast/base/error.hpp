@@ -2,14 +2,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstddef>
-#include <sstream>
+#include <array>
+#include <charconv>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 
 namespace pulsecast {
+
+namespace detail {
+/// A number as people write it, shortest so that it reads back the same.
+inline std::string written(double value) {
+  std::array<char, 32> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+}  // namespace detail
 
 /// A setting that cannot be. Thrown when the stage that holds it is made, never later.
 class SettingError : public std::invalid_argument {
@@ -27,10 +35,8 @@ class SettingError : public std::invalid_argument {
   [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< the range that would do, in words
 
  private:
-  static std::string message(std::string_view field, double value, std::string_view unit, std::string_view allowed) {
-    std::ostringstream text;
-    text << field << " is " << value << (unit.empty() ? "" : " ") << unit << ", but must be " << allowed;
-    return text.str();
+  static std::string message(const std::string& field, double value, const std::string& unit, const std::string& allowed) {
+    return field + " is " + detail::written(value) + (unit.empty() ? "" : " ") + unit + ", but must be " + allowed;
   }
 
   std::string field_, unit_, allowed_;

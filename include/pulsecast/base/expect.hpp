@@ -31,9 +31,7 @@ inline void expect_finite(std::string_view field, double value, std::string_view
 /// Refuses a setting outside the closed interval [low, high].
 inline void expect_within(std::string_view field, double value, double low, double high, std::string_view unit) {
   if (value >= low && value <= high) return;
-  std::ostringstream allowed;
-  allowed << "from " << low << " to " << high;
-  throw SettingError(std::string(field), value, std::string(unit), allowed.str());
+  throw SettingError(std::string(field), value, std::string(unit), "from " + detail::written(low) + " to " + detail::written(high));
 }
 
 /// Asks a stage's settings whether they can be, if they have a say: `void validate() const` throws a `SettingError`.

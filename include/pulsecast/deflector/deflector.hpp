@@ -23,10 +23,10 @@ requires(Optic<Moving>&& BeamSource<Source>) || (Head<Moving> && InstrumentSourc
   [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept {
     const auto inner = source_.pulse(i);
     if (!inner) return std::nullopt;
-    if constexpr (requires {
-                    { moving_.open(inner->tick) } noexcept -> std::same_as<bool>;
-                  })
+    if constexpr (requires { moving_.open(inner->tick); }) {
+      static_assert(Gated<Moving>, "open(Tick) must be const and noexcept, and give a bool");
       if (!moving_.open(inner->tick)) return std::nullopt;
+    }
     return transformed(moving_.at(inner->tick), *inner);
   }
 

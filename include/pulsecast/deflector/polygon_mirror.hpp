@@ -38,6 +38,6 @@ struct PolygonMirror {
   }
 };
 
-static_assert(Optic<PolygonMirror>);
+static_assert(Optic<PolygonMirror> && Gated<PolygonMirror>);
 
 }  // namespace pulsecast

@@ -19,11 +19,11 @@ namespace pulsecast {
 /// Settings of `FullWaveform`. All times are two-way.
 struct WaveformSettings {
   double sample_interval = 0.25e-9;  ///< of the digitiser: one bin [s]
-  double threshold = 1e-12;         ///< weaker peaks are no echoes [W]
-  double window = 1e-9;             ///< an echo is the highest within this time before and after it [s]
-  std::size_t max_returns = 15;     ///< the first so many in order of range; at least 1
-  double record_length = 0;         ///< how much of the waveform is kept, from its first sample on; 0 for none [s]
-  double shape_divisor = 3.5;       ///< full width at half maximum of the pulse by its tau, see `PulseShape`
+  double threshold = 1e-12;          ///< weaker peaks are no echoes [W]
+  double window = 1e-9;              ///< an echo is the highest within this time before and after it [s]
+  std::size_t max_returns = 15;      ///< the first so many in order of range; at least 1
+  double record_length = 0;          ///< how much of the waveform is kept, from its first sample on; 0 for none [s]
+  double shape_divisor = 3.5;        ///< full width at half maximum of the pulse by its tau, see `PulseShape`
 };
 
 /// Samples the sum of the pulse shapes of all reflections, and finds its peaks. Their times are interpolated between samples.
@@ -59,8 +59,10 @@ class FullWaveform {
     return w;
   }
 
-  /// Sorts the reflections by range.
-  [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> reflections, Workspace& w) const noexcept {
+  /// Sorts the reflections by range. Those so far away that samples could not be counted, 2^50 of them, are left out.
+  [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> all, Workspace& w) const noexcept {
+    const auto countless = [&](const Reflection& r) { return !(arrival(r) < 0x1p50 * s_.sample_interval); };
+    const std::span<Reflection> reflections(all.begin(), std::remove_if(all.begin(), all.end(), countless));
     std::sort(reflections.begin(), reflections.end(), [](const Reflection& a, const Reflection& b) { return a.range < b.range; });
     w.echoes.clear(), w.record.clear();
     if (reflections.empty()) return {};
@@ -137,8 +139,8 @@ class FullWaveform {
   /// Samples without a new reflection after which the sum has died away.
   [[nodiscard]] double gap(const PulseShape& shape) const noexcept { return negligible * shape.tau / s_.sample_interval; }
 
-  static void keep(double at, double power, std::vector<float>& record) noexcept {
-    if (at < 0 || at >= static_cast<double>(record.capacity())) return;
+  void keep(double at, double power, std::vector<float>& record) const noexcept {
+    if (at < 0 || at >= static_cast<double>(record_capacity())) return;
     record.resize(static_cast<std::size_t>(at) + 1);  // within its capacity; a gap is filled with zeros
     record.back() = static_cast<float>(power);
   }
@@ -147,9 +149,10 @@ class FullWaveform {
   void find_peaks(double last, const PulseShape& shape, std::span<const Reflection> reflections, Workspace& w) const noexcept {
     const std::vector<double>& y = w.samples;
     for (std::size_t i = 2; i + 2 < y.size(); ++i) {
-      if (!(y[i] > y[i - 1] && y[i] >= y[i + 1]) || y[i] < s_.threshold) continue;
-      if (w.echoes.size() == w.echoes.capacity()) return;
+      if (!(y[i] > y[i - 1] && y[i] >= y[i + 1])) continue;
       const auto [offset, height] = vertex(&y[i]);
+      if (height < s_.threshold) continue;
+      if (w.echoes.size() == w.echoes.capacity()) return;
       const double time = (last - static_cast<double>(y.size() - 1 - i) + offset) * s_.sample_interval;
       const Reflection& strongest =
           *std::max_element(reflections.begin(), reflections.end(), [&](const Reflection& a, const Reflection& b) {

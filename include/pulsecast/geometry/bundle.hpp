@@ -89,7 +89,7 @@ struct Nearest {
   /// The range beyond which no ray of the bundle can find anything nearer.
   [[nodiscard]] double limit(const RayBundle& rays) const noexcept {
     double last = -std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < rays.padded_size(); ++j) last = range[j] > last ? range[j] : last;
+    for (std::size_t j = 0; j < rays.size; ++j) last = range[j] > last ? range[j] : last;
     return last;
   }
 };

@@ -32,19 +32,21 @@ struct BoundingBox {
   Real min[3], max[3];
 
   static BoundingBox around(const Box& box, const Vec3& centre) noexcept {
+    constexpr double growing = 1 + 2 * std::numeric_limits<double>::epsilon(), shrinking = 2 - growing;
     BoundingBox b;
     for (int k = 0; k < 3; ++k) {
-      // the subtraction itself rounds, by at most half an ulp of its result
+      // the subtraction itself rounds, by at most half an ulp of its result; a factor leaves an empty box empty
       const double low = box.min[k] - centre[k], high = box.max[k] - centre[k];
-      b.min[k] = round_down<Real>(low - std::fabs(low) * std::numeric_limits<double>::epsilon());
-      b.max[k] = round_up<Real>(high + std::fabs(high) * std::numeric_limits<double>::epsilon());
+      b.min[k] = round_down<Real>(low * (low > 0 ? shrinking : growing));
+      b.max[k] = round_up<Real>(high * (high > 0 ? growing : shrinking));
     }
     return b;
   }
 };
 
 /// A whole bundle against boxes and planes, by interval arithmetic. An answer may be too cautious, never too bold: where any ray
-/// of the bundle meets a primitive in double precision, no box around that primitive is passed over.
+/// of the bundle meets a primitive in double precision, no box around that primitive is passed over, and the range is inside its span.
+/// Rays that are not numbers are left out; if none is left, every span is empty.
 template <std::floating_point Real>
 class BundleInterval {
  public:
@@ -59,42 +61,52 @@ class BundleInterval {
     const double scale = std::max(max_norm(rays.origin), std::max(max_norm(bounds.min), max_norm(bounds.max)));
     const double slack = 64 * std::numeric_limits<double>::epsilon() * scale;
     const RayBundle::Column* columns[3] = {&rays.x, &rays.y, &rays.z};
+    if (!finite(rays.origin)) near_ = infinity;
     for (int k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax_element(columns[k]->begin(), columns[k]->begin() + static_cast<std::ptrdiff_t>(rays.size));
+      double low = std::numeric_limits<double>::infinity(), high = -low;  // comparisons that NaN never passes
+      for (std::size_t j = 0; j < rays.size; ++j) {
+        const double d = (*columns[k])[j];
+        low = d < low ? d : low, high = d > high ? d : high;
+      }
+      if (!(low <= high)) near_ = infinity;
       const double o = rays.origin[k] - centre[k];
       Axis& axis = axes_[k];
       axis.origin_low = round_down<Real>(o - slack), axis.origin_high = round_up<Real>(o + slack);
-      axis.sense = *low > 0 ? 1 : *high < 0 ? -1 : 0;
-      const double most = std::max(std::fabs(*low), std::fabs(*high)), least = std::min(std::fabs(*low), std::fabs(*high));
+      axis.sense = low > 0 ? 1 : high < 0 ? -1 : 0;
+      const double most = std::max(std::fabs(low), std::fabs(high)), least = std::min(std::fabs(low), std::fabs(high));
       axis.slowness_low = slowness(most, 1 - tolerance), axis.slowness_high = slowness(least, 1 + tolerance);
       if (axis.sense == 0) {  // rays go both ways, or not at all
-        axis.slowness_low = *high > 0 ? slowness(*high, 1 - tolerance) : infinity;
-        axis.slowness_high = *low < 0 ? slowness(-*low, 1 - tolerance) : infinity;
+        axis.slowness_low = high > 0 ? slowness(high, 1 - tolerance) : infinity;
+        axis.slowness_high = low < 0 ? slowness(-low, 1 - tolerance) : infinity;
       }
     }
   }
 
-  /// +1 or -1 if all rays go that way along axis k, else 0.
-  [[nodiscard]] int sense(int k) const noexcept { return axes_[k].sense; }
-
   /// The stretch of range over which any ray may be inside the box; empty if none can be.
   [[nodiscard]] Span inside(const BoundingBox<Real>& box) const noexcept {
     Span span{near_, std::numeric_limits<Real>::max()};
-    for (int k = 0; k < 3; ++k) clip(span, axes_[k], box.min[k], box.max[k]);
+    for (int k = 0; k < 3; ++k) {
+      keep_above(span, axes_[k], box.min[k]);
+      keep_below(span, axes_[k], box.max[k]);
+    }
     return span;
   }
 
-  /// The stretch of range over which rays may cross the plane at `position` along axis k, whose sense must not be 0.
-  [[nodiscard]] Span crossing(int k, Real position) const noexcept {
-    const Axis& a = axes_[k];
-    const Real low = a.sense > 0 ? position - a.origin_high : a.origin_low - position;
-    const Real high = a.sense > 0 ? position - a.origin_low : a.origin_high - position;
-    return {lower(low, a), upper(high, a)};
+  /// The part of a stretch over which any ray may be at or above the plane at `position` along axis k.
+  [[nodiscard]] Span above(Span span, int k, Real position) const noexcept {
+    keep_above(span, axes_[k], position);
+    return span;
+  }
+
+  /// The part of a stretch over which any ray may be at or below the plane at `position` along axis k.
+  [[nodiscard]] Span below(Span span, int k, Real position) const noexcept {
+    keep_below(span, axes_[k], position);
+    return span;
   }
 
  private:
-  /// Slowness is range per metre along the axis. Where the sense is 0, `slowness_low` is the least of the rays that go up and
-  /// `slowness_high` the least of those that go down.
+  /// `sense` is +1 or -1 if all rays go that way along the axis, else 0. Slowness is range per metre along the axis; where the sense is 0,
+  /// `slowness_low` is the least of the rays that go up and `slowness_high` the least of those that go down.
   struct Axis {
     Real origin_low, origin_high, slowness_low, slowness_high;
     int sense;
@@ -111,17 +123,22 @@ class BundleInterval {
   static Real lower(Real distance, const Axis& a) noexcept { return distance * (distance > 0 ? a.slowness_low : a.slowness_high); }
   static Real upper(Real distance, const Axis& a) noexcept { return distance * (distance > 0 ? a.slowness_high : a.slowness_low); }
 
-  static void clip(Span& span, const Axis& a, Real low, Real high) noexcept {
-    if (a.sense > 0) {
+  static void keep_above(Span& span, const Axis& a, Real low) noexcept {
+    if (a.sense > 0)
       span.entry = std::max(span.entry, lower(low - a.origin_high, a));
-      span.exit = std::min(span.exit, upper(high - a.origin_low, a));
-    } else if (a.sense < 0) {
-      span.entry = std::max(span.entry, lower(a.origin_low - high, a));
+    else if (a.sense < 0)
       span.exit = std::min(span.exit, upper(a.origin_high - low, a));
-    } else {
-      if (low > a.origin_high) span.entry = std::max(span.entry, (low - a.origin_high) * a.slowness_low);
-      if (high < a.origin_low) span.entry = std::max(span.entry, (a.origin_low - high) * a.slowness_high);
-    }
+    else if (low > a.origin_high)
+      span.entry = std::max(span.entry, (low - a.origin_high) * a.slowness_low);
+  }
+
+  static void keep_below(Span& span, const Axis& a, Real high) noexcept {
+    if (a.sense > 0)
+      span.exit = std::min(span.exit, upper(high - a.origin_low, a));
+    else if (a.sense < 0)
+      span.entry = std::max(span.entry, lower(a.origin_low - high, a));
+    else if (high < a.origin_low)
+      span.entry = std::max(span.entry, (a.origin_low - high) * a.slowness_high);
   }
 
   Real near_;

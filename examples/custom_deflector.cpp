@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+// An optic of one's own: two spinning prisms draw a rosette. Leaves custom_deflector.png.
+
+#include <pulsecast/adapters/image.hpp>
+#include <pulsecast/pulsecast.hpp>
+
+#include "command_line.hpp"
+#include "summary.hpp"
+#include "wood.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+/// Two thin prisms, one behind the other, each of which bends the beam by the same angle towards where it is turned.
+struct Rosette {
+  double bend;           ///< by each prism [rad]
+  double first, second;  ///< turns of the prisms per second, negative for the other way [Hz]
+
+  /// The one function that makes it an optic.
+  Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
+    const double a = 2 * pi * t.phase(first), b = 2 * pi * t.phase(second);
+    const double aside = bend * (std::cos(a) + std::cos(b)), upwards = bend * (std::sin(a) + std::sin(b));
+    return {rotation_about(up, -aside) * rotation_about(right, upwards), {}};
+  }
+};
+static_assert(Optic<Rosette>);
+
+int main(int argc, char** argv) {
+  CommandLine line("Scans a wood from a captive balloon, through an optic of its own.");
+  return line.run(argc, argv, [&] {
+    const auto scene = wood::scene(line.seed);
+    const Scanner scanner{.pulse_rate = 200_kHz, .pulses = 400'000};
+    const Deflector deflector{Rosette{.bend = 11_deg, .first = 41.5_Hz, .second = -23_Hz}, scanner};
+    const Mount downwards{.boresight = rotation_about(right, -90_deg)};
+    const Platform balloon{Tripod{.position = {0, 0, 80}}, downwards, deflector};
+    const Survey survey{balloon, SunflowerFootprint{19}, scene, Receiver{}, FullWaveform{}, line.seed};
+
+    adapters::ImageWriter map(line.output / "custom_deflector.png", {.width = 1200, .height = 1200, .azimuth = 0, .elevation = 90_deg});
+    print(run(survey, {.threads = line.threads, .progress = ProgressLine{}}, map));
+    map.close();
+  });
+}

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+// A scanner on a tripod: scans the OBJ files named on the command line, or else a wood, from several set-ups.
+// Leaves cloud.las, cloud.png and trajectory.txt, and cloud.xyz if asked for.
+
+#include <cmath>
+#include <cstddef>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/adapters/image.hpp>
+#include <pulsecast/adapters/las.hpp>
+#include <pulsecast/adapters/obj.hpp>
+#include <pulsecast/adapters/trajectory_file.hpp>
+#include <pulsecast/adapters/xyz.hpp>
+#include <pulsecast/pulsecast.hpp>
+
+#include "command_line.hpp"
+#include "summary.hpp"
+#include "wood.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+/// The scanner: a polygon mirror of four facets sweeps the beam upwards, while the head turns once around. `step` is the angle from
+/// one pulse to the next, and from one line to the next [rad].
+auto set_up(const Vec3& foot, double step) {
+  const Laser laser{.wavelength = 1550_nm, .peak_power = 10_W, .pulse_length = 4_ns, .divergence = 0.35_mrad};
+  const Scanner scanner{.pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(180_deg / step * 360_deg / step), .laser = laser};
+  const PolygonMirror mirror{.lines_per_second = scanner.pulse_rate * step / 180_deg, .sweep = 90_deg, .angle_min = -70_deg};
+  const RotatingHead head{.rate = 360_deg / scanner.duration().seconds()};
+  return Platform{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}}, Deflector{head, Deflector{mirror, scanner}}};
+}
+
+wood::Scene read_scene(const std::vector<std::string>& files, adapters::UpAxis up_axis) {
+  std::vector<wood::Scene::Part> parts;
+  for (const std::string& file : files) {
+    adapters::ObjModel model = adapters::read_obj(file, {.up = up_axis});
+    for (const std::string& warning : model.warnings) std::cerr << "warning: " << warning << '\n';
+    parts.push_back({.geometry = std::make_shared<const wood::Mesh>(std::move(model.mesh)),
+                     .materials = material_table(std::move(model.materials)),
+                     .object = static_cast<ObjectId>(parts.size())});
+  }
+  return wood::Scene(std::move(parts));
+}
+
+/// Three places around a box, at the height of its floor.
+std::vector<Vec3> places_around(const Box& box) {
+  std::vector<Vec3> places;
+  for (const double angle : {45_deg, 165_deg, 285_deg}) {
+    const Vec3 aside = (0.5 * box.size() + Vec3(3)) * Vec3(std::sin(angle), std::cos(angle), 0);
+    places.push_back(Vec3(box.centre().x, box.centre().y, box.min.z) + aside);
+  }
+  return places;
+}
+
+int main(int argc, char** argv) {
+  CommandLine line("Scans the given OBJ files, or a wood made by code, with a scanner on a tripod.");
+  std::vector<std::string> files;
+  std::vector<Vec3> positions;
+  double step_deg = 0.25;
+  bool xyz = false, y_up = false;
+  line.app.add_option("scene", files, "OBJ files [m] that together make the scene; a wood if there are none")->type_name("OBJ");
+  line.add_places("-p,--position", positions, "Where the tripod stands [m]; may be given again for further set-ups");
+  line.app.add_option("-r,--resolution", step_deg, "Angle from pulse to pulse and from line to line")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.005, 10.0));
+  line.app.add_flag("--y-up", y_up, "In the OBJ files y points up, not z");
+  line.app.add_flag("--xyz", xyz, "Leave the points as text, too");
+
+  return line.run(argc, argv, [&] {
+    const auto scene = files.empty() ? wood::scene(line.seed) : read_scene(files, y_up ? adapters::UpAxis::y : adapters::UpAxis::z);
+    if (positions.empty()) positions = files.empty() ? wood::glades(line.seed) : places_around(scene.bounds());
+    std::vector<decltype(set_up({}, 1))> set_ups;
+    for (const Vec3& place : positions) set_ups.push_back(set_up(place, radians(step_deg)));
+
+    const Survey survey{Legs{set_ups}, RingFootprint{3}, scene, Receiver{}, FullWaveform{}, line.seed};
+    adapters::LasWriter las(line.output / "cloud.las");
+    adapters::ImageWriter image(line.output / "cloud.png");
+    std::optional<adapters::XyzWriter> text;
+    if (xyz) text.emplace(line.output / "cloud.xyz");
+    const auto write_text = [&](const EchoBatch& batch) {
+      if (text) (*text)(batch);
+    };
+    const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image, write_text);
+
+    las.close(), image.close();
+    if (text) text->close();
+    adapters::TrajectoryWriter trajectory(line.output / "trajectory.txt");
+    const auto& legs = survey.source();
+    for (std::size_t k = 0; k < set_ups.size(); ++k) trajectory.add(set_ups[k].trajectory(), legs.start(k), set_ups[k].duration(), 1);
+    trajectory.close();
+
+    std::cout << "Scanned from " << positions.size() << " set-ups; the results are in " << line.output.string() << ".\n";
+    print(summary);
+  });
+}

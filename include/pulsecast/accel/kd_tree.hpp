@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/accel/sah.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+/// A tree of planes, set by the surface-area heuristic among the edges of 32 slices an axis. A primitive stands in every leaf that its box
+/// reaches, four leaves on average at most.
+/// Source: Wald & Havran 2006; in slices: Shevtsov, Soupikov & Kapustin 2007.
+template <std::floating_point Real = float>
+class KdTree {
+ public:
+  explicit KdTree(std::span<const Box> boxes) {
+    detail::BuildInput<Real> input(boxes);
+    bounds_ = input.bounds, centre_ = input.centre;
+    if (input.primitives.empty()) return;
+    build(std::move(input.primitives));
+    nodes_.shrink_to_fit(), order_.shrink_to_fit();
+  }
+
+  [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+  [[nodiscard]] std::size_t memory() const noexcept {
+    return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(PrimitiveIndex);
+  }
+
+  /// Steps from the root to the deepest leaf, at most 64.
+  [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
+
+  template <class Test>
+  requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
+  void closest(const RayBundle& rays, const Test& test, Nearest& nearest) const noexcept {
+    if (nodes_.empty()) return;
+    const BundleInterval<Real> interval(rays, bounds_, centre_);
+    std::array<Waiting, detail::deepest> stack;
+    std::size_t waiting = 0;
+    Real limit = round_up<Real>(nearest.limit(rays));
+    const Node* node = &nodes_[0];
+    Span span = interval.inside(cell_);
+    if (span.empty() || span.entry > limit) return;
+    for (;;) {
+      if (node->axis() < 3) {
+        const Node* const children = &nodes_[node->first()];
+        const Span low = interval.below(span, node->axis(), node->split), high = interval.above(span, node->axis(), node->split);
+        const bool into_low = !low.empty() && low.entry <= limit, into_high = !high.empty() && high.entry <= limit;
+        const bool earlier = low.entry < high.entry || (low.entry == high.entry && low.exit <= high.exit);
+        const bool low_first = into_low && (!into_high || earlier);
+        if (into_low && into_high) {
+          PULSECAST_EXPECT(waiting < stack.size());
+          stack[waiting++] = low_first ? Waiting{children + 1, high} : Waiting{children, low};
+        }
+        if (into_low || into_high) {
+          node = low_first ? children : children + 1, span = low_first ? low : high;
+          continue;
+        }
+      } else if (node->count > 0) {
+        test(std::span<const PrimitiveIndex>(order_.data() + node->first(), node->count));
+        limit = round_up<Real>(nearest.limit(rays));
+      }
+      do {
+        if (waiting == 0) return;
+        node = stack[--waiting].node, span = stack[waiting].span;
+      } while (span.entry > limit);
+    }
+  }
+
+ private:
+  using Span = typename BundleInterval<Real>::Span;
+  using Boxed = detail::Boxed<Real>;
+
+  static constexpr std::size_t slices = 32;
+  static constexpr double leaves_per_primitive = 4;
+  static constexpr double empty_bonus = 0.8;  ///< factor on the cost where one side is empty. Source: Wald & Havran 2006, sec. 3.2
+
+  struct Node {
+    std::uint64_t packed;  ///< axis across which it is split, 3 for a leaf; and four times `first()`
+    union {
+      Real split;           ///< where [m]
+      std::uint32_t count;  ///< of a leaf's primitives
+    };
+    [[nodiscard]] int axis() const noexcept { return static_cast<int>(packed & 3); }
+    /// Of a leaf's primitives in `order_`, or number of the lower child; the upper one follows it.
+    [[nodiscard]] std::size_t first() const noexcept { return packed >> 2; }
+    void place(std::size_t first, int axis) noexcept { packed = std::uint64_t{first} << 2 | static_cast<std::uint64_t>(axis); }
+  };
+  static_assert(sizeof(Node) == 16);
+
+  struct Waiting {
+    const Node* node;
+    Span span;
+  };
+
+  struct Task {
+    std::size_t begin;  ///< of its primitives in the heap of those that wait
+    std::size_t node, depth;
+    BoundingBox<Real> cell;
+    double allowance;  ///< leaves that its primitives may stand in, all told
+  };
+
+  struct Split {
+    int axis = -1;  ///< -1 if none is worth it
+    Real at = 0;
+  };
+
+  static bool reaches_lower(const Boxed& b, const Split& s) noexcept { return b.box.min[s.axis] < s.at || b.box.max[s.axis] <= s.at; }
+  static bool reaches_upper(const Boxed& b, const Split& s) noexcept { return b.box.max[s.axis] > s.at; }
+
+  void build(std::vector<Boxed> heap) {
+    cell_ = detail::no_box<Real>();
+    for (const Boxed& boxed : heap) detail::extend(cell_, boxed.box);
+    const auto n = static_cast<double>(heap.size());
+    // Source: Pharr, Jakob & Humphreys 2016, sec. 4.4
+    const std::size_t deepest = std::min(detail::deepest, static_cast<std::size_t>(8 + 1.3 * std::log2(n)));
+    nodes_.emplace_back();
+    std::vector<Task> tasks{{0, 0, 0, cell_, leaves_per_primitive * n}};
+    std::vector<Boxed> lower, upper;
+    while (!tasks.empty()) {
+      const Task task = tasks.back();
+      tasks.pop_back();
+      const std::span<const Boxed> part(heap.data() + task.begin, heap.size() - task.begin);
+      const Split split = task.depth < deepest ? best_split(part, task.cell) : Split{};
+      lower.clear(), upper.clear();
+      if (split.axis >= 0) {
+        for (const Boxed& boxed : part) {
+          if (reaches_lower(boxed, split)) lower.push_back(boxed);
+          if (reaches_upper(boxed, split)) upper.push_back(boxed);
+        }
+      }
+      const auto both = static_cast<double>(lower.size() + upper.size());
+      depth_ = std::max(depth_, task.depth);
+      Node& node = nodes_[task.node];
+      if (split.axis < 0 || both > task.allowance || std::min(lower.size(), upper.size()) == part.size()) {
+        node.place(order_.size(), 3), node.count = static_cast<std::uint32_t>(part.size());
+        for (const Boxed& boxed : part) order_.push_back(boxed.primitive);
+        heap.resize(task.begin);
+        continue;
+      }
+      const std::size_t children = nodes_.size();
+      node.place(children, split.axis), node.split = split.at;
+      nodes_.resize(children + 2);
+      const auto share = [&](const std::vector<Boxed>& side) { return task.allowance * static_cast<double>(side.size()) / both; };
+      Task below{task.begin, children + 1, task.depth + 1, task.cell, share(upper)};
+      below.cell.min[split.axis] = split.at;
+      heap.resize(task.begin);
+      heap.insert(heap.end(), upper.begin(), upper.end());
+      tasks.push_back(below);
+      below = {heap.size(), children, task.depth + 1, task.cell, share(lower)};
+      below.cell.max[split.axis] = split.at;
+      heap.insert(heap.end(), lower.begin(), lower.end());
+      tasks.push_back(below);
+    }
+  }
+
+  static Split best_split(std::span<const Boxed> part, const BoundingBox<Real>& cell) noexcept {
+    Split best;
+    const auto n = static_cast<double>(part.size());
+    const double area = detail::half_area(cell);
+    double best_cost = detail::test_cost * n;
+    auto filled = detail::no_box<Real>();
+    for (const Boxed& boxed : part) detail::extend(filled, boxed.box);
+    for (int k = 0; k < 3; ++k) {
+      const Real low = std::max(filled.min[k], cell.min[k]), high = std::min(filled.max[k], cell.max[k]);
+      const detail::Slices<Real, static_cast<int>(slices)> slice(low, high);
+      if (!slice.valid()) continue;
+      std::array<std::uint32_t, slices> begun{}, ended{};
+      for (const Boxed& boxed : part) ++begun[slice.of(boxed.box.min[k])], ++ended[slice.of(boxed.box.max[k])];
+      double lower = 0, upper = n;
+      for (std::size_t i = 0; i <= slices; ++i) {
+        if (i > 0) lower += begun[i - 1], upper -= ended[i - 1];
+        const Real at = i == slices ? high : slice.edge(i);
+        if (!(at > cell.min[k] && at < cell.max[k])) continue;
+        BoundingBox<Real> below = cell, above = cell;
+        below.max[k] = above.min[k] = at;
+        const double tests = (detail::half_area(below) * lower + detail::half_area(above) * upper) / area;
+        const double cost = (1 + detail::test_cost * tests) * (lower == 0 || upper == 0 ? empty_bonus : 1);
+        if (cost < best_cost) best_cost = cost, best = {k, at};
+      }
+    }
+    return best;
+  }
+
+  Box bounds_;
+  Vec3 centre_{};
+  BoundingBox<Real> cell_{};
+  std::vector<Node> nodes_;
+  std::vector<PrimitiveIndex> order_;
+  std::size_t depth_ = 0;
+};
+
+static_assert(Accelerator<KdTree<float>> && Accelerator<KdTree<double>>);
+
+}  // namespace pulsecast

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/expect.hpp>
+
+namespace pulsecast::adapters {
+
+/// A file in the making: written beside its final name as `NAME.part`, and renamed by `commit()` when it is whole. Until then, and if the
+/// program is killed, nothing stands under the final name but what stood there before. Destroyed uncommitted, it leaves nothing behind.
+/// Every failure is a `FileError` that names the final path; after one, nothing more can be written or committed.
+/// Limits: data are handed to the system but not forced onto the disk, so a power cut may lose a file that was just committed.
+class OutputFile {
+ public:
+  explicit OutputFile(std::filesystem::path path) : path_(std::move(path)) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path_, ignored)) throw FileError(path_.string(), "", "is a folder; expected the name of a file");
+    const std::filesystem::path temporary = path_.string() + ".part";
+    errno = 0;
+    std::FILE* const file = std::fopen(temporary.c_str(), "wb");
+    if (file == nullptr) fail("cannot be created", errno, "an existing folder that may be written to");
+    file_ = {file, Discard{temporary}};
+    std::setvbuf(file, nullptr, _IONBF, 0);  // what is buffered is buffered here, so that every error shows where it happens
+    buffer_.reserve(capacity);
+  }
+
+  void write(std::span<const std::byte> bytes) {
+    expect_open();
+    if (buffer_.size() + bytes.size() > capacity) flush();
+    if (bytes.size() < capacity) {
+      buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+    } else {
+      put(bytes);
+    }
+    position_ += bytes.size();
+  }
+
+  void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+
+  /// Puts other bytes in the place of some that were written before; writing then goes on at the end.
+  void overwrite(std::uint64_t position, std::span<const std::byte> bytes) {
+    PULSECAST_EXPECT(position + bytes.size() <= position_);
+    expect_open();
+    flush();
+    seek(static_cast<long>(position), SEEK_SET);
+    put(bytes);
+    seek(0, SEEK_END);
+  }
+
+  /// How many bytes were written so far: where the next ones will stand.
+  [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
+
+  /// The final name.
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+  /// Makes the file stand under its final name, in place of any that stood there.
+  void commit() {
+    expect_open();
+    flush();
+    const std::filesystem::path temporary = file_.get_deleter().temporary;
+    errno = 0;
+    std::error_code error;
+    if (std::fclose(file_.release()) != 0) {
+      error = system_error(errno);
+    } else {
+      std::filesystem::rename(temporary, path_, error);
+    }
+    if (!error) return;
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    fail("cannot be completed", error.value(), "room for " + std::to_string(position_) + " bytes and a name that may be replaced");
+  }
+
+  /// Gives the file up and removes what was written; whoever finds half-way that the rest cannot be written calls this.
+  void discard() noexcept { file_.reset(); }
+
+ private:
+  struct Discard {
+    std::filesystem::path temporary;
+    void operator()(std::FILE* file) const noexcept {
+      std::fclose(file);
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+    }
+  };
+
+  static constexpr std::size_t capacity = std::size_t{1} << 20;  // bytes handed over at a time: large enough that calls cost nothing
+
+  [[nodiscard]] static std::error_code system_error(int number) { return {number != 0 ? number : EIO, std::generic_category()}; }
+
+  [[noreturn]] void fail(std::string_view what, int error, std::string_view expected) {
+    discard();
+    throw FileError(path_.string(), "", std::string(what) + ": " + system_error(error).message() + "; expected " + std::string(expected));
+  }
+
+  void expect_open() const {
+    if (!file_) throw FileError(path_.string(), "", "cannot be written any more: it was committed or given up");
+  }
+
+  void put(std::span<const std::byte> bytes) {
+    errno = 0;
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size()) return;
+    fail("cannot be written", errno, "room for " + std::to_string(bytes.size()) + " more bytes");
+  }
+
+  void flush() {
+    put(buffer_);
+    buffer_.clear();
+  }
+
+  void seek(long offset, int origin) {
+    errno = 0;
+    if (std::fseek(file_.get(), offset, origin) != 0) fail("cannot be written", errno, "a file in which one can go back");
+  }
+
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, Discard> file_;
+  std::vector<std::byte> buffer_;
+  std::uint64_t position_ = 0;
+};
+
+}  // namespace pulsecast::adapters

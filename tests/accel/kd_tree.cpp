@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/accel/kd_tree.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "support/scenes.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::support;
+
+TEST_CASE_TEMPLATE("every primitive stands in a leaf of a KdTree, and in four on average at most", Real, float, double) {
+  Generator random(50);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 5000; ++i) boxes.push_back(random.box(10, 1e-4, 10));
+  const KdTree<Real> tree(boxes);
+  std::size_t largest = 0, sum = 0;
+  for (const std::size_t count : offers(tree, boxes.size(), largest)) {
+    CHECK(count > 0);
+    sum += count;
+  }
+  CHECK(sum <= 4 * boxes.size());
+  CHECK(tree.depth() <= 64);
+  CHECK(tree.memory() >= boxes.size() * sizeof(PrimitiveIndex));
+}
+
+TEST_CASE_TEMPLATE("a KdTree of primitives that all stand at one point is one leaf", Real, float, double) {
+  const std::vector<Box> boxes(10000, Box{{1, 2, 3}, {1, 2, 3}});
+  const KdTree<Real> tree(boxes);
+  std::size_t largest = 0;
+  CHECK(offers(tree, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
+  CHECK(tree.depth() == 0);
+}
+
+TEST_CASE_TEMPLATE("a KdTree parts small boxes that stand apart", Real, float, double) {
+  std::vector<Box> boxes;
+  for (int x = 0; x < 20; ++x)
+    for (int y = 0; y < 20; ++y) boxes.push_back({{x * 10.0, y * 10.0, 0}, {x * 10.0 + 1, y * 10.0 + 1, 1}});
+  const KdTree<Real> tree(boxes);
+  std::size_t largest = 0;
+  CHECK(offers(tree, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
+  CHECK(largest == 1);
+}
+
+TEST_CASE("a KdTree of boxes that crowd at a point is no deeper than its limit, and still whole") {
+  const std::vector<Box> boxes = crowd(2000, 0.75);
+  const KdTree<double> tree(boxes);
+  std::size_t largest = 0;
+  for (const std::size_t count : offers(tree, boxes.size(), largest)) CHECK(count > 0);
+  CHECK(tree.depth() <= 8 + 1.3 * std::log2(4000.0));
+}
+
+TEST_CASE("a KdTree goes into a narrow column of leaves for rays along an axis") {
+  std::vector<Box> boxes;
+  for (int x = 0; x < 50; ++x)
+    for (int y = 0; y < 50; ++y) boxes.push_back({{x * 1.0, y * 1.0, 0}, {x + 1.0, y + 1.0, 0.1}});
+  const KdTree<float> tree(boxes);
+  const RayBundle rays = bundle_of({{25.5, 25.5, 100}, -up});
+  Nearest nearest(rays);
+  std::size_t count = 0;
+  tree.closest(
+      rays, [&](std::span<const PrimitiveIndex> p) { count += p.size(); }, nearest);
+  CHECK(count > 0);
+  CHECK(count < 50);
+}
+
+TEST_CASE_TEMPLATE("a KdTree of nothing, or of empty boxes only, is never met", Real, float, double) {
+  std::size_t largest = 0;
+  CHECK(offers(KdTree<Real>({}), 0, largest).empty());
+  const std::vector<Box> empty(5);
+  CHECK(offers(KdTree<Real>(empty), 5, largest) == std::vector<std::size_t>(5, 0));
+  CHECK(KdTree<Real>(empty).bounds().empty());
+  CHECK(KdTree<Real>(empty).memory() == 0);
+}
+
+TEST_CASE("a KdTree leaves out empty boxes among others") {
+  Generator random(52);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 100; ++i) boxes.push_back(i % 3 == 0 ? Box{} : random.box(10, 1e-2, 1));
+  std::size_t largest = 0;
+  const auto count = offers(KdTree<>(boxes), boxes.size(), largest);
+  for (std::size_t i = 0; i < boxes.size(); ++i) CHECK((count[i] > 0) == (i % 3 != 0));
+}
+
+TEST_CASE("a KdTree of more than 2^32 - 2 primitives is refused") {
+  const Box box{{0, 0, 0}, {1, 1, 1}};
+  CHECK_THROWS_AS(KdTree<>(std::span<const Box>(&box, std::size_t{0xFFFFFFFF})), SettingError);
+}
+
+TEST_CASE_TEMPLATE("a KdTree is not entered by rays that are not numbers, nor by those that pass by or end before", Real, float, double) {
+  Generator random(53);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 100; ++i) boxes.push_back(random.box(10, 1e-2, 1));
+  const KdTree<Real> tree(boxes);
+  const auto tested = [&](const Ray& ray) {
+    const RayBundle rays = bundle_of(ray);
+    Nearest nearest(rays);
+    std::size_t count = 0;
+    tree.closest(
+        rays, [&](std::span<const PrimitiveIndex> p) { count += p.size(); }, nearest);
+    return count;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, forward}) > 0);
+  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, -forward}) == 0);
+  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, forward, 0, 10}) == 0);
+  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, forward, 100, 1000}) == 0);
+  CHECK(tested({Vec3{nan, 0, 0}, forward}) == 0);
+  CHECK(tested({boxes[0].centre(), Vec3{nan, nan, nan}}) == 0);
+  CHECK(tested({boxes[0].centre(), Vec3{0, 1, nan}}) == 0);
+}

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/accel/linear.hpp>
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "support/scenes.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::support;
+
+TEST_CASE_TEMPLATE("testing all offers every primitive once, but never an empty box", Real, float, double) {
+  Generator random(40);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 20; ++i) boxes.push_back(random.box(10, 0.1, 1));
+  boxes[7] = Box{};
+  const Linear<Real> all(boxes);
+  std::size_t largest = 0;
+  const auto count = offers(all, boxes.size(), largest);
+  for (std::size_t i = 0; i < boxes.size(); ++i) CHECK(count[i] == (i == 7 ? 0 : 1));
+  CHECK(largest == 19);
+  CHECK(all.memory() >= 19 * sizeof(PrimitiveIndex));
+  Box bounds;
+  for (const Box& box : boxes) bounds.extend(box);
+  CHECK(all.bounds() == bounds);
+}
+
+TEST_CASE("testing all of nothing tests nothing") {
+  const Linear<> none({});
+  std::size_t largest = 0;
+  CHECK(offers(none, 0, largest).empty());
+  CHECK(largest == 0);
+  CHECK(none.bounds().empty());
+}

@@ -1,0 +1,423 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/adapters/las.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "support/generators.hpp"
+#include "support/las_reader.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace pulsecast::adapters {
+namespace {
+
+using support::content;
+using support::Generator;
+using support::las_real;
+using support::las_whole;
+using support::LasFile;
+using support::LasPoint;
+using support::read_las;
+using support::TemporaryFolder;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// Pulses and what came back, to be handed over in batches of any size.
+struct Survey {
+  std::vector<Shot> shots;
+  std::vector<Echo> echoes;
+
+  /// A pulse straight down from each point, which it meets at range 0.
+  static Survey of_points(const std::vector<Vec3>& points) {
+    Survey survey;
+    for (const Vec3& point : points) survey.add({.origin = point, .direction = {0, 0, -1}}, {Echo{.range = 0}});
+    return survey;
+  }
+
+  static Survey random(std::uint64_t seed, std::size_t pulses, double reach) {
+    Generator random(seed);
+    Survey survey;
+    const Vec3 origin = random.point(reach);
+    for (std::size_t i = 0; i < pulses; ++i) {
+      std::vector<Echo> echoes(random.coin() ? 0 : random.whole(20));
+      std::uint8_t number = 0;
+      for (Echo& echo : echoes) {
+        echo.range = random.log_uniform(1, 1e4);
+        echo.amplitude = random.log_uniform(1e-13, 1);
+        echo.reflectance = random.log_uniform(1e-3, 3);
+        echo.width = random.log_uniform(1e-10, 1e-7);
+        echo.object = static_cast<ObjectId>(random.whole(std::uint64_t{1} << 32));
+        echo.classification = static_cast<std::uint16_t>(random.whole(400));
+        echo.number = ++number;
+      }
+      survey.add({.index = random.whole(std::uint64_t{1} << 52) << 12 | i,
+                  .tick = Tick::of(i, 2e6),
+                  .origin = origin + random.point(100),
+                  .direction = random.unit(),
+                  .scan_angle = random.uniform(-pi, pi),
+                  .leg = static_cast<std::uint16_t>(random.whole(65536)),
+                  .channel = static_cast<std::uint8_t>(random.whole(64))},
+                 echoes);
+    }
+    return survey;
+  }
+
+  void add(Shot shot, const std::vector<Echo>& with) {
+    shot.first_echo = static_cast<std::uint32_t>(echoes.size());
+    shot.echoes = static_cast<std::uint32_t>(with.size());
+    shots.push_back(shot);
+    echoes.insert(echoes.end(), with.begin(), with.end());
+  }
+
+  /// The pulses from `first` on, at most `count`, as a batch of their own.
+  [[nodiscard]] Survey part(std::size_t first, std::size_t count) const {
+    Survey part;
+    for (std::size_t i = first; i < std::min(first + count, shots.size()); ++i) {
+      const auto of_shot = EchoBatch{shots, echoes, {}, 0}.echoes_of(shots[i]);
+      part.add(shots[i], {of_shot.begin(), of_shot.end()});
+    }
+    return part;
+  }
+
+  void write(const std::filesystem::path& path, const LasSettings& settings, std::size_t pulses_at_once) const {
+    LasWriter writer(path, settings);
+    for (std::size_t first = 0; first < shots.size(); first += pulses_at_once) {
+      const Survey batch = part(first, pulses_at_once);
+      writer(EchoBatch{batch.shots, batch.echoes, {}, 0});
+    }
+    writer.close();
+  }
+
+  [[nodiscard]] LasFile written(const LasSettings& settings = {}) const {
+    const TemporaryFolder folder;
+    write(folder / "points.las", settings, 1000);
+    return read_las(folder / "points.las");
+  }
+};
+
+/// The one point that is made of an echo of a pulse.
+struct One {
+  LasFile file;
+  LasPoint point;
+};
+One one(const Shot& shot, const Echo& echo, const LasSettings& settings = {}) {
+  Survey survey;
+  survey.add(shot, {echo});
+  LasFile file = survey.written(settings);
+  REQUIRE(file.points.size() == 1);
+  return {file, file.points[0]};
+}
+
+TEST_CASE("every field of a point is what the echo says") {
+  const Shot shot{.index = 0xFEDCBA9876543210,
+                  .tick = {12, 0.5},
+                  .origin = {100, 200, 60},
+                  .direction = {0, 0, -1},
+                  .scan_angle = radians(-12.3),
+                  .leg = 4,
+                  .channel = 6};
+  const Echo echo{.range = 50, .amplitude = 1e-7, .reflectance = 0.1, .width = 2.5e-9, .object = 0xFFFFFFFE, .classification = 200};
+  const auto [file, p] = one(shot, echo, {.start_time = 3e8});
+  CHECK(p.place[0] == doctest::Approx(100));
+  CHECK(p.place[1] == doctest::Approx(200));
+  CHECK(p.place[2] == doctest::Approx(10));
+  CHECK(p.intensity == 6554);  // 6553.5, to the even one
+  CHECK(p.return_number == 1);
+  CHECK(p.returns == 1);
+  CHECK(p.classification == 200);
+  CHECK(p.channel == 2);
+  CHECK(p.source == 5);
+  CHECK(p.scan_angle_deg == doctest::Approx(-12.3));
+  CHECK(p.gps_time == 300000012.5);
+  CHECK((p.flags == 0 && p.scan_direction == 0 && p.edge == 0 && p.user_data == 0));
+  CHECK(las_real(file, p, "Range") == 50);
+  CHECK(las_real(file, p, "Amplitude") == doctest::Approx(20));     // 100 nW against 1 nW
+  CHECK(las_real(file, p, "Reflectance") == doctest::Approx(-10));  // a tenth
+  CHECK(las_real(file, p, "EchoWidth") == doctest::Approx(2.5));
+  CHECK(las_whole(file, p, "PulseIndex") == 0xFEDCBA9876543210);
+  CHECK(las_whole(file, p, "ObjectId") == 0xFFFFFFFE);
+}
+
+TEST_CASE("the header says who wrote the file and how, and nothing of the day unless told") {
+  LasFile file = Survey::of_points({{1, 2, 3}}).written();
+  CHECK(file.software == "pulsecast " PULSECAST_VERSION);
+  CHECK(file.system == "simulation");
+  CHECK(file.global_encoding == 17);
+  CHECK((file.day == 0 && file.year == 0));
+  CHECK(file.scale == std::array{1e-4, 1e-4, 1e-4});
+  CHECK(file.wkt.empty());
+
+  using namespace std::chrono_literals;
+  file = Survey::of_points({{1, 2, 3}}).written({.gps_time = GpsTime::week, .created = 2026y / 1 / 1});
+  CHECK(file.global_encoding == 16);
+  CHECK((file.day == 1 && file.year == 2026));
+  file = Survey::of_points({{1, 2, 3}}).written({.created = 2024y / 12 / 31});
+  CHECK((file.day == 366 && file.year == 2024));
+}
+
+TEST_CASE("the values beyond the standard ones are named and described") {
+  const LasFile file = Survey{}.written();
+  std::string all;
+  for (const auto& extra : file.extras) all += extra.name + ' ' + std::to_string(extra.type) + ' ' + extra.description + '\n';
+  CHECK(all ==
+        "Range 10 from the instrument [m]\n"
+        "Amplitude 9 received power at peak [dB]\n"
+        "Reflectance 9 re white Lambertian target [dB]\n"
+        "EchoWidth 9 standard deviation in time [ns]\n"
+        "PulseIndex 7 number of the pulse, from 0\n"
+        "ObjectId 5 number of the object met\n");
+}
+
+TEST_CASE("a coordinate reference system is written as given, even the longest that can be") {
+  for (const std::string& wkt : {std::string("PROJCS[\"ETRS89 / UTM zone 32N\"]"), std::string(65534, 'x')}) {
+    const LasFile file = Survey::of_points({{1, 2, 3}}).written({.wkt = wkt});
+    CHECK((file.wkt == wkt));
+    CHECK(file.points.size() == 1);
+  }
+}
+
+TEST_CASE("coordinates are rounded to the nearest step on both sides of zero") {
+  const LasFile file = Survey::of_points({{0.00014, 0.00016, 0.00024}, {-0.00014, -0.00016, -0.00024}, {0.00004, -0.00004, 0}})
+                           .written({.offset = Vec3{0, 0, 0}});
+  CHECK(file.points[0].stored == std::array<std::int32_t, 3>{1, 2, 2});
+  CHECK(file.points[1].stored == std::array<std::int32_t, 3>{-1, -2, -2});
+  CHECK(file.points[2].stored == std::array<std::int32_t, 3>{0, 0, 0});
+}
+
+TEST_CASE("UTM coordinates keep a tenth of a millimetre, about a round offset") {
+  const Vec3 utm{478412.12344, 5429876.98761, 113.4567};
+  const LasFile file = Survey::of_points({utm, utm + Vec3{90000, -90000, 900}}).written();
+  CHECK(file.offset == std::array{478400.0, 5429900.0, 100.0});
+  CHECK(std::fabs(file.points[0].place[0] - 478412.1234) < 1e-8);
+  CHECK(std::fabs(file.points[0].place[1] - 5429876.9876) < 1e-8);
+  CHECK(std::fabs(file.points[0].place[2] - 113.4567) < 1e-8);
+  CHECK(file.min[1] == doctest::Approx(5339876.9876));
+  CHECK(file.max[0] == doctest::Approx(568412.1234));
+}
+
+TEST_CASE("coordinates use all of 32 bits, and one that needs more is an error that leaves no file") {
+  const LasSettings settings{.offset = Vec3{0, 0, 0}};
+  const LasFile file = Survey::of_points({{214748.36468, -214748.36482, 0}}).written(settings);
+  CHECK(file.points[0].stored[0] == std::numeric_limits<std::int32_t>::max());
+  CHECK(file.points[0].stored[1] == std::numeric_limits<std::int32_t>::min());
+
+  const std::vector<Vec3> misfits{{214748.3648, 0, 0}, {0, -214748.36488, 0}, {0, 0, 1e300},
+                                  {nan, 0, 0},         {0, infinite, 0},      {0, 0, -infinite}};
+  for (const Vec3& misfit : misfits) {
+    CAPTURE(misfit.x);
+    const TemporaryFolder folder;
+    for (const LasSettings& either : {settings, LasSettings{.offset = {}}}) {
+      const Survey survey = Survey::of_points({{1, 2, 3}, {4, 5, 6}, misfit});
+      LasWriter writer(folder / "points.las", either);
+      CHECK_THROWS_WITH_AS(writer(EchoBatch{survey.shots, survey.echoes, {}, 0}), doctest::Contains("does not fit 32 bits"), FileError);
+      CHECK_THROWS_AS(writer(EchoBatch{survey.shots, survey.echoes, {}, 0}), FileError);
+      CHECK_THROWS_AS(writer.close(), FileError);
+    }
+    CHECK(folder.empty());
+  }
+  const TemporaryFolder folder;
+  const Survey survey = Survey::of_points({{1, 2, 3}, {1, -3e5, 3}});
+  LasWriter writer(folder / "points.las", settings);
+  CHECK_THROWS_WITH(writer(EchoBatch{survey.shots, survey.echoes, {}, 0}),
+                    ((folder / "points.las").string() + ", point 2: y is -300000 m, which does not fit 32 bits; expected 0 m +- "
+                                                        "214748.3647 m (offset, and 2^31 steps of 0.0001 m)")
+                        .c_str());
+}
+
+TEST_CASE("a first point without a place is an error, too") {
+  const TemporaryFolder folder;
+  const Survey survey = Survey::of_points({{nan, 2, 3}});
+  LasWriter writer(folder / "points.las");
+  CHECK_THROWS_WITH_AS(writer(EchoBatch{survey.shots, survey.echoes, {}, 0}), doctest::Contains("expected 0 m +- 214748"), FileError);
+  CHECK(folder.empty());
+}
+
+TEST_CASE("no points make a good file, with and without pulses") {
+  for (const std::size_t pulses : {std::size_t{0}, std::size_t{5}}) {
+    const LasFile file = Survey{std::vector<Shot>(pulses), {}}.written({.wkt = "x"});
+    CHECK(file.points.empty());
+    CHECK(file.min == std::array{0.0, 0.0, 0.0});
+    CHECK(file.max == std::array{0.0, 0.0, 0.0});
+    CHECK(file.wkt == "x");
+  }
+}
+
+TEST_CASE("from the fifteenth on, returns are written as the fifteenth of fifteen") {
+  Survey survey;
+  std::vector<Echo> echoes(20);
+  for (std::uint8_t n = 1; n <= 20; ++n) echoes[n - 1U].number = n, echoes[n - 1U].range = n;
+  survey.add({.direction = {0, 0, 1}}, echoes);
+  const LasFile file = survey.written();
+  REQUIRE(file.points.size() == 20);
+  for (std::size_t i = 0; i < 20; ++i) {
+    CHECK(file.points[i].return_number == std::min<std::size_t>(i + 1, 15));
+    CHECK(file.points[i].returns == 15);
+    CHECK(las_real(file, file.points[i], "Range") == static_cast<double>(i + 1));
+  }
+  CHECK(file.by_return == std::array<std::uint64_t, 15>{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 6});
+}
+
+TEST_CASE("what is more than a field can hold is cut, and nothing at all has a level of -200 dB") {
+  const Shot shot{.direction = {0, 0, -1}, .leg = 65535};
+  auto [file, p] = one(shot, {.range = 1, .amplitude = 0, .reflectance = 0, .classification = 256});
+  CHECK(p.intensity == 0);
+  CHECK(p.classification == 255);
+  CHECK(p.source == 65535);
+  CHECK(las_real(file, p, "Amplitude") == -200);
+  CHECK(las_real(file, p, "Reflectance") == -200);
+
+  CHECK(one(shot, {.range = 1, .reflectance = 1}).point.intensity == 65535);
+  CHECK(one(shot, {.range = 1, .reflectance = 7}).point.intensity == 65535);
+  CHECK(one(shot, {.range = 1, .reflectance = nan}).point.intensity == 0);
+  CHECK(one(shot, {.range = 1, .reflectance = 7}, {.intensity_full_scale = 14}).point.intensity == 32768);
+  CHECK(one({.direction = {0, 0, -1}, .scan_angle = pi}, {.range = 1}).point.scan_angle_deg == doctest::Approx(180));
+  CHECK(one({.direction = {0, 0, -1}, .scan_angle = -4}, {.range = 1}).point.scan_angle_deg == doctest::Approx(-180));
+}
+
+TEST_CASE("ranges of ten kilometres keep a tenth of a millimetre, and much more") {
+  const auto [file, p] = one({.direction = {0, 0, -1}}, {.range = 9999.99991});
+  CHECK(las_real(file, p, "Range") == 9999.99991);
+}
+
+TEST_CASE("whatever is written reads back, field by field, and its header is exact") {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed + 1000);
+    const Survey survey = Survey::random(seed, 100, random.log_uniform(1, 1e7));
+    LasSettings settings{.scale = random.log_uniform(1e-5, 1e-2), .start_time = random.uniform(0, 6e5)};
+    const LasFile file = survey.written(settings);  // checks numbers and bounds against the points
+    REQUIRE(file.points.size() == survey.echoes.size());
+    std::size_t i = 0;
+    for (const Shot& shot : survey.shots) {
+      for (const Echo& echo : EchoBatch{survey.shots, survey.echoes, {}, 0}.echoes_of(shot)) {
+        CAPTURE(i);
+        const LasPoint& p = file.points[i++];
+        const Vec3 place = point_of(shot, echo);
+        for (int axis = 0; axis < 3; ++axis) {
+          CHECK(std::fabs(p.place[static_cast<std::size_t>(axis)] - place[axis]) <=
+                0.5 * settings.scale + 1e-15 * std::fabs(place[axis]) + 1e-9);
+        }
+        CHECK(std::fabs(p.intensity - std::min(echo.reflectance, 1.0) * 65535) <= 0.5 + 1e-9);
+        CHECK(p.return_number == std::min<unsigned>(echo.number, 15));
+        CHECK(p.returns == std::min<unsigned>(shot.echoes, 15));
+        CHECK(p.channel == shot.channel % 4);
+        CHECK(p.classification == std::min<unsigned>(echo.classification, 255));
+        CHECK(std::fabs(p.scan_angle_deg - degrees(shot.scan_angle)) <= 0.003 + 1e-9);
+        CHECK(p.source == std::min(shot.leg + 1, 65535));
+        CHECK(p.gps_time == settings.start_time + shot.tick.seconds());
+        CHECK(las_real(file, p, "Range") == echo.range);
+        CHECK(las_real(file, p, "Amplitude") == doctest::Approx(10 * std::log10(echo.amplitude / 1e-9)).epsilon(1e-5));
+        CHECK(std::pow(10, las_real(file, p, "Reflectance") / 10) == doctest::Approx(echo.reflectance).epsilon(1e-5));
+        CHECK(las_real(file, p, "EchoWidth") == doctest::Approx(echo.width * 1e9).epsilon(1e-6));
+        CHECK(las_whole(file, p, "PulseIndex") == shot.index);
+        CHECK(las_whole(file, p, "ObjectId") == echo.object);
+      }
+    }
+  }
+}
+
+TEST_CASE("the bytes of a file do not depend on how the pulses are cut into batches, nor on the day") {
+  const TemporaryFolder folder;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    CAPTURE(seed);
+    const Survey survey = Survey::random(seed, 4000, 1e6);
+    survey.write(folder / "whole.las", {}, survey.shots.size());
+    const std::string whole = content(folder / "whole.las");
+    CHECK(whole.size() > (std::size_t{1} << 20));  // more than is handed over at once
+    for (const std::size_t pulses_at_once : {std::size_t{1}, std::size_t{7}, std::size_t{1000}}) {
+      survey.write(folder / "cut.las", {}, pulses_at_once);
+      CHECK((content(folder / "cut.las") == whole));
+    }
+  }
+}
+
+TEST_CASE("without close there is no file") {
+  const TemporaryFolder folder;
+  const Survey survey = Survey::random(1, 100, 10);
+  {
+    LasWriter writer(folder / "points.las");
+    writer(EchoBatch{survey.shots, survey.echoes, {}, 0});
+    CHECK_FALSE(std::filesystem::exists(folder / "points.las"));
+  }
+  CHECK(folder.empty());
+}
+
+TEST_CASE("settings that cannot be are refused before a file is made") {
+  const TemporaryFolder folder;
+  using namespace std::chrono_literals;
+  const std::vector<LasSettings> bad{{.scale = 0},
+                                     {.scale = -1e-4},
+                                     {.scale = nan},
+                                     {.offset = Vec3{0, nan, 0}},
+                                     {.offset = Vec3{0, 0, infinite}},
+                                     {.wkt = std::string(65535, 'x')},
+                                     {.start_time = infinite},
+                                     {.intensity_full_scale = 0},
+                                     {.amplitude_reference = nan},
+                                     {.created = 2026y / 2 / 30}};
+  for (const LasSettings& settings : bad) CHECK_THROWS_AS(LasWriter(folder / "points.las", settings), SettingError);
+  CHECK(folder.empty());
+}
+
+TEST_CASE("the reader that the tests trust notices whatever is wrong") {
+  const TemporaryFolder folder;
+  const auto path = folder / "points.las";
+  const Survey survey = Survey::random(3, 100, 10);
+  survey.write(path, {.offset = Vec3{1, -2, 3}, .wkt = "GEOGCS[]"}, 10);
+  const std::string good = content(path);
+  const auto points_at = static_cast<std::size_t>(read_las(path).points_at);
+
+  const auto noticed = [&](const std::string& bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
+    try {
+      static_cast<void>(read_las(path));
+      return false;
+    } catch (const std::runtime_error&) {
+      return true;
+    }
+  };
+  CHECK_FALSE(noticed(good));
+  struct Span {
+    std::size_t begin, end;
+  };
+  // signature; encoding; version; sizes and format; legacy numbers; scale, offset, bounds; the rest; extra bytes, head and first type
+  for (const Span span : {Span{0, 4}, {6, 8}, {24, 26}, {94, 131}, {131, 227}, {227, 375}, {375, 385}, {393, 397}, {431, 432}}) {
+    for (std::size_t i = span.begin; i < span.end; ++i) {
+      if (i >= 131 && i < 227 && (i - 131) % 8 < 2) continue;  // the last bits of a number, less than rounding
+      CAPTURE(i);
+      std::string bad = good;
+      bad[i] = static_cast<char>(bad[i] ^ (i == 431 ? 0x01 : 0x80));
+      CHECK(noticed(bad));
+    }
+  }
+  CHECK(noticed(good.substr(0, good.size() - 1)));
+  CHECK(noticed(good.substr(0, good.size() - 62)));
+  CHECK(noticed(good.substr(0, 100)));
+  CHECK(noticed(good + "x"));
+  CHECK(noticed(good + std::string(62, 'x')));
+  CHECK(noticed(""));
+  std::string bad = good;
+  bad[points_at + 14] = 0;  // return 0 of 0
+  CHECK(noticed(bad));
+  bad = good;
+  bad[points_at + 14] = 0x12;  // return 2 of 1
+  CHECK(noticed(bad));
+  bad = good;
+  bad[points_at + 3] = 0x7F;  // a point far out of bounds
+  CHECK(noticed(bad));
+  std::filesystem::remove(path);
+  CHECK_THROWS_AS(static_cast<void>(read_las(path)), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace pulsecast::adapters

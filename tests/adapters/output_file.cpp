@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/adapters/output_file.hpp>
+
+#include <csignal>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "support/generators.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace pulsecast::adapters {
+namespace {
+
+using support::content;
+using support::TemporaryFolder;
+namespace fs = std::filesystem;
+
+/// What an action's `FileError` says; fails the test if there is none.
+template <class Action>
+std::string problem_of(const fs::path& path, Action action) {
+  try {
+    action();
+  } catch (const FileError& error) {
+    CHECK(error.path() == path.string());
+    return error.what();
+  }
+  FAIL_CHECK("no FileError");
+  return {};
+}
+
+bool says(const std::string& message, const std::string& part) { return message.find(part) != std::string::npos; }
+
+/// While it lives, files may not grow beyond a size: writing stops in the middle as on a full disk.
+class SizeLimit {
+ public:
+  explicit SizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  SizeLimit(const SizeLimit&) = delete;
+  SizeLimit& operator=(const SizeLimit&) = delete;
+  ~SizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST_CASE("a file stands under its final name once it is committed, and not before") {
+  const TemporaryFolder folder;
+  OutputFile file(folder / "a.txt");
+  file.write("one ");
+  file.write("two");
+  CHECK(file.position() == 7);
+  CHECK_FALSE(fs::exists(folder / "a.txt"));
+  file.commit();
+  CHECK(content(folder / "a.txt") == "one two");
+  CHECK_FALSE(fs::exists(folder / "a.txt.part"));
+}
+
+TEST_CASE("a file that is not committed leaves nothing, and keeps what stood there before") {
+  const TemporaryFolder folder;
+  { OutputFile(folder / "a.txt").write("lost"); }
+  CHECK(folder.empty());
+  std::ofstream(folder / "a.txt") << "before";
+  { OutputFile(folder / "a.txt").write("lost"); }
+  CHECK(content(folder / "a.txt") == "before");
+  CHECK_FALSE(fs::exists(folder / "a.txt.part"));
+}
+
+TEST_CASE("a committed file replaces what stood there before") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a.txt") << "before, and longer";
+  std::ofstream(folder / "a.txt.part") << "left by a run that was killed";
+  OutputFile file(folder / "a.txt");
+  file.write("after");
+  file.commit();
+  CHECK(content(folder / "a.txt") == "after");
+}
+
+TEST_CASE("a file of no bytes is a file") {
+  const TemporaryFolder folder;
+  OutputFile(folder / "empty").commit();
+  CHECK(content(folder / "empty").empty());
+}
+
+TEST_CASE("writes and overwrites of any size come out as they would in memory") {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    CAPTURE(seed);
+    support::Generator random(seed);
+    const TemporaryFolder folder;
+    OutputFile file(folder / "a.bin");
+    std::string expected;
+    for (int i = 0; i < 60; ++i) {
+      const std::string bytes(static_cast<std::size_t>(random.log_uniform(1, 3e6)), static_cast<char>('a' + random.whole(26)));
+      if (random.uniform() < 0.2 && expected.size() >= bytes.size()) {
+        const std::size_t position = random.whole(expected.size() - bytes.size() + 1);
+        file.overwrite(position, std::as_bytes(std::span(bytes)));
+        expected.replace(position, bytes.size(), bytes);
+      } else {
+        file.write(bytes);
+        expected += bytes;
+      }
+      REQUIRE(file.position() == expected.size());
+    }
+    file.commit();
+    CHECK((content(folder / "a.bin") == expected));
+  }
+}
+
+TEST_CASE("a file that is moved goes on where it was, and one that is moved over is given up") {
+  const TemporaryFolder folder;
+  OutputFile first(folder / "first");
+  first.write("1");
+  OutputFile second(folder / "second");
+  second.write("2");
+  OutputFile moved(std::move(first));
+  moved.write("1");
+  second = std::move(moved);
+  CHECK_FALSE(fs::exists(folder / "second.part"));
+  second.write("1");
+  second.commit();
+  CHECK(content(folder / "first") == "111");
+  CHECK_FALSE(fs::exists(folder / "second"));
+}
+
+TEST_CASE("a file that cannot be made is an error that names it and says what was expected") {
+  const TemporaryFolder folder;
+  fs::path path = folder / "missing" / "a.las";
+  std::string problem = problem_of(path, [&] { OutputFile{path}; });
+  CHECK(says(problem, "No such file or directory"));
+  CHECK(says(problem, "expected an existing folder"));
+
+  std::ofstream(folder / "plain") << "no folder";
+  path = folder / "plain" / "a.las";
+  CHECK(says(problem_of(path, [&] { OutputFile{path}; }), "Not a directory"));
+
+  path = folder.path();
+  CHECK(says(problem_of(path, [&] { OutputFile{path}; }), "is a folder"));
+  CHECK_FALSE(fs::exists(folder.path().string() + ".part"));
+
+  path = "/proc/a.las";  // a folder that nobody may write to, not even root
+  problem_of(path, [&] { OutputFile{path}; });
+
+  fs::create_directory(folder / "closed");
+  fs::permissions(folder / "closed", fs::perms::owner_read | fs::perms::owner_exec);
+  path = folder / "closed" / "a.las";
+  if (geteuid() != 0) CHECK(says(problem_of(path, [&] { OutputFile{path}; }), "Permission denied"));
+}
+
+TEST_CASE("a full disk is an error, when little is written at the end and when much is written at once") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.las";
+  for (const std::size_t size : {std::size_t{5}, std::size_t{3'000'000}}) {
+    CAPTURE(size);
+    fs::create_symlink("/dev/full", folder / "a.las.part");
+    OutputFile file(path);
+    const std::string problem = problem_of(path, [&] {
+      file.write(std::string(size, 'x'));
+      CHECK(size == 5);
+      file.commit();
+    });
+    CHECK(says(problem, "No space left on device"));
+    CHECK(says(problem, "expected room for " + std::to_string(size) + " more bytes"));
+    CHECK(folder.empty());
+    CHECK(says(problem_of(path, [&] { file.write("x"); }), "cannot be written any more"));
+    CHECK(says(problem_of(path, [&] { file.commit(); }), "cannot be written any more"));
+    CHECK(folder.empty());
+  }
+}
+
+TEST_CASE("a write that stops half-way is an error and leaves nothing") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.las";
+  const SizeLimit limit(1'500'000);
+  OutputFile file(path);
+  const std::string problem = problem_of(path, [&] {
+    for (int i = 0; i < 40; ++i) file.write(std::string(100'000, 'x'));
+  });
+  CHECK(says(problem, "File too large"));
+  CHECK(folder.empty());
+
+  OutputFile small(path);  // fits
+  small.write(std::string(1'000'000, 'x'));
+  small.commit();
+  CHECK(fs::file_size(path) == 1'000'000);
+}
+
+TEST_CASE("a name that cannot be taken in the end is an error and leaves nothing") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.las";
+  OutputFile file(path);
+  file.write("x");
+  fs::create_directories(path / "inside");
+  CHECK(says(problem_of(path, [&] { file.commit(); }), "a name that may be replaced"));
+  CHECK_FALSE(fs::exists(folder / "a.las.part"));
+}
+
+TEST_CASE("a program that is killed leaves no file under the final name") {
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    OutputFile file(folder / "a.las");
+    file.write(std::string(5'000'000, 'x'));
+    file.write("and some that is not handed over yet");
+    std::raise(SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  CHECK(WIFSIGNALED(status));
+  CHECK_FALSE(fs::exists(folder / "a.las"));
+  CHECK(fs::file_size(folder / "a.las.part") == 5'000'000);
+}
+
+}  // namespace
+}  // namespace pulsecast::adapters

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/base/vector.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "support/generators.hpp"
+#include "support/relative.hpp"
+
+using namespace pulsecast;
+
+namespace {
+double distance(const Vec3& a, const Vec3& b) { return length(a - b); }
+}  // namespace
+
+TEST_CASE("right, forward and up are a right-handed set of axes") {
+  CHECK(cross(right, forward) == up);
+  CHECK(cross(forward, up) == right);
+  CHECK(cross(up, right) == forward);
+}
+
+TEST_CASE("a quarter turn about up takes right to forward and forward to left") {
+  const Rotation quarter = rotation_about(up, pi / 2);
+  CHECK(distance(quarter * right, forward) < 1e-15);
+  CHECK(distance(quarter * forward, -right) < 1e-15);
+  CHECK(distance(quarter * up, up) < 1e-15);
+}
+
+TEST_CASE("a positive rotation about right tilts forward up, and about forward tilts right down") {
+  CHECK((rotation_about(right, 0.1) * forward).z == support::relative(std::sin(0.1), 1e-14));
+  CHECK((rotation_about(forward, 0.1) * right).z == support::relative(-std::sin(0.1), 1e-14));
+}
+
+TEST_CASE("the length of a rotation's axis does not matter") {
+  CHECK(distance(rotation_about(up * 1e6, 1.0) * right, rotation_about(up, 1.0) * right) < 1e-15);
+  CHECK(distance(rotation_about(up * 1e-6, 1.0) * right, rotation_about(up, 1.0) * right) < 1e-15);
+}
+
+TEST_CASE("no rotation leaves a vector as it is") { CHECK(no_rotation * Vec3{1, -2, 3} == Vec3{1, -2, 3}); }
+
+TEST_CASE("a product of rotations applies the right one first") {
+  const Rotation both = rotation_about(up, pi / 2) * rotation_about(right, pi / 2);
+  CHECK(distance(both * forward, up) < 1e-15);
+  CHECK(distance(both * right, forward) < 1e-15);
+}
+
+TEST_CASE("rotations keep lengths and angles, and the conjugate undoes them") {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const Rotation turn = any.rotation();
+    const Vec3 a = any.unit() * any.log_uniform(1e-3, 1e6), b = any.unit();
+    CHECK(length(turn * a) == support::relative(length(a), 1e-14));
+    CHECK(std::fabs(dot(turn * a, turn * b) - dot(a, b)) <= 1e-14 * length(a));
+    CHECK(distance(conjugate(turn) * (turn * a), a) <= 1e-14 * length(a));
+  }
+}
+
+TEST_CASE("a rotation about an axis agrees with Rodrigues' formula") {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const Vec3 axis = any.unit(), v = any.unit();
+    const double angle = any.uniform(-7, 7);
+    // Source: Rodrigues 1840
+    const Vec3 expected = v * std::cos(angle) + cross(axis, v) * std::sin(angle) + axis * (dot(axis, v) * (1 - std::cos(angle)));
+    CHECK(distance(rotation_about(axis, angle) * v, expected) < 2e-15);
+  }
+}
+
+TEST_CASE("a vector is finite only if all of it is") {
+  const double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(finite({1, 2, 3}));
+  for (const double bad : {infinity, -infinity, nan}) {
+    CHECK_FALSE(finite({bad, 2, 3}));
+    CHECK_FALSE(finite({1, bad, 3}));
+    CHECK_FALSE(finite({1, 2, bad}));
+  }
+}
+
+TEST_CASE("min, max and the largest magnitude go by coordinate") {
+  CHECK(min({1, 5, -3}, {2, 4, -4}) == Vec3{1, 4, -4});
+  CHECK(max({1, 5, -3}, {2, 4, -4}) == Vec3{2, 5, -3});
+  CHECK(max_norm({1, -5, 3}) == 5);
+  CHECK(max_norm({0, 0, -2}) == 2);
+}

@@ -1,0 +1,34 @@
+# SPDX-FileCopyrightText: 2026 the pulsecast contributors
+# SPDX-License-Identifier: MIT
+
+# Compiles SOURCE twice with COMPILER and INCLUDES: as it is, which must succeed, and with SHOULD_NOT_COMPILE defined, which must
+# fail with a message that matches the regular expression in the source's comment `// error: ...`.
+
+set(ENV{LC_ALL} C)
+
+function(fail reason)
+  message(NOTICE "${SOURCE} ${reason}")
+  message(FATAL_ERROR "the check failed")
+endfunction()
+
+list(TRANSFORM INCLUDES PREPEND -I)
+set(compile ${COMPILER} -std=c++20 -fsyntax-only ${INCLUDES} ${SOURCE})
+
+execute_process(COMMAND ${compile} RESULT_VARIABLE failure ERROR_VARIABLE messages)
+if(failure)
+  fail("should compile, but does not:\n${messages}")
+endif()
+
+file(STRINGS ${SOURCE} expected REGEX "^// error: ")
+list(LENGTH expected count)
+if(NOT count EQUAL 1)
+  fail("needs one line `// error: REGEX`")
+endif()
+string(REGEX REPLACE "^// error: " "" expected "${expected}")
+
+execute_process(COMMAND ${compile} -DSHOULD_NOT_COMPILE RESULT_VARIABLE failure ERROR_VARIABLE messages)
+if(NOT failure)
+  fail("compiles, but should not")
+elseif(NOT messages MATCHES "${expected}")
+  fail("fails without the message `${expected}`:\n${messages}")
+endif()

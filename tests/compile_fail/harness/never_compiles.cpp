@@ -1,0 +1,5 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+// error: anything
+
+int main() { return no_such_name; }

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/detector/radiometry.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "support/relative.hpp"
+
+using namespace pulsecast;
+
+namespace {
+const double infinity = std::numeric_limits<double>::infinity();
+const double nan_value = std::numeric_limits<double>::quiet_NaN();
+}  // namespace
+
+TEST_CASE("the extinction of the air is Kruse's, by hand for each of its three stretches") {
+  CHECK(extinction(1.064e-6, 23e3) == support::relative(7.20935317364042e-05, 1e-14));   // q = 1.3
+  CHECK(extinction(1.55e-6, 60e3) == support::relative(1.2418670181727339e-05, 1e-14));  // q = 1.6
+  CHECK(extinction(0.532e-6, 2e3) == support::relative(0.0020035397746925934, 1e-14));   // q = 0.585 V^(1/3)
+  CHECK(extinction(0.55e-6, 10e3) == support::relative(3.91e-4, 1e-14));                 // at 0.55 um, the definition of visibility itself
+}
+
+TEST_CASE("air that one sees through without end does not weaken") {
+  CHECK(extinction(1.064e-6, infinity) == 0);
+  CHECK(LinkBudget(Receiver{.visibility = infinity}, Laser{}).power(1, 1, 1e9) > 0);
+}
+
+TEST_CASE("received power is that of the laser radar equation, by hand") {
+  const Laser laser{.wavelength = 1.064e-6, .peak_power = 4};
+  const Receiver receiver{.diameter = 0.15, .efficiency = 0.99, .visibility = 23e3};
+  CHECK(LinkBudget(receiver, laser).power(1, 0.5, 100) == support::relative(1.097806385176805e-06, 1e-13));
+  // without air: 4 W * 0.15^2 / (4 * 100^2) * 0.5 * 0.99
+  const Receiver vacuum{.diameter = 0.15, .efficiency = 0.99, .visibility = infinity};
+  CHECK(LinkBudget(vacuum, laser).power(1, 0.5, 100) == support::relative(1.11375e-6, 1e-13));
+}
+
+TEST_CASE("received power falls with the square of the range, and with what the air takes both ways") {
+  const LinkBudget vacuum(Receiver{.visibility = infinity}, Laser{}), air(Receiver{.visibility = 5e3}, Laser{});
+  for (const double range : {1.0, 10.0, 1000.0}) {
+    CHECK(vacuum.power(1, 1, range) / vacuum.power(1, 1, 3 * range) == support::relative(9, 1e-14));
+    CHECK(air.power(1, 1, range) / vacuum.power(1, 1, range) ==
+          support::relative(std::exp(-2 * extinction(Laser{}.wavelength, 5e3) * range), 1e-14));
+  }
+}
+
+TEST_CASE("received power is proportional to share and backscatter, so that shares of one sum to the whole") {
+  const LinkBudget budget(Receiver{}, Laser{});
+  CHECK(budget.power(0.25, 1, 50) == support::relative(0.25 * budget.power(1, 1, 50), 1e-15));
+  CHECK(budget.power(1, 0.3, 50) == support::relative(0.3 * budget.power(1, 1, 50), 1e-15));
+  CHECK(budget.power(1, 0, 50) == 0);
+}
+
+TEST_CASE("a receiver's gate holds its ends") {
+  const Receiver receiver{.range_min = 2, .range_max = 100};
+  CHECK(receiver.in_gate(2));
+  CHECK(receiver.in_gate(100));
+  CHECK_FALSE(receiver.in_gate(1.9999));
+  CHECK_FALSE(receiver.in_gate(100.0001));
+  CHECK(Receiver{}.in_gate(1e9));
+}
+
+TEST_CASE("a receiver refuses what cannot be") {
+  CHECK_NOTHROW(Receiver{}.validate());
+  CHECK_NOTHROW(Receiver{.visibility = infinity}.validate());
+  for (const double bad : {0.0, -1.0, nan_value, infinity}) CHECK_THROWS_AS(Receiver{.diameter = bad}.validate(), SettingError);
+  for (const double bad : {-0.1, 1.1, nan_value}) CHECK_THROWS_AS(Receiver{.efficiency = bad}.validate(), SettingError);
+  for (const double bad : {0.0, -1.0, nan_value}) CHECK_THROWS_AS(Receiver{.visibility = bad}.validate(), SettingError);
+  for (const double bad : {-0.1, nan_value, infinity}) CHECK_THROWS_AS(Receiver{.range_min = bad}.validate(), SettingError);
+  CHECK_THROWS_AS((Receiver{.range_min = 5, .range_max = 4}.validate()), SettingError);
+  CHECK_THROWS_AS(Receiver{.range_max = nan_value}.validate(), SettingError);
+}

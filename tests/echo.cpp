@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/echo.hpp>
+
+#include <vector>
+
+#include <doctest/doctest.h>
+
+using namespace pulsecast;
+
+TEST_CASE("a hit as made has met nothing") {
+  Hit hit;
+  CHECK_FALSE(hit.met());
+  hit.range = 1e300;
+  CHECK(hit.met());
+}
+
+TEST_CASE("an echo stands on the axis of its shot") {
+  Shot shot;
+  shot.origin = {500000, 5400000, 300}, shot.direction = {0, 0.6, -0.8};
+  Echo echo;
+  echo.range = 100;
+  CHECK(length(point_of(shot, echo) - Vec3{500000, 5400060, 220}) < 1e-9);
+}
+
+TEST_CASE("a batch hands out the echoes and samples of each shot") {
+  const std::vector<Echo> echoes{{.range = 1}, {.range = 2}, {.range = 3}};
+  const std::vector<float> samples{0.5F, 0.25F};
+  const std::vector<Shot> shots{{.fate = Fate::returned, .first_echo = 0, .echoes = 1},
+                                {.fate = Fate::missed, .first_echo = 1},
+                                {.fate = Fate::returned, .first_echo = 1, .echoes = 2, .first_sample = 0, .samples = 2}};
+  const EchoBatch batch{shots, echoes, samples, 1e-9};
+  REQUIRE(batch.echoes_of(shots[0]).size() == 1);
+  CHECK(batch.echoes_of(shots[0])[0].range == 1);
+  CHECK(batch.echoes_of(shots[1]).empty());
+  REQUIRE(batch.echoes_of(shots[2]).size() == 2);
+  CHECK(batch.echoes_of(shots[2])[1].range == 3);
+  CHECK(batch.waveform_of(shots[0]).empty());
+  REQUIRE(batch.waveform_of(shots[2]).size() == 2);
+  CHECK(batch.waveform_of(shots[2])[1] == 0.25F);
+}

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/geometry/triangle.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "support/generators.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::support;
+
+namespace {
+
+const double no_number = std::numeric_limits<double>::quiet_NaN();
+
+/// The range at which a ray meets a triangle.
+std::optional<double> meets(const Triangle& t, const Ray& ray) {
+  const RayBundle rays = bundle_of(ray);
+  Nearest nearest(rays);
+  intersect(t, 0, rays, nearest);
+  if (!nearest.met(0)) return std::nullopt;
+  return nearest.range[0];
+}
+
+const Triangle flat{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+
+/// Where a ray meets a triangle, by barycentric coordinates in long double; `inside` is the smallest of the three.
+struct Reference {
+  long double range, inside;
+};
+Reference reference(const Triangle& t, const Ray& ray) {
+  using Long = glm::vec<3, long double, glm::defaultp>;
+  const Long a(t.a), e1 = Long(t.b) - a, e2 = Long(t.c) - a, o(ray.origin), d(ray.direction);
+  const Long p = glm::cross(d, e2), s = o - a, q = glm::cross(s, e1);
+  const long double det = glm::dot(e1, p), u = glm::dot(s, p) / det, v = glm::dot(d, q) / det;
+  return {glm::dot(e2, q) / det, std::min({u, v, 1 - u - v})};
+}
+
+}  // namespace
+
+TEST_CASE("a triangle is met where its plane is, from both sides") {
+  CHECK(meets(flat, {{1, 1, 3}, -up}) == 3);
+  CHECK(meets(flat, {{1, 1, -3}, up}) == 3);
+  const Triangle turned{flat.b, flat.a, flat.c};
+  CHECK(meets(turned, {{1, 1, 3}, -up}) == 3);
+  CHECK(meets(flat, {{1 - 4, 1, 3}, Vec3{0.8, 0, -0.6}}).value() == doctest::Approx(5).epsilon(1e-15));
+}
+
+TEST_CASE("a triangle is missed beside its edges") {
+  for (const Vec3 p : {Vec3{-1e-9, 1, 3}, {1, -1e-9, 3}, {2 + 1e-9, 2, 3}, {5, 5, 3}, {-1, -1, 3}, {4 + 1e-9, 0, 3}})
+    CHECK_FALSE(meets(flat, {p, -up}));
+}
+
+TEST_CASE("edges and corners belong to the triangle") {
+  for (const Vec3 p : {Vec3{0, 0, 3}, {4, 0, 3}, {0, 4, 3}, {2, 0, 3}, {0, 2, 3}, {2, 2, 3}}) CHECK(meets(flat, {p, -up}) == 3);
+}
+
+TEST_CASE("what is behind the origin, or at it, is not met") {
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, up}));
+  CHECK_FALSE(meets(flat, {{1, 1, 0}, up}));
+  CHECK_FALSE(meets(flat, {{1, 1, 0}, -up}));
+}
+
+TEST_CASE("a triangle is met beyond the near end and up to the far end, the far end included") {
+  CHECK(meets(flat, {{1, 1, 3}, -up, 2.999, 10}) == 3);
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, -up, 3, 10}));
+  CHECK(meets(flat, {{1, 1, 3}, -up, 0, 3}) == 3);
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, -up, 0, 2.999}));
+}
+
+TEST_CASE("rays in the triangle's plane, or along it, miss") {
+  CHECK_FALSE(meets(flat, {{-1, 1, 0}, right}));
+  CHECK_FALSE(meets(flat, {{-1, 1, 1}, right}));
+  CHECK_FALSE(meets(flat, {{-1, 0, 0}, right}));
+  CHECK_FALSE(meets(flat, {{5, -1, 0}, normalize(Vec3{-1, 1, 0})}));
+}
+
+TEST_CASE("a triangle without area is never met") {
+  CHECK_FALSE(meets({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}, {{0.5, 0, 3}, -up}));
+  CHECK_FALSE(meets({{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}, {{1, 1, 3}, -up}));
+  CHECK_FALSE(meets({{0, 0, 0}, {0, 0, 0}, {3, 0, 0}}, {{0.5, 0, 3}, -up}));
+}
+
+TEST_CASE("nothing that is not a number is met") {
+  CHECK_FALSE(meets(flat, {{1, no_number, 3}, -up}));
+  for (int k = 0; k < 3; ++k) {
+    Vec3 d = -up;
+    d[k] = no_number;
+    CHECK_FALSE(meets(flat, {{1, 1, 3}, d}));
+    Triangle t = flat;
+    t.b[k] = no_number;
+    CHECK_FALSE(meets(t, {{1, 1, 3}, -up}));
+  }
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, -up, no_number}));
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, -up, 0, no_number}));
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, Vec3{0, 0, 0}}));
+}
+
+TEST_CASE("of triangles at exactly the same range the one of the smallest number is met, whatever the order") {
+  const RayBundle rays = bundle_of({{1, 1, 3}, -up});
+  for (const bool upwards : {true, false}) {
+    Nearest nearest(rays);
+    for (PrimitiveIndex i = 0; i < 5; ++i) intersect(flat, upwards ? i : 4 - i, rays, nearest);
+    CHECK(nearest.range[0] == 3);
+    CHECK(nearest.primitive_of(0) == 0);
+  }
+}
+
+TEST_CASE("every ray of a bundle is answered as it is alone, and idle lanes are left alone") {
+  Generator random(70);
+  for (const std::size_t size : {2, 5, 8, 19, 33, 64}) {
+    const RayBundle rays = random.cone({1, 1, 3}, -up, 0.7, size);
+    Nearest nearest(rays);
+    intersect(flat, 6, rays, nearest);
+    for (std::size_t j = 0; j < size; ++j) {
+      const auto alone = meets(flat, rays.ray(j));
+      CHECK(nearest.met(j) == alone.has_value());
+      if (alone) {
+        CHECK(nearest.range[j] == *alone);
+        CHECK(nearest.primitive_of(j) == 6);
+      }
+    }
+    for (std::size_t j = size; j < rays.padded_size(); ++j) CHECK_FALSE(nearest.met(j));
+  }
+}
+
+TEST_CASE("where directions are not unit, ranges are in multiples of their length") {
+  RayBundle rays = bundle_of({{1, 1, 3}, -up});
+  rays.direction_length = 0.25;
+  rays.set_direction(0, rays.direction(0) * 0.25);
+  rays.pad();
+  Nearest nearest(rays);
+  intersect(flat, 0, rays, nearest);
+  CHECK(nearest.range[0] == 12);
+}
+
+TEST_CASE("random triangles are met as long double says, at any scale") {
+  constexpr std::uint64_t seed = 71;
+  CAPTURE(seed);
+  Generator random(seed);
+  int hits = 0;
+  for (int time = 0; time < 100000; ++time) {
+    const double scale = random.log_uniform(1e-6, 1e7);
+    const Triangle t{random.point(scale), random.point(scale), random.point(scale)};
+    const Vec3 origin = random.point(scale);
+    const Ray ray{origin, normalize((t.a + t.b + t.c) / 3.0 + random.point(scale) - origin)};
+    const auto found = meets(t, ray);
+    const Reference expected = reference(t, ray);
+    const Vec3 normal = t.normal();
+    const double slope = std::fabs(dot(normal, ray.direction));
+    const double shape = length(cross(t.b - t.a, t.c - t.a)) / (scale * scale);
+    if (slope < 1e-3 || shape < 1e-3) continue;  // ill-posed
+    if (std::fabs(static_cast<double>(expected.inside)) > 1e-9) {
+      const bool hit = expected.inside > 0 && expected.range > 0;
+      CHECK(found.has_value() == hit);
+      if (found && hit) {
+        CHECK(std::fabs(static_cast<double>(*found - expected.range)) <= 1e-9 * scale);
+        ++hits;
+      }
+    }
+  }
+  CHECK(hits > 10000);
+}
+
+TEST_CASE("a triangle's bounds hold its corners, and its normal is right-handed") {
+  const Box box = Triangle{{3, 0, 1}, {0, 2, 1}, {1, 1, -1}}.bounds();
+  CHECK(box == Box{{0, 0, -1}, {3, 2, 1}});
+  CHECK(flat.normal() == up);
+  CHECK_FALSE(finite(Triangle{}.normal()));
+}

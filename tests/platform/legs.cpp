@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/platform/legs.hpp>
+
+#include <utility>
+#include <vector>
+
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+
+#include <doctest/doctest.h>
+
+#include "support/archetypes.hpp"
+#include "support/laws.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+namespace {
+
+using Pass = Platform<Tripod, Deflector<PolygonMirror, Scanner>>;
+static_assert(WorldSource<Legs<Pass>>);
+static_assert(WorldSource<Legs<support::LeastSource<frame::World>>>);
+
+Pass set_up(double x, double rate, PulseIndex pulses, const PolygonMirror& mirror = {}) {
+  return {Tripod{.position = {x, 0, 0}}, Mount{}, Deflector{mirror, Scanner{.pulse_rate = rate, .pulses = pulses}}};
+}
+
+}  // namespace
+
+TEST_CASE("legs stand end to end: their slots are numbered through, and time runs on") {
+  const Legs legs(std::vector{set_up(1, 4, 6), set_up(2, 1, 2), set_up(3, 2, 3)});
+  CHECK(legs.size() == 11);
+  CHECK(legs.duration() == Tick{5, 0});
+  CHECK(legs.start(0) == Tick{0, 0});
+  CHECK(legs.start(1) == Tick{1, 0.5});
+  CHECK(legs.start(2) == Tick{3, 0.5});
+  const std::pair<double, std::uint16_t> expected[] = {{0, 0},   {0.25, 0}, {0.5, 0}, {0.75, 0}, {1, 0},  {1.25, 0},
+                                                       {1.5, 1}, {2.5, 1},  {3.5, 2}, {4, 2},    {4.5, 2}};
+  for (PulseIndex i = 0; i < 11; ++i) {
+    CAPTURE(i);
+    const auto p = legs.pulse(i);
+    REQUIRE(p);
+    CHECK(p->index == i);
+    CHECK(p->tick.seconds() == expected[i].first);
+    CHECK(p->leg == expected[i].second);
+    CHECK(legs.leg_of(i) == expected[i].second);
+    CHECK(p->origin().x == expected[i].second + 1);
+  }
+}
+
+TEST_CASE("each leg begins with its own clock at zero") {
+  // a line of the mirror lasts 2 s, and the first leg ends in the middle of one
+  const Legs legs(std::vector{set_up(0, 1, 3, {.lines_per_second = 0.5}), set_up(0, 1, 3, {.lines_per_second = 0.5})});
+  for (PulseIndex i = 0; i < 3; ++i) CHECK(legs.pulse(i + 3)->direction() == legs.pulse(i)->direction());
+}
+
+TEST_CASE("a leg without pulses takes a number and nothing else") {
+  const Legs legs(std::vector{set_up(1, 1, 2), set_up(2, 1, 0), set_up(3, 1, 2)});
+  CHECK(legs.size() == 4);
+  CHECK(legs.pulse(1)->leg == 0);
+  CHECK(legs.pulse(2)->leg == 2);
+  CHECK(legs.pulse(2)->tick == Tick{2, 0});
+}
+
+TEST_CASE("a blocked slot stays blocked in its leg") {
+  const Legs legs(std::vector{set_up(1, 4, 4), set_up(2, 4, 4, {.lines_per_second = 1, .angle_min = 0})});
+  CHECK(legs.pulse(3));
+  CHECK_FALSE(legs.pulse(4));
+  CHECK_FALSE(legs.pulse(5));
+  CHECK(legs.pulse(6));
+}
+
+TEST_CASE("a single leg is what it holds") {
+  const Pass pass = set_up(1, 99999.5, 100000007);
+  const Legs legs(std::vector{pass});
+  CHECK(support::source_laws(legs) == "");
+  CHECK(support::wrapped_source_laws(legs, pass) == "");
+}
+
+TEST_CASE("many legs keep the laws of a source") {
+  std::vector<Pass> passes;
+  for (int k = 0; k < 300; ++k) passes.push_back(set_up(k, 1e6 / (k + 7), static_cast<PulseIndex>(1000 + 37 * k)));
+  const Legs legs(passes);
+  CHECK(support::source_laws(legs, 5000) == "");
+  PulseIndex first = 0;
+  for (std::size_t k = 0; k < passes.size(); ++k) {
+    CAPTURE(k);
+    CHECK(legs.pulse(first)->leg == k);
+    CHECK(legs.pulse(first)->tick == legs.start(k));
+    first += passes[k].size();
+    CHECK(legs.pulse(first - 1)->leg == k);
+  }
+  CHECK(first == legs.size());
+}
+
+TEST_CASE("no legs are refused") { CHECK_THROWS_AS(Legs(std::vector<Pass>{}), SettingError); }

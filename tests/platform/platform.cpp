@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/platform/platform.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/deflector/rotating_head.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+
+#include <doctest/doctest.h>
+
+#include "support/archetypes.hpp"
+#include "support/generators.hpp"
+#include "support/laws.hpp"
+#include "support/relative.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+namespace {
+
+static_assert(WorldSource<Platform<Tripod, Deflector<PolygonMirror, Scanner>>>);
+static_assert(WorldSource<Platform<support::LeastTrajectory, support::LeastSource<frame::Instrument>>>);
+
+template <class Path, class Source>
+concept Carries = requires {
+  typename Platform<Path, Source>;
+};
+static_assert(Carries<Tripod, Deflector<PolygonMirror, Scanner>>);
+static_assert(!Carries<Tripod, Scanner>, "a platform carries an instrument, not a bare laser");
+static_assert(!Carries<PolygonMirror, Deflector<PolygonMirror, Scanner>>, "a mirror is no trajectory");
+
+/// Ten metres a second to the north, turning left by a quarter of a turn a second.
+struct Spinning {
+  Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+    return {rotation_about(up, 90_deg * t.seconds()), {0, 10 * t.seconds(), 100}};
+  }
+};
+
+/// A pose of the beam in the instrument that does not change.
+struct Fixed {
+  Pose<frame::Beam, frame::Instrument> pose{};
+  Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return pose; }
+};
+
+struct Asks : support::LeastTrajectory {
+  void validate() const { expect_positive("Asks::value", -1, "m"); }
+};
+
+}  // namespace
+
+TEST_CASE("a pulse passes from beam to instrument to body to world") {
+  // The beam leaves 0.1 m ahead of the instrument's origin, down by 90 degrees. The instrument sits 1 m to the right of the body's origin,
+  // turned left by 90 degrees. At 1 s the body is at (0, 10, 100), turned left by 90 degrees.
+  const Platform platform{Spinning{}, Mount{.lever_arm = {1, 0, 0}, .boresight = rotation_about(up, 90_deg)},
+                          Deflector{Fixed{{rotation_about(right, -90_deg), {0, 0.1, 0}}}, Scanner{.pulse_rate = 1, .pulses = 2}}};
+  const auto p = platform.pulse(1);
+  REQUIRE(p);
+  // origin: instrument (0, 0.1, 0), body (1 - 0.1, 0, 0), world (0, 10 + 0.9, 100)
+  CHECK(length(p->origin() - Vec3{0, 10.9, 100}) < 1e-13);
+  CHECK(length(p->direction() + up) < 1e-15);
+  // the footprint's up was forward for the instrument, left for the body, and is backward in the world
+  CHECK(length(p->pose.direction(up) + forward) < 1e-15);
+  CHECK(p->tick == Tick{1, 0});
+  CHECK(p->index == 1);
+}
+
+TEST_CASE("the whole chain of a random platform is the product of its poses") {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const auto instrument_from_beam = any.pose<frame::Beam, frame::Instrument>(0.2);
+    const auto body_from_instrument = any.pose<frame::Instrument, frame::Body>(2);
+    const Platform platform{Spinning{}, Mount{body_from_instrument.position, body_from_instrument.rotation},
+                            Deflector{Fixed{instrument_from_beam}, Scanner{.pulse_rate = 10, .pulses = 100}}};
+    const PulseIndex i = any.whole(100);
+    const auto p = platform.pulse(i);
+    REQUIRE(p);
+    const auto expected = Spinning{}.at(Tick::of(i, 10)) * body_from_instrument * instrument_from_beam;
+    CHECK(length(p->origin() - expected.position) < 1e-12);
+    CHECK(length(p->direction() - expected.direction(forward)) < 1e-14);
+    CHECK(length(p->pose.direction(up) - expected.direction(up)) < 1e-14);
+  }
+}
+
+TEST_CASE("a scan angle is zero below the body, positive to its right, and does not depend on how the body is turned") {
+  const auto scan_angle = [](const Rotation& beam, const Tripod& tripod) {
+    return Platform{tripod, Mount{}, Deflector{Fixed{{beam, {}}}, Scanner{.pulses = 1}}}.pulse(0)->scan_angle;
+  };
+  for (const double heading : {0.0, 1.0, 3.0}) {
+    const Tripod tripod{.heading = heading};
+    const Rotation down = rotation_about(right, -90_deg);
+    CHECK(std::fabs(scan_angle(down, tripod)) < 1e-15);
+    // about the body's forward axis, what is below moves to the left for a positive turn
+    CHECK(scan_angle(rotation_about(forward, -20_deg) * down, tripod) == support::relative(20_deg, 1e-14));
+    CHECK(scan_angle(rotation_about(forward, 20_deg) * down, tripod) == support::relative(-20_deg, 1e-14));
+    CHECK(scan_angle(rotation_about(up, -90_deg), tripod) == support::relative(90_deg, 1e-14));
+    // a beam that looks ahead and down has the scan angle of what is below
+    CHECK(std::fabs(scan_angle(rotation_about(right, -45_deg), tripod)) < 1e-15);
+  }
+}
+
+TEST_CASE("a blocked slot stays blocked on a platform") {
+  const Platform platform{Tripod{}, Mount{},
+                          Deflector{PolygonMirror{.lines_per_second = 1, .angle_min = 0}, Scanner{.pulse_rate = 4, .pulses = 4}}};
+  CHECK_FALSE(platform.pulse(0));
+  CHECK_FALSE(platform.pulse(1));
+  CHECK(platform.pulse(2));
+  CHECK(platform.pulse(3));
+}
+
+TEST_CASE("a platform keeps the laws of a source and the size and ticks of what it carries") {
+  const Deflector device{RotatingHead{.rate = 0.1}, Deflector{PolygonMirror{.lines_per_second = 77, .angle_min = -1, .angle_max = 0.5},
+                                                              Scanner{.pulse_rate = 1e6 / 7, .pulses = 100000007}}};
+  const Platform platform{Spinning{}, Mount{.lever_arm = {0.1, -0.2, 0.3}}, device};
+  CHECK(support::source_laws(platform) == "");
+  CHECK(support::wrapped_source_laws(platform, device) == "");
+}
+
+TEST_CASE("a mount refuses what is not a place or not a rotation") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_NOTHROW(Mount{}.validate());
+  CHECK_THROWS_AS((Mount{.lever_arm = {0, nan, 0}}.validate()), SettingError);
+  CHECK_THROWS_AS((Mount{.boresight = Rotation{1, 1, 0, 0}}.validate()), SettingError);
+  CHECK_THROWS_AS((Mount{.boresight = Rotation{nan, 0, 0, 0}}.validate()), SettingError);
+}
+
+TEST_CASE("a platform asks its mount and its trajectory whether they can be") {
+  const support::LeastSource<frame::Instrument> source;
+  CHECK_THROWS_AS((Platform{Tripod{}, Mount{.boresight = Rotation{2, 0, 0, 0}}, source}), SettingError);
+  CHECK_THROWS_AS((Platform{Asks{}, Mount{}, source}), SettingError);
+}

@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/run.hpp>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/cloud.hpp>
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/detector/first_hit.hpp>
+#include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/platform/legs.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+
+#include "support/archetypes.hpp"
+#include "support/laws.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+namespace {
+
+/// The plane z = 0 with a step of 2 m at x = 0, so that some pulses come back twice.
+struct Steps {
+  std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+    std::optional<Hit> nearest;
+    for (const double height : {2.0, 0.0}) {
+      const double range = (height - ray.origin.z) / ray.direction.z;
+      if (!(range > ray.near && range <= ray.far)) continue;
+      const double x = ray.origin.x + range * ray.direction.x;
+      if (height > 0 && x > 0) continue;
+      const double cosine = std::fabs(ray.direction.z);
+      if (!nearest || range < nearest->range) nearest = Hit{range, cosine, 0.5 * cosine, static_cast<ObjectId>(height), 2};
+    }
+    return nearest;
+  }
+};
+
+constexpr PulseIndex pulses_per_leg = 7000;
+
+/// Two set-ups whose mirrors look up half of the time, and are closed for a part of it.
+auto two_legs() {
+  const auto leg = [](double x, double heading) {
+    return Platform{Tripod{.position = {x, 0, 10}, .heading = heading}, Mount{},
+                    Deflector{PolygonMirror{.lines_per_second = 10, .sweep = 170_deg, .angle_min = -160_deg, .angle_max = 80_deg},
+                              Scanner{.pulse_rate = 10_kHz, .pulses = pulses_per_leg, .laser = {.divergence = 3_mrad}}}};
+  };
+  return Legs(std::vector{leg(-20, 90_deg), leg(20, -80_deg)});
+}
+
+const Steps steps;
+const auto waveforms = FullWaveform<MomentWidth>{WaveformSettings{.record_length = 20e-9}};
+
+auto small_survey() { return Survey{two_legs(), RingFootprint{}, steps, Receiver{}, waveforms}; }
+
+/// Many cheap pulses: as many as are asked for, straight down.
+struct Rain {
+  PulseIndex pulses = 100000;
+  mutable std::atomic<PulseIndex>* asked = nullptr;  ///< the slot after the highest that was asked for
+  PulseIndex size() const noexcept { return pulses; }
+  Tick duration() const noexcept { return Tick::of(pulses, 1e5); }
+  std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+    if (asked)
+      for (PulseIndex seen = *asked; seen < i + 1 && !asked->compare_exchange_weak(seen, i + 1);) continue;
+    Pulse<frame::World> p;
+    p.index = i, p.tick = Tick::of(i, 1e5);
+    p.pose = {rotation_about(right, -90_deg), {0.001 * static_cast<double>(i), 0, 10}};
+    return p;
+  }
+};
+static_assert(WorldSource<Rain>);
+
+auto rain(PulseIndex pulses = 100000, std::atomic<PulseIndex>* asked = nullptr) {
+  return Survey{Rain{pulses, asked}, SingleRay{}, steps, Receiver{}, FirstHit{}};
+}
+
+struct Spilled : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace
+
+TEST_CASE("a run gives the same to the last bit on 1, 2, 3 and 7 threads, in pulse order") {
+  const auto survey = small_survey();
+  std::string first;
+  for (const unsigned threads : {1U, 2U, 3U, 7U}) {
+    CAPTURE(threads);
+    support::LawfulSink sink;
+    const RunSummary summary = run(survey, {.threads = threads}, sink);
+    CHECK(sink.broken() == "");
+    CHECK(summary.complete);
+    CHECK(summary.slots == 2 * pulses_per_leg);
+    CHECK(summary.echoes == sink.echoes());
+    CHECK(summary.pulses() == sink.shots());
+    CHECK(summary.rays == sink.shots() * 19);
+    if (first.empty()) first = sink.checksum();
+    CHECK(sink.checksum() == first);
+  }
+}
+
+TEST_CASE("a run hands out what the survey says of each pulse, and nothing for blocked slots") {
+  const auto survey = small_survey();
+  auto workspace = survey.workspace();
+  std::array<std::uint64_t, 5> fates{};
+  PulseIndex next = 0;
+  std::size_t double_echoes = 0;
+  const RunSummary summary = run(survey, {.threads = 2}, [&](const EchoBatch& batch) {
+    CHECK(batch.sample_interval == survey.sample_interval());
+    for (const Shot& shot : batch.shots) {
+      for (; next < shot.index; ++next) {
+        REQUIRE(survey(next, workspace).shot.fate == Fate::blocked);
+        ++fates[static_cast<std::size_t>(Fate::blocked)];
+      }
+      const Outcome o = survey(next++, workspace);
+      ++fates[static_cast<std::size_t>(o.shot.fate)];
+      REQUIRE(shot.fate == o.shot.fate);
+      REQUIRE(shot.tick == o.shot.tick);
+      REQUIRE(shot.leg == o.shot.leg);
+      const auto echoes = batch.echoes_of(shot);
+      REQUIRE(echoes.size() == o.echoes.size());
+      for (std::size_t e = 0; e < echoes.size(); ++e) REQUIRE(support::detail::same(echoes[e], o.echoes[e]));
+      double_echoes += echoes.size() > 1;
+      const auto samples = batch.waveform_of(shot);
+      REQUIRE(std::equal(samples.begin(), samples.end(), o.waveform.begin(), o.waveform.end()));
+    }
+  });
+  fates[static_cast<std::size_t>(Fate::blocked)] += survey.size() - next;
+  CHECK(summary.fates == fates);
+  for (const Fate fate : {Fate::returned, Fate::blocked, Fate::missed}) CHECK(summary.count(fate) > 0);
+  CHECK(double_echoes > 0);
+}
+
+TEST_CASE("a part of the pulses gives the part of the result") {
+  const auto survey = small_survey();
+  Cloud whole, middle, preview;
+  run(survey, {.threads = 2}, whole);
+  run(survey, {.threads = 2, .first = 3000, .end = 9001}, middle);
+  const RunSummary summary = run(survey, {.threads = 3, .first = 1, .stride = 7}, preview);
+  CHECK(summary.slots == (survey.size() - 1 + 6) / 7);
+  std::vector<std::size_t> expected_middle, expected_preview;
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    if (whole.pulses[k] >= 3000 && whole.pulses[k] < 9001) expected_middle.push_back(k);
+    if (whole.pulses[k] % 7 == 1) expected_preview.push_back(k);
+  }
+  REQUIRE(middle.size() == expected_middle.size());
+  for (std::size_t k = 0; k < middle.size(); ++k) REQUIRE(middle.points[k] == whole.points[expected_middle[k]]);
+  REQUIRE(preview.size() == expected_preview.size());
+  for (std::size_t k = 0; k < preview.size(); ++k) REQUIRE(preview.points[k] == whole.points[expected_preview[k]]);
+}
+
+TEST_CASE("several sinks get the same, and a run without a sink counts all the same") {
+  const auto survey = small_survey();
+  support::LawfulSink a, b;
+  Cloud cloud;
+  const RunSummary with = run(survey, {.threads = 2}, a, b, cloud), without = run(survey, {.threads = 2});
+  CHECK(a.checksum() == b.checksum());
+  CHECK(cloud.size() == a.echoes());
+  CHECK(with.echoes == without.echoes);
+  CHECK(with.fates == without.fates);
+}
+
+TEST_CASE("a run of nothing is complete") {
+  const auto survey = small_survey();
+  for (const RunOptions& options : {RunOptions{.threads = 2, .first = 5, .end = 5}, RunOptions{.threads = 2, .first = survey.size()},
+                                    RunOptions{.threads = 2, .first = 10, .end = 5}}) {
+    support::LawfulSink sink;
+    const RunSummary summary = run(survey, options, sink);
+    CHECK(summary.complete);
+    CHECK(summary.slots == 0);
+    CHECK(sink.batches() == 0);
+  }
+}
+
+TEST_CASE("progress ascends, one call at a time, and reaches the total") {
+  for (const unsigned threads : {1U, 4U}) {
+    CAPTURE(threads);
+    PulseIndex done = 0, calls = 0;
+    std::uint64_t echoes = 0;
+    std::atomic<int> inside = 0;
+    RunOptions options{.threads = threads};
+    options.progress = [&](const Progress& p) {
+      CHECK(++inside == 1);
+      CHECK(p.total == 100000);
+      CHECK(p.done > done);
+      CHECK(p.echoes >= echoes);
+      done = p.done, echoes = p.echoes, ++calls;
+      --inside;
+    };
+    support::LawfulSink sink;
+    run(rain(), options, sink);
+    CHECK(done == 100000);
+    CHECK(echoes == sink.echoes());
+    CHECK(calls == sink.batches());
+  }
+}
+
+TEST_CASE("a run that is asked to stop ends early, with whole batches in order") {
+  for (const unsigned threads : {1U, 2U, 7U}) {
+    CAPTURE(threads);
+    std::stop_source source;
+    support::LawfulSink sink;
+    const RunSummary summary = run(rain(1000000), {.threads = threads, .stop = source.get_token()}, [&](const EchoBatch& batch) {
+      sink(batch);
+      if (sink.batches() == 3) source.request_stop();
+    });
+    CHECK(sink.broken() == "");
+    CHECK_FALSE(summary.complete);
+    CHECK(sink.first() == 0);
+    CHECK(sink.batches() >= 3);
+    CHECK(summary.slots == sink.shots());
+    CHECK(summary.slots == *sink.last() + 1);
+    CHECK(summary.slots < 1000000);
+    // what came before the stop is what a whole run gives
+    support::LawfulSink whole;
+    run(rain(1000000), {.threads = 2, .end = summary.slots}, whole);
+    CHECK(whole.checksum() == sink.checksum());
+  }
+}
+
+TEST_CASE("a run that is stopped before it begins does nothing") {
+  std::stop_source source;
+  source.request_stop();
+  support::LawfulSink sink;
+  const RunSummary summary = run(rain(), {.threads = 3, .stop = source.get_token()}, sink);
+  CHECK(sink.batches() == 0);
+  CHECK(summary.slots == 0);
+  CHECK_FALSE(summary.complete);
+}
+
+TEST_CASE("what a sink throws ends the run and comes out of it, and no sink is called again") {
+  for (const unsigned threads : {1U, 2U, 7U}) {
+    CAPTURE(threads);
+    int calls = 0;
+    std::string caught;
+    try {
+      run(rain(1000000), {.threads = threads}, [&](const EchoBatch&) {
+        if (++calls == 3) throw Spilled("the third batch");
+      });
+    } catch (const Spilled& s) {
+      caught = s.what();
+    }
+    CHECK(caught == "the third batch");
+    CHECK(calls == 3);
+  }
+}
+
+TEST_CASE("what the progress callback throws comes out too") {
+  for (const unsigned threads : {1U, 2U, 7U}) {
+    CAPTURE(threads);
+    support::LawfulSink sink;
+    RunOptions options{.threads = threads};
+    options.progress = [](const Progress& p) {
+      if (p.done > 5000) throw Spilled("enough");
+    };
+    CHECK_THROWS_AS(run(rain(1000000), options, sink), Spilled);
+    CHECK(sink.broken() == "");
+    CHECK(sink.shots() < 100000);
+  }
+}
+
+TEST_CASE("workers do not run ahead of the sink without bound, so that memory is bounded") {
+  const unsigned threads = 3;
+  const PulseIndex total = 2000000;
+  std::atomic<PulseIndex> asked = 0;
+  PulseIndex delivered = 0, farthest = 0, largest_batch = 0;
+  run(rain(total, &asked), {.threads = threads}, [&](const EchoBatch& batch) {
+    if (delivered == 0)  // the others get all the time that they could want
+      for (int k = 0; k < 100000 && asked < total; ++k) std::this_thread::yield();
+    farthest = std::max(farthest, asked - delivered);
+    delivered += batch.shots.size();
+    largest_batch = std::max<PulseIndex>(largest_batch, batch.shots.size());
+  });
+  CHECK(delivered == total);
+  CHECK(farthest <= (2 * threads + 2) * largest_batch);
+  CHECK(farthest > largest_batch);  // but they do run ahead
+}
+
+TEST_CASE("a run refuses a stride of zero") { CHECK_THROWS_AS(run(rain(), {.stride = 0}), SettingError); }

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/scanner/footprint.hpp>
+
+#include <cmath>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "support/generators.hpp"
+#include "support/laws.hpp"
+#include "support/relative.hpp"
+
+using namespace pulsecast;
+
+namespace {
+
+double radius(const Vec2& offset) { return std::hypot(offset.x, offset.y); }
+
+template <class F>
+Vec2 centre_of_energy(const F& footprint) {
+  Vec2 sum{0, 0};
+  for (std::size_t j = 0; j < footprint.size(); ++j) sum += footprint.share(j) * footprint.offset(j);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("all footprints keep the law, of any size") {
+  CHECK(support::footprint_laws(SingleRay{}) == "");
+  for (const std::size_t n : {1U, 2U, 3U, 4U, 7U, 20U, 50U}) {
+    CAPTURE(n);
+    CHECK(support::footprint_laws(RingFootprint(n)) == "");
+    CHECK(support::footprint_laws(SunflowerFootprint(n)) == "");
+  }
+  CHECK(support::footprint_laws(SunflowerFootprint(100000)) == "");
+}
+
+TEST_CASE("a single ray is on the axis") {
+  CHECK(SingleRay{}.size() == 1);
+  CHECK(SingleRay{}.offset(0) == Vec2{0, 0});
+  CHECK(RingFootprint(1).offset(0) == Vec2{0, 0});
+  CHECK(SunflowerFootprint(1).offset(0) == Vec2{0, 0});
+}
+
+TEST_CASE("ring i of a footprint holds floor(2 pi i) subrays about the central one") {
+  CHECK(RingFootprint(1).size() == 1);
+  CHECK(RingFootprint(2).size() == 1 + 6);
+  CHECK(RingFootprint(3).size() == 1 + 6 + 12);
+  CHECK(RingFootprint(4).size() == 1 + 6 + 12 + 18);
+  CHECK(RingFootprint(5).size() == 1 + 6 + 12 + 18 + 25);
+  CHECK(RingFootprint().size() == 19);
+}
+
+TEST_CASE("rings are a ring's width apart, the first subray of each stands up, and the energy is centred") {
+  const RingFootprint f(4);
+  CHECK(f.offset(0) == Vec2{0, 0});
+  std::size_t j = 1;
+  for (const std::size_t ring : {1U, 2U, 3U}) {
+    const auto count = static_cast<std::size_t>(std::floor(2 * pi * static_cast<double>(ring)));
+    CHECK(std::fabs(f.offset(j).x) < 1e-15);
+    CHECK(f.offset(j).y > 0);
+    for (std::size_t k = 0; k < count; ++k, ++j) {
+      CHECK(radius(f.offset(j)) == support::relative(static_cast<double>(ring) / 3.5, 1e-14));
+      CHECK(f.share(j) == f.share(j - k));
+    }
+  }
+  CHECK(j == f.size());
+  CHECK(radius(centre_of_energy(f)) < 1e-15);
+}
+
+TEST_CASE("the energy inside of a ring is that of a Gaussian beam") {
+  const RingFootprint f(6);
+  double inside = 0;
+  std::size_t j = 0;
+  for (int ring = 0; ring < 6; ++ring) {
+    const auto count = ring == 0 ? std::size_t{1} : static_cast<std::size_t>(std::floor(2 * pi * ring));
+    for (std::size_t k = 0; k < count; ++k) inside += f.share(j++);
+    const double outer = (ring + 0.5) / 5.5;
+    // Source: the integral of exp(-2 r^2) r dr, as a share of that to r = 1
+    CHECK(inside == support::relative(std::expm1(-2 * outer * outer) / std::expm1(-2.0), 1e-13));
+  }
+}
+
+TEST_CASE("a sunflower's subrays carry equal energy and spread as a Gaussian beam does") {
+  const std::size_t n = 20000;
+  const SunflowerFootprint f(n);
+  REQUIRE(f.size() == n);
+  double second_moment = 0;
+  std::size_t inside = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    REQUIRE(f.share(j) == f.share(0));
+    if (j > 0) REQUIRE(radius(f.offset(j)) > radius(f.offset(j - 1)));
+    second_moment += f.share(j) * std::pow(radius(f.offset(j)), 2);
+    inside += radius(f.offset(j)) < 1;
+  }
+  // Source: the mean of r^2 over exp(-2 r^2) r dr is 1/2, and 1 - exp(-2) of it is inside of r = 1
+  CHECK(second_moment == support::relative(0.5, 1e-3));
+  CHECK(static_cast<double>(inside) / n == support::relative(1 - std::exp(-2), 1e-4));
+  CHECK(radius(centre_of_energy(f)) < 1e-3);
+}
+
+TEST_CASE("a footprint without subrays is refused") {
+  CHECK_THROWS_AS(RingFootprint(0), SettingError);
+  CHECK_THROWS_AS(SunflowerFootprint(0), SettingError);
+}
+
+TEST_CASE("a subray at the 1/e^2 radius leaves at half the divergence") {
+  const double divergence = 2e-3;
+  CHECK(subray_direction({0, 0}, divergence) == forward);
+  const Vec3 to_the_right = subray_direction({1, 0}, divergence), upward = subray_direction({0, 1}, divergence);
+  CHECK(to_the_right.x == support::relative(std::sin(1e-3), 1e-13));
+  CHECK(to_the_right.z == 0);
+  CHECK(upward.z == support::relative(std::sin(1e-3), 1e-13));
+  CHECK(upward.x == 0);
+}
+
+TEST_CASE("subrays are unit, and without divergence all go along the axis") {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const Vec2 offset{any.uniform(-2, 2), any.uniform(-2, 2)};
+    const double divergence = any.log_uniform(1e-6, 0.5);
+    const Vec3 d = subray_direction(offset, divergence);
+    CHECK(length(d) == support::relative(1, 1e-15));
+    CHECK(std::atan2(std::hypot(d.x, d.z), d.y) == support::relative(radius(offset) * divergence / 2, 1e-12));
+    CHECK(subray_direction(offset, 0) == forward);
+  }
+}

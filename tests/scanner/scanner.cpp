@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/scanner/scanner.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "support/laws.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+TEST_CASE("a scanner sends its pulses at a constant rate, forward, from its origin") {
+  const Scanner scanner{.pulse_rate = 100_kHz, .pulses = 1000000, .laser = {.wavelength = 1550_nm}};
+  CHECK(scanner.size() == 1000000);
+  CHECK(scanner.duration() == Tick{10, 0});
+  const auto p = scanner.pulse(250001);
+  REQUIRE(p);
+  CHECK(p->index == 250001);
+  CHECK(p->tick == Tick{2, 50001 / 1e5});
+  CHECK(p->origin() == Vec3{});
+  CHECK(p->direction() == forward);
+  CHECK(p->laser.wavelength == 1550_nm);
+  CHECK(p->leg == 0);
+}
+
+TEST_CASE("a scanner keeps the laws of a source, of any length") {
+  for (const PulseIndex pulses : {0ULL, 1ULL, 2ULL, 1000ULL, 1000000000000ULL}) {
+    CAPTURE(pulses);
+    CHECK(support::source_laws(Scanner{.pulse_rate = 99999.5, .pulses = pulses}) == "");
+  }
+}
+
+TEST_CASE("a scanner refuses what no laser can do") {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  CHECK_NOTHROW(Scanner{}.validate());
+  for (const double bad : {0.0, -1.0, nan, infinity}) {
+    CAPTURE(bad);
+    CHECK_THROWS_AS(Scanner{.pulse_rate = bad}.validate(), SettingError);
+    CHECK_THROWS_AS(Scanner{.laser = {.wavelength = bad}}.validate(), SettingError);
+    CHECK_THROWS_AS(Scanner{.laser = {.peak_power = bad}}.validate(), SettingError);
+    CHECK_THROWS_AS(Scanner{.laser = {.pulse_length = bad}}.validate(), SettingError);
+  }
+  for (const double bad : {-0.001, nan, infinity, 4.0}) CHECK_THROWS_AS(Scanner{.laser = {.divergence = bad}}.validate(), SettingError);
+  CHECK_NOTHROW(Scanner{.laser = {.divergence = 0}}.validate());
+}

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/scene/material.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/base/units.hpp>
+
+#include "support/relative.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+TEST_CASE("a Lambertian surface sends back its reflectance times the cosine of the incidence") {
+  const Material m{.reflectance = 0.4};
+  CHECK(m.backscatter(1) == 0.4);
+  CHECK(m.backscatter(0.5) == support::relative(0.2, 1e-15));
+  CHECK(m.backscatter(0) == 0);
+}
+
+TEST_CASE("a surface by Phong's law has a glossy lobe about the mirror direction, which ends at 45 degrees of incidence") {
+  const Material m{.reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0.3, .specular_exponent = 10};
+  CHECK(m.backscatter(1) == support::relative(0.5, 1e-15));
+  // 0.5 (0.7 cos 20 + 0.3 cos^10 40)
+  CHECK(m.backscatter(std::cos(20_deg)) == support::relative(0.339330744918639, 1e-14));
+  // from 45 degrees on, the lobe adds nothing: 0.5 * 0.7 cos 45, and cos 60
+  CHECK(m.backscatter(std::cos(45_deg)) == support::relative(0.247487373415292, 1e-14));
+  CHECK(m.backscatter(std::cos(60_deg)) == support::relative(0.175, 1e-14));
+  CHECK(m.backscatter(0) == 0);
+}
+
+TEST_CASE("Phong's law without a glossy share is Lambert's") {
+  const Material phong{.reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0}, lambert{.reflectance = 0.5};
+  for (double cosine = 0; cosine <= 1; cosine += 0.05) CHECK(phong.backscatter(cosine) == lambert.backscatter(cosine));
+}
+
+TEST_CASE("a direction-independent surface sends back its reflectance from everywhere") {
+  const Material m{.reflectance = 0.4, .scattering = Scattering::direction_independent};
+  for (const double cosine : {0.0, 0.3, 1.0}) CHECK(m.backscatter(cosine) == 0.4);
+}
+
+TEST_CASE("no surface sends back more than its reflectance") {
+  for (const Scattering law : {Scattering::lambert, Scattering::phong, Scattering::direction_independent})
+    for (const double share : {0.0, 0.3, 1.0})
+      for (const double exponent : {0.0, 1.0, 10.0, 1000.0}) {
+        const Material m{.reflectance = 0.8, .scattering = law, .specular_share = share, .specular_exponent = exponent};
+        for (double cosine = 0; cosine <= 1; cosine += 0.01) {
+          REQUIRE(m.backscatter(cosine) >= 0);
+          REQUIRE(m.backscatter(cosine) <= 0.8);
+        }
+      }
+}
+
+TEST_CASE("a material refuses what no surface can do") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_NOTHROW(Material{}.validate());
+  for (const double bad : {-0.1, 1.1, nan}) {
+    CHECK_THROWS_AS(Material{.reflectance = bad}.validate(), SettingError);
+    CHECK_THROWS_AS(Material{.specular_share = bad}.validate(), SettingError);
+  }
+  for (const double bad : {-1.0, nan}) CHECK_THROWS_AS(Material{.specular_exponent = bad}.validate(), SettingError);
+}

@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/scene/scene.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/scene/triangle_mesh.hpp>
+
+#include "support/archetypes.hpp"
+#include "support/generators.hpp"
+#include "support/relative.hpp"
+
+using namespace pulsecast;
+using support::LeastGeometry;
+
+namespace {
+
+static_assert(BundleTarget<Scene<LeastGeometry>> && BundleTarget<Scene<TriangleMesh<>>>);
+static_assert(BundleTarget<Scene<LeastGeometry, TriangleMesh<>>>);
+
+using Disc = Part<LeastGeometry>;
+
+/// The unit disc, facing up, placed.
+Disc disc(const Similarity& placement = {}, ObjectId object = 0, const Material& material = {}) {
+  static const auto shape = std::make_shared<const LeastGeometry>();
+  return {shape, material_table({material}), placement, object};
+}
+
+template <class Map>
+Hit ask(const Map& map, const Ray& ray) {
+  std::array<Hit, 1> hits;
+  map.closest(bundle_of(ray), hits);
+  return hits[0];
+}
+
+MeshData some_triangles(support::Generator& any, std::size_t n) {
+  MeshData data;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 p = any.point(5);
+    const auto first = static_cast<std::uint32_t>(data.vertices.size());
+    for (int corner = 0; corner < 3; ++corner) data.vertices.push_back(p + any.point(1));
+    data.triangles.push_back({first, first + 1, first + 2});
+    data.materials.push_back(static_cast<std::uint32_t>(any.whole(3)));
+  }
+  return data;
+}
+
+}  // namespace
+
+TEST_CASE("a disc met squarely, at a slant, and missed") {
+  const Scene<LeastGeometry> scene({disc({}, 7, {.reflectance = 0.5, .classification = 6})});
+  const Hit square = ask(scene, {{0.5, 0, 10}, {0, 0, -1}});
+  REQUIRE(square.met());
+  CHECK(square.range == 10);
+  CHECK(square.cos_incidence == 1);
+  CHECK(square.backscatter == 0.5);
+  CHECK(square.object == 7);
+  CHECK(square.classification == 6);
+  const Hit slant = ask(scene, {{0, -10, 10}, normalize(Vec3{0, 1, -1})});
+  CHECK(slant.range == support::relative(std::sqrt(200.0), 1e-14));
+  CHECK(slant.cos_incidence == support::relative(std::sqrt(0.5), 1e-14));
+  CHECK(slant.backscatter == support::relative(0.5 * std::sqrt(0.5), 1e-14));
+  CHECK_FALSE(ask(scene, {{1.5, 0, 10}, {0, 0, -1}}).met());
+  CHECK_FALSE(ask(scene, {{0, 0, 10}, {0, 0, 1}}).met());
+}
+
+TEST_CASE("both sides of a surface count") {
+  const Scene<LeastGeometry> scene({disc()});
+  const Hit below = ask(scene, {{0, 0, -3}, {0, 0, 1}});
+  CHECK(below.range == 3);
+  CHECK(below.cos_incidence == 1);
+}
+
+TEST_CASE("nothing is met at the near end or before it, nor beyond the far end") {
+  const Scene<LeastGeometry> scene({disc()});
+  CHECK_FALSE(ask(scene, {{0, 0, 10}, {0, 0, -1}, 10}).met());
+  CHECK(ask(scene, {{0, 0, 10}, {0, 0, -1}, 9.999}).met());
+  CHECK(ask(scene, {{0, 0, 10}, {0, 0, -1}, 0, 10}).met());
+  CHECK_FALSE(ask(scene, {{0, 0, 10}, {0, 0, -1}, 0, 9.999}).met());
+}
+
+TEST_CASE("a disc that is turned, scaled and moved is met where it stands, with ranges in metres of the world") {
+  // three times as large, standing upright, facing north, at UTM coordinates
+  const Vec3 utm{500000, 5400000, 300};
+  const Scene<LeastGeometry> scene({disc({rotation_about(right, pi / 2), 3, utm}, 5)});
+  const Hit hit = ask(scene, {utm + Vec3{2.9, -50, 0}, forward});
+  REQUIRE(hit.met());
+  CHECK(std::fabs(hit.range - 50) < 1e-8);
+  CHECK(hit.cos_incidence == support::relative(1, 1e-12));
+  CHECK(hit.object == 5);
+  CHECK_FALSE(ask(scene, {utm + Vec3{3.1, -50, 0}, forward}).met());
+  CHECK(ask(scene, {utm + Vec3{0, -50, 2.9}, forward}).met());
+  CHECK_FALSE(ask(scene, {utm + Vec3{0, -50, 3.1}, forward}).met());
+}
+
+TEST_CASE("an instance of a mesh answers as the same mesh transformed by hand") {
+  int met = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const Similarity placement{any.rotation(), any.log_uniform(0.05, 20), any.point(1000)};
+    const MeshData data = some_triangles(any, 200);
+    MeshData moved = data;
+    for (Vec3& v : moved.vertices) v = placement.point(v);
+    const MaterialTable materials =
+        material_table({{.reflectance = 0.1}, {.reflectance = 0.5, .classification = 2}, {.reflectance = 0.9, .classification = 3}});
+    using Mesh = TriangleMesh<>;
+    const Scene<Mesh> instance({{std::make_shared<const Mesh>(data), materials, placement, 4}});
+    const Scene<Mesh> by_hand({{std::make_shared<const Mesh>(moved), materials, {}, 4}});
+    for (int k = 0; k < 20; ++k) {
+      const Vec3 from = placement.point(any.unit() * 20.0), to = placement.point(any.point(4));
+      const RayBundle rays = any.cone(from, normalize(to - from), 0.02, 16);
+      std::array<Hit, RayBundle::capacity> a, b;
+      instance.closest(rays, a);
+      by_hand.closest(rays, b);
+      for (std::size_t j = 0; j < rays.size; ++j) {
+        REQUIRE(a[j].met() == b[j].met());
+        if (!a[j].met()) continue;
+        ++met;
+        REQUIRE(std::fabs(a[j].range - b[j].range) < 1e-9 * (1 + b[j].range));
+        REQUIRE(a[j].cos_incidence == support::relative(b[j].cos_incidence, 1e-8));
+        REQUIRE(a[j].backscatter == support::relative(b[j].backscatter, 1e-8));
+        REQUIRE(a[j].classification == b[j].classification);
+        REQUIRE(a[j].object == 4);
+      }
+    }
+  }
+  CHECK(met > 1000);
+}
+
+TEST_CASE("a bundle's hits are those of its rays asked one by one") {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Disc> discs;
+    for (ObjectId k = 0; k < 50; ++k) discs.push_back(disc({any.rotation(), any.log_uniform(0.1, 10), any.point(50)}, k));
+    const Scene<LeastGeometry> scene(discs);
+    const RayBundle rays = any.cone(any.point(60), any.unit(), any.log_uniform(1e-4, 1), 1 + any.whole(RayBundle::capacity));
+    std::array<Hit, RayBundle::capacity> hits;
+    scene.closest(rays, hits);
+    for (std::size_t j = 0; j < rays.size; ++j) {
+      const Hit alone = ask(scene, rays.ray(j));
+      REQUIRE(hits[j].range == alone.range);
+      REQUIRE(hits[j].met() == alone.met());
+      if (alone.met()) {
+        REQUIRE(hits[j].object == alone.object);
+        REQUIRE(hits[j].cos_incidence == alone.cos_incidence);
+      }
+    }
+  }
+}
+
+TEST_CASE("of many parts the nearest is met, as if each were asked alone") {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Disc> discs;
+    for (ObjectId k = 0; k < 40; ++k) discs.push_back(disc({any.rotation(), any.log_uniform(1, 10), any.point(20)}, 100 + k));
+    const Scene<LeastGeometry> scene(discs);
+    for (int ray_number = 0; ray_number < 20; ++ray_number) {
+      const Ray ray{any.point(40), any.unit()};
+      Hit nearest;
+      for (const Disc& d : discs) {
+        const Hit hit = ask(Scene<LeastGeometry>({d}), ray);
+        if (hit.range < nearest.range) nearest = hit;
+      }
+      const Hit hit = ask(scene, ray);
+      REQUIRE(hit.range == nearest.range);
+      if (hit.met()) REQUIRE(hit.object == nearest.object);
+    }
+  }
+}
+
+TEST_CASE("of parts in the same place the first in the list is met") {
+  for (const ObjectId first : {1U, 2U}) {
+    std::vector<Disc> discs{disc({}, first), disc({}, 3 - first)};
+    for (ObjectId k = 0; k < 30; ++k) discs.push_back(disc({.translation = {0, 0, -1.0 - k}}, 10 + k));
+    CHECK(ask(Scene<LeastGeometry>(discs), {{0, 0, 10}, {0, 0, -1}}).object == first);
+  }
+}
+
+TEST_CASE("parts of several kinds of geometry stand in one scene") {
+  using Mesh = TriangleMesh<>;
+  const auto mesh = std::make_shared<const Mesh>(MeshData{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}});
+  const Scene<LeastGeometry, Mesh> scene({{std::make_shared<const LeastGeometry>(), material_table(), {.translation = {0, 0, 1}}, 1},
+                                          {mesh, material_table(), {.translation = {10, 0, 2}}, 2}});
+  CHECK(ask(scene, {{0, 0, 10}, {0, 0, -1}}).object == 1);
+  CHECK(ask(scene, {{0, 0, 10}, {0, 0, -1}}).range == 9);
+  CHECK(ask(scene, {{10, 0, 10}, {0, 0, -1}}).object == 2);
+  CHECK(ask(scene, {{10, 0, 10}, {0, 0, -1}}).range == 8);
+}
+
+TEST_CASE("rays of NaN miss and do not disturb their neighbours") {
+  const Scene<LeastGeometry> scene({disc()});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(ask(scene, {{nan, 0, 10}, {0, 0, -1}}).met());
+  CHECK_FALSE(ask(scene, {{0, 0, 10}, {nan, nan, nan}}).met());
+}
+
+TEST_CASE("a shared geometry counts once in the memory of a scene") {
+  support::Generator any(1);
+  using Mesh = TriangleMesh<>;
+  MeshData data = some_triangles(any, 5000);
+  data.materials.clear();
+  const auto mesh = std::make_shared<const Mesh>(data);
+  std::vector<Part<Mesh>> one{{mesh}}, hundred;
+  for (int k = 0; k < 100; ++k) hundred.push_back({mesh, material_table(), {.translation = {20.0 * k, 0, 0}}});
+  const std::size_t alone = Scene<Mesh>(one).memory(), many = Scene<Mesh>(hundred).memory();
+  CHECK(alone > mesh->memory());
+  CHECK(many < 2 * mesh->memory());
+}
+
+TEST_CASE("the bounds of a scene hold all of its parts") {
+  const Scene<LeastGeometry> scene({disc({.translation = {100, 0, 0}}), disc({.scale = 5})});
+  CHECK(scene.bounds().min.x == support::relative(-5, 1e-12));
+  CHECK(scene.bounds().max.x == support::relative(101, 1e-12));
+  CHECK(scene.parts().size() == 2);
+}
+
+TEST_CASE("a scene refuses parts that cannot be") {
+  CHECK_THROWS_AS(Scene<LeastGeometry>({disc({.scale = 0})}), SettingError);
+  CHECK_THROWS_AS(Scene<LeastGeometry>({Disc{nullptr}}), SettingError);
+  CHECK_THROWS_AS(Scene<LeastGeometry>({Disc{std::make_shared<const LeastGeometry>(), nullptr}}), SettingError);
+  CHECK_THROWS_AS(Scene<LeastGeometry>({Disc{std::make_shared<const LeastGeometry>(), material_table({})}}), SettingError);
+}
+
+TEST_CASE("an empty scene is met nowhere") {
+  const Scene<LeastGeometry> scene(std::vector<Disc>{});
+  CHECK_FALSE(ask(scene, {{0, 0, 10}, {0, 0, -1}}).met());
+}

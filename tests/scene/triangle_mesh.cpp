@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/scene/triangle_mesh.hpp>
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <string>
+
+#include <pulsecast/accel/kd_tree.hpp>
+#include <pulsecast/accel/linear.hpp>
+
+#include "support/scenes.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::support;
+
+static_assert(Geometry<TriangleMesh<Linear>> && Geometry<TriangleMesh<KdTree>> && Geometry<TriangleMesh<Bvh, double>>);
+static_assert(std::copyable<TriangleMesh<>>);
+
+namespace {
+
+/// What the refusal of mesh data says; empty if it is accepted.
+std::string refusal(const MeshData& data) {
+  try {
+    const TriangleMesh<> mesh(data);
+    return {};
+  } catch (const SettingError& error) {
+    return error.what();
+  }
+}
+
+MeshData square() { return {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}, {{0, 1, 2}, {0, 2, 3}}, {3, 1}}; }
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("a mesh is met where its triangles are", Mesh, TriangleMesh<>, TriangleMesh<Bvh, double>, TriangleMesh<KdTree>,
+                   TriangleMesh<KdTree, double>, TriangleMesh<Linear>) {
+  const Mesh mesh(square());
+  CHECK(mesh.size() == 2);
+  CHECK(mesh.bounds() == Box{{0, 0, 0}, {2, 2, 0}});
+  CHECK(mesh.memory() > 4 * sizeof(Vec3));
+  CHECK(mesh.material_count() == 4);
+  CHECK(mesh.triangle(1).c == Vec3{0, 2, 0});
+
+  RayBundle rays = bundle_of({{1, 1, 5}, -up});
+  rays.size = 3;
+  rays.set_direction(0, normalize(Vec3{0.5, -0.5, -5}));
+  rays.set_direction(1, normalize(Vec3{-0.5, 0.5, -5}));
+  rays.set_direction(2, normalize(Vec3{5, 5, -5}));
+  rays.pad();
+  Nearest nearest(rays);
+  mesh.closest(rays, nearest);
+  REQUIRE(nearest.met(0));
+  REQUIRE(nearest.met(1));
+  CHECK_FALSE(nearest.met(2));
+  CHECK(nearest.primitive_of(0) == 0);
+  CHECK(nearest.primitive_of(1) == 1);
+  CHECK(nearest.range[0] == doctest::Approx(std::sqrt(25.5)).epsilon(1e-15));
+  const Surface surface = mesh.surface(0, rays, 0);
+  CHECK(surface.normal == up);
+  CHECK(surface.material == 3);
+  CHECK(mesh.surface(1, rays, 1).material == 1);
+}
+
+TEST_CASE("a ray at the edge of two triangles meets the first") {
+  const TriangleMesh<> mesh(square());
+  const RayBundle rays = bundle_of({{1, 1, 5}, -up});
+  Nearest nearest(rays);
+  mesh.closest(rays, nearest);
+  CHECK(nearest.range[0] == 5);
+  CHECK(nearest.primitive_of(0) == 0);
+}
+
+TEST_CASE("what an earlier part met is beaten only by what is nearer") {
+  const TriangleMesh<> mesh(square());
+  const RayBundle rays = bundle_of({{1, 0.5, 5}, -up});
+  Nearest nearest(rays);
+  nearest.offer(0, 4, 77);
+  nearest.part = std::uint64_t{1} << 32;
+  mesh.closest(rays, nearest);
+  CHECK(nearest.range[0] == 4);
+  Nearest other(rays);
+  other.offer(0, 6, 77);
+  other.part = std::uint64_t{1} << 32;
+  mesh.closest(rays, other);
+  CHECK(other.range[0] == 5);
+  CHECK(other.part_of(0) == 1);
+}
+
+TEST_CASE("without materials every triangle is of material 0") {
+  MeshData data = square();
+  data.materials.clear();
+  const TriangleMesh<> mesh(data);
+  CHECK(mesh.material_count() == 1);
+  CHECK(mesh.surface(1, bundle_of({}), 0).material == 0);
+}
+
+TEST_CASE("a triangle without area has no normal and is never met") {
+  const TriangleMesh<> mesh(MeshData{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}, {}});
+  CHECK(mesh.surface(0, bundle_of({}), 0).normal == Vec3{0, 0, 0});
+  const RayBundle rays = bundle_of({{1, 0, 5}, -up});
+  Nearest nearest(rays);
+  mesh.closest(rays, nearest);
+  CHECK_FALSE(nearest.met(0));
+}
+
+TEST_CASE("the normal of a very small or very large triangle is unit") {
+  for (const double size : {1e-30, 1e-6, 1.0, 1e7, 1e15}) {
+    const TriangleMesh<> mesh(MeshData{{{0, 0, 0}, {size, 0, 0}, {0, size, 0}}, {{0, 1, 2}}, {}});
+    CAPTURE(size);
+    CHECK(length(mesh.surface(0, bundle_of({}), 0).normal - up) < 1e-12);
+  }
+}
+
+TEST_CASE("a mesh that cannot be is refused, and the refusal says what is wrong") {
+  const auto with = [](auto change) {
+    MeshData data = square();
+    change(data);
+    return refusal(data);
+  };
+  CHECK(refusal(square()) == "");
+  CHECK(with([](MeshData& m) { m.triangles.clear(), m.materials.clear(); }) ==
+        "MeshData::triangles is 0, but must be at least one in number");
+  CHECK(with([](MeshData& m) { m.triangles[1][2] = 4; }) ==
+        "MeshData::triangles is 4, but must be less than the number of vertices, 4; see triangle 1");
+  CHECK(with([](MeshData& m) { m.vertices[2].y = std::numeric_limits<double>::infinity(); }) ==
+        "MeshData::vertices is inf m, but must be finite; see vertex 2");
+  CHECK(with([](MeshData& m) { m.vertices[3].z = std::numeric_limits<double>::quiet_NaN(); }) ==
+        "MeshData::vertices is nan m, but must be finite; see vertex 3");
+  CHECK(with([](MeshData& m) { m.materials.pop_back(); }) == "MeshData::materials is 1, but must be as many as triangles, 2, or none");
+  CHECK(with([](MeshData& m) { m.vertices[0].x = 1e19; }).find("within 1e18 m") != std::string::npos);
+}

@@ -1,0 +1,124 @@
+#!/bin/sh
+# SPDX-FileCopyrightText: 2026 the pulsecast contributors
+# SPDX-License-Identifier: MIT
+
+# Checks what the architecture promises and no compiler sees. Usage: check.sh [ROOT]; prints every violation and fails if there is one.
+set -u
+export LC_ALL=C
+cd "${1:-.}" || exit 2
+violations=$(mktemp) || exit 2
+trap 'rm -f "$violations"' EXIT
+
+# Says each line that comes in, as a violation of the rule given.
+violates() { sed "s|^|$1: |" >> "$violations"; }
+
+headers=$(find include -name '*.hpp' | sort)
+sources=$(find include examples tests bench .ci CMakeLists.txt -type f \
+          \( -name '*.[ch]pp' -o -name '*.cmake' -o -name '*.sh' -o -name CMakeLists.txt -o -name run \) | sort)
+
+# Which rooms a room may include; its own is understood. Rooms of one layer meet through concepts.hpp.
+# shellcheck disable=SC2086
+awk '
+  BEGIN {
+    words = "base geometry pulse echo"
+    may["base"] = "version"
+    may["geometry"] = may["pulse"] = may["echo"] = "base"
+    may["concepts"] = words
+    may["accel"] = may["scanner"] = may["deflector"] = may["platform"] = may["detector"] = may["cloud"] = words " concepts"
+    may["scene"] = words " concepts accel"
+    may["survey"] = may["scene"] " scene scanner deflector platform detector cloud"
+    may["run"] = may["survey"] " survey"
+    may["pulsecast"] = may["adapters"] = may["run"] " run version"
+    may["version"] = ""
+  }
+  FNR == 1 { room = FILENAME; sub(/^include\/pulsecast\//, "", room); sub(/[\/.].*/, "", room)
+             if (!(room in may)) print FILENAME ": there is no room `" room "`" }
+  /^#include <pulsecast\// {
+    other = $2; sub(/^<pulsecast\//, "", other); sub(/[\/.].*/, "", other)
+    if (other != room && index(" " may[room] " ", " " other " ") == 0) print FILENAME ":" FNR ": " $0
+  }' $headers | violates "a header includes only from layers below its own"
+
+# Greps headers: found RULE PATTERN [EXCEPTION], where EXCEPTION is a pattern of headers that may.
+found() {
+  # shellcheck disable=SC2086
+  grep -nE "$2" $headers | grep -vE "^include/pulsecast/(${3:-no exception}):?" | violates "$1"
+}
+found 'GLM is named in base/vector.hpp only' '<glm/|glm::' 'base/vector\.hpp'
+found 'threads live in run.hpp only' \
+      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' 'run\.hpp'
+found 'files are for adapters only' '#include <(fstream|filesystem|cstdio|stdio\.h)>' 'adapters/[^:]*'
+found 'degrees and nanoseconds are for adapters only' '[a-z]_(deg|ns)\>[^(]*[;=]' 'adapters/[^:]*|base/units\.hpp'
+found 'the library never prints and never exits' '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('
+found 'random numbers come from base/random.hpp only' '#include <random>|\<s?rand *\('
+found 'concepts, never enable_if' 'enable_if'
+found 'a header begins with #pragma once' '#(ifndef|define) [A-Z_]*_(H|HPP)_?$'
+
+# shellcheck disable=SC2086
+grep -L '^#pragma once$' $headers | violates 'a header begins with #pragma once'
+
+for file in $sources; do
+  head -n 3 "$file" | grep -q 'SPDX-FileCopyrightText: ' && head -n 3 "$file" | grep -q 'SPDX-License-Identifier: MIT$' || echo "$file"
+done | violates 'a file begins with two SPDX lines'
+
+# shellcheck disable=SC2086
+grep -nE 'TO''DO|FIX''ME|(^|[^X])XX''X([^X]|$)' $sources | violates 'no open ends in the tree'
+absolute='(^|[^A-Za-z0-9_.])/(home|root|work|tmp)/'
+{
+  # shellcheck disable=SC2086
+  grep -nE "$absolute" $sources
+  find . \( -path ./.git -o -path ./build \) -prune -o -type f \( -name '*.md' -o -name '*.json' \) -exec grep -HnE "$absolute" {} +
+} | violates 'no absolute paths'
+
+# The umbrella is every header but itself and the adapters.
+if [ -f include/pulsecast/pulsecast.hpp ]; then
+  for header in $headers; do
+    case $header in */adapters/* | */pulsecast.hpp) continue ;; esac
+    grep -qF "#include <${header#include/}>" include/pulsecast/pulsecast.hpp || echo "$header"
+  done
+else
+  echo include/pulsecast/pulsecast.hpp
+fi | violates 'pulsecast.hpp includes every header but adapters'
+
+# The other half of a header: change the prefix.
+for header in $headers; do
+  case $header in */pulsecast.hpp | */version.hpp) continue ;; esac
+  test=${header#include/pulsecast/}
+  test=tests/${test%.hpp}.cpp
+  if [ ! -f "$test" ]; then
+    echo "$header has no $test"
+  elif ! grep -m 1 '^#include' "$test" | grep -qF "<${header#include/}>"; then
+    echo "$test does not include it first"
+  fi
+done | violates 'every header has its test'
+
+for header in include/pulsecast/adapters/*.hpp; do
+  grep -qE "^set\(pulsecast_$(basename "$header" .hpp) " CMakeLists.txt || grep -HnE '^#include (<.*[/.].*>|")' "$header"
+done | grep -vF '#include <pulsecast/' | violates 'CMakeLists.txt knows what an adapter needs'
+
+# Every C++ block of the README is a whole example, without its licence lines.
+if [ -f README.md ]; then
+  blocks=$(mktemp -d) || exit 2
+  trap 'rm -rf "$violations" "$blocks"' EXIT
+  awk -v folder="$blocks" '/^```/ && inside { inside = 0; close(file); next }
+                           inside { print > file }
+                           /^```cpp$/ { inside = 1; file = folder "/" NR }' README.md
+  for block in "$blocks"/*; do
+    [ -f "$block" ] || continue
+    for example in examples/*.cpp; do
+      sed '1,2d' "$example" | sed '/./,$!d' | cmp -s - "$block" && continue 2
+    done
+    echo "README.md:${block##*/}: this block is no program in examples/"
+  done | violates 'the code in the README is compiled'
+  if [ -f examples/embed.cpp ]; then
+    sed '1,2d' examples/embed.cpp | sed '/./,$!d' > "$blocks/embed"
+    same=no
+    for block in "$blocks"/[0-9]*; do cmp -s "$block" "$blocks/embed" && same=yes; done
+    [ $same = yes ] || echo examples/embed.cpp
+  fi | violates 'the README shows examples/embed.cpp'
+fi
+
+if [ -s "$violations" ]; then
+  cat "$violations"
+  exit 1
+fi
+echo "The structure is as promised: $(echo "$headers" | wc -l) headers."

@@ -1,0 +1,63 @@
+#!/bin/sh
+# SPDX-FileCopyrightText: 2026 the pulsecast contributors
+# SPDX-License-Identifier: MIT
+
+# Breaks copies of the tree, one promise at a time, and fails if check.sh misses one. Usage: check_notices.sh [ROOT]
+set -u
+root=$(cd "${1:-.}" && pwd) || exit 2
+copy=$(mktemp -d) || exit 2
+trap 'rm -rf "$copy"' EXIT
+missed=0
+tried=0
+
+fresh() {
+  rm -rf "$copy/tree" && mkdir "$copy/tree" && cd "$copy/tree" || exit 2
+  cp -R "$root/include" "$root/examples" "$root/tests" "$root/bench" "$root/.ci" "$root/CMakeLists.txt" . || exit 2
+  cp "$root"/*.md "$root"/*.json . 2> /dev/null
+}
+
+# notices RULE COMMAND: check.sh says RULE once COMMAND was run in a copy, and does not say it of the tree as it is.
+notices() {
+  tried=$((tried + 1))
+  if grep -qF "$1: " "$copy/before"; then
+    echo "already broken: $1"
+    missed=1
+  fi
+  fresh
+  eval "$2"
+  if ! sh tests/structure/check.sh . | grep -qF "$1: "; then
+    echo "not noticed: $1, after: $2"
+    missed=1
+  fi
+}
+
+fresh
+sh tests/structure/check.sh . > "$copy/before"
+
+below='a header includes only from layers below its own'
+add='sed -i "/^#pragma once/a'
+notices "$below" "$add #include <pulsecast/concepts.hpp>\" include/pulsecast/base/frame.hpp"
+notices "$below" "$add #include <pulsecast/scanner/scanner.hpp>\" include/pulsecast/platform/platform.hpp"
+notices "$below" "$add #include <pulsecast/scene/scene.hpp>\" include/pulsecast/detector/radiometry.hpp"
+notices "$below" "$add #include <pulsecast/adapters/las.hpp>\" include/pulsecast/run.hpp"
+notices "$below" "mkdir include/pulsecast/utils && cp include/pulsecast/pulse.hpp include/pulsecast/utils"
+notices 'GLM is named in base/vector.hpp only' "echo 'inline glm::dvec3 v;' >> include/pulsecast/pulse.hpp"
+notices 'threads live in run.hpp only' "$add #include <mutex>\" include/pulsecast/survey.hpp"
+notices 'files are for adapters only' "$add #include <fstream>\" include/pulsecast/survey.hpp"
+notices 'degrees and nanoseconds are for adapters only' "echo 'inline double angle_deg = 1;' >> include/pulsecast/pulse.hpp"
+notices 'the library never prints and never exits' "echo 'inline void f() { std::exit(1); }' >> include/pulsecast/pulse.hpp"
+notices 'random numbers come from base/random.hpp only' "$add #include <random>\" include/pulsecast/adapters/xyz.hpp"
+notices 'concepts, never enable_if' "echo 'template <class T, class = std::enable_if_t<true>> struct A;' >> include/pulsecast/echo.hpp"
+notices 'a header begins with #pragma once' 'sed -i "/^#pragma once/d" include/pulsecast/echo.hpp'
+notices 'a file begins with two SPDX lines' 'sed -i 2d tests/base/frame.cpp'
+notices 'no open ends in the tree' 'echo "// TO""DO" >> include/pulsecast/echo.hpp'
+notices 'no absolute paths' 'echo "see /ho""me/me" >> CHANGELOG.md'
+notices 'pulsecast.hpp includes every header but adapters' 'sed -i "/run.hpp/d" include/pulsecast/pulsecast.hpp'
+notices 'every header has its test' 'rm tests/base/frame.cpp'
+notices 'every header has its test' 'sed -i "/^#include <pulsecast.base.frame/d" tests/base/frame.cpp'
+notices 'CMakeLists.txt knows what an adapter needs' "$add #include <pugixml.hpp>\" include/pulsecast/adapters/las.hpp"
+notices 'the code in the README is compiled' "printf '\140\140\140cpp\nint x;\n\140\140\140\n' >> README.md"
+notices 'the README shows examples/embed.cpp' 'echo "// more" >> examples/embed.cpp'
+
+[ $missed = 0 ] && echo "The check notices all $tried violations."
+exit $missed

@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <pulsecast/concepts.hpp>
+
+#include "support/checksum.hpp"
+
+/// The laws of `concepts.hpp` that a compiler cannot check. Each function names the first law that it finds broken, and returns an empty
+/// string if all are kept: `CHECK(support::motion_laws(mirror, ticks) == "");`
+namespace pulsecast::support {
+
+namespace detail {
+
+template <class... Parts>
+[[nodiscard]] std::string sentence(const Parts&... parts) {
+  std::ostringstream text;
+  text.precision(17);
+  (text << ... << parts);
+  return text.str();
+}
+
+inline bool same(double a, double b) noexcept { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+inline bool same(const Vec3& a, const Vec3& b) noexcept { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
+inline bool same(const Tick& a, const Tick& b) noexcept { return a.second == b.second && same(a.fraction, b.fraction); }
+
+template <class From, class To>
+bool same(const Pose<From, To>& a, const Pose<From, To>& b) noexcept {
+  return same(a.position, b.position) && same(a.rotation.w, b.rotation.w) && same(a.rotation.x, b.rotation.x) &&
+         same(a.rotation.y, b.rotation.y) && same(a.rotation.z, b.rotation.z);
+}
+
+inline bool same(const Laser& a, const Laser& b) noexcept {
+  return same(a.wavelength, b.wavelength) && same(a.peak_power, b.peak_power) && same(a.pulse_length, b.pulse_length) &&
+         same(a.divergence, b.divergence);
+}
+
+template <class Frame>
+bool same(const std::optional<Pulse<Frame>>& a, const std::optional<Pulse<Frame>>& b) noexcept {
+  if (!a || !b) return !a && !b;
+  return a->index == b->index && same(a->tick, b->tick) && same(a->pose, b->pose) && same(a->laser, b->laser) &&
+         same(a->scan_angle, b->scan_angle) && a->leg == b->leg && a->channel == b->channel;
+}
+
+inline bool same(const Echo& a, const Echo& b) noexcept {
+  return same(a.range, b.range) && same(a.amplitude, b.amplitude) && same(a.reflectance, b.reflectance) && same(a.width, b.width) &&
+         a.object == b.object && a.classification == b.classification && a.number == b.number;
+}
+
+template <class From, class To>
+bool rigid(const Pose<From, To>& p) noexcept {
+  return std::fabs(length(p.rotation) - 1) <= 1e-12 && finite(p.position);
+}
+
+/// Asks a pure function of n numbers in every way that must not matter. `answer(model, k)` is compared by `same`.
+template <class Model, class Answer>
+[[nodiscard]] std::string purity_laws(const Model& model, std::size_t n, Answer answer) {
+  using Value = decltype(answer(model, std::size_t{}));
+  std::vector<Value> forwards;
+  for (std::size_t k = 0; k < n; ++k) forwards.push_back(answer(model, k));
+  for (std::size_t k = n; k-- > 0;)
+    if (!same(answer(model, k), forwards[k])) return sentence("number ", k, " differs when asked backwards");
+  for (std::size_t k = 0; k < n; ++k) {
+    const Value once = answer(model, k), twice = answer(model, k);
+    if (!same(once, forwards[k]) || !same(twice, forwards[k])) return sentence("number ", k, " differs when asked twice");
+  }
+  const Model copy = model;  // NOLINT: the copy is what is asked
+  for (std::size_t k = 0; k < n; ++k)
+    if (!same(answer(copy, k), forwards[k])) return sentence("number ", k, " differs when a copy is asked");
+  std::vector<Value> there = forwards, back = forwards;
+  std::thread other([&] {
+    for (std::size_t k = 0; k < n; ++k) there[k] = answer(model, k);
+  });
+  for (std::size_t k = n; k-- > 0;) back[k] = answer(model, k);
+  other.join();
+  for (std::size_t k = 0; k < n; ++k)
+    if (!same(there[k], forwards[k]) || !same(back[k], forwards[k])) return sentence("number ", k, " differs when two threads ask");
+  return {};
+}
+
+}  // namespace detail
+
+/// Same tick, same pose and same gate, bit for bit: forwards, backwards, twice, from a copy, from two threads; the rotation is unit.
+template <class M>
+[[nodiscard]] std::string motion_laws(const M& motion, std::span<const Tick> ticks) {
+  if (auto broken = detail::purity_laws(motion, ticks.size(), [&](const M& m, std::size_t k) { return m.at(ticks[k]); }); !broken.empty())
+    return broken;
+  if constexpr (Gated<M>) {
+    const auto open = [&](const M& m, std::size_t k) { return m.open(ticks[k]) ? 1.0 : 0.0; };
+    if (auto broken = detail::purity_laws(motion, ticks.size(), open); !broken.empty()) return "gate: " + broken;
+  }
+  for (const Tick& t : ticks)
+    if (!detail::rigid(motion.at(t))) return detail::sentence("the pose at ", t.seconds(), " s is not rigid");
+  return {};
+}
+
+/// Pure in i, numbered, in order of time, rigid. Asks `samples` slots evenly spread over the source and those next to them.
+template <class S>
+[[nodiscard]] std::string source_laws(const S& source, std::size_t samples = 200) {
+  const PulseIndex size = source.size();
+  std::vector<PulseIndex> slots;
+  for (std::size_t k = 0; k < samples; ++k) {
+    const PulseIndex i = size / samples * k + size % samples * k / samples;
+    for (const PulseIndex slot : {i, i + 1})
+      if (slot < size) slots.push_back(slot);
+  }
+  if (size > 0) slots.push_back(size - 1);
+  std::sort(slots.begin(), slots.end());
+  slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+
+  if (auto broken = detail::purity_laws(source, slots.size(), [&](const S& s, std::size_t k) { return s.pulse(slots[k]); });
+      !broken.empty())
+    return broken;
+  std::optional<Tick> first, last;
+  for (const PulseIndex i : slots) {
+    const auto pulse = source.pulse(i);
+    if (!pulse) continue;
+    if (pulse->index != i) return detail::sentence("slot ", i, " calls itself ", pulse->index);
+    if (!detail::rigid(pulse->pose)) return detail::sentence("the pose of pulse ", i, " is not rigid");
+    if (!(pulse->tick.fraction >= 0 && pulse->tick.fraction < 1)) return detail::sentence("the tick of pulse ", i, " is not normal");
+    if (last && pulse->tick < *last) return detail::sentence("time decreases at pulse ", i);
+    if (!first) first = pulse->tick;
+    last = pulse->tick;
+  }
+  if (last && source.duration().seconds() < last->seconds() - first->seconds()) return "pulses leave after the source's duration";
+  return {};
+}
+
+/// What wraps a source keeps its size, its duration and its ticks, and opens no slot that is blocked inside.
+template <class Outer, class Inner>
+[[nodiscard]] std::string wrapped_source_laws(const Outer& outer, const Inner& inner, std::size_t samples = 1000) {
+  if (outer.size() != inner.size()) return "the size differs from that of what is inside";
+  if (!detail::same(outer.duration(), inner.duration())) return "the duration differs from that of what is inside";
+  for (std::size_t k = 0; k < samples && k < outer.size(); ++k) {
+    const PulseIndex i = outer.size() <= samples ? k : outer.size() / samples * k;
+    const auto out = outer.pulse(i);
+    const auto in = inner.pulse(i);
+    if (out && !in) return detail::sentence("slot ", i, " is blocked inside but not outside");
+    if (out && !detail::same(out->tick, in->tick)) return detail::sentence("the tick of pulse ", i, " differs from that inside");
+    if (out && !detail::same(out->laser, in->laser)) return detail::sentence("the laser of pulse ", i, " differs from that inside");
+  }
+  return {};
+}
+
+/// Shares are not negative and sum to one; offsets are numbers; a copy says the same.
+template <class F>
+[[nodiscard]] std::string footprint_laws(const F& footprint) {
+  const F copy = footprint;  // NOLINT: the copy is what is asked
+  long double sum = 0;       // adding up many must not round more than the shares themselves do
+  for (std::size_t j = 0; j < footprint.size(); ++j) {
+    const double share = footprint.share(j);
+    const Vec2 offset = footprint.offset(j);
+    if (!(share >= 0)) return detail::sentence("the share of subray ", j, " is ", share);
+    if (!std::isfinite(offset.x) || !std::isfinite(offset.y)) return detail::sentence("the offset of subray ", j, " is not finite");
+    if (!detail::same(copy.share(j), share) || copy.offset(j) != offset) return detail::sentence("a copy differs at subray ", j);
+    sum += share;
+  }
+  if (!(std::fabs(sum - 1) <= 1e-12L)) return detail::sentence("the shares sum to ", sum);
+  return {};
+}
+
+/// Echoes ascend in range and are numbered from 1; none is stronger than all that came back together; the answer does not depend on what
+/// the workspace was used for before; who brought nothing back gets nothing. `cases` are what the subrays of several pulses brought back.
+template <class D>
+[[nodiscard]] std::string detector_laws(const D& detector, const Laser& laser, std::span<const std::vector<Reflection>> cases) {
+  std::size_t subrays = 1;
+  for (const auto& c : cases) subrays = std::max(subrays, c.size());
+  struct Answer {
+    std::vector<Echo> echoes;
+    std::vector<float> waveform;
+    double start;
+  };
+  const auto detect = [&](std::vector<Reflection> reflections, auto& workspace) {  // a detector may reorder its input
+    const Detection d = detector.detect(laser, reflections, workspace);
+    return Answer{{d.echoes.begin(), d.echoes.end()}, {d.waveform.begin(), d.waveform.end()}, d.waveform_start};
+  };
+  auto used = detector.workspace(subrays);
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    auto fresh = detector.workspace(subrays);
+    const Answer answer = detect(cases[k], fresh);
+    double power = 0;
+    for (const Reflection& r : cases[k]) power += r.power;
+    for (std::size_t e = 0; e < answer.echoes.size(); ++e) {
+      const Echo& echo = answer.echoes[e];
+      if (e > 0 && !(answer.echoes[e - 1].range < echo.range)) return detail::sentence("case ", k, ": echoes are not sorted by range");
+      if (echo.number != e + 1) return detail::sentence("case ", k, ": echo ", e, " has number ", int{echo.number});
+      if (!(echo.amplitude <= power * (1 + 1e-4)))  // a peak between two samples is interpolated
+        return detail::sentence("case ", k, ": an echo of ", echo.amplitude, " W came out of ", power, " W");
+      if (!(echo.amplitude >= 0)) return detail::sentence("case ", k, ": an echo of ", echo.amplitude, " W");
+    }
+    if (cases[k].empty() && !answer.echoes.empty()) return detail::sentence("case ", k, ": an echo of nothing");
+    for (int time = 0; time < 2; ++time) {
+      const Answer again = detect(cases[k], used);
+      const bool equal = std::equal(answer.echoes.begin(), answer.echoes.end(), again.echoes.begin(), again.echoes.end(),
+                                    [](const Echo& a, const Echo& b) { return detail::same(a, b); });
+      if (!equal || answer.waveform != again.waveform || !detail::same(answer.start, again.start))
+        return detail::sentence("case ", k, ": a used workspace gives another answer");
+    }
+  }
+  return {};
+}
+
+/// A sink that holds its caller to the law: ascending pulse order, one call at a time, batches that are whole in themselves.
+/// It also sums up all that it was given.
+class LawfulSink {
+ public:
+  void operator()(const EchoBatch& batch) {
+    if (busy_.exchange(true)) {
+      overlap_ = true;
+      return;
+    }
+    check(batch);
+    if (broken_.empty()) sum_.add(batch);
+    ++batches_;
+    busy_ = false;
+  }
+
+  /// The first law that was broken; empty if none was.
+  [[nodiscard]] std::string broken() const { return overlap_ ? "two calls at a time" : broken_; }
+
+  [[nodiscard]] std::string checksum() const { return sum_.hex(); }
+  [[nodiscard]] std::size_t batches() const noexcept { return batches_; }
+  [[nodiscard]] PulseIndex shots() const noexcept { return shots_; }
+  [[nodiscard]] std::uint64_t echoes() const noexcept { return echoes_; }
+  [[nodiscard]] std::optional<PulseIndex> first() const noexcept { return first_; }  ///< first pulse that came
+  [[nodiscard]] std::optional<PulseIndex> last() const noexcept { return last_; }    ///< latest pulse that came
+
+ private:
+  void check(const EchoBatch& batch) {
+    std::size_t next_echo = 0, next_sample = 0;
+    for (const Shot& s : batch.shots) {
+      if (last_ && s.index <= *last_) break_law(detail::sentence("pulse ", s.index, " follows pulse ", *last_));
+      if (!first_) first_ = s.index;
+      last_ = s.index;
+      if (!(std::fabs(length(s.direction) - 1) <= 1e-12)) break_law("a direction is not unit");
+      if ((s.fate == Fate::returned) != (s.echoes > 0)) break_law(detail::sentence("the fate of pulse ", s.index, " belies its echoes"));
+      if (s.echoes > 0 && s.first_echo != next_echo) break_law(detail::sentence("echoes before those of pulse ", s.index, " are nobody's"));
+      if (s.samples > 0 && s.first_sample != next_sample) break_law(detail::sentence("samples before pulse ", s.index, " are nobody's"));
+      next_echo += s.echoes, next_sample += s.samples;
+      if (next_echo > batch.echoes.size() || next_sample > batch.samples.size()) {
+        break_law(detail::sentence("pulse ", s.index, " reaches beyond the batch"));
+        return;
+      }
+      const auto echoes = batch.echoes_of(s);
+      for (std::size_t e = 0; e < echoes.size(); ++e) {
+        if (echoes[e].number != e + 1) break_law(detail::sentence("the echoes of pulse ", s.index, " are not numbered from 1"));
+        if (e > 0 && echoes[e].range < echoes[e - 1].range) break_law(detail::sentence("the echoes of pulse ", s.index, " are not sorted"));
+      }
+      ++shots_, echoes_ += s.echoes;
+    }
+    if (next_echo != batch.echoes.size() || next_sample != batch.samples.size()) break_law("echoes or samples are left over");
+  }
+
+  void break_law(std::string what) {
+    if (broken_.empty()) broken_ = std::move(what);
+  }
+
+  std::atomic<bool> busy_ = false, overlap_ = false;
+  std::string broken_;
+  Checksum sum_;
+  std::size_t batches_ = 0;
+  PulseIndex shots_ = 0;
+  std::uint64_t echoes_ = 0;
+  std::optional<PulseIndex> first_, last_;
+};
+
+}  // namespace pulsecast::support

@@ -1,0 +1,411 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <array>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/archetypes.hpp"
+#include "support/checksum.hpp"
+#include "support/generators.hpp"
+#include "support/laws.hpp"
+#include "support/relative.hpp"
+
+// Negative controls: the helpers of tests/support notice what they are there to notice.
+
+using namespace pulsecast;
+using namespace pulsecast::support;
+
+namespace {
+
+bool names(const std::string& law, const char* what) { return law.find(what) != std::string::npos; }
+
+const std::array<Tick, 4> ticks{Tick{0, 0}, Tick{0, 0.5}, Tick{3, 0.25}, Tick{1000000, 0.75}};
+
+// ------------------------------------------------------------------------------------------------------------ bad motions
+
+using BeamPose = Pose<frame::Beam, frame::Instrument>;
+
+struct Stepping {  // remembers how often it was asked
+  mutable int asked = 0;
+  BeamPose at(Tick) const noexcept { return {rotation_about(up, 0.1 * asked++), {}}; }
+};
+
+struct Wakeful {  // another answer when asked for an earlier time than before
+  mutable Tick latest{};
+  BeamPose at(Tick t) const noexcept {
+    if (t < latest) return {no_rotation, {1, 0, 0}};
+    latest = t;
+    return {};
+  }
+};
+
+struct CopyDiffers {
+  double shift = 0;
+  CopyDiffers() = default;
+  CopyDiffers(const CopyDiffers& other) : shift(other.shift + 1e-9) {}
+  CopyDiffers& operator=(const CopyDiffers&) = default;
+  BeamPose at(Tick) const noexcept { return {no_rotation, {shift, 0, 0}}; }
+};
+
+struct ThreadDiffers {
+  std::thread::id maker = std::this_thread::get_id();
+  BeamPose at(Tick) const noexcept { return {no_rotation, {std::this_thread::get_id() == maker ? 0.0 : 1.0, 0, 0}}; }
+};
+
+struct NotUnit {
+  BeamPose at(Tick t) const noexcept { return {Rotation{1 + 1e-9 * t.seconds(), 0, 0, 0}, {}}; }
+};
+
+struct NotFinite {
+  BeamPose at(Tick t) const noexcept { return {no_rotation, {0, 0, t.second == 3 ? std::nan("") : 0.0}}; }
+};
+
+struct FlickeringGate : LeastOptic {
+  mutable bool state = false;
+  bool open(Tick) const noexcept { return state = !state; }
+};
+
+// ------------------------------------------------------------------------------------------------------------ bad sources
+
+using BeamPulse = std::optional<Pulse<frame::Beam>>;
+
+template <class Change>
+struct Changed : LeastSource<frame::Beam> {
+  Change change;
+  explicit Changed(Change c) : change(c) {}
+  BeamPulse pulse(PulseIndex i) const noexcept {
+    BeamPulse p = LeastSource<frame::Beam>::pulse(i);
+    change(i, p);
+    return p;
+  }
+};
+
+struct Hurried : LeastSource<frame::Beam> {
+  Tick duration() const noexcept { return {3, 0}; }
+};
+
+struct Longer : LeastSource<frame::Beam> {
+  PulseIndex size() const noexcept { return 11; }
+};
+
+// --------------------------------------------------------------------------------------------------------- bad footprints
+
+struct Two {
+  double first = 0.5, second = 0.5;
+  Vec2 place{0, 0};
+  std::size_t size() const noexcept { return 2; }
+  Vec2 offset(std::size_t) const noexcept { return place; }
+  double share(std::size_t j) const noexcept { return j == 0 ? first : second; }
+};
+
+// ---------------------------------------------------------------------------------------------------------- bad detectors
+
+/// One echo per reflection, after which something goes wrong.
+template <class Flaw>
+struct Flawed {
+  Flaw flaw;
+  struct Workspace {
+    std::vector<Echo> echoes;
+    int uses = 0;
+  };
+  Workspace workspace(std::size_t subrays) const { return {std::vector<Echo>(subrays + 1), 0}; }
+  Detection detect(const Laser&, std::span<Reflection> reflections, Workspace& w) const noexcept {
+    std::sort(reflections.begin(), reflections.end(), [](const Reflection& a, const Reflection& b) { return a.range < b.range; });
+    std::size_t n = 0;
+    for (const Reflection& r : reflections) {
+      w.echoes[n] = Echo{};
+      w.echoes[n].range = r.range, w.echoes[n].amplitude = r.power, w.echoes[n].number = static_cast<std::uint8_t>(n + 1);
+      ++n;
+    }
+    flaw(w, n);
+    ++w.uses;
+    return {std::span(w.echoes).first(n), {}, 0};
+  }
+};
+template <class Flaw>
+Flawed(Flaw) -> Flawed<Flaw>;
+
+template <class Flaw>
+std::string flaw_found(Flaw flaw) {
+  const std::vector<std::vector<Reflection>> cases{{{5, 1}, {3, 2}}, {}, {{7, 1}}};
+  return detector_laws(Flawed{flaw}, Laser{}, cases);
+}
+
+// ------------------------------------------------------------------------------------------------------------ bad callers
+
+/// Two shots with three echoes, kept alive for as long as a batch is needed.
+struct Sample {
+  std::vector<Echo> echoes{{.range = 1, .number = 1}, {.range = 2, .number = 2}, {.range = 3, .number = 1}};
+  std::vector<float> samples;
+  std::vector<Shot> shots;
+  double interval = 0;
+  explicit Sample(PulseIndex first) {
+    shots.push_back({.index = first, .direction = forward, .fate = Fate::returned, .first_echo = 0, .echoes = 2});
+    shots.push_back({.index = first + 1, .direction = forward, .fate = Fate::returned, .first_echo = 2, .echoes = 1});
+  }
+  EchoBatch batch() const { return {shots, echoes, samples, interval}; }
+};
+
+template <class Change>
+std::string broken_by(Change change) {
+  Sample sample(4);
+  change(sample);
+  LawfulSink sink;
+  sink(sample.batch());
+  return sink.broken();
+}
+
+}  // namespace
+
+TEST_CASE("SHA-256 gives the known answers of FIPS 180-4") {
+  Checksum empty, abc, long_message, million;
+  CHECK(empty.hex() == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  abc.add("abc");
+  CHECK(abc.hex() == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  long_message.add("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq");
+  CHECK(long_message.hex() == "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  for (int i = 0; i < 1000; ++i) million.add(std::string(1000, 'a'));
+  CHECK(million.hex() == "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_CASE("a checksum does not depend on where the pieces are cut, and asking for it changes nothing") {
+  Checksum whole, pieces;
+  whole.add("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq");
+  pieces.add("abcdbcdecdef");
+  CHECK(pieces.hex() != whole.hex());
+  pieces.add("defgefghfghighijhijkijkljklmklmnlmnomnopnopq");
+  CHECK(pieces.hex() == whole.hex());
+  CHECK(pieces.hex() == whole.hex());
+}
+
+TEST_CASE("a checksum of a number is that of its bytes, least significant first, and sees the last bit") {
+  Checksum number, bytes, one, next, zero, minus_zero;
+  number.add(std::uint32_t{0x04030201}), bytes.add("\x01\x02\x03\x04");
+  CHECK(number.hex() == bytes.hex());
+  one.add(1.0), next.add(std::nextafter(1.0, 2.0));
+  CHECK(one.hex() != next.hex());
+  zero.add(0.0), minus_zero.add(-0.0);
+  CHECK(zero.hex() != minus_zero.hex());
+}
+
+TEST_CASE("a checksum of a batch sees every field of shots, echoes and samples") {
+  Sample sample(4);
+  sample.samples = {1.0F}, sample.shots[1].samples = 1;
+  std::set<std::string> sums;
+  const auto note = [&] {
+    Checksum sum;
+    sum.add(sample.batch());
+    sums.insert(sum.hex());
+  };
+  std::size_t changes = 1;
+  note();
+  const auto after = [&](auto change) { change(sample.shots[1], sample.echoes[2]), note(), ++changes; };
+  after([](Shot& s, Echo&) { s.index = 99; });
+  after([](Shot& s, Echo&) { s.tick.fraction = 0.5; });
+  after([](Shot& s, Echo&) { s.origin.z = 1; });
+  after([](Shot& s, Echo&) { s.direction = up; });
+  after([](Shot& s, Echo&) { s.scan_angle = 1; });
+  after([](Shot& s, Echo&) { s.leg = 1; });
+  after([](Shot& s, Echo&) { s.channel = 1; });
+  after([](Shot& s, Echo&) { s.fate = Fate::missed; });
+  after([](Shot& s, Echo&) { s.waveform_start = 1; });
+  after([](Shot&, Echo& e) { e.range = 9; });
+  after([](Shot&, Echo& e) { e.amplitude = 9; });
+  after([](Shot&, Echo& e) { e.reflectance = 9; });
+  after([](Shot&, Echo& e) { e.width = 9; });
+  after([](Shot&, Echo& e) { e.object = 9; });
+  after([](Shot&, Echo& e) { e.classification = 9; });
+  after([](Shot&, Echo& e) { e.number = 9; });
+  after([&](Shot&, Echo&) { sample.samples[0] = 2.0F; });
+  after([&](Shot&, Echo&) { sample.interval = 1e-9; });
+  CHECK(sums.size() == changes);
+}
+
+TEST_CASE("a checksum does not depend on how pulses are cut into batches") {
+  const Sample sample(4);
+  const std::vector<Echo> last(sample.echoes.begin() + 2, sample.echoes.end());
+  std::vector<Shot> second{sample.shots[1]};
+  second[0].first_echo = 0;
+  LawfulSink together, apart;
+  together(sample.batch());
+  apart(EchoBatch{std::span(sample.shots).first(1), std::span(sample.echoes).first(2), {}, 0});
+  apart(EchoBatch{second, last, {}, 0});
+  CHECK(apart.broken() == "");
+  CHECK(apart.checksum() == together.checksum());
+}
+
+TEST_CASE("motions that keep the law pass, and those that break it do not") {
+  CHECK(motion_laws(LeastOptic{}, ticks) == "");
+  CHECK(motion_laws(LeastTrajectory{}, ticks) == "");
+  CHECK(names(motion_laws(Stepping{}, ticks), "differs"));
+  CHECK(names(motion_laws(Wakeful{}, ticks), "backwards"));
+  CHECK(names(motion_laws(CopyDiffers{}, ticks), "copy"));
+  CHECK(names(motion_laws(ThreadDiffers{}, ticks), "threads"));
+  CHECK(names(motion_laws(FlickeringGate{}, std::span(ticks).first(3)), "gate"));
+  CHECK(names(motion_laws(NotUnit{}, ticks), "not rigid"));
+  CHECK(names(motion_laws(NotFinite{}, ticks), "not rigid"));
+}
+
+TEST_CASE("sources that keep the law pass, and those that break it do not") {
+  CHECK(source_laws(LeastSource<frame::Beam>{}) == "");
+  CHECK(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p.reset(); })) == "");
+  CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->index = 3; })), "calls itself"));
+  CHECK(
+      names(source_laws(Changed([](PulseIndex i, BeamPulse& p) noexcept { p->tick.second = i == 6 ? 4 : p->tick.second; })), "decreases"));
+  CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->tick.fraction = 1; })), "not normal"));
+  CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->pose.rotation.x = 0.1; })), "not rigid"));
+  static int asked = 0;
+  CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->scan_angle = 1e-9 * ++asked; })), "differs"));
+  CHECK(names(source_laws(Hurried{}), "duration"));
+}
+
+TEST_CASE("wrappers that keep the law pass, and those that break it do not") {
+  const LeastSource<frame::Beam> inner;
+  CHECK(wrapped_source_laws(inner, inner) == "");
+  CHECK(wrapped_source_laws(Changed([](PulseIndex i, BeamPulse& p) noexcept { i % 2 ? p.reset() : void(); }), inner) == "");
+  CHECK(names(wrapped_source_laws(inner, Changed([](PulseIndex, BeamPulse& p) noexcept { p.reset(); })), "blocked inside"));
+  CHECK(names(wrapped_source_laws(Longer{}, inner), "size"));
+  CHECK(names(wrapped_source_laws(Hurried{}, inner), "duration"));
+  CHECK(names(wrapped_source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->tick.fraction = 1e-12; }), inner), "tick"));
+  CHECK(names(wrapped_source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->laser.divergence = 1; }), inner), "laser"));
+}
+
+TEST_CASE("footprints that keep the law pass, and those that break it do not") {
+  CHECK(footprint_laws(LeastFootprint{}) == "");
+  CHECK(footprint_laws(Two{}) == "");
+  CHECK(names(footprint_laws(Two{0.5, 0.5 + 1e-11}), "sum"));
+  CHECK(names(footprint_laws(Two{1.5, -0.5}), "share of subray 1"));
+  CHECK(names(footprint_laws(Two{0.5, std::nan("")}), "share of subray 1"));
+  CHECK(names(footprint_laws(Two{0.5, 0.5, {std::nan(""), 0}}), "offset"));
+}
+
+TEST_CASE("detectors that keep the law pass, and those that break it do not") {
+  CHECK(detector_laws(LeastDetector{}, Laser{}, std::vector<std::vector<Reflection>>{{{5, 1}, {3, 2}}, {}}) == "");
+  CHECK(flaw_found([](auto&, std::size_t&) {}) == "");
+  CHECK(names(flaw_found([](auto& w, std::size_t& n) {
+                if (n == 2) std::swap(w.echoes[0].range, w.echoes[1].range);
+              }),
+              "sorted"));
+  CHECK(names(flaw_found([](auto& w, std::size_t& n) {
+                if (n == 2) w.echoes[1].range = w.echoes[0].range;
+              }),
+              "sorted"));
+  CHECK(names(flaw_found([](auto& w, std::size_t&) { w.echoes[0].amplitude *= 4; }), "came out of"));
+  CHECK(names(flaw_found([](auto& w, std::size_t&) { w.echoes[0].amplitude = -1; }), "an echo of -1 W"));
+  CHECK(names(flaw_found([](auto& w, std::size_t&) { w.echoes[0].number = 2; }), "number"));
+  CHECK(names(flaw_found([](auto& w, std::size_t& n) {
+                if (n == 0) w.echoes[0] = Echo{}, n = 1;
+              }),
+              "of nothing"));
+  CHECK(names(flaw_found([](auto& w, std::size_t&) { w.echoes[0].width = w.uses; }), "used workspace"));
+}
+
+TEST_CASE("a lawful caller of a sink passes, and others do not") {
+  LawfulSink lawful;
+  lawful(Sample(4).batch()), lawful(Sample(6).batch());
+  CHECK(lawful.broken() == "");
+  CHECK(lawful.batches() == 2);
+  CHECK(lawful.shots() == 4);
+  CHECK(lawful.echoes() == 6);
+  CHECK(lawful.first() == 4);
+  CHECK(lawful.last() == 7);
+
+  LawfulSink disordered, again;
+  disordered(Sample(4).batch()), disordered(Sample(2).batch());
+  CHECK(names(disordered.broken(), "pulse 2 follows pulse 5"));
+  again(Sample(4).batch()), again(Sample(5).batch());
+  CHECK(names(again.broken(), "pulse 5 follows pulse 5"));
+
+  CHECK(names(broken_by([](Sample& s) { std::swap(s.shots[0].index, s.shots[1].index); }), "follows"));
+  CHECK(names(broken_by([](Sample& s) { s.shots[0].direction *= 2; }), "not unit"));
+  CHECK(names(broken_by([](Sample& s) { s.shots[1].fate = Fate::missed; }), "belies"));
+  CHECK(names(broken_by([](Sample& s) { s.shots[1].first_echo = 1; }), "nobody's"));
+  CHECK(names(broken_by([](Sample& s) { s.shots[1].echoes = 2; }), "beyond"));
+  CHECK(names(broken_by([](Sample& s) { s.shots[1].samples = 1; }), "beyond"));
+  CHECK(names(broken_by([](Sample& s) { s.samples = {1.0F}; }), "left over"));
+  CHECK(names(broken_by([](Sample& s) { s.shots.pop_back(); }), "left over"));
+  CHECK(names(broken_by([](Sample& s) { std::swap(s.echoes[0].range, s.echoes[1].range); }), "not sorted"));
+  CHECK(names(broken_by([](Sample& s) { s.echoes[1].number = 1; }), "not numbered"));
+}
+
+TEST_CASE("a sink that is called while it is busy says so") {
+  const Sample sample(4);
+  LawfulSink sink;
+  std::atomic<bool> stop = false;
+  // Two threads call until they meet; on one processor that needs a switch inside of a call, which comes soon.
+  const auto call = [&] {
+    while (!stop) {
+      sink(sample.batch());
+      if (sink.broken() == "two calls at a time") stop = true;
+    }
+  };
+  std::thread other(call);
+  call();
+  other.join();
+  CHECK(sink.broken() == "two calls at a time");
+}
+
+TEST_CASE("a generator gives the same cases for the same seed and others for another") {
+  Generator a(1), b(1), c(2);
+  const Vec3 first = a.point(1);
+  CHECK(first == b.point(1));
+  CHECK(first != c.point(1));
+  CHECK(first != a.point(1));
+}
+
+TEST_CASE("generated cases keep to what was asked for") {
+  Generator any(7);
+  std::array<int, 6> decades{}, wholes{};
+  Vec3 mean{0, 0, 0}, turned{0, 0, 0};
+  for (int k = 0; k < 6000; ++k) {
+    const double x = any.log_uniform(1e-3, 1e3);
+    REQUIRE(x >= 1e-3);
+    REQUIRE(x <= 1e3);
+    ++decades[static_cast<std::size_t>(std::min(5.0, std::floor(std::log10(x) + 3)))];
+    const std::uint64_t w = any.whole(6);
+    REQUIRE(w < 6);
+    ++wholes[w];
+    const Vec3 u = any.unit(), t = any.rotation() * forward;
+    REQUIRE(std::fabs(length(u) - 1) < 1e-14);
+    mean += u / 6000.0, turned += t / 6000.0;
+    const Box box = any.box(10, 0.1, 2);
+    REQUIRE(max_norm(box.centre()) < 10);
+    REQUIRE(std::min({box.size().x, box.size().y, box.size().z}) > 0.0999);
+    REQUIRE(max_norm(box.size()) < 2.0001);
+    REQUIRE(max_norm(any.pose<frame::Body, frame::World>(3).position) < 3);
+  }
+  for (std::size_t k = 0; k < 6; ++k) {
+    CHECK(std::abs(decades[k] - 1000) < 150);
+    CHECK(std::abs(wholes[k] - 1000) < 150);
+  }
+  CHECK(length(mean) < 0.05);
+  CHECK(length(turned) < 0.05);
+}
+
+TEST_CASE("a generated cone of rays is padded, unit and within its angle") {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    CAPTURE(seed);
+    Generator any(seed);
+    const Vec3 axis = any.unit();
+    const double angle = any.log_uniform(1e-5, 1);
+    const RayBundle rays = any.cone(any.point(100), axis, angle, 1 + any.whole(RayBundle::capacity));
+    CHECK(rays.direction(0) == axis);
+    for (std::size_t j = 0; j < rays.padded_size(); ++j) {
+      REQUIRE(std::fabs(length(rays.direction(j)) - 1) < 1e-14);
+      REQUIRE(length(cross(rays.direction(j), axis)) <= std::sin(angle) * (1 + 1e-9) + 1e-15);
+      REQUIRE(dot(rays.direction(j), axis) > 0);
+    }
+  }
+}
+
+TEST_CASE("relative comparison goes by size, where doctest's own does not") {
+  CHECK(1.0001e-9 == relative(1e-9, 1.1e-4));
+  CHECK_FALSE(1.0001e-9 == relative(1e-9, 0.9e-4));
+  CHECK(1.0001e9 == relative(1e9, 1.1e-4));
+  CHECK_FALSE(1.0001e9 == relative(1e9, 0.9e-4));
+  CHECK(2e-9 == doctest::Approx(1e-9));
+}

@@ -1,0 +1,351 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/survey.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/deflector/rotating_head.hpp>
+#include <pulsecast/detector/first_hit.hpp>
+#include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+#include <pulsecast/scene/scene.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
+
+#include "support/archetypes.hpp"
+#include "support/generators.hpp"
+#include "support/laws.hpp"
+#include "support/relative.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+namespace {
+
+const double infinity = std::numeric_limits<double>::infinity();
+const Receiver clear_air{.visibility = infinity};
+const Vec3 utm{500000, 5400000, 300};
+
+/// A beam that does not move in its instrument.
+struct Fixed {
+  Pose<frame::Beam, frame::Instrument> pose{};
+  Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return pose; }
+};
+
+/// One pulse a second from a place, in a direction.
+auto still(const Vec3& position, const Rotation& turn, PulseIndex pulses = 1, const Laser& laser = {}) {
+  return Platform{Tripod{.position = position}, Mount{}, Deflector{Fixed{{turn, {}}}, Scanner{1, pulses, laser}}};
+}
+
+/// A tripod that scans all around it.
+auto all_around(const Vec3& position, PulseIndex pulses) {
+  return Platform{Tripod{.position = position, .heading = 0.3}, Mount{.lever_arm = {0.1, 0.2, 1.7}},
+                  Deflector{RotatingHead{.rate = 1}, Deflector{PolygonMirror{.lines_per_second = 50, .sweep = 80_deg},
+                                                               Scanner{.pulse_rate = 5_kHz, .pulses = pulses}}}};
+}
+
+/// A plane that answers for single rays.
+struct Plane {
+  Vec3 point{}, normal = up;
+  double reflectance = 0.5;
+  std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+    const double along = dot(ray.direction, normal);
+    const double range = dot(point - ray.origin, normal) / along;
+    if (!(range > ray.near && range <= ray.far)) return std::nullopt;
+    return Hit{range, std::fabs(along), reflectance * std::fabs(along), 9, 2};
+  }
+};
+
+/// The same plane, which answers for bundles.
+struct BundledPlane {
+  Plane plane;
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+    for (std::size_t j = 0; j < rays.size; ++j) hits[j] = plane.closest_hit(rays.ray(j)).value_or(Hit{});
+  }
+};
+
+/// All pulses of a survey, and a checksum of what came back.
+template <class S>
+std::string checksum_of(const S& survey, const std::vector<PulseIndex>& order) {
+  std::vector<std::string> sums(survey.size());
+  auto workspace = survey.workspace();
+  for (const PulseIndex i : order) {
+    const Outcome o = survey(i, workspace);
+    Shot shot = o.shot;
+    shot.echoes = static_cast<std::uint32_t>(o.echoes.size()), shot.samples = static_cast<std::uint32_t>(o.waveform.size());
+    support::Checksum sum;
+    sum.add(EchoBatch{{&shot, 1}, o.echoes, o.waveform, survey.sample_interval()});
+    sums[i] = sum.hex();
+  }
+  support::Checksum all;
+  for (const auto& s : sums) all.add(s);
+  return all.hex();
+}
+
+std::vector<PulseIndex> in_order(PulseIndex n) {
+  std::vector<PulseIndex> order(n);
+  for (PulseIndex i = 0; i < n; ++i) order[i] = i;
+  return order;
+}
+
+template <class Map>
+concept TakesTemporary = std::is_constructible_v < Survey<decltype(still({}, no_rotation)), SingleRay, Map, FirstHit>,
+decltype(still({}, no_rotation)), SingleRay, Map, Receiver, FirstHit > ;
+static_assert(!TakesTemporary<Plane>, "a temporary map would be gone before the first pulse");
+static_assert(std::is_constructible_v<Survey<decltype(still({}, no_rotation)), SingleRay, Plane, FirstHit>,
+                                      decltype(still({}, no_rotation)), SingleRay, Plane&, Receiver, FirstHit>);
+
+}  // namespace
+
+TEST_CASE("a plane scanned from a tripod gives points on the plane within 0.1 mm at UTM coordinates") {
+  support::Generator any(1);
+  const auto check = [](const auto& survey, const Plane& plane, double tolerance) {
+    auto workspace = survey.workspace();
+    int points = 0;
+    double worst = 0;
+    for (PulseIndex i = 0; i < survey.size(); ++i) {
+      const Outcome o = survey(i, workspace);
+      if (o.shot.fate != Fate::returned || o.echoes[0].range > 500) continue;
+      ++points;
+      worst = std::fmax(worst, std::fabs(dot(point_of(o.shot, o.echoes[0]) - plane.point, plane.normal)));
+    }
+    CHECK(points > 500);
+    CHECK(worst < tolerance);
+  };
+  for (int k = 0; k < 5; ++k) {
+    const Plane plane{utm + any.point(1), normalize(any.unit() + 3.0 * up)};
+    const auto source = all_around(utm + Vec3{0, 0, 1}, 3000);
+    check(Survey{source, SingleRay{}, plane, clear_air, FirstHit{}}, plane, 1e-7);
+    check(Survey{source, SingleRay{}, plane, clear_air, FullWaveform{}}, plane, 1e-4);
+  }
+}
+
+TEST_CASE("a plane of triangles scanned from a tripod gives points on the plane within 0.1 mm at UTM coordinates") {
+  using Mesh = TriangleMesh<>;
+  const double reach = 1000;
+  const Vec3 corner = utm - Vec3{reach, reach, 0};
+  const MeshData data{{corner, corner + 2 * reach * right, corner + 2 * reach * (right + forward), corner + 2 * reach * forward},
+                      {{0, 1, 2}, {0, 2, 3}},
+                      {}};
+  const Scene<Mesh> scene({{std::make_shared<const Mesh>(data), material_table(), {}, 3}});
+  const Survey survey{all_around(utm, 3000), SingleRay{}, scene, clear_air, FullWaveform{}};
+  auto workspace = survey.workspace();
+  int points = 0;
+  for (PulseIndex i = 0; i < survey.size(); ++i) {
+    const Outcome o = survey(i, workspace);
+    if (o.shot.fate != Fate::returned) continue;
+    ++points;
+    REQUIRE(std::fabs(point_of(o.shot, o.echoes[0]).z - utm.z) < 1e-4);
+    REQUIRE(o.echoes[0].object == 3);
+  }
+  CHECK(points > 1000);
+}
+
+TEST_CASE("a shot tells what the pulse was") {
+  const Plane plane{};
+  const auto source = all_around({0, 0, 10}, 100);
+  const Survey survey{source, SingleRay{}, plane, clear_air, FirstHit{}};
+  auto workspace = survey.workspace();
+  CHECK(survey.size() == 100);
+  CHECK(survey.subrays() == 1);
+  CHECK(survey.sample_interval() == 0);
+  for (PulseIndex i = 0; i < 100; ++i) {
+    const Shot shot = survey(i, workspace).shot;
+    const auto pulse = source.pulse(i);
+    CHECK(shot.index == i);
+    CHECK(shot.tick == pulse->tick);
+    CHECK(shot.origin == pulse->origin());
+    CHECK(shot.direction == pulse->direction());
+    CHECK(shot.scan_angle == pulse->scan_angle);
+  }
+}
+
+TEST_CASE("a map of rays and a map of bundles give the same, bit for bit") {
+  const Plane rays{utm};
+  const BundledPlane bundles{rays};
+  const auto source = all_around(utm + Vec3{0, 0, 1}, 1000);
+  const auto order = in_order(1000);
+  for (const std::size_t circles : {1U, 3U, 7U}) {  // 7 circles are more subrays than one bundle holds
+    CAPTURE(circles);
+    const RingFootprint footprint(circles);
+    CHECK(checksum_of(Survey{source, footprint, rays, clear_air, FullWaveform{}}, order) ==
+          checksum_of(Survey{source, footprint, bundles, clear_air, FullWaveform{}}, order));
+  }
+}
+
+TEST_CASE("pulses may be asked in any order, with a workspace of any history") {
+  const Plane plane{};
+  const Survey survey{all_around({0, 0, 10}, 500), RingFootprint{}, plane, clear_air,
+                      FullWaveform<MomentWidth>{WaveformSettings{.record_length = 50e-9}}};
+  auto order = in_order(500);
+  const std::string forwards = checksum_of(survey, order);
+  std::reverse(order.begin(), order.end());
+  CHECK(checksum_of(survey, order) == forwards);
+  support::Generator any(3);
+  for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[any.whole(i + 1)]);
+  CHECK(checksum_of(survey, order) == forwards);
+  const auto copy = survey;
+  CHECK(checksum_of(copy, order) == forwards);
+}
+
+TEST_CASE("the amplitude of an extended plate met squarely is that of the radar equation, and falls with the square of the range") {
+  for (const double range : {10.0, 20.0, 40.0, 80.0}) {
+    CAPTURE(range);
+    const Plane plane{{0, range, 0}, forward, 0.4};
+    const auto source = still({}, no_rotation);
+    const auto amplitude = [&](const auto& footprint, const auto& detector) {
+      const Survey survey{source, footprint, plane, clear_air, detector};
+      auto workspace = survey.workspace();
+      const Outcome o = survey(0, workspace);
+      REQUIRE(o.echoes.size() == 1);
+      CHECK(o.hits == survey.subrays());
+      CHECK(o.echoes[0].reflectance == support::relative(0.4, 1e-4));
+      return o.echoes[0].amplitude;
+    };
+    // P D^2 / (4 R^2) rho eta. Source: Winiwarter et al. 2021
+    const double expected = 4 * 0.15 * 0.15 / (4 * range * range) * 0.4 * 0.99;
+    CHECK(amplitude(SingleRay{}, FirstHit{}) == support::relative(expected, 1e-13));
+    CHECK(amplitude(SingleRay{}, FullWaveform{}) == support::relative(expected, 1e-4));
+    // all subrays together bring back what a single one does
+    CHECK(amplitude(RingFootprint{5}, FullWaveform{}) == support::relative(expected, 1e-4));
+    CHECK(amplitude(SunflowerFootprint{100}, FullWaveform{}) == support::relative(expected, 1e-4));
+  }
+}
+
+TEST_CASE("a wire across the beam brings back power that falls with the cube of the range, and a small target with the fourth power") {
+  // A strip or a disc smaller than the footprint: what it covers of the footprint shrinks with the range, once or twice.
+  struct Small {
+    double range, half_width, half_height;
+    std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+      const Vec3 p = ray.origin + ray.direction * (range / ray.direction.y);
+      if (std::fabs(p.x) > half_width || std::fabs(p.z) > half_height) return std::nullopt;
+      return Hit{range / ray.direction.y, 1, 1, 0, 0};
+    }
+  };
+  const auto power = [](const Small& target) {
+    const auto source = still({}, no_rotation, 1, Laser{.divergence = 4e-3});
+    const Survey survey{source, SunflowerFootprint{50000}, target, clear_air, FullWaveform{}};
+    auto workspace = survey.workspace();
+    return survey(0, workspace).echoes[0].amplitude;
+  };
+  // the footprint has a radius of 0.4 m at 200 m, and twice that at 400 m; the Gaussian is flat to some percent over the small target
+  CHECK(power({200, 0.02, 10}) / power({400, 0.02, 10}) == support::relative(8, 0.05));
+  CHECK(power({200, 0.06, 0.06}) / power({400, 0.06, 0.06}) == support::relative(16, 0.05));
+}
+
+TEST_CASE("the footprint lies right and up as seen along the beam, and turns with it") {
+  struct OneSubray : support::LeastFootprint {
+    Vec2 where{};
+    Vec2 offset(std::size_t) const noexcept { return where; }
+  };
+  /// Sends back only what is on one side of a plane through the origin.
+  struct HalfSpace {
+    Vec3 inside;
+    std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+      return dot(ray.direction, inside) > 1e-9 ? std::optional(Hit{10, 1, 1, 0, 0}) : std::nullopt;
+    }
+  };
+  const auto meets = [](const Vec2& offset, const Rotation& beam, const Vec3& side) {
+    const HalfSpace map{side};
+    const Survey survey{still({}, beam), OneSubray{{}, offset}, map, clear_air, FirstHit{}};
+    auto workspace = survey.workspace();
+    return survey(0, workspace).shot.fate == Fate::returned;
+  };
+  CHECK(meets({1, 0}, no_rotation, right));
+  CHECK_FALSE(meets({-1, 0}, no_rotation, right));
+  CHECK(meets({0, 1}, no_rotation, up));
+  CHECK_FALSE(meets({0, -1}, no_rotation, up));
+  CHECK_FALSE(meets({0, 1}, no_rotation, right));
+  // the beam points down: the footprint's up is forward then
+  const Rotation down = rotation_about(right, -90_deg);
+  CHECK(meets({0, 1}, down, forward));
+  CHECK_FALSE(meets({0, -1}, down, forward));
+  CHECK(meets({1, 0}, down, right));
+}
+
+TEST_CASE("every pulse has one fate") {
+  struct HalfMirror {
+    Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return {}; }
+    bool open(Tick t) const noexcept { return t.second % 2 == 0; }
+  };
+  const Plane near{{0, 10, 0}, forward}, behind{{0, -10, 0}, forward};
+  const Platform source{Tripod{}, Mount{}, Deflector{HalfMirror{}, Scanner{.pulse_rate = 1, .pulses = 2}}};
+  const auto fate = [&](const Plane& plane, const Receiver& receiver, const FirstHit& detector, PulseIndex i = 0) {
+    const Survey survey{source, RingFootprint{}, plane, receiver, detector};
+    auto workspace = survey.workspace();
+    const Outcome o = survey(i, workspace);
+    CHECK(o.shot.index == i);
+    CHECK(o.echoes.empty() == (o.shot.fate != Fate::returned));
+    return o.shot.fate;
+  };
+  CHECK(fate(near, clear_air, FirstHit{}) == Fate::returned);
+  CHECK(fate(near, clear_air, FirstHit{}, 1) == Fate::blocked);
+  CHECK(fate(behind, clear_air, FirstHit{}) == Fate::missed);
+  CHECK(fate(near, Receiver{.range_min = 11}, FirstHit{}) == Fate::out_of_range);
+  CHECK(fate(near, Receiver{.range_max = 9}, FirstHit{}) == Fate::out_of_range);
+  CHECK(fate(near, clear_air, FirstHit{.threshold = 1}) == Fate::below_threshold);
+}
+
+TEST_CASE("of a beam that two plates share, both come back with what they cover") {
+  /// A plate at 10 m on the right-hand side, and a wall at 20 m.
+  struct Step {
+    std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+      const bool plate = ray.direction.x > 0;
+      return Hit{(plate ? 10 : 20) / ray.direction.y, 1, 1, plate ? 1U : 2U, 0};
+    }
+  };
+  const Step step;
+  const Survey survey{still({}, no_rotation), SunflowerFootprint{1000}, step, clear_air, FullWaveform{}};
+  auto workspace = survey.workspace();
+  const Outcome o = survey(0, workspace);
+  REQUIRE(o.echoes.size() == 2);
+  CHECK(o.echoes[0].range == support::relative(10, 1e-5));
+  CHECK(o.echoes[1].range == support::relative(20, 1e-5));
+  CHECK(o.echoes[0].reflectance == support::relative(0.5, 0.01));
+  CHECK(o.echoes[1].reflectance == support::relative(0.5, 0.01));
+  CHECK(o.echoes[0].object == 1);
+  CHECK(o.echoes[1].object == 2);
+}
+
+TEST_CASE("a map is told the names of the random numbers that it may draw") {
+  struct Curious {
+    mutable std::vector<RandomKey> seen;
+    mutable double wavelength = 0;
+    void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+      for (std::size_t j = 0; j < rays.size; ++j) {
+        seen.push_back({rays.seed, rays.pulse, rays.first_subray + static_cast<std::uint32_t>(j), Purpose::free_path});
+        hits[j] = Hit{};
+      }
+      wavelength = rays.wavelength;
+    }
+  };
+  const Curious map;
+  const Survey survey{still({}, no_rotation, 6, Laser{.wavelength = 532_nm}), SunflowerFootprint{150}, map, clear_air, FirstHit{}, 77};
+  auto workspace = survey.workspace();
+  CHECK(survey(5, workspace).shot.fate == Fate::missed);
+  REQUIRE(map.seen.size() == 150);
+  for (std::uint32_t j = 0; j < 150; ++j) {
+    CHECK(map.seen[j].seed == 77);
+    CHECK(map.seen[j].pulse == 5);
+    CHECK(map.seen[j].subray == j);
+  }
+  CHECK(map.wavelength == 532_nm);
+}
+
+TEST_CASE("a survey refuses a receiver and a detector that cannot be") {
+  const Plane plane;
+  const auto source = still({}, no_rotation);
+  CHECK_THROWS_AS((Survey{source, SingleRay{}, plane, Receiver{.diameter = 0}, FirstHit{}}), SettingError);
+  CHECK_THROWS_AS((Survey{source, SingleRay{}, plane, Receiver{}, FirstHit{.threshold = -1}}), SettingError);
+}
