@@ -59,6 +59,17 @@ std::vector<Vec3> places_around(const Box& box) {
   return places;
 }
 
+/// Along the path to the hut in the wood.
+adapters::ImageSettings view_of_hut(std::uint64_t seed) {
+  const Vec3 eye = wood::Terrain(seed).on({-12.6, -13.2}) + 3.2 * up, sight = wood::Terrain(seed).on(wood::hut_place) + 2.5 * up - eye;
+  return {.azimuth = std::atan2(sight.x - 1, sight.y),
+          .elevation = 5_deg,
+          .field_of_view = 75_deg,
+          .eye = eye,
+          .colour_by = adapters::ColourBy::classification,
+          .point_size = 3};
+}
+
 int main(int argc, char** argv) {
   CommandLine line("Scans the given OBJ files, or a wood made by code, with a scanner on a tripod.");
   std::vector<std::string> files;
@@ -81,7 +92,7 @@ int main(int argc, char** argv) {
 
     const Survey survey{Legs{set_ups}, RingFootprint{3}, scene, Receiver{}, FullWaveform{}, line.seed};
     adapters::LasWriter las(line.output / "cloud.las");
-    adapters::ImageWriter image(line.output / "cloud.png");
+    adapters::ImageWriter image(line.output / "cloud.png", files.empty() ? view_of_hut(line.seed) : adapters::ImageSettings{});
     std::optional<adapters::XyzWriter> text;
     if (xyz) text.emplace(line.output / "cloud.xyz");
     const auto write_text = [&](const EchoBatch& batch) {

@@ -343,6 +343,30 @@ TEST_CASE("a map is told the names of the random numbers that it may draw") {
   CHECK(map.wavelength == 532_nm);
 }
 
+TEST_CASE("the footprint follows the divergence of each pulse") {
+  /// A wide beam, and then a narrow one.
+  struct TwoBeams : support::LeastSource<frame::World> {
+    std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+      auto p = support::LeastSource<frame::World>::pulse(i);
+      p->laser.divergence = i % 2 == 0 ? 0.2 : 1e-6;
+      return p;
+    }
+  };
+  /// A plate 10 m ahead, 0.1 m in radius: the narrow beam is on it, the wide one mostly passes by.
+  struct Plate {
+    std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+      return ray.direction.y > std::cos(0.01) ? std::optional(Hit{10, 1, 1, 0, 0}) : std::nullopt;
+    }
+  };
+  const Plate plate;
+  const Survey survey{TwoBeams{}, RingFootprint{4}, plate, clear_air, FirstHit{}};
+  auto workspace = survey.workspace();
+  for (const PulseIndex i : {0U, 1U, 2U, 4U, 3U, 5U, 6U}) {
+    CAPTURE(i);
+    CHECK(survey(i, workspace).hits == (i % 2 == 0 ? 1 : survey.subrays()));
+  }
+}
+
 TEST_CASE("a survey refuses a receiver and a detector that cannot be") {
   const Plane plane;
   const auto source = still({}, no_rotation);

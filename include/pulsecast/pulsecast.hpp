@@ -11,6 +11,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/units.hpp>

@@ -54,7 +54,7 @@ Comparison all_trees(const MeshData& data, std::uint64_t seed, std::size_t times
   Generator random(seed);
   Comparison result;
   for (std::size_t time = 0; time < times; ++time) {
-    for (const std::size_t size : {1, 1, 1, 19, 64}) {
+    for (const std::size_t size : {1U, 1U, 1U, 19U, 64U}) {
       const RayBundle rays = bundle(random, data, all.bounds(), size);
       Comparison others;  // counted once, compared four times
       compare(all, bvh, "Bvh<float>", rays, result);

@@ -283,3 +283,25 @@ TEST_CASE("settings that cannot be are refused") {
   CHECK_THROWS_AS(ImageWriter(path, {.most_points = 1}), SettingError);
   CHECK_FALSE(std::filesystem::exists(path));
 }
+
+TEST_CASE("a camera that stands somewhere sees what is before it, where it should be") {
+  // 10 m before the camera, a picture of 200 px and 90 degrees is 20 m wide
+  ImageSettings settings{.width = 200,
+                         .height = 100,
+                         .azimuth = 0,
+                         .elevation = 0,
+                         .field_of_view = radians(90),
+                         .eye = Vec3(50, 60, 70),
+                         .point_size = 2,
+                         .background = white};
+  const Picture picture = decoded(png({{{50, 70, 70}}, {{55, 70, 73}}, {{50, 50, 70}}, {{50, 60.1, 70}}}, settings));
+  CHECK(picture.at(100, 50) != white);
+  CHECK(picture.at(150, 20) != white);
+  CHECK(picture.share_of(white) > 0.99);  // neither what is behind nor what is too near
+}
+
+TEST_CASE("classes have colours of their own") {
+  CHECK(of_class(2) != of_class(5));
+  CHECK(of_class(64) != of_class(65));
+  CHECK(of_class(0) == of_class(63));
+}

@@ -68,7 +68,7 @@ std::string polygon(const std::vector<Vec3>& outline) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     char line[128];
     std::snprintf(line, sizeof line, "v %.17g %.17g %.17g\n", outline[i].x, outline[i].y, outline[i].z);
-    vertices += line, face += " " + std::to_string(i + 1);
+    vertices += line, face.append(" ").append(std::to_string(i + 1));
   }
   return vertices + face + "\n";
 }
@@ -371,7 +371,7 @@ TEST_CASE("a last line without an end is read, with a warning that the file may 
 TEST_CASE("a face of more corners than the limit is refused") {
   const Folder folder;
   std::string text = corners + "f";
-  for (int k = 0; k <= 4096; ++k) text += " " + std::to_string(1 + k % 4);
+  for (int k = 0; k <= 4096; ++k) text.append(" ").append(std::to_string(1 + k % 4));
   CHECK(folder.error(text + "\n").place() == "line 5");
 }
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -109,11 +108,14 @@ TEST_CASE("uniform numbers of neighbouring pulses, subrays and purposes do not g
 }
 
 TEST_CASE("normal quantiles have their tabulated values") {
-  const std::pair<double, double> table[] = {
+  struct Entry {
+    double p, z;
+  };
+  const Entry table[] = {
       {0.975, 1.959963984540054}, {0.75, 0.6744897501960817}, {0.999, 3.090232306167813}, {1e-10, -6.361340902404056}, {0.5, 0}};
-  for (const auto& [p, z] : table) {
-    CAPTURE(p);
-    CHECK(std::fabs(normal_quantile(p) - z) <= 1e-15 * std::fabs(z));
+  for (const Entry& entry : table) {
+    CAPTURE(entry.p);
+    CHECK(std::fabs(normal_quantile(entry.p) - entry.z) <= 1e-15 * std::fabs(entry.z));
   }
 }
 

@@ -93,10 +93,9 @@ TEST_CASE("a coarser digitiser errs more, by what a quartic through five of its 
   struct Limits {
     double interval, range, amplitude;
   };
-  for (const auto& [interval, range_limit, amplitude_limit] :
-       {Limits{0.25e-9, 0.05e-3, 1e-5}, Limits{0.5e-9, 0.5e-3, 5e-4}, Limits{1e-9, 10e-3, 0.02}}) {
-    CAPTURE(interval);
-    const FullWaveform detector(WaveformSettings{.sample_interval = interval});
+  for (const Limits& limit : {Limits{0.25e-9, 0.05e-3, 1e-5}, Limits{0.5e-9, 0.5e-3, 5e-4}, Limits{1e-9, 10e-3, 0.02}}) {
+    CAPTURE(limit.interval);
+    const FullWaveform detector(WaveformSettings{.sample_interval = limit.interval});
     double range_error = 0, amplitude_error = 0;
     for (int k = 0; k < 1000; ++k) {
       const double range = 100 + 0.000777 * k;
@@ -105,8 +104,8 @@ TEST_CASE("a coarser digitiser errs more, by what a quartic through five of its 
       range_error = std::fmax(range_error, std::fabs(echoes[0].range - range));
       amplitude_error = std::fmax(amplitude_error, std::fabs(echoes[0].amplitude / 1e-8 - 1));
     }
-    CHECK(range_error < range_limit);
-    CHECK(amplitude_error < amplitude_limit);
+    CHECK(range_error < limit.range);
+    CHECK(amplitude_error < limit.amplitude);
   }
 }
 

@@ -86,7 +86,7 @@ TEST_CASE("every part has a number of its own, as the labels of its points") {
 }
 
 TEST_CASE("a tripod has room at every glade") {
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1u, 2u}) {
     const wood::Scene& scene = seed == 1 ? first_wood() : second_wood();
     for (const Vec3& glade : wood::glades(seed)) {
       CAPTURE(seed);

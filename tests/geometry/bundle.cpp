@@ -24,7 +24,7 @@ TEST_CASE("the bundle of a ray gives the ray back") {
 
 TEST_CASE("a bundle is filled up with copies of its last ray") {
   Generator random(61);
-  for (const std::size_t size : {1, 7, 8, 9, 19, 63, 64}) {
+  for (const std::size_t size : {1U, 7U, 8U, 9U, 19U, 63U, 64U}) {
     const RayBundle rays = random.cone({}, forward, 1e-3, size);
     CHECK(rays.padded_size() % RayBundle::lanes == 0);
     CHECK(rays.padded_size() >= size);

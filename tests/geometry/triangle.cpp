@@ -80,6 +80,11 @@ TEST_CASE("rays in the triangle's plane, or along it, miss") {
   CHECK_FALSE(meets(flat, {{5, -1, 0}, normalize(Vec3{-1, 1, 0})}));
 }
 
+TEST_CASE("a ray within 1e-12 rad of the triangle's plane misses, one at ten times that meets it where it should") {
+  CHECK_FALSE(meets(flat, {{-1, 1, 2e-13}, {1, 0, -1e-13}}));
+  CHECK(meets(flat, {{-1, 1, 2e-11}, {1, 0, -1e-11}}).value() == doctest::Approx(2).epsilon(1e-12));
+}
+
 TEST_CASE("a triangle without area is never met") {
   CHECK_FALSE(meets({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}, {{0.5, 0, 3}, -up}));
   CHECK_FALSE(meets({{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}, {{1, 1, 3}, -up}));
@@ -113,7 +118,7 @@ TEST_CASE("of triangles at exactly the same range the one of the smallest number
 
 TEST_CASE("every ray of a bundle is answered as it is alone, and idle lanes are left alone") {
   Generator random(70);
-  for (const std::size_t size : {2, 5, 8, 19, 33, 64}) {
+  for (const std::size_t size : {2U, 5U, 8U, 19U, 33U, 64U}) {
     const RayBundle rays = random.cone({1, 1, 3}, -up, 0.7, size);
     Nearest nearest(rays);
     intersect(flat, 6, rays, nearest);

@@ -26,7 +26,7 @@
 namespace pulsecast::adapters {
 
 /// What the colour of a point tells.
-enum class ColourBy : std::uint8_t { height, intensity, object, return_number };
+enum class ColourBy : std::uint8_t { height, intensity, object, classification, return_number };
 
 struct ImageSettings {
   int width = 1600;                    ///< [px]
@@ -34,6 +34,7 @@ struct ImageSettings {
   double azimuth = radians(30);        ///< where the view goes, clockwise from north [rad]
   double elevation = radians(30);      ///< how steeply it goes down; at a quarter turn and azimuth 0 it is a map with north up [rad]
   double field_of_view = radians(30);  ///< across the scene, about; 0 for parallel rays [rad]
+  std::optional<Vec3> eye{};           ///< where the camera stands, its field of view across the width; if empty, so that all is seen [m]
   ColourBy colour_by = ColourBy::height;
   double point_size = 0;  ///< diameter in the middle of the scene; 0 for what closes the gaps [px]
   Srgb background{13, 17, 23};
@@ -44,7 +45,8 @@ struct ImageSettings {
     expect_within("ImageSettings::height", height, 1, 4096, "px");
     expect_finite("ImageSettings::azimuth", azimuth, "rad");
     expect_within("ImageSettings::elevation", elevation, -pi / 2, pi / 2, "rad");
-    expect_within("ImageSettings::field_of_view", field_of_view, 0, radians(120), "rad");
+    expect_within("ImageSettings::field_of_view", field_of_view, eye ? radians(1) : 0, radians(120), "rad");
+    if (eye) expect_finite("ImageSettings::eye (length)", length(*eye), "m");
     expect_within("ImageSettings::point_size", point_size, 0, 64, "px");
     expect_within("ImageSettings::most_points", static_cast<double>(most_points), 2, 1e8, "");
   }
@@ -75,7 +77,7 @@ struct ImagePoint {
   return {at(share), at(1 - share)};
 }
 
-/// Looks at points so that all but outliers fill a picture.
+/// Looks at points: so that all but outliers fill a picture, or from a given place.
 class Camera {
  public:
   Camera(const ImageSettings& s, std::span<const ImagePoint> points)
@@ -83,18 +85,7 @@ class Camera {
         right_(std::cos(s.azimuth), -std::sin(s.azimuth), 0),
         forward_(std::sin(s.azimuth) * std::cos(s.elevation), std::cos(s.azimuth) * std::cos(s.elevation), -std::sin(s.elevation)),
         up_(cross(right_, forward_)) {
-    constexpr double outliers = 0.001, margin = 0.95;
-    double radius = 1e-3;  // at least, for a scene of one point [m]
-    for (const Vec3& axis : {right_, forward_, up_}) {
-      const auto [low, high] = percentiles(points, outliers, [&](const ImagePoint& p) { return dot(axis, p.position()); });
-      centre_ += axis * (0.5 * (low + high));
-      radius = std::max(radius, 0.5 * (high - low));
-    }
-    distance_ = radius / std::tan(0.5 * (parallel_ ? radians(30) : s.field_of_view));
-    const auto [x_low, x_high] = percentiles(points, outliers, [&](const ImagePoint& p) { return seen(p).x; });
-    const auto [y_low, y_high] = percentiles(points, outliers, [&](const ImagePoint& p) { return seen(p).y; });
-    scale_ = margin * std::min(s.width / std::max(x_high - x_low, 0.01 * radius), s.height / std::max(y_high - y_low, 0.01 * radius));
-    shift_ = {0.5 * s.width - scale_ * 0.5 * (x_low + x_high), 0.5 * s.height + scale_ * 0.5 * (y_low + y_high)};
+    s.eye ? stand(s, *s.eye) : frame(s, points);
   }
 
   /// Column and row, from the upper left corner of the picture [px], and depth along the view [m]. NaN if it is behind the camera.
@@ -113,13 +104,37 @@ class Camera {
   [[nodiscard]] Vec3 seen(const ImagePoint& p) const {
     const Vec3 v = p.position() - centre_;
     const double depth = distance_ + dot(v, forward_);
-    const double m = depth > 0 ? magnification(depth) : std::numeric_limits<double>::quiet_NaN();
+    const double m = depth > near_ ? magnification(depth) : std::numeric_limits<double>::quiet_NaN();
     return {m * dot(v, right_), m * dot(v, up_), depth};
+  }
+
+  /// From a place, as it is seen from there.
+  void stand(const ImageSettings& s, const Vec3& eye) {
+    distance_ = 10, near_ = 0.3;  // points are as large as set at this distance; nearer than that, they would fill the picture [m]
+    centre_ = eye + distance_ * forward_;
+    scale_ = 0.5 * s.width / (distance_ * std::tan(0.5 * s.field_of_view));
+    shift_ = {0.5 * s.width, 0.5 * s.height};
+  }
+
+  /// From a place from where all but outliers fill the picture.
+  void frame(const ImageSettings& s, std::span<const ImagePoint> points) {
+    constexpr double outliers = 0.001, margin = 0.95;
+    double radius = 1e-3;  // at least, for a scene of one point [m]
+    for (const Vec3& axis : {right_, forward_, up_}) {
+      const auto [low, high] = percentiles(points, outliers, [&](const ImagePoint& p) { return dot(axis, p.position()); });
+      centre_ += axis * (0.5 * (low + high));
+      radius = std::max(radius, 0.5 * (high - low));
+    }
+    distance_ = radius / std::tan(0.5 * (parallel_ ? radians(30) : s.field_of_view));
+    const auto [x_low, x_high] = percentiles(points, outliers, [&](const ImagePoint& p) { return seen(p).x; });
+    const auto [y_low, y_high] = percentiles(points, outliers, [&](const ImagePoint& p) { return seen(p).y; });
+    scale_ = margin * std::min(s.width / std::max(x_high - x_low, 0.01 * radius), s.height / std::max(y_high - y_low, 0.01 * radius));
+    shift_ = {0.5 * s.width - scale_ * 0.5 * (x_low + x_high), 0.5 * s.height + scale_ * 0.5 * (y_low + y_high)};
   }
 
   bool parallel_;
   Vec3 right_, forward_, up_, centre_{};
-  double distance_ = 0, scale_ = 0;
+  double distance_ = 0, near_ = 0, scale_ = 0;
   Vec2 shift_{};
 };
 
@@ -238,6 +253,9 @@ class Canvas {
         case ColourBy::object:
           colours.push_back(of_hue(p.value));
           break;
+        case ColourBy::classification:
+          colours.push_back(from_srgb(of_class(static_cast<std::uint16_t>(p.value))));
+          break;
         case ColourBy::return_number:
           colours.push_back(from_srgb(okabe_ito[static_cast<std::size_t>(std::max(p.value, 1.0f) - 1) % okabe_ito.size()]));
       }
@@ -275,7 +293,9 @@ class ImageWriter {
 
   /// Draws the picture and writes it; before, there is no file.
   void close() {
-    const std::vector<Srgb> pixels = detail::Canvas(settings_, points_).picture();
+    ImageSettings settings = settings_;
+    if (settings.eye) *settings.eye -= origin_;
+    const std::vector<Srgb> pixels = detail::Canvas(settings, points_).picture();
     std::vector<std::byte> png;
     const auto append = [](void* to, void* data, int size) {
       const auto* bytes = static_cast<const std::byte*>(data);
@@ -292,6 +312,8 @@ class ImageWriter {
     switch (settings_.colour_by) {
       case ColourBy::intensity:
         return static_cast<float>(echo.reflectance);
+      case ColourBy::classification:
+        return echo.classification;
       case ColourBy::return_number:
         return echo.number;
       // the golden ratio sets consecutive numbers far apart; 0 is olive, as it often is the ground

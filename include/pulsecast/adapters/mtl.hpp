@@ -98,7 +98,7 @@ class StatementBuffer : public std::streambuf {
     return words;
   }
 
-  [[nodiscard]] std::string quoted() const { return "'" + statement_.substr(0, 64) + (statement_.size() > 64 ? "...'" : "'"); }
+  [[nodiscard]] std::string quoted() const { return std::string("'").append(statement_, 0, 64) + (statement_.size() > 64 ? "...'" : "'"); }
   [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
   [[noreturn]] void fail_here(const std::string& problem) const { throw FileError(path_, "line " + std::to_string(line_), problem); }
   void expect(bool fulfilled, const char* expected) const {

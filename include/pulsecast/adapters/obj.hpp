@@ -129,7 +129,8 @@ class ObjReader : private StatementBuffer {
       static_cast<ObjReader*>(self)->face({corners, static_cast<std::size_t>(count)});
     };
     callbacks.usemtl_cb = [](void* self, const char* name, int) {
-      static_cast<ObjReader*>(self)->use_ = {name, static_cast<ObjReader*>(self)->line(), std::nullopt};
+      ObjReader& reader = *static_cast<ObjReader*>(self);
+      reader.use_ = {name, reader.line(), std::nullopt};
     };
     std::istream stream(this);
     stream.exceptions(std::ios::badbit);  // so that those thrown while it reads pass through

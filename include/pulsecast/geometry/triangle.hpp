@@ -4,9 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
@@ -29,34 +29,6 @@ struct Triangle {
 
 namespace detail {
 
-#if defined(__AVX512F__)
-inline constexpr std::size_t simd_bytes = 64;
-#elif defined(__AVX__)
-inline constexpr std::size_t simd_bytes = 32;
-#else
-inline constexpr std::size_t simd_bytes = 16;
-#endif
-
-/// As many rays as one register of the processor holds.
-using Lanes [[gnu::vector_size(simd_bytes)]] = double;
-using LaneIds [[gnu::vector_size(simd_bytes)]] = std::uint64_t;
-using LaneMask [[gnu::vector_size(simd_bytes)]] = std::int64_t;
-inline constexpr std::size_t lanes_at_once = simd_bytes / sizeof(double);
-static_assert(RayBundle::lanes % lanes_at_once == 0);
-
-template <class Register, class T>
-[[nodiscard]] inline Register load(const T& first) noexcept {
-  Register r;
-  std::memcpy(&r, &first, sizeof r);
-  return r;
-}
-
-[[nodiscard]] inline bool any(const LaneMask& mask) noexcept {
-  std::int64_t bits = 0;
-  for (std::size_t lane = 0; lane < lanes_at_once; ++lane) bits |= mask[lane];
-  return bits != 0;
-}
-
 /// As `max_norm`, for numbers known to be numbers: without the library call that `std::fmax` is.
 [[nodiscard]] inline double largest(const Vec3& v) noexcept {
   const Vec3 m = max(v, -v);
@@ -77,7 +49,8 @@ template <class Register, class T>
 /// the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
 [[gnu::noinline]] inline void intersect(const Triangle& triangle, PrimitiveIndex primitive, const RayBundle& rays,
                                         Nearest& nearest) noexcept {
-  using detail::Lanes, detail::LaneIds, detail::LaneMask, detail::largest, detail::load;
+  using detail::largest;
+  static_assert(RayBundle::lanes % lane_count == 0);
   constexpr double unit = std::numeric_limits<double>::epsilon();
   const Vec3 a = triangle.a - rays.origin, b = triangle.b - rays.origin, c = triangle.c - rays.origin;
   const Vec3 edges[3] = {b - a, c - b, a - c};
@@ -96,7 +69,7 @@ template <class Register, class T>
   const Vec3 low = least - margin, high = most + margin;
   const std::uint64_t id = nearest.part | primitive;
 
-  for (std::size_t j = 0; j < rays.size; j += detail::lanes_at_once) {
+  for (std::size_t j = 0; j < rays.size; j += lane_count) {
     const Lanes x = load<Lanes>(rays.x[j]), y = load<Lanes>(rays.y[j]), z = load<Lanes>(rays.z[j]);
     const Lanes u = x * planes[0].x + y * planes[0].y + z * planes[0].z;
     const Lanes v = x * planes[1].x + y * planes[1].y + z * planes[1].z;
@@ -105,7 +78,7 @@ template <class Register, class T>
     const LaneMask on_left = (u >= -doubt[0]) & (v >= -doubt[1]) & (w >= -doubt[2]);
     const LaneMask on_right = (u <= doubt[0]) & (v <= doubt[1]) & (w <= doubt[2]);
     const LaneMask inside = (on_left | on_right) & (slope * slope > grazing);
-    if (!detail::any(inside)) continue;
+    if (!any(inside)) continue;
 
     // a direction of zero becomes so small a one that the walls which it never reaches lie at infinity
     const Lanes zero = {}, tiny = zero + 1e-300;
@@ -126,8 +99,8 @@ template <class Register, class T>
     const LaneMask hit = inside & (entry <= exit) & (at > rays.near) & nearer;
     const Lanes range = hit ? at : best;
     const LaneIds ids = hit ? own_id : best_id;
-    std::memcpy(&nearest.range[j], &range, sizeof range);
-    std::memcpy(&nearest.id[j], &ids, sizeof ids);
+    store(range, nearest.range[j]);
+    store(ids, nearest.id[j]);
   }
 }
 

@@ -59,7 +59,7 @@ struct Similarity {
 using MaterialTable = std::shared_ptr<const std::vector<Material>>;
 
 /// A table of materials; a single default one unless told otherwise.
-[[nodiscard]] inline MaterialTable material_table(std::vector<Material> materials = {Material{}}) {
+[[nodiscard]] inline MaterialTable material_table(std::vector<Material> materials = std::vector<Material>(1)) {
   for (const Material& m : materials) m.validate();
   return std::make_shared<const std::vector<Material>>(std::move(materials));
 }

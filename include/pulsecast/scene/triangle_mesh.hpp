@@ -21,9 +21,9 @@ namespace pulsecast {
 
 /// What a triangle mesh is made from.
 struct MeshData {
-  std::vector<Vec3> vertices;                           ///< [m]
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< numbers of their corners, from 0
-  std::vector<std::uint32_t> materials;                 ///< one a triangle: index into the part's table; empty if all are 0
+  std::vector<Vec3> vertices{};                           ///< [m]
+  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< numbers of their corners, from 0
+  std::vector<std::uint32_t> materials{};                 ///< one a triangle: index into the part's table; empty if all are 0
 
   void validate() const {
     const auto refuse = [](const char* field, double value, const char* unit, std::string allowed) {
