@@ -36,7 +36,7 @@ struct Echo {
   std::uint8_t number = 1;           ///< return number, from 1 in order of range
 };
 
-/// What became of a pulse slot.
+/// What became of a pulse slot. A sink sees pulses only: slots that were blocked are counted, not handed on.
 enum class Fate : std::uint8_t {
   returned,         ///< at least one echo
   blocked,          ///< the optic let no pulse out

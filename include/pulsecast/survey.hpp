@@ -31,8 +31,8 @@ template <WorldSource Source, Footprint Pattern, Target Map, Detector Instrument
 class Survey {
  public:
   Survey(Source source, Pattern footprint, const Map& map, Receiver receiver, Instrument detector, std::uint64_t seed = 0)
-      : source_(std::move(source)),
-        footprint_(std::move(footprint)),
+      : source_(validated(std::move(source))),
+        footprint_(validated(std::move(footprint))),
         map_(&map),
         receiver_(validated(receiver)),
         detector_(validated(std::move(detector))),

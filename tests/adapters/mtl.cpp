@@ -98,7 +98,7 @@ TEST_CASE("a colour of one number is grey, and a texture is no colour") {
   const MaterialLibrary library = mtl("newmtl a\nKd 0.3\nKs 0.1 0.1 0.1\nnewmtl b\nmap_Kd x.png\n");
   CHECK(library.materials.at("a").specular_share == doctest::Approx(0.25));
   CHECK(library.materials.at("b").scattering == Scattering::direction_independent);
-  CHECK(mtl("map_Kd x.png\nnewmtl a\n").materials.at("a").scattering == Scattering::direction_independent);
+  CHECK(mtl("newmtl a\nmap_Kd x.png\n").materials.at("a").scattering == Scattering::direction_independent);
 }
 
 TEST_CASE("names may have blanks and signs of comments") {

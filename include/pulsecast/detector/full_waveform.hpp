@@ -30,6 +30,8 @@ struct WaveformSettings {
 ///
 /// The shape is a polynomial times an exponential, so the sum of any number of shapes is carried from sample to sample by three
 /// moments: exact, and at a cost of samples plus reflections, not of their product.
+/// Limits: a lone echo's range errs by 0.03 mm where an interval is a sixteenth of the pulse's length, by 0.5 mm at an eighth and by
+/// 10 mm at a quarter, where its amplitude errs by 2 %.
 template <EchoWidth Width = NoWidth>
 class FullWaveform {
  public:
@@ -86,11 +88,12 @@ class FullWaveform {
         keep(n - record_start, sum.power(), w.record);
         if (t > last_peak + tail && (next == reflections.size() || first_sample(reflections[next], shape) > n + gap(shape))) break;
         if (w.samples.size() == stretch) {
-          find_peaks(n, shape, reflections, w);
-          w.samples.erase(w.samples.begin(), w.samples.end() - 4);  // a peak is looked for among five samples
+          const std::size_t cut = last_valley(w.samples);  // so that no echo is cut in two
+          find_peaks(n, cut, shape, reflections, w);
+          w.samples.erase(w.samples.begin(), w.samples.begin() + static_cast<std::ptrdiff_t>(cut - 2));
         }
       }
-      find_peaks(n, shape, reflections, w);
+      find_peaks(n, w.samples.size() - 2, shape, reflections, w);
     }
     keep_the_highest(w.echoes);
     return {w.echoes, w.record, record_start * s_.sample_interval};
@@ -145,10 +148,18 @@ class FullWaveform {
     record.back() = static_cast<float>(power);
   }
 
-  /// Enters every peak of the stretch that ends with sample number `last`.
-  void find_peaks(double last, const PulseShape& shape, std::span<const Reflection> reflections, Workspace& w) const noexcept {
+  /// Where the last echo that is whole ends; two samples before the end if there is no valley.
+  static std::size_t last_valley(const std::vector<double>& y) noexcept {
+    for (std::size_t i = y.size() - 2; i > 4; --i)
+      if (y[i] < y[i - 1] && y[i] <= y[i + 1]) return i;
+    return y.size() - 2;
+  }
+
+  /// Enters every peak before `end` of the stretch whose last sample has the number `last`.
+  void find_peaks(double last, std::size_t end, const PulseShape& shape, std::span<const Reflection> reflections,
+                  Workspace& w) const noexcept {
     const std::vector<double>& y = w.samples;
-    for (std::size_t i = 2; i + 2 < y.size(); ++i) {
+    for (std::size_t i = 2; i < end; ++i) {
       if (!(y[i] > y[i - 1] && y[i] >= y[i + 1])) continue;
       const auto [offset, height] = vertex(&y[i]);
       if (height < s_.threshold) continue;

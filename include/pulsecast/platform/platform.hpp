@@ -29,7 +29,7 @@ template <Trajectory Path, InstrumentSource Source>
 class Platform {
  public:
   Platform(Path path, Mount mount, Source source)
-      : path_(validated(std::move(path))), mount_(validated(mount)), source_(std::move(source)) {}
+      : path_(validated(std::move(path))), mount_(validated(mount)), source_(validated(std::move(source))) {}
 
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return source_.duration(); }
