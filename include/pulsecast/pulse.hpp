@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/tick.hpp>
@@ -20,9 +21,10 @@ struct Laser {
 /// One laser pulse, as seen from a frame.
 template <class Frame>
 struct Pulse {
-  PulseIndex index = 0;           ///< slot in the source that was asked
-  Tick tick{};                    ///< when it leaves, since the survey's start
-  Pose<frame::Beam, Frame> pose{};///< where it leaves, and how it is turned
+  PulseIndex index = 0;                                ///< slot in the source that was asked
+  Tick tick{};                                         ///< when it leaves, since the survey's start
+  Pose<frame::Beam, Frame> pose{};                     ///< where it leaves, and how it is turned
+  std::optional<Pose<frame::Beam, Frame>> reported{};  ///< what the instrument takes its pose for; empty if it knows it
   Laser laser{};
   double scan_angle = 0;     ///< about the body's forward axis: 0 down, positive to the right, in [-pi, pi] [rad]; set by a platform
   std::uint16_t leg = 0;     ///< number of the leg that it belongs to, from 0
@@ -32,10 +34,13 @@ struct Pulse {
   [[nodiscard]] Vec3 direction() const noexcept { return pose.rotation * forward; }
 };
 
-/// The pulse as seen from a frame that surrounds its own.
+/// The pulse as seen from a frame that surrounds its own. What was reported in the inner frame is of no use in the outer one.
 template <class Outer, class Inner>
 [[nodiscard]] Pulse<Outer> transformed(const Pose<Inner, Outer>& outer_from_inner, const Pulse<Inner>& p) noexcept {
-  return {p.index, p.tick, outer_from_inner * p.pose, p.laser, p.scan_angle, p.leg, p.channel};
+  Pulse<Outer> out;
+  out.index = p.index, out.tick = p.tick, out.pose = outer_from_inner * p.pose, out.laser = p.laser;
+  out.scan_angle = p.scan_angle, out.leg = p.leg, out.channel = p.channel;
+  return out;
 }
 
 }  // namespace pulsecast

@@ -34,6 +34,7 @@
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/platform/legs.hpp>
 #include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/pose_errors.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/pulse.hpp>
 #include <pulsecast/run.hpp>

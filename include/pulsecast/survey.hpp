@@ -74,10 +74,11 @@ class Survey {
     out.shot.index = i;
     const auto pulse = source_.pulse(i);
     if (!pulse) return out.shot.fate = Fate::blocked, out;
+    const Pose<frame::Beam, frame::World> reported = pulse->reported.value_or(pulse->pose);
     out.shot = {.index = i,
                 .tick = pulse->tick,
-                .origin = pulse->origin(),
-                .direction = pulse->direction(),
+                .origin = reported.position,
+                .direction = reported.direction(forward),
                 .scan_angle = pulse->scan_angle,
                 .leg = pulse->leg,
                 .channel = pulse->channel};

@@ -43,6 +43,11 @@ bool same(const Pose<From, To>& a, const Pose<From, To>& b) noexcept {
          same(a.rotation.y, b.rotation.y) && same(a.rotation.z, b.rotation.z);
 }
 
+template <class From, class To>
+bool same(const std::optional<Pose<From, To>>& a, const std::optional<Pose<From, To>>& b) noexcept {
+  return a && b ? same(*a, *b) : !a && !b;
+}
+
 inline bool same(const Laser& a, const Laser& b) noexcept {
   return same(a.wavelength, b.wavelength) && same(a.peak_power, b.peak_power) && same(a.pulse_length, b.pulse_length) &&
          same(a.divergence, b.divergence);
@@ -51,8 +56,8 @@ inline bool same(const Laser& a, const Laser& b) noexcept {
 template <class Frame>
 bool same(const std::optional<Pulse<Frame>>& a, const std::optional<Pulse<Frame>>& b) noexcept {
   if (!a || !b) return !a && !b;
-  return a->index == b->index && same(a->tick, b->tick) && same(a->pose, b->pose) && same(a->laser, b->laser) &&
-         same(a->scan_angle, b->scan_angle) && a->leg == b->leg && a->channel == b->channel;
+  return a->index == b->index && same(a->tick, b->tick) && same(a->pose, b->pose) && same(a->reported, b->reported) &&
+         same(a->laser, b->laser) && same(a->scan_angle, b->scan_angle) && a->leg == b->leg && a->channel == b->channel;
 }
 
 inline bool same(const Echo& a, const Echo& b) noexcept {

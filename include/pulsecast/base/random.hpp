@@ -10,14 +10,18 @@
 
 namespace pulsecast {
 
-/// What a random number is drawn for; numbers for different purposes are independent.
+/// What a random number is drawn for; numbers for different purposes are independent. A purpose keeps its number for ever, as results
+/// depend on it: new ones come last.
 enum class Purpose : std::uint32_t {
-  range_noise,
-  position_noise,
-  attitude_noise,
-  free_path,
-  receiver_noise,
-  scene,  ///< making of scenes
+  range_noise = 0,
+  position_noise = 1,
+  attitude_noise = 2,
+  free_path = 3,
+  receiver_noise = 4,
+  scene = 5,  ///< making of scenes
+  position_drift = 6,
+  attitude_drift = 7,
+  angular_jitter = 8,
 };
 
 /// The full name of a random number: the same key gives the same number, on any thread, in any order.

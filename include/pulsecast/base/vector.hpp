@@ -50,7 +50,9 @@ inline const Rotation no_rotation{1, 0, 0, 0};
 
 /// The largest of the three magnitudes.
 [[nodiscard]] inline double max_norm(const Vec3& v) noexcept {
-  return std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
+  const Vec3 m = max(v, -v);
+  const double xy = m.x > m.y ? m.x : m.y;
+  return xy > m.z ? xy : m.z;
 }
 
 }  // namespace pulsecast

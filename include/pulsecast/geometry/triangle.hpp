@@ -27,17 +27,6 @@ struct Triangle {
   [[nodiscard]] Vec3 normal() const noexcept { return normalize(cross(b - a, c - a)); }
 };
 
-namespace detail {
-
-/// As `max_norm`, for numbers known to be numbers: without the library call that `std::fmax` is.
-[[nodiscard]] inline double largest(const Vec3& v) noexcept {
-  const Vec3 m = max(v, -v);
-  const double xy = m.x > m.y ? m.x : m.y;
-  return xy > m.z ? xy : m.z;
-}
-
-}  // namespace detail
-
 /// Tests a triangle against every ray of a bundle. This is the test that decides, always in double precision.
 ///
 /// Inside means on the same side of the three planes through the origin and an edge; the planes depend on the bundle alone, so a ray
@@ -49,7 +38,6 @@ namespace detail {
 /// the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
 [[gnu::noinline]] inline void intersect(const Triangle& triangle, PrimitiveIndex primitive, const RayBundle& rays,
                                         Nearest& nearest) noexcept {
-  using detail::largest;
   static_assert(RayBundle::lanes % lane_count == 0);
   constexpr double unit = std::numeric_limits<double>::epsilon();
   const Vec3 a = triangle.a - rays.origin, b = triangle.b - rays.origin, c = triangle.c - rays.origin;
@@ -59,13 +47,13 @@ namespace detail {
   double doubt[3];
   for (int k = 0; k < 3; ++k) {
     planes[k] = cross(edges[k], sums[k]);
-    doubt[k] = 32 * unit * largest(edges[k]) * largest(sums[k]) * rays.direction_length;
+    doubt[k] = 32 * unit * max_norm(edges[k]) * max_norm(sums[k]) * rays.direction_length;
   }
   const Vec3 normal = cross(edges[0], edges[2]);
   const double offset = dot(normal, a);
   const double grazing = 1e-12 * 1e-12 * dot(normal, normal) * rays.direction_length * rays.direction_length;
   const Vec3 least = min(a, min(b, c)), most = max(a, max(b, c));
-  const Vec3 margin = Vec3(8 * unit * largest(max(most, -least)));
+  const Vec3 margin = Vec3(8 * unit * max_norm(max(most, -least)));
   const Vec3 low = least - margin, high = most + margin;
   const std::uint64_t id = nearest.part | primitive;
 

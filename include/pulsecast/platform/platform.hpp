@@ -37,8 +37,13 @@ class Platform {
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     const auto inner = source_.pulse(i);
     if (!inner) return std::nullopt;
-    const Pulse<frame::Body> on_body = transformed(mount_.pose(), *inner);
-    Pulse<frame::World> out = transformed(path_.at(inner->tick), on_body);
+    return placed(*inner);
+  }
+
+  /// A pulse of the instrument, in the world.
+  [[nodiscard]] Pulse<frame::World> placed(const Pulse<frame::Instrument>& inner) const noexcept {
+    const Pulse<frame::Body> on_body = transformed(mount_.pose(), inner);
+    Pulse<frame::World> out = transformed(path_.at(inner.tick), on_body);
     const Vec3 d = on_body.direction();
     out.scan_angle = std::atan2(d.x, -d.z);
     return out;

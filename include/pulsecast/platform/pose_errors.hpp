@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/platform/platform.hpp>
+
+namespace pulsecast {
+
+/// How an instrument errs about where it is and looks: nothing, unless told otherwise. Deviations are standard deviations along or about
+/// each axis of the body.
+struct PoseErrors {
+  double position_noise = 0;               ///< white [m]
+  double attitude_noise = 0;               ///< white [rad]
+  double position_drift = 0;               ///< Gauss-Markov: wanders slowly, within this deviation [m]
+  double attitude_drift = 0;               ///< Gauss-Markov [rad]
+  double drift_time = 60;                  ///< after which a drift has forgotten all but 1/e of itself [s]
+  double angular_jitter = 0;               ///< of each beam, beside where the optic says that it goes; white, right and up [rad]
+  Vec3 lever_arm_error{};                  ///< reported less true [m]
+  Rotation boresight_error = no_rotation;  ///< from the true frame of the instrument to the reported one
+  std::uint64_t seed = 0;                  ///< of all that is random; give each leg its own
+
+  void validate() const {
+    expect_not_negative("PoseErrors::position_noise", position_noise, "m");
+    expect_not_negative("PoseErrors::attitude_noise", attitude_noise, "rad");
+    expect_not_negative("PoseErrors::position_drift", position_drift, "m");
+    expect_not_negative("PoseErrors::attitude_drift", attitude_drift, "rad");
+    expect_positive("PoseErrors::drift_time", drift_time, "s");
+    expect_not_negative("PoseErrors::angular_jitter", angular_jitter, "rad");
+    expect_finite("PoseErrors::lever_arm_error (length)", length(lever_arm_error), "m");
+    expect_within("PoseErrors::boresight_error (norm)", length(boresight_error), 1 - 1e-9, 1 + 1e-9, "");
+  }
+};
+
+/// A platform whose instrument errs: rays are cast from where it is, and points are written where it takes itself to be.
+template <Trajectory Path, InstrumentSource Source>
+class Misreported {
+ public:
+  Misreported(Platform<Path, Source> truth, PoseErrors errors) : truth_(std::move(truth)), errors_(validated(errors)) { plan_drift(); }
+
+  [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
+  [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
+  [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }
+
+  /// The pose that is reported of the body.
+  [[nodiscard]] Pose<frame::Body, frame::World> reported(Tick t) const noexcept {
+    const Pose<frame::Body, frame::World> world_from_body = truth_.trajectory().at(t);
+    const Drift drift = drift_at(t);
+    const Vec3 position = drift.position + white(t, Purpose::position_noise, errors_.position_noise);
+    const Vec3 attitude = drift.attitude + white(t, Purpose::attitude_noise, errors_.attitude_noise);
+    return world_from_body * Pose<frame::Body, frame::Body>{turned_by(attitude), position};
+  }
+
+  [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+    const auto inner = truth_.source().pulse(i);
+    if (!inner) return std::nullopt;
+    Pulse<frame::World> out = truth_.placed(jittered(*inner));
+    const Pose<frame::Instrument, frame::Body> calibrated{truth_.mount().boresight * errors_.boresight_error,
+                                                          truth_.mount().lever_arm + errors_.lever_arm_error};
+    out.reported = reported(inner->tick) * calibrated * inner->pose;
+    return out;
+  }
+
+ private:
+  struct Drift {
+    Vec3 position{}, attitude{};
+  };
+
+  static Rotation turned_by(const Vec3& angles) noexcept {
+    const double angle = length(angles);
+    return angle > 0 ? rotation_about(angles, angle) : no_rotation;
+  }
+
+  static Vec3 normals(std::uint64_t seed, std::uint64_t moment, Purpose purpose) noexcept {
+    return {normal({seed, moment, 0, purpose}), normal({seed, moment, 1, purpose}), normal({seed, moment, 2, purpose})};
+  }
+
+  /// Emitters that fire at the same time share it.
+  Vec3 white(Tick t, Purpose purpose, double deviation) const noexcept {
+    if (deviation == 0) return {};
+    const std::uint64_t moment = std::bit_cast<std::uint64_t>(t.fraction) ^ (static_cast<std::uint64_t>(t.second) << 1);
+    return deviation * normals(errors_.seed, moment, purpose);
+  }
+
+  Pulse<frame::Instrument> jittered(Pulse<frame::Instrument> p) const noexcept {
+    if (errors_.angular_jitter == 0) return p;
+    const double aside = errors_.angular_jitter * normal({errors_.seed, p.index, 0, Purpose::angular_jitter});
+    const double upwards = errors_.angular_jitter * normal({errors_.seed, p.index, 1, Purpose::angular_jitter});
+    p.pose.rotation = p.pose.rotation * rotation_about(up, -aside) * rotation_about(right, upwards);
+    return p;
+  }
+
+  /// The drift at every node is what is left of the one before and as much chance as keeps the deviation. Source: Gelb 1974, sec. 3.8.
+  void plan_drift() {
+    if (errors_.position_drift == 0 && errors_.attitude_drift == 0) return;
+    const double kept = std::exp(-1.0 / nodes_per_drift_time), added = std::sqrt(1 - kept * kept);
+    const double nodes = std::ceil(truth_.duration().seconds() / errors_.drift_time * nodes_per_drift_time) + 2;
+    expect_within("PoseErrors::drift_time (the survey's length by it)", nodes / nodes_per_drift_time, 0, 1e6, "");
+    for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(nodes); ++n) {
+      const Vec3 position = errors_.position_drift * normals(errors_.seed, n, Purpose::position_drift);
+      const Vec3 attitude = errors_.attitude_drift * normals(errors_.seed, n, Purpose::attitude_drift);
+      const Drift before = n == 0 ? Drift{position, attitude} : drift_.back();
+      const double fresh = n == 0 ? 0 : added, old = n == 0 ? 1 : kept;
+      drift_.push_back({old * before.position + fresh * position, old * before.attitude + fresh * attitude});
+    }
+  }
+
+  Drift drift_at(Tick t) const noexcept {
+    if (drift_.empty()) return {};
+    const double at = t.seconds() / errors_.drift_time * nodes_per_drift_time;
+    const std::size_t n = at > 0 ? std::min(static_cast<std::size_t>(at), drift_.size() - 2) : 0;
+    const double share = at - static_cast<double>(n);
+    const Drift &a = drift_[n], &b = drift_[n + 1];
+    return {a.position + share * (b.position - a.position), a.attitude + share * (b.attitude - a.attitude)};
+  }
+
+  static constexpr double nodes_per_drift_time = 50;  ///< between them the drift is straight, which takes 1 % off its variance
+
+  Platform<Path, Source> truth_;
+  PoseErrors errors_;
+  std::vector<Drift> drift_;
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/platform/pose_errors.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/platform/legs.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+
+#include <doctest/doctest.h>
+
+#include "support/laws.hpp"
+#include "support/relative.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+namespace {
+
+/// North at 50 m/s, heading 30 degrees west of it: a crabbing aircraft.
+struct Flight {
+  Pose<frame::Body, frame::World> at(Tick t) const noexcept { return {rotation_about(up, 30_deg), {5e5, 5e6 + 50 * t.seconds(), 1000}}; }
+};
+
+auto airplane(PulseIndex pulses = 2000) {
+  return Platform{Flight{}, Mount{.lever_arm = {0.3, -1.2, 0.7}, .boresight = rotation_about(right, -90_deg)},
+                  Deflector{PolygonMirror{}, Scanner{.pulse_rate = 1_kHz, .pulses = pulses}}};
+}
+
+/// Where the beam is reported to start, less where it does [m].
+Vec3 displacement(const Pulse<frame::World>& p) { return p.reported->position - p.pose.position; }
+
+/// The angle between two directions, without loss where it is small [rad].
+double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
+
+const PoseErrors all{.position_noise = 2_cm,
+                     .attitude_noise = 0.1_mrad,
+                     .position_drift = 5_cm,
+                     .attitude_drift = 0.2_mrad,
+                     .drift_time = 0.5_s,
+                     .angular_jitter = 0.05_mrad,
+                     .lever_arm_error = {0.01, 0, 0},
+                     .boresight_error = rotation_about(up, 0.3_mrad),
+                     .seed = 7};
+
+}  // namespace
+
+TEST_CASE("an instrument without errors reports where it is") {
+  const Misreported platform{airplane(), {}};
+  for (PulseIndex i = 0; i < platform.size(); i += 97) {
+    const auto p = platform.pulse(i), truth = airplane().pulse(i);
+    REQUIRE(p.has_value());
+    CHECK(p->pose.position == truth->pose.position);
+    CHECK(length(displacement(*p)) < 1e-8);
+    CHECK(angle_between(p->reported->direction(forward), p->direction()) < 1e-14);
+  }
+}
+
+TEST_CASE("an error of the lever arm turns with the body") {
+  const Misreported platform{airplane(), {.lever_arm_error = {0.1, 0.2, -0.3}}};
+  const auto p = platform.pulse(500);
+  const Vec3 expected = rotation_about(up, 30_deg) * Vec3{0.1, 0.2, -0.3};
+  CHECK(length(displacement(*p) - expected) < 1e-8);
+  CHECK(angle_between(p->reported->direction(forward), p->direction()) < 1e-14);
+}
+
+TEST_CASE("an error of the boresight turns the reported beam in the frame of the instrument") {
+  const Rotation error = rotation_about(up, 1_mrad);
+  const Misreported platform{airplane(), {.boresight_error = error}};
+  const auto p = platform.pulse(500);
+  const auto inner = airplane().source().pulse(500);
+  const Vec3 expected = rotation_about(up, 30_deg) * (rotation_about(right, -90_deg) * (error * inner->direction()));
+  CHECK(length(p->reported->direction(forward) - expected) < 1e-14);
+  CHECK(p->pose.rotation == airplane().pulse(500)->pose.rotation);
+}
+
+TEST_CASE("white noise has the deviation that was asked for, and no memory") {
+  const Misreported platform{airplane(20'000), {.position_noise = 2_cm, .attitude_noise = 0.1_mrad, .seed = 3}};
+  double square = 0, product = 0, turned = 0;
+  Vec3 before{};
+  const double n = static_cast<double>(platform.size());
+  for (PulseIndex i = 0; i < platform.size(); ++i) {
+    const auto p = platform.pulse(i);
+    const Tick t = p->tick;
+    const Vec3 off = platform.reported(t).position - platform.truth().trajectory().at(t).position;
+    square += dot(off, off), product += dot(off, before);
+    const double angle = 2 * std::asin(length(cross(platform.reported(t).direction(up), up)) / 2);
+    turned += angle * angle;
+    before = off;
+  }
+  CHECK(std::sqrt(square / (3 * n)) == support::relative(2_cm, 0.02));
+  CHECK(std::fabs(product / square) < 4 / std::sqrt(3 * n));
+  CHECK(std::sqrt(turned / (2 * n)) == support::relative(0.1_mrad, 0.02));  // two of three axes tilt the vertical
+}
+
+TEST_CASE("a drift has the deviation that was asked for, and forgets itself in its time") {
+  const Misreported platform{airplane(2'000'000), {.position_drift = 5_cm, .drift_time = 0.5_s, .seed = 11}};
+  double square = 0, product = 0;
+  int n = 0;
+  for (double t = 0; t < 1999; t += 0.1, ++n) {
+    const auto off = [&](double at) {
+      const Tick tick = Tick::of_seconds(at);
+      return platform.reported(tick).position - platform.truth().trajectory().at(tick).position;
+    };
+    square += dot(off(t), off(t)), product += dot(off(t), off(t + 0.5));
+  }
+  CHECK(std::sqrt(square / (3 * n)) == support::relative(5_cm, 0.05));
+  CHECK(product / square == doctest::Approx(std::exp(-1)).epsilon(0.06));
+}
+
+TEST_CASE("a drift is smooth from pulse to pulse") {
+  const Misreported platform{airplane(), {.position_drift = 5_cm, .drift_time = 10_s}};
+  for (PulseIndex i = 1; i < platform.size(); ++i)
+    CHECK(length(displacement(*platform.pulse(i)) - displacement(*platform.pulse(i - 1))) < 1_mm);
+}
+
+TEST_CASE("jitter moves the beam and not what is reported of it") {
+  const Misreported platform{airplane(20'000), {.angular_jitter = 1_mrad}};
+  double square = 0;
+  for (PulseIndex i = 0; i < platform.size(); ++i) {
+    const auto p = platform.pulse(i), truth = airplane(20'000).pulse(i);
+    CHECK(angle_between(p->reported->direction(forward), truth->direction()) < 1e-14);
+    const double off = angle_between(p->direction(), truth->direction());
+    square += off * off;
+  }
+  CHECK(std::sqrt(square / (2 * static_cast<double>(platform.size()))) == support::relative(1_mrad, 0.02));
+}
+
+TEST_CASE("a platform that errs keeps the laws of a source, with everything switched on") {
+  const Misreported platform{airplane(500), all};
+  CHECK(support::source_laws(platform) == "");
+  CHECK(support::source_laws(Legs{std::vector{platform, Misreported{airplane(300), {.position_noise = 1_m, .seed = 2}}}}) == "");
+}
+
+TEST_CASE("the seed decides") {
+  PoseErrors other = all;
+  other.seed = 8;
+  const Misreported a{airplane(), all}, b{airplane(), all}, c{airplane(), other};
+  CHECK(a.pulse(10)->reported->position == b.pulse(10)->reported->position);
+  CHECK(a.pulse(10)->reported->position != c.pulse(10)->reported->position);
+}
+
+TEST_CASE("errors that cannot be are refused") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS((Misreported{airplane(), {.position_noise = -1}}), SettingError);
+  CHECK_THROWS_AS((Misreported{airplane(), {.attitude_noise = nan}}), SettingError);
+  CHECK_THROWS_AS((Misreported{airplane(), {.drift_time = 0}}), SettingError);
+  CHECK_THROWS_AS((Misreported{airplane(), {.lever_arm_error = {nan, 0, 0}}}), SettingError);
+  CHECK_THROWS_AS((Misreported{airplane(), {.boresight_error = {2, 0, 0, 0}}}), SettingError);
+  CHECK_THROWS_AS((Misreported{airplane(2'000'000), {.position_drift = 1, .drift_time = 1e-9}}), SettingError);
+}
