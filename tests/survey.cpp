@@ -45,7 +45,8 @@ struct Fixed {
 
 /// One pulse a second from a place, in a direction.
 auto still(const Vec3& position, const Rotation& turn, PulseIndex pulses = 1, const Laser& laser = {}) {
-  return Platform{Tripod{.position = position}, Mount{}, Deflector{Fixed{{turn, {}}}, Scanner{1, pulses, laser}}};
+  return Platform{Tripod{.position = position}, Mount{},
+                  Deflector{Fixed{{turn, {}}}, Scanner{.pulse_rate = 1, .pulses = pulses, .laser = laser}}};
 }
 
 /// A tripod that scans all around it.
@@ -372,4 +373,43 @@ TEST_CASE("a survey refuses a receiver and a detector that cannot be") {
   const auto source = still({}, no_rotation);
   CHECK_THROWS_AS((Survey{source, SingleRay{}, plane, Receiver{.diameter = 0}, FirstHit{}}), SettingError);
   CHECK_THROWS_AS((Survey{source, SingleRay{}, plane, Receiver{}, FirstHit{.threshold = -1}}), SettingError);
+}
+
+TEST_CASE("ranges err as the receiver is told, each echo on its own, and the same again") {
+  const Plane plane{.point = {0, 0, -100}};
+  const Receiver noisy{.range_errors = {.bias = 0.5, .deviation = 0.02}};
+  const auto source = still({0, 0, 0}, rotation_about(right, -90_deg), 20'000);
+  const Survey survey{source, SingleRay{}, plane, noisy, FirstHit{}, 5}, again = survey;
+  const Survey other{source, SingleRay{}, plane, noisy, FirstHit{}, 6};
+  auto w = survey.workspace();
+  double sum = 0, square = 0, unlike = 0;
+  const double n = static_cast<double>(survey.size());
+  for (PulseIndex i = 0; i < survey.size(); ++i) {
+    const double error = survey(i, w).echoes.front().range - 100;
+    CHECK(again(i, w).echoes.front().range == error + 100);
+    unlike += other(i, w).echoes.front().range != error + 100 ? 1 : 0;
+    sum += error, square += (error - 0.5) * (error - 0.5);
+  }
+  CHECK(std::fabs(sum / n - 0.5) < 4 * 0.02 / std::sqrt(n));
+  CHECK(std::sqrt(square / n) == support::relative(0.02, 0.02));
+  CHECK(unlike == n);
+}
+
+TEST_CASE("the true pose casts the ray, and the reported one writes the point") {
+  struct Mistaken {
+    [[nodiscard]] PulseIndex size() const noexcept { return 1; }
+    [[nodiscard]] Tick duration() const noexcept { return {1, 0}; }
+    [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex) const noexcept {
+      Pulse<frame::World> p;
+      p.pose = {rotation_about(right, -90_deg), {0, 0, 10}};
+      p.reported = Pose<frame::Beam, frame::World>{no_rotation, {1, 2, 3}};
+      return p;
+    }
+  };
+  const Plane plane{.point = {0, 0, 0}};
+  const Survey survey{Mistaken{}, SingleRay{}, plane, Receiver{}, FirstHit{}};
+  auto w = survey.workspace();
+  const Outcome out = survey(0, w);
+  REQUIRE(out.echoes.size() == 1);
+  CHECK(length(point_of(out.shot, out.echoes[0]) - Vec3{1, 12, 3}) < 1e-12);
 }

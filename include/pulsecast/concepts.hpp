@@ -141,6 +141,7 @@ struct Reflection {
   double power = 0;  ///< received, as if the pulse had no length [W]
   ObjectId object = 0;
   std::uint16_t classification = 0;
+  double cos_incidence = 1;  ///< as in `Hit`
 };
 
 /// What a detector made of a pulse; the spans stay valid until the workspace is used again.

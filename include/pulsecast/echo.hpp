@@ -31,6 +31,7 @@ struct Echo {
   double amplitude = 0;              ///< received power at the echo's peak [W]
   double reflectance = 0;            ///< amplitude as a share of that of a white Lambertian surface met squarely at this range
   double width = 0;                  ///< standard deviation in time; 0 if not asked for [s]
+  double cos_incidence = 1;          ///< of the strongest contributor
   ObjectId object = 0;               ///< of the strongest contributor
   std::uint16_t classification = 0;  ///< of the strongest contributor
   std::uint8_t number = 1;           ///< return number, from 1 in order of range

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/random.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/scanner/footprint.hpp>
@@ -88,7 +89,11 @@ class Survey {
     if (w.reflections.empty()) return out.shot.fate = out.hits > 0 ? Fate::out_of_range : Fate::missed, out;
 
     const Detection detection = detector_.detect(pulse->laser, w.reflections, w.detector);
-    for (Echo& echo : detection.echoes) echo.reflectance = echo.amplitude / budget.power(1, 1, echo.range);
+    for (Echo& echo : detection.echoes) {
+      echo.reflectance = echo.amplitude / budget.power(1, 1, echo.range);
+      if (!receiver_.range_errors.none())
+        echo.range += receiver_.range_errors.at(echo.range, echo.cos_incidence, normal({seed_, i, echo.number, Purpose::range_noise}));
+    }
     out.echoes = detection.echoes;
     out.waveform = detection.waveform;
     out.shot.waveform_start = detection.waveform_start;
@@ -124,8 +129,8 @@ class Survey {
         if (!hit.met()) continue;
         ++met;
         if (receiver_.in_gate(hit.range))
-          w.reflections.push_back(
-              {hit.range, budget.power(footprint_.share(first + j), hit.backscatter, hit.range), hit.object, hit.classification});
+          w.reflections.push_back({hit.range, budget.power(footprint_.share(first + j), hit.backscatter, hit.range), hit.object,
+                                   hit.classification, hit.cos_incidence});
       }
     }
     return met;

@@ -72,3 +72,14 @@ TEST_CASE("a receiver refuses what cannot be") {
   CHECK_THROWS_AS((Receiver{.range_min = 5, .range_max = 4}.validate()), SettingError);
   CHECK_THROWS_AS(Receiver{.range_max = nan_value}.validate(), SettingError);
 }
+
+TEST_CASE("a range error is its bias, and a deviation that grows with range and incidence") {
+  CHECK(RangeErrors{}.none());
+  CHECK(RangeErrors{.bias = 0.01}.at(100, 1, 2) == 0.01);
+  CHECK(RangeErrors{.deviation = 0.005}.at(100, 0.5, 2) == support::relative(0.01, 1e-15));
+  CHECK(RangeErrors{.deviation = 0.005, .deviation_per_metre = 1e-5}.at(1000, 0.5, -1) == support::relative(-0.015, 1e-14));
+  CHECK(RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(100, 0.5, 1) == support::relative(0.01, 1e-14));
+  CHECK(std::isfinite(RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(100, 0, 1)));
+  CHECK_THROWS_AS(RangeErrors{.deviation = -1}.validate(), SettingError);
+  CHECK_THROWS_AS(RangeErrors{.bias = std::numeric_limits<double>::infinity()}.validate(), SettingError);
+}

@@ -234,3 +234,22 @@ TEST_CASE("an empty scene is met nowhere") {
   const Scene<LeastGeometry> scene(std::vector<Disc>{});
   CHECK_FALSE(ask(scene, {{0, 0, 10}, {0, 0, -1}}).met());
 }
+
+TEST_CASE("the height of the ground is that of the highest ground, whatever grows or stands on it") {
+  const Material soil{.ground = true}, leaf{};
+  const Scene<LeastGeometry> scene({disc({.translation = {0, 0, 3}}, 1, leaf), disc({.translation = {0, 0, 1}}, 2, soil),
+                                    disc({.translation = {0.5, 0, -2}}, 3, soil), disc({.scale = 2, .translation = {0, 0, 2}}, 4, leaf)});
+  CHECK(scene.ground_height({0, 0}).value() == 1);
+  CHECK(scene.ground_height({1.2, 0}).value() == -2);
+  CHECK_FALSE(scene.ground_height({-1.5, 0}).has_value());  // leaves alone
+  CHECK_FALSE(scene.ground_height({9, 9}).has_value());
+}
+
+TEST_CASE("the ground of a slope at UTM coordinates is where it should be") {
+  const double east = 4.7e5, north = 5.4e6;
+  const MeshData slope{.vertices = {{east, north, 100}, {east + 100, north, 110}, {east + 100, north + 100, 130}, {east, north + 100, 120}},
+                       .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  const Scene<TriangleMesh<>> scene(
+      {{.geometry = std::make_shared<const TriangleMesh<>>(slope), .materials = material_table({{.ground = true}})}});
+  CHECK(std::fabs(scene.ground_height({east + 30, north + 50}).value() - (100 + 3 + 10)) < 1e-8);
+}

@@ -13,7 +13,8 @@ namespace pulsecast {
 /// neighbouring echoes, every `interval` [s]; the answer is a standard deviation in time [s].
 template <class W>
 concept EchoWidth = std::copyable<W> && requires(const W w, std::span<const double> samples, double interval) {
-  { w.width(samples, interval) } noexcept -> std::same_as<double>;
+  { w.width(samples, interval) }
+  noexcept->std::same_as<double>;
 };
 
 /// Not measured: 0.

@@ -26,8 +26,11 @@ struct FirstHit {
     for (const Reflection& r : reflections)
       if (r.power >= threshold && (!first || r.range < first->range)) first = &r;
     if (!first) return {};
-    workspace.echo =
-        Echo{.range = first->range, .amplitude = first->power, .object = first->object, .classification = first->classification};
+    workspace.echo = Echo{.range = first->range,
+                          .amplitude = first->power,
+                          .cos_incidence = first->cos_incidence,
+                          .object = first->object,
+                          .classification = first->classification};
     return {{&workspace.echo, 1}, {}, 0};
   }
 };

@@ -172,6 +172,7 @@ class FullWaveform {
       w.echoes.push_back({.range = 0.5 * speed_of_light * time,
                           .amplitude = height,
                           .width = width_.width(between_valleys(y, i), s_.sample_interval),
+                          .cos_incidence = strongest.cos_incidence,
                           .object = strongest.object,
                           .classification = strongest.classification});
     }

@@ -19,6 +19,29 @@ namespace pulsecast {
   return 3.91 / v * std::pow(wavelength / 0.55e-6, -q) * 1e-3;
 }
 
+/// How an instrument errs about ranges: not at all, unless told otherwise.
+struct RangeErrors {
+  double bias = 0;                    ///< reported less true [m]
+  double deviation = 0;               ///< standard deviation of the noise, at any range [m]
+  double deviation_per_metre = 0;     ///< by which it grows with range
+  bool grows_with_incidence = false;  ///< divided by the cosine of the incidence. Source: Soudarissanane et al. 2011
+
+  void validate() const {
+    expect_finite("RangeErrors::bias", bias, "m");
+    expect_not_negative("RangeErrors::deviation", deviation, "m");
+    expect_not_negative("RangeErrors::deviation_per_metre", deviation_per_metre, "");
+  }
+
+  [[nodiscard]] bool none() const noexcept { return bias == 0 && deviation == 0 && deviation_per_metre == 0; }
+
+  /// Reported less true range [m] of an echo at a range [m], for a draw from the standard normal distribution.
+  [[nodiscard]] double at(double range, double cos_incidence, double draw) const noexcept {
+    constexpr double least_cosine = 0.01;  // an edge-on surface has no noise without bound
+    const double slant = grows_with_incidence ? (cos_incidence > least_cosine ? cos_incidence : least_cosine) : 1;
+    return bias + draw * (deviation + deviation_per_metre * range) / slant;
+  }
+};
+
 /// The receiving half of an instrument, and the air before it.
 struct Receiver {
   double diameter = 0.15;                                      ///< of the aperture [m]
@@ -26,12 +49,14 @@ struct Receiver {
   double visibility = 23e3;                                    ///< meteorological; infinite for no atmosphere [m]
   double range_min = 0;                                        ///< nearer than this, nothing is received [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< farther than this, nothing is received [m]
+  RangeErrors range_errors{};
 
   void validate() const {
     expect_positive("Receiver::diameter", diameter, "m");
     expect_within("Receiver::efficiency", efficiency, 0, 1, "");
     expect_within("Receiver::visibility", visibility, 1, std::numeric_limits<double>::infinity(), "m");
     expect_not_negative("Receiver::range_min", range_min, "m");
+    range_errors.validate();
     expect_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
   }
 

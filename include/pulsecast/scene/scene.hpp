@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -36,17 +37,19 @@ class Scene {
   }
 
   /// What each ray of the bundle meets first. Parts are met where they stand; the tie between parts goes to the first in the list.
-  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    Nearest nearest(rays);
-    const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
-      for (const PrimitiveIndex p : found) {
-        nearest.part = std::uint64_t{p} << 32;
-        const Part& part = parts_[p];
-        part.placement.identity() ? closest_in(part, rays, nearest) : closest_in(part, part.placement.to_local(rays), nearest);
-      }
-    };
-    index_.closest(rays, test, nearest);
-    describe(rays, nearest, hits);
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept { describe(rays, nearest(rays), hits); }
+
+  /// The height of the ground at a place, as far as any is there: the highest surface of a material that is ground [m].
+  [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept {
+    if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
+    const double top = bounds().max.z + 1;
+    RayBundle down = bundle_of({.origin = {at.x, at.y, top}, .direction = -up});
+    for (;;) {
+      const Nearest nearest = this->nearest(down);
+      if (!nearest.met(0)) return std::nullopt;
+      if (material_at(down, nearest).ground) return top - nearest.range[0];
+      down.near = nearest.range[0];  // what is not ground is passed
+    }
   }
 
  private:
@@ -65,6 +68,27 @@ class Scene {
           part.geometry));
     }
     return boxes;
+  }
+
+  Nearest nearest(const RayBundle& rays) const noexcept {
+    Nearest nearest(rays);
+    const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
+      for (const PrimitiveIndex p : found) {
+        nearest.part = std::uint64_t{p} << 32;
+        const Part& part = parts_[p];
+        part.placement.identity() ? closest_in(part, rays, nearest) : closest_in(part, part.placement.to_local(rays), nearest);
+      }
+    };
+    index_.closest(rays, test, nearest);
+    return nearest;
+  }
+
+  /// Of what the bundle's only ray met.
+  const Material& material_at(const RayBundle& rays, const Nearest& nearest) const noexcept {
+    const Part& part = parts_[nearest.part_of(0)];
+    const RayBundle local = part.placement.to_local(rays);
+    const auto material = [&](const auto& shape) noexcept { return shape->surface(nearest.primitive_of(0), local, 0).material; };
+    return (*part.materials)[std::visit(material, part.geometry)];
   }
 
   static void closest_in(const Part& part, const RayBundle& rays, Nearest& nearest) noexcept {
