@@ -16,6 +16,8 @@ struct Laser {
   double peak_power = 4;         ///< of a pulse [W]
   double pulse_length = 4e-9;    ///< full width at half maximum [s]
   double divergence = 0.3e-3;    ///< full angle at 1/e^2 of the peak irradiance [rad]
+
+  friend bool operator==(const Laser&, const Laser&) = default;
 };
 
 /// One laser pulse, as seen from a frame.

@@ -3,10 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -41,17 +39,20 @@ class Survey {
 
   Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would be gone
 
-  /// The scratch memory of one worker.
+  /// The scratch memory of one worker, and what need not be computed again from pulse to pulse.
   struct Workspace {
-    std::vector<Reflection> reflections;
+    Laser laser;  ///< that `budget` and `fan` are made for
+    LinkBudget budget;
     std::vector<Vec3> fan;  ///< directions of the subrays in the frame of the beam
-    double fan_divergence;  ///< that the fan is made for [rad]
+    std::vector<Hit> hits;  ///< of a bundle
+    std::vector<Reflection> reflections;
     decltype(std::declval<const Instrument&>().workspace(0)) detector;
   };
 
   [[nodiscard]] Workspace workspace() const {
+    const Laser laser{};
     const std::size_t n = footprint_.size();
-    Workspace w{{}, std::vector<Vec3>(n), std::numeric_limits<double>::quiet_NaN(), detector_.workspace(n)};
+    Workspace w{laser, {receiver_, laser}, fan(laser), std::vector<Hit>(RayBundle::capacity), {}, detector_.workspace(n)};
     w.reflections.reserve(n);
     return w;
   }
@@ -84,13 +85,13 @@ class Survey {
                 .leg = pulse->leg,
                 .channel = pulse->channel};
 
-    const LinkBudget budget(receiver_, pulse->laser);
-    out.hits = trace(*pulse, budget, w);
+    if (pulse->laser != w.laser) make_for(pulse->laser, w);
+    out.hits = trace(*pulse, w);
     if (w.reflections.empty()) return out.shot.fate = out.hits > 0 ? Fate::out_of_range : Fate::missed, out;
 
     const Detection detection = detector_.detect(pulse->laser, w.reflections, w.detector);
     for (Echo& echo : detection.echoes) {
-      echo.reflectance = echo.amplitude / budget.power(1, 1, echo.range);
+      echo.reflectance = echo.amplitude / w.budget.power(1, 1, echo.range);
       if (!receiver_.range_errors.none())
         echo.range += receiver_.range_errors.at(echo.range, echo.cos_incidence, normal({seed_, i, echo.number, Purpose::range_noise}));
     }
@@ -102,19 +103,27 @@ class Survey {
   }
 
  private:
+  std::vector<Vec3> fan(const Laser& laser) const {
+    std::vector<Vec3> directions;
+    for (std::size_t j = 0; j < footprint_.size(); ++j) directions.push_back(subray_direction(footprint_.offset(j), laser.divergence));
+    return directions;
+  }
+
+  void make_for(const Laser& laser, Workspace& w) const noexcept {
+    if (laser.divergence != w.laser.divergence)
+      for (std::size_t j = 0; j < w.fan.size(); ++j) w.fan[j] = subray_direction(footprint_.offset(j), laser.divergence);
+    w.budget = LinkBudget(receiver_, laser);
+    w.laser = laser;
+  }
+
   /// Fills in the reflections that pass the range gate; returns how many subrays met anything.
-  std::size_t trace(const Pulse<frame::World>& pulse, const LinkBudget& budget, Workspace& w) const noexcept {
-    if (w.fan_divergence != pulse.laser.divergence) {
-      for (std::size_t j = 0; j < w.fan.size(); ++j) w.fan[j] = subray_direction(footprint_.offset(j), pulse.laser.divergence);
-      w.fan_divergence = pulse.laser.divergence;
-    }
+  std::size_t trace(const Pulse<frame::World>& pulse, Workspace& w) const noexcept {
     w.reflections.clear();
     std::size_t met = 0;
     RayBundle rays;
     rays.origin = pulse.origin();
     rays.wavelength = pulse.laser.wavelength, rays.tick = pulse.tick, rays.seed = seed_, rays.pulse = pulse.index;
     const Vec3 x = pulse.pose.direction(right), y = pulse.pose.direction(forward), z = pulse.pose.direction(up);
-    std::array<Hit, RayBundle::capacity> hits;
     for (std::size_t first = 0; first < w.fan.size(); first += rays.size) {
       rays.first_subray = static_cast<std::uint32_t>(first);
       rays.size = std::min(RayBundle::capacity, w.fan.size() - first);
@@ -123,13 +132,13 @@ class Survey {
         rays.set_direction(j, x * d.x + y * d.y + z * d.z);
       }
       rays.pad();
-      ask(rays, hits);
+      ask(rays, w.hits);
       for (std::size_t j = 0; j < rays.size; ++j) {
-        const Hit& hit = hits[j];
+        const Hit& hit = w.hits[j];
         if (!hit.met()) continue;
         ++met;
         if (receiver_.in_gate(hit.range))
-          w.reflections.push_back({hit.range, budget.power(footprint_.share(first + j), hit.backscatter, hit.range), hit.object,
+          w.reflections.push_back({hit.range, w.budget.power(footprint_.share(first + j), hit.backscatter, hit.range), hit.object,
                                    hit.classification, hit.cos_incidence});
       }
     }

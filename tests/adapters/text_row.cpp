@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <string>
 
@@ -24,6 +25,17 @@ TEST_CASE("numbers stand with one blank between them, and rows end and begin ane
 TEST_CASE("a zero has no sign, however it came about") {
   TextRow row;
   CHECK(row.add(-0.0, 4).add(-0.00004, 4).add(-0.00006, 4).add(-1e-300, 0).add(-10.0, 1).end() == "0.0000 0.0000 -0.0001 0 -10.0\n");
+}
+
+TEST_CASE("a number without a count of decimals is as short as it can be, and reads back the same") {
+  TextRow row(';');
+  CHECK(row.add(0.1).add(-0.0).add(1e300).add(7).add(2.5, 1).end() == "0.1;0;1e+300;7;2.5\n");
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    CAPTURE(seed);
+    support::Generator random(seed);
+    const double value = random.log_uniform(1e-300, 1e300) * (random.coin() ? 1 : -1);
+    CHECK(std::strtod(std::string(row.add(value).end()).c_str(), nullptr) == value);
+  }
 }
 
 TEST_CASE("numbers are written as the C library does, and the largest finds room") {

@@ -96,26 +96,6 @@ TEST_CASE("where roll and yaw are one turn, all of it is yaw") {
   CHECK(turned(folder, rotation_about(right, radians(30)) * rotation_about(forward, radians(90))) == "0.0000 90.0000 30.0000\n");
 }
 
-TEST_CASE("the angles of every rotation make that rotation again, near and at the poles too") {
-  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
-    CAPTURE(seed);
-    support::Generator random(seed);
-    Rotation rotation = random.rotation();
-    if (seed % 3 == 1) {  // within 1e-12 to 1 of a pole
-      const double pitch = (random.coin() ? 1 : -1) * (pi / 2 - random.log_uniform(1e-12, 1));
-      rotation =
-          rotation_about(right, random.uniform(-pi, pi)) * rotation_about(forward, pitch) * rotation_about(up, random.uniform(-pi, pi));
-    }
-    const RollPitchYaw angles = roll_pitch_yaw(rotation);
-    CHECK(std::fabs(angles.roll) <= pi);
-    CHECK(std::fabs(angles.pitch) <= pi / 2);
-    CHECK(std::fabs(angles.yaw) <= pi);
-    const Rotation again = rotation_about(right, angles.roll) * rotation_about(forward, angles.pitch) * rotation_about(up, angles.yaw);
-    const double allowed = seed % 3 == 1 ? 1e-7 : 1e-12;  // 6e-6 deg, less than is written, and rounding
-    for (const Vec3& axis : {right, forward, up}) CHECK(max_norm(again * axis - rotation * axis) < allowed);
-  }
-}
-
 TEST_CASE("a pose that is no pose is an error, and impossible settings are refused") {
   const TemporaryFolder folder;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -131,6 +111,140 @@ TEST_CASE("a pose that is no pose is an error, and impossible settings are refus
     }
     CHECK_THROWS_AS(TrajectoryWriter(folder / "t.txt", {.start_time = nan}), SettingError);
   }
+  CHECK(folder.empty());
+}
+
+/// The angle between two attitudes [rad].
+double apart(const Rotation& a, const Rotation& b) {
+  const Rotation turn = conjugate(a) * b;
+  return 2 * std::asin(std::min(1.0, length(Vec3{turn.x, turn.y, turn.z})));
+}
+
+/// Poses anywhere on Earth; of every four attitudes, one is at a pole of the convention and one is near to it.
+std::vector<Waypoint> poses(std::uint64_t seed, const AngleConvention& convention) {
+  support::Generator random(seed);
+  std::vector<Waypoint> result;
+  double time = 0;
+  for (int i = 0; i < 40; ++i, time += random.log_uniform(1e-3, 10)) {
+    Rotation rotation = random.rotation();
+    if (i % 2 == 1) {
+      RollPitchYaw angles{random.uniform(-pi, pi), random.uniform(-pi, pi), random.uniform(-pi, pi)};
+      angles.*convention.turns[1].angle = (random.coin() ? 1 : -1) * (pi / 2 - (i % 4 == 1 ? 0 : random.log_uniform(1e-17, 1)));
+      rotation = rotation_of(angles, convention);
+    }
+    result.push_back({time, random.point(6e6), rotation});
+  }
+  return result;
+}
+
+TEST_CASE("what is written is read: every format, convention, axis and separator") {
+  const TemporaryFolder folder;
+  std::vector<TrajectoryFormat> formats{csv_format(), helios_format(), helios_output_format(), tum_format()};
+  for (const AngleConvention& angles : {heading_pitch_roll, helios_arinc_705, helios_canonical, mathematical, ros_roll_pitch_yaw})
+    for (const TrajectoryFormat& format : {csv_format(), helios_format()}) {
+      formats.push_back(format);
+      formats.back().angles = angles;
+      formats.back().columns = {"pitch", "x_mm", "roll", "time_ms", "y_km", "yaw", "z_m"};
+      formats.back().angle_unit = formats.size() % 4 < 2 ? AngleUnit::degree : AngleUnit::radian;
+    }
+  for (const BodyAxes body : {BodyAxes::right_forward_up, BodyAxes::forward_right_down, BodyAxes::forward_left_up})
+    for (const WorldAxes world : {WorldAxes::east_north_up, WorldAxes::north_east_down}) {
+      formats.push_back(tum_format());
+      formats.back().axes = {body, world};
+      formats.push_back(csv_format());
+      formats.back().axes = {body, world};
+      formats.push_back(csv_format());
+      formats.back().columns = {"time_s", "north_m", "east_m", "down_m", "qw", "qx", "qy", "qz"};
+      formats.back().axes = {body, world};
+    }
+  for (const char separator : {';', '\t', ' '}) {
+    formats.push_back(csv_format());
+    formats.back().separator = separator;
+  }
+  double worst = 0;
+  for (std::size_t k = 0; k < formats.size(); ++k) {
+    CAPTURE(k);
+    const std::vector<Waypoint> written = poses(k, formats[k].angles);
+    write_trajectory(folder / "t.txt", written, formats[k], 1000);
+    const TrajectoryTable table = read_trajectory(folder / "t.txt", formats[k]);
+    CHECK(table.warnings.empty());
+    CHECK(table.start_time == 1000);
+    REQUIRE(table.poses.size() == written.size());
+    for (std::size_t i = 0; i < written.size(); ++i) {
+      CAPTURE(i);
+      CHECK(std::fabs(table.poses[i].time - written[i].time) < 1e-12);
+      CHECK(max_norm(table.poses[i].position - written[i].position) < 2e-9);
+      worst = std::max(worst, apart(table.poses[i].rotation, written[i].rotation));
+    }
+    CHECK(worst < 1e-12);
+  }
+  MESSAGE("furthest apart [rad]: ", worst);
+}
+
+TEST_CASE("metres and seconds come back to the last digit") {
+  const TemporaryFolder folder;
+  for (const TrajectoryFormat& format : {csv_format(), helios_format(), tum_format()}) {
+    const std::vector<Waypoint> written = poses(7, format.angles);
+    write_trajectory(folder / "t.txt", written, format);
+    const TrajectoryTable table = read_trajectory(folder / "t.txt", format);
+    for (std::size_t i = 0; i < written.size(); ++i) {
+      CHECK(table.poses[i].time == written[i].time);
+      CHECK(table.poses[i].position == written[i].position);
+    }
+  }
+}
+
+TEST_CASE("a written trajectory looks like its format") {
+  const TemporaryFolder folder;
+  const std::vector<Waypoint> east{{0, {476200, 5474300.5, 600}, rotation_about(-up, radians(90))},
+                                   {0.5, {476230, 5474300.5, 600}, no_rotation}};
+  const auto text = [&](const TrajectoryFormat& format) {
+    write_trajectory(folder / "t.txt", east, format, 10);
+    return content(folder / "t.txt");
+  };
+  CHECK(text(csv_format()) ==
+        "time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg\n10,476200,5474300.5,600,0,0,90\n10.5,476230,5474300.5,600,0,0,0\n");
+  CHECK(text(helios_format()) ==
+        "#TIME_COLUMN: 0\n#HEADER: \"t\", \"roll\", \"pitch\", \"yaw\", \"x\", \"y\", \"z\"\n"
+        "10,0,0,90,476200,5474300.5,600\n10.5,0,0,0,476230,5474300.5,600\n");
+  const std::vector<Waypoint> west{{0, {}, rotation_about(up, radians(90))}};
+  write_trajectory(folder / "t.txt", west, helios_output_format());
+  CHECK(content(folder / "t.txt") == "0 0 0 0 0 0 90\n");
+  write_trajectory(folder / "t.txt", west, {.columns = {"t", "x", "y", "z", "heading"}});
+  CHECK(content(folder / "t.txt") == "t,x,y,z,heading\n0,0,0,0,270\n");
+  CHECK(text(tum_format()).starts_with("10 476200 5474300.5 600 "));
+}
+
+TEST_CASE("what the writer of records has written can be read") {
+  const TemporaryFolder folder;
+  const Rotation rotation = rotation_about(right, radians(10)) * rotation_about(forward, radians(-20)) * rotation_about(up, radians(200));
+  (void)written(folder, East{rotation}, {}, {2, 0}, 0.5, {.start_time = 100});
+  const TrajectoryTable table = read_trajectory(folder / "trajectory.txt", helios_output_format());
+  CHECK(table.warnings.empty());
+  CHECK(table.start_time == 100);
+  REQUIRE(table.poses.size() == 5);
+  CHECK(table.poses[3].time == 1.5);
+  CHECK(table.poses[3].position == Vec3{3, 10, 100});
+  CHECK(apart(table.poses[3].rotation, rotation) < 1e-13);
+}
+
+TEST_CASE("what could not be read back is not written, and no file is left") {
+  const TemporaryFolder folder;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const std::vector<Waypoint>& bad : std::vector<std::vector<Waypoint>>{{},
+                                                                             {{nan, {}, no_rotation}},
+                                                                             {{0, {0, nan, 0}, no_rotation}},
+                                                                             {{0, {0, 2e12, 0}, no_rotation}},
+                                                                             {{0, {}, Rotation{2, 0, 0, 0}}},
+                                                                             {{0, {}, Rotation{nan, 0, 0, 0}}},
+                                                                             {{1, {}, no_rotation}, {1, {}, no_rotation}},
+                                                                             {{1, {}, no_rotation}, {0, {}, no_rotation}}})
+    CHECK_THROWS_AS(write_trajectory(folder / "t.txt", bad), FileError);
+  const std::vector<Waypoint> good{{0, {}, no_rotation}};
+  TrajectoryFormat format;
+  format.columns = {"t"};
+  CHECK_THROWS_AS(write_trajectory(folder / "t.txt", good, format), SettingError);
+  CHECK_THROWS_AS(write_trajectory(folder / "t.txt", good, csv_format(), nan), SettingError);
   CHECK(folder.empty());
 }
 

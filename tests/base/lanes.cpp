@@ -50,3 +50,11 @@ TEST_CASE("lanes of identities compare as unsigned numbers") {
   CHECK(any(small < none));
   CHECK_FALSE(any(none < small));
 }
+
+TEST_CASE_TEMPLATE("four numbers of either precision go at once", Real, float, double) {
+  const std::array<Real, 5> numbers{0, 1, 2, 3, 4};
+  Four<Real> four;
+  fill(four, numbers[1]);
+  const Four<Real> twice = four + four;
+  for (std::size_t i = 0; i < 4; ++i) CHECK(twice[i] == Real(2 * (i + 1)));
+}

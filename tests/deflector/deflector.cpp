@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <pulsecast/deflector/fixed_beam.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/scanner/scanner.hpp>
@@ -76,6 +77,26 @@ TEST_CASE("a head carries the place where the beam leaves around with it") {
   REQUIRE(p);
   CHECK(length(p->origin() + forward) < 1e-15);  // what was above is behind
   CHECK(length(p->direction() - right) < 1e-15);
+}
+
+TEST_CASE("a whole spinning head may be turned again, about another axis: the outer turn comes last") {
+  const double spin = 10 * 360_deg, tilt = -15_deg, turn = 7_deg;
+  const Deflector spinning{RotatingHead{.rate = -spin},
+                           Deflector{FixedBeam{.elevation = tilt}, Scanner{.pulse_rate = 20_kHz, .pulses = 40000}}};
+  const Deflector nodding{RotatingHead{.rate = turn, .axis = right}, spinning};
+  const Deflector panning{RotatingHead{.rate = 3 * turn, .start = 1}, nodding};
+  for (PulseIndex i = 0; i < 40000; i += 77) {
+    CAPTURE(i);
+    const double t = static_cast<double>(i) / 20e3, azimuth = spin * t, nod = turn * t, pan = 1 + 3 * turn * t;
+    const Vec3 spun{std::cos(tilt) * std::sin(azimuth), std::cos(tilt) * std::cos(azimuth), std::sin(tilt)};
+    const Vec3 nodded{spun.x, std::cos(nod) * spun.y - std::sin(nod) * spun.z, std::sin(nod) * spun.y + std::cos(nod) * spun.z};
+    const Vec3 panned{std::cos(pan) * nodded.x - std::sin(pan) * nodded.y, std::sin(pan) * nodded.x + std::cos(pan) * nodded.y, nodded.z};
+    CHECK(length(spinning.pulse(i)->direction() - spun) < 1e-12);
+    CHECK(length(nodding.pulse(i)->direction() - nodded) < 1e-12);
+    CHECK(length(panning.pulse(i)->direction() - panned) < 1e-12);
+  }
+  CHECK(support::source_laws(panning) == "");
+  CHECK(support::wrapped_source_laws(panning, spinning) == "");
 }
 
 TEST_CASE("a closed optic blocks the slot, and so does a closed head or what is inside") {

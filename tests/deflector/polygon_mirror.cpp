@@ -63,7 +63,66 @@ TEST_CASE("a polygon mirror without a gate is always open") {
   for (const Tick t : some_ticks(2)) CHECK(PolygonMirror{}.open(t));
 }
 
+TEST_CASE("a polygon mirror's facets take turns, and each sends its line out of the plane by its own tilt") {
+  const std::vector<double> tilts{-2_deg, 1_deg, 3_deg};
+  const PolygonMirror mirror{.lines_per_second = 100, .sweep = 60_deg, .facet_tilts = tilts};
+  for (const PulseIndex start : {PulseIndex{0}, PulseIndex{300000000000}})  // of 100 pulses a line
+    for (PulseIndex i = start; i < start + 1000; ++i) {
+      CAPTURE(i);
+      const Tick t = Tick::of(i, 10e3);
+      const std::size_t facet = i / 100 % 3;
+      REQUIRE(mirror.facet(t) == facet);
+      const Vec3 d = mirror.at(t).direction(forward);
+      const double a = mirror.angle(t), aside = std::sin(tilts[facet]), along = std::cos(tilts[facet]);
+      CHECK(length(d - Vec3{aside, along * std::cos(a), along * std::sin(a)}) < 1e-15);
+    }
+}
+
+TEST_CASE("a facet ends where its line ends, however long the mirror turns and however its rate rounds") {
+  support::Generator any(4);
+  for (int k = 0; k < 300; ++k) {
+    const double rate = any.log_uniform(0.1, 1e4);
+    const std::size_t n = 2 + any.whole(12);
+    const PolygonMirror mirror{.lines_per_second = rate, .facet_tilts = std::vector<double>(n, 0.0)};
+    CAPTURE(rate);
+    CAPTURE(n);
+    const double begin = std::floor(any.log_uniform(1, 1e8));
+    double phase = Tick::of_seconds(begin).phase(rate);
+    std::size_t facet = mirror.facet(Tick::of_seconds(begin));
+    int changes = 0;
+    for (int j = 1; j < 500; ++j) {
+      const Tick t = Tick::of_seconds(begin) + Tick::of_seconds(j / (rate * 50.3));
+      const bool over = t.phase(rate) < phase;  // the next line has begun
+      REQUIRE(mirror.facet(t) == (facet + (over ? 1 : 0)) % n);
+      phase = t.phase(rate), facet = mirror.facet(t), changes += over;
+    }
+    CHECK(changes >= 9);
+  }
+}
+
+TEST_CASE("at the very beginning of a line, angle and facet tell of the same line") {
+  for (const double rate : {1.0, 70.0, 100.0, 333.0})
+    for (std::size_t n = 2; n < 14; ++n) {
+      const PolygonMirror mirror{.lines_per_second = rate, .facet_tilts = std::vector<double>(n, 0.0)};
+      for (const PulseIndex start : {PulseIndex{0}, PulseIndex{n} * 1000000007})
+        for (PulseIndex line = start + 1; line < start + 200; ++line) {
+          CAPTURE(rate);
+          CAPTURE(n);
+          CAPTURE(line);
+          const Tick t = Tick::of(line, rate);
+          const bool begun = mirror.angle(t) < 0;  // else it is still at the last end of the one before, by rounding of the tick
+          REQUIRE(mirror.facet(t) == (begun ? line : line - 1) % n);
+        }
+    }
+}
+
+TEST_CASE("a polygon mirror without tilts is one whose tilts are zero") {
+  const PolygonMirror plain{.lines_per_second = 77}, tilted{.lines_per_second = 77, .facet_tilts = {0}};
+  for (const Tick t : some_ticks(5)) CHECK(length(plain.at(t).direction(forward) - tilted.at(t).direction(forward)) == 0);
+}
+
 TEST_CASE("a polygon mirror keeps the laws of a motion") {
+  CHECK(support::motion_laws(PolygonMirror{.lines_per_second = 33.3, .facet_tilts = {0.1, -0.1, 0, 0.2}}, some_ticks(6)) == "");
   CHECK(support::motion_laws(PolygonMirror{.lines_per_second = 33.3, .angle_min = -0.3, .angle_max = 1}, some_ticks(3)) == "");
 }
 
@@ -75,4 +134,5 @@ TEST_CASE("a polygon mirror refuses what no mirror can do") {
   CHECK_THROWS_AS((PolygonMirror{.angle_min = 0.2, .angle_max = 0.1}.validate()), SettingError);
   CHECK_THROWS_AS(PolygonMirror{.angle_min = nan}.validate(), SettingError);
   CHECK_THROWS_AS(PolygonMirror{.angle_max = nan}.validate(), SettingError);
+  for (const double bad : {-1.6, 1.6, nan}) CHECK_THROWS_AS((PolygonMirror{.facet_tilts = {0, bad}}.validate()), SettingError);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/platform/legs.hpp>
 
+#include <concepts>
 #include <utility>
 #include <vector>
 
@@ -95,6 +96,22 @@ TEST_CASE("many legs keep the laws of a source") {
     CHECK(legs.pulse(first - 1)->leg == k);
   }
   CHECK(first == legs.size());
+}
+
+TEST_CASE("a leg that is not active takes its time and its number, but holds no slots") {
+  const Legs legs(std::vector<Leg<Pass>>{{set_up(1, 4, 6)}, {set_up(2, 1, 5), false}, {set_up(3, 2, 3)}, {set_up(4, 1, 7), false}});
+  static_assert(std::same_as<decltype(legs), const Legs<Pass>>);
+  CHECK(legs.size() == 9);
+  CHECK(legs.duration() == Tick{15, 0});
+  CHECK(legs.legs().size() == 4);
+  CHECK(legs.start(2) == Tick{6, 0.5});
+  CHECK(legs.pulse(5)->leg == 0);
+  CHECK(legs.pulse(6)->leg == 2);
+  CHECK(legs.pulse(6)->tick == Tick{6, 0.5});
+  CHECK(legs.pulse(6)->origin().x == 3);
+  CHECK(legs.pulse(8)->leg == 2);
+  CHECK(support::source_laws(legs) == "");
+  CHECK(Legs(std::vector<Leg<Pass>>{{set_up(1, 4, 6), false}}).size() == 0);
 }
 
 TEST_CASE("no legs are refused") { CHECK_THROWS_AS(Legs(std::vector<Pass>{}), SettingError); }

@@ -26,6 +26,14 @@ TEST_CASE("a scanner sends its pulses at a constant rate, forward, from its orig
   CHECK(p->leg == 0);
 }
 
+TEST_CASE("a scanner with a delay sends each pulse that much after its slot begins") {
+  const Scanner prompt{.pulse_rate = 100_kHz}, late{.pulse_rate = 100_kHz, .delay = 3_us};
+  for (const PulseIndex i : {PulseIndex{0}, PulseIndex{77}, PulseIndex{99999}, PulseIndex{1000000000000}})
+    CHECK(late.pulse(i)->tick == prompt.pulse(i)->tick + Tick::of_seconds(3_us));
+  CHECK(late.duration() == prompt.duration());
+  CHECK(support::source_laws(late) == "");
+}
+
 TEST_CASE("a scanner keeps the laws of a source, of any length") {
   for (const PulseIndex pulses : {0ULL, 1ULL, 2ULL, 1000ULL, 1000000000000ULL}) {
     CAPTURE(pulses);
@@ -44,5 +52,8 @@ TEST_CASE("a scanner refuses what no laser can do") {
     CHECK_THROWS_AS(Scanner{.laser = {.pulse_length = bad}}.validate(), SettingError);
   }
   for (const double bad : {-0.001, nan, infinity, 4.0}) CHECK_THROWS_AS(Scanner{.laser = {.divergence = bad}}.validate(), SettingError);
+  for (const double bad : {-1e-9, nan, infinity, 10_us})
+    CHECK_THROWS_AS((Scanner{.pulse_rate = 100_kHz, .delay = bad}.validate()), SettingError);
+  CHECK_NOTHROW(Scanner{.pulse_rate = 100_kHz, .delay = 9.9_us}.validate());
   CHECK_NOTHROW(Scanner{.laser = {.divergence = 0}}.validate());
 }

@@ -9,11 +9,18 @@
 #include <string>
 #include <string_view>
 
+#include <pulsecast/base/error.hpp>
+
 namespace pulsecast::adapters {
 
-/// A row of a text table: numbers with one blank between them, written the same whatever the locale.
+/// A row of a text table: numbers with one separator between them, a blank if not told otherwise, written the same whatever the locale.
 class TextRow {
  public:
+  explicit TextRow(char separator = ' ') noexcept : separator_(separator) {}
+
+  /// A number as short as it can be so that it reads back the same; a zero has no sign.
+  TextRow& add(double value) { return append(pulsecast::detail::written(value == 0 ? 0 : value)); }
+
   /// A number in fixed notation, rounded to nearest; a zero has no sign.
   TextRow& add(double value, int decimals) {
     std::array<char, std::numeric_limits<double>::max_exponent10 + 32> digits{};  // the longest number, its sign, point and decimals
@@ -40,12 +47,13 @@ class TextRow {
  private:
   TextRow& append(std::string_view text) {
     if (ended_) text_.clear();
-    if (!text_.empty()) text_ += ' ';
+    if (!text_.empty()) text_ += separator_;
     text_ += text;
     ended_ = false;
     return *this;
   }
 
+  char separator_;
   std::string text_;
   bool ended_ = false;
 };

@@ -3,39 +3,25 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
+#include <pulsecast/adapters/attitude.hpp>
 #include <pulsecast/adapters/output_file.hpp>
 #include <pulsecast/adapters/text_row.hpp>
+#include <pulsecast/adapters/trajectory_columns.hpp>
+#include <pulsecast/adapters/trajectory_format.hpp>
+#include <pulsecast/adapters/trajectory_table.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/platform/waypoints.hpp>
 
 namespace pulsecast::adapters {
-
-/// A rotation as three turns: first about z by `yaw`, then about the fixed y by `pitch`, then about the fixed x by `roll`. With yaw alone
-/// it is the heading, counter-clockwise from +y. Where |pitch| is 90 degrees only roll +- yaw is defined; roll is then 0.
-struct RollPitchYaw {
-  double roll = 0;   ///< about x, in [-pi, pi] [rad]
-  double pitch = 0;  ///< about y, in [-pi/2, pi/2] [rad]
-  double yaw = 0;    ///< about z, in [-pi, pi] [rad]
-};
-
-/// Source: the entries of the product Rx(roll) Ry(pitch) Rz(yaw), whose last column is (sin p, -sin r cos p, cos r cos p) and whose first
-/// row is (cos p cos y, -cos p sin y, sin p); with r = 0 its second row is (sin y, cos y, 0).
-[[nodiscard]] inline RollPitchYaw roll_pitch_yaw(const Rotation& rotation) noexcept {
-  const Vec3 column = rotation * up;
-  const Vec3 row = conjugate(rotation) * right;
-  const double cos_pitch = std::hypot(row.x, row.y);
-  const double pitch = std::atan2(row.z, cos_pitch);
-  if (cos_pitch < 1e-8) {  // less than this and rounding, 1e-16, would turn roll and yaw by more than leaving the rest out does
-    const Vec3 second_row = conjugate(rotation) * forward;
-    return {0, pitch, std::atan2(second_row.x, second_row.y)};
-  }
-  return {std::atan2(-column.y, column.z), pitch, std::atan2(-row.y, row.x)};
-}
 
 struct TrajectoryFileSettings {
   double start_time = 0;  ///< what the clock shows at tick 0 [s]
@@ -47,8 +33,9 @@ struct TrajectoryFileSettings {
 ///
 ///     x y z gpsTime roll pitch yaw
 ///
-/// x, y, z [m] and the angles of `RollPitchYaw` [deg] have 4 decimals, gpsTime [s] has 9; yaw is in [0, 360). There is no head line.
-/// These are the columns of HELIOS++ trajectory files. Only `close()` makes the file: see `OutputFile`.
+/// x, y, z [m] and the angles [deg], as `helios_canonical` has them, have 4 decimals, gpsTime [s] has 9; yaw is in [0, 360). There is no
+/// head line. These are the columns of HELIOS++ trajectory files; `helios_output_format` reads them. Only `close()` makes the file: see
+/// `OutputFile`.
 class TrajectoryWriter {
  public:
   explicit TrajectoryWriter(std::filesystem::path path, const TrajectoryFileSettings& settings = {})
@@ -60,7 +47,7 @@ class TrajectoryWriter {
       file_.discard();
       throw FileError(file_.path().string(), "line " + std::to_string(records_ + 1), "cannot be written: expected a finite pose");
     }
-    const RollPitchYaw angles = roll_pitch_yaw(pose.rotation);
+    const RollPitchYaw angles = roll_pitch_yaw(pose.rotation, helios_canonical);
     const double yaw_deg = degrees(angles.yaw < 0 ? angles.yaw + 2 * pi : angles.yaw);
     row_.add(pose.position.x, 4).add(pose.position.y, 4).add(pose.position.z, 4).add(settings_.start_time + tick.seconds(), 9);
     row_.add(degrees(angles.roll), 4).add(degrees(angles.pitch), 4).add(yaw_deg < 359.99995 ? yaw_deg : 0, 4);  // not 360.0000
@@ -89,5 +76,71 @@ class TrajectoryWriter {
   TextRow row_;
   std::uint64_t records_ = 0;
 };
+
+/// Writes a trajectory so that `read_trajectory` reads it back, with every digit that a double has; yaw is in [0, 2 pi). The times of the
+/// poses must ascend; to them, `start_time` [s] is added.
+void write_trajectory(const std::filesystem::path& path, std::span<const Waypoint> poses, const TrajectoryFormat& format = csv_format(),
+                      double start_time = 0);
+
+namespace detail {
+
+/// The lines that name the columns.
+[[nodiscard]] inline std::string head_of(const TrajectoryFormat& format, const TrajectoryColumns& columns) {
+  if (format.names == ColumnNames::nowhere) return {};
+  const bool in_comments = format.names == ColumnNames::comments;
+  std::string time, names;
+  for (std::size_t i = 0, place = 0; i < format.columns.size(); ++i) {
+    const std::optional<TrajectoryColumn>& column = columns.all()[i];
+    if (!column) continue;
+    if (column->quantity == Quantity::time) time = std::to_string(place);
+    if (place++ > 0) names += in_comments ? std::string(", ") : std::string(1, format.separator);
+    names += in_comments ? '"' + format.columns[i] + '"' : format.columns[i];
+  }
+  return in_comments ? "#TIME_COLUMN: " + time + "\n#HEADER: " + names + '\n' : names + '\n';
+}
+
+/// A pose as a format tells it.
+[[nodiscard]] inline QuantityValues values_of(const Waypoint& pose, const TrajectoryFormat& format, double start_time) {
+  const Vec3 p = pose.position, in_file = format.axes.swapped(p);
+  const Rotation q = format.axes.to_file(pose.rotation);
+  const RollPitchYaw angles = roll_pitch_yaw(pose.rotation, format.angles);
+  const double turn = angles.yaw < 0 ? angles.yaw + 2 * pi : angles.yaw;
+  QuantityValues values;
+  using enum Quantity;
+  values[time] = start_time + pose.time;
+  values[x] = in_file.x, values[y] = in_file.y, values[z] = in_file.z;
+  values[east] = p.x, values[north] = p.y, values[up] = p.z, values[down] = -p.z;
+  values[roll] = angles.roll, values[pitch] = angles.pitch, values[yaw] = turn < 2 * pi ? turn : 0;
+  values[qx] = q.x, values[qy] = q.y, values[qz] = q.z, values[qw] = q.w;
+  return values;
+}
+
+}  // namespace detail
+
+inline void write_trajectory(const std::filesystem::path& path, std::span<const Waypoint> poses, const TrajectoryFormat& format,
+                             double start_time) {
+  format.validate();
+  expect_finite("write_trajectory start_time", start_time, "s");
+  const TrajectoryColumns columns(format.columns, format.left_out, format.angle_unit);
+  if (poses.empty()) throw FileError(path.string(), "", "cannot be written: expected at least one pose");
+  OutputFile file(path);
+  file.write(detail::head_of(format, columns));
+  TextRow row(format.separator);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Waypoint& pose = poses[i];
+    const double time = start_time + pose.time;
+    constexpr double largest = detail::largest_in_trajectory;
+    if (!(std::fabs(time) <= largest) || !finite(pose.position) || !(max_norm(pose.position) <= largest) ||
+        !(std::fabs(length(pose.rotation) - 1) <= 1e-9) || (i > 0 && !(time > start_time + poses[i - 1].time)))
+      throw FileError(path.string(), "",
+                      "pose " + std::to_string(i) +
+                          " cannot be written: expected finite numbers within 1e12, a unit rotation and a time after the one before");
+    const QuantityValues values = detail::values_of(pose, format, start_time);
+    for (const std::optional<TrajectoryColumn>& column : columns.all())
+      if (column) row.add(values[column->quantity] * column->per_si);
+    file.write(row.end());
+  }
+  file.commit();
+}
 
 }  // namespace pulsecast::adapters

@@ -25,11 +25,34 @@ using Lanes [[gnu::vector_size(register_bytes)]] = double;
 using LaneIds [[gnu::vector_size(register_bytes)]] = std::uint64_t;
 using LaneMask [[gnu::vector_size(register_bytes)]] = std::int64_t;
 
-/// A register filled from memory, from this number on.
+namespace detail {
+template <class Real>
+struct FourOf;
+template <>
+struct FourOf<float> {
+  using type [[gnu::vector_size(16)]] = float;
+};
+template <>
+struct FourOf<double> {
+  using type [[gnu::vector_size(32)]] = double;
+};
+}  // namespace detail
+
+/// Four numbers of either precision: the three coordinates of a point, and one more.
+template <class Real>
+using Four = typename detail::FourOf<Real>::type;
+
+/// Fills a register from memory, from this number on.
+template <class Register, class Number>
+inline void fill(Register& r, const Number& first) noexcept {
+  std::memcpy(&r, &first, sizeof r);
+}
+
+/// A register of `register_bytes` filled from memory, from this number on.
 template <class Register, class Number>
 [[nodiscard]] inline Register load(const Number& first) noexcept {
   Register r;
-  std::memcpy(&r, &first, sizeof r);
+  fill(r, first);
   return r;
 }
 

@@ -3,38 +3,55 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <pulsecast/base/expect.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/deflector/aim.hpp>
 
 namespace pulsecast {
 
 /// A rotating polygon mirror: every facet sweeps the beam once from low to high, in the plane of forward and up, then the next one takes
 /// over. Pulses outside the gate are blocked. The angle of a beam above forward counts from -sweep to +sweep.
 struct PolygonMirror {
-  double lines_per_second = 100;  ///< facets that pass [Hz]
-  double sweep = 2 * pi / 3;      ///< half angle that one facet sweeps: a full turn by the number of facets [rad]
-  double angle_min = -pi;         ///< the gate opens above this angle [rad]
-  double angle_max = pi;          ///< and closes above this one [rad]
+  double lines_per_second = 100;      ///< facets that pass [Hz]
+  double sweep = 2 * pi / 3;          ///< half angle that one facet sweeps: a full turn by the number of facets [rad]
+  double angle_min = -pi;             ///< the gate opens above this angle [rad]
+  double angle_max = pi;              ///< and closes above this one [rad]
+  std::vector<double> facet_tilts{};  ///< how far out of the plane, to the right, each facet in turn sends the beam; none if empty [rad]
 
   void validate() const {
     expect_positive("PolygonMirror::lines_per_second", lines_per_second, "Hz");
     expect_within("PolygonMirror::sweep", sweep, 0, pi, "rad");
     expect_within("PolygonMirror::angle_min", angle_min, -pi, pi, "rad");
     expect_within("PolygonMirror::angle_max", angle_max, angle_min, pi, "rad");
+    expect_within("PolygonMirror::facet_tilts (number)", static_cast<double>(facet_tilts.size()), 0, 1000, "");
+    for (const double tilt : facet_tilts) expect_within("PolygonMirror::facet_tilts", tilt, -pi / 2, pi / 2, "rad");
   }
 
   /// Above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept { return sweep * (2 * t.phase(lines_per_second) - 1); }
+
+  /// The facet that the beam is on, from 0 to the number of tilts.
+  [[nodiscard]] std::size_t facet(Tick t) const noexcept {
+    if (facet_tilts.size() < 2) return 0;
+    const double n = static_cast<double>(facet_tilts.size());
+    // whole lines of a turn: what rounds in the phase of the turn must not tell another line than that of the line itself
+    const double line = std::round(n * t.phase(lines_per_second / n) - t.phase(lines_per_second));
+    return static_cast<std::size_t>(line < 0 ? line + n : line) % facet_tilts.size();
+  }
 
   [[nodiscard]] bool open(Tick t) const noexcept {
     const double a = angle(t);
     return a >= angle_min && a <= angle_max;
   }
 
+  /// A tilted facet's line lies on a cone: it keeps its angle to the plane.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
-    const double half = 0.5 * angle(t);
-    return {Rotation{std::cos(half), std::sin(half), 0, 0}, {}};  // about right
+    const Pose<frame::Beam, frame::Instrument> level = aimed_above(angle(t));
+    if (facet_tilts.empty()) return level;
+    return {level.rotation * aimed_at(facet_tilts[facet(t)], 0).rotation, {}};
   }
 };
 

@@ -16,27 +16,40 @@ namespace pulsecast {
 /// Number of a primitive in its geometry.
 using PrimitiveIndex = std::uint32_t;
 
+/// What the rays of a bundle have in common.
+struct BundleOrigin {
+  Vec3 origin{};  ///< [m]
+  double direction_length = 1;
+  double near = 0;                                       ///< nothing is met at this range or before it, at least 0 [m]
+  double far = std::numeric_limits<double>::infinity();  ///< nothing is met beyond this range [m]
+  std::size_t size = 0;                                  ///< rays in use, at most `RayBundle::capacity`
+
+  double wavelength = 1.064e-6;  ///< of the light [m]
+  Tick tick{};                   ///< when the pulse left
+  std::uint64_t seed = 0;        ///< names, with the next two, every random number that tracing may draw
+  PulseIndex pulse = 0;
+  std::uint32_t first_subray = 0;  ///< number of ray 0 among the subrays of its pulse
+};
+
 /// Rays from one origin into a narrow cone: the subrays of one pulse, or a part of them. A single ray is a bundle of one.
 /// Structure of arrays, filled up with idle lanes to a multiple of `lanes`, so that loops over it turn into SIMD.
 /// All directions have the same length: 1 in the world, 1/scale inside an instance, so that a range means metres of the world everywhere.
-struct RayBundle {
+struct RayBundle : BundleOrigin {
   static constexpr std::size_t capacity = 64;
   static constexpr std::size_t lanes = 8;
 
   using Column = std::array<double, capacity>;
 
-  alignas(64) Column x, y, z;  ///< directions
-  Vec3 origin{};               ///< common to all [m]
-  double direction_length = 1;
-  double near = 0;                                       ///< nothing is met at this range or before it [m]
-  double far = std::numeric_limits<double>::infinity();  ///< nothing is met beyond this range [m]
-  std::size_t size = 0;                                  ///< rays in use, at most `capacity`
+  alignas(64) Column x, y, z;  ///< directions; only the first `padded_size()` are set
 
-  double wavelength = 1.064e-6;  ///< of the light [m]
-  Tick tick;                     ///< when the pulse left
-  std::uint64_t seed = 0;        ///< names, with the next two, every random number that tracing may draw
-  PulseIndex pulse = 0;
-  std::uint32_t first_subray = 0;  ///< number of ray 0 among the subrays of its pulse
+  RayBundle() noexcept {}  // leaves the directions unset
+  explicit RayBundle(const BundleOrigin& o) noexcept : BundleOrigin(o) {}
+  RayBundle(const RayBundle& other) noexcept : RayBundle(static_cast<const BundleOrigin&>(other)) { copy_directions(other); }
+  RayBundle& operator=(const RayBundle& other) noexcept {
+    static_cast<BundleOrigin&>(*this) = other;
+    copy_directions(other);
+    return *this;
+  }
 
   [[nodiscard]] std::size_t padded_size() const noexcept { return (size + lanes - 1) / lanes * lanes; }
   [[nodiscard]] Vec3 direction(std::size_t j) const noexcept { return {x[j], y[j], z[j]}; }
@@ -46,8 +59,13 @@ struct RayBundle {
 
   /// Makes the idle lanes copies of the last ray, as every reader of `padded_size()` rays expects. Call it when the directions are set.
   void pad() noexcept {
-    PULSECAST_EXPECT(size > 0 && size <= capacity);
+    PULSECAST_EXPECT(size > 0 && size <= capacity && near >= 0);
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
+  }
+
+ private:
+  void copy_directions(const RayBundle& other) noexcept {
+    for (std::size_t j = 0; j < padded_size(); ++j) x[j] = other.x[j], y[j] = other.y[j], z[j] = other.z[j];
   }
 };
 

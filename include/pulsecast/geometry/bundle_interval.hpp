@@ -7,6 +7,7 @@
 #include <concepts>
 #include <limits>
 
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 
@@ -29,7 +30,7 @@ template <std::floating_point Real>
 /// A box of type Real, in coordinates relative to the centre of an accelerator; never smaller than the box that it stands for.
 template <std::floating_point Real>
 struct BoundingBox {
-  Real min[3], max[3];
+  Real min[3], max[3];  ///< [m]
 
   static BoundingBox around(const Box& box, const Vec3& centre) noexcept {
     constexpr double growing = 1 + 2 * std::numeric_limits<double>::epsilon(), shrinking = 2 - growing;
@@ -70,26 +71,29 @@ class BundleInterval {
       }
       if (!(low <= high)) near_ = infinity;
       const double o = rays.origin[k] - centre[k];
+      const double margin = slack + std::fabs(o) * static_cast<double>(std::numeric_limits<Real>::epsilon());  // of rounding to Real
       Axis& axis = axes_[k];
-      axis.origin_low = round_down<Real>(o - slack), axis.origin_high = round_up<Real>(o + slack);
+      axis.origin_low = static_cast<Real>(o - margin), axis.origin_high = static_cast<Real>(o + margin);
       axis.sense = low > 0 ? 1 : high < 0 ? -1 : 0;
       const double most = std::max(std::fabs(low), std::fabs(high)), least = std::min(std::fabs(low), std::fabs(high));
       axis.slowness_low = slowness(most, 1 - tolerance), axis.slowness_high = slowness(least, 1 + tolerance);
       if (axis.sense == 0) {  // rays go both ways, or not at all
         axis.slowness_low = high > 0 ? slowness(high, 1 - tolerance) : infinity;
         axis.slowness_high = low < 0 ? slowness(-low, 1 - tolerance) : infinity;
+        all_one_way_ = false;
       }
+      sign_[k] = static_cast<Real>(axis.sense);
+      entry_offset_[k] = axis.sense > 0 ? -axis.origin_high : axis.origin_low;
+      exit_offset_[k] = axis.sense > 0 ? -axis.origin_low : axis.origin_high;
+      slowness_low_[k] = axis.slowness_low, slowness_high_[k] = axis.slowness_high;
     }
+    // the fourth lane neither enters late nor leaves early
+    sign_[3] = entry_offset_[3] = slowness_low_[3] = 0, exit_offset_[3] = std::numeric_limits<Real>::max(), slowness_high_[3] = 1;
   }
 
   /// The stretch of range over which any ray may be inside the box; empty if none can be.
   [[nodiscard]] Span inside(const BoundingBox<Real>& box) const noexcept {
-    Span span{near_, std::numeric_limits<Real>::max()};
-    for (int k = 0; k < 3; ++k) {
-      keep_above(span, axes_[k], box.min[k]);
-      keep_below(span, axes_[k], box.max[k]);
-    }
-    return span;
+    return all_one_way_ ? inside_one_way(box) : inside_any_way(box);
   }
 
   /// The part of a stretch over which any ray may be at or above the plane at `position` along axis k.
@@ -111,6 +115,29 @@ class BundleInterval {
     Real origin_low, origin_high, slowness_low, slowness_high;
     int sense;
   };
+
+  /// All three axes at once.
+  [[nodiscard]] Span inside_one_way(const BoundingBox<Real>& box) const noexcept {
+    Lane low, from_low_z;
+    fill(low, box.min[0]), fill(from_low_z, box.min[2]);  // a box is six numbers in a row
+    const Lane high = __builtin_shufflevector(from_low_z, from_low_z, 1, 2, 3, 3);
+    const Lane zero = {};
+    const Lane first = sign_ < zero ? high : low, last = sign_ < zero ? low : high;
+    const Lane to_entry = sign_ * first + entry_offset_, to_exit = sign_ * last + exit_offset_;
+    const Lane entry = to_entry * (to_entry > zero ? slowness_low_ : slowness_high_);
+    const Lane exit = to_exit * (to_exit > zero ? slowness_high_ : slowness_low_);
+    return {std::max(std::max(entry[0], entry[1]), std::max(entry[2], near_)),
+            std::min(std::min(exit[0], exit[1]), std::min(exit[2], exit[3]))};
+  }
+
+  [[nodiscard]] Span inside_any_way(const BoundingBox<Real>& box) const noexcept {
+    Span span{near_, std::numeric_limits<Real>::max()};
+    for (int k = 0; k < 3; ++k) {
+      keep_above(span, axes_[k], box.min[k]);
+      keep_below(span, axes_[k], box.max[k]);
+    }
+    return span;
+  }
 
   static constexpr Real infinity = std::numeric_limits<Real>::infinity();
   static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
@@ -141,8 +168,12 @@ class BundleInterval {
       span.entry = std::max(span.entry, (a.origin_low - high) * a.slowness_high);
   }
 
+  using Lane = Four<Real>;
+
   Real near_;
+  bool all_one_way_ = true;  ///< along every axis, none of them zero
   Axis axes_[3];
+  Lane sign_, entry_offset_, exit_offset_, slowness_low_, slowness_high_;  ///< as `axes_`, by axis; offsets turn planes into distances
 };
 
 }  // namespace pulsecast

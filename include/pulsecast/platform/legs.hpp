@@ -13,21 +13,33 @@
 
 namespace pulsecast {
 
+/// A pass. One that is not active takes its time, as a turn between two strips does, but holds no slots.
+template <WorldSource P>
+struct Leg {
+  P platform;
+  bool active = true;
+};
+
 /// Passes end to end, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's own clock starts at zero; the survey's
 /// time runs on from one to the next.
 template <WorldSource P>
 class Legs {
  public:
-  explicit Legs(std::vector<P> legs) : legs_(std::move(legs)) {
-    expect_within("Legs::legs (number)", static_cast<double>(legs_.size()), 1, 65535, "");
+  explicit Legs(std::vector<Leg<P>> legs) {
+    expect_within("Legs::legs (number)", static_cast<double>(legs.size()), 1, 65535, "");
     PulseIndex first = 0;
     Tick start{};
-    for (const P& leg : legs_) {
+    for (Leg<P>& leg : legs) {
       starts_.push_back({first, start});
-      first += leg.size(), start = start + leg.duration();
+      if (leg.active) first += leg.platform.size();
+      start = start + leg.platform.duration();
+      legs_.push_back(std::move(leg.platform));
     }
     end_ = {first, start};
   }
+
+  /// All of them active.
+  explicit Legs(std::vector<P> legs) : Legs(active(std::move(legs))) {}
 
   [[nodiscard]] PulseIndex size() const noexcept { return end_.pulse; }
   [[nodiscard]] Tick duration() const noexcept { return end_.tick; }
@@ -55,6 +67,12 @@ class Legs {
     PulseIndex pulse;
     Tick tick;
   };
+
+  static std::vector<Leg<P>> active(std::vector<P> platforms) {
+    std::vector<Leg<P>> legs;
+    for (P& platform : platforms) legs.push_back({std::move(platform)});
+    return legs;
+  }
 
   std::vector<P> legs_;
   std::vector<Start> starts_;

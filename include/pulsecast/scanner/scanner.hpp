@@ -14,11 +14,14 @@ namespace pulsecast {
 struct Scanner {
   double pulse_rate = 100e3;      ///< pulses a second [Hz]
   PulseIndex pulses = 1'000'000;  ///< how many slots the scan lasts
+  double delay = 0;               ///< of every pulse after its slot begins; less than one slot [s]
   Laser laser{};
 
   void validate() const {
     using namespace literals;
     expect_positive("Scanner::pulse_rate", pulse_rate, "Hz");
+    if (!(delay >= 0 && delay < 1 / pulse_rate))
+      throw SettingError("Scanner::delay", delay, "s", "at least 0 and less than " + detail::written(1 / pulse_rate));
     expect_positive("Laser::wavelength", laser.wavelength, "m");
     expect_positive("Laser::peak_power", laser.peak_power, "W");
     expect_positive("Laser::pulse_length", laser.pulse_length, "s");
@@ -30,7 +33,7 @@ struct Scanner {
 
   [[nodiscard]] std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept {
     Pulse<frame::Beam> p;
-    p.index = i, p.tick = Tick::of(i, pulse_rate), p.laser = laser;
+    p.index = i, p.tick = Tick::of(i, pulse_rate) + Tick::of_seconds(delay), p.laser = laser;
     return p;
   }
 };

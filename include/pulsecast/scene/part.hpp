@@ -41,7 +41,7 @@ struct Similarity {
 
   /// Rays of the world in the part's own frame. Their directions get longer or shorter, so that ranges stay what they are.
   [[nodiscard]] RayBundle to_local(const RayBundle& rays) const noexcept {
-    RayBundle local = rays;
+    RayBundle local(static_cast<const BundleOrigin&>(rays));
     const Rotation back = conjugate(rotation);
     local.origin = back * (rays.origin - translation) / scale;
     local.direction_length = rays.direction_length / scale;

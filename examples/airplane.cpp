@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+// A scanner in an airplane: flies over hills in overlapping strips, there and back in turn. Leaves cloud.las, cloud.png and
+// trajectory.txt.
+
+#include <cmath>
+#include <cstddef>
+#include <iomanip>
+#include <iostream>
+#include <vector>
+
+#include <pulsecast/adapters/image.hpp>
+#include <pulsecast/adapters/las.hpp>
+#include <pulsecast/adapters/trajectory_file.hpp>
+#include <pulsecast/pulsecast.hpp>
+
+#include "command_line.hpp"
+#include "hills.hpp"
+#include "summary.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+/// The airplane on one pass: an oscillating mirror sweeps the beam from left to right below it and back. The instrument looks down, with
+/// its up to the right of the flight, and sits before and below the airplane's own origin.
+auto airplane(const StraightLine& pass, double pulse_rate) {
+  const Laser laser{.wavelength = 1550_nm, .peak_power = 2500_W, .pulse_length = 4_ns, .divergence = 0.3_mrad};
+  const auto pulses = static_cast<PulseIndex>(std::ceil(pass.duration().seconds() * pulse_rate));
+  const OscillatingMirror mirror{.cycles_per_second = 50_Hz, .half_angle = 18_deg, .turning_time = 1_ms};
+  return Platform{pass, Mount{.lever_arm = {0.1, 1.4, -0.8}, .boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})},
+                  Deflector{mirror, Scanner{.pulse_rate = pulse_rate, .pulses = pulses, .laser = laser}}};
+}
+
+int main(int argc, char** argv) {
+  CommandLine line("Scans hills made by code from an airplane.");
+  double height = 450, overlap_percent = 30, pulse_rate_kHz = 50;
+  line.app.add_option("--height", height, "Of the flight above the hills")->type_name("M")->check(CLI::Range(100.0, 5000.0));
+  line.app.add_option("--overlap", overlap_percent, "Of neighbouring strips")->type_name("%")->check(CLI::Range(0.0, 90.0));
+  line.app.add_option("--pulse-rate", pulse_rate_kHz, "Of the laser")->type_name("kHz")->check(CLI::Range(1.0, 2000.0));
+
+  return line.run(argc, argv, [&] {
+    const auto scene = hills::scene(line.seed);
+    const std::vector<StraightLine> strips = plan_block_flight({.area = scene.bounds(),
+                                                                .altitude = scene.bounds().centre().z + height,
+                                                                .swath = 2 * height * std::tan(18_deg),
+                                                                .overlap = overlap_percent / 100});
+    const auto pass = [&](const StraightLine& path) { return airplane(path, 1e3 * pulse_rate_kHz); };
+    std::vector<Leg<decltype(pass({}))>> legs;
+    for (const StraightLine& strip : strips) {
+      if (!legs.empty()) {  // the turn: it takes its time, but nothing is scanned
+        const StraightLine turn{.from = legs.back().platform.trajectory().to, .to = strip.from, .speed = 5};
+        legs.push_back({.platform = pass(turn), .active = false});
+      }
+      legs.push_back({.platform = pass(strip)});
+    }
+
+    const Survey survey{Legs{legs}, RingFootprint{2}, scene, Receiver{}, FullWaveform{{.threshold = 20_nW}}, line.seed};
+    adapters::LasWriter las(line.output / "cloud.las");
+    adapters::ImageWriter image(line.output / "cloud.png",
+                                {.azimuth = 15_deg, .elevation = 35_deg, .colour_by = adapters::ColourBy::classification});
+    const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
+
+    las.close(), image.close();
+    adapters::TrajectoryWriter trajectory(line.output / "trajectory.txt");
+    for (std::size_t k = 0; k < legs.size(); ++k)
+      trajectory.add(legs[k].platform.trajectory(), survey.source().start(k), legs[k].platform.duration(), 0.1);
+    trajectory.close();
+
+    const Vec3 size = scene.bounds().size();
+    std::cout << "Flew " << strips.size() << " strips over " << std::round(size.x) << " m by " << std::round(size.y)
+              << " m; the results are in " << line.output.string() << ".\n";
+    print(summary);
+    std::cout << "  density      " << std::setw(12) << static_cast<double>(summary.echoes) / (size.x * size.y) << " points/m^2\n";
+  });
+}

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+// A scanner under a drone: rises before a hut in a wood, flies over the trees to and fro, hovers for a last look, and comes down again. It
+// leans into every turn, and its beam with it. Leaves cloud.las, cloud.png and trajectory.txt.
+
+#include <cmath>
+#include <iostream>
+#include <vector>
+
+#include <pulsecast/adapters/image.hpp>
+#include <pulsecast/adapters/las.hpp>
+#include <pulsecast/adapters/trajectory_file.hpp>
+#include <pulsecast/pulsecast.hpp>
+
+#include "command_line.hpp"
+#include "summary.hpp"
+#include "wood.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+/// From a glade up, over the wood in rows, and down to the glade again.
+std::vector<FlightPoint> route(const Vec3& glade, double height) {
+  std::vector<FlightPoint> points{{glade}, {glade + height * up}};
+  bool north = true;
+  for (const double row : {-24.0, -8.0, 8.0, 24.0}) {
+    for (const double end : {-30.0, 30.0}) points.push_back({{row, north ? end : -end, glade.z + height}});
+    north = !north;
+  }
+  points.push_back({glade + height * up, 2});
+  points.push_back({glade + 1.0 * up});
+  return points;
+}
+
+int main(int argc, char** argv) {
+  CommandLine line("Scans a wood made by code from a drone.");
+  double height = 45, speed = 6, pulse_rate_kHz = 12;
+  bool stop = false;
+  line.app.add_option("--height", height, "Of the flight above the glade where it begins")->type_name("M")->check(CLI::Range(35.0, 500.0));
+  line.app.add_option("--speed", speed, "Of the drone at most")->type_name("M/S")->check(CLI::Range(0.5, 25.0));
+  line.app.add_option("--pulse-rate", pulse_rate_kHz, "Of the laser")->type_name("kHz")->check(CLI::Range(1.0, 1000.0));
+  line.app.add_flag("--stop-and-turn", stop, "Stand still to turn, rather than fly banked turns");
+
+  return line.run(argc, argv, [&] {
+    const auto scene = wood::scene(line.seed);
+    const MulticopterFlight flight =
+        plan_multicopter(route(wood::glades(line.seed)[0], height),
+                         {.speed = speed, .turn = stop ? MulticopterTurn::stop_and_turn : MulticopterTurn::smooth, .arrival_heading = 0});
+
+    const Laser laser{.wavelength = 1550_nm, .peak_power = 100_W, .pulse_length = 3_ns, .divergence = 0.5_mrad};
+    const double pulse_rate = 1e3 * pulse_rate_kHz;
+    const Scanner scanner{
+        .pulse_rate = pulse_rate, .pulses = static_cast<PulseIndex>(flight.duration().seconds() * pulse_rate), .laser = laser};
+    const PolygonMirror mirror{.lines_per_second = 40_Hz, .sweep = 45_deg};
+    // The instrument looks down, with its up to the right of the flight.
+    const Platform drone{flight, Mount{.lever_arm = {0, 0.1, -0.25}, .boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})},
+                         Deflector{mirror, scanner}};
+
+    const Survey survey{drone, RingFootprint{2}, scene, Receiver{}, FullWaveform{}, line.seed};
+    adapters::LasWriter las(line.output / "cloud.las");
+    adapters::ImageWriter image(line.output / "cloud.png",
+                                {.azimuth = 20_deg, .elevation = 40_deg, .field_of_view = 20_deg, .point_size = 3});
+    const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
+
+    las.close(), image.close();
+    adapters::TrajectoryWriter trajectory(line.output / "trajectory.txt");
+    trajectory.add(flight, {}, flight.duration(), 0.1);
+    trajectory.close();
+
+    std::cout << "Flew for " << std::round(flight.duration().seconds()) << " s; the results are in " << line.output.string() << ".\n";
+    print(summary);
+  });
+}

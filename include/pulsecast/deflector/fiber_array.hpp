@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/deflector/aim.hpp>
+#include <pulsecast/deflector/cycle.hpp>
+
+namespace pulsecast {
+
+/// A row of fibres in the plane of forward and up, lit one after the other from -half_angle to +half_angle, both ends included, then again
+/// from the first.
+struct FiberArray {
+  std::uint32_t fibers = 128;        ///< how many stand in the row
+  double fibers_per_second = 100e3;  ///< changes from one to the next: best the pulse rate [Hz]
+  double half_angle = pi / 9;        ///< of the outermost fibres, either side of forward [rad]
+
+  void validate() const {
+    expect_within("FiberArray::fibers", fibers, 1, 4294967295.0, "");
+    expect_positive("FiberArray::fibers_per_second", fibers_per_second, "Hz");
+    expect_within("FiberArray::half_angle", half_angle, 0, pi, "rad");
+  }
+
+  /// The fibre that is lit, from 0.
+  [[nodiscard]] std::size_t fiber(Tick t) const noexcept { return step_in_cycle(t, fibers_per_second, fibers); }
+
+  /// Above forward [rad].
+  [[nodiscard]] double angle(Tick t) const noexcept {
+    return fibers == 1 ? 0 : half_angle * (2 * static_cast<double>(fiber(t)) / (fibers - 1.0) - 1);
+  }
+
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return aimed_above(angle(t)); }
+};
+
+static_assert(Optic<FiberArray>);
+
+}  // namespace pulsecast

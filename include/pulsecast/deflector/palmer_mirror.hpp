@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/deflector/aim.hpp>
+
+namespace pulsecast {
+
+/// A nutating mirror: the beam runs around a cone about forward once a turn, from up over right. With a second half angle the cone is
+/// elliptical: the beam is off forward by the two half angles' shares of cosine and sine, upwards and to the right.
+struct PalmerMirror {
+  double turns_per_second = 50;               ///< around the cone [Hz]
+  double half_angle = pi / 9;                 ///< of the cone, upwards and downwards [rad]
+  std::optional<double> half_angle_across{};  ///< of the cone, to the right and left; if empty, the cone is circular [rad]
+
+  void validate() const {
+    expect_positive("PalmerMirror::turns_per_second", turns_per_second, "Hz");
+    expect_within("PalmerMirror::half_angle", half_angle, 0, pi / 2, "rad");
+    if (half_angle_across) expect_within("PalmerMirror::half_angle_across", *half_angle_across, 0, pi / 2, "rad");
+  }
+
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
+    const double turn = 2 * pi * t.phase(turns_per_second);
+    const double across = half_angle_across.value_or(half_angle) * std::sin(turn), upwards = half_angle * std::cos(turn);
+    const double off = std::hypot(across, upwards);  // from forward [rad]
+    const double aside = off > 0 ? std::sin(off) / off : 1;
+    return aimed_along({aside * across, std::cos(off), aside * upwards});
+  }
+};
+
+static_assert(Optic<PalmerMirror>);
+
+}  // namespace pulsecast

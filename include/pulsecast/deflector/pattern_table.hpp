@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/deflector/aim.hpp>
+#include <pulsecast/deflector/cycle.hpp>
+
+namespace pulsecast {
+
+/// Where a beam goes, as two angles.
+struct BeamAngles {
+  double azimuth = 0;    ///< from forward to the right [rad]
+  double elevation = 0;  ///< above the plane of right and forward [rad]
+};
+
+/// Directions from a table, one after the other, then again from the first: any solid-state sensor, or the log of a real one.
+struct PatternTable {
+  std::vector<BeamAngles> entries{};  ///< in the order in which they are taken; at least one
+  double entries_per_second = 100e3;  ///< changes from one to the next: best the pulse rate [Hz]
+
+  void validate() const {
+    expect_within("PatternTable::entries (number)", static_cast<double>(entries.size()), 1, 1e9, "");
+    expect_positive("PatternTable::entries_per_second", entries_per_second, "Hz");
+    for (const BeamAngles& e : entries) {
+      expect_finite("BeamAngles::azimuth", e.azimuth, "rad");
+      expect_within("BeamAngles::elevation", e.elevation, -pi / 2, pi / 2, "rad");
+    }
+  }
+
+  /// The entry that is taken, from 0.
+  [[nodiscard]] std::size_t entry(Tick t) const noexcept { return step_in_cycle(t, entries_per_second, entries.size()); }
+
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
+    const BeamAngles& e = entries[entry(t)];
+    return aimed_at(e.azimuth, e.elevation);
+  }
+};
+
+static_assert(Optic<PatternTable>);
+
+}  // namespace pulsecast

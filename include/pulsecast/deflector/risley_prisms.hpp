@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/deflector/aim.hpp>
+
+namespace pulsecast {
+
+/// One wedge of glass that turns about forward. One of its faces stands square to forward, the other one is inclined; unturned, its thick
+/// end, to which it bends the beam, is below.
+struct Prism {
+  double wedge = pi / 10;          ///< angle between its faces [rad]
+  double turns_per_second = 100;   ///< from up to the right, as seen along forward; negative the other way [Hz]
+  double refractive_index = 1.51;  ///< of the glass, at the laser's wavelength
+  double start = 0;                ///< how far it is turned at the survey's start [rad]
+  bool inclined_exit = false;      ///< the inclined face is the one where the beam leaves; else where it enters
+};
+
+/// Where light goes on behind a face, by Snell's law: none at total reflection, or if it does not come from the face's front.
+/// `direction` and `normal` are unit, and the normal stands on the front; `ratio` is the refractive index in front of the face by that
+/// behind it. Source: Born & Wolf 1999, sec. 1.5.1, written in vectors.
+[[nodiscard]] inline std::optional<Vec3> refracted(const Vec3& direction, const Vec3& normal, double ratio) noexcept {
+  const double cosine = -dot(direction, normal);
+  const double sine_squared = ratio * ratio * (1 - cosine * cosine);
+  if (!(cosine > 0 && sine_squared <= 1)) return std::nullopt;
+  return normalize(ratio * direction + (ratio * cosine - std::sqrt(1 - sine_squared)) * normal);
+}
+
+/// Wedges one behind the other, each turning at its own rate: the beam draws a rosette. Light that is totally reflected inside does not
+/// get out. The wedges bend the beam, but do not shift it: their thickness and distance do not count.
+struct RisleyPrisms {
+  std::vector<Prism> prisms{};   ///< in the order in which the beam passes them; at least one
+  double surrounding_index = 1;  ///< refractive index between and around the prisms
+  Vec3 incident = forward;       ///< where the laser shines, of any length but zero
+
+  void validate() const {
+    expect_within("RisleyPrisms::prisms (number)", static_cast<double>(prisms.size()), 1, 16, "");
+    for (const Prism& p : prisms) {
+      expect_within("Prism::wedge", p.wedge, 0, 1.5, "rad");
+      expect_finite("Prism::turns_per_second", p.turns_per_second, "Hz");
+      expect_within("Prism::refractive_index", p.refractive_index, 0.5, 10, "");
+      expect_finite("Prism::start", p.start, "rad");
+    }
+    expect_within("RisleyPrisms::surrounding_index", surrounding_index, 0.5, 10, "");
+    expect_positive("RisleyPrisms::incident (length)", length(incident), "");
+  }
+
+  /// Where the light leaves; none if it does not get out.
+  [[nodiscard]] std::optional<Vec3> direction(Tick t) const noexcept {
+    std::optional<Vec3> light = normalize(incident);
+    for (const Prism& p : prisms) {
+      const double turn = p.start + 2 * pi * t.phase(p.turns_per_second);
+      const double aside = p.inclined_exit ? -std::sin(p.wedge) : std::sin(p.wedge);
+      const Vec3 square = -forward, inclined{std::sin(turn) * aside, -std::cos(p.wedge), std::cos(turn) * aside};
+      const double ratio = surrounding_index / p.refractive_index;
+      light = refracted(*light, p.inclined_exit ? square : inclined, ratio);
+      if (light) light = refracted(*light, p.inclined_exit ? inclined : square, 1 / ratio);
+      if (!light) return std::nullopt;
+    }
+    return light;
+  }
+
+  [[nodiscard]] bool open(Tick t) const noexcept { return direction(t).has_value(); }
+
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return aimed_along(direction(t).value_or(forward)); }
+};
+
+static_assert(Optic<RisleyPrisms> && Gated<RisleyPrisms>);
+
+}  // namespace pulsecast

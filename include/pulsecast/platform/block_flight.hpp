@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/geometry/box.hpp>
+#include <pulsecast/platform/straight_line.hpp>
+
+namespace pulsecast {
+
+/// Parallel lines over an area, flown there and back in turn.
+struct BlockFlight {
+  Box area{};             ///< to cover, seen from above: the z of its corners does not count [m]
+  double altitude = 500;  ///< of the lines: z in the world [m]
+  double swath = 300;     ///< width on the ground that one line covers [m]
+  double overlap = 0.3;   ///< share of the swath that neighbouring lines both cover, in [0, 0.99]
+  double heading = 0;     ///< of the first line, clockwise from north [rad]
+  double speed = 60;      ///< [m/s]
+  double run_in = 0;      ///< how far each line begins before the area, and ends behind it [m]
+
+  void validate() const {
+    if (area.empty()) throw SettingError("BlockFlight::area (width)", area.size().x, "m", "not negative, nor the length");
+    expect_finite("BlockFlight::area (size)", std::hypot(area.size().x, area.size().y), "m");
+    expect_finite("BlockFlight::altitude", altitude, "m");
+    expect_positive("BlockFlight::swath", swath, "m");
+    expect_within("BlockFlight::overlap", overlap, 0, 0.99, "");
+    expect_finite("BlockFlight::heading", heading, "rad");
+    expect_positive("BlockFlight::speed", speed, "m/s");
+    expect_finite("BlockFlight::run_in", run_in, "m");
+  }
+};
+
+/// The lines of a block flight, from its left to its right as seen along the first line. Together their swaths cover the area, and reach
+/// beyond it by the same on both sides.
+[[nodiscard]] inline std::vector<StraightLine> plan_block_flight(const BlockFlight& block) {
+  block.validate();
+  const Vec3 along{std::sin(block.heading), std::cos(block.heading), 0}, across{along.y, -along.x, 0};
+  const Vec3 size = block.area.size();
+  const double length_along = size.x * std::fabs(along.x) + size.y * std::fabs(along.y) + 2 * block.run_in;
+  const double width = size.x * std::fabs(across.x) + size.y * std::fabs(across.y);
+  const double spacing = block.swath * (1 - block.overlap);
+  expect_within("BlockFlight::swath (lines)", width / spacing, 0, 65534, "");  // as legs are numbered
+  // the swaths of n lines cover (n - 1) spacings and one swath; rounding asks for no further line
+  const auto lines = 1 + static_cast<std::size_t>(std::ceil(std::max(0.0, (width - block.swath) / spacing - 1e-9)));
+  const Vec3 centre{block.area.centre().x, block.area.centre().y, block.altitude};
+
+  std::vector<StraightLine> all;
+  for (std::size_t k = 0; k < lines; ++k) {
+    const Vec3 middle = centre + across * (spacing * (static_cast<double>(k) - 0.5 * static_cast<double>(lines - 1)));
+    StraightLine line{middle - along * (0.5 * length_along), middle + along * (0.5 * length_along), block.speed};
+    if (k % 2 == 1) std::swap(line.from, line.to);
+    all.push_back(line);
+  }
+  return all;
+}
+
+}  // namespace pulsecast

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/platform/heading.hpp>
+#include <pulsecast/platform/piecewise_cubic.hpp>
+#include <pulsecast/platform/speed_profile.hpp>
+
+namespace pulsecast {
+
+/// Standard acceleration of gravity [m/s^2]. Source: 3rd CGPM, 1901.
+inline constexpr double standard_gravity = 9.80665;
+
+/// A place that a multicopter flies to.
+struct FlightPoint {
+  Vec3 position{};   ///< in the world [m]
+  double hover = 0;  ///< how long it stays there at least; it passes if 0 and the turns are smooth [s]
+};
+
+enum class MulticopterTurn {
+  stop_and_turn,  ///< stands still at each waypoint until it looks along the next leg
+  smooth,         ///< cuts the corner in a banked turn; stops where it hovers or must turn by more than 150 degrees
+};
+
+struct MulticopterSettings {
+  double speed = 8;                                ///< at most [m/s]
+  double acceleration = 3;                         ///< at most, in any direction [m/s^2]
+  double jerk = 6;                                 ///< change of acceleration at most, in any direction [m/s^3]
+  double bank_max = pi / 6;                        ///< how far it leans from upright at most [rad]
+  double yaw_rate = pi / 2;                        ///< at most [rad/s]
+  MulticopterTurn turn = MulticopterTurn::smooth;  ///< at waypoints between the first and the last
+  double turn_distance = 10;                       ///< before its waypoint a smooth turn begins at the earliest [m]
+  std::optional<double> departure_heading{};       ///< clockwise from north; if empty, along the first leg [rad]
+  std::optional<double> arrival_heading{};         ///< clockwise from north; if empty, along the last leg [rad]
+
+  void validate() const {
+    expect_within("MulticopterSettings::speed", speed, 1e-3, 1e3, "m/s");
+    expect_within("MulticopterSettings::acceleration", acceleration, 1e-3, 1e3, "m/s^2");
+    expect_within("MulticopterSettings::jerk", jerk, 1e-3, 1e3, "m/s^3");
+    expect_within("MulticopterSettings::bank_max", bank_max, 1e-3, 1.5, "rad");
+    expect_within("MulticopterSettings::yaw_rate", yaw_rate, 1e-3, 1e3, "rad/s");
+    expect_within("MulticopterSettings::turn_distance", turn_distance, 1e-3, 1e9, "m");
+    if (departure_heading) expect_within("MulticopterSettings::departure_heading", *departure_heading, -100, 100, "rad");
+    if (arrival_heading) expect_within("MulticopterSettings::arrival_heading", *arrival_heading, -100, 100, "rad");
+  }
+};
+
+/// The flight of a multicopter, in pieces of constant jerk. As thrust is all that moves it, it leans until its up is along acceleration
+/// and lift together; in a level turn that is tan(bank) = v^2 / (g r), the coordinated turn. Position, velocity and attitude are
+/// continuous.
+class MulticopterFlight {
+ public:
+  /// `motion` [m]; `heading` clockwise from north [rad]: see `plan_multicopter`.
+  MulticopterFlight(PiecewiseCubic<Vec3> motion, PiecewiseCubic<double> heading, Tick duration)
+      : motion_(std::move(motion)), heading_(std::move(heading)), duration_(duration) {}
+
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+    const CubicPiece<Vec3> state = motion_.at(t);
+    const Vec3 thrust = normalize(state.acceleration + standard_gravity * up);
+    const Rotation lean = normalize(Rotation{1 + thrust.z, -thrust.y, thrust.x, 0});  // takes up to thrust by the shortest way
+    return {lean * level(heading_.at(t).position), state.position};
+  }
+
+  [[nodiscard]] Tick duration() const noexcept { return duration_; }
+  [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }
+  [[nodiscard]] const PiecewiseCubic<double>& heading() const noexcept { return heading_; }
+
+ private:
+  PiecewiseCubic<Vec3> motion_;
+  PiecewiseCubic<double> heading_;
+  Tick duration_;
+};
+
+static_assert(Trajectory<MulticopterFlight>);
+
+namespace detail {
+
+/// The most acceleration along a unit direction: within the bank, and so that thrust never falls below a tenth of the weight [m/s^2].
+/// Source: tan(bank) = (horizontal acceleration) / (g + vertical acceleration), solved for the length of the acceleration.
+[[nodiscard]] inline double acceleration_along(const Vec3& direction, const MulticopterSettings& settings) noexcept {
+  const double bank = std::tan(settings.bank_max), lean = std::hypot(direction.x, direction.y) - bank * direction.z;
+  double most = settings.acceleration;
+  if (lean > 0) most = std::fmin(most, bank * standard_gravity / lean);
+  if (direction.z < 0) most = std::fmin(most, -0.9 * standard_gravity / direction.z);
+  return most;
+}
+
+/// The turn from one unit direction to another at a waypoint: the velocity changes along a straight line, so its amount never grows.
+/// Source: Craig 2005, section 7.3, straight lines with blends, with limited jerk.
+struct SmoothTurn {
+  Vec3 before{};        ///< unit
+  Vec3 after{};         ///< unit
+  SpeedChange limit{};  ///< of acceleration and jerk
+
+  [[nodiscard]] SpeedChange change(double speed) const noexcept {
+    return {0, speed * length(after - before), limit.acceleration, limit.jerk};
+  }
+  /// From the begin of the turn to the waypoint, and from there to its end [m].
+  [[nodiscard]] double distance(double speed) const noexcept { return 0.5 * speed * change(speed).duration(); }
+};
+
+/// A flight while it is planned: at a time, in a state.
+class FlightPlan {
+ public:
+  FlightPlan(const Vec3& position, double heading, double yaw_rate) : motion_(position), heading_(heading), yaw_rate_(yaw_rate) {}
+
+  /// Adds motion along a unit direction from a point, on top of a constant velocity.
+  void fly(const std::vector<CubicPiece<double>>& pieces, const Vec3& from, const Vec3& direction, const Vec3& drift = {}) {
+    double elapsed = 0;
+    for (const auto& p : pieces) {
+      const Vec3 start = from + p.position * direction + elapsed * drift, velocity = p.velocity * direction + drift;
+      if (p.duration > 0) motion_.add(now_, {p.duration, start, velocity, p.acceleration * direction, p.jerk * direction});
+      now_ = now_ + Tick::of_seconds(p.duration);
+      elapsed += p.duration;
+    }
+  }
+
+  /// Stays at a point for a time, and until it looks along a heading.
+  void stand(const Vec3& at, double time, double heading) {
+    motion_.add(now_, {.position = at});
+    now_ = now_ + Tick::of_seconds(std::fmax(time, turn_to(heading, 0)));
+  }
+
+  /// From now on turns to a heading the shorter way: within a time if the yaw rate allows it. Returns how long it takes [s].
+  double turn_to(double heading, double time) {
+    const double yaw = heading_.at(now_).position, angle = std::remainder(heading - yaw, 2 * pi);
+    const double needed = std::fmax(time, std::fabs(angle) / yaw_rate_);
+    heading_.add(now_, {needed, yaw, needed > 0 ? angle / needed : 0, 0, 0});
+    return needed;
+  }
+
+  [[nodiscard]] MulticopterFlight flight() && { return {std::move(motion_), std::move(heading_), now_}; }
+
+ private:
+  PiecewiseCubic<Vec3> motion_;
+  PiecewiseCubic<double> heading_;
+  double yaw_rate_;
+  Tick now_{};
+};
+
+/// The waypoints, checked, without those that are less than a nanometre from the one before; whose hover times add up.
+[[nodiscard]] inline std::vector<FlightPoint> checked(std::span<const FlightPoint> waypoints) {
+  expect_within("plan_multicopter: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
+  std::vector<FlightPoint> points;
+  for (std::size_t k = 0; k < waypoints.size(); ++k) {
+    const std::string name = "plan_multicopter: waypoints[" + std::to_string(k) + "].";
+    const FlightPoint& point = waypoints[k];
+    expect_within(name + "position.x", point.position.x, -1e9, 1e9, "m");
+    expect_within(name + "position.y", point.position.y, -1e9, 1e9, "m");
+    expect_within(name + "position.z", point.position.z, -1e9, 1e9, "m");
+    expect_within(name + "hover", point.hover, 0, 1e9, "s");
+    const bool again = !points.empty() && length(point.position - points.back().position) < 1e-9;
+    if (again) points.back().hover += point.hover;
+    if (!again) points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace detail
+
+/// Plans a flight from the first waypoint to the last, at rest at both. It looks along its leg, and keeps its heading on a vertical one;
+/// at departure and arrival it turns standing. Each leg takes as little time as speed, acceleration, jerk and bank allow from turn to turn;
+/// a smooth turn takes at most a third of either leg, so waypoints that are close to each other are flown slowly.
+/// Waypoints less than a nanometre apart are one.
+[[nodiscard]] inline MulticopterFlight plan_multicopter(std::span<const FlightPoint> waypoints, const MulticopterSettings& settings = {}) {
+  settings.validate();
+  const std::vector<FlightPoint> points = detail::checked(waypoints);
+  const std::size_t legs = points.size() - 1;
+
+  std::vector<Vec3> directions(legs);
+  std::vector<double> headings(legs);
+  std::vector<Stretch> stretches(legs);
+  double heading = settings.departure_heading.value_or(0);
+  bool level_leg = settings.departure_heading.has_value();  // so far
+  for (std::size_t k = 0; k < legs; ++k) {
+    const Vec3 way = points[k + 1].position - points[k].position;
+    directions[k] = normalize(way);
+    const double ahead = detail::acceleration_along(directions[k], settings), back = detail::acceleration_along(-directions[k], settings);
+    stretches[k] = {length(way), {settings.speed, ahead, back, settings.jerk}};
+    if (std::hypot(directions[k].x, directions[k].y) > 1e-6) {
+      heading = heading_of(directions[k]);
+      if (!level_leg) std::fill_n(headings.begin(), k, heading);  // it rises as it will fly on
+      level_leg = true;
+    }
+    headings[k] = heading;
+  }
+
+  std::vector<double> speeds(points.size(), 0.0);  // at the waypoints
+  std::vector<detail::SmoothTurn> turns(points.size());
+  const double sharpest = -0.5 * std::sqrt(3.0);  // cos(150 deg)
+  for (std::size_t k = 1; k < legs; ++k) {
+    const Vec3 before = directions[k - 1], after = directions[k];
+    if (settings.turn == MulticopterTurn::stop_and_turn || points[k].hover > 0 || dot(before, after) < sharpest) continue;
+    const Vec3 change = after - before;
+    const double most = length(change) > 0 ? detail::acceleration_along(normalize(change), settings) : settings.acceleration;
+    turns[k] = {before, after, {0, 0, most, settings.jerk}};
+    const double room = std::fmin(settings.turn_distance, std::fmin(stretches[k - 1].length, stretches[k].length) / 3);
+    speeds[k] = largest_speed(0, settings.speed, [&](double speed) { return turns[k].distance(speed) <= room; });
+  }
+  std::vector<Stretch> straights = stretches;
+  for (std::size_t k = 0; k < legs; ++k) straights[k].length -= turns[k].distance(speeds[k]) + turns[k + 1].distance(speeds[k + 1]);
+  settle_speeds(speeds, straights);
+
+  detail::FlightPlan plan(points[0].position, settings.departure_heading.value_or(legs > 0 ? headings[0] : 0), settings.yaw_rate);
+  for (std::size_t k = 0; k < legs; ++k) {
+    const Vec3 at = points[k].position;
+    const double begin = turns[k].distance(speeds[k]), end = stretches[k].length - turns[k + 1].distance(speeds[k + 1]);
+    if (speeds[k] == 0) {
+      plan.stand(at, points[k].hover, headings[k]);
+    } else if (const SpeedChange change = turns[k].change(speeds[k]); change.to > 0) {
+      std::vector<CubicPiece<double>> blend;
+      change.add_to(blend, 0);
+      plan.turn_to(headings[k], change.duration());
+      plan.fly(blend, at - begin * turns[k].before, normalize(turns[k].after - turns[k].before), speeds[k] * turns[k].before);
+    }
+    plan.fly(speed_profile(end - begin, speeds[k], speeds[k + 1], stretches[k].limits), at + begin * directions[k], directions[k]);
+  }
+  const double last_heading = legs > 0 ? headings.back() : settings.departure_heading.value_or(0);
+  plan.stand(points.back().position, points.back().hover, settings.arrival_heading.value_or(last_heading));
+  return std::move(plan).flight();
+}
+
+}  // namespace pulsecast

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/platform/piecewise_cubic.hpp>
+
+namespace pulsecast {
+
+/// What a motion along a line may not exceed.
+struct SpeedLimits {
+  double speed = 1;         ///< [m/s]
+  double acceleration = 1;  ///< when it speeds up [m/s^2]
+  double braking = 1;       ///< when it slows down [m/s^2]
+  double jerk = 1;          ///< change of acceleration [m/s^3]
+};
+
+/// The fastest change of speed, from and to no acceleration: it rises, stays for a while, and falls.
+/// Source: Biagiotti & Melchiorri 2008, section 3.4, the acceleration phase of the double S profile.
+struct SpeedChange {
+  double from = 0;          ///< [m/s]
+  double to = 0;            ///< [m/s]
+  double acceleration = 1;  ///< its most, of either sign [m/s^2]
+  double jerk = 1;          ///< its amount while the acceleration rises or falls [m/s^3]
+
+  /// How long the acceleration rises, and how long it falls [s].
+  [[nodiscard]] double ramp() const noexcept { return std::fmin(acceleration / jerk, std::sqrt(std::fabs(to - from) / jerk)); }
+
+  /// How long it stays in between [s].
+  [[nodiscard]] double hold() const noexcept { return std::fmax(0.0, std::fabs(to - from) / acceleration - acceleration / jerk); }
+
+  [[nodiscard]] double duration() const noexcept { return 2 * ramp() + hold(); }
+
+  /// What is driven meanwhile: as the speed is symmetric about its mean, that times the duration [m].
+  [[nodiscard]] double distance() const noexcept { return 0.5 * (from + to) * duration(); }
+
+  /// Enters its pieces, which begin at a position [m].
+  void add_to(std::vector<CubicPiece<double>>& pieces, double position) const {
+    if (from == to) return;
+    const double rise = std::copysign(jerk, to - from), t = ramp(), most = rise * t, gain = 0.5 * most * t;
+    const CubicPiece<double> first{t, position, from, 0, rise};
+    const CubicPiece<double> second{hold(), first.after(t).position, from + gain, most, 0};
+    const CubicPiece<double> third{t, second.after(hold()).position, to - gain, most, -rise};
+    pieces.insert(pieces.end(), {first, second, third});
+  }
+};
+
+/// The largest speed from `low` to `high` that fits, if all below one that fits fit and `low` does: by halving.
+[[nodiscard]] double largest_speed(double low, double high, auto&& fits) {
+  if (fits(high)) return high;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (fits(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+/// The fastest motion over a length [m] from one speed to another [m/s], which `reachable_speed` must allow: up to seven pieces.
+/// Source: Biagiotti & Melchiorri 2008, section 3.4; where the length is short, the speed in the middle is found by halving.
+[[nodiscard]] inline std::vector<CubicPiece<double>> speed_profile(double length, double from, double to, const SpeedLimits& limits) {
+  const auto rise = [&](double speed) { return SpeedChange{from, speed, limits.acceleration, limits.jerk}; };
+  const auto fall = [&](double speed) { return SpeedChange{speed, to, limits.braking, limits.jerk}; };
+  const double most = largest_speed(std::fmax(from, to), std::fmax(limits.speed, std::fmax(from, to)),
+                                    [&](double speed) { return rise(speed).distance() + fall(speed).distance() <= length; });
+  const double begin = rise(most).distance(), end = std::fmax(begin, length - fall(most).distance());
+  std::vector<CubicPiece<double>> pieces;
+  rise(most).add_to(pieces, 0);
+  if (end > begin && most > 0) pieces.push_back({(end - begin) / most, begin, most, 0, 0});
+  fall(most).add_to(pieces, end);
+  return pieces;
+}
+
+/// The highest speed after a length [m], from one speed [m/s].
+[[nodiscard]] inline double reachable_speed(double length, double from, double acceleration, const SpeedLimits& limits) {
+  return largest_speed(from, std::fmax(from, limits.speed), [&](double speed) {
+    return SpeedChange{from, speed, acceleration, limits.jerk}.distance() <= length;
+  });
+}
+
+/// A part of a way, to be driven without a stop in between.
+struct Stretch {
+  double length = 0;     ///< [m]
+  SpeedLimits limits{};  ///< all along it
+};
+
+/// Lowers the speeds at the joints of stretches, of which there is one more than of stretches, until each stretch can be driven within its
+/// limits: forwards for speeding up, then backwards for braking.
+/// Source: the look-ahead of machine tools, with no acceleration at a joint.
+inline void settle_speeds(std::span<double> joints, std::span<const Stretch> stretches) {
+  PULSECAST_EXPECT(joints.size() == stretches.size() + 1);
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    const Stretch& s = stretches[k];
+    if (joints[k + 1] > joints[k])
+      joints[k + 1] = std::fmin(joints[k + 1], reachable_speed(s.length, joints[k], s.limits.acceleration, s.limits));
+  }
+  for (std::size_t k = stretches.size(); k-- > 0;) {
+    const Stretch& s = stretches[k];
+    if (joints[k] > joints[k + 1]) joints[k] = std::fmin(joints[k], reachable_speed(s.length, joints[k + 1], s.limits.braking, s.limits));
+  }
+}
+
+}  // namespace pulsecast

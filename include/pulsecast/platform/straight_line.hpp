@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/platform/heading.hpp>
+
+namespace pulsecast {
+
+/// Moves from one place to another at a constant speed, and stays there. The body is level and looks along the path; on a path straight
+/// up or down, and on one that goes nowhere, it looks north.
+struct StraightLine {
+  Vec3 from{};          ///< where it is when its clock starts, in the world [m]
+  Vec3 to{0, 1000, 0};  ///< where it arrives, in the world [m]
+  double speed = 60;    ///< along the path, slopes included [m/s]
+
+  void validate() const {
+    expect_finite("StraightLine::from (length)", length(from), "m");
+    expect_finite("StraightLine::to (length)", length(to), "m");
+    expect_positive("StraightLine::speed", speed, "m/s");
+    expect_within("StraightLine (duration)", length(to - from) / speed, 0, 1e15, "s");  // as a Tick counts
+  }
+
+  /// When it arrives: a scanner that shoots until then covers the line.
+  [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(length(to - from) / speed); }
+
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+    const Vec3 path = to - from;
+    const double gone = speed * t.seconds(), whole = length(path);
+    return {level(heading_of(path)), gone < whole ? from + path * (gone / whole) : to};
+  }
+};
+
+static_assert(Trajectory<StraightLine>);
+
+}  // namespace pulsecast

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/platform/heading.hpp>
+
+namespace pulsecast {
+
+/// Where a body is at a time, and how it is turned.
+struct Waypoint {
+  double time = 0;                  ///< since the start of its leg [s]
+  Vec3 position{};                  ///< in the world [m]
+  Rotation rotation = no_rotation;  ///< from the body to the world
+};
+
+/// How a position is found between two waypoints.
+enum class Interpolation : std::uint8_t {
+  linear,  ///< straight, at constant velocity
+  cubic,   ///< so that the velocity is continuous: cubic polynomials that pass through the waypoints
+};
+
+/// Moves through timed poses. Attitudes turn at a constant rate about one axis, the shorter way, so headings may cross north. Before the
+/// first waypoint it stands there, and after the last one, too. Planners and trajectory files end in this.
+class Waypoints {
+ public:
+  explicit Waypoints(std::vector<Waypoint> points, Interpolation positions = Interpolation::linear) : points_(std::move(points)) {
+    expect_within("Waypoints::points (number)", static_cast<double>(points_.size()), 1, 1e9, "");
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const std::string field = "Waypoints::points[" + std::to_string(i) + "]";
+      Waypoint& p = points_[i];
+      expect_within(field + ".time", p.time, -1e15, 1e15, "s");  // as a Tick counts
+      if (i > 0 && !(p.time > points_[i - 1].time))
+        throw SettingError(field + ".time", p.time, "s", "later than that of the waypoint before, " + detail::written(points_[i - 1].time));
+      expect_finite(field + ".position (length)", length(p.position), "m");
+      expect_within(field + ".rotation (norm)", length(p.rotation), 1 - 1e-9, 1 + 1e-9, "");
+      p.rotation = normalize(p.rotation);
+    }
+    if (positions == Interpolation::cubic && points_.size() > 1) find_velocities();
+  }
+
+  /// From the start of the leg to the last waypoint.
+  [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(std::max(0.0, points_.back().time)); }
+
+  [[nodiscard]] const std::vector<Waypoint>& points() const noexcept { return points_; }
+
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick tick) const noexcept {
+    const double t = tick.seconds();
+    const auto after = std::upper_bound(points_.begin(), points_.end(), t, [](double time, const Waypoint& p) { return time < p.time; });
+    if (after == points_.begin()) return {points_.front().rotation, points_.front().position};
+    if (after == points_.end()) return {points_.back().rotation, points_.back().position};
+    const Waypoint &a = *(after - 1), &b = *after;
+    const double interval = b.time - a.time, s = (t - a.time) / interval;
+    const Vec3 path = b.position - a.position;
+    const Rotation rotation = normalize(slerp(a.rotation, b.rotation, s));
+    if (velocities_.empty()) return {rotation, a.position + s * path};
+    const auto i = static_cast<std::size_t>(after - points_.begin());
+    // Source: the cubic Hermite polynomial, in powers of s
+    const Vec3 leaving = interval * velocities_[i - 1], arriving = interval * velocities_[i];
+    return {rotation, a.position + s * (leaving + s * (3.0 * path - 2.0 * leaving - arriving + s * (leaving + arriving - 2.0 * path)))};
+  }
+
+ private:
+  /// At each waypoint, the velocity of the parabola through it and its neighbours; at the ends, of the parabola through the outer three.
+  /// Source: de Boor 1978, A Practical Guide to Splines, chapter IV, piecewise cubic Bessel interpolation; Catmull & Rom 1974 where the
+  /// times are evenly spaced.
+  void find_velocities() {
+    const std::size_t last = points_.size() - 1;
+    const auto interval = [&](std::size_t i) { return points_[i + 1].time - points_[i].time; };
+    const auto mean = [&](std::size_t i) { return (points_[i + 1].position - points_[i].position) / interval(i); };  // velocity
+    velocities_.assign(points_.size(), mean(0));
+    for (std::size_t i = 1; i < last; ++i) {
+      const double share = interval(i) / (interval(i - 1) + interval(i));
+      velocities_[i] = share * mean(i - 1) + (1 - share) * mean(i);
+    }
+    if (last > 1) {
+      velocities_[0] = 2.0 * mean(0) - velocities_[1];
+      velocities_[last] = 2.0 * mean(last - 1) - velocities_[last - 1];
+    }
+    for (const Vec3& v : velocities_) expect_finite("Waypoints::points (velocity between)", length(v), "m/s");
+  }
+
+  std::vector<Waypoint> points_;
+  std::vector<Vec3> velocities_;  ///< at each waypoint [m/s]; empty if linear
+};
+
+static_assert(Trajectory<Waypoints>);
+
+/// Turns bodies so that they are level and look along their path: at a bend, halfway between the ways in and out; at a turn straight back,
+/// the way in. Who rests or moves straight up keeps the last heading, or else takes the next one; who never moves aside looks north.
+[[nodiscard]] inline std::vector<Waypoint> with_headings(std::vector<Waypoint> points) {
+  const std::size_t n = points.size();
+  std::vector<Vec3> ahead(n, Vec3{});  // of each waypoint: the horizontal direction of the next way out; zero if there is none
+  const auto aside = [](const Vec3& from, const Vec3& to) {
+    if (to.x == from.x && to.y == from.y) return Vec3{};
+    const double heading = heading_of(to - from);
+    return Vec3{std::sin(heading), std::cos(heading), 0};
+  };
+  for (std::size_t i = n; i-- > 1;) {
+    const Vec3 way = aside(points[i - 1].position, points[i].position);
+    ahead[i - 1] = way == Vec3{} ? ahead[i] : way;
+  }
+  Vec3 behind{};
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i > 0)
+      if (const Vec3 way = aside(points[i - 1].position, points[i].position); way != Vec3{}) behind = way;
+    const Vec3 halfway = behind + ahead[i];
+    points[i].rotation = level(heading_of(length(halfway) > 1e-9 ? halfway : behind));
+  }
+  return points;
+}
+
+/// Waypoints at which a body arrives that follows the path through these positions [m] at a constant speed [m/s], level and looking along
+/// it. Positions that repeat the one before are left out.
+[[nodiscard]] inline std::vector<Waypoint> at_constant_speed(const std::vector<Vec3>& positions, double speed) {
+  expect_positive("at_constant_speed (speed)", speed, "m/s");
+  std::vector<Waypoint> points;
+  double gone = 0;
+  for (const Vec3& p : positions) {
+    expect_finite("at_constant_speed (position, length)", length(p), "m");
+    if (!points.empty()) gone += length(p - points.back().position);
+    if (points.empty() || gone / speed > points.back().time) points.push_back({.time = gone / speed, .position = p});
+  }
+  return with_headings(std::move(points));
+}
+
+}  // namespace pulsecast

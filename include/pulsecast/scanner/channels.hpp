@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+namespace detail {
+template <class S>
+concept SourceInSomeFrame = BeamSource<S> || InstrumentSource<S> || WorldSource<S>;
+}  // namespace detail
+
+/// One device with many emitters, each a source of its own with its own laser, origin and optic, in one frame and of one type:
+/// slot i is slot i / n of channel i % n. Emitters that fire in turn differ in `Scanner::delay`, which must not decrease from channel to
+/// channel; those that fire together have the same.
+template <detail::SourceInSomeFrame Source>
+class Channels {
+ public:
+  /// At most 256 channels, all of one size and duration.
+  explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {
+    expect_within("Channels::channels (number)", static_cast<double>(channels_.size()), 1, 256, "");
+    for (Source& c : channels_) c = validated(std::move(c));
+    const double size = static_cast<double>(channels_[0].size()), duration = channels_[0].duration().seconds();
+    for (const Source& c : channels_) {
+      expect_within("Channels::channels (slots)", static_cast<double>(c.size()), size, size, "");
+      expect_within("Channels::channels (duration)", c.duration().seconds(), duration, duration, "s");
+    }
+    expect_order();
+  }
+
+  [[nodiscard]] PulseIndex size() const noexcept { return channels_.size() * channels_[0].size(); }
+  [[nodiscard]] Tick duration() const noexcept { return channels_[0].duration(); }
+
+  [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const Source&>().pulse(i)) {
+    const std::size_t k = i % channels_.size();
+    auto p = channels_[k].pulse(i / channels_.size());
+    if (p) p->index = i, p->channel = static_cast<std::uint8_t>(k);
+    return p;
+  }
+
+  [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }
+
+ private:
+  /// Refuses time that goes backwards from one channel to the next, as far as some rounds spread over the whole tell: channels of one
+  /// rate show it in any round.
+  void expect_order() const {
+    const PulseIndex n = channels_.size(), rounds = channels_[0].size(), step = rounds / 64 + 1;
+    for (PulseIndex round = 0; round < rounds; round += step) {
+      std::optional<Tick> last;
+      for (PulseIndex i = round * n; i < (round + 2) * n && i < size(); ++i) {
+        const auto p = pulse(i);
+        if (p && last && p->tick < *last)
+          throw SettingError("Channels::channels (pulse of channel " + std::to_string(i % n) + ")", p->tick.seconds(), "s",
+                             "not before that of the channel in front of it, at " + detail::written(last->seconds()) + " s");
+        if (p) last = p->tick;
+      }
+    }
+  }
+
+  std::vector<Source> channels_;
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/platform/ground_vehicle.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <pulsecast/base/units.hpp>
+
+#include <doctest/doctest.h>
+
+#include "support/generators.hpp"
+#include "support/laws.hpp"
+#include "support/relative.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+using support::Generator;
+using support::relative;
+using support::detail::sentence;
+
+namespace {
+
+using Points = std::vector<Vec2>;
+
+std::optional<double> level_ground(Vec2) { return 0.0; }
+std::optional<double> ramp(Vec2 p) { return 100 + 0.15 * p.x - 0.1 * p.y; }
+
+/// Hills some 60 m apart and 3 m high, in places as steep as 1 in 6.
+std::optional<double> hills(Vec2 p) { return 1.2 * std::sin(p.x / 10) * std::cos(p.y / 13) + 0.3 * std::sin((p.x + p.y) / 7); }
+
+/// The four wheels of a vehicle, where they touch the ground.
+std::vector<Vec3> wheels(const Pose<frame::Body, frame::World>& pose, const GroundVehicleSettings& s) {
+  std::vector<Vec3> all;
+  for (const double x : {-s.track / 2, s.track / 2}) {
+    for (const double y : {0.0, s.wheelbase}) all.push_back(pose.point({x, y, 0}));
+  }
+  return all;
+}
+
+/// How far the farthest wheel is ever from the ground [m].
+double farthest_wheel(const GroundVehicleDrive& drive, const GroundVehicleSettings& s, auto&& ground, int samples) {
+  double farthest = 0;
+  for (int i = 0; i <= samples; ++i) {
+    for (const Vec3& wheel : wheels(drive.at(Tick::of_seconds(drive.duration().seconds() * i / samples)), s))
+      farthest = std::fmax(farthest, std::fabs(*ground(Vec2{wheel.x, wheel.y}) - wheel.z));
+  }
+  return farthest;
+}
+
+/// The first promise that a drive on level ground does not keep; empty if it keeps all. From the pieces of way and of time themselves.
+std::string broken_promise(const GroundVehicleDrive& drive, const GroundVehicleSettings& s, const Points& points, double grain = 1e-6) {
+  const double more = 1 + 1e-9;
+  for (std::size_t k = 0; k < drive.sections().size(); ++k) {
+    const auto& [path, start, footings] = drive.sections()[k];
+    if (!(std::fabs(path.curvature) * s.turn_radius <= more)) return sentence("section ", k, " bends by ", path.curvature, " /m");
+    if (k > 0 && !(length(drive.sections()[k - 1].path.end().position - path.start.position) <= grain))
+      return sentence("a gap before section ", k);
+  }
+  const auto& pieces = drive.driven().pieces();
+  std::size_t section = 0;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const CubicPiece<double>& piece = pieces[k].piece;
+    const double middle = piece.after(piece.duration / 2).position;
+    while (section + 1 < drive.sections().size() && middle >= drive.sections()[section + 1].start) ++section;
+    const double bend = std::fabs(drive.sections()[section].path.curvature);
+    for (int i = 0; i <= 8; ++i) {
+      const auto state = piece.after(piece.duration * i / 8);
+      if (!std::isfinite(state.position)) return sentence("piece ", k, " is not finite");
+      if (!(state.velocity <= s.speed * more) || !(state.velocity >= -1e-9 * s.speed))
+        return sentence("piece ", k, " has a speed of ", state.velocity);
+      const double across = state.velocity * state.velocity * bend, acceleration = std::hypot(across, state.acceleration);
+      if (!(acceleration <= s.acceleration * more)) return sentence("piece ", k, " has an acceleration of ", acceleration);
+      if (!(std::fabs(state.jerk) <= s.jerk * more)) return sentence("piece ", k, " has a jerk of ", state.jerk);
+    }
+    if (k + 1 == pieces.size()) break;
+    const auto end = piece.after(piece.duration), next = pieces[k + 1].piece.after(0);
+    if (!(std::fabs(next.position - end.position) <= grain)) return sentence("a gap behind piece ", k);
+    if (!(std::fabs(next.velocity - end.velocity) <= 1e-9 * s.speed)) return sentence("the speed jumps behind piece ", k);
+  }
+  for (std::size_t k = 1; k < drive.sections().size(); ++k) {  // at a change of gear it stands
+    if (drive.sections()[k].path.gear == drive.sections()[k - 1].path.gear) continue;
+    const double there = drive.sections()[k].start;
+    const bool stands = std::any_of(pieces.begin(), pieces.end(), [&](const auto& p) {
+      return std::fabs(p.piece.position - there) <= grain && std::fabs(p.piece.velocity) <= 1e-12;
+    });
+    if (!stands) return sentence("it changes gear at speed before section ", k);
+  }
+  const auto first = drive.at({}).position, last = drive.at(drive.duration()).position;
+  if (!(length(Vec2{first.x, first.y} - points.front()) <= grain)) return "it does not begin at the first waypoint";
+  if (!(length(Vec2{last.x, last.y} - points.back()) <= grain)) return "it does not arrive at the last waypoint";
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a straight drive takes L / v + v / a + a / j and looks along its way") {
+  const GroundVehicleSettings s{.speed = 5, .acceleration = 2, .jerk = 4};
+  const auto drive = plan_ground_vehicle(Points{{0, 0}, {100, 0}}, level_ground, s);
+  CHECK(drive.duration().seconds() == relative(100 / 5.0 + 5 / 2.0 + 2 / 4.0, 1e-14));
+  CHECK(length(drive.at({}).position) < 1e-15);
+  CHECK(length(drive.at(drive.duration()).position - Vec3{100, 0, 0}) < 1e-13);
+  CHECK(length(drive.at({7, 0}).direction(forward) - right) < 1e-15);
+}
+
+TEST_CASE("on a ramp all wheels are on the ground to a tenth of a millimetre, whichever way it goes") {
+  const GroundVehicleSettings s;
+  const auto drive = plan_ground_vehicle(Points{{0, 0}, {40, 10}, {60, -40}, {0, 0}, {60, 0}}, ramp, s);
+  CHECK(farthest_wheel(drive, s, ramp, 2000) < 1e-4);
+  const Vec3 normal = normalize(Vec3{-0.15, 0.1, 1});
+  for (double t = 0; t < drive.duration().seconds(); t += 0.5) CHECK(length(drive.at(Tick::of_seconds(t)).direction(up) - normal) < 1e-5);
+}
+
+TEST_CASE("pitch and roll come from the ground") {
+  const auto east = plan_ground_vehicle(Points{{0, 0}, {40, 0}}, ramp, {});
+  const Vec3 ahead = east.at({3, 0}).direction(forward), aside = east.at({3, 0}).direction(right);
+  CHECK(ahead.z / std::hypot(ahead.x, ahead.y) == relative(0.15, 1e-6));
+  CHECK(std::fabs(ahead.y) < 1e-12);                                                    // the map shows it looking east
+  CHECK(aside.z / std::hypot(aside.x, aside.y) == doctest::Approx(0.1).epsilon(0.02));  // to the south it rises
+}
+
+TEST_CASE("over hills the wheels stay within 2 cm of the ground") {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed);
+    Points points(2 + random.whole(6));
+    for (auto& p : points) p = {random.uniform(-100, 100), random.uniform(-100, 100)};
+    const GroundVehicleSettings s{.turn_radius = random.log_uniform(4, 15)};
+    const auto drive = plan_ground_vehicle(points, hills, s);
+    CHECK(farthest_wheel(drive, s, hills, 3000) < 0.02);
+  }
+}
+
+TEST_CASE("over hills the body keeps the speed limit in space, not only on the map") {
+  const GroundVehicleSettings s{.speed = 12, .ground_step = 0.5};
+  const auto steep = [](Vec2 p) -> std::optional<double> { return 0.3 * p.x; };
+  const auto drive = plan_ground_vehicle(Points{{0, 0}, {300, 0}}, steep, s);
+  double fastest = 0;
+  for (double t = 0; t + 0.01 < drive.duration().seconds(); t += 0.1)
+    fastest = std::fmax(fastest, length(drive.at(Tick::of_seconds(t + 0.01)).position - drive.at(Tick::of_seconds(t)).position) / 0.01);
+  CHECK(fastest == relative(12, 1e-9));
+}
+
+TEST_CASE("drives through random waypoints keep their radius and all limits, stand where they change gear, and arrive") {
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed);
+    const double reach = random.log_uniform(0.1, 300);
+    Points points(1 + random.whole(8));
+    for (auto& p : points) {
+      p = {random.uniform(-reach, reach), random.uniform(-reach, reach)};
+      if (random.whole(6) == 0) p = points[0];
+    }
+    const GroundVehicleSettings s{.speed = random.log_uniform(0.1, 50),
+                                  .acceleration = random.log_uniform(0.1, 10),
+                                  .jerk = random.log_uniform(0.1, 20),
+                                  .turn_radius = random.log_uniform(1, 20),
+                                  .ground_step = 10};
+    CHECK(broken_promise(plan_ground_vehicle(points, level_ground, s), s, points) == "");
+  }
+}
+
+TEST_CASE("the radius of the way driven is never below the least, by the poses themselves") {
+  const GroundVehicleSettings s{.turn_radius = 6};
+  const auto drive = plan_ground_vehicle(Points{{0, 0}, {0, 40}, {30, 40}, {30, 37}, {0, 40}, {0, 0}}, level_ground, s);
+  double tightest = 1e9;
+  const double h = 0.02;
+  for (double t = h; t + h < drive.duration().seconds(); t += h) {
+    const auto at = [&](double time) { return drive.at(Tick::of_seconds(time)); };
+    const double moved = length(at(t + h).position - at(t - h).position);
+    const double turned = std::acos(std::clamp(dot(at(t + h).direction(forward), at(t - h).direction(forward)), -1.0, 1.0));
+    if (turned > 1e-3) tightest = std::fmin(tightest, moved / turned);
+  }
+  CHECK(tightest < 6.001);
+  CHECK(tightest > 5.99);  // a chord is shorter than its arc
+}
+
+TEST_CASE("the pose of a drive does not jump, also where it changes gear") {
+  const auto drive = plan_ground_vehicle(Points{{0, 0}, {0, 40}, {3, 0}, {30, 20}, {32, 20}, {32, 22}}, hills, {});
+  const double h = 1e-3;
+  for (double t = 0; t < drive.duration().seconds(); t += h) {
+    const auto a = drive.at(Tick::of_seconds(t)), b = drive.at(Tick::of_seconds(t + h));
+    CHECK(length(a.position - b.position) < 11 * h);
+    CHECK(length(a.direction(forward) - b.direction(forward)) < 2 * h);
+    CHECK(length(a.direction(up) - b.direction(up)) < 2 * h);
+  }
+}
+
+TEST_CASE("no list of waypoints is too odd for a drive") {
+  const GroundVehicleSettings s{.ground_step = 100};
+  const auto keeps = [&](const Points& points, double grain = 1e-6) {
+    return broken_promise(plan_ground_vehicle(points, level_ground, s), s, points, grain);
+  };
+  CHECK(keeps({{1, 2}}) == "");
+  CHECK(keeps({{1, 2}, {1, 2}, {1, 2}}) == "");
+  CHECK(keeps({{0, 0}, {0, 9}, {0, 9}, {0, 18}}) == "");
+  CHECK(keeps({{0, 0}, {0, 9}, {0, 0}, {0, 9}}) == "");
+  CHECK(keeps({{0, 0}, {0.001, 0}, {0, 0.001}, {5, 0.001}, {5, 0.002}}) == "");
+  CHECK(keeps({{0, 0}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}, {0, 0}}) == "");
+  CHECK(keeps({{0, 0}, {1e-300, 0}, {0, 1e-300}, {7, 1e-300}}) == "");
+  CHECK(keeps({{0, 0}, {0, 50}, {1e-7, 0}, {0, 60}}) == "");
+  CHECK(keeps({{500000, 5400000}, {500020, 5400000}, {500020, 5400020}}) == "");
+  CHECK(keeps({{-1e6, 1e6}, {1e6, 1e6}, {0, 0}}) == "");
+  CHECK(keeps({{1e9, 1e9}, {1e9 - 30, 1e9}, {1e9 - 30, 1e9 - 50}}) == "");
+  CHECK_THROWS_AS((void)plan_ground_vehicle(Points{{-1e9, 1e9}, {1e9, 1e9}}, level_ground, {}), SettingError);  // too long for its steps
+}
+
+TEST_CASE("ten thousand waypoints are driven, be they in a row, in a circle, or anywhere") {
+  Generator random(7);
+  Points row(10000), circle(10000), anywhere(10000);
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    const double i = static_cast<double>(k);
+    row[k] = {1e-3 * i, 0};
+    circle[k] = {50 * std::cos(0.01 * i), 50 * std::sin(0.01 * i)};
+    anywhere[k] = {random.uniform(-50, 50), random.uniform(-50, 50)};
+  }
+  const GroundVehicleSettings s{.ground_step = 10};
+  for (const Points* points : {&row, &circle, &anywhere})
+    CHECK(broken_promise(plan_ground_vehicle(*points, level_ground, s), s, *points) == "");
+}
+
+TEST_CASE("a drive keeps the laws of a motion, and what it was told about the ground") {
+  double sea = 3;
+  const auto ground = [&](Vec2 p) -> std::optional<double> { return sea + *hills(p); };
+  const auto drive = plan_ground_vehicle(Points{{0, 0}, {0, 40}, {3, 0}, {30, 20}}, ground, {});
+  const auto told = drive.at({4, 0}).position;
+  sea = 8;
+  CHECK(drive.at({4, 0}).position == told);
+  std::vector<Tick> ticks;
+  for (int i = -5; i < 300; ++i) ticks.push_back(Tick::of_seconds(drive.duration().seconds() * i / 290));
+  CHECK(support::motion_laws(drive, ticks) == "");
+}
+
+TEST_CASE("the guards see a drive that breaks a promise") {
+  const Points points{{0, 0}, {0, 40}, {30, 40}, {30, 10}};
+  const GroundVehicleSettings s;
+  const auto drive = plan_ground_vehicle(points, level_ground, s);
+  CHECK(broken_promise(drive, s, points) == "");
+  CHECK(broken_promise(drive, {.speed = 5}, points).find("speed") != std::string::npos);
+  CHECK(broken_promise(drive, {.acceleration = 1.9}, points).find("acceleration") != std::string::npos);
+  CHECK(broken_promise(drive, {.jerk = 1.9}, points).find("jerk") != std::string::npos);
+  CHECK(broken_promise(drive, {.turn_radius = 5.6}, points).find("bends") != std::string::npos);
+  CHECK(broken_promise(drive, s, {{0, 0}, {1, 1}}).find("arrive") != std::string::npos);
+  CHECK(farthest_wheel(drive, s, hills, 100) > 0.02);
+}
+
+TEST_CASE("where there is no ground the waypoint is named") {
+  const auto island = [](Vec2 p) { return length(p) < 50 ? std::optional(1.0) : std::nullopt; };
+  CHECK_NOTHROW((void)plan_ground_vehicle(Points{{0, 0}, {40, 0}}, island, {}));
+  try {
+    (void)plan_ground_vehicle(Points{{0, 0}, {20, 0}, {20, 0}, {20, 70}}, island, {});
+    FAIL("there is no ground on the way");
+  } catch (const SettingError& error) {
+    CHECK(error.field().find("waypoints[3]") != std::string::npos);
+  }
+  const auto broken = [](Vec2) -> std::optional<double> { return std::numeric_limits<double>::quiet_NaN(); };
+  CHECK_THROWS_AS((void)plan_ground_vehicle(Points{{0, 0}}, broken, {}), SettingError);
+}
+
+TEST_CASE("a drive that cannot be is refused") {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+  const Points points{{0, 0}, {9, 0}};
+  CHECK_THROWS_AS((void)plan_ground_vehicle(Points{}, level_ground, {}), SettingError);
+  CHECK_THROWS_AS((void)plan_ground_vehicle(Points{{0, nan}}, level_ground, {}), SettingError);
+  CHECK_THROWS_AS((void)plan_ground_vehicle(Points{{0, 0}, {infinite, 0}}, level_ground, {}), SettingError);
+  for (const double bad : {0.0, -1.0, nan, infinite, 1e-300, 1e300}) {
+    CAPTURE(bad);
+    CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.speed = bad}), SettingError);
+    CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.acceleration = bad}), SettingError);
+    CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.jerk = bad}), SettingError);
+    CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.turn_radius = bad}), SettingError);
+    CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.wheelbase = bad}), SettingError);
+    CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.track = bad}), SettingError);
+    CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.ground_step = bad}), SettingError);
+  }
+}

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/scanner/channels.hpp>
+
+#include <cmath>
+#include <vector>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
+#include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/deflector/risley_prisms.hpp>
+#include <pulsecast/deflector/rotating_head.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+
+#include <doctest/doctest.h>
+
+#include "support/archetypes.hpp"
+#include "support/laws.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+static_assert(BeamSource<Channels<Scanner>>);
+static_assert(InstrumentSource<Channels<Deflector<FixedBeam, Scanner>>>);
+static_assert(WorldSource<Channels<support::LeastSource<frame::World>>>);
+
+namespace {
+
+using Emitter = Deflector<FixedBeam, Scanner>;
+
+/// Beams from -15 to 15 degrees, fired in turn with a pause at the end of each round.
+std::vector<Emitter> fan(std::size_t n, PulseIndex pulses = 1000) {
+  std::vector<Emitter> beams;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double place = static_cast<double>(k);
+    beams.emplace_back(FixedBeam{.elevation = radians(-15 + 30 * place / static_cast<double>(n - 1)), .origin = {0, 0, 0.001 * place}},
+                       Scanner{.pulse_rate = 20_kHz, .pulses = pulses, .delay = place * 1_us});
+  }
+  return beams;
+}
+
+}  // namespace
+
+TEST_CASE("channels take turns, and each is what it is alone but for its number") {
+  const std::vector<Emitter> beams = fan(16);
+  const Channels device{beams};
+  CHECK(device.size() == 16000);
+  CHECK(device.duration() == beams[0].duration());
+  for (PulseIndex i = 0; i < device.size(); ++i) {
+    const auto p = device.pulse(i), alone = beams[i % 16].pulse(i / 16);
+    REQUIRE(p);
+    REQUIRE(p->index == i);
+    REQUIRE(p->channel == i % 16);
+    REQUIRE(p->tick == alone->tick);
+    REQUIRE(p->direction() == alone->direction());
+    REQUIRE(p->origin() == Vec3{0, 0, 0.001 * static_cast<double>(i % 16)});
+  }
+  CHECK(support::source_laws(device) == "");
+}
+
+TEST_CASE("channels fire each at its own time after the round begins") {
+  const Channels device{fan(16)};
+  for (PulseIndex i = 0; i < 160; ++i) {
+    const double round = static_cast<double>(i / 16) * 50e-6, turn = static_cast<double>(i % 16) * 1e-6;
+    CHECK(std::fabs(device.pulse(i)->tick.seconds() - round - turn) < 1e-15);
+  }
+}
+
+TEST_CASE("channels keep the laws of a source, of any number and size") {
+  for (const std::size_t n : {1U, 2U, 31U, 256U})
+    for (const PulseIndex pulses : {PulseIndex{0}, PulseIndex{1}, PulseIndex{100}, PulseIndex{1000000000000}}) {
+      CAPTURE(n);
+      CAPTURE(pulses);
+      const Channels device{std::vector<Scanner>(n, Scanner{.pulses = pulses})};  // all together
+      CHECK(device.size() == n * pulses);
+      CHECK(support::source_laws(device) == "");
+    }
+}
+
+TEST_CASE("a spinning sensor of many beams draws one cone per beam, each beam turned on by its own delay") {
+  const double rate = 10 * 360_deg;
+  const Deflector sensor{RotatingHead{.rate = -rate}, Channels{fan(32, 2000)}};  // ten turns a second to the right
+  const Platform robot{Tripod{}, Mount{.lever_arm = {0, 0, 1.5}}, sensor};
+  CHECK(support::source_laws(robot) == "");
+  CHECK(support::wrapped_source_laws(robot, sensor) == "");
+  for (PulseIndex i = 0; i < robot.size(); i += 101) {
+    const auto p = robot.pulse(i);
+    const double elevation = radians(-15 + 30 * static_cast<double>(p->channel) / 31), azimuth = rate * p->tick.seconds();
+    const double level = std::cos(elevation);
+    CAPTURE(i);
+    CHECK(length(p->direction() - Vec3{level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}) < 1e-12);
+  }
+}
+
+TEST_CASE("channels may differ in laser and in optic, and one may be blocked while another is open") {
+  std::vector<Deflector<PolygonMirror, Scanner>> two;
+  two.emplace_back(PolygonMirror{.lines_per_second = 50, .angle_min = 0}, Scanner{.pulses = 5000, .laser = {.wavelength = 1064_nm}});
+  two.emplace_back(PolygonMirror{.lines_per_second = 50, .angle_max = 0}, Scanner{.pulses = 5000, .laser = {.wavelength = 532_nm}});
+  const Channels device{two};
+  CHECK(support::source_laws(device) == "");
+  for (PulseIndex i = 0; i < device.size(); ++i) {
+    const auto p = device.pulse(i);
+    REQUIRE(p.has_value() == two[i % 2].pulse(i / 2).has_value());
+    if (p) REQUIRE(p->laser.wavelength == (i % 2 == 0 ? 1064_nm : 532_nm));
+  }
+
+  std::vector<Deflector<RisleyPrisms, Scanner>> three;
+  for (const double aside : {-0.1, 0.0, 0.1})
+    three.emplace_back(RisleyPrisms{.prisms = {{.turns_per_second = 77}, {.turns_per_second = -33}}, .incident = {aside, 1, 0}}, Scanner{});
+  const Channels rosettes{three};
+  CHECK(support::source_laws(rosettes) == "");
+  CHECK(rosettes.pulse(0)->direction().x < rosettes.pulse(1)->direction().x);
+  CHECK(rosettes.pulse(1)->direction().x < rosettes.pulse(2)->direction().x);
+}
+
+TEST_CASE("several lasers may share one mirror") {
+  const std::vector<Scanner> lasers{{.pulses = 100, .laser = {.wavelength = 905_nm}}, {.pulses = 100, .delay = 2_us}};
+  const Deflector device{PolygonMirror{}, Channels{lasers}};
+  CHECK(support::source_laws(device) == "");
+  CHECK(device.pulse(2)->laser.wavelength == 905_nm);
+  CHECK(device.pulse(3)->channel == 1);
+}
+
+TEST_CASE("a device has at least one channel and at most 256, all of one length") {
+  CHECK_THROWS_AS(Channels{std::vector<Scanner>{}}, SettingError);
+  CHECK_NOTHROW(Channels{std::vector<Scanner>(256)});
+  CHECK_THROWS_AS(Channels{std::vector<Scanner>(257)}, SettingError);
+  CHECK_THROWS_AS((Channels{std::vector<Scanner>{{.pulses = 10}, {.pulses = 11}}}), SettingError);
+  CHECK_THROWS_AS((Channels{std::vector<Scanner>{{.pulse_rate = 10}, {.pulse_rate = 11}}}), SettingError);
+  CHECK_THROWS_AS((Channels{std::vector<Scanner>{{}, {.pulse_rate = -1}}}), SettingError);
+}
+
+TEST_CASE("channels whose time would go backwards are refused") {
+  const auto device = [](std::vector<double> delays) {
+    std::vector<Scanner> lasers;
+    for (const double delay : delays) lasers.push_back({.delay = delay});
+    return Channels{lasers};
+  };
+  CHECK_NOTHROW(device({0, 0, 1_us, 9_us}));
+  CHECK_NOTHROW(device({3_us, 3_us}));
+  CHECK_THROWS_AS(device({1_us, 0}), SettingError);
+  CHECK_THROWS_AS(device({0, 2_us, 1_us, 3_us}), SettingError);
+}
