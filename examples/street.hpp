@@ -242,8 +242,10 @@ struct House {
   for (int k = 0; k < 420; ++k) {
     const double turn = 2.4 * k, z = dice.between(-1, 1), out = std::cbrt(dice.between(0.25, 1)), r = std::sqrt(1 - z * z);
     const Vec3 at = Vec3{0, 0, 4.6} + out * Vec3{2.1, 2.1, 2.5} * Vec3{r * std::cos(turn), r * std::sin(turn), z};
-    const Vec3 a = dice.between(0.12, 0.24) * normalize(Vec3{dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 0.2)});
-    const Vec3 b = 0.6 * cross(a, normalize(Vec3{dice.between(-1, 1), dice.between(-1, 1), 1}));
+    const double size = dice.between(0.12, 0.24);
+    const Vec3 along{dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 0.2)};
+    const Vec3 aside{dice.between(-1, 1), dice.between(-1, 1), 1};
+    const Vec3 a = size * normalize(along), b = 0.6 * cross(a, normalize(aside));
     add_face(mesh, {at - a, at + b, at + a, at - b}, leaf);
   }
   return mesh;
@@ -285,13 +287,14 @@ using Scene = pulsecast::Scene<Mesh>;
     }
     for (double done = 5; done < end - 2; done += 21) {
       place(post, on(from + done * along - 2.8 * left), turn + pi);
-      if (done + 10 < end)
-        place(trees[dice.between(0, 1) < 0.5 ? 0 : 1], on(from + (done + 10.5) * along - 2.3 * left), dice.between(0, 6));
+      const double kind = dice.between(0, 1), twist = dice.between(0, 6);
+      if (done + 10 < end) place(trees[kind < 0.5 ? 0 : 1], on(from + (done + 10.5) * along - 2.3 * left), twist);
     }
     for (double done = 2; done < end - 4; done += dice.between(5.3, 15)) {
       const Vec2 spot = from + done * along - (front - roadway + 1.1) * left;
+      const double way = dice.between(0, 1) < 0.8 ? turn + pi / 2 : turn - pi / 2, askew = dice.between(-0.03, 0.03);
       if (spot.x > 2 * front) continue;  // the arm to the east is kept clear: there cars turn
-      place(hatchback, on(spot), turn - pi / 2 + (dice.between(0, 1) < 0.8 ? pi : 0) + dice.between(-0.03, 0.03));
+      place(hatchback, on(spot), way + askew);
     }
   };
   const double x = front, y = front, far = half_size.y - 4, near = 2 * front;

@@ -114,6 +114,12 @@ TEST_CASE("on a ramp all wheels are on the ground to a tenth of a millimetre, wh
   for (double t = 0; t < drive.duration().seconds(); t += 0.5) CHECK(length(drive.at(Tick::of_seconds(t)).direction(up) - normal) < 1e-5);
 }
 
+TEST_CASE("where steep ground bends, the wheels are where the leaning body has them") {
+  const auto bowl = [](Vec2 p) -> std::optional<double> { return 0.03 * p.y * p.y; };  // at 12 m as steep as 7 in 10
+  const GroundVehicleSettings s;
+  CHECK(farthest_wheel(plan_ground_vehicle(Points{{0, -12}, {0, 9}}, bowl, s), s, bowl, 1000) < 2e-4);
+}
+
 TEST_CASE("pitch and roll come from the ground") {
   const auto east = plan_ground_vehicle(Points{{0, 0}, {40, 0}}, ramp, {});
   const Vec3 ahead = east.at({3, 0}).direction(forward), aside = east.at({3, 0}).direction(right);

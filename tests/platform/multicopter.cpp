@@ -170,6 +170,15 @@ TEST_CASE("a vertical flight is level and keeps the heading") {
   CHECK(length(flight.at(flight.duration()).direction(forward) - right) < 1e-14);
 }
 
+TEST_CASE("however fast it may sink, it keeps a tenth of its weight on its rotors and does not topple") {
+  const MulticopterSettings s{.speed = 50, .acceleration = 30, .jerk = 100};
+  const auto flight = plan_multicopter(Points{{{0, 0, 200}}, {{0, 0, 0}}}, s);
+  double least = 0;
+  for (const auto& [start, piece] : flight.motion().pieces()) least = std::fmin(least, piece.acceleration.z);
+  CHECK(least == relative(-0.9 * standard_gravity, 1e-9));
+  for (double t = 0; t < flight.duration().seconds(); t += 0.01) CHECK(flight.at(Tick::of_seconds(t)).direction(up) == up);
+}
+
 TEST_CASE("flights over random waypoints keep all limits, have no gaps, and arrive") {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     CAPTURE(seed);

@@ -59,7 +59,7 @@ struct RayBundle : BundleOrigin {
 
   /// Makes the idle lanes copies of the last ray, as every reader of `padded_size()` rays expects. Call it when the directions are set.
   void pad() noexcept {
-    PULSECAST_EXPECT(size > 0 && size <= capacity && near >= 0);
+    PULSECAST_EXPECT(size > 0 && size <= capacity && !(near < 0));
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
   }
 
