@@ -29,7 +29,7 @@ struct Pulse {
   std::optional<Pose<frame::Beam, Frame>> reported{};  ///< what the instrument takes its pose for; empty if it knows it
   Laser laser{};
   double scan_angle = 0;     ///< about the body's forward axis: 0 down, positive to the right, in [-pi, pi] [rad]; set by a platform
-  std::uint16_t leg = 0;     ///< number of the leg that it belongs to, from 0
+  std::uint16_t leg = 0;     ///< number of the leg or strip that it belongs to, from 0
   std::uint8_t channel = 0;  ///< number of the emitter in a device of several, from 0
 
   [[nodiscard]] const Vec3& origin() const noexcept { return pose.position; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,6 +19,8 @@ template <WorldSource P>
 struct Leg {
   P platform;
   bool active = true;
+  std::optional<std::uint16_t>
+      strip{};  ///< the number that its pulses carry, which legs of one strip share; if empty, its place in the list
 };
 
 /// Passes end to end, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's own clock starts at zero; the survey's
@@ -30,12 +33,12 @@ class Legs {
     PulseIndex first = 0;
     Tick start{};
     for (Leg<P>& leg : legs) {
-      starts_.push_back({first, start});
+      starts_.push_back({first, start, leg.strip.value_or(static_cast<std::uint16_t>(starts_.size()))});
       if (leg.active) first += leg.platform.size();
       start = start + leg.platform.duration();
       legs_.push_back(std::move(leg.platform));
     }
-    end_ = {first, start};
+    end_ = {first, start, 0};
   }
 
   /// All of them active.
@@ -47,7 +50,7 @@ class Legs {
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     const std::size_t k = leg_of(i);
     auto p = legs_[k].pulse(i - starts_[k].pulse);
-    if (p) p->index = i, p->tick = starts_[k].tick + p->tick, p->leg = static_cast<std::uint16_t>(k);
+    if (p) p->index = i, p->tick = starts_[k].tick + p->tick, p->leg = starts_[k].number;
     return p;
   }
 
@@ -66,6 +69,7 @@ class Legs {
   struct Start {
     PulseIndex pulse;
     Tick tick;
+    std::uint16_t number = 0;
   };
 
   static std::vector<Leg<P>> active(std::vector<P> platforms) {
