@@ -126,8 +126,11 @@ class BundleInterval {
     const Lane to_entry = sign_ * first + entry_offset_, to_exit = sign_ * last + exit_offset_;
     const Lane entry = to_entry * (to_entry > zero ? slowness_low_ : slowness_high_);
     const Lane exit = to_exit * (to_exit > zero ? slowness_high_ : slowness_low_);
-    return {std::max(std::max(entry[0], entry[1]), std::max(entry[2], near_)),
-            std::min(std::min(exit[0], exit[1]), std::min(exit[2], exit[3]))};
+    // the latest entry and the earliest exit, by halves
+    const Lane entry_2 = __builtin_shufflevector(entry, entry, 2, 3, 0, 1), exit_2 = __builtin_shufflevector(exit, exit, 2, 3, 0, 1);
+    const Lane late = entry > entry_2 ? entry : entry_2, early = exit < exit_2 ? exit : exit_2;
+    const Real entered = late[0] > late[1] ? late[0] : late[1];
+    return {entered > near_ ? entered : near_, early[0] < early[1] ? early[0] : early[1]};
   }
 
   [[nodiscard]] Span inside_any_way(const BoundingBox<Real>& box) const noexcept {
