@@ -157,9 +157,8 @@ inline void add_twig(MeshData& mesh, Dice& dice, const Broadleaf& kind, const Ve
   const Axis twig = grow(dice, foot, direction, {.length = reach, .radius = 0.006, .wander = 0.25, .lift = -kind.droop, .steps = 2});
   add_tube(mesh, twig, 3, kind.stem);
   for (int k = 0; k < 12; ++k) {
-    const double share = dice.between(0.15, 1);
-    const Vec3 midrib =
-        normalize(branching(twig.tangent(share), dice.between(0.5, 1.2), golden_angle * k) + dice.vector(0.3) - 0.3 * pulsecast::up);
+    const double share = dice.between(0.15, 1), fork = dice.between(0.5, 1.2);
+    const Vec3 midrib = normalize(branching(twig.tangent(share), fork, golden_angle * k) + dice.vector(0.3) - 0.3 * pulsecast::up);
     const Vec3 side = normalize(cross(midrib, pulsecast::up + dice.vector(0.5)));
     const double size = dice.about(kind.leaf_length, 0.3);
     add_leaf(mesh, twig.at(share), size * midrib, 0.3 * size * side, kind.leaves);
@@ -185,14 +184,15 @@ inline void add_twig(MeshData& mesh, Dice& dice, const Broadleaf& kind, const Ve
     add_tube(mesh, limb, 6, kind.stem);
     for (int j = 0; j < 9; ++j) {
       const double out = 0.2 + 0.8 * (j + dice.between(0, 1)) / 9;
+      const double fork = dice.between(0.5, 1.0), around = golden_angle * j + dice.between(-0.5, 0.5);
       const Axis bough =
-          grow(dice, limb.at(out), branching(limb.tangent(out), dice.between(0.5, 1.0), golden_angle * j + dice.between(-0.5, 0.5)),
+          grow(dice, limb.at(out), branching(limb.tangent(out), fork, around),
                {.length = reach * (0.55 - 0.3 * out) + 0.3, .radius = 0.5 * limb.radius(out), .wander = 0.2, .lift = 0.04, .steps = 4});
       add_tube(mesh, bough, 4, kind.stem);
       for (int k = 0; k < 5; ++k) {
         const double at = k == 4 ? 1.0 : dice.between(0.25, 1);
-        add_twig(mesh, dice, kind, bough.at(at), branching(bough.tangent(at), dice.between(0.3, 0.9), golden_angle * k),
-                 dice.between(0.35, 0.7));
+        const double leaning = dice.between(0.3, 0.9), length = dice.between(0.35, 0.7);
+        add_twig(mesh, dice, kind, bough.at(at), branching(bough.tangent(at), leaning, golden_angle * k), length);
       }
     }
   }
