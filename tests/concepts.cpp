@@ -76,6 +76,35 @@ struct HowOpen : LeastOptic {
 };
 static_assert(!Gated<HowOpen>, "open() returns how far, not whether");
 
+// ----------------------------------------------------------------------------------------------------------------- ground
+
+struct Level {
+  double operator()(Vec2) const { return 0; }
+};
+static_assert(Ground<Level>);
+
+struct LevelChanges {
+  double operator()(Vec2) { return 0; }
+};
+static_assert(!Ground<LevelChanges>, "asking it changes it");
+
+struct LevelOfPoint {
+  double operator()(Vec3) const { return 0; }
+};
+static_assert(!Ground<LevelOfPoint>, "it wants to know the height");
+
+// ------------------------------------------------------------------------------------------------------------ echo widths
+
+struct AlwaysWide {
+  double width(std::span<const double>, double) const noexcept { return 1; }
+};
+static_assert(EchoWidth<AlwaysWide>);
+
+struct WidthMayThrow {
+  double width(std::span<const double>, double) const { return 1; }
+};
+static_assert(!EchoWidth<WidthMayThrow>, "width() is not noexcept");
+
 // ---------------------------------------------------------------------------------------------------------- pulse sources
 
 static_assert(BeamSource<LeastSource<frame::Beam>> && InstrumentSource<LeastSource<frame::Instrument>>);

@@ -51,6 +51,13 @@ concept Head = Motion<H, frame::Instrument, frame::Instrument>;
 template <class T>
 concept Trajectory = Motion<T, frame::Body, frame::World>;
 
+/// The height of the ground [m] at a place [m east, m north]; empty where there is none. Asked by planners, before the first pulse, so it
+/// need not be noexcept.
+template <class G>
+concept Ground = requires(const G ground, Vec2 place) {
+  { ground(place) } -> std::convertible_to<std::optional<double>>;
+};
+
 // ---------------------------------------------------------------------------------------------------------- pulse sources
 
 /// Pulses by number, in one frame: slot i is asked for in any order, and may be empty if an optic blocks it.
@@ -159,6 +166,13 @@ template <class D>
 concept Detector = std::copyable<D> && requires(const D d, const Laser& laser, std::span<Reflection> reflections, std::size_t subrays,
                                                 decltype(d.workspace(subrays))& workspace) {
   { d.detect(laser, reflections, workspace) } noexcept -> std::same_as<Detection>;
+};
+
+/// How the width of an echo is measured: a policy of the waveform detectors. `samples` is the waveform [W] between the valleys to the
+/// neighbouring echoes, every `interval` [s]; the answer is a standard deviation in time [s].
+template <class W>
+concept EchoWidth = std::copyable<W> && requires(const W w, std::span<const double> samples, double interval) {
+  { w.width(samples, interval) } noexcept -> std::same_as<double>;
 };
 
 /// Whatever takes the results: a writer, a cloud in memory, a lambda.

@@ -3,19 +3,12 @@
 #pragma once
 
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <span>
 
-namespace pulsecast {
+#include <pulsecast/concepts.hpp>
 
-/// How the width of an echo is measured: a policy of the waveform detectors. `samples` is the waveform [W] between the valleys to the
-/// neighbouring echoes, every `interval` [s]; the answer is a standard deviation in time [s].
-template <class W>
-concept EchoWidth = std::copyable<W> && requires(const W w, std::span<const double> samples, double interval) {
-  { w.width(samples, interval) }
-  noexcept->std::same_as<double>;
-};
+namespace pulsecast {
 
 /// Not measured: 0.
 struct NoWidth {

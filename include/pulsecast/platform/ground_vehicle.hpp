@@ -21,12 +21,6 @@
 
 namespace pulsecast {
 
-/// The height of the ground at a place on the map [m]; empty where there is none.
-template <class G>
-concept Ground = requires(const G ground, Vec2 place) {
-  { ground(place) } -> std::convertible_to<std::optional<double>>;
-};
-
 struct GroundVehicleSettings {
   double speed = 10;         ///< at most [m/s]
   double acceleration = 2;   ///< at most, along and across the way together, as on level ground [m/s^2]

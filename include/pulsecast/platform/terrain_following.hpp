@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
@@ -30,9 +31,7 @@ struct TerrainFollowing {
 /// Follows a line over the ground: `ground(place)` gives its height [m] at a place east and north [m], or nothing where it is not known;
 /// there, the last height counts, or else the first one known. Of all paths that keep their height wherever the ground is looked at, and
 /// climb no steeper than allowed, it is the lowest. If no ground is known at all, the path is the line's own.
-template <class Ground>
-requires requires(const Ground& ground, Vec2 place) { std::optional<double>(ground(place)); }
-[[nodiscard]] Waypoints plan_terrain_following(const StraightLine& line, const Ground& ground, const TerrainFollowing& settings = {}) {
+[[nodiscard]] Waypoints plan_terrain_following(const StraightLine& line, const Ground auto& ground, const TerrainFollowing& settings = {}) {
   line.validate(), settings.validate();
   const Vec3 path = line.to - line.from;
   const double distance = std::hypot(path.x, path.y);
