@@ -52,7 +52,8 @@ class Survey {
   [[nodiscard]] Workspace workspace() const {
     const Laser laser{};
     const std::size_t n = footprint_.size();
-    Workspace w{laser, {receiver_, laser}, fan(laser), std::vector<Hit>(RayBundle::capacity), {}, detector_.workspace(n)};
+    Workspace w{laser, {receiver_, laser}, std::vector<Vec3>(n), std::vector<Hit>(RayBundle::capacity), {}, detector_.workspace(n)};
+    spread(w.fan, laser.divergence);
     w.reflections.reserve(n);
     return w;
   }
@@ -103,15 +104,13 @@ class Survey {
   }
 
  private:
-  std::vector<Vec3> fan(const Laser& laser) const {
-    std::vector<Vec3> directions;
-    for (std::size_t j = 0; j < footprint_.size(); ++j) directions.push_back(subray_direction(footprint_.offset(j), laser.divergence));
-    return directions;
+  /// Sets the directions of the subrays for a divergence [rad].
+  void spread(std::span<Vec3> fan, double divergence) const noexcept {
+    for (std::size_t j = 0; j < fan.size(); ++j) fan[j] = subray_direction(footprint_.offset(j), divergence);
   }
 
   void make_for(const Laser& laser, Workspace& w) const noexcept {
-    if (laser.divergence != w.laser.divergence)
-      for (std::size_t j = 0; j < w.fan.size(); ++j) w.fan[j] = subray_direction(footprint_.offset(j), laser.divergence);
+    if (laser.divergence != w.laser.divergence) spread(w.fan, laser.divergence);
     w.budget = LinkBudget(receiver_, laser);
     w.laser = laser;
   }

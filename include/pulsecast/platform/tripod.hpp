@@ -4,6 +4,7 @@
 
 #include <pulsecast/base/expect.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/platform/heading.hpp>
 
 namespace pulsecast {
 
@@ -19,7 +20,7 @@ struct Tripod {
     expect_finite("Tripod::heading", heading, "rad");
   }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick) const noexcept { return {rotation_about(up, -heading), position}; }
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick) const noexcept { return {level(heading), position}; }
 };
 
 static_assert(Trajectory<Tripod>);
