@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "support/scenes.hpp"
@@ -66,50 +65,4 @@ TEST_CASE("a KdTree goes into a narrow column of leaves for rays along an axis")
       rays, [&](std::span<const PrimitiveIndex> p) { count += p.size(); }, nearest);
   CHECK(count > 0);
   CHECK(count < 50);
-}
-
-TEST_CASE_TEMPLATE("a KdTree of nothing, or of empty boxes only, is never met", Real, float, double) {
-  std::size_t largest = 0;
-  CHECK(offers(KdTree<Real>({}), 0, largest).empty());
-  const std::vector<Box> empty(5);
-  CHECK(offers(KdTree<Real>(empty), 5, largest) == std::vector<std::size_t>(5, 0));
-  CHECK(KdTree<Real>(empty).bounds().empty());
-  CHECK(KdTree<Real>(empty).memory() == 0);
-}
-
-TEST_CASE("a KdTree leaves out empty boxes among others") {
-  Generator random(52);
-  std::vector<Box> boxes;
-  for (int i = 0; i < 100; ++i) boxes.push_back(i % 3 == 0 ? Box{} : random.box(10, 1e-2, 1));
-  std::size_t largest = 0;
-  const auto count = offers(KdTree<>(boxes), boxes.size(), largest);
-  for (std::size_t i = 0; i < boxes.size(); ++i) CHECK((count[i] > 0) == (i % 3 != 0));
-}
-
-TEST_CASE("a KdTree of more than 2^32 - 2 primitives is refused") {
-  const Box box{{0, 0, 0}, {1, 1, 1}};
-  CHECK_THROWS_AS(KdTree<>(std::span<const Box>(&box, std::size_t{0xFFFFFFFF})), SettingError);
-}
-
-TEST_CASE_TEMPLATE("a KdTree is not entered by rays that are not numbers, nor by those that pass by or end before", Real, float, double) {
-  Generator random(53);
-  std::vector<Box> boxes;
-  for (int i = 0; i < 100; ++i) boxes.push_back(random.box(10, 1e-2, 1));
-  const KdTree<Real> tree(boxes);
-  const auto tested = [&](const Ray& ray) {
-    const RayBundle rays = bundle_of(ray);
-    Nearest nearest(rays);
-    std::size_t count = 0;
-    tree.closest(
-        rays, [&](std::span<const PrimitiveIndex> p) { count += p.size(); }, nearest);
-    return count;
-  };
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, forward}) > 0);
-  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, -forward}) == 0);
-  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, forward, 0, 10}) == 0);
-  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, forward, 100, 1000}) == 0);
-  CHECK(tested({Vec3{nan, 0, 0}, forward}) == 0);
-  CHECK(tested({boxes[0].centre(), Vec3{nan, nan, nan}}) == 0);
-  CHECK(tested({boxes[0].centre(), Vec3{0, 1, nan}}) == 0);
 }
