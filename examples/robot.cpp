@@ -27,7 +27,7 @@ auto spinning_sensor(std::size_t beams, double turns_per_second, PulseIndex colu
   std::vector<Deflector<FixedBeam, Scanner>> emitters;
   for (std::size_t k = 0; k < beams; ++k) {
     const double elevation = std::lerp(-25_deg, 15_deg, static_cast<double>(k) / static_cast<double>(beams - 1));
-    emitters.push_back({FixedBeam{.elevation = elevation}, scanner});
+    emitters.push_back({FixedBeam{aimed_at(0, elevation)}, scanner});
   }
   return Deflector{RotatingHead{.rate = -360_deg * turns_per_second}, Channels{emitters}};
 }

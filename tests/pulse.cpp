@@ -23,7 +23,7 @@ TEST_CASE("a pulse seen from a surrounding frame has another pose and is otherwi
   inner.index = 7, inner.tick = {8, 0.25}, inner.laser.wavelength = 532e-9, inner.scan_angle = 0.1, inner.leg = 3, inner.channel = 2;
   inner.pose.position = {0, 1, 0};
   const Pose<frame::Beam, frame::Instrument> outer_from_inner{rotation_about(up, pi / 2), {10, 0, 0}};
-  const auto outer = transformed(outer_from_inner, inner);
+  const Pulse outer(outer_from_inner, inner);
   static_assert(std::same_as<decltype(outer), const Pulse<frame::Instrument>>);
   CHECK(length(outer.origin() - Vec3{9, 0, 0}) < 1e-15);
   CHECK(length(outer.direction() + right) < 1e-15);
@@ -43,8 +43,8 @@ TEST_CASE("transforming twice is transforming by the composed pose") {
     p.pose = any.pose<frame::Beam, frame::Beam>(0.1);
     const auto instrument_from_beam = any.pose<frame::Beam, frame::Instrument>(1);
     const auto body_from_instrument = any.pose<frame::Instrument, frame::Body>(1);
-    const auto twice = transformed(body_from_instrument, transformed(instrument_from_beam, p));
-    const auto once = transformed(body_from_instrument * instrument_from_beam, p);
+    const Pulse twice(body_from_instrument, Pulse(instrument_from_beam, p));
+    const Pulse once(body_from_instrument * instrument_from_beam, p);
     CHECK(length(twice.origin() - once.origin()) < 1e-14);
     CHECK(length(twice.direction() - once.direction()) < 1e-14);
   }

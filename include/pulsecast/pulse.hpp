@@ -32,17 +32,21 @@ struct Pulse {
   std::uint16_t leg = 0;     ///< number of the leg or strip that it belongs to, from 0
   std::uint8_t channel = 0;  ///< number of the emitter in a device of several, from 0
 
+  Pulse() = default;
+
+  /// The pulse as seen from a frame that surrounds its own. What was reported in the inner frame is of no use in the outer one.
+  template <class Inner>
+  Pulse(const Pose<Inner, Frame>& outer_from_inner, const Pulse<Inner>& p) noexcept
+      : index(p.index),
+        tick(p.tick),
+        pose(outer_from_inner * p.pose),
+        laser(p.laser),
+        scan_angle(p.scan_angle),
+        leg(p.leg),
+        channel(p.channel) {}
+
   [[nodiscard]] const Vec3& origin() const noexcept { return pose.position; }
   [[nodiscard]] Vec3 direction() const noexcept { return pose.rotation * forward; }
 };
-
-/// The pulse as seen from a frame that surrounds its own. What was reported in the inner frame is of no use in the outer one.
-template <class Outer, class Inner>
-[[nodiscard]] Pulse<Outer> transformed(const Pose<Inner, Outer>& outer_from_inner, const Pulse<Inner>& p) noexcept {
-  Pulse<Outer> out;
-  out.index = p.index, out.tick = p.tick, out.pose = outer_from_inner * p.pose, out.laser = p.laser;
-  out.scan_angle = p.scan_angle, out.leg = p.leg, out.channel = p.channel;
-  return out;
-}
 
 }  // namespace pulsecast

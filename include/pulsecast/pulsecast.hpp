@@ -11,6 +11,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/rotation_list.hpp>
@@ -59,6 +60,7 @@
 #include <pulsecast/run.hpp>
 #include <pulsecast/scanner/channels.hpp>
 #include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/scanner/one_of.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/part.hpp>

@@ -76,19 +76,22 @@ class Survey {
     Outcome out;
     out.shot.index = i;
     const auto pulse = source_.pulse(i);
-    if (!pulse) return out.shot.fate = Fate::blocked, out;
-    const Pose<frame::Beam, frame::World> reported = pulse->reported.value_or(pulse->pose);
-    out.shot = {.index = i,
-                .tick = pulse->tick,
-                .origin = reported.position,
-                .direction = reported.direction(forward),
-                .scan_angle = pulse->scan_angle,
-                .leg = pulse->leg,
-                .channel = pulse->channel};
+    if (!pulse) {
+      out.shot.fate = Fate::blocked;
+      return out;
+    }
+    const Pose<frame::Beam, frame::World>& reported = pulse->reported ? *pulse->reported : pulse->pose;
+    out.shot.tick = pulse->tick;
+    out.shot.origin = reported.position, out.shot.direction = reported.direction(forward);
+    out.shot.scan_angle = pulse->scan_angle;
+    out.shot.leg = pulse->leg, out.shot.channel = pulse->channel;
 
     if (pulse->laser != w.laser) make_for(pulse->laser, w);
     out.hits = trace(*pulse, w);
-    if (w.reflections.empty()) return out.shot.fate = out.hits > 0 ? Fate::out_of_range : Fate::missed, out;
+    if (w.reflections.empty()) {
+      out.shot.fate = out.hits > 0 ? Fate::out_of_range : Fate::missed;
+      return out;
+    }
 
     const Detection detection = detector_.detect(pulse->laser, w.reflections, w.detector);
     for (Echo& echo : detection.echoes) {
@@ -122,14 +125,11 @@ class Survey {
     RayBundle rays;
     rays.origin = pulse.origin();
     rays.wavelength = pulse.laser.wavelength, rays.tick = pulse.tick, rays.seed = seed_, rays.pulse = pulse.index;
-    const Vec3 x = pulse.pose.direction(right), y = pulse.pose.direction(forward), z = pulse.pose.direction(up);
+    const Matrix3 world_from_beam = matrix_of(pulse.pose.rotation);
     for (std::size_t first = 0; first < w.fan.size(); first += rays.size) {
       rays.first_subray = static_cast<std::uint32_t>(first);
       rays.size = std::min(RayBundle::capacity, w.fan.size() - first);
-      for (std::size_t j = 0; j < rays.size; ++j) {
-        const Vec3& d = w.fan[first + j];
-        rays.set_direction(j, x * d.x + y * d.y + z * d.z);
-      }
+      for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, world_from_beam * w.fan[first + j]);
       rays.pad();
       ask(rays, w.hits);
       for (std::size_t j = 0; j < rays.size; ++j) {

@@ -33,13 +33,17 @@ struct ShrunkBvh : Bvh<float> {
 template <class>
 using Shrunk = ShrunkBvh;
 
-/// A tree that gives up what it has seen of a leaf after the first primitive.
+/// A tree that passes over every seventh primitive.
 struct HastyBvh : Bvh<float> {
   using Bvh::Bvh;
   template <class Test>
   void closest(const RayBundle& rays, const Test& test, Nearest& nearest) const noexcept {
     Bvh::closest(
-        rays, [&](std::span<const PrimitiveIndex> p) { test(p.first(1)); }, nearest);
+        rays,
+        [&](std::span<const PrimitiveIndex> p) {
+          if (p[0] % 7 != 0) test(p);
+        },
+        nearest);
   }
 };
 template <class>

@@ -13,16 +13,18 @@ using namespace pulsecast::support;
 
 static_assert(sizeof(BoundingBox<float>) == 24);
 
-TEST_CASE_TEMPLATE("every primitive stands in exactly one leaf of a Bvh, and leaves are small", Real, float, double) {
+TEST_CASE_TEMPLATE("every primitive stands in exactly one place of a Bvh, and is offered alone", Real, float, double) {
   Generator random(50);
   std::vector<Box> boxes;
   for (int i = 0; i < 5000; ++i) boxes.push_back(random.box(10, 1e-4, 10));
   const Bvh<Real> tree(boxes);
   std::size_t largest = 0;
   CHECK(offers(tree, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
-  CHECK(largest <= 8);
+  CHECK(largest == 1);
   CHECK(tree.depth() <= 64);
-  CHECK(tree.memory() >= boxes.size() * sizeof(PrimitiveIndex));
+  const double bytes = static_cast<double>(tree.memory()) / static_cast<double>(boxes.size());
+  CAPTURE(bytes);
+  CHECK(bytes < 20 * sizeof(Real));
 }
 
 TEST_CASE_TEMPLATE("a Bvh of primitives that all stand at one point is halved", Real, float, double) {
@@ -30,7 +32,7 @@ TEST_CASE_TEMPLATE("a Bvh of primitives that all stand at one point is halved", 
   const Bvh<Real> tree(boxes);
   std::size_t largest = 0;
   CHECK(offers(tree, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
-  CHECK(largest <= 8);
+  CHECK(largest == 1);
   CHECK(tree.depth() <= 14);
 }
 
@@ -40,5 +42,5 @@ TEST_CASE("a Bvh of boxes that crowd at a point is no deeper than 64 levels, and
   std::size_t largest = 0;
   CHECK(offers(tree, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
   CHECK(tree.depth() <= 64);
-  CHECK(tree.depth() > 55);  // it came near to the limit, or this is no test of it
+  CHECK(tree.depth() > 40);  // it came near to the limit: 510 without one
 }

@@ -36,25 +36,29 @@ TEST_CASE("a comparison chooses by lane") {
   for (std::size_t i = 1; i < lane_count; ++i) CHECK(chosen[i] == static_cast<double>(i));
 }
 
-TEST_CASE("any sees a mask that holds in a single lane, whichever it is") {
-  CHECK_FALSE(any(LaneMask{}));
+TEST_CASE("the bits of a mask are the lanes where it holds") {
+  CHECK(bits(LaneMask{}) == 0);
   for (std::size_t i = 0; i < lane_count; ++i) {
     LaneMask mask{};
     mask[i] = -1;
-    CHECK(any(mask));
+    CHECK(bits(mask) == 1U << i);
   }
 }
 
 TEST_CASE("lanes of identities compare as unsigned numbers") {
   const LaneIds none = LaneIds{} + ~std::uint64_t{0}, small = LaneIds{} + std::uint64_t{7};
-  CHECK(any(small < none));
-  CHECK_FALSE(any(none < small));
+  CHECK(bits(small < none) == (1U << lane_count) - 1);
+  CHECK(bits(none < small) == 0);
 }
 
-TEST_CASE_TEMPLATE("four numbers of either precision go at once", Real, float, double) {
-  const std::array<Real, 5> numbers{0, 1, 2, 3, 4};
-  Four<Real> four;
-  fill(four, numbers[1]);
-  const Four<Real> twice = four + four;
-  for (std::size_t i = 0; i < 4; ++i) CHECK(twice[i] == Real(2 * (i + 1)));
+TEST_CASE_TEMPLATE("packs of either precision divide eight numbers", Real, float, double) {
+  const std::array<Real, 9> numbers{0, 1, 2, 3, 4, 5, 6, 7, 8};
+  static_assert(8 % pack_count<Real> == 0);
+  unsigned above = 0;
+  for (std::size_t first = 0; first < 8; first += pack_count<Real>) {
+    const auto pack = load<Pack<Real>>(numbers[first + 1]);
+    for (std::size_t i = 0; i < pack_count<Real>; ++i) CHECK(pack[i] == Real(first + i + 1));
+    above |= bits(pack > Real(2)) << first;
+  }
+  CHECK(above == 0b11111100);
 }

@@ -82,7 +82,7 @@ TEST_CASE("a head carries the place where the beam leaves around with it") {
 TEST_CASE("a whole spinning head may be turned again, about another axis: the outer turn comes last") {
   const double spin = 10 * 360_deg, tilt = -15_deg, turn = 7_deg;
   const Deflector spinning{RotatingHead{.rate = -spin},
-                           Deflector{FixedBeam{.elevation = tilt}, Scanner{.pulse_rate = 20_kHz, .pulses = 40000}}};
+                           Deflector{FixedBeam{aimed_at(0, tilt)}, Scanner{.pulse_rate = 20_kHz, .pulses = 40000}}};
   const Deflector nodding{RotatingHead{.rate = turn, .axis = right}, spinning};
   const Deflector panning{RotatingHead{.rate = 3 * turn, .start = 1}, nodding};
   for (PulseIndex i = 0; i < 40000; i += 77) {

@@ -16,23 +16,23 @@ using namespace pulsecast;
 using namespace pulsecast::literals;
 
 TEST_CASE("a fixed beam leaves from its origin along its two angles, at any time") {
-  const FixedBeam beam{.azimuth = 90_deg, .elevation = -30_deg, .origin = {0.01, 0.02, 0.03}};
+  const FixedBeam beam{aimed_at(90_deg, -30_deg, {0.01, 0.02, 0.03})};
   for (const Tick t : {Tick{0, 0}, Tick{1000000, 0.5}}) {
     CHECK(length(beam.at(t).direction(forward) - Vec3{std::cos(30_deg), 0, -0.5}) < 1e-15);
-    CHECK(beam.at(t).position == beam.origin);
+    CHECK(beam.at(t).position == Vec3{0.01, 0.02, 0.03});
   }
   CHECK(length(FixedBeam{}.at({}).direction(forward) - forward) == 0);
 }
 
 TEST_CASE("a fixed beam keeps the laws of a motion") {
   const std::vector<Tick> ticks{{0, 0}, {0, 0.3}, {77, 0.1}};
-  CHECK(support::motion_laws(FixedBeam{.azimuth = 1, .elevation = 0.3, .origin = {1, 2, 3}}, ticks) == "");
+  CHECK(support::motion_laws(FixedBeam{aimed_at(1, 0.3, {1, 2, 3})}, ticks) == "");
 }
 
 TEST_CASE("a fixed beam refuses angles and places that cannot be") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(FixedBeam{}.validate());
-  CHECK_THROWS_AS(FixedBeam{.azimuth = nan}.validate(), SettingError);
-  for (const double bad : {-1.6, 1.6, nan}) CHECK_THROWS_AS(FixedBeam{.elevation = bad}.validate(), SettingError);
-  CHECK_THROWS_AS((FixedBeam{.origin = {0, nan, 0}}.validate()), SettingError);
+  CHECK_THROWS_AS(FixedBeam{aimed_at(nan, 0)}.validate(), SettingError);
+  CHECK_THROWS_AS((FixedBeam{{Rotation{2, 0, 0, 0}, {}}}.validate()), SettingError);
+  CHECK_THROWS_AS((FixedBeam{aimed_at(0, 0, {0, nan, 0})}.validate()), SettingError);
 }

@@ -36,7 +36,7 @@ std::vector<Emitter> fan(std::size_t n, PulseIndex pulses = 1000) {
   std::vector<Emitter> beams;
   for (std::size_t k = 0; k < n; ++k) {
     const double place = static_cast<double>(k);
-    beams.emplace_back(FixedBeam{.elevation = radians(-15 + 30 * place / static_cast<double>(n - 1)), .origin = {0, 0, 0.001 * place}},
+    beams.emplace_back(FixedBeam{aimed_at(0, radians(-15 + 30 * place / static_cast<double>(n - 1)), {0, 0, 0.001 * place})},
                        Scanner{.pulse_rate = 20_kHz, .pulses = pulses, .delay = place * 1_us});
   }
   return beams;

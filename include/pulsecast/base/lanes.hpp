@@ -10,9 +10,7 @@
 /// vector types give the operators; comparisons give a `LaneMask` that is all ones where they hold, and `mask ? a : b` chooses by lane.
 namespace pulsecast {
 
-#if defined(__AVX512F__)
-inline constexpr std::size_t register_bytes = 64;
-#elif defined(__AVX__)
+#if defined(__AVX__)  // and not more with AVX-512: a single ray would fill one lane of eight, and pay for all
 inline constexpr std::size_t register_bytes = 32;
 #else
 inline constexpr std::size_t register_bytes = 16;
@@ -26,21 +24,20 @@ using LaneIds [[gnu::vector_size(register_bytes)]] = std::uint64_t;
 using LaneMask [[gnu::vector_size(register_bytes)]] = std::int64_t;
 
 namespace detail {
+template <std::size_t Bytes, class Number>
+struct VectorOf {
+  using type [[gnu::vector_size(Bytes)]] = Number;
+};
+/// As a register holds, but not more than eight numbers.
 template <class Real>
-struct FourOf;
-template <>
-struct FourOf<float> {
-  using type [[gnu::vector_size(16)]] = float;
-};
-template <>
-struct FourOf<double> {
-  using type [[gnu::vector_size(32)]] = double;
-};
+inline constexpr std::size_t pack_bytes = register_bytes < 8 * sizeof(Real) ? register_bytes : 8 * sizeof(Real);
 }  // namespace detail
 
-/// Four numbers of either precision: the three coordinates of a point, and one more.
+/// Numbers of either precision, as many as go at once, but at most the eight children of a tree's node.
 template <class Real>
-using Four = typename detail::FourOf<Real>::type;
+using Pack = typename detail::VectorOf<detail::pack_bytes<Real>, Real>::type;
+template <class Real>
+inline constexpr std::size_t pack_count = sizeof(Pack<Real>) / sizeof(Real);
 
 /// Fills a register from memory, from this number on.
 template <class Register, class Number>
@@ -62,11 +59,25 @@ inline void store(const Register& r, Number& first) noexcept {
   std::memcpy(&first, &r, sizeof r);
 }
 
-/// Whether the mask holds in any lane.
-[[nodiscard]] inline bool any(const LaneMask& mask) noexcept {
-  std::int64_t bits = 0;
-  for (std::size_t lane = 0; lane < lane_count; ++lane) bits |= mask[lane];
-  return bits != 0;
+/// The lanes where a mask holds, a bit each.
+template <class Mask>
+[[nodiscard]] inline unsigned bits(const Mask& mask) noexcept {
+  constexpr std::size_t lanes = sizeof mask / sizeof mask[0];
+#if defined(__SSE2__)
+  using Floats = typename detail::VectorOf<16, float>::type;
+  using Doubles = typename detail::VectorOf<16, double>::type;
+  if constexpr (sizeof mask == 16)
+    return static_cast<unsigned>(lanes == 4 ? __builtin_ia32_movmskps(Floats(mask)) : __builtin_ia32_movmskpd(Doubles(mask)));
+#endif
+#if defined(__AVX__)
+  using WideFloats = typename detail::VectorOf<32, float>::type;
+  using WideDoubles = typename detail::VectorOf<32, double>::type;
+  if constexpr (sizeof mask == 32)
+    return static_cast<unsigned>(lanes == 8 ? __builtin_ia32_movmskps256(WideFloats(mask)) : __builtin_ia32_movmskpd256(WideDoubles(mask)));
+#endif
+  unsigned set = 0;
+  for (std::size_t lane = 0; lane < lanes; ++lane) set |= mask[lane] != 0 ? 1U << lane : 0U;
+  return set;
 }
 
 }  // namespace pulsecast

@@ -19,8 +19,10 @@ struct Tick {
   /// The moment when slot i of a source of constant rate [Hz] begins.
   [[nodiscard]] static Tick of(PulseIndex i, double rate) noexcept {
     const double n = static_cast<double>(i);
-    const double rest = std::fmod(n, rate);  // exact, as fmod is
-    return normal(static_cast<std::int64_t>(std::llround((n - rest) / rate)), rest / rate);
+    double whole = std::floor(n / rate), rest = std::fma(-whole, rate, n);  // exact, if `whole` is the right one of two
+    if (rest < 0) --whole, rest = std::fma(-whole, rate, n);
+    if (rest >= rate) ++whole, rest = std::fma(-whole, rate, n);
+    return normal(static_cast<std::int64_t>(whole), rest / rate);
   }
 
   /// A span or moment given in seconds.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <glm/ext/matrix_double3x3.hpp>
 #include <glm/ext/quaternion_double.hpp>
 #include <glm/ext/quaternion_geometric.hpp>
 #include <glm/ext/quaternion_trigonometric.hpp>
@@ -37,6 +38,10 @@ inline const Rotation no_rotation{1, 0, 0, 0};
 
 /// The right-handed rotation about an axis of any length but zero, by an angle [rad].
 [[nodiscard]] inline Rotation rotation_about(const Vec3& axis, double angle) noexcept { return glm::angleAxis(angle, normalize(axis)); }
+
+/// The columns are where x, y and z are turned to; it costs less than the rotation where more than one vector is to be turned.
+using Matrix3 = glm::dmat3;
+[[nodiscard]] inline Matrix3 matrix_of(const Rotation& rotation) noexcept { return glm::mat3_cast(rotation); }
 
 [[nodiscard]] inline bool finite(const Vec3& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 

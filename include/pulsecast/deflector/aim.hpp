@@ -14,9 +14,9 @@ namespace pulsecast {
   return {Rotation{std::cos(0.5 * angle), std::sin(0.5 * angle), 0, 0}, {}};
 }
 
-/// The pose of a beam that is first turned up, then from forward to the right. Its right stays level.
-[[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_at(double azimuth, double elevation) noexcept {
-  return {Rotation{std::cos(0.5 * azimuth), 0, 0, -std::sin(0.5 * azimuth)} * aimed_above(elevation).rotation, {}};
+/// The pose of a beam that leaves from `origin` [m] and is first turned up, then from forward to the right. Its right stays level.
+[[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_at(double azimuth, double elevation, const Vec3& origin = {}) noexcept {
+  return {Rotation{std::cos(0.5 * azimuth), 0, 0, -std::sin(0.5 * azimuth)} * aimed_above(elevation).rotation, origin};
 }
 
 /// The pose of a beam along a unit direction, by the shortest turn from forward: its up turns no more than it must.

@@ -27,7 +27,7 @@ requires(Optic<Moving>&& BeamSource<Source>) || (Head<Moving> && InstrumentSourc
       static_assert(Gated<Moving>, "open(Tick) must be const and noexcept, and give a bool");
       if (!moving_.open(inner->tick)) return std::nullopt;
     }
-    return transformed(moving_.at(inner->tick), *inner);
+    return std::optional<Pulse<frame::Instrument>>(std::in_place, moving_.at(inner->tick), *inner);
   }
 
   [[nodiscard]] const Moving& moving() const noexcept { return moving_; }

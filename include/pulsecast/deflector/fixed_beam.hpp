@@ -8,19 +8,16 @@
 
 namespace pulsecast {
 
-/// A laser that stands still in its housing: one emitter of a device of many, or a rangefinder.
+/// A laser that stands still in its housing: one emitter of a device of many, or a rangefinder. `FixedBeam{aimed_at(azimuth, elevation)}`.
 struct FixedBeam {
-  double azimuth = 0;    ///< from forward to the right [rad]
-  double elevation = 0;  ///< above the plane of right and forward [rad]
-  Vec3 origin{};         ///< where the beam leaves [m]
+  Pose<frame::Beam, frame::Instrument> pose{};
 
   void validate() const {
-    expect_finite("FixedBeam::azimuth", azimuth, "rad");
-    expect_within("FixedBeam::elevation", elevation, -pi / 2, pi / 2, "rad");
-    expect_finite("FixedBeam::origin (length)", length(origin), "m");
+    expect_within("FixedBeam::pose (norm of rotation)", length(pose.rotation), 1 - 1e-9, 1 + 1e-9, "");
+    expect_finite("FixedBeam::pose (length of position)", length(pose.position), "m");
   }
 
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return {aimed_at(azimuth, elevation).rotation, origin}; }
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return pose; }
 };
 
 static_assert(Optic<FixedBeam>);

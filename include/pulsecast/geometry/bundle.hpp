@@ -8,6 +8,7 @@
 #include <limits>
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/geometry/ray.hpp>
 
@@ -36,7 +37,7 @@ struct BundleOrigin {
 /// All directions have the same length: 1 in the world, 1/scale inside an instance, so that a range means metres of the world everywhere.
 struct RayBundle : BundleOrigin {
   static constexpr std::size_t capacity = 64;
-  static constexpr std::size_t lanes = 8;
+  static constexpr std::size_t lanes = lane_count;
 
   using Column = std::array<double, capacity>;
 

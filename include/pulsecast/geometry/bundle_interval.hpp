@@ -3,9 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/geometry/box.hpp>
@@ -13,18 +18,27 @@
 
 namespace pulsecast {
 
-/// The nearest number of type Real that is not greater.
+namespace detail {
+/// The number next to r that is greater; r is not infinite. What std::nextafter gives, without a call.
 template <std::floating_point Real>
-[[nodiscard]] Real round_down(double value) noexcept {
-  const Real r = static_cast<Real>(value);
-  return static_cast<double>(r) > value ? std::nextafter(r, -std::numeric_limits<Real>::infinity()) : r;
+[[nodiscard]] Real next_above(Real r) noexcept {
+  using Bits = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+  if (r == 0) return std::numeric_limits<Real>::denorm_min();
+  return std::bit_cast<Real>(static_cast<Bits>(std::bit_cast<Bits>(r) + (r > 0 ? 1 : -1)));
 }
+}  // namespace detail
 
 /// The nearest number of type Real that is not less.
 template <std::floating_point Real>
 [[nodiscard]] Real round_up(double value) noexcept {
   const Real r = static_cast<Real>(value);
-  return static_cast<double>(r) < value ? std::nextafter(r, std::numeric_limits<Real>::infinity()) : r;
+  return static_cast<double>(r) < value ? detail::next_above(r) : r;
+}
+
+/// The nearest number of type Real that is not greater.
+template <std::floating_point Real>
+[[nodiscard]] Real round_down(double value) noexcept {
+  return -round_up<Real>(-value);
 }
 
 /// A box of type Real, in coordinates relative to the centre of an accelerator; never smaller than the box that it stands for.
@@ -42,6 +56,22 @@ struct BoundingBox {
       b.max[k] = round_up<Real>(high * (high > 0 ? growing : shrinking));
     }
     return b;
+  }
+};
+
+/// Eight boxes, wall by wall. A place that is not taken holds the box that nothing is inside of.
+template <std::floating_point Real>
+struct EightBoxes {
+  alignas(8 * sizeof(Real)) Real min[3][8], max[3][8];  ///< [m]
+
+  EightBoxes() noexcept {
+    constexpr Real most = std::numeric_limits<Real>::max();
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t place = 0; place < 8; ++place) min[k][place] = most, max[k][place] = -most;
+  }
+
+  void put(std::size_t place, const BoundingBox<Real>& box) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) min[k][place] = box.min[k], max[k][place] = box.max[k];
   }
 };
 
@@ -74,26 +104,49 @@ class BundleInterval {
       const double margin = slack + std::fabs(o) * static_cast<double>(std::numeric_limits<Real>::epsilon());  // of rounding to Real
       Axis& axis = axes_[k];
       axis.origin_low = static_cast<Real>(o - margin), axis.origin_high = static_cast<Real>(o + margin);
-      axis.sense = low > 0 ? 1 : high < 0 ? -1 : 0;
-      const double most = std::max(std::fabs(low), std::fabs(high)), least = std::min(std::fabs(low), std::fabs(high));
-      axis.slowness_low = slowness(most, 1 - tolerance), axis.slowness_high = slowness(least, 1 + tolerance);
-      if (axis.sense == 0) {  // rays go both ways, or not at all
-        axis.slowness_low = high > 0 ? slowness(high, 1 - tolerance) : infinity;
-        axis.slowness_high = low < 0 ? slowness(-low, 1 - tolerance) : infinity;
-        all_one_way_ = false;
-      }
-      sign_[k] = static_cast<Real>(axis.sense);
-      entry_offset_[k] = axis.sense > 0 ? -axis.origin_high : axis.origin_low;
-      exit_offset_[k] = axis.sense > 0 ? -axis.origin_low : axis.origin_high;
-      slowness_low_[k] = axis.slowness_low, slowness_high_[k] = axis.slowness_high;
+      if (low > 0)
+        axis.sense = 1, axis.per_min = slowness(high, 1 - tolerance), axis.per_max = slowness(low, 1 + tolerance);
+      else if (high < 0)
+        axis.sense = -1, axis.per_min = -slowness(-high, 1 + tolerance), axis.per_max = -slowness(-low, 1 - tolerance);
+      else
+        axis.sense = 0, axis.per_min = high > 0 ? slowness(high, 1 - tolerance) : infinity,
+        axis.per_max = low < 0 ? -slowness(-low, 1 - tolerance) : -infinity;
     }
-    // the fourth lane neither enters late nor leaves early
-    sign_[3] = entry_offset_[3] = slowness_low_[3] = 0, exit_offset_[3] = std::numeric_limits<Real>::max(), slowness_high_[3] = 1;
   }
 
   /// The stretch of range over which any ray may be inside the box; empty if none can be.
   [[nodiscard]] Span inside(const BoundingBox<Real>& box) const noexcept {
-    return all_one_way_ ? inside_one_way(box) : inside_any_way(box);
+    Span span{near_, std::numeric_limits<Real>::max()};
+    for (int k = 0; k < 3; ++k) {
+      keep_above(span, axes_[k], box.min[k]);
+      keep_below(span, axes_[k], box.max[k]);
+    }
+    return span;
+  }
+
+  /// The boxes that any ray may be inside of at a range of at most `limit`, a bit each, and where it may enter them.
+  [[nodiscard]] unsigned inside(const EightBoxes<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
+    const Pack<Real> zero = {};
+    unsigned met = 0;
+    for (std::size_t first = 0; first < 8; first += pack_count<Real>) {
+      Pack<Real> entry = zero + near_, exit = zero + std::min(limit, std::numeric_limits<Real>::max());
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Axis& axis = axes_[k];
+        const Pack<Real> from_min = (load<Pack<Real>>(boxes.min[k][first]) - axis.origin_high) * axis.per_min;
+        const Pack<Real> from_max = (load<Pack<Real>>(boxes.max[k][first]) - axis.origin_low) * axis.per_max;
+        if (axis.sense > 0) {
+          entry = from_min > entry ? from_min : entry, exit = from_max < exit ? from_max : exit;
+        } else if (axis.sense < 0) {
+          entry = from_max > entry ? from_max : entry, exit = from_min < exit ? from_min : exit;
+        } else {
+          entry = from_min > entry ? from_min : entry;
+          entry = from_max > entry ? from_max : entry;
+        }
+      }
+      store(entry, entries[first]);
+      met |= bits(entry <= exit) << first;
+    }
+    return met;
   }
 
   /// The part of a stretch over which any ray may be at or above the plane at `position` along axis k.
@@ -109,74 +162,43 @@ class BundleInterval {
   }
 
  private:
-  /// `sense` is +1 or -1 if all rays go that way along the axis, else 0. Slowness is range per metre along the axis; where the sense is 0,
-  /// `slowness_low` is the least of the rays that go up and `slowness_high` the least of those that go down.
+  /// `sense` is +1 or -1 if all rays go that way along the axis, else 0. The other two turn the distance from the origin to a plane into
+  /// range: `per_min` where the inside is above the plane, `per_max` where it is below. Where all rays go one way, one of them is what the
+  /// fastest ray needs to enter and the other what the slowest needs to leave; where they do not, a box is entered from either side by
+  /// those that go up or down, and may be left late by one that stays.
   struct Axis {
-    Real origin_low, origin_high, slowness_low, slowness_high;
+    Real origin_low, origin_high, per_min, per_max;
     int sense;
   };
-
-  /// All three axes at once.
-  [[nodiscard]] Span inside_one_way(const BoundingBox<Real>& box) const noexcept {
-    Lane low, from_low_z;
-    fill(low, box.min[0]), fill(from_low_z, box.min[2]);  // a box is six numbers in a row
-    const Lane high = __builtin_shufflevector(from_low_z, from_low_z, 1, 2, 3, 3);
-    const Lane zero = {};
-    const Lane first = sign_ < zero ? high : low, last = sign_ < zero ? low : high;
-    const Lane to_entry = sign_ * first + entry_offset_, to_exit = sign_ * last + exit_offset_;
-    const Lane entry = to_entry * (to_entry > zero ? slowness_low_ : slowness_high_);
-    const Lane exit = to_exit * (to_exit > zero ? slowness_high_ : slowness_low_);
-    // the latest entry and the earliest exit, by halves
-    const Lane entry_2 = __builtin_shufflevector(entry, entry, 2, 3, 0, 1), exit_2 = __builtin_shufflevector(exit, exit, 2, 3, 0, 1);
-    const Lane late = entry > entry_2 ? entry : entry_2, early = exit < exit_2 ? exit : exit_2;
-    const Real entered = late[0] > late[1] ? late[0] : late[1];
-    return {entered > near_ ? entered : near_, early[0] < early[1] ? early[0] : early[1]};
-  }
-
-  [[nodiscard]] Span inside_any_way(const BoundingBox<Real>& box) const noexcept {
-    Span span{near_, std::numeric_limits<Real>::max()};
-    for (int k = 0; k < 3; ++k) {
-      keep_above(span, axes_[k], box.min[k]);
-      keep_below(span, axes_[k], box.max[k]);
-    }
-    return span;
-  }
 
   static constexpr Real infinity = std::numeric_limits<Real>::infinity();
   static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
-  /// Finite, so that times zero it is zero.
+  /// Range per metre along an axis, finite.
   static Real slowness(double speed, double factor) noexcept {
     return static_cast<Real>(std::min(factor / speed, static_cast<double>(std::numeric_limits<Real>::max())));
   }
 
-  static Real lower(Real distance, const Axis& a) noexcept { return distance * (distance > 0 ? a.slowness_low : a.slowness_high); }
-  static Real upper(Real distance, const Axis& a) noexcept { return distance * (distance > 0 ? a.slowness_high : a.slowness_low); }
-
+  // A distance behind the origin gives a range before 0: as entry it says nothing, as exit that the box lies behind. Zero times infinity is
+  // no number and passes no comparison.
   static void keep_above(Span& span, const Axis& a, Real low) noexcept {
-    if (a.sense > 0)
-      span.entry = std::max(span.entry, lower(low - a.origin_high, a));
-    else if (a.sense < 0)
-      span.exit = std::min(span.exit, upper(a.origin_high - low, a));
-    else if (low > a.origin_high)
-      span.entry = std::max(span.entry, (low - a.origin_high) * a.slowness_low);
+    const Real range = (low - a.origin_high) * a.per_min;
+    if (a.sense >= 0)
+      span.entry = range > span.entry ? range : span.entry;
+    else
+      span.exit = range < span.exit ? range : span.exit;
   }
 
   static void keep_below(Span& span, const Axis& a, Real high) noexcept {
-    if (a.sense > 0)
-      span.exit = std::min(span.exit, upper(high - a.origin_low, a));
-    else if (a.sense < 0)
-      span.entry = std::max(span.entry, lower(a.origin_low - high, a));
-    else if (high < a.origin_low)
-      span.entry = std::max(span.entry, (a.origin_low - high) * a.slowness_high);
+    const Real range = (high - a.origin_low) * a.per_max;
+    if (a.sense <= 0)
+      span.entry = range > span.entry ? range : span.entry;
+    else
+      span.exit = range < span.exit ? range : span.exit;
   }
 
-  using Lane = Four<Real>;
-
   Real near_;
-  bool all_one_way_ = true;  ///< along every axis, none of them zero
   Axis axes_[3];
-  Lane sign_, entry_offset_, exit_offset_, slowness_low_, slowness_high_;  ///< as `axes_`, by axis; offsets turn planes into distances
 };
 
 }  // namespace pulsecast

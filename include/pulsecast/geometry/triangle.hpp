@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -41,40 +42,54 @@ struct Triangle {
   static_assert(RayBundle::lanes % lane_count == 0);
   constexpr double unit = std::numeric_limits<double>::epsilon();
   const Vec3 a = triangle.a - rays.origin, b = triangle.b - rays.origin, c = triangle.c - rays.origin;
-  const Vec3 edges[3] = {b - a, c - b, a - c};
-  const Vec3 sums[3] = {a + b, b + c, c + a};
-  Vec3 planes[3];
-  double doubt[3];
-  for (int k = 0; k < 3; ++k) {
-    planes[k] = cross(edges[k], sums[k]);
-    doubt[k] = 32 * unit * max_norm(edges[k]) * max_norm(sums[k]) * rays.direction_length;
-  }
-  const Vec3 normal = cross(edges[0], edges[2]);
-  const double offset = dot(normal, a);
-  const double grazing = 1e-12 * 1e-12 * dot(normal, normal) * rays.direction_length * rays.direction_length;
-  const Vec3 least = min(a, min(b, c)), most = max(a, max(b, c));
-  const Vec3 margin = Vec3(8 * unit * max_norm(max(most, -least)));
-  const Vec3 low = least - margin, high = most + margin;
-  const std::uint64_t id = nearest.part | primitive;
 
+  // the planes through the origin and an edge, and for how long their side is in doubt: |e||s| in the 1-norm bounds each of the sums of
+  // products, and seven roundings stand between them and the true ones
+  struct Plane {
+    double x, y, z, doubt;
+    Plane(const Vec3& from, const Vec3& to, double tolerance) noexcept {
+      const double ex = to.x - from.x, ey = to.y - from.y, ez = to.z - from.z;
+      const double sx = to.x + from.x, sy = to.y + from.y, sz = to.z + from.z;
+      x = ey * sz - ez * sy, y = ez * sx - ex * sz, z = ex * sy - ey * sx;
+      doubt = (std::fabs(ex) + std::fabs(ey) + std::fabs(ez)) * (std::fabs(sx) + std::fabs(sy) + std::fabs(sz)) * tolerance;
+    }
+  };
+  const double tolerance = 4 * unit * rays.direction_length;
+  const Plane ab(a, b, tolerance), bc(b, c, tolerance), ca(c, a, tolerance);
+
+  bool prepared = false;
+  Vec3 normal, low, high;
+  double offset = 0, grazing = 0;
   for (std::size_t j = 0; j < rays.size; j += lane_count) {
     const Lanes x = load<Lanes>(rays.x[j]), y = load<Lanes>(rays.y[j]), z = load<Lanes>(rays.z[j]);
-    const Lanes u = x * planes[0].x + y * planes[0].y + z * planes[0].z;
-    const Lanes v = x * planes[1].x + y * planes[1].y + z * planes[1].z;
-    const Lanes w = x * planes[2].x + y * planes[2].y + z * planes[2].z;
+    const Lanes u = x * ab.x + y * ab.y + z * ab.z;
+    const Lanes v = x * bc.x + y * bc.y + z * bc.z;
+    const Lanes w = x * ca.x + y * ca.y + z * ca.z;
+    const LaneMask on_left = (u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt);
+    const LaneMask on_right = (u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt);
+    const LaneMask between = on_left | on_right;
+    if (bits(between) == 0) continue;
+
+    if (!prepared) {  // most triangles are done with before this
+      prepared = true;
+      normal = cross(b - a, a - c);
+      offset = dot(normal, a);
+      grazing = 1e-12 * 1e-12 * dot(normal, normal) * rays.direction_length * rays.direction_length;
+      const Vec3 least = min(a, min(b, c)), most = max(a, max(b, c));
+      const Vec3 margin = Vec3(8 * unit * max_norm(max(most, -least)));
+      low = least - margin, high = most + margin;
+    }
     const Lanes slope = x * normal.x + y * normal.y + z * normal.z;
-    const LaneMask on_left = (u >= -doubt[0]) & (v >= -doubt[1]) & (w >= -doubt[2]);
-    const LaneMask on_right = (u <= doubt[0]) & (v <= doubt[1]) & (w <= doubt[2]);
-    const LaneMask inside = (on_left | on_right) & (slope * slope > grazing);
-    if (!any(inside)) continue;
+    const LaneMask inside = between & (slope * slope > grazing);
 
     // a direction of zero becomes so small a one that the walls which it never reaches lie at infinity
     const Lanes zero = {}, tiny = zero + 1e-300;
     const Lanes per_x = 1 / (x * x > zero ? x : tiny), per_y = 1 / (y * y > zero ? y : tiny), per_z = 1 / (z * z > zero ? z : tiny);
-    const Lanes x0 = low.x * per_x, y0 = low.y * per_y, z0 = low.z * per_z;
-    const Lanes x1 = high.x * per_x, y1 = high.y * per_y, z1 = high.z * per_z;
-    const Lanes in_x = x0 < x1 ? x0 : x1, in_y = y0 < y1 ? y0 : y1, in_z = z0 < z1 ? z0 : z1;
-    const Lanes out_x = x0 < x1 ? x1 : x0, out_y = y0 < y1 ? y1 : y0, out_z = z0 < z1 ? z1 : z0;
+    const Lanes to_low_x = low.x * per_x, to_low_y = low.y * per_y, to_low_z = low.z * per_z;
+    const Lanes to_high_x = high.x * per_x, to_high_y = high.y * per_y, to_high_z = high.z * per_z;
+    const LaneMask rising_x = to_low_x < to_high_x, rising_y = to_low_y < to_high_y, rising_z = to_low_z < to_high_z;
+    const Lanes in_x = rising_x ? to_low_x : to_high_x, in_y = rising_y ? to_low_y : to_high_y, in_z = rising_z ? to_low_z : to_high_z;
+    const Lanes out_x = rising_x ? to_high_x : to_low_x, out_y = rising_y ? to_high_y : to_low_y, out_z = rising_z ? to_high_z : to_low_z;
     const Lanes in_xy = in_x > in_y ? in_x : in_y, entry = in_xy > in_z ? in_xy : in_z;
     const Lanes out_xy = out_x < out_y ? out_x : out_y, exit = out_xy < out_z ? out_xy : out_z;
     const Lanes crossing = offset / slope;
@@ -82,7 +97,7 @@ struct Triangle {
     const Lanes at = after_entry > exit ? exit : after_entry;
 
     const Lanes best = load<Lanes>(nearest.range[j]);
-    const LaneIds best_id = load<LaneIds>(nearest.id[j]), own_id = LaneIds{} + id;
+    const LaneIds best_id = load<LaneIds>(nearest.id[j]), own_id = LaneIds{} + (nearest.part | primitive);
     const LaneMask nearer = (at < best) | ((at == best) & (own_id < best_id));
     const LaneMask hit = inside & (entry <= exit) & (at > rays.near) & nearer;
     const Lanes range = hit ? at : best;

@@ -40,12 +40,11 @@ class Platform {
     return placed(*inner);
   }
 
-  /// A pulse of the instrument, in the world.
-  [[nodiscard]] Pulse<frame::World> placed(const Pulse<frame::Instrument>& inner) const noexcept {
-    const Pulse<frame::Body> on_body = transformed(mount_.pose(), inner);
-    Pulse<frame::World> out = transformed(path_.at(inner.tick), on_body);
-    const Vec3 d = on_body.direction();
-    out.scan_angle = std::atan2(d.x, -d.z);
+  /// A pulse of the instrument, in the world. It is always there; optional, so that `pulse` hands it on without a copy.
+  [[nodiscard]] std::optional<Pulse<frame::World>> placed(const Pulse<frame::Instrument>& inner) const noexcept {
+    std::optional<Pulse<frame::World>> out(std::in_place, path_.at(inner.tick) * mount_.pose(), inner);
+    const Vec3 on_body = mount_.boresight * inner.direction();
+    out->scan_angle = std::atan2(on_body.x, -on_body.z);
     return out;
   }
 

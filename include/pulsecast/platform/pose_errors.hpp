@@ -64,10 +64,10 @@ class Misreported {
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     const auto inner = truth_.source().pulse(i);
     if (!inner) return std::nullopt;
-    Pulse<frame::World> out = truth_.placed(jittered(*inner));
+    auto out = truth_.placed(jittered(*inner));
     const Pose<frame::Instrument, frame::Body> calibrated{truth_.mount().boresight * errors_.boresight_error,
                                                           truth_.mount().lever_arm + errors_.lever_arm_error};
-    out.reported = reported(inner->tick) * calibrated * inner->pose;
+    out->reported = reported(inner->tick) * calibrated * inner->pose;
     return out;
   }
 

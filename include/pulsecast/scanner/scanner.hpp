@@ -32,8 +32,8 @@ struct Scanner {
   [[nodiscard]] Tick duration() const noexcept { return Tick::of(pulses, pulse_rate); }
 
   [[nodiscard]] std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept {
-    Pulse<frame::Beam> p;
-    p.index = i, p.tick = Tick::of(i, pulse_rate) + Tick::of_seconds(delay), p.laser = laser;
+    std::optional<Pulse<frame::Beam>> p(std::in_place);
+    p->index = i, p->tick = Tick::of(i, pulse_rate) + Tick::of_seconds(delay), p->laser = laser;
     return p;
   }
 };

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <utility>
+#include <variant>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+/// A source of one of several types, for where all must be of one: emitters of one device behind different optics,
+/// `Channels{std::vector<OneOf<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`, or platforms of different kinds
+/// one after another in `Legs`.
+template <class First, class... Others>
+class OneOf {
+ public:
+  template <class Source>
+  requires std::constructible_from<std::variant<First, Others...>, Source>
+  OneOf(Source source) : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor): that is what it is for
+
+  [[nodiscard]] PulseIndex size() const noexcept {
+    return std::visit([](const auto& s) noexcept { return s.size(); }, source_);
+  }
+  [[nodiscard]] Tick duration() const noexcept {
+    return std::visit([](const auto& s) noexcept { return s.duration(); }, source_);
+  }
+  [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const First&>().pulse(i)) {
+    return std::visit([i](const auto& s) noexcept { return s.pulse(i); }, source_);
+  }
+
+ private:
+  std::variant<First, Others...> source_;
+};
+
+}  // namespace pulsecast
