@@ -66,3 +66,19 @@ TEST_CASE("a KdTree goes into a narrow column of leaves for rays along an axis")
   CHECK(count > 0);
   CHECK(count < 50);
 }
+
+TEST_CASE_TEMPLATE("a tree that was built is sound for as many primitives as it has, and for no fewer", Tree, KdTree<float>,
+                   KdTree<double>) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed);
+    std::vector<Box> boxes;
+    for (std::uint64_t n = 1 + random.whole(300); n > 0; --n) boxes.push_back(random.box(10, 1e-3, 10));
+    const Tree tree(boxes);
+    CHECK(tree.sound(boxes.size()));
+    CHECK_FALSE(tree.sound(boxes.size() - 1));
+  }
+  CHECK(Tree(std::span<const Box>{}).sound(0));
+  CHECK(Tree(crowd(200, 0.5)).sound(400));
+  CHECK(Tree(Unfilled{}).sound(0));
+}

@@ -28,9 +28,16 @@ TEST_CASE_TEMPLATE("testing all offers every primitive once, but never an empty 
 }
 
 TEST_CASE("testing all of nothing tests nothing") {
-  const Linear<> none({});
+  const Linear<> none(std::span<const Box>{});
   std::size_t largest = 0;
   CHECK(offers(none, 0, largest).empty());
   CHECK(largest == 0);
   CHECK(none.bounds().empty());
+}
+
+TEST_CASE("a list of primitives is sound for as many as it has, and for no fewer") {
+  const Linear<> all(std::vector<Box>(3, Box{{0, 0, 0}, {1, 1, 1}}));
+  CHECK(all.sound(3));
+  CHECK_FALSE(all.sound(2));
+  CHECK(Linear<>(Unfilled{}).sound(0));
 }

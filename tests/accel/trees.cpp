@@ -19,7 +19,7 @@ using namespace pulsecast::support;
 
 TEST_CASE_TEMPLATE("a tree of nothing, or of empty boxes only, is never met", Tree, TREES) {
   std::size_t largest = 0;
-  CHECK(offers(Tree({}), 0, largest).empty());
+  CHECK(offers(Tree(std::span<const Box>{}), 0, largest).empty());
   const std::vector<Box> empty(5);
   CHECK(offers(Tree(empty), 5, largest) == std::vector<std::size_t>(5, 0));
   CHECK(Tree(empty).bounds().empty());

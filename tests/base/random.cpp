@@ -58,6 +58,11 @@ TEST_CASE("the words of a key are Philox's, with pulse, subray and purpose as co
   CHECK(random_words(key) == Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1});
 }
 
+TEST_CASE("part 0 draws what keys without a part draw, and another part has the upper bits of the purpose's word") {
+  CHECK(random_words({1, 2, 3, Purpose::free_path, 0}) == philox({2, 0, 3, 3}, {1, 0}));
+  CHECK(random_words({1, 2, 3, Purpose::free_path, 5}) == philox({2, 0, 3, 3 + 5 * 256}, {1, 0}));
+}
+
 TEST_CASE("keys that differ in one field give different numbers, and equal keys the same") {
   const RandomKey key{1, 2, 3, Purpose::range_noise};
   CHECK(random_words(key) == random_words(RandomKey{1, 2, 3, Purpose::range_noise}));
@@ -70,6 +75,7 @@ TEST_CASE("keys that differ in one field give different numbers, and equal keys 
   for (const Purpose other :
        {Purpose::position_noise, Purpose::attitude_noise, Purpose::free_path, Purpose::receiver_noise, Purpose::scene})
     all.push_back(random_words({1, 2, 3, other}));
+  for (int bit = 0; bit < 24; ++bit) all.push_back(random_words({1, 2, 3, Purpose::range_noise, std::uint32_t{1} << bit}));
   std::sort(all.begin(), all.end());
   CHECK(std::adjacent_find(all.begin(), all.end()) == all.end());
 }
@@ -92,19 +98,21 @@ TEST_CASE("uniform numbers are in the open interval and evenly spread") {
   CHECK(chi2 < 37.7);  // 15 degrees of freedom, 0.1 %
 }
 
-TEST_CASE("uniform numbers of neighbouring pulses, subrays and purposes do not go together") {
+TEST_CASE("uniform numbers of neighbouring pulses, subrays, purposes and parts do not go together") {
   const std::size_t n = 100000;
-  double pulses = 0, subrays = 0, purposes = 0;
+  double pulses = 0, subrays = 0, purposes = 0, parts = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const double u = uniform({5, i, 0, Purpose::range_noise}) - 0.5;
     pulses += u * (uniform({5, i + 1, 0, Purpose::range_noise}) - 0.5);
     subrays += u * (uniform({5, i, 1, Purpose::range_noise}) - 0.5);
     purposes += u * (uniform({5, i, 0, Purpose::free_path}) - 0.5);
+    parts += u * (uniform({5, i, 0, Purpose::range_noise, 1}) - 0.5);
   }
   const double four_sigma = 4 * std::sqrt(static_cast<double>(n)) / 12;
   CHECK(std::fabs(pulses) < four_sigma);
   CHECK(std::fabs(subrays) < four_sigma);
   CHECK(std::fabs(purposes) < four_sigma);
+  CHECK(std::fabs(parts) < four_sigma);
 }
 
 TEST_CASE("normal quantiles have their tabulated values") {

@@ -4,42 +4,51 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/accel/linear.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/scene/scene.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
 
 #include "support/relative.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
+namespace {
+constexpr double nir = 1.064e-6;
+}
+
 TEST_CASE("a Lambertian surface sends back its reflectance times the cosine of the incidence") {
   const Material m{.reflectance = 0.4};
-  CHECK(m.backscatter(1) == 0.4);
-  CHECK(m.backscatter(0.5) == support::relative(0.2, 1e-15));
-  CHECK(m.backscatter(0) == 0);
+  CHECK(m.backscatter(1, nir) == 0.4);
+  CHECK(m.backscatter(0.5, nir) == support::relative(0.2, 1e-15));
+  CHECK(m.backscatter(0, nir) == 0);
 }
 
 TEST_CASE("a surface by Phong's law has a glossy lobe about the mirror direction, which ends at 45 degrees of incidence") {
   const Material m{.reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0.3, .specular_exponent = 10};
-  CHECK(m.backscatter(1) == support::relative(0.5, 1e-15));
+  CHECK(m.backscatter(1, nir) == support::relative(0.5, 1e-15));
   // 0.5 (0.7 cos 20 + 0.3 cos^10 40)
-  CHECK(m.backscatter(std::cos(20_deg)) == support::relative(0.339330744918639, 1e-14));
+  CHECK(m.backscatter(std::cos(20_deg), nir) == support::relative(0.339330744918639, 1e-14));
   // from 45 degrees on, the lobe adds nothing: 0.5 * 0.7 cos 45, and cos 60
-  CHECK(m.backscatter(std::cos(45_deg)) == support::relative(0.247487373415292, 1e-14));
-  CHECK(m.backscatter(std::cos(60_deg)) == support::relative(0.175, 1e-14));
-  CHECK(m.backscatter(0) == 0);
+  CHECK(m.backscatter(std::cos(45_deg), nir) == support::relative(0.247487373415292, 1e-14));
+  CHECK(m.backscatter(std::cos(60_deg), nir) == support::relative(0.175, 1e-14));
+  CHECK(m.backscatter(0, nir) == 0);
 }
 
 TEST_CASE("Phong's law without a glossy share is Lambert's") {
   const Material phong{.reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0}, lambert{.reflectance = 0.5};
-  for (double cosine = 0; cosine <= 1; cosine += 0.05) CHECK(phong.backscatter(cosine) == lambert.backscatter(cosine));
+  for (double cosine = 0; cosine <= 1; cosine += 0.05) CHECK(phong.backscatter(cosine, nir) == lambert.backscatter(cosine, nir));
 }
 
 TEST_CASE("a direction-independent surface sends back its reflectance from everywhere") {
   const Material m{.reflectance = 0.4, .scattering = Scattering::direction_independent};
-  for (const double cosine : {0.0, 0.3, 1.0}) CHECK(m.backscatter(cosine) == 0.4);
+  for (const double cosine : {0.0, 0.3, 1.0}) CHECK(m.backscatter(cosine, nir) == 0.4);
 }
 
 TEST_CASE("no surface sends back more than its reflectance") {
@@ -48,10 +57,36 @@ TEST_CASE("no surface sends back more than its reflectance") {
       for (const double exponent : {0.0, 1.0, 10.0, 1000.0}) {
         const Material m{.reflectance = 0.8, .scattering = law, .specular_share = share, .specular_exponent = exponent};
         for (double cosine = 0; cosine <= 1; cosine += 0.01) {
-          REQUIRE(m.backscatter(cosine) >= 0);
-          REQUIRE(m.backscatter(cosine) <= 0.8);
+          REQUIRE(m.backscatter(cosine, nir) >= 0);
+          REQUIRE(m.backscatter(cosine, nir) <= 0.8);
         }
       }
+}
+
+TEST_CASE("a material with a spectrum answers for the wavelength of the light, by the same angular laws") {
+  const auto spectrum = std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.5e-6, 0.1}, {1.5e-6, 0.7}});
+  for (const Scattering law : {Scattering::lambert, Scattering::phong, Scattering::direction_independent})
+    for (const double wavelength : {0.3e-6, 0.532e-6, 1.064e-6, 1.55e-6}) {
+      const Material coloured{.reflectance = 0.9, .scattering = law, .specular_share = 0.3, .spectrum = spectrum};
+      const Material grey{.reflectance = spectrum->reflectance(wavelength), .scattering = law, .specular_share = 0.3};
+      CHECK(coloured.reflectance_at(wavelength) == grey.reflectance);
+      for (const double cosine : {0.0, 0.3, 0.9, 1.0}) CHECK(coloured.backscatter(cosine, wavelength) == grey.backscatter(cosine, nir));
+    }
+}
+
+TEST_CASE("one scene answers each laser at its own wavelength") {
+  const auto spectrum = std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.5e-6, 0.1}, {1.5e-6, 0.7}});
+  const MeshData floor{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
+  const Scene<TriangleMesh<Linear>> scene(
+      {{.geometry = std::make_shared<const TriangleMesh<Linear>>(floor), .materials = material_table({{.spectrum = spectrum}})}});
+  RayBundle ray = bundle_of({.origin = {0.2, 0.2, 5}, .direction = -up});
+  for (const double wavelength : {0.532e-6, 1.064e-6, 1.55e-6}) {
+    ray.wavelength = wavelength;
+    Hit hit;
+    scene.closest(ray, {&hit, 1});
+    CHECK(hit.range == 5);
+    CHECK(hit.backscatter == spectrum->reflectance(wavelength));
+  }
 }
 
 TEST_CASE("a material refuses what no surface can do") {

@@ -103,4 +103,7 @@ TEST_CASE("a part as made stands at the origin, in the default material") {
   CHECK(part.placement.identity());
   CHECK(part.materials->size() == 1);
   CHECK(part.object == 0);
+  CHECK(part.name.empty());
+  CHECK(part.motion == nullptr);
+  CHECK(part.materials == Part<support::LeastGeometry>{}.materials);  // one table for all
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -214,6 +216,66 @@ TEST_CASE("a shared geometry counts once in the memory of a scene") {
   const std::size_t alone = Scene<Mesh>(one).memory(), many = Scene<Mesh>(hundred).memory();
   CHECK(alone > mesh->memory());
   CHECK(many < 2 * mesh->memory());
+}
+
+TEST_CASE("ten thousand trees cost less than twice the memory of one and 300 bytes a tree") {
+  support::Generator any(2);
+  using Mesh = TriangleMesh<>;
+  const auto tree = std::make_shared<const Mesh>(some_triangles(any, 60'000));
+  const auto materials = material_table({{.name = "a name too long to be held in place"}, {}, {}});
+  const std::size_t alone = Scene<Mesh>({{tree, materials}}).memory();
+  std::vector<Part<Mesh>> wood;
+  for (ObjectId k = 0; k < 10'000; ++k)
+    wood.push_back({.geometry = tree,
+                    .materials = materials,
+                    .placement = {rotation_about(up, any.uniform(0, 2 * pi)), any.uniform(0.5, 2), any.point(1000)},
+                    .object = k,
+                    .name = "tree " + std::to_string(k)});
+  const Scene<Mesh> scene(std::move(wood));
+  CHECK(scene.memory() < 2 * alone + 10'000 * 300);
+  CHECK(scene.memory() > alone + 10'000 * sizeof(Part<Mesh>));
+  CHECK(scene.parts()[77].name == "tree 77");
+}
+
+TEST_CASE("the memory of a scene counts names and tables of materials, a shared one once") {
+  const auto memory = [](std::vector<Disc> parts) { return Scene<LeastGeometry>(std::move(parts)).memory(); };
+  Disc a = disc(), b = disc();
+  const std::size_t separate = memory({a, b});
+  b.materials = a.materials;
+  CHECK(memory({a, b}) == separate - sizeof(std::vector<Material>) - sizeof(Material));
+  b.name.assign(1000, 'x');
+  CHECK(memory({a, b}) > separate + 800);
+}
+
+TEST_CASE("a scene for each repetition of a survey, of the same geometries, costs a box and a part for each part") {
+  support::Generator any(3);
+  using Mesh = TriangleMesh<>;
+  MeshData data = some_triangles(any, 20'000);
+  const auto summer = std::make_shared<const Mesh>(data);
+  data.triangles.resize(5'000), data.materials.resize(5'000);  // the leaves have fallen
+  const auto winter = std::make_shared<const Mesh>(data);
+  const auto materials = material_table(std::vector<Material>(3));
+  std::vector<Scene<Mesh>> repetitions;
+  for (int repetition = 0; repetition < 10; ++repetition) {
+    std::vector<Part<Mesh>> parts;
+    for (ObjectId k = 0; k < 20; ++k)
+      if (k != 7 || repetition < 5)  // one tree is cut
+        parts.push_back({(repetition + static_cast<int>(k)) % 2 ? summer : winter, materials, {.translation = {20.0 * k, 0, 0}}, k});
+    repetitions.emplace_back(std::move(parts));
+  }
+  CHECK(summer.use_count() + winter.use_count() == 2 + 5 * 20 + 5 * 19);
+  std::size_t own = 0;
+  for (const auto& scene : repetitions) own += scene.memory() - summer->memory() - winter->memory();
+  CHECK(own < 10 * 20 * 300 + 10 * 1000);
+  std::size_t met = 0;
+  for (const auto& scene : repetitions) {
+    const RayBundle rays = any.cone({140, 0, 100}, -up, 0.05, 60);
+    std::array<Hit, RayBundle::capacity> hits;
+    scene.closest(rays, hits);
+    for (std::size_t j = 0; j < rays.size; ++j) met += hits[j].met() && hits[j].object == 7 ? 1 : 0;
+    CHECK(scene.parts().size() == (&scene - repetitions.data() < 5 ? 20 : 19));
+  }
+  CHECK(met > 50);
 }
 
 TEST_CASE("the bounds of a scene hold all of its parts") {

@@ -131,3 +131,15 @@ TEST_CASE("a mesh that cannot be is refused, and the refusal says what is wrong"
   CHECK(with([](MeshData& m) { m.materials.pop_back(); }) == "MeshData::materials is 1, but must be as many as triangles, 2, or none");
   CHECK(with([](MeshData& m) { m.vertices[0].x = 1e19; }).find("within 1e18 m") != std::string::npos);
 }
+
+TEST_CASE_TEMPLATE("a mesh that was built is sound, and one that was not filled is met by nothing", Mesh, TriangleMesh<>,
+                   TriangleMesh<KdTree>, TriangleMesh<Linear>) {
+  CHECK(Mesh(square()).sound());
+  const Mesh none(Unfilled{});
+  CHECK(none.sound());
+  CHECK(none.bounds().empty());
+  const RayBundle rays = bundle_of({{1, 1, 5}, -up});
+  Nearest nearest(rays);
+  none.closest(rays, nearest);
+  CHECK_FALSE(nearest.met(0));
+}

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <pulsecast/accel/sah.hpp>
+#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -29,13 +30,35 @@ class KdTree {
     bounds_ = input.bounds, centre_ = input.centre;
     if (input.primitives.empty()) return;
     build(std::move(input.primitives));
-    nodes_.shrink_to_fit(), order_.shrink_to_fit();
+  }
+
+  explicit KdTree(Unfilled) {}
+  template <class Archive>
+  void archive(Archive& a) {
+    a(bounds_, centre_, cell_, depth_, nodes_, order_);
+  }
+
+  /// Whether it is a tree at all, no deeper than it may be, and over so many primitives.
+  [[nodiscard]] bool sound(std::size_t primitives) const {
+    std::vector<std::uint8_t> depths(nodes_.size());  // 0 where nothing leads to so far
+    if (!depths.empty()) depths[0] = 1;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const Node& node = nodes_[i];
+      const std::size_t first = node.first();
+      if (depths[i] == 0) return false;
+      if (node.axis() == 3) {
+        if (first > order_.size() || node.count > order_.size() - first) return false;
+        continue;
+      }
+      if (first <= i || first >= nodes_.size() - 1 || depths[first] != 0 || depths[first + 1] != 0) return false;
+      if (depths[i] > detail::deepest) return false;
+      depths[first] = depths[first + 1] = static_cast<std::uint8_t>(depths[i] + 1);
+    }
+    return std::all_of(order_.begin(), order_.end(), [&](PrimitiveIndex i) { return i < primitives; });
   }
 
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
-  [[nodiscard]] std::size_t memory() const noexcept {
-    return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(PrimitiveIndex);
-  }
+  [[nodiscard]] std::size_t memory() const noexcept { return nodes_.memory() + order_.memory(); }
 
   /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
@@ -124,7 +147,8 @@ class KdTree {
     const auto n = static_cast<double>(heap.size());
     // Source: Pharr, Jakob & Humphreys 2016, sec. 4.4
     const std::size_t deepest = std::min(detail::deepest, static_cast<std::size_t>(8 + 1.3 * std::log2(n)));
-    nodes_.emplace_back();
+    std::vector<Node> nodes(1);
+    std::vector<PrimitiveIndex> order;
     std::vector<Task> tasks{{0, 0, 0, cell_, leaves_per_primitive * n}};
     std::vector<Boxed> lower, upper;
     while (!tasks.empty()) {
@@ -141,16 +165,16 @@ class KdTree {
       }
       const auto both = static_cast<double>(lower.size() + upper.size());
       depth_ = std::max(depth_, task.depth);
-      Node& node = nodes_[task.node];
+      Node& node = nodes[task.node];
       if (split.axis < 0 || both > task.allowance || std::min(lower.size(), upper.size()) == part.size()) {
-        node.place(order_.size(), 3), node.count = static_cast<std::uint32_t>(part.size());
-        for (const Boxed& boxed : part) order_.push_back(boxed.primitive);
+        node.place(order.size(), 3), node.count = static_cast<std::uint32_t>(part.size());
+        for (const Boxed& boxed : part) order.push_back(boxed.primitive);
         heap.resize(task.begin);
         continue;
       }
-      const std::size_t children = nodes_.size();
+      const std::size_t children = nodes.size();
       node.place(children, split.axis), node.split = split.at;
-      nodes_.resize(children + 2);
+      nodes.resize(children + 2);
       const auto share = [&](const std::vector<Boxed>& side) { return task.allowance * static_cast<double>(side.size()) / both; };
       Task below{task.begin, children + 1, task.depth + 1, task.cell, share(upper)};
       below.cell.min[split.axis] = split.at;
@@ -162,6 +186,7 @@ class KdTree {
       heap.insert(heap.end(), lower.begin(), lower.end());
       tasks.push_back(below);
     }
+    nodes_ = std::move(nodes), order_ = std::move(order);
   }
 
   static Split best_split(std::span<const Boxed> part, const BoundingBox<Real>& cell) noexcept {
@@ -195,8 +220,8 @@ class KdTree {
   Box bounds_;
   Vec3 centre_{};
   BoundingBox<Real> cell_{};
-  std::vector<Node> nodes_;
-  std::vector<PrimitiveIndex> order_;
+  Frozen<Node> nodes_;  ///< the root first
+  Frozen<PrimitiveIndex> order_;
   std::size_t depth_ = 0;
 };
 

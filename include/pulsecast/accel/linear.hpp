@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/accel/sah.hpp>
+#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -19,22 +22,33 @@ class Linear {
   explicit Linear(std::span<const Box> boxes) {
     const detail::BuildInput<Real> input(boxes);
     bounds_ = input.bounds;
-    primitives_.reserve(input.primitives.size());
-    for (const auto& boxed : input.primitives) primitives_.push_back(boxed.primitive);
+    std::vector<PrimitiveIndex> primitives;
+    primitives.reserve(input.primitives.size());
+    for (const auto& boxed : input.primitives) primitives.push_back(boxed.primitive);
+    primitives_ = std::move(primitives);
+  }
+
+  explicit Linear(Unfilled) {}
+  template <class Archive>
+  void archive(Archive& a) {
+    a(bounds_, primitives_);
+  }
+  [[nodiscard]] bool sound(std::size_t primitives) const noexcept {
+    return std::all_of(primitives_.begin(), primitives_.end(), [&](PrimitiveIndex i) { return i < primitives; });
   }
 
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
-  [[nodiscard]] std::size_t memory() const noexcept { return primitives_.capacity() * sizeof(PrimitiveIndex); }
+  [[nodiscard]] std::size_t memory() const noexcept { return primitives_.memory(); }
 
   template <class Test>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
   void closest(const RayBundle&, const Test& test, Nearest&) const noexcept {
-    if (!primitives_.empty()) test(std::span<const PrimitiveIndex>(primitives_));
+    if (!primitives_.empty()) test(std::span<const PrimitiveIndex>(primitives_.data(), primitives_.size()));
   }
 
  private:
   Box bounds_;
-  std::vector<PrimitiveIndex> primitives_;
+  Frozen<PrimitiveIndex> primitives_;
 };
 
 static_assert(Accelerator<Linear<float>> && Accelerator<Linear<double>>);

@@ -30,6 +30,7 @@ struct RandomKey {
   PulseIndex pulse = 0;
   std::uint32_t subray = 0;
   Purpose purpose = Purpose::scene;
+  std::uint32_t part = 0;  ///< of the scene, where each part draws for itself; parts that are 2^24 apart draw the same
 };
 
 /// Four random words from a counter and a key. Source: Salmon, Moraes, Dror & Shaw 2011, Philox4x32-10.
@@ -46,11 +47,11 @@ struct RandomKey {
   return counter;
 }
 
-/// The four random words of a key.
+/// The four random words of a key. Purposes are less than 256, so the part has the upper bits of their word.
 [[nodiscard]] constexpr std::array<std::uint32_t, 4> random_words(const RandomKey& k) noexcept {
-  return philox(
-      {static_cast<std::uint32_t>(k.pulse), static_cast<std::uint32_t>(k.pulse >> 32), k.subray, static_cast<std::uint32_t>(k.purpose)},
-      {static_cast<std::uint32_t>(k.seed), static_cast<std::uint32_t>(k.seed >> 32)});
+  const std::uint32_t purpose = static_cast<std::uint32_t>(k.purpose) ^ k.part << 8;
+  return philox({static_cast<std::uint32_t>(k.pulse), static_cast<std::uint32_t>(k.pulse >> 32), k.subray, purpose},
+                {static_cast<std::uint32_t>(k.seed), static_cast<std::uint32_t>(k.seed >> 32)});
 }
 
 /// A number in the open interval (0, 1), so that its logarithm is finite; 52 random bits.

@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/scene/spectrum.hpp>
 
 namespace pulsecast {
 
@@ -20,12 +22,13 @@ enum class Scattering : std::uint8_t {
 /// What a surface is made of.
 struct Material {
   std::string name = "default";
-  double reflectance = 0.5;  ///< at the laser's wavelength, a fraction: in [0, 1]
+  double reflectance = 0.5;  ///< at the laser's wavelength, a fraction: in [0, 1]; does not count where there is a spectrum
   Scattering scattering = Scattering::lambert;
-  double specular_share = 0;         ///< of the reflectance, in the glossy lobe of Phong's law: in [0, 1]
-  double specular_exponent = 10;     ///< of that lobe, at least 0
-  std::uint16_t classification = 0;  ///< ASPRS class that its points get
-  bool ground = false;               ///< may carry set-ups and vehicles
+  double specular_share = 0;                   ///< of the reflectance, in the glossy lobe of Phong's law: in [0, 1]
+  double specular_exponent = 10;               ///< of that lobe, at least 0
+  std::uint16_t classification = 0;            ///< ASPRS class that its points get
+  bool ground = false;                         ///< may carry set-ups and vehicles
+  std::shared_ptr<const Spectrum> spectrum{};  ///< reflectance by wavelength, for several materials perhaps; empty if it is the same at all
 
   void validate() const {
     expect_within("Material::reflectance", reflectance, 0, 1, "");
@@ -33,21 +36,28 @@ struct Material {
     expect_not_negative("Material::specular_exponent", specular_exponent, "");
   }
 
-  /// Reflectance times the angular law, for light that arrives at an angle of this cosine, in [0, 1], and returns the way it came.
+  /// For light of a wavelength [m]: a fraction.
+  [[nodiscard]] double reflectance_at(double wavelength) const noexcept {
+    return spectrum ? spectrum->reflectance(wavelength) : reflectance;
+  }
+
+  /// Reflectance times the angular law, for light of a wavelength [m] that arrives at an angle of this cosine, in [0, 1], and returns the
+  /// way it came.
   /// Source: Jutzi & Gross 2009; the lobe stands about the mirror direction, twice the incidence away, and ends at 90 degrees.
-  [[nodiscard]] double backscatter(double cos_incidence) const noexcept {
+  [[nodiscard]] double backscatter(double cos_incidence, double wavelength) const noexcept {
+    const double all = reflectance_at(wavelength);
     switch (scattering) {
       case Scattering::lambert:
-        return reflectance * cos_incidence;
+        return all * cos_incidence;
       case Scattering::phong: {
         const double cos_to_mirror = 2 * cos_incidence * cos_incidence - 1;
         const double lobe = cos_to_mirror > 0 ? std::pow(cos_to_mirror, specular_exponent) : 0;
-        return reflectance * ((1 - specular_share) * cos_incidence + specular_share * lobe);
+        return all * ((1 - specular_share) * cos_incidence + specular_share * lobe);
       }
       case Scattering::direction_independent:
         break;
     }
-    return reflectance;
+    return all;
   }
 };
 

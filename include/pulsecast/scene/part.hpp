@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
-#include <type_traits>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -14,6 +15,23 @@
 #include <pulsecast/scene/material.hpp>
 
 namespace pulsecast {
+
+class PartMotion;
+
+namespace detail {
+
+[[nodiscard]] inline std::array<Vec3, 8> corners(const Box& b) noexcept {
+  std::array<Vec3, 8> all;
+  for (std::size_t i = 0; i < 8; ++i) all[i] = {i & 1 ? b.max.x : b.min.x, i & 2 ? b.max.y : b.min.y, i & 4 ? b.max.z : b.min.z};
+  return all;
+}
+
+/// What a text holds besides itself [byte].
+[[nodiscard]] inline std::size_t memory_of(const std::string& text) noexcept {
+  return text.capacity() > std::string().capacity() ? text.capacity() + 1 : 0;
+}
+
+}  // namespace detail
 
 /// Where a part stands in the world: turned, scaled alike in all directions, and moved, in this order.
 struct Similarity {
@@ -34,18 +52,18 @@ struct Similarity {
   /// The box around a box, placed.
   [[nodiscard]] Box box(const Box& b) const noexcept {
     Box out;
-    for (int corner = 0; corner < 8; ++corner)
-      out.extend(point({corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y, corner & 4 ? b.max.z : b.min.z}));
+    for (const Vec3& corner : detail::corners(b)) out.extend(point(corner));
     return out;
   }
 
   /// Rays of the world in the part's own frame. Their directions get longer or shorter, so that ranges stay what they are.
   [[nodiscard]] RayBundle to_local(const RayBundle& rays) const noexcept {
     RayBundle local(static_cast<const BundleOrigin&>(rays));
-    const Rotation back = conjugate(rotation);
-    local.origin = back * (rays.origin - translation) / scale;
-    local.direction_length = rays.direction_length / scale;
-    const Vec3 x = back * right / scale, y = back * forward / scale, z = back * up / scale;
+    const double per_metre = 1 / scale;
+    const Matrix3 back = per_metre * matrix_of(conjugate(rotation));
+    local.origin = back * (rays.origin - translation);
+    local.direction_length = rays.direction_length * per_metre;
+    const Vec3 x = back[0], y = back[1], z = back[2];
     for (std::size_t j = 0; j < rays.padded_size(); ++j) {
       local.x[j] = x.x * rays.x[j] + y.x * rays.y[j] + z.x * rays.z[j];
       local.y[j] = x.y * rays.x[j] + y.y * rays.y[j] + z.y * rays.z[j];
@@ -58,19 +76,27 @@ struct Similarity {
 /// Materials by index, shared by any number of parts.
 using MaterialTable = std::shared_ptr<const std::vector<Material>>;
 
-/// A table of materials; a single default one unless told otherwise.
-[[nodiscard]] inline MaterialTable material_table(std::vector<Material> materials = std::vector<Material>(1)) {
+/// A table of materials.
+[[nodiscard]] inline MaterialTable material_table(std::vector<Material> materials) {
   for (const Material& m : materials) m.validate();
   return std::make_shared<const std::vector<Material>>(std::move(materials));
 }
 
-/// A shape in a place: many parts may share one geometry and one table of materials.
+/// The table of a single default material, the same for all that ask.
+[[nodiscard]] inline MaterialTable material_table() {
+  static const MaterialTable table = material_table(std::vector<Material>(1));
+  return table;
+}
+
+/// A shape in a place: many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
   std::variant<std::shared_ptr<const Shapes>...> geometry;
   MaterialTable materials = material_table();
   Similarity placement{};
-  ObjectId object = 0;
+  ObjectId object = 0;                         ///< what its points are marked with
+  std::string name{};                          ///< its user's id for it, as text
+  std::shared_ptr<const PartMotion> motion{};  ///< on top of its placement; none if it stands; for a `MovingScene`
 };
 
 }  // namespace pulsecast

@@ -16,28 +16,41 @@
 
 namespace pulsecast {
 
-/// Parts of the given kinds of geometry, and no code for any other kind: `Scene<TriangleMesh<>>`.
+/// Parts of the given kinds of geometry, and no code for any other kind: `Scene<TriangleMesh<>>`. They stand; `MovingScene` moves some.
+///
+/// Parts share their geometries, so a second scene of other parts, or of the same ones in other places, costs a box a part. Where things
+/// change from one repetition of a survey to the next (leaves fall, a car has gone), make a scene for each, from the same geometries.
 template <Geometry... Shapes>
 class Scene {
  public:
   using Part = pulsecast::Part<Shapes...>;
 
-  explicit Scene(std::vector<Part> parts) : parts_(std::move(parts)), index_(boxes(parts_)) {}
+  explicit Scene(std::vector<Part> parts) : Scene(std::move(parts), Motions::refused) {}
 
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
 
-  /// Memory held, every shared geometry counted once [byte].
+  /// Memory held, with all that parts share counted once [byte].
   [[nodiscard]] std::size_t memory() const {
     std::size_t bytes = index_.memory() + parts_.capacity() * sizeof(Part);
     std::set<const void*> counted;
-    for (const Part& part : parts_)
+    for (const Part& part : parts_) {
+      bytes += detail::memory_of(part.name);
       std::visit([&](const auto& shape) { bytes += counted.insert(shape.get()).second ? shape->memory() : 0; }, part.geometry);
+      if (!counted.insert(part.materials.get()).second) continue;
+      bytes += sizeof(*part.materials) + part.materials->capacity() * sizeof(Material);
+      for (const Material& material : *part.materials) {
+        bytes += detail::memory_of(material.name);
+        if (material.spectrum && counted.insert(material.spectrum.get()).second) bytes += material.spectrum->memory();
+      }
+    }
     return bytes;
   }
 
   /// What each ray of the bundle meets first. Parts are met where they stand; the tie between parts goes to the first in the list.
-  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept { describe(rays, nearest(rays), hits); }
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+    describe(rays, nearest(rays), hits, [&](std::size_t part) noexcept -> const Similarity& { return parts_[part].placement; });
+  }
 
   /// The height of the ground at a place, as far as any is there: the highest surface of a material that is ground [m].
   [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept {
@@ -53,17 +66,27 @@ class Scene {
   }
 
  private:
-  static std::vector<Box> boxes(const std::vector<Part>& parts) {
+  template <Geometry... OfMoving>
+  friend class MovingScene;
+
+  enum class Motions : std::uint8_t { refused, left_out };
+
+  /// Parts that move are refused, or left out of the index.
+  Scene(std::vector<Part> parts, Motions motions) : parts_(std::move(parts)), index_(boxes(parts_, motions)) { parts_.shrink_to_fit(); }
+
+  static std::vector<Box> boxes(const std::vector<Part>& parts, Motions motions) {
     std::vector<Box> boxes;
     boxes.reserve(parts.size());
     for (const Part& part : parts) {
       part.placement.validate();
+      if (part.motion && motions == Motions::refused)
+        throw SettingError("Part::motion (number)", 1, "", "0 in a Scene; a MovingScene moves parts");
       boxes.push_back(std::visit(
           [&](const auto& shape) {
             if (!shape) throw SettingError("Part::geometry (number)", 0, "", "1");
             const double materials = part.materials ? static_cast<double>(part.materials->size()) : 0;
             expect_within("Part::materials (number)", materials, static_cast<double>(shape->material_count()), 4294967295.0, "");
-            return part.placement.box(shape->bounds());
+            return part.motion ? Box{} : part.placement.box(shape->bounds());
           },
           part.geometry));
     }
@@ -73,11 +96,7 @@ class Scene {
   Nearest nearest(const RayBundle& rays) const noexcept {
     Nearest nearest(rays);
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
-      for (const PrimitiveIndex p : found) {
-        nearest.part = std::uint64_t{p} << 32;
-        const Part& part = parts_[p];
-        part.placement.identity() ? closest_in(part, rays, nearest) : closest_in(part, part.placement.to_local(rays), nearest);
-      }
+      for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, nearest);
     };
     index_.closest(rays, test, nearest);
     return nearest;
@@ -91,11 +110,17 @@ class Scene {
     return (*part.materials)[std::visit(material, part.geometry)];
   }
 
-  static void closest_in(const Part& part, const RayBundle& rays, Nearest& nearest) noexcept {
-    std::visit([&](const auto& shape) noexcept { shape->closest(rays, nearest); }, part.geometry);
+  void closest_in(std::size_t part, const Similarity& placement, const RayBundle& rays, Nearest& nearest) const noexcept {
+    nearest.part = std::uint64_t{part} << 32;
+    const auto closest = [&](const RayBundle& local) noexcept {
+      std::visit([&](const auto& shape) noexcept { shape->closest(local, nearest); }, parts_[part].geometry);
+    };
+    placement.identity() ? closest(rays) : closest(placement.to_local(rays));
   }
 
-  void describe(const RayBundle& rays, const Nearest& nearest, std::span<Hit> hits) const noexcept {
+  /// `placement_of` gives where the part of a number stands.
+  template <class PlacementOf>
+  void describe(const RayBundle& rays, const Nearest& nearest, std::span<Hit> hits, const PlacementOf& placement_of) const noexcept {
     constexpr std::size_t nothing = std::size_t(-1);
     std::size_t at = nothing;  // the part whose frame `local` is in: neighbours mostly meet the same
     RayBundle local;
@@ -105,7 +130,8 @@ class Scene {
       const Part& part = parts_[nearest.part_of(j)];
       if (at != nearest.part_of(j)) {
         at = nearest.part_of(j);
-        local = part.placement.identity() ? rays : part.placement.to_local(rays);
+        const Similarity& placement = placement_of(at);
+        local = placement.identity() ? rays : placement.to_local(rays);
       }
       const Surface surface =
           std::visit([&](const auto& shape) noexcept { return shape->surface(nearest.primitive_of(j), local, j); }, part.geometry);
@@ -114,7 +140,7 @@ class Scene {
       Hit& hit = hits[j];
       hit.range = nearest.range[j];
       hit.cos_incidence = surface.normal == Vec3{} ? 1 : cosine < 1 ? cosine : 1;
-      hit.backscatter = material.backscatter(hit.cos_incidence);
+      hit.backscatter = material.backscatter(hit.cos_incidence, rays.wavelength);
       hit.object = part.object, hit.classification = material.classification;
     }
   }

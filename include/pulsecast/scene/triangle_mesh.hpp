@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
+#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 
@@ -57,42 +58,61 @@ template <template <class> class Index = Bvh, std::floating_point Real = float>
 requires Accelerator<Index<Real>>
 class TriangleMesh {
  public:
-  explicit TriangleMesh(MeshData data) : data_(validated(std::move(data))), index_(boxes(data_)) {
-    for (const std::uint32_t m : data_.materials) material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
+  explicit TriangleMesh(MeshData data) : index_(boxes(data)) {
+    for (const std::uint32_t m : data.materials) material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
+    vertices_ = std::move(data.vertices), triangles_ = std::move(data.triangles), materials_ = std::move(data.materials);
   }
 
-  [[nodiscard]] std::size_t size() const noexcept { return data_.triangles.size(); }
-  [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept { return data_.triangle(i); }
-  [[nodiscard]] const MeshData& data() const noexcept { return data_; }
+  explicit TriangleMesh(Unfilled unfilled) requires std::constructible_from<Index<Real>, Unfilled> : index_(unfilled) {}
+  template <class Archive>
+  void archive(Archive& a) {
+    a(vertices_, triangles_, materials_, index_, material_count_);
+  }
+  [[nodiscard]] bool sound() const {
+    const auto has_corners = [&](const std::array<std::uint32_t, 3>& t) { return std::max({t[0], t[1], t[2]}) < vertices_.size(); };
+    if (!std::all_of(triangles_.begin(), triangles_.end(), has_corners)) return false;
+    if (material_count_ == 0 || (!materials_.empty() && materials_.size() != size())) return false;
+    if (!std::all_of(materials_.begin(), materials_.end(), [&](std::uint32_t m) { return m < material_count_; })) return false;
+    if constexpr (requires { index_.sound(size()); }) return index_.sound(size());
+    return true;
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return triangles_.size(); }
+  [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept {
+    const auto& corners = triangles_[i];
+    return {vertices_[corners[0]], vertices_[corners[1]], vertices_[corners[2]]};
+  }
   [[nodiscard]] const Index<Real>& index() const noexcept { return index_; }
   [[nodiscard]] std::size_t material_count() const noexcept { return material_count_; }
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   [[nodiscard]] std::size_t memory() const noexcept {
-    return index_.memory() + data_.vertices.capacity() * sizeof(Vec3) + data_.triangles.capacity() * sizeof(data_.triangles[0]) +
-           data_.materials.capacity() * sizeof(data_.materials[0]);
+    return index_.memory() + vertices_.memory() + triangles_.memory() + materials_.memory();
   }
 
   void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
     const auto test = [&](std::span<const PrimitiveIndex> primitives) noexcept {
-      for (const PrimitiveIndex i : primitives) intersect(data_.triangle(i), i, rays, nearest);
+      for (const PrimitiveIndex i : primitives) intersect(triangle(i), i, rays, nearest);
     };
     index_.closest(rays, test, nearest);
   }
 
   [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle&, std::size_t) const noexcept {
-    const Vec3 normal = data_.triangle(i).normal();
-    return {finite(normal) ? normal : Vec3{}, data_.materials.empty() ? 0 : data_.materials[i]};
+    const Vec3 normal = triangle(i).normal();
+    return {finite(normal) ? normal : Vec3{}, materials_.empty() ? 0 : materials_[i]};
   }
 
  private:
   static std::vector<Box> boxes(const MeshData& data) {
+    data.validate();
     std::vector<Box> all;
     all.reserve(data.triangles.size());
     for (std::size_t i = 0; i < data.triangles.size(); ++i) all.push_back(data.triangle(i).bounds());
     return all;
   }
 
-  MeshData data_;
+  Frozen<Vec3> vertices_;
+  Frozen<std::array<std::uint32_t, 3>> triangles_;
+  Frozen<std::uint32_t> materials_;  ///< empty if all are 0
   Index<Real> index_;
   std::size_t material_count_ = 1;
 };

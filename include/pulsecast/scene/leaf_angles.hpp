@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/vector.hpp>
+
+namespace pulsecast {
+
+/// How much leaves face a direction.
+struct LeafProjection {
+  double zenith = 0;  ///< angle between the direction and the vertical, in [0, pi/2] [rad]
+  double g = 0;       ///< mean projection of unit leaf area onto the plane across the direction, in [0, 1]
+};
+
+/// How the leaves of a plant are inclined; they face all azimuths and both sides alike. What a beam meets of them is
+/// G(direction), the mean projection of unit leaf area onto the plane across the direction (Ross 1981); over all directions it has the
+/// mean 1/2, however the leaves stand. As made, spherical. Copies share their table.
+class LeafAngles {
+ public:
+  LeafAngles() = default;
+
+  /// As the surface of a sphere: G is 1/2 in all directions.
+  [[nodiscard]] static LeafAngles spherical() { return {}; }
+
+  // Densities of the inclination t of leaves, from 0 (lying) to pi/2 (standing). Source: de Wit 1965; closed forms: Goel & Strebel 1984.
+
+  /// Mostly lying.
+  [[nodiscard]] static LeafAngles planophile() {
+    return of_density([](double t) { return 2 / pi * (1 + std::cos(2 * t)); });
+  }
+  /// Mostly standing.
+  [[nodiscard]] static LeafAngles erectophile() {
+    return of_density([](double t) { return 2 / pi * (1 - std::cos(2 * t)); });
+  }
+  /// Mostly oblique.
+  [[nodiscard]] static LeafAngles plagiophile() {
+    return of_density([](double t) { return 2 / pi * (1 - std::cos(4 * t)); });
+  }
+  /// Mostly either lying or standing.
+  [[nodiscard]] static LeafAngles extremophile() {
+    return of_density([](double t) { return 2 / pi * (1 + std::cos(4 * t)); });
+  }
+  /// Every inclination as likely as every other.
+  [[nodiscard]] static LeafAngles uniform() {
+    return of_density([](double) { return 2 / pi; });
+  }
+
+  /// As the surface of an ellipsoid whose horizontal axes are `chi` times the vertical one: 1 is spherical, less stands, more lies.
+  /// Source: Campbell 1986; the surface of the ellipsoid is its exact one.
+  [[nodiscard]] static LeafAngles ellipsoidal(double chi) {
+    expect_within("LeafAngles::ellipsoidal (chi)", chi, 1e-6, 1e6, "");
+    LeafAngles made;
+    made.chi_ = chi;
+    const double eccentricity = std::sqrt(chi < 1 ? 1 - chi * chi : 1 - 1 / (chi * chi));
+    if (chi == 1)
+      made.half_surface_ = 2;
+    else
+      made.half_surface_ = chi + (chi < 1 ? std::asin(eccentricity) / eccentricity : std::atanh(eccentricity) / (eccentricity * chi));
+    return made;
+  }
+
+  /// G by the angle between direction and vertical, in any order, none twice; linear in between, and as the nearest before the first
+  /// and behind the last. Refuses a hole: 10 degrees without an entry are bridged, more are not.
+  [[nodiscard]] static LeafAngles table(std::vector<LeafProjection> entries) {
+    constexpr double widest = 10 * pi / 180 * (1 + 1e-6);
+    for (const LeafProjection& entry : entries) {
+      expect_within("LeafProjection::zenith", entry.zenith, 0, pi / 2 * (1 + 1e-6), "rad");
+      expect_within("LeafProjection::g", entry.g, 0, 1, "");
+    }
+    std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.zenith < b.zenith; });
+    double reached = 0;
+    for (std::size_t i = 0; i < entries.size(); reached = entries[i++].zenith) {
+      if (i > 0 && entries[i].zenith == reached) throw SettingError("LeafProjection::zenith", reached, "rad", "given once");
+      expect_no_hole(reached, entries[i].zenith, widest);
+    }
+    expect_no_hole(reached, pi / 2, widest);
+    LeafAngles made;
+    made.table_ = Frozen<LeafProjection>(std::move(entries));
+    return made;
+  }
+
+  /// G for light that goes along a direction of any length but zero, z being the vertical; within 1e-6 of the integral that defines it.
+  [[nodiscard]] double projection(const Vec3& direction) const noexcept {
+    const double level = std::hypot(direction.x, direction.y), steep = std::fabs(direction.z);
+    if (table_.empty()) return std::hypot(chi_ * steep, level) / (std::hypot(steep, level) * half_surface_);
+    const double zenith = std::atan2(level, steep);
+    const auto above = std::upper_bound(table_.begin(), table_.end(), zenith, [](double z, const auto& entry) { return z < entry.zenith; });
+    if (above == table_.begin()) return above->g;
+    const auto below = above - 1;
+    if (above == table_.end()) return below->g;
+    return below->g + (above->g - below->g) * (zenith - below->zenith) / (above->zenith - below->zenith);
+  }
+
+  /// Memory held [byte].
+  [[nodiscard]] std::size_t memory() const noexcept { return table_.memory(); }
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(chi_, half_surface_, table_);
+  }
+
+ private:
+  /// Intervals of zenith angle that G is kept for: linear in between, it is within 2e-7 of its integral.
+  static constexpr std::size_t intervals = 2048;
+
+  static void expect_no_hole(double from, double to, double widest) {
+    if (to - from > widest) throw SettingError("LeafProjection::zenith", from, "rad", "followed by another within 0.1745 rad");
+  }
+
+  template <class Density>
+  static LeafAngles of_density(Density density) {
+    const Nodes nodes;
+    std::vector<LeafProjection> entries(intervals + 1);
+    for (std::size_t i = 0; i <= intervals; ++i) {
+      const double zenith = pi / 2 * static_cast<double>(i) / intervals;
+      entries[i] = {zenith, projection(density, zenith, nodes)};
+    }
+    return table(std::move(entries));
+  }
+
+  /// Where and with what weight to take an integrand over [0, 1]: exact for polynomials up to the degree 47.
+  /// Source: Gauss-Legendre quadrature; the nodes by Newton's method (Press et al. 2007, section 4.6).
+  struct Nodes {
+    static constexpr std::size_t size = 24;
+    std::array<double, size> at, weight;
+
+    Nodes() noexcept {
+      for (std::size_t i = 0; i < size; ++i) {
+        double x = std::cos(pi * (static_cast<double>(i) + 0.75) / (size + 0.5)), slope = 0;
+        for (int step = 0; step < 8; ++step) {
+          double p = 1, before = 0;
+          for (std::size_t n = 0; n < size; ++n) {
+            const double k = static_cast<double>(n);
+            before = std::exchange(p, ((2 * k + 1) * x * p - k * before) / (k + 1));
+          }
+          slope = size * (x * p - before) / (x * x - 1);
+          x -= p / slope;
+        }
+        at[i] = (1 - x) / 2, weight[i] = 1 / ((1 - x * x) * slope * slope);
+      }
+    }
+  };
+
+  /// The integral over all inclinations of their density and of how much a leaf of that inclination, at any azimuth, faces the direction.
+  /// Source: Ross 1981; Goel & Strebel 1984. Leaves less inclined than pi/2 - zenith show one side whatever their azimuth.
+  template <class Density>
+  static double projection(Density density, double zenith, const Nodes& nodes) noexcept {
+    const double c = std::cos(zenith), s = std::sin(zenith), one_sided = pi / 2 - zenith;
+    double sum = 0;
+    for (std::size_t i = 0; i < Nodes::size; ++i) {
+      const double u = nodes.at[i];
+      const double lying = one_sided * u;
+      sum += nodes.weight[i] * one_sided * density(lying) * c * std::cos(lying);
+      if (s == 0) continue;
+      const double standing = one_sided + zenith * u * u;  // what follows goes with the root of the distance from `one_sided`
+      const double cos_t = std::cos(standing), sin_t = std::sin(standing);
+      const double turn = std::acos(std::min(c * cos_t / (s * sin_t), 1.0));  // azimuth at which the leaf is seen edge on
+      const double facing = c * cos_t * (1 - 2 / pi * turn) + 2 / pi * s * sin_t * std::sin(turn);
+      sum += nodes.weight[i] * 2 * zenith * u * density(standing) * facing;
+    }
+    return sum;
+  }
+
+  double chi_ = 1, half_surface_ = 2;  ///< of the ellipsoid; a sphere, unless there is a table
+  Frozen<LeafProjection> table_;
+};
+
+}  // namespace pulsecast

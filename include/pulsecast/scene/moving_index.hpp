@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/accel/bvh.hpp>
+#include <pulsecast/base/expect.hpp>
+
+namespace pulsecast {
+
+/// The time for which an index of moving things is made, and how large it may get.
+struct TimeWindows {
+  double from = 0, to = 3600;                     ///< since the start of the survey [s]
+  std::size_t most_boxes = std::size_t{1} << 20;  ///< that are held, of about 70 bytes each
+
+  void validate() const {
+    expect_within("TimeWindows::from", from, -1e15, 1e15, "s");
+    if (!(to > from && to <= 1e15)) throw SettingError("TimeWindows::to", to, "s", "after `from`, at most 1e+15");
+    expect_within("TimeWindows::most_boxes", static_cast<double>(most_boxes), 1, 4294967295.0, "");
+  }
+};
+
+/// An index over things that move: a time is divided into windows, and each window has a tree over the boxes that the things sweep in it.
+/// Who moves faster gets shorter windows, half as long at each level, until within a window it moves no more than about its own size; where
+/// that asks for too many boxes, the shortest windows are made longer. Outside of the time everything is tested: slow, but right.
+class MovingIndex {
+ public:
+  /// `swept(i, from, to)` gives the box that the thing of number i sweeps between two ticks; less than `things` in number.
+  template <class Swept>
+  MovingIndex(std::size_t things, const TimeWindows& time, const Swept& swept) : time_(validated(time)), span_(time.to - time.from) {
+    std::array<std::vector<PrimitiveIndex>, deepest + 1> at_level;
+    for (std::size_t i = 0; i < things; ++i) at_level[level_of(i, swept)].push_back(static_cast<PrimitiveIndex>(i));
+    for (std::size_t level = deepest; level > 0 && boxes(at_level) > time.most_boxes; --level) {
+      at_level[level - 1].insert(at_level[level - 1].end(), at_level[level].begin(), at_level[level].end());
+      at_level[level].clear();
+    }
+    for (std::size_t level = 0; level <= deepest; ++level) {
+      if (at_level[level].empty()) continue;
+      levels_.push_back({std::move(at_level[level]), {}});
+      Level& made = levels_.back();
+      const std::size_t windows = std::size_t{1} << level;
+      made.windows.reserve(windows);
+      std::vector<Box> boxes(made.things.size());
+      for (std::size_t w = 0; w < windows; ++w) {
+        for (std::size_t k = 0; k < boxes.size(); ++k) boxes[k] = box_in(made.things[k], w, windows, swept);
+        made.windows.emplace_back(boxes);
+        bounds_.extend(made.windows.back().bounds());
+      }
+    }
+    all_ = things;
+  }
+
+  /// Of all that is swept in the time.
+  [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+
+  [[nodiscard]] std::size_t memory() const noexcept {
+    std::size_t bytes = levels_.capacity() * sizeof(Level);
+    for (const Level& level : levels_) {
+      bytes += level.things.capacity() * sizeof(PrimitiveIndex) + level.windows.capacity() * sizeof(Bvh<float>);
+      for (const Bvh<float>& window : level.windows) bytes += window.memory();
+    }
+    return bytes;
+  }
+
+  /// Calls `test(i)` for each thing that the bundle may meet at its tick before what it has met.
+  template <class Test>
+  void closest(const RayBundle& rays, const Test& test, Nearest& nearest) const noexcept {
+    const double share = (rays.tick.seconds() - time_.from) / span_;
+    if (!(share >= 0 && share <= 1)) {
+      for (std::size_t i = 0; i < all_; ++i) test(static_cast<PrimitiveIndex>(i));
+      return;
+    }
+    for (const Level& level : levels_) {
+      const std::size_t windows = level.windows.size();
+      const auto window = static_cast<std::size_t>(share * static_cast<double>(windows));
+      const auto test_found = [&](std::span<const PrimitiveIndex> found) noexcept {
+        for (const PrimitiveIndex k : found) test(level.things[k]);
+      };
+      level.windows[std::min(window, windows - 1)].closest(rays, test_found, nearest);
+    }
+  }
+
+ private:
+  static constexpr std::size_t deepest = 20;
+
+  /// Things that move about equally fast, and windows of the same length over all of the time.
+  struct Level {
+    std::vector<PrimitiveIndex> things;
+    std::vector<Bvh<float>> windows;
+  };
+
+  /// How many boxes are held; a tree without any weighs as much as some.
+  static std::size_t boxes(const std::array<std::vector<PrimitiveIndex>, deepest + 1>& at_level) noexcept {
+    std::size_t sum = 0;
+    for (std::size_t level = 0; level <= deepest; ++level)
+      if (!at_level[level].empty()) sum += (at_level[level].size() + 3) << level;
+    return sum;
+  }
+
+  /// Windows overlap by more than times round.
+  template <class Swept>
+  Box box_in(PrimitiveIndex i, std::size_t window, std::size_t windows, const Swept& swept) const {
+    const double width = span_ / static_cast<double>(windows), start = time_.from + static_cast<double>(window) * width;
+    const double overlap = 32 * std::numeric_limits<double>::epsilon() * std::max(std::fabs(time_.from), std::fabs(time_.to));
+    return swept(i, Tick::of_seconds(start - overlap), Tick::of_seconds(start + width + overlap));
+  }
+
+  /// The first level in whose windows a thing moves no more than about its own size, judged by some of them. Only speed depends on it.
+  template <class Swept>
+  std::size_t level_of(std::size_t i, const Swept& swept) const {
+    constexpr std::size_t most_samples = 8;
+    constexpr double small = 0.5;  // whatever is smaller than that gains nothing from a box that is [m]
+    const auto thing = static_cast<PrimitiveIndex>(i);
+    for (std::size_t level = 0; level < deepest; ++level) {
+      const std::size_t windows = std::size_t{1} << level, samples = std::min(windows, most_samples);
+      double moving = 0, still = 0;
+      for (std::size_t k = 0; k < samples; ++k) {
+        const std::size_t window = (windows * k + windows / 2) / samples;
+        const Tick start = Tick::of_seconds(time_.from + span_ * static_cast<double>(window) / static_cast<double>(windows));
+        moving += max_norm(box_in(thing, window, windows, swept).size());
+        still += std::max(small, max_norm(swept(thing, start, start).size()));
+      }
+      if (moving <= 2 * still) return level;
+    }
+    return deepest;
+  }
+
+  TimeWindows time_;
+  double span_;  ///< [s]
+  std::vector<Level> levels_;
+  std::size_t all_ = 0;
+  Box bounds_;
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/frozen.hpp>
+
+namespace pulsecast {
+
+/// Reflectance at one wavelength.
+struct SpectralSample {
+  double wavelength = 0;   ///< [m]
+  double reflectance = 0;  ///< a fraction: in [0, 1]
+};
+
+/// Reflectance over wavelength: linear between the samples, and beyond the first and last one as it is there. Copies share the samples.
+class Spectrum {
+ public:
+  /// Samples in ascending order of wavelength, at least one, no two at the same.
+  explicit Spectrum(std::vector<SpectralSample> samples) {
+    if (samples.empty()) throw SettingError("Spectrum::samples (number)", 0, "", "at least 1");
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const std::string field = "Spectrum::samples[" + std::to_string(i) + "]";
+      expect_positive(field + ".wavelength", samples[i].wavelength, "m");
+      expect_within(field + ".reflectance", samples[i].reflectance, 0, 1, "");
+      if (i > 0 && !(samples[i].wavelength > samples[i - 1].wavelength))
+        throw SettingError(field + ".wavelength", samples[i].wavelength, "m",
+                           "longer than that of the sample before, " + detail::written(samples[i - 1].wavelength));
+    }
+    samples_ = std::move(samples);
+  }
+
+  explicit Spectrum(Unfilled) {}
+  template <class Archive>
+  void archive(Archive& a) {
+    a(samples_);
+  }
+  [[nodiscard]] bool sound() const noexcept { return !samples_.empty(); }
+
+  [[nodiscard]] std::span<const SpectralSample> samples() const noexcept { return {samples_.data(), samples_.size()}; }
+  [[nodiscard]] double shortest() const noexcept { return samples_[0].wavelength; }                   ///< [m]
+  [[nodiscard]] double longest() const noexcept { return samples_[samples_.size() - 1].wavelength; }  ///< [m]
+  [[nodiscard]] std::size_t memory() const noexcept { return samples_.memory(); }                     ///< [byte]
+
+  /// Reflectance at a wavelength [m]: a fraction.
+  [[nodiscard]] double reflectance(double wavelength) const noexcept {
+    const auto above = std::lower_bound(samples_.begin(), samples_.end(), wavelength,
+                                        [](const SpectralSample& sample, double w) { return sample.wavelength < w; });
+    if (above == samples_.end()) return (above - 1)->reflectance;
+    if (above == samples_.begin()) return above->reflectance;
+    const SpectralSample& below = *(above - 1);
+    const double share = (wavelength - below.wavelength) / (above->wavelength - below.wavelength);
+    return below.reflectance + share * (above->reflectance - below.reflectance);
+  }
+
+ private:
+  Frozen<SpectralSample> samples_;
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/vector.hpp>
+
+namespace pulsecast {
+
+/// What a grid of voxels is made from: the occupied cells of a lattice of cubes, in any order, none twice. The columns below `cells` have
+/// an entry for each cell, or none at all.
+struct VoxelData {
+  Vec3 corner{};                                      ///< least corner of the cell (0, 0, 0) [m]
+  double edge = 1;                                    ///< of a cell [m]
+  std::vector<std::array<std::uint32_t, 3>> cells{};  ///< which ones, along x, y and z
+  std::vector<std::array<float, 3>> normals{};        ///< of the surface inside; unit, or zero where there is none
+  std::vector<float> densities{};                     ///< plant area density, not negative [m^2/m^3]
+  std::vector<float> scales{};                        ///< edge of the cube inside as a share of the cell's: in (0, 1]
+  std::vector<std::array<float, 3>> shifts{};         ///< of that cube's centre from the cell's, in edges of the cell
+  std::vector<std::uint16_t> materials{};             ///< index into the part's table
+
+  /// Refuses what cannot be, but for cells that are there twice: those show when they are sorted, in the making of a grid.
+  void validate() const {
+    constexpr double farthest = 1e18;
+    for (int k = 0; k < 3; ++k)
+      if (!(std::fabs(corner[k]) <= farthest)) throw SettingError("VoxelData::corner", corner[k], "m", "within 1e18 m of the origin");
+    expect_positive("VoxelData::edge", edge, "m");
+    if (cells.empty()) throw SettingError("VoxelData::cells", 0, "", "at least one in number");
+    if (cells.size() > 4294967294) throw SettingError("VoxelData::cells", count(cells), "", "at most 4294967294 in number");
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        if (!(std::fabs(corner[k] + edge * (cells[i][static_cast<std::size_t>(k)] + 1.0)) <= farthest))
+          refuse("cells", cells[i][static_cast<std::size_t>(k)], "where coordinates are within 1e18 m", i);
+    expect_entries("normals", normals);
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      const double norm = std::hypot(normals[i][0], normals[i][1], normals[i][2]);
+      if (!(norm == 0 || std::fabs(norm - 1) <= 1e-3)) refuse("normals (length)", norm, "1, or 0 where there is none", i);
+    }
+    expect_entries("densities", densities);
+    for (std::size_t i = 0; i < densities.size(); ++i)
+      if (!(densities[i] >= 0) || !std::isfinite(densities[i])) refuse("densities", densities[i], "finite and at least 0", i);
+    expect_entries("scales", scales);
+    for (std::size_t i = 0; i < scales.size(); ++i)
+      if (!(scales[i] > 0 && scales[i] <= 1)) refuse("scales", scales[i], "greater than 0 and at most 1", i);
+    expect_entries("shifts", shifts);
+    for (std::size_t i = 0; i < shifts.size(); ++i) {
+      const double room = (1 - (scales.empty() ? 1.0 : static_cast<double>(scales[i]))) / 2;
+      for (const float shift : shifts[i])
+        if (!(std::fabs(shift) <= room + 1e-6)) refuse("shifts", shift, "so that the cube stays inside its cell", i);
+    }
+    expect_entries("materials", materials);
+  }
+
+ private:
+  template <class Column>
+  static double count(const Column& column) noexcept {
+    return static_cast<double>(column.size());
+  }
+
+  [[noreturn]] static void refuse(const char* field, double value, std::string allowed, std::size_t cell) {
+    throw SettingError(std::string("VoxelData::") + field, value, "", std::move(allowed) + "; see entry " + std::to_string(cell));
+  }
+
+  template <class Column>
+  void expect_entries(const char* field, const Column& column) const {
+    if (column.empty() || column.size() == cells.size()) return;
+    throw SettingError(std::string("VoxelData::") + field, count(column), "",
+                       "as many as cells, " + std::to_string(cells.size()) + ", or none");
+  }
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,376 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/geometry/bundle_interval.hpp>
+#include <pulsecast/scene/leaf_angles.hpp>
+#include <pulsecast/scene/voxel_data.hpp>
+#include <pulsecast/scene/voxel_index.hpp>
+
+namespace pulsecast {
+
+/// The direction that the surface of a voxel is taken to have.
+enum class Incidence : std::uint8_t {
+  normal,         ///< that of the voxel's normal; of the face where it has none
+  face,           ///< that of the face of the cube which the ray meets
+  perpendicular,  ///< always straight at the scanner
+};
+
+namespace detail {
+
+/// Three numbers from -1 to 1, each within 5e-7; -1, 0 and 1 are exact.
+class PackedVector {
+ public:
+  PackedVector() = default;
+  explicit PackedVector(const std::array<float, 3>& v) noexcept {
+    for (const float x : v) bits_ = bits_ << 21 | static_cast<std::uint64_t>(std::lround(std::clamp(x, -1.0F, 1.0F) * steps) + middle);
+  }
+
+  [[nodiscard]] Vec3 unpacked() const noexcept { return {part(42), part(21), part(0)}; }
+
+ private:
+  static constexpr double steps = 1048575;
+  static constexpr std::int64_t middle = 1048576;
+
+  double part(int shift) const noexcept {
+    return static_cast<double>(static_cast<std::int64_t>(bits_ >> shift & 0x1FFFFF) - middle) / steps;
+  }
+
+  std::uint64_t bits_ = 0;
+};
+
+/// A column of the data in another order and form; empty if it was.
+template <class To, class From>
+[[nodiscard]] Frozen<To> reordered(const std::vector<From>& column, std::span<const std::uint32_t> order) {
+  std::vector<To> kept;
+  if (column.empty()) return kept;
+  kept.reserve(order.size());
+  for (const std::uint32_t i : order) kept.push_back(To(column[i]));
+  return kept;
+}
+
+/// The part of a ray's walk that meets solid cubes, as a mesh of all of them would be met, but for walls between two of them. A ray that
+/// begins inside a cube meets its far side, or what stands there.
+template <class Columns>
+class SolidMeeting {
+ public:
+  SolidMeeting(const Columns& columns, const LatticeRay& ray, const RayBundle& rays, std::size_t j, Nearest& nearest) noexcept
+      : columns_(columns), ray_(ray), begin_{rays.near, Crossing::begin}, j_(j), nearest_(nearest) {}
+
+  double operator()(std::uint32_t number, const LatticeCell& cell, const Crossing& in, const Crossing& out) noexcept {
+    const LatticeRay::Passage cube = columns_.passage(ray_, number, cell, in, out);
+    if (!cube.in.before(cube.out) || !begin_.before(cube.out)) return far_side_;
+    if (cube.in.before(begin_) || cube.in.axis == Crossing::begin) {
+      far_side_ = cube.out.range, around_ = number;
+      return far_side_;
+    }
+    if (cube.in.range <= far_side_) far_side_ = infinity, nearest_.offer(j_, cube.in.range, number);
+    return -infinity;
+  }
+
+  void finish() noexcept {
+    if (far_side_ < infinity) nearest_.offer(j_, far_side_, around_);
+  }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  const Columns& columns_;
+  const LatticeRay& ray_;
+  Crossing begin_;
+  std::size_t j_;
+  Nearest& nearest_;
+  double far_side_ = infinity;  ///< of the cube that the ray begins in [m]
+  std::uint32_t around_ = 0;    ///< its number
+};
+
+/// The normal of the face by which a ray meets a cube; that of the far side if it begins inside.
+[[nodiscard]] inline Vec3 face_normal(const LatticeRay& ray, const LatticeRay::Passage& cube, double near) noexcept {
+  const bool from_inside = cube.in.before({near, Crossing::begin});
+  const int axis = from_inside ? cube.out.axis : cube.in.axis;
+  Vec3 normal{};
+  normal[axis] = ray.sense(axis) > 0 ? -1 : 1;
+  return normal;
+}
+
+}  // namespace detail
+
+/// Voxels that are opaque cubes, as large as their cells: what a point cloud is turned into. A ray that begins inside a voxel meets its far
+/// side, as that of any closed surface.
+struct OpaqueVoxels {
+  Incidence incidence = Incidence::normal;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(incidence);
+  }
+
+  class Columns {
+   public:
+    explicit Columns(Unfilled) {}
+    Columns(const VoxelData& data, std::span<const std::uint32_t> order)
+        : normals_(detail::reordered<detail::PackedVector>(data.normals, order)) {}
+
+    [[nodiscard]] std::size_t memory() const noexcept { return normals_.memory(); }
+
+    [[nodiscard]] LatticeRay::Passage passage(const LatticeRay&, std::uint32_t, const LatticeCell&, const Crossing& in,
+                                              const Crossing& out) const noexcept {
+      return {in, out};
+    }
+
+    [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const RayBundle& rays, std::size_t j,
+                               Nearest& nearest) const noexcept {
+      return detail::SolidMeeting(*this, ray, rays, j, nearest);
+    }
+
+    [[nodiscard]] Vec3 normal(const OpaqueVoxels& settings, std::uint32_t number, const VoxelIndex& index, const RayBundle& rays,
+                              std::size_t j) const noexcept {
+      if (settings.incidence == Incidence::perpendicular) return {};
+      if (settings.incidence == Incidence::normal && !normals_.empty()) {
+        const Vec3 kept = normals_[number].unpacked();
+        if (kept != Vec3{}) return normalize(kept);
+      }
+      const LatticeCell cell = index.cell(number);
+      const LatticeRay ray = index.ray(rays, j);
+      std::array<double, 3> low, high;
+      for (std::size_t k = 0; k < 3; ++k) low[k] = cell[k], high[k] = cell[k] + 1;
+      return detail::face_normal(ray, ray.through(low, high), rays.near);
+    }
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(normals_);
+    }
+
+   private:
+    Frozen<detail::PackedVector> normals_;
+  };
+};
+
+/// Voxels that are opaque cubes inside their cells, each of its own size and shifted by its own vector: what a plant is approximated by
+/// where its density is known. Source: Weiser et al. 2021. Data must have scales; normals are not kept, so that `Incidence::normal` means
+/// the face.
+struct ScaledVoxels {
+  Incidence incidence = Incidence::face;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(incidence);
+  }
+
+  class Columns {
+   public:
+    explicit Columns(Unfilled) {}
+    Columns(const VoxelData& data, std::span<const std::uint32_t> order)
+        : scales_(detail::reordered<float>(data.scales, order)), shifts_(detail::reordered<detail::PackedVector>(data.shifts, order)) {
+      if (scales_.empty())
+        throw SettingError("VoxelData::scales", 0, "", "as many as cells, " + std::to_string(data.cells.size()) + ", for scaled voxels");
+    }
+
+    [[nodiscard]] std::size_t memory() const noexcept { return scales_.memory() + shifts_.memory(); }
+
+    [[nodiscard]] LatticeRay::Passage passage(const LatticeRay& ray, std::uint32_t number, const LatticeCell& cell, const Crossing&,
+                                              const Crossing&) const noexcept {
+      const double half = static_cast<double>(scales_[number]) / 2;
+      const Vec3 shift = shifts_.empty() ? Vec3{} : shifts_[number].unpacked();
+      std::array<double, 3> low, high;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double centre = 0.5 + shift[static_cast<int>(k)];
+        low[k] = cell[k] + std::max(centre - half, 0.0), high[k] = cell[k] + std::min(centre + half, 1.0);
+      }
+      return ray.through(low, high);
+    }
+
+    [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const RayBundle& rays, std::size_t j,
+                               Nearest& nearest) const noexcept {
+      return detail::SolidMeeting(*this, ray, rays, j, nearest);
+    }
+
+    [[nodiscard]] Vec3 normal(const ScaledVoxels& settings, std::uint32_t number, const VoxelIndex& index, const RayBundle& rays,
+                              std::size_t j) const noexcept {
+      if (settings.incidence == Incidence::perpendicular) return {};
+      const LatticeRay ray = index.ray(rays, j);
+      return detail::face_normal(ray, passage(ray, number, index.cell(number), {}, {}), rays.near);
+    }
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(scales_, shifts_);
+    }
+
+   private:
+    Frozen<float> scales_;
+    Frozen<detail::PackedVector> shifts_;
+  };
+};
+
+/// Voxels full of leaves that are spread at random: light goes on until it meets one. Data must have densities.
+///
+/// A path of length s is survived with the probability exp(-PAD G s). Each ray draws how much of PAD G s it survives in the part as a
+/// whole, and uses it up from voxel to voxel; as the law has no memory, that is the same as to draw in each voxel, whatever their size.
+/// Parts draw for themselves. A ray that begins inside counts its path from there. The density is per metre of the part's own frame, and so
+/// are paths: a plant that is scaled as a whole lets the same share of the light through. G is taken in that frame too, z being the
+/// vertical. Leaves have no one direction, so the incidence is perpendicular. Source: North 1996; Ross 1981.
+struct TransmissiveVoxels {
+  LeafAngles leaf_angles{};
+
+  template <class Archive>
+  void archive(Archive& a) {
+    leaf_angles.archive(a);
+  }
+
+  class Columns {
+   public:
+    explicit Columns(Unfilled) {}
+    Columns(const VoxelData& data, std::span<const std::uint32_t> order) : densities_(detail::reordered<float>(data.densities, order)) {
+      if (densities_.empty())
+        throw SettingError("VoxelData::densities", 0, "",
+                           "as many as cells, " + std::to_string(data.cells.size()) + ", for transmissive voxels");
+    }
+
+    [[nodiscard]] std::size_t memory() const noexcept { return densities_.memory(); }
+
+    class Meeting {
+     public:
+      Meeting(const Columns& columns, const LeafAngles& leaf_angles, const RayBundle& rays, std::size_t j, Nearest& nearest) noexcept
+          : columns_(columns), leaf_angles_(leaf_angles), rays_(rays), j_(j), nearest_(nearest) {}
+
+      double operator()(std::uint32_t number, const LatticeCell&, const Crossing& in, const Crossing& out) noexcept {
+        if (per_density_ == 0) draw();
+        const double extinction = static_cast<double>(columns_.densities_[number]) * per_density_;
+        const double depth = extinction * (out.range - in.range);
+        if (!(depth > 0) || depth < left_) {
+          left_ -= depth;
+          return infinity;
+        }
+        double at = std::min(in.range + left_ / extinction, out.range);
+        if (!(at > rays_.near)) at = std::nextafter(rays_.near, infinity);
+        nearest_.offer(j_, at, number);
+        return -infinity;
+      }
+
+      void finish() noexcept {}
+
+     private:
+      static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+      void draw() noexcept {
+        const auto part = static_cast<std::uint32_t>(nearest_.part >> 32);
+        const auto subray = rays_.first_subray + static_cast<std::uint32_t>(j_);
+        left_ = -std::log(uniform({rays_.seed, rays_.pulse, subray, Purpose::free_path, part}));
+        per_density_ = leaf_angles_.projection(rays_.direction(j_)) * rays_.direction_length;
+        if (!(per_density_ > 0)) per_density_ = std::numeric_limits<double>::min();  // leaves seen edge on, all of them
+      }
+
+      const Columns& columns_;
+      const LeafAngles& leaf_angles_;
+      const RayBundle& rays_;
+      std::size_t j_;
+      Nearest& nearest_;
+      double left_ = 0;         ///< optical depth that the ray may still go
+      double per_density_ = 0;  ///< optical depth per range and density; 0 before the draw
+    };
+
+    [[nodiscard]] Meeting meeting(const TransmissiveVoxels& settings, const LatticeRay&, const RayBundle& rays, std::size_t j,
+                                  Nearest& nearest) const noexcept {
+      return {*this, settings.leaf_angles, rays, j, nearest};
+    }
+
+    [[nodiscard]] Vec3 normal(const TransmissiveVoxels&, std::uint32_t, const VoxelIndex&, const RayBundle&, std::size_t) const noexcept {
+      return {};
+    }
+
+    template <class Archive>
+    void archive(Archive& a) {
+      a(densities_);
+    }
+
+   private:
+    Frozen<float> densities_;
+  };
+};
+
+/// A grid of voxels, of which it holds those that are there: each ray goes from cell to cell. Primitives are numbered by their place,
+/// not as in the data. What the filling does not need of the data is not kept; at most 40 bytes a voxel are, and 16 more.
+/// `Filling`: `OpaqueVoxels`, `ScaledVoxels` or `TransmissiveVoxels`, with the settings of all voxels alike.
+template <class Filling = OpaqueVoxels>
+class VoxelGrid {
+ public:
+  explicit VoxelGrid(Unfilled unfilled) : index_(unfilled), columns_(unfilled) {}
+
+  explicit VoxelGrid(const VoxelData& data, Filling filling = {}) : VoxelGrid(data, std::move(filling), {}) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return index_.size(); }
+  [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
+  [[nodiscard]] std::size_t material_count() const noexcept { return material_count_; }
+
+  /// The table of leaf angles, which grids may share, is not in it.
+  [[nodiscard]] std::size_t memory() const noexcept { return index_.memory() + columns_.memory() + materials_.memory(); }
+
+  /// The cell of a voxel, which is met inside of it [m].
+  [[nodiscard]] Box cell(PrimitiveIndex i) const noexcept {
+    const LatticeCell c = index_.cell(i);
+    const Vec3 low = bounds().min + index_.edge() * Vec3(c[0], c[1], c[2]);
+    return {low, low + Vec3(index_.edge())};
+  }
+
+  void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
+    const Vec3 centre = bounds().centre();
+    const auto span = BundleInterval<double>(rays, bounds(), centre).inside(BoundingBox<double>::around(bounds(), centre));
+    if (span.empty() || span.entry > nearest.limit(rays)) return;
+    for (std::size_t j = 0; j < rays.size; ++j) {
+      const LatticeRay ray = index_.ray(rays, j);
+      auto meeting = columns_.meeting(filling_, ray, rays, j, nearest);
+      index_.walk(ray, rays.near, nearest.range[j], [&meeting](auto... crossed) noexcept { return meeting(crossed...); });
+      meeting.finish();
+    }
+  }
+
+  [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle& rays, std::size_t j) const noexcept {
+    return {columns_.normal(filling_, i, index_, rays, j), materials_.empty() ? 0U : materials_[i]};
+  }
+
+  template <class Archive>
+  void archive(Archive& a) {
+    index_.archive(a), filling_.archive(a), columns_.archive(a);
+    a(materials_, material_count_);
+  }
+
+ private:
+  VoxelGrid(const VoxelData& data, Filling filling, std::vector<std::uint32_t> order)
+      : filling_(std::move(filling)),
+        index_(validated_data(data), order),
+        columns_(data, order),
+        materials_(detail::reordered<std::uint16_t>(data.materials, order)) {
+    for (const std::uint16_t m : materials_) material_count_ = std::max<std::uint64_t>(material_count_, std::uint64_t{m} + 1);
+  }
+
+  static const VoxelData& validated_data(const VoxelData& data) {
+    data.validate();
+    return data;
+  }
+
+  Filling filling_{};
+  VoxelIndex index_;
+  typename Filling::Columns columns_;
+  Frozen<std::uint16_t> materials_;
+  std::uint64_t material_count_ = 1;
+};
+
+static_assert(Geometry<VoxelGrid<OpaqueVoxels>> && Geometry<VoxelGrid<ScaledVoxels>> && Geometry<VoxelGrid<TransmissiveVoxels>>);
+
+}  // namespace pulsecast

@@ -1,0 +1,441 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/geometry/box.hpp>
+#include <pulsecast/geometry/bundle.hpp>
+#include <pulsecast/scene/lattice_ray.hpp>
+#include <pulsecast/scene/voxel_data.hpp>
+
+namespace pulsecast {
+
+/// Which cells of a lattice are occupied, and the numbers of those that are: a search structure that holds only what is there. Cells are
+/// kept in bricks of 4 x 4 x 4, a bit each; where that saves memory, bricks in blocks of as many; bricks or blocks are found by a hash.
+/// A pyramid over the whole lattice, a bit for each cube that may hold anything, tells how far a ray may leap.
+/// At most 26 bytes an occupied cell, wherever they are, and 16 more.
+/// Source: Amanatides & Woo 1987 (traversal).
+class VoxelIndex {
+ public:
+  /// Cells along an axis that can be told apart.
+  static constexpr std::uint32_t longest = 1U << 21;
+
+  explicit VoxelIndex(Unfilled) {}
+
+  /// `order` is set to which cell of the data each number stands for.
+  VoxelIndex(const VoxelData& data, std::vector<std::uint32_t>& order) {
+    std::array<std::uint32_t, 3> least = data.cells.front(), most = least;
+    for (const auto& cell : data.cells)
+      for (std::size_t k = 0; k < 3; ++k) least[k] = std::min(least[k], cell[k]), most[k] = std::max(most[k], cell[k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (most[k] - least[k] >= longest)
+        throw SettingError("VoxelData::cells", most[k], "", "within 2097152 cells of each other along each axis");
+      extent_[k] = static_cast<std::int32_t>(most[k] - least[k] + 1);
+    }
+    edge_ = data.edge;
+    corner_ = data.corner + data.edge * Vec3(least[0], least[1], least[2]);
+    bounds_ = {corner_, corner_ + edge_ * Vec3(extent_[0], extent_[1], extent_[2])};
+
+    struct Keyed {
+      std::uint64_t key;
+      std::uint32_t number;
+    };
+    std::vector<Keyed> sorted(data.cells.size());
+    for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = {sort_key(minus(data.cells[i], least)), static_cast<std::uint32_t>(i)};
+    std::sort(sorted.begin(), sorted.end(),
+              [](const Keyed& a, const Keyed& b) { return a.key < b.key || (a.key == b.key && a.number < b.number); });
+    order.clear(), order.reserve(sorted.size());
+    std::size_t bricks = 0, blocks = 0;
+    std::uint64_t last = ~std::uint64_t{0};
+    for (const Keyed& cell : sorted) {
+      if (cell.key == last)
+        throw SettingError("VoxelData::cells", cell.number, "",
+                           "each in its own place; this entry repeats entry " + std::to_string(order.back()));
+      bricks += cell.key >> 6 != last >> 6, blocks += cell.key >> 12 != last >> 12;
+      last = cell.key, order.push_back(cell.number);
+    }
+
+    const std::size_t budget = 26 * sorted.size(), flat = 25 * bricks, deep = 12 * bricks + 28 * blocks;
+    height_ = deep < flat ? 2 : 1;
+    const std::size_t roots = height_ == 2 ? blocks : bricks;
+    Nodes brick(bricks), block(height_ == 2 ? blocks : 0);
+    std::vector<std::uint64_t> keys;
+    keys.reserve(roots);
+    last = ~std::uint64_t{0};
+    for (std::size_t i = 0; i < sorted.size(); last = sorted[i++].key) {
+      const std::uint64_t key = sorted[i].key;
+      const bool new_brick = key >> 6 != last >> 6, new_root = key >> 6 * height_ != last >> 6 * height_;
+      if (new_root) keys.push_back(root_key(minus(data.cells[sorted[i].number], least)));
+      if (new_brick && height_ == 2) block.put(static_cast<unsigned>(key >> 6) & 63, brick.first.size(), key >> 12 != last >> 12);
+      brick.put(static_cast<unsigned>(key) & 63, i, new_brick);
+    }
+    hash(keys, roots * (height_ == 2 ? 8 : 5) / 4 + 1);
+    make_pyramid(keys, budget > std::min(flat, deep) ? budget - std::min(flat, deep) : 0);
+    size_ = static_cast<std::uint32_t>(sorted.size());
+    keys_ = Frozen<std::uint64_t>(std::move(keys));
+    brick_masks_ = Frozen<std::uint64_t>(std::move(brick.mask)), brick_first_ = Frozen<std::uint32_t>(std::move(brick.first));
+    block_masks_ = Frozen<std::uint64_t>(std::move(block.mask)), block_first_ = Frozen<std::uint32_t>(std::move(block.first));
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+  [[nodiscard]] double edge() const noexcept { return edge_; }
+  [[nodiscard]] std::size_t memory() const noexcept {
+    return keys_.memory() + slots_.memory() + block_masks_.memory() + block_first_.memory() + brick_masks_.memory() +
+           brick_first_.memory() + pyramid_.memory();
+  }
+
+  /// The cell of a number below `size()`, counted from the least corner of the bounds.
+  [[nodiscard]] LatticeCell cell(std::uint32_t number) const noexcept {
+    const std::size_t brick = holder(brick_first_, number);
+    const unsigned bit = nth_bit(brick_masks_[brick], number - brick_first_[brick]);
+    if (height_ == 1) return inside(unpacked(keys_[brick]), bit);
+    const std::size_t block = holder(block_first_, static_cast<std::uint32_t>(brick));
+    const unsigned place = nth_bit(block_masks_[block], static_cast<std::uint32_t>(brick) - block_first_[block]);
+    return inside(inside(unpacked(keys_[block]), place), bit);
+  }
+
+  /// A ray in the lattice, counted from the least corner of the bounds.
+  [[nodiscard]] LatticeRay ray(const RayBundle& rays, std::size_t j) const noexcept { return {corner_, edge_, rays, j}; }
+
+  /// Goes along a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in turn, until one lies
+  /// beyond the limit. `in` is where the ray crosses into the cell or, if it begins there, `near`.
+  template <class Visit>
+  void walk(const LatticeRay& ray, double near, double limit, Visit visit) const noexcept {
+    Walker at(ray, near, extent_);
+    if (!at.inside) return;
+    Place place;
+    limit = std::min(limit, std::numeric_limits<double>::max());  // what is never crossed is beyond
+    while (at.in.range <= limit) {
+      if (outside(at.cell)) return;
+      if (const Empty empty = around(at.cell, place); empty.shift > 0) {
+        if (!at.leap(empty.shift, empty.siblings)) return;
+        continue;
+      }
+      const std::uint64_t mask = brick_masks_[place.brick];
+      for (;;) {
+        const unsigned bit = digit(at.cell, 0);
+        const int axis = Walker::first_of(at.next);
+        if (mask >> bit & 1) {
+          const auto number = brick_first_[place.brick] + static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
+          const Crossing out{at.next[static_cast<std::size_t>(axis)], axis};
+          limit = std::min<double>(limit, visit(number, at.cell, at.in, out));
+        }
+        const bool same_brick = at.step(axis);
+        if (!same_brick || !(at.in.range <= limit)) break;
+      }
+    }
+  }
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(bounds_, corner_, edge_, extent_, size_, height_, levels_, level_count_);
+    a(keys_, slots_, block_masks_, block_first_, brick_masks_, brick_first_, pyramid_);
+  }
+
+ private:
+  /// Cubes of one size: a bit each, in words of 4 x 4 x 4. A level too large to be kept whole has its words fall together by a hash: a cube
+  /// without its bit is empty all the same.
+  struct Level {
+    std::uint64_t first = 0;                ///< word
+    std::uint64_t words = 0;                ///< of a hashed level; 0 if it is whole
+    std::array<std::uint32_t, 2> extent{};  ///< words along x and y
+    std::int32_t shift = 0;                 ///< log2 of the edge of a bit's cube [cells]
+    std::int32_t unused = 0;                ///< makes all bytes of an archive definite
+  };
+
+  /// Masks of children, and the number of the first child of each.
+  struct Nodes {
+    std::vector<std::uint64_t> mask;
+    std::vector<std::uint32_t> first;
+
+    explicit Nodes(std::size_t n) { mask.reserve(n), first.reserve(n); }
+    void put(unsigned bit, std::size_t child, bool begins) {
+      if (begins) mask.push_back(0), first.push_back(static_cast<std::uint32_t>(child));
+      mask.back() |= std::uint64_t{1} << bit;
+    }
+  };
+
+  /// Where a walk is in the tree.
+  struct Place {
+    std::uint64_t key = ~std::uint64_t{0};  ///< of `root`
+    std::uint32_t root = 0, brick = 0;
+  };
+
+  static constexpr std::uint32_t nothing = ~std::uint32_t{0};
+
+  /// A ray on its way.
+  struct Walker {
+    const LatticeRay& ray;
+    LatticeCell cell{};
+    Crossing in;                 ///< where the cell was entered
+    std::array<double, 3> next;  ///< range of the plane that it is left by, for each axis
+    bool inside = false;
+
+    Walker(const LatticeRay& r, double near, const LatticeCell& extent) noexcept : ray(r), in{near, Crossing::begin} {
+      if (!ray.valid()) return;
+      for (int k = 0; k < 3; ++k) {
+        if (ray.sense(k) == 0) continue;
+        const Crossing wall = ray.crossing(k, ray.sense(k) > 0 ? 0 : extent[static_cast<std::size_t>(k)]);
+        if (wall.range > in.range || (wall.range == in.range && in.axis != Crossing::begin)) in = wall;
+      }
+      if (!(in.range < std::numeric_limits<double>::infinity())) return;
+      for (int k = 0; k < 3; ++k)
+        if (!find(k, 0, extent[static_cast<std::size_t>(k)] - 1)) return;
+      inside = true;
+    }
+
+    /// Sets the cell along an axis to what the ray is in at `in`; false if that is not between `low` and `high`.
+    bool find(int k, std::int32_t low, std::int32_t high) noexcept {
+      const auto axis = static_cast<std::size_t>(k);
+      const int sense = ray.sense(k);
+      const double guess = ray.position(k, in.range);  // `low` is not negative, so its whole part is the cell
+      std::int32_t c = guess > low ? guess < high ? static_cast<std::int32_t>(guess) : high : low;
+      if (sense == 0) {
+        while (c < high && ray.above(k, c + 1)) ++c;
+        while (c > low && !ray.above(k, c)) --c;
+        cell[axis] = c, next[axis] = std::numeric_limits<double>::infinity();
+        return ray.above(k, c) && !ray.above(k, c + 1);
+      }
+      const std::int32_t first = sense > 0 ? low : high, last = sense > 0 ? high : low, front = sense > 0 ? 1 : 0, back = 1 - front;
+      while (c != last && !in.before(ray.crossing(k, c + front))) c += sense;
+      while (c != first && in.before(ray.crossing(k, c + back))) c -= sense;
+      cell[axis] = c, next[axis] = ray.crossing(k, c + front).range;
+      return in.before({next[axis], k});
+    }
+
+    /// The axis whose plane is crossed first.
+    static int first_of(const std::array<double, 3>& ranges) noexcept {
+      const int xy = ranges[0] <= ranges[1] ? 0 : 1;
+      return ranges[static_cast<std::size_t>(xy)] <= ranges[2] ? xy : 2;
+    }
+
+    /// Whether two numbers along an axis are of the same four.
+    static bool neighbours(std::int32_t a, std::int32_t b) noexcept { return a >> 2 == b >> 2; }
+
+    /// Into the next cell; false if it is in another brick.
+    bool step(int k) noexcept {
+      const auto axis = static_cast<std::size_t>(k);
+      const int sense = ray.sense(k);
+      in = {next[axis], k};
+      const std::int32_t from = cell[axis];
+      cell[axis] = from + sense;
+      next[axis] = ray.crossing(k, cell[axis] + (sense > 0 ? 1 : 0)).range;
+      return neighbours(from, cell[axis]);
+    }
+
+    /// On through cubes, with edges of 2^shift cells, from the empty one that the cell is in, until one is not empty or not among the
+    /// 4 x 4 x 4 that `occupied` tells of; false if the ray stays inside for ever.
+    bool leap(int shift, std::uint64_t occupied) noexcept {
+      LatticeCell at;
+      std::array<double, 3> exit;
+      for (int k = 0; k < 3; ++k) {
+        const auto axis = static_cast<std::size_t>(k);
+        at[axis] = cell[axis] >> shift;
+        exit[axis] = ray.sense(k) == 0 ? std::numeric_limits<double>::infinity()
+                                       : ray.crossing(k, (at[axis] + (ray.sense(k) > 0 ? 1 : 0)) << shift).range;
+      }
+      for (;;) {
+        const int k = first_of(exit);
+        const auto axis = static_cast<std::size_t>(k);
+        if (!(exit[axis] < std::numeric_limits<double>::infinity())) return false;
+        in = {exit[axis], k};
+        const std::int32_t from = at[axis];
+        at[axis] += ray.sense(k);
+        if (!neighbours(from, at[axis]) || (occupied >> digit(at, 0) & 1)) break;
+        exit[axis] = ray.crossing(k, (at[axis] + (ray.sense(k) > 0 ? 1 : 0)) << shift).range;
+      }
+      for (int k = 0; k < 3; ++k) {
+        const auto axis = static_cast<std::size_t>(k);
+        const std::int32_t low = at[axis] << shift, high = low | ((1 << shift) - 1);
+        if (k == in.axis) {
+          cell[axis] = ray.sense(k) > 0 ? low : high;
+          next[axis] = ray.crossing(k, cell[axis] + (ray.sense(k) > 0 ? 1 : 0)).range;
+        } else if (ray.sense(k) != 0) {
+          find(k, low, high);
+        }
+      }
+      return true;
+    }
+  };
+
+  static LatticeCell minus(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) noexcept {
+    return {static_cast<std::int32_t>(a[0] - b[0]), static_cast<std::int32_t>(a[1] - b[1]), static_cast<std::int32_t>(a[2] - b[2])};
+  }
+
+  /// Place of a cell, after `shift` bits of its coordinates, among the 4 x 4 x 4 around it.
+  static unsigned digit(const LatticeCell& c, int shift) noexcept {
+    return static_cast<unsigned>((c[0] >> shift & 3) | (c[1] >> shift & 3) << 2 | (c[2] >> shift & 3) << 4);
+  }
+
+  /// The child at such a place, whose edge is a fourth.
+  static LatticeCell inside(const LatticeCell& c, unsigned place) noexcept {
+    const auto p = static_cast<std::int32_t>(place);
+    return {c[0] << 2 | (p & 3), c[1] << 2 | (p >> 2 & 3), c[2] << 2 | p >> 4};
+  }
+
+  static std::uint64_t packed(const LatticeCell& c, int shift) noexcept {
+    return static_cast<std::uint64_t>(c[0] >> shift) | static_cast<std::uint64_t>(c[1] >> shift) << 21 |
+           static_cast<std::uint64_t>(c[2] >> shift) << 42;
+  }
+
+  /// Cells of a brick, and bricks of a block, are neighbours in this order.
+  static std::uint64_t sort_key(const LatticeCell& c) noexcept {
+    const std::uint64_t block =
+        static_cast<std::uint64_t>(c[0] >> 4) | static_cast<std::uint64_t>(c[1] >> 4) << 17 | static_cast<std::uint64_t>(c[2] >> 4) << 34;
+    return block << 12 | std::uint64_t{digit(c, 2)} << 6 | digit(c, 0);
+  }
+
+  std::uint64_t root_key(const LatticeCell& c) const noexcept { return packed(c, 2 * height_); }
+
+  static LatticeCell unpacked(std::uint64_t key) noexcept {
+    return {static_cast<std::int32_t>(key & (longest - 1)), static_cast<std::int32_t>(key >> 21 & (longest - 1)),
+            static_cast<std::int32_t>(key >> 42)};
+  }
+
+  /// The last node whose first child is not after a child.
+  static std::size_t holder(const Frozen<std::uint32_t>& first, std::uint32_t child) noexcept {
+    return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), child) - first.begin()) - 1;
+  }
+
+  static unsigned nth_bit(std::uint64_t mask, std::uint32_t n) noexcept {
+    for (; n > 0; --n) mask &= mask - 1;
+    return static_cast<unsigned>(std::countr_zero(mask));
+  }
+
+  static std::size_t slot(std::uint64_t key, std::size_t slots) noexcept {
+    const std::uint64_t mixed = (key * 0x9E3779B97F4A7C15) >> 32;  // Source: multiplicative hashing by the golden ratio, Knuth 1973
+    return static_cast<std::size_t>(mixed * slots >> 32);
+  }
+
+  void hash(const std::vector<std::uint64_t>& keys, std::size_t size) {
+    std::vector<std::uint32_t> slots(size, nothing);
+    for (std::size_t root = 0; root < keys.size(); ++root) {
+      std::size_t s = slot(keys[root], size);
+      while (slots[s] != nothing) s = s + 1 == size ? 0 : s + 1;
+      slots[s] = static_cast<std::uint32_t>(root);
+    }
+    slots_ = Frozen<std::uint32_t>(std::move(slots));
+  }
+
+  std::uint32_t root(std::uint64_t key) const noexcept {
+    for (std::size_t s = slot(key, slots_.size()); slots_[s] != nothing; s = s + 1 == slots_.size() ? 0 : s + 1)
+      if (keys_[slots_[s]] == key) return slots_[s];
+    return nothing;
+  }
+
+  /// From the cubes of the roots on, each level has cubes four times as long as the one before. A fourth of the budget is for those that
+  /// are kept whole, the rest for those that are hashed.
+  void make_pyramid(const std::vector<std::uint64_t>& keys, std::size_t budget) {
+    const std::size_t affordable = budget / sizeof(std::uint64_t);
+    std::vector<Level> levels;
+    std::vector<std::size_t> whole;  // words
+    for (std::int32_t shift = 2 * height_; levels.empty() || whole.back() > 1; shift += 2) {
+      std::array<std::size_t, 3> n;
+      for (std::size_t k = 0; k < 3; ++k) n[k] = (static_cast<std::size_t>(extent_[k] - 1) >> (shift + 2)) + 1;
+      levels.push_back({.extent = {static_cast<std::uint32_t>(n[0]), static_cast<std::uint32_t>(n[1])}, .shift = shift});
+      whole.push_back(n[0] * n[1] * n[2]);
+    }
+    const auto hashed =
+        static_cast<std::size_t>(std::count_if(whole.begin(), whole.end(), [&](std::size_t words) { return words > affordable / 4; }));
+    std::vector<std::uint64_t> pyramid;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      Level& level = levels[i];
+      if (whole[i] > affordable / 4) level.words = affordable * 3 / 4 / hashed;
+      const std::size_t words = level.words > 0 ? static_cast<std::size_t>(level.words) : whole[i];
+      if (pyramid.size() + words > affordable) continue;
+      level.first = pyramid.size();
+      pyramid.resize(pyramid.size() + words);
+      for (const std::uint64_t key : keys) {
+        const LatticeCell c = root_corner(key);
+        pyramid[word(level, c)] |= std::uint64_t{1} << digit(c, level.shift);
+      }
+      std::size_t set = 0;
+      for (std::size_t w = level.first; w < pyramid.size(); ++w) set += static_cast<std::size_t>(std::popcount(pyramid[w]));
+      if (level.words > 0 && set > words * 60)
+        pyramid.resize(pyramid.size() - words);  // of no use
+      else
+        levels_[level_count_++] = level;
+    }
+    pyramid_ = Frozen<std::uint64_t>(std::move(pyramid));
+  }
+
+  /// The least cell of a root.
+  LatticeCell root_corner(std::uint64_t key) const noexcept {
+    const LatticeCell c = unpacked(key);
+    return {c[0] << 2 * height_, c[1] << 2 * height_, c[2] << 2 * height_};
+  }
+
+  static std::size_t word(const Level& level, const LatticeCell& c) noexcept {
+    const int shift = level.shift + 2;
+    if (level.words > 0) return static_cast<std::size_t>(level.first) + slot(packed(c, shift), static_cast<std::size_t>(level.words));
+    const auto x = static_cast<std::size_t>(c[0] >> shift), y = static_cast<std::size_t>(c[1] >> shift),
+               z = static_cast<std::size_t>(c[2] >> shift);
+    return static_cast<std::size_t>(level.first) + (z * level.extent[1] + y) * level.extent[0] + x;
+  }
+
+  bool outside(const LatticeCell& c) const noexcept {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (static_cast<std::uint32_t>(c[k]) >= static_cast<std::uint32_t>(extent_[k])) return true;
+    return false;
+  }
+
+  /// An empty cube: log2 of its edge [cells], 0 if there is none, and which of the 4 x 4 x 4 that it is one of are occupied.
+  struct Empty {
+    int shift = 0;
+    std::uint64_t siblings = 0;
+  };
+
+  /// The largest empty cube around a cell; if its brick holds anything, that is set in `place`.
+  Empty around(const LatticeCell& c, Place& place) const noexcept {
+    Empty empty;
+    for (std::size_t i = 0; i < level_count_; ++i) {
+      const Level& level = levels_[i];
+      const std::uint64_t siblings = pyramid_[word(level, c)];
+      if (!(siblings >> digit(c, level.shift) & 1))
+        empty = {level.shift, siblings};
+      else if (level.words == 0)
+        break;
+    }
+    if (empty.shift > 0) return empty;
+    const std::uint64_t key = root_key(c);
+    if (key != place.key) place.key = key, place.root = root(key);
+    if (place.root == nothing) return {2 * height_, ~std::uint64_t{0}};  // of the roots around it nothing is known here
+    place.brick = place.root;
+    if (height_ == 1) return {};
+    const std::uint64_t mask = block_masks_[place.root];
+    const unsigned bit = digit(c, 2);
+    if (!(mask >> bit & 1)) return {2, mask};
+    place.brick = block_first_[place.root] + static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
+    return {};
+  }
+
+  Box bounds_;
+  Vec3 corner_{};
+  double edge_ = 1;
+  LatticeCell extent_{};  ///< cells
+  std::uint32_t size_ = 0;
+  std::int32_t height_ = 1;  ///< 1 if the roots are bricks, 2 if they are blocks
+  std::array<Level, 10> levels_{};
+  std::size_t level_count_ = 0;
+  Frozen<std::uint64_t> keys_;   ///< of the roots: where they are
+  Frozen<std::uint32_t> slots_;  ///< of the hash: numbers of roots
+  Frozen<std::uint64_t> block_masks_;
+  Frozen<std::uint32_t> block_first_;
+  Frozen<std::uint64_t> brick_masks_;
+  Frozen<std::uint32_t> brick_first_;
+  Frozen<std::uint64_t> pyramid_;
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,385 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/scene/height_field.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/accel/linear.hpp>
+
+#include "support/relative.hpp"
+#include "support/scenes.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::support;
+
+static_assert(std::copyable<HeightField>);
+
+namespace {
+
+constexpr float missing = std::numeric_limits<float>::quiet_NaN();
+
+/// A raster of heights by column and row.
+template <class Height>
+Raster raster_of(std::uint32_t columns, std::uint32_t rows, Height height, Vec2 first = {}, Vec2 pixel = {1, 1}) {
+  Raster raster{.columns = columns, .rows = rows, .first = first, .pixel = pixel};
+  for (std::uint32_t r = 0; r < rows; ++r)
+    for (std::uint32_t c = 0; c < columns; ++c) raster.heights.push_back(static_cast<float>(height(c, r)));
+  return raster;
+}
+
+/// z = 10 + x/2 - y/4 at the pixels, from (100, 200) on towards the south-east.
+Raster slope() {
+  return raster_of(21, 11, [](std::uint32_t c, std::uint32_t r) { return 10 + (100 + 2.0 * c) / 2 - (200 - 4.0 * r) / 4; }, {100, 200},
+                   {2, 4});
+}
+
+/// The raster's mesh, with its triangles numbered as the height field's are.
+template <template <class> class Index>
+class RasterMesh {
+ public:
+  explicit RasterMesh(const Raster& raster) : data_(raster.mesh()), mesh_(data_) {
+    for (std::uint32_t r = 0; r + 1 < raster.rows; ++r)
+      for (std::uint32_t c = 0; c + 1 < raster.columns; ++c)
+        for (const int k : {0, 1})
+          if (pulsecast::detail::RasterCell(raster.grid(), raster.heights.data(), c, r).has(k))
+            numbers_.push_back(2 * (r * (raster.columns - 1) + c) + static_cast<PrimitiveIndex>(k));
+    CHECK(numbers_.size() == mesh_.size());
+  }
+
+  [[nodiscard]] const MeshData& data() const noexcept { return data_; }
+  [[nodiscard]] const std::vector<PrimitiveIndex>& numbers() const noexcept { return numbers_; }
+  [[nodiscard]] const Box& bounds() const noexcept { return mesh_.bounds(); }
+  [[nodiscard]] std::size_t memory() const noexcept { return mesh_.memory(); }
+  [[nodiscard]] std::size_t material_count() const noexcept { return 1; }
+  void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
+    mesh_.closest(rays, nearest);
+    for (std::size_t j = 0; j < rays.size; ++j)
+      if (nearest.met(j)) nearest.id[j] = numbers_[nearest.primitive_of(j)];
+  }
+  [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle& rays, std::size_t j) const noexcept { return mesh_.surface(i, rays, j); }
+
+ private:
+  MeshData data_;
+  TriangleMesh<Index> mesh_;
+  std::vector<PrimitiveIndex> numbers_;
+};
+
+/// An archive that looks where the first array is.
+struct Look {
+  const float* found = nullptr;
+  template <class... Members>
+  void operator()(Members&... members) {
+    (see(members), ...);
+  }
+  void see(Frozen<float>& array) { found = found == nullptr ? array.data() : found; }
+  void see(auto&) {}
+};
+
+double range_of(const HeightField& field, const Ray& ray) {
+  const RayBundle rays = bundle_of(ray);
+  Nearest nearest(rays);
+  field.closest(rays, nearest);
+  return nearest.met(0) ? nearest.range[0] : -1;
+}
+
+/// The height of the ground under a place; -1 if there is none.
+double height_at(const HeightField& field, double x, double y) {
+  const double range = range_of(field, {{x, y, 1000}, -up});
+  return range < 0 ? -1 : 1000 - range;
+}
+
+std::string refusal(const Raster& raster) {
+  try {
+    const HeightField field(raster);
+    return {};
+  } catch (const SettingError& error) {
+    return error.what();
+  }
+}
+
+template <template <class> class Index>
+Comparison compared(const Raster& raster, std::uint64_t seed, std::size_t times) {
+  const RasterMesh<Index> mesh(raster);
+  const HeightField field(raster);
+  CHECK(field.bounds() == mesh.bounds());
+  Generator random(seed);
+  Comparison result;
+  for (std::size_t time = 0; time < times; ++time)
+    for (const std::size_t size :
+         {std::size_t{1}, std::size_t{1}, std::size_t{1}, std::size_t{19}, std::size_t{64}, std::size_t{random.whole(64) + 1}})
+      compare(mesh, field, "HeightField", bundle(random, mesh.data(), mesh.bounds(), size), result);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a slope is met where it is, from above and from below") {
+  const HeightField field(slope());
+  CHECK(field.columns() == 21);
+  CHECK(field.rows() == 11);
+  CHECK(field.bounds() == Box{{100, 160, 10}, {140, 200, 40}});
+  CHECK(field.material_count() == 1);
+  Generator random(1);
+  for (int time = 0; time < 1000; ++time) {
+    const double x = random.uniform(100, 140), y = random.uniform(160, 200), z = 10 + x / 2 - y / 4;
+    CAPTURE(x);
+    CAPTURE(y);
+    CHECK(height_at(field, x, y) == relative(z, 1e-12));
+    CHECK(range_of(field, {{x, y, -50}, up}) == relative(z + 50, 1e-12));
+    const Vec3 from{x, y, z}, aim = normalize(random.unit() + Vec3{0, 0, 1.5});
+    CHECK(range_of(field, {from + aim * 7.0, -aim}) == relative(7, 1e-11));
+  }
+  CHECK(height_at(field, 99.9, 180) == -1);
+  CHECK(height_at(field, 120, 200.1) == -1);
+  const Vec3 normal = normalize(Vec3{-0.5, 0.25, 1});
+  for (const PrimitiveIndex i : {0U, 1U, 77U, 399U}) {
+    CHECK(length(field.surface(i, bundle_of({}), 0).normal - normal) < 1e-12);
+    CHECK(field.surface(i, bundle_of({}), 0).material == 0);
+  }
+}
+
+TEST_CASE("rows go from north to south, and the diagonal of a cell from south-west to north-east") {
+  const float heights[4] = {1, 5, 5, 2};  // north-west, north-east, south-west, south-east
+  const HeightField field(raster_of(2, 2, [&](std::uint32_t c, std::uint32_t r) { return heights[2 * r + c]; }));
+  CHECK(height_at(field, 0, 0) == 1);
+  CHECK(height_at(field, 1, 0) == 5);
+  CHECK(height_at(field, 0, -1) == 5);
+  CHECK(height_at(field, 1, -1) == 2);
+  CHECK(height_at(field, 0.5, -0.5) == 5);
+  CHECK(height_at(field, 0.25, -0.25) == 3);    // half-way up the north-western triangle
+  CHECK(height_at(field, 0.75, -0.75) == 3.5);  // and the south-eastern
+  const RayBundle rays = bundle_of({{0.75, -0.75, 9}, -up});
+  Nearest nearest(rays);
+  field.closest(rays, nearest);
+  CHECK(nearest.primitive_of(0) == 1);
+}
+
+TEST_CASE("a missing pixel makes a hole of the triangles that it is a corner of") {
+  Raster raster = raster_of(4, 4, [](std::uint32_t, std::uint32_t) { return 3; });
+  raster.heights[5] = missing;  // column 1, row 1
+  const HeightField field(raster);
+  CHECK(field.bounds() == Box{{0, -3, 3}, {3, 0, 3}});
+  CHECK(height_at(field, 0.25, -0.25) == 3);  // of its cell in the north-west the other triangle is left
+  CHECK(height_at(field, 0.75, -0.75) == -1);
+  CHECK(height_at(field, 1.75, -1.75) == 3);  // and in the south-east
+  for (const Vec2 at : {Vec2{1.25, -0.25}, Vec2{1.75, -0.75}, Vec2{0.1, -1.5}, Vec2{0.9, -1.5}, Vec2{1.25, -1.25}})
+    CHECK(height_at(field, at.x, at.y) == -1);
+  CHECK(height_at(field, 2.25, -0.25) == 3);
+  CHECK(height_at(field, 0.25, -2.25) == 3);
+  CHECK(raster.mesh().triangles.size() == 18 - 6);
+  CHECK(raster.mesh().vertices.size() == 15);
+}
+
+TEST_CASE("where all is missing nothing is met") {
+  const HeightField field(raster_of(30, 20, [](std::uint32_t, std::uint32_t) { return missing; }));
+  CHECK(field.bounds().empty());
+  CHECK(height_at(field, 3, -3) == -1);
+  CHECK(HeightField(Unfilled{}).bounds().empty());
+}
+
+TEST_CASE("a height field answers as the raster's mesh does, bit for bit, for a million rays") {
+  Generator random(7);
+  const Vec2 utm{4.7e5, 5.4e6};
+  const auto rough = [&](std::uint32_t, std::uint32_t) { return random.uniform(0, 3); };
+  const auto hills = [](std::uint32_t c, std::uint32_t r) { return 300 + 15 * std::sin(c / 9.0) * std::cos(r / 7.0); };
+  const auto holes = [&](std::uint32_t c, std::uint32_t r) { return random.whole(4) == 0 ? static_cast<double>(missing) : hills(c, r); };
+  const auto pits = [&](std::uint32_t c, std::uint32_t r) {
+    return (c / 20 + r / 10) % 2 == 0 ? static_cast<double>(missing) : hills(c, r);
+  };
+  const auto cliffs = [](std::uint32_t c, std::uint32_t r) { return (c / 3 + r / 5) % 2 == 0 ? 0.0 : 40.0; };
+  const auto flat = [](std::uint32_t, std::uint32_t) { return 7.0; };
+  struct Case {
+    std::string name;
+    Raster raster;
+  };
+  const std::vector<Case> small{
+      {"one cell", raster_of(2, 2, rough)},
+      {"roughness", raster_of(17, 12, rough)},
+      {"roughness far from the origin", raster_of(12, 17, rough, utm)},
+      {"a plane", raster_of(15, 9, flat, {-7, 4})},
+      {"a plane far from the origin", raster_of(9, 15, flat, utm, {0.25, 0.5})},
+      {"holes", raster_of(16, 16, holes)},
+      {"one column of cells", raster_of(2, 100, rough, utm)},
+      {"one row of cells", raster_of(100, 2, rough)},
+      {"pixels of a millimetre", raster_of(13, 13, rough, {}, {1e-3, 2e-3})},
+      {"pixels of a thousand kilometres", raster_of(9, 9, rough, {}, {1e6, 1e6})},
+  };
+  const std::vector<Case> large{
+      {"hills", raster_of(150, 200, hills)},
+      {"hills far from the origin", raster_of(201, 130, hills, utm, {0.5, 2})},
+      {"hills with holes", raster_of(90, 140, holes, utm)},
+      {"hills with pits", raster_of(190, 140, pits)},
+      {"cliffs", raster_of(97, 81, cliffs, utm)},
+      {"a wide plane", raster_of(120, 130, flat)},
+      {"a long strip", raster_of(1300, 5, hills, utm)},
+  };
+  std::uint64_t rays = 0;
+  const auto check = [&](const Case& c, const Comparison& result) {
+    CAPTURE(c.name);
+    INFO(result.first);
+    CHECK(result.different == 0);
+    CHECK(result.met * 10 > result.rays);
+    rays += result.rays;
+  };
+  for (std::size_t i = 0; i < small.size(); ++i) {
+    check(small[i], compared<Linear>(small[i].raster, 100 + i, 50));
+    check(small[i], compared<Bvh>(small[i].raster, 300 + i, 750));
+  }
+  for (std::size_t i = 0; i < large.size(); ++i) check(large[i], compared<Bvh>(large[i].raster, 200 + i, 80));
+  CHECK(rays >= 1000000);
+}
+
+TEST_CASE("the comparison notices a height that is a hundredth of a pixel off, and a cell that is passed over") {
+  Raster raster = raster_of(20, 20, [](std::uint32_t c, std::uint32_t r) { return std::sin(c / 3.0) + std::cos(r / 4.0); });
+  const RasterMesh<Linear> mesh(raster);
+  for (const float change : {0.01F, missing}) {
+    Raster other = raster;
+    other.heights[205] += change;
+    const HeightField field(other);
+    Generator random(3);
+    Comparison result;
+    for (int time = 0; time < 300; ++time) compare(mesh, field, "changed", bundle(random, mesh.data(), mesh.bounds(), 19), result);
+    CHECK(result.different > 0);
+  }
+}
+
+TEST_CASE("triangles and normals are those of the mesh, bit for bit") {
+  Generator random(5);
+  const Raster raster = raster_of(
+      40, 30, [&](std::uint32_t, std::uint32_t) { return random.whole(5) == 0 ? static_cast<double>(missing) : random.uniform(0, 9); },
+      {4.7e5 + 0.1, 5.4e6 + 0.3}, {0.3, 0.7});
+  const RasterMesh<Linear> mesh(raster);
+  const HeightField field(raster);
+  for (std::size_t i = 0; i < mesh.numbers().size(); ++i) {
+    const Triangle expected = mesh.data().triangle(i), found = field.triangle(mesh.numbers()[i]);
+    CHECK((expected.a == found.a && expected.b == found.b && expected.c == found.c));
+    CHECK(mesh.surface(static_cast<PrimitiveIndex>(i), bundle_of({}), 0).normal ==
+          field.surface(mesh.numbers()[i], bundle_of({}), 0).normal);
+  }
+}
+
+TEST_CASE("nothing falls through the ground: not at corners, not along edges, at any slant") {
+  Generator random(9);
+  for (const Vec2 first : {Vec2{}, Vec2{4.7e5, 5.4e6}}) {
+    const HeightField field(raster_of(
+        60, 50, [&](std::uint32_t, std::uint32_t) { return random.uniform(0, 2); }, first));
+    std::uint64_t escapes = 0;
+    for (int time = 0; time < 20000; ++time) {
+      // at whole pixels, at halves, and anywhere
+      const double step = time % 3 == 0 ? 1 : time % 3 == 1 ? 0.5 : 1e-9;
+      const double x = std::round(random.uniform(20, 40) / step) * step, y = std::round(random.uniform(20, 30) / step) * step;
+      const Vec3 aim{first.x + x, first.y - y, 1};
+      const Vec3 from = aim + (random.coin() ? up * random.uniform(3, 1000) : Vec3{random.uniform(-9, 9), random.uniform(-9, 9), 3});
+      escapes += escaped(field, random.cone(from, normalize(aim - from), 1e-3, 1 + random.whole(8)));
+    }
+    CHECK(escapes == 0);
+  }
+}
+
+TEST_CASE("rays that are not numbers meet nothing and spoil nothing") {
+  const HeightField field(slope());
+  RayBundle rays = bundle_of({{120, 180, 100}, -up});
+  rays.size = 3;
+  const double nothing = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
+  rays.set_direction(1, {nothing, nothing, nothing}), rays.set_direction(2, {0, endless, 0});
+  rays.pad();
+  Nearest nearest(rays);
+  field.closest(rays, nearest);
+  CHECK(nearest.met(0));
+  CHECK_FALSE(nearest.met(1));
+  for (const double bad : {nothing, endless}) {
+    CHECK(range_of(field, {{bad, 180, 100}, -up}) == -1);
+    CHECK(range_of(field, {{120, 180, bad}, -up}) == -1);
+    CHECK(range_of(field, {{120, 180, 100}, {bad, 0, -1}}) == -1);
+    CHECK(range_of(field, {{120, 180, 100}, -up, bad}) == -1);
+  }
+}
+
+TEST_CASE("a height field holds less than 6 bytes a cell, and less than a tenth of what the mesh holds") {
+  struct Size {
+    std::uint32_t columns, rows;
+  };
+  Generator random(11);
+  for (const auto& size : {Size{1041, 713}, {65, 65}, {1001, 1003}, {4000, 18}}) {
+    const Raster raster = raster_of(size.columns, size.rows, [&](std::uint32_t, std::uint32_t) { return random.uniform(); });
+    const HeightField field(raster);
+    CAPTURE(size.columns);
+    CHECK(field.memory() < 6 * std::size_t{size.columns - 1} * (size.rows - 1));
+    CHECK(field.memory() > 4 * std::size_t{size.columns} * size.rows);
+  }
+  const Raster raster = raster_of(210, 150, [&](std::uint32_t, std::uint32_t) { return random.uniform(); });
+  CHECK(HeightField(raster).memory() * 10 < TriangleMesh<>(raster.mesh()).memory());
+}
+
+TEST_CASE("a raster is taken over, not copied") {
+  Raster raster = slope();
+  raster.heights.shrink_to_fit();
+  const float* heights = raster.heights.data();
+  const HeightField field(std::move(raster));
+  Look look;
+  HeightField copy = field;
+  copy.archive(look);
+  CHECK(look.found == heights);
+}
+
+TEST_CASE("what was kept of a height field makes one that answers alike") {
+  HeightField field(slope()), other(Unfilled{});
+  std::vector<void*> kept;
+  const auto keep = [&](auto&... members) { (kept.push_back(&members), ...); };
+  field.archive(keep);
+  std::size_t i = 0;
+  const auto fill = [&]<class... Members>(Members&... members) { ((members = *static_cast<Members*>(kept[i++])), ...); };
+  other.archive(fill);
+  CHECK(i == kept.size());
+  CHECK(other.sound());
+  CHECK(other.bounds() == field.bounds());
+  CHECK(other.memory() == field.memory());
+  CHECK(height_at(other, 111, 177) == height_at(field, 111, 177));
+}
+
+TEST_CASE("arrays that are not as long as the grid says are noticed") {
+  const HeightField field(slope()), smaller(raster_of(5, 3, [](std::uint32_t, std::uint32_t) { return 1; }));
+  CHECK(field.sound());
+  CHECK(smaller.sound());
+  CHECK_FALSE(HeightField(Unfilled{}).sound());
+  for (std::size_t from_smaller = 0; from_smaller < 9; ++from_smaller) {  // in the order of `archive`
+    HeightField mixed = field, other = smaller;
+    std::vector<void*> kept;
+    const auto keep = [&](auto&... members) { (kept.push_back(&members), ...); };
+    other.archive(keep);
+    std::size_t i = 0;
+    const auto replace = [&]<class... Members>(Members&... members) {
+      ((members = i == from_smaller ? *static_cast<Members*>(kept[i]) : members, ++i), ...);
+    };
+    mixed.archive(replace);
+    CAPTURE(from_smaller);
+    CHECK(mixed.sound() == (from_smaller >= 3 && from_smaller <= 6));  // per_metre, pad, centre and bounds are not followed anywhere
+  }
+}
+
+TEST_CASE("a raster that cannot be is refused, and the refusal says what is wrong") {
+  const auto with = [](auto change) {
+    Raster raster = slope();
+    change(raster);
+    return refusal(raster);
+  };
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  CHECK(refusal(slope()) == "");
+  CHECK(with([](Raster& r) { r.columns = 1; }) == "Raster::columns is 1, but must be from 2 to 134217728");
+  CHECK(with([](Raster& r) { r.rows = 0; }) == "Raster::rows is 0, but must be from 2 to 134217728");
+  CHECK(with([](Raster& r) { r.columns = r.rows = 60000; }).find("cells between them is 3599880001") != std::string::npos);
+  CHECK(with([](Raster& r) { r.heights.pop_back(); }) == "Raster::heights is 230, but must be as many as pixels, 231");
+  CHECK(with([](Raster& r) { r.heights[7] = std::numeric_limits<float>::infinity(); }) ==
+        "Raster::heights is inf m, but must be within 1e15 m, or NaN; see pixel 7");
+  CHECK(with([](Raster& r) { r.pixel.y = -1; }).find("Raster::pixel.y is -1 m") == 0);
+  CHECK(with([&](Raster& r) { r.pixel.x = none; }).find("Raster::pixel.x is nan m") == 0);
+  CHECK(with([](Raster& r) { r.first.x = 1e16; }).find("Raster::first.x is ") == 0);
+  CHECK(with([&](Raster& r) { r.first.y = none; }).find("Raster::first.y is nan m") == 0);
+}
