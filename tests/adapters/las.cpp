@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/adapters/las.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -187,6 +188,43 @@ TEST_CASE("a coordinate reference system is written as given, even the longest t
   }
 }
 
+TEST_CASE("a code of UTM is written as well-known text, with its zone's meridian") {
+  struct Zone {
+    std::uint16_t epsg;
+    std::string name, datum, meridian, northing;
+  };
+  for (const Zone& zone : {Zone{32601, "WGS 84 / UTM zone 1N", "WGS_1984", "-177", "0"},
+                           {32632, "WGS 84 / UTM zone 32N", "WGS_1984", "9", "0"},
+                           {32660, "WGS 84 / UTM zone 60N", "WGS_1984", "177", "0"},
+                           {32733, "WGS 84 / UTM zone 33S", "WGS_1984", "15", "10000000"},
+                           {25832, "ETRS89 / UTM zone 32N", "European_Terrestrial_Reference_System_1989", "9", "0"},
+                           {25838, "ETRS89 / UTM zone 38N", "European_Terrestrial_Reference_System_1989", "45", "0"},
+                           {26910, "NAD83 / UTM zone 10N", "North_American_Datum_1983", "-123", "0"}}) {
+    CAPTURE(zone.epsg);
+    const LasFile file = Survey::of_points({{1, 2, 3}}).written({.epsg = zone.epsg});
+    CHECK(file.global_encoding == 17);
+    CHECK(file.wkt.starts_with("PROJCS[\"" + zone.name + "\",GEOGCS["));
+    for (const std::string& part :
+         {"DATUM[\"" + zone.datum + "\"", "[\"central_meridian\"," + zone.meridian + "]", "[\"false_northing\"," + zone.northing + "]"})
+      CHECK(file.wkt.find(part) != file.wkt.npos);
+    CHECK(file.wkt.ends_with("NORTH],AUTHORITY[\"EPSG\",\"" + std::to_string(zone.epsg) + "\"]]"));
+    CHECK(std::count(file.wkt.begin(), file.wkt.end(), '[') == std::count(file.wkt.begin(), file.wkt.end(), ']'));
+    CHECK(std::count(file.wkt.begin(), file.wkt.end(), '"') % 2 == 0);
+  }
+}
+
+TEST_CASE("any other code is written as GeoTIFF keys, without the WKT bit; well-known text comes first") {
+  for (const std::uint16_t epsg : {std::uint16_t{2056}, std::uint16_t{25827}, std::uint16_t{25839}, std::uint16_t{32766}}) {
+    const LasFile file = Survey::of_points({{1, 2, 3}}).written({.epsg = epsg});
+    CHECK(file.epsg == epsg);
+    CHECK(file.global_encoding == 1);
+    CHECK(file.wkt.empty());
+    CHECK(file.points.size() == 1);
+  }
+  const LasFile file = Survey::of_points({{1, 2, 3}}).written({.wkt = "LOCAL_CS[]", .epsg = 2056});
+  CHECK((file.wkt == "LOCAL_CS[]" && file.epsg == 0 && file.global_encoding == 17));
+}
+
 TEST_CASE("coordinates are rounded to the nearest step on both sides of zero") {
   const LasFile file = Survey::of_points({{0.00014, 0.00016, 0.00024}, {-0.00014, -0.00016, -0.00024}, {0.00004, -0.00004, 0}})
                            .written({.offset = Vec3{0, 0, 0}});
@@ -362,6 +400,8 @@ TEST_CASE("settings that cannot be are refused before a file is made") {
                                      {.offset = Vec3{0, nan, 0}},
                                      {.offset = Vec3{0, 0, infinite}},
                                      {.wkt = std::string(65535, 'x')},
+                                     {.epsg = 1023},
+                                     {.epsg = 32767},
                                      {.start_time = infinite},
                                      {.intensity_full_scale = 0},
                                      {.amplitude_reference = nan},

@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -81,10 +83,28 @@ TEST_CASE("a reflectance above 1 is percent, with a warning; the limits are them
   CHECK(contains(library.warnings[1], "'c'"));
 }
 
-TEST_CASE("spectra are named in a warning, unless a reflectance is given") {
-  const MaterialLibrary library = mtl("newmtl a\nhelios_spectra birch\nnewmtl b\nhelios_spectra oak\nhelios_reflectance 0.2\n");
+TEST_CASE("a spectrum comes from the library, unless a reflectance is given; one that is not there is warned of") {
+  const auto birch = std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.4e-6, 0.1}, {1.5e-6, 0.6}});
+  SpectralLibrary spectra{.spectra = {{"birch", birch}, {"oak", birch}}};
+  const std::string text =
+      "newmtl a\nKd 1 1 1\nhelios_spectra birch\nnewmtl b\nhelios_spectra oak\nhelios_reflectance 0.2\nnewmtl c\nhelios_spectra elm\n";
+  std::ofstream(path, std::ios::binary) << text;
+  const MaterialLibrary library = read_mtl(path, spectra);
+  CHECK(library.materials.at("a").spectrum == birch);
+  CHECK(library.materials.at("a").scattering == Scattering::lambert);
+  CHECK(library.materials.at("a").reflectance_at(1.5e-6) == 0.6);
+  CHECK(library.materials.at("b").spectrum == nullptr);
+  CHECK(library.materials.at("b").reflectance_at(1.5e-6) == 0.2);
+  CHECK(library.materials.at("c").spectrum == nullptr);
+  CHECK(library.materials.at("c").reflectance == 0.5);
   REQUIRE(library.warnings.size() == 1);
-  CHECK(contains(library.warnings[0], "birch"));
+  CHECK(contains(library.warnings[0], "'c' names the spectrum 'elm', which no library holds"));
+  CHECK(mtl(text).warnings.size() == 2);
+
+  spectra.wavelengths = {0.532e-6, 1.55e-6, 0.4e-6};
+  const MaterialLibrary warned = read_mtl(path, spectra);
+  REQUIRE(warned.warnings.size() == 2);
+  CHECK(contains(warned.warnings[0], "spans 400 to 1500 nm: for the laser of 1550 nm"));
 }
 
 TEST_CASE("of a name that comes twice the first counts, and what has no name is the default") {

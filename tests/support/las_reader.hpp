@@ -37,6 +37,7 @@ struct LasPoint {
 struct LasFile {
   unsigned global_encoding = 0, day = 0, year = 0;
   std::string system, software, wkt;
+  unsigned epsg = 0;  ///< of GeoTIFF keys
   std::array<double, 3> scale{}, offset{}, min{}, max{};
   std::uint64_t points_at = 0;  ///< byte at which the points begin
   std::array<std::uint64_t, 15> by_return{};
@@ -115,7 +116,6 @@ inline void las_expect(bool condition, const std::string& what) {
   las_expect(in.whole(94, 2) == 375, "header size");
   las_expect(in.whole(104, 1) == 6, "point format");
   file.global_encoding = static_cast<unsigned>(in.whole(6, 2));
-  las_expect((file.global_encoding & 16U) != 0, "format 6 needs the WKT bit");
   las_expect((file.global_encoding & ~17U) == 0, "global encoding claims what is not there");
   file.system = in.text(26, 32), file.software = in.text(58, 32);
   file.day = static_cast<unsigned>(in.whole(90, 2)), file.year = static_cast<unsigned>(in.whole(92, 2));
@@ -138,6 +138,15 @@ inline void las_expect(bool condition, const std::string& what) {
       file.wkt = in.bytes(body, length);
       las_expect(!file.wkt.empty() && file.wkt.back() == '\0', "the WKT has no end");
       file.wkt.pop_back();
+    } else if (user == "LASF_Projection" && id == 34735) {
+      las_expect(length % 8 == 0 && length >= 8 && in.whole(body, 2) == 1 && in.whole(body + 6, 2) == length / 8 - 1, "GeoTIFF keys");
+      for (std::size_t k = body + 8; k < body + length; k += 8) {
+        las_expect(in.whole(k + 2, 2) == 0 && in.whole(k + 4, 2) == 1, "a GeoTIFF key that is not read here");
+        las_expect(k == body + 8 || in.whole(k, 2) > in.whole(k - 8, 2), "GeoTIFF keys are not in order");
+        if (in.whole(k, 2) == 3072) file.epsg = static_cast<unsigned>(in.whole(k + 6, 2));
+        if (in.whole(k, 2) == 1024) las_expect(in.whole(k + 6, 2) == 1, "not a projected reference system");
+        if (in.whole(k, 2) == 3076) las_expect(in.whole(k + 6, 2) == 9001, "not in metres");
+      }
     } else if (user == "LASF_Spec" && id == 4) {
       las_expect(length % 192 == 0, "extra bytes record");
       for (std::size_t d = body; d < body + length; d += 192) {
@@ -156,6 +165,7 @@ inline void las_expect(bool condition, const std::string& what) {
   file.points_at = in.whole(96, 4);
   las_expect(at == file.points_at, "points do not begin where the records end");
   las_expect(record == expected_record, "record length");
+  las_expect(((file.global_encoding & 16U) != 0) == (file.epsg == 0), "the WKT bit belongs to format 6, unless there are GeoTIFF keys");
   const std::uint64_t count = in.whole(247, 8);
   las_expect(in.size() >= at && (in.size() - at) % record == 0 && (in.size() - at) / record == count, "number of points");
 

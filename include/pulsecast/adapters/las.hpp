@@ -40,7 +40,8 @@ struct LasSettings {
 
   double scale = 1e-4;                            ///< step of the coordinates [m]
   std::optional<Vec3> offset = std::nullopt;      ///< what they are relative to [m]; if empty, the multiple of 1e6 steps next to the first
-  std::string wkt = {};                           ///< coordinate reference system in OGC well-known text; if empty, none is written
+  std::string wkt = {};                           ///< coordinate reference system in OGC well-known text; if empty, `epsg` counts
+  std::uint16_t epsg = 0;                         ///< its code, if projected and in metres; 0 if it is not known, and none is written
   GpsTime gps_time = GpsTime::adjusted_standard;  ///< what times count from
   double start_time = 0;                          ///< when the survey's tick 0 is [s]
   double intensity_full_scale = 1;                ///< reflectance that is given the greatest intensity, 65535; what is more, is cut
@@ -51,6 +52,7 @@ struct LasSettings {
     expect_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) expect_finite("LasSettings::offset", (*offset)[axis], "m");
     expect_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // with its end, 16 bits count it
+    if (epsg != 0) expect_within("LasSettings::epsg", epsg, 1024, 32766, "");  // source: OGC GeoTIFF 1.1, the codes that are EPSG's
     expect_finite("LasSettings::start_time", start_time, "s");
     expect_positive("LasSettings::intensity_full_scale", intensity_full_scale, "");
     expect_positive("LasSettings::amplitude_reference", amplitude_reference, "W");
@@ -102,6 +104,37 @@ template <class Integer>
 /// A ratio of powers as a level [dB], at least -200: the level of nothing.
 [[nodiscard]] inline float las_level(double ratio) noexcept { return static_cast<float>(ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0); }
 
+/// The well-known text of a reference system that is UTM on WGS 84, ETRS89 or NAD83; empty for any other code, as definitions are in a
+/// register of thousands. Source: EPSG registry; OGC 01-009 (Coordinate Transformation Services), 7.
+[[nodiscard]] inline std::string las_utm(std::uint16_t epsg) {
+  struct Family {
+    unsigned first, last;  // codes of its zones
+    unsigned zone;         // the first
+    std::string_view system, system_code, datum, datum_code, ellipsoid, flattening, ellipsoid_code;
+    bool south = false;
+  };
+  static constexpr std::array<Family, 4> families{{
+      {32601, 32660, 1, "WGS 84", "4326", "WGS_1984", "6326", "WGS 84", "298.257223563", "7030"},
+      {32701, 32760, 1, "WGS 84", "4326", "WGS_1984", "6326", "WGS 84", "298.257223563", "7030", true},
+      {25828, 25838, 28, "ETRS89", "4258", "European_Terrestrial_Reference_System_1989", "6258", "GRS 1980", "298.257222101", "7019"},
+      {26901, 26923, 1, "NAD83", "4269", "North_American_Datum_1983", "6269", "GRS 1980", "298.257222101", "7019"},
+  }};
+  const auto family = std::find_if(families.begin(), families.end(), [&](const Family& f) { return epsg >= f.first && epsg <= f.last; });
+  if (family == families.end()) return {};
+  const unsigned zone = epsg - family->first + family->zone;
+  const auto code = [](std::string_view number) { return "AUTHORITY[\"EPSG\",\"" + std::string(number) + "\"]"; };
+  const auto quoted = [](std::string_view name) { return "[\"" + std::string(name) + "\","; };
+  const std::string name = std::string(family->system) + " / UTM zone " + std::to_string(zone) + (family->south ? "S" : "N");
+  return "PROJCS" + quoted(name) + "GEOGCS" + quoted(family->system) + "DATUM" + quoted(family->datum) + "SPHEROID" +
+         quoted(family->ellipsoid) + "6378137," + std::string(family->flattening) + ',' + code(family->ellipsoid_code) + "]," +
+         code(family->datum_code) + "],PRIMEM[\"Greenwich\",0," + code("8901") + "],UNIT[\"degree\",0.0174532925199433," + code("9122") +
+         "]," + code(family->system_code) + "],PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0]," +
+         "PARAMETER[\"central_meridian\"," + std::to_string(6 * static_cast<int>(zone) - 183) +
+         "],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\"," +
+         (family->south ? "10000000" : "0") + "],UNIT[\"metre\",1," + code("9001") + "],AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]," +
+         code(std::to_string(epsg)) + ']';
+}
+
 }  // namespace detail
 
 /// Writes points as LAS 1.4, point format 6 with extra bytes, in pulse order; memory does not grow with their number.
@@ -111,15 +144,19 @@ template <class Integer>
 /// - return numbers and their count end at 15, as the format does: later returns are written as the 15th;
 /// - classes end at 255; point source id is the leg plus 1, at most 65535; scanner channel is the channel's lowest two bits;
 /// - scan angle counts from down, positive to the right of the flight; GPS time is that of the pulse, alike in all its returns;
+/// - a reference system that is known by its code alone, and not one of UTM, is written as GeoTIFF keys and the WKT bit is left out: the
+///   specification wants well-known text with this point format, but a code that readers understand is more than nothing;
 /// - flags, scan direction, edge of flight line and user data are 0, for no field of an echo tells them.
 /// Only `close()` makes the file: see `OutputFile`.
 class LasWriter {
  public:
   explicit LasWriter(std::filesystem::path path, LasSettings settings = {})
       : settings_(validated(std::move(settings))), file_(std::move(path)), offset_(settings_.offset.value_or(Vec3{})) {
+    if (settings_.wkt.empty()) settings_.wkt = detail::las_utm(settings_.epsg);
     file_.write(header());
     write_extra_bytes_record();
     if (!settings_.wkt.empty()) write_wkt_record();
+    if (by_keys()) write_keys_record();
   }
 
   void operator()(const EchoBatch& batch) {
@@ -198,8 +235,9 @@ class LasWriter {
   /// The header as of now. Positions: LAS 1.4 R15, Public Header Block; what is not put is 0, as the legacy numbers must be with format 6.
   [[nodiscard]] Header header() const {
     const std::size_t wkt_record = settings_.wkt.empty() ? 0 : detail::las_vlr_header_size + settings_.wkt.size() + 1;
+    const std::size_t keys_record = by_keys() ? detail::las_vlr_header_size + 2 * keys_size : 0;
     const std::size_t extra_record = detail::las_vlr_header_size + detail::las_extras.size() * detail::las_descriptor_size;
-    constexpr unsigned wkt_bit = 1U << 4;  // LAS 1.4 R15, Global Encoding: must be set with format 6
+    const unsigned wkt_bit = by_keys() ? 0 : 1U << 4;  // LAS 1.4 R15, Global Encoding: must be set with format 6
     Header h{};
     h.put_text(0, "LASF");
     h.put(6, static_cast<std::uint16_t>(static_cast<unsigned>(settings_.gps_time) | wkt_bit));
@@ -215,9 +253,9 @@ class LasWriter {
       h.put(92, static_cast<std::uint16_t>(int{year}));
     }
     h.put(94, static_cast<std::uint16_t>(detail::las_header_size));
-    h.put(96, static_cast<std::uint32_t>(detail::las_header_size + extra_record + wkt_record));  // where the points begin
-    h.put(100, std::uint32_t{settings_.wkt.empty() ? 1U : 2U});                                  // variable length records
-    h.put(104, std::uint8_t{6});                                                                 // point format
+    h.put(96, static_cast<std::uint32_t>(detail::las_header_size + extra_record + wkt_record + keys_record));  // where the points begin
+    h.put(100, std::uint32_t{settings_.wkt.empty() && !by_keys() ? 1U : 2U});                                  // variable length records
+    h.put(104, std::uint8_t{6});                                                                               // point format
     h.put(105, static_cast<std::uint16_t>(detail::las_record_size));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double offset = offset_[static_cast<int>(axis)];
@@ -259,6 +297,21 @@ class LasWriter {
     write_record_header("LASF_Projection", 2112, settings_.wkt.size() + 1, "OGC Coordinate System WKT");
     file_.write(std::string_view(settings_.wkt.c_str(), settings_.wkt.size() + 1));
   }
+
+  /// Whether the reference system is known by its code alone.
+  [[nodiscard]] bool by_keys() const noexcept { return settings_.wkt.empty() && settings_.epsg != 0; }
+
+  /// A header and three keys: the model is projected, its code, and its unit, the metre. Source: OGC GeoTIFF 1.1, 7.1.2 and annex B; LAS
+  /// 1.4 R15, GeoKeyDirectoryTag Record.
+  void write_keys_record() {
+    const std::array<std::uint16_t, keys_size> keys{1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, settings_.epsg, 3076, 0, 1, 9001};
+    write_record_header("LASF_Projection", 34735, sizeof keys, "GeoTIFF GeoKeyDirectoryTag");
+    detail::LasBytes<sizeof keys> bytes{};
+    for (std::size_t i = 0; i < keys.size(); ++i) bytes.put(2 * i, keys[i]);
+    file_.write(bytes);
+  }
+
+  static constexpr std::size_t keys_size = 16;
 
   LasSettings settings_;
   OutputFile file_;

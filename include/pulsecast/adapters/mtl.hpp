@@ -23,6 +23,7 @@
 
 #include <tiny_obj_loader.h>
 
+#include <pulsecast/adapters/spectral_library.hpp>
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/scene/material.hpp>
 
@@ -35,10 +36,11 @@ struct MaterialLibrary {
 };
 
 /// Reads an MTL file. Colours decide the angular law: `Ks` makes it Phong's, `Kd` alone Lambert's. The amount is another matter: it is
-/// what `helios_reflectance` says, a fraction. Beside these, `Ns`, `helios_isGround` and `helios_classification` count; other keys do not.
+/// what `helios_reflectance` says, a fraction, or else the spectrum of the library that `helios_spectra` names. Beside these, `Ns`,
+/// `helios_isGround` and `helios_classification` count; other keys do not.
 /// Of a name that comes twice, the first counts. What stands before the first name describes the material "default".
 /// Throws a `FileError` with path and line at the first thing that cannot be right.
-[[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path);
+[[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra = {});
 
 /// The surface that files say nothing about. It scatters alike in all directions, as in the home of the extra keys, HELIOS++.
 [[nodiscard]] inline Material undescribed(std::string name) {
@@ -146,7 +148,7 @@ class StatementBuffer : public std::streambuf {
 
 class MtlReader : private StatementBuffer {
  public:
-  using StatementBuffer::StatementBuffer;
+  MtlReader(const std::filesystem::path& path, const SpectralLibrary& spectra) : StatementBuffer(path), spectra_(spectra) {}
 
   [[nodiscard]] MaterialLibrary read() {
     std::istream stream(this);
@@ -203,15 +205,22 @@ class MtlReader : private StatementBuffer {
       made.scattering = Scattering::lambert;
     }
     made.specular_exponent = m.shininess;
-    const std::string reflectance = extra("helios_reflectance"), spectra = extra("helios_spectra");
+    const std::string reflectance = extra("helios_reflectance"), spectrum(trimmed(extra("helios_spectra")));
     if (!reflectance.empty()) {
       made.reflectance = *number_in<double>(reflectance);
       if (made.reflectance > 1) {
         warn("has the reflectance " + reflectance + ", which is taken as percent");
         made.reflectance /= 100;
       }
-    } else if (!spectra.empty()) {
-      warn("names the spectra '" + spectra + "', which are not read: its reflectance is taken to be 0.5");
+    } else if (const auto found = spectra_.spectra.find(spectrum); found != spectra_.spectra.end()) {
+      made.spectrum = found->second;
+      const double shortest = made.spectrum->shortest(), longest = made.spectrum->longest();
+      for (const double wavelength : spectra_.wavelengths)
+        if (!(wavelength >= shortest && wavelength <= longest))
+          warn("has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " + nanometres(longest) +
+               " nm: for the laser of " + nanometres(wavelength) + " nm the nearer end is taken");
+    } else if (!spectrum.empty()) {
+      warn("names the spectrum '" + spectrum + "', which no library holds: its reflectance is taken to be 0.5");
     }
     made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
     std::string ground = extra("helios_isGround");
@@ -220,11 +229,16 @@ class MtlReader : private StatementBuffer {
     return made;
   }
 
+  [[nodiscard]] static std::string nanometres(double metres) { return pulsecast::detail::written(std::round(metres * 1e12) / 1e3); }
+
+  const SpectralLibrary& spectra_;
   bool begun_ = false;
 };
 
 }  // namespace detail
 
-inline MaterialLibrary read_mtl(const std::filesystem::path& path) { return detail::MtlReader(path).read(); }
+inline MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra) {
+  return detail::MtlReader(path, spectra).read();
+}
 
 }  // namespace pulsecast::adapters

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/adapters/geotiff.hpp>
+
+#include "fuzz/fuzz.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::adapters;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::filesystem::path path = fuzz::file(data, size, "terrain.tif");
+  for (const GeoTiffSettings& settings : {GeoTiffSettings{}, GeoTiffSettings{.band = 2, .vertical_scale = 0.1, .missing = 0}})
+    fuzz::may_refuse([&] {
+      const GeoTiff file = read_geotiff(path, settings);
+      file.raster.validate();
+      fuzz::expect(file.raster.heights.size() * sizeof(float) <= (std::size_t{1} << 26) + 4096 * size);
+    });
+  return 0;
+}

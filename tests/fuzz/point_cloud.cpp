@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/adapters/point_cloud.hpp>
+
+#include "fuzz/fuzz.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::adapters;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::filesystem::path path = fuzz::file(data, size, "cloud");
+  for (const PointCloudSettings& settings : {PointCloudSettings{.normals = VoxelNormals::fitted},
+                                             PointCloudSettings{.voxel_size = 0.25,
+                                             .lattice = VoxelLattice::at_multiples,
+                                             .normals = VoxelNormals::mean,
+                                             .default_normal = up,
+                                             .colours = true},
+                                             PointCloudSettings{.voxel_size = 1e-6, .normals = VoxelNormals::nearest, .colours = true}})
+    fuzz::may_refuse([&] {
+      const PointCloud cloud = read_point_cloud(path, settings);
+      const VoxelData& voxels = cloud.voxels;
+      voxels.validate();
+      fuzz::expect(voxels.cells.size() <= cloud.points && cloud.points <= size);
+      fuzz::expect(cloud.colours.empty() || cloud.colours.size() == voxels.cells.size());
+      for (const auto& channels : cloud.colours)
+        for (const float channel : channels) fuzz::expect(channel >= 0 && channel <= 1.000001F);
+    });
+  return 0;
+}
