@@ -39,6 +39,24 @@ class Bvh {
     a(bounds_, centre_, depth_, nodes_);
   }
 
+  /// Whether it is a tree at all, no deeper than it may be, and over so many primitives.
+  [[nodiscard]] bool sound(std::size_t primitives) const {
+    std::vector<std::uint8_t> depths(nodes_.size());  // 0 where nothing leads to so far
+    if (!depths.empty()) depths[0] = 1;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const Node& node = nodes_[i];
+      if (depths[i] == 0 || depths[i] > detail::deepest) return false;
+      for (std::size_t place = 0; place < places; ++place) {
+        if ((node.taken >> place & 1U) == 0) continue;
+        const std::uint32_t child = node.children[place];
+        const bool primitive = (node.primitives >> place & 1U) != 0;
+        if (primitive ? child >= primitives : child <= i || child >= nodes_.size() || depths[child] != 0) return false;
+        if (!primitive) depths[child] = static_cast<std::uint8_t>(depths[i] + 1);
+      }
+    }
+    return true;
+  }
+
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return nodes_.memory(); }
 

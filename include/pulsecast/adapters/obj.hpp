@@ -26,6 +26,7 @@
 #include <tiny_obj_loader.h>
 
 #include <pulsecast/adapters/mtl.hpp>
+#include <pulsecast/adapters/spectral_library.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
@@ -40,6 +41,7 @@ enum class UpAxis : std::uint8_t {
 
 struct ObjSettings {
   UpAxis up = UpAxis::z;
+  SpectralLibrary spectra{};  ///< what `helios_spectra` in an MTL file may name
 };
 
 /// What an OBJ file holds, all its objects and groups together.
@@ -252,7 +254,7 @@ class ObjReader : private StatementBuffer {
     if (!std::filesystem::is_regular_file(path, ignored_error))
       fail_here(quoted() + ": expected an MTL file at " + path.string() + ", but there is none");
     if (!read_.insert(path.string()).second) return;
-    MaterialLibrary more = read_mtl(path);
+    MaterialLibrary more = read_mtl(path, settings_.spectra);
     library_.merge(more.materials);  // of one name, the first counts
     model_.warnings.insert(model_.warnings.end(), more.warnings.begin(), more.warnings.end());
   }

@@ -15,6 +15,7 @@
 
 #include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/scene/part.hpp>
@@ -163,6 +164,16 @@ class PartMotion {
     const Tick time = Tick::of_seconds(poses.back().time);
     const Change last{normalize(poses.back().rotation), {no_rotation, poses.back().position}};
     again ? end_cycle(time, {}) : end({time, last});  // what comes again begins where it began
+  }
+
+  explicit PartMotion(Unfilled) {}
+  template <class Archive>
+  void archive(Archive& a) {
+    a(runs_, pieces_, cycle_first_, cycle_start_, cycle_before_, cycle_, cycle_duration_, reference_, from_origin_);
+  }
+  [[nodiscard]] bool sound() const noexcept {
+    const auto has_pieces = [this](const Run& run) { return run.first < run.end && run.end <= pieces_.size() && run.times > 0; };
+    return !runs_.empty() && cycle_first_ <= runs_.size() && std::all_of(runs_.begin(), runs_.end(), has_pieces);
   }
 
   /// [byte]
