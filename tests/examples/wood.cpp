@@ -30,6 +30,15 @@ const wood::Scene& second_wood() {
 
 const wood::Mesh& mesh_of(const wood::Scene::Part& part) { return *std::get<0>(part.geometry); }
 
+std::vector<Vec3> corners(const wood::Mesh& mesh) {
+  std::vector<Vec3> all;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const Triangle t = mesh.triangle(static_cast<PrimitiveIndex>(i));
+    all.insert(all.end(), {t.a, t.b, t.c});
+  }
+  return all;
+}
+
 Hit seen(const wood::Scene& scene, const Vec3& from, const Vec3& direction) {
   std::array<Hit, 1> hits;
   scene.closest(bundle_of({.origin = from, .direction = normalize(direction)}), hits);
@@ -52,7 +61,7 @@ TEST_CASE("a seed gives the same wood again, and another seed another wood") {
   REQUIRE(again.parts().size() == first_wood().parts().size());
   for (std::size_t i = 0; i < again.parts().size(); ++i) {
     CHECK(again.parts()[i].placement.translation == first_wood().parts()[i].placement.translation);
-    CHECK(mesh_of(again.parts()[i]).data().vertices == mesh_of(first_wood().parts()[i]).data().vertices);
+    CHECK(corners(mesh_of(again.parts()[i])) == corners(mesh_of(first_wood().parts()[i])));
   }
   CHECK(second_wood().parts().back().placement.translation != first_wood().parts().back().placement.translation);
 }
