@@ -44,6 +44,7 @@ inline void print(const pulsecast::RunSummary& run) {
   line("echoes", run.echoes, "");
   line("missed", run.count(missed), "pulses");
   if (run.count(out_of_range) > 0) line("out of range", run.count(out_of_range), "pulses");
+  if (run.count(absorbed) > 0) line("absorbed", run.count(absorbed), "pulses");
   if (run.count(below_threshold) > 0) line("too weak", run.count(below_threshold), "pulses");
   line("time", run.seconds, "s");
   line("speed", static_cast<double>(run.rays) / run.seconds / 1e6, "million rays/s");

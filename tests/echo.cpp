@@ -30,6 +30,7 @@ TEST_CASE("a batch hands out the echoes and samples of each shot") {
                                 {.fate = Fate::missed, .first_echo = 1},
                                 {.fate = Fate::returned, .first_echo = 1, .echoes = 2, .first_sample = 0, .samples = 2}};
   const EchoBatch batch{shots, echoes, samples, 1e-9};
+  CHECK(batch.subrays_of(1).empty());
   REQUIRE(batch.echoes_of(shots[0]).size() == 1);
   CHECK(batch.echoes_of(shots[0])[0].range == 1);
   CHECK(batch.echoes_of(shots[1]).empty());
@@ -38,4 +39,15 @@ TEST_CASE("a batch hands out the echoes and samples of each shot") {
   CHECK(batch.waveform_of(shots[0]).empty());
   REQUIRE(batch.waveform_of(shots[2]).size() == 2);
   CHECK(batch.waveform_of(shots[2])[1] == 0.25F);
+}
+
+TEST_CASE("a batch hands out the subrays of each shot, as many for each") {
+  const std::vector<Shot> shots(3);
+  std::vector<SubrayHit> subrays(12);
+  for (std::size_t k = 0; k < subrays.size(); ++k) subrays[k].power = static_cast<double>(k);
+  const EchoBatch batch{.shots = shots, .echoes = {}, .samples = {}, .subrays = subrays};
+  for (std::size_t k = 0; k < 3; ++k) {
+    REQUIRE(batch.subrays_of(k).size() == 4);
+    CHECK(batch.subrays_of(k)[0].power == 4 * static_cast<double>(k));
+  }
 }

@@ -28,6 +28,7 @@
 
 #include "support/archetypes.hpp"
 #include "support/laws.hpp"
+#include "support/relative.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -146,7 +147,7 @@ TEST_CASE("a run with every error switched on gives the same to the last bit on 
 TEST_CASE("a run hands out what the survey says of each pulse, and nothing for blocked slots") {
   const auto survey = small_survey();
   auto workspace = survey.workspace();
-  std::array<std::uint64_t, 5> fates{};
+  std::array<std::uint64_t, fate_count> fates{};
   PulseIndex next = 0;
   std::size_t double_echoes = 0;
   const RunSummary summary = run(survey, {.threads = 2}, [&](const EchoBatch& batch) {
@@ -202,6 +203,45 @@ TEST_CASE("several sinks get the same, and a run without a sink counts all the s
   CHECK(cloud.size() == a.echoes());
   CHECK(with.echoes == without.echoes);
   CHECK(with.fates == without.fates);
+}
+
+TEST_CASE("a run accounts for all the energy that was sent, the same on any number of threads") {
+  const auto survey = small_survey();
+  const RunSummary one = run(survey, {.threads = 1}), three = run(survey, {.threads = 3});
+  const double each = Laser{}.peak_power * Laser{}.pulse_length;
+  CHECK(one.energy == support::relative(each * static_cast<double>(one.pulses()), 1e-12));
+  double sum = 0;
+  for (const double spent : one.spent) sum += spent;
+  CHECK(sum == support::relative(one.energy, 1e-12));
+  CHECK(one.share(Fate::blocked) == 0);
+  CHECK(one.share(Fate::returned) > 0.3);
+  CHECK(one.share(Fate::missed) > 0.1);
+  CHECK(one.energy == three.energy);
+  CHECK(one.spent == three.spent);
+  CHECK(run(survey, {.threads = 1, .end = 0}).share(Fate::returned) == 0);
+}
+
+TEST_CASE("a run hands on the subrays of a footprint that is recorded, in batches that stay small") {
+  const auto recorded = Survey{two_legs(), Recorded{RingFootprint{7}}, steps, Receiver{}, waveforms};
+  const auto plain = Survey{two_legs(), RingFootprint{7}, steps, Receiver{}, waveforms};
+  auto workspace = recorded.workspace();
+  support::LawfulSink sink, plain_sink;
+  const std::size_t n = recorded.subrays();
+  std::size_t shots = 0;
+  run(recorded, {.threads = 3}, sink, [&](const EchoBatch& batch) {
+    REQUIRE(batch.subrays.size() == n * batch.shots.size());
+    CHECK(batch.subrays.size() <= 65'536);
+    for (std::size_t k = 0; k < batch.shots.size(); k += 97, ++shots) {
+      const Outcome o = recorded(batch.shots[k].index, workspace);
+      for (std::size_t j = 0; j < n; ++j) {
+        REQUIRE(batch.subrays_of(k)[j].range == o.subrays[j].range);
+        REQUIRE(batch.subrays_of(k)[j].power == o.subrays[j].power);
+      }
+    }
+  });
+  CHECK(shots > 50);
+  run(plain, {.threads = 2}, plain_sink, [&](const EchoBatch& batch) { CHECK(batch.subrays.empty()); });
+  CHECK(sink.echoes() == plain_sink.echoes());
 }
 
 TEST_CASE("a run of nothing is complete") {

@@ -296,6 +296,105 @@ TEST_CASE("every pulse has one fate") {
   CHECK(fate(near, Receiver{.range_min = 11}, FirstHit{}) == Fate::out_of_range);
   CHECK(fate(near, Receiver{.range_max = 9}, FirstHit{}) == Fate::out_of_range);
   CHECK(fate(near, clear_air, FirstHit{.threshold = 1}) == Fate::below_threshold);
+  const Plane black{{0, 10, 0}, forward, 0};
+  CHECK(fate(black, clear_air, FirstHit{}) == Fate::absorbed);
+  CHECK(fate(black, Receiver{.range_max = 9}, FirstHit{}) == Fate::out_of_range);
+  CHECK(fate(near, Receiver{.visibility = 10}, FirstHit{}) == Fate::returned);
+  CHECK(fate({{0, 2000, 0}, forward}, Receiver{.visibility = 10}, FirstHit{}) == Fate::absorbed);  // more decades of haze than a double has
+}
+
+TEST_CASE("the energy of a pulse is spent to the last bit, each subray's by what became of it") {
+  /// Quarters of the beam: nothing, a plate before the gate, a black plate, a white plate.
+  struct Quarters {
+    std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+      const bool right_half = ray.direction.x > 0, upper_half = ray.direction.z > 0;
+      if (right_half && upper_half) return std::nullopt;
+      if (right_half) return Hit{1, 1, 1, 0, 0};
+      return Hit{10, 1, upper_half ? 0.0 : 1.0, 0, 0};
+    }
+  };
+  const Quarters map;
+  const Laser laser{.peak_power = 8, .pulse_length = 5e-9};
+  const auto outcome = [&](double threshold) {
+    const Survey survey{still({}, no_rotation, 1, laser), SunflowerFootprint{4000}, map, Receiver{.range_min = 2}, FirstHit{threshold}};
+    auto workspace = survey.workspace();
+    return survey(0, workspace);
+  };
+  const Outcome bright = outcome(0), faint = outcome(1);
+  CHECK(bright.energy == support::relative(40e-9, 1e-15));
+  for (const Fate fate : {Fate::missed, Fate::out_of_range, Fate::absorbed, Fate::returned})
+    CHECK(bright.share(fate) == support::relative(0.25, 0.01));
+  CHECK(bright.share(Fate::below_threshold) == 0);
+  CHECK(faint.share(Fate::below_threshold) == bright.share(Fate::returned));
+  CHECK(faint.share(Fate::returned) == 0);
+  for (const Outcome& o : {bright, faint}) {
+    double sum = 0;
+    for (const double share : o.shares) sum += share;
+    CHECK(sum == support::relative(1, 1e-12));
+  }
+}
+
+TEST_CASE("subrays that are recorded lie where they met the plane, with the power that they brought back") {
+  const Plane plane{{0, 10, 0}, normalize(Vec3{0.3, 1, 0}), 0.5};
+  const Rotation turn = rotation_about(up, 10_deg);
+  const auto check = [&](const Laser& laser) {
+    const auto source = still(Vec3{1, 2, 3}, turn, 1, laser);
+    const Survey plain{source, RingFootprint{6}, plane, clear_air, FullWaveform{}};
+    const Survey survey{source, Recorded{RingFootprint{6}}, plane, clear_air, FullWaveform{}};
+    auto w = survey.workspace();
+    auto plain_workspace = plain.workspace();
+    const Outcome o = survey(0, w), without = plain(0, plain_workspace);
+    CHECK(without.subrays.empty());
+    REQUIRE(o.subrays.size() == survey.subrays());
+    REQUIRE(o.echoes.size() == without.echoes.size());
+    CHECK(o.echoes[0].amplitude == without.echoes[0].amplitude);
+    double sum = 0;
+    for (const SubrayHit& hit : o.subrays) {
+      CHECK(hit.object == 9);
+      CHECK(std::fabs(dot(hit.point - plane.point, plane.normal)) < 1e-12);
+      sum += hit.power;
+    }
+    CHECK(o.echoes[0].amplitude == support::relative(sum, 0.01));
+    CHECK(length(o.subrays[0].point - point_of(o.shot, o.echoes[0])) < 0.01);
+  };
+  check(Laser{.divergence = 2_mrad});
+  check(Laser{.divergence = 2_mrad, .waist_diameter = 8_mm, .waist_range = 4});
+  const Plane behind{{0, -10, 0}, forward};
+  const Survey missing{still({}, no_rotation), Recorded{RingFootprint{2}}, behind, clear_air, FirstHit{}};
+  auto w = missing.workspace();
+  const Outcome o = missing(0, w);
+  REQUIRE(o.subrays.size() == 7);
+  for (const SubrayHit& hit : o.subrays) {
+    CHECK_FALSE(hit.met());
+    CHECK(hit.power == 0);
+  }
+}
+
+TEST_CASE("a beam with a waist is traced subray by subray, each with a name of its own, and lights what its hyperbola covers") {
+  struct Curious {
+    double half_width = 0, range = 0;
+    mutable std::vector<std::uint32_t> seen;
+    void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+      for (std::size_t j = 0; j < rays.size; ++j) {
+        seen.push_back(rays.first_subray + static_cast<std::uint32_t>(j));
+        const double t = range / rays.y[j], x = rays.origin.x + t * rays.x[j];
+        hits[j] = std::fabs(x) < half_width ? Hit{t, 1, 1, 0, 0} : Hit{};
+      }
+    }
+  };
+  const Laser laser = {.divergence = 1_mrad, .waist_diameter = 20_mm, .waist_range = 30};
+  for (const double range : {5.0, 30.0, 50.0, 500.0}) {
+    CAPTURE(range);
+    const double w = std::hypot(10e-3, 0.5e-3 * (range - 30));
+    const Curious strip{0.5 * w, range, {}};
+    const Survey survey{still({}, no_rotation, 1, laser), SunflowerFootprint{5000}, strip, clear_air, FirstHit{}};
+    auto workspace = survey.workspace();
+    const Outcome o = survey(0, workspace);
+    // of a Gaussian beam, erf(sqrt(2) a / w) is inside of a strip of half width a
+    CHECK(o.share(Fate::returned) == support::relative(std::erf(std::sqrt(2.0) * 0.5), 0.002));
+    REQUIRE(strip.seen.size() == 5000);
+    for (std::uint32_t j = 0; j < 5000; ++j) REQUIRE(strip.seen[j] == j);
+  }
 }
 
 TEST_CASE("of a beam that two plates share, both come back with what they cover") {
@@ -365,6 +464,33 @@ TEST_CASE("the footprint follows the divergence of each pulse") {
   for (const PulseIndex i : {0U, 1U, 2U, 4U, 3U, 5U, 6U}) {
     CAPTURE(i);
     CHECK(survey(i, workspace).hits == (i % 2 == 0 ? 1 : survey.subrays()));
+  }
+}
+
+TEST_CASE("the footprint follows the waist of each pulse") {
+  struct Waists : support::LeastSource<frame::World> {
+    std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+      auto p = support::LeastSource<frame::World>::pulse(i);
+      p->laser.divergence = 0.01;
+      p->laser.waist_diameter = i % 3 == 0 ? 0 : 2;
+      p->laser.waist_range = i % 3 == 2 ? 10 : 0;
+      return p;
+    }
+  };
+  /// A plate 10 m ahead, 0.06 m in radius.
+  struct Plate {
+    std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+      const Vec3 p = ray.origin + ray.direction * (10 / ray.direction.y);
+      return std::hypot(p.x, p.z) < 0.06 ? std::optional(Hit{10, 1, 1, 0, 0}) : std::nullopt;
+    }
+  };
+  const Plate plate;
+  const Survey survey{Waists{}, Recorded{RingFootprint{4}}, plate, clear_air, FirstHit{}};
+  auto workspace = survey.workspace();
+  for (const PulseIndex i : {0U, 1U, 2U, 0U, 2U, 1U, 3U, 4U, 5U}) {
+    CAPTURE(i);
+    const Outcome o = survey(i, workspace);
+    CHECK(o.hits == (i % 3 == 0 ? survey.subrays() : 1));
   }
 }
 

@@ -135,6 +135,7 @@ concept Target = BundleTarget<T> || RayTarget<T>;
 
 /// How a beam's cross section is sampled by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along the beam.
 /// Law: the shares are not negative and sum to one.
+/// May say `static constexpr bool recorded = true`, to have all subrays handed on to the sinks, as `Recorded` does.
 template <class F>
 concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
   { f.size() } noexcept -> std::same_as<std::size_t>;
@@ -145,7 +146,7 @@ concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
 /// What a subray brought back: the input of a detector.
 struct Reflection {
   double range = 0;  ///< [m]
-  double power = 0;  ///< received, as if the pulse had no length [W]
+  double power = 0;  ///< received, as if the pulse had no length; greater than 0 [W]
   ObjectId object = 0;
   std::uint16_t classification = 0;
   double cos_incidence = 1;  ///< as in `Hit`
@@ -158,10 +159,11 @@ struct Detection {
   double waveform_start = 0;        ///< two-way travel time of the first sample [s]
 };
 
-/// Turns what the subrays brought back into echoes. Reflections come in the order of the subrays. All that it needs to write on is its
-/// `Workspace`, made once per worker by `workspace(subrays)`.
+/// Turns what the subrays brought back into echoes. Reflections come in the order of the subrays, those without power left out. All that it
+/// needs to write on is its `Workspace`, made once per worker by `workspace(subrays)`.
 /// Law: pure; echoes are sorted by range; their energy is not more than what came in.
-/// Not required: to use all reflections.
+/// Not required: to use all reflections; randomness. A detector that draws random numbers also takes a last argument, a `RandomKey` that
+/// names seed and pulse, and draws from its own `purpose` and `subray` of it.
 template <class D>
 concept Detector = std::copyable<D> && requires(const D d, const Laser& laser, std::span<Reflection> reflections, std::size_t subrays,
                                                 decltype(d.workspace(subrays))& workspace) {
@@ -169,7 +171,9 @@ concept Detector = std::copyable<D> && requires(const D d, const Laser& laser, s
 };
 
 /// How the width of an echo is measured: a policy of the waveform detectors. `samples` is the waveform [W] between the valleys to the
-/// neighbouring echoes, every `interval` [s]; the answer is a standard deviation in time [s].
+/// neighbouring echoes, every `interval` [s]; the answer is a standard deviation in time [s], NaN if there is none to be found.
+/// Not required: `width(const WaveformMoments&)`, from which `AnalyticWaveform` has the exact width without samples; `least_share()`, a
+/// share of the highest sample below which samples do not matter, so that the tail of a waveform need not be sampled.
 template <class W>
 concept EchoWidth = std::copyable<W> && requires(const W w, std::span<const double> samples, double interval) {
   { w.width(samples, interval) } noexcept -> std::same_as<double>;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -30,21 +31,23 @@ struct Echo {
   double range = 0;                  ///< along the pulse's axis [m]
   double amplitude = 0;              ///< received power at the echo's peak [W]
   double reflectance = 0;            ///< amplitude as a share of that of a white Lambertian surface met squarely at this range
-  double width = 0;                  ///< standard deviation in time; 0 if not asked for [s]
+  double width = 0;                  ///< standard deviation in time; 0 if not asked for, NaN if none was found [s]
   double cos_incidence = 1;          ///< of the strongest contributor
   ObjectId object = 0;               ///< of the strongest contributor
   std::uint16_t classification = 0;  ///< of the strongest contributor
   std::uint8_t number = 1;           ///< return number, from 1 in order of range
 };
 
-/// What became of a pulse slot. A sink sees pulses only: slots that were blocked are counted, not handed on.
+/// What became of a pulse slot. A sink sees all pulses, with or without echoes: slots that were blocked are counted, not handed on.
 enum class Fate : std::uint8_t {
   returned,         ///< at least one echo
   blocked,          ///< the optic let no pulse out
   missed,           ///< no subray met anything
   out_of_range,     ///< met something, but nothing inside the range gate
-  below_threshold,  ///< met something, but nothing strong enough
+  below_threshold,  ///< light came back from inside the range gate, but none that the detector takes for an echo
+  absorbed,         ///< met something inside the range gate, but no light came back: it was black, met edge-on, or too far in the haze
 };
+inline constexpr std::size_t fate_count = 6;
 
 /// A pulse that was sent, as the instrument reports it.
 struct Shot {
@@ -63,15 +66,28 @@ struct Shot {
   double waveform_start = 0;       ///< two-way travel time of the first sample [s]
 };
 
+/// What one subray of a pulse brought back, for those who study footprints. A subray that met nothing has an infinite range.
+struct SubrayHit : Hit {
+  double power = 0;  ///< received, as if the pulse had no length; 0 from outside the range gate [W]
+  Vec3 point{};      ///< where it met something, as the instrument takes its pose: in the world [m]
+};
+
 /// A run of consecutive pulses and what came back, in pulse order. The spans live as long as the call of the sink.
 struct EchoBatch {
   std::span<const Shot> shots;
-  std::span<const Echo> echoes;    ///< those of one shot stand together, sorted by range
-  std::span<const float> samples;  ///< waveforms: received power [W]
-  double sample_interval = 0;      ///< between two samples of a waveform [s]
+  std::span<const Echo> echoes;          ///< those of one shot stand together, sorted by range
+  std::span<const float> samples;        ///< waveforms: received power [W]
+  double sample_interval = 0;            ///< between two samples of a waveform [s]
+  std::span<const SubrayHit> subrays{};  ///< all of each shot, in the order of the footprint; empty unless it is `Recorded`
 
   [[nodiscard]] std::span<const Echo> echoes_of(const Shot& s) const noexcept { return echoes.subspan(s.first_echo, s.echoes); }
   [[nodiscard]] std::span<const float> waveform_of(const Shot& s) const noexcept { return samples.subspan(s.first_sample, s.samples); }
+
+  /// Of the shot that stands at this place in `shots`.
+  [[nodiscard]] std::span<const SubrayHit> subrays_of(std::size_t shot) const noexcept {
+    const std::size_t each = subrays.size() / shots.size();
+    return subrays.subspan(shot * each, each);
+  }
 };
 
 /// Where an echo is in the world [m].

@@ -10,12 +10,30 @@
 
 namespace pulsecast {
 
-/// What a laser sends, in the terms of its data sheet.
+/// How a beam widens: full angles at 1/e^2 of the peak irradiance [rad]; one number if the beam is round.
+struct Divergence {
+  double across;  ///< along the beam's x [rad]
+  double up;      ///< along the beam's z [rad]
+
+  constexpr Divergence(double both) noexcept : across(both), up(both) {}
+  constexpr Divergence(double across_, double up_) noexcept : across(across_), up(up_) {}
+
+  /// Up by across: 1 if the beam is round.
+  [[nodiscard]] constexpr double aspect() const noexcept { return up == across ? 1 : up / across; }
+
+  friend bool operator==(const Divergence&, const Divergence&) = default;
+};
+
+/// What a laser sends, in the terms of its data sheet. A beam from a point, or through one, has a waist without diameter.
 struct Laser {
   double wavelength = 1.064e-6;  ///< [m]
   double peak_power = 4;         ///< of a pulse [W]
   double pulse_length = 4e-9;    ///< full width at half maximum [s]
-  double divergence = 0.3e-3;    ///< full angle at 1/e^2 of the peak irradiance [rad]
+  Divergence divergence = 0.3e-3;
+  double waist_diameter = 0;  ///< at 1/e^2, where the beam is narrowest: across; up, in the proportion of the divergences [m]
+  double waist_range = 0;     ///< where that is, from the exit: a focus if it is positive [m]
+
+  [[nodiscard]] bool from_a_point() const noexcept { return waist_diameter == 0 && waist_range == 0; }
 
   friend bool operator==(const Laser&, const Laser&) = default;
 };

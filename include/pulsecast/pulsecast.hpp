@@ -31,11 +31,17 @@
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/deflector/risley_prisms.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
+#include <pulsecast/detector/analytic_waveform.hpp>
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/first_hit.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/detector/gaussian_fit.hpp>
+#include <pulsecast/detector/peaks.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
+#include <pulsecast/detector/pulse_sum.hpp>
 #include <pulsecast/detector/radiometry.hpp>
+#include <pulsecast/detector/receiver_noise.hpp>
+#include <pulsecast/detector/waveform_settings.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
@@ -58,6 +64,7 @@
 #include <pulsecast/platform/waypoints.hpp>
 #include <pulsecast/pulse.hpp>
 #include <pulsecast/run.hpp>
+#include <pulsecast/scanner/beam.hpp>
 #include <pulsecast/scanner/channels.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scanner/one_of.hpp>

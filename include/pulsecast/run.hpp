@@ -41,14 +41,17 @@ struct RunOptions {
 
 /// What a run came to.
 struct RunSummary {
-  PulseIndex slots = 0;                  ///< pulse slots done
-  std::array<std::uint64_t, 5> fates{};  ///< slots by `Fate`
+  PulseIndex slots = 0;                           ///< pulse slots done
+  std::array<std::uint64_t, fate_count> fates{};  ///< slots by `Fate`
+  double energy = 0;                              ///< sent, as in `Outcome` [J]
+  std::array<double, fate_count> spent{};  ///< of that energy, by what became of the subrays that carried it; their sum is all of it [J]
   std::uint64_t echoes = 0;
   std::uint64_t rays = 0;  ///< subrays traced
   double seconds = 0;      ///< [s]
   bool complete = true;    ///< false if it was stopped
 
   [[nodiscard]] std::uint64_t count(Fate fate) const noexcept { return fates[static_cast<std::size_t>(fate)]; }
+  [[nodiscard]] double share(Fate fate) const noexcept { return energy > 0 ? spent[static_cast<std::size_t>(fate)] / energy : 0; }
   [[nodiscard]] PulseIndex pulses() const noexcept { return slots - count(Fate::blocked); }  ///< that were sent
 };
 
@@ -59,21 +62,24 @@ struct Chunk {
   std::vector<Shot> shots;
   std::vector<Echo> echoes;
   std::vector<float> samples;
+  std::vector<SubrayHit> subrays;
   RunSummary counts;
 
-  void clear() noexcept { shots.clear(), echoes.clear(), samples.clear(), counts = {}; }
+  void clear() noexcept { shots.clear(), echoes.clear(), samples.clear(), subrays.clear(), counts = {}; }
 
   void append(const Outcome& outcome) {
     ++counts.slots;
     ++counts.fates[static_cast<std::size_t>(outcome.shot.fate)];
     if (outcome.shot.fate == Fate::blocked) return;
-    Shot shot = outcome.shot;
+    Shot& shot = shots.emplace_back(outcome.shot);
     shot.first_echo = static_cast<std::uint32_t>(echoes.size()), shot.echoes = static_cast<std::uint32_t>(outcome.echoes.size());
     shot.first_sample = samples.size(), shot.samples = static_cast<std::uint32_t>(outcome.waveform.size());
-    shots.push_back(shot);
     echoes.insert(echoes.end(), outcome.echoes.begin(), outcome.echoes.end());
-    samples.insert(samples.end(), outcome.waveform.begin(), outcome.waveform.end());
+    if (!outcome.waveform.empty()) samples.insert(samples.end(), outcome.waveform.begin(), outcome.waveform.end());
+    if (!outcome.subrays.empty()) subrays.insert(subrays.end(), outcome.subrays.begin(), outcome.subrays.end());
     counts.echoes += outcome.echoes.size();
+    counts.energy += outcome.energy;
+    for (std::size_t f = 0; f < fate_count; ++f) counts.spent[f] += outcome.energy * outcome.shares[f];
   }
 };
 
@@ -139,7 +145,9 @@ class Conveyor {
 template <class Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   expect_within("RunOptions::stride", static_cast<double>(options.stride), 1, 1e18, "");
-  constexpr PulseIndex slots_per_chunk = 2048;
+  const PulseIndex subrays_per_chunk = 65'536;  // where they are recorded, else they take no room
+  const PulseIndex slots_per_chunk =
+      std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, PulseIndex{2048});
   const PulseIndex end = std::min(options.end, survey.size()), first = std::min(options.first, end);
   const PulseIndex slots = (end - first + options.stride - 1) / options.stride;
   const unsigned threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
@@ -149,11 +157,12 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   detail::Conveyor conveyor((slots + slots_per_chunk - 1) / slots_per_chunk, 2 * std::size_t{threads} + 2, options.stop);
   RunSummary summary;
   const auto deliver = [&](detail::Chunk& chunk) {
-    const EchoBatch batch{chunk.shots, chunk.echoes, chunk.samples, survey.sample_interval()};
+    const EchoBatch batch{chunk.shots, chunk.echoes, chunk.samples, survey.sample_interval(), chunk.subrays};
     (sinks(batch), ...);
     summary.slots += chunk.counts.slots;
     summary.echoes += chunk.counts.echoes;
-    for (std::size_t f = 0; f < summary.fates.size(); ++f) summary.fates[f] += chunk.counts.fates[f];
+    summary.energy += chunk.counts.energy;
+    for (std::size_t f = 0; f < fate_count; ++f) summary.fates[f] += chunk.counts.fates[f], summary.spent[f] += chunk.counts.spent[f];
     if (options.progress) options.progress({summary.slots, slots, summary.echoes, elapsed()});
   };
   const auto work = [&]() noexcept {

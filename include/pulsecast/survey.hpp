@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -22,6 +23,11 @@ struct Outcome {
   std::span<const Echo> echoes;
   std::span<const float> waveform;
   std::size_t hits = 0;  ///< subrays that met something
+  double energy = 0;     ///< that was sent: peak power by pulse length; the shape of a pulse in time makes some percent of difference [J]
+  std::array<double, fate_count> shares{};  ///< of that energy, by what became of it; they sum to one, or to nothing if nothing was sent
+  std::span<const SubrayHit> subrays{};     ///< all of them, if the footprint is `Recorded`
+
+  [[nodiscard]] double share(Fate fate) const noexcept { return shares[static_cast<std::size_t>(fate)]; }
 };
 
 /// The whole of a simulation, as a pure function from a pulse index to echoes. Made once; from then on nothing in it changes, so that
@@ -43,23 +49,33 @@ class Survey {
   struct Workspace {
     Laser laser;  ///< that `budget` and `fan` are made for
     LinkBudget budget;
-    std::vector<Vec3> fan;  ///< directions of the subrays in the frame of the beam
-    std::vector<Hit> hits;  ///< of a bundle
+    std::vector<Vec3> fan;    ///< directions of the subrays in the frame of the beam
+    std::vector<Vec3> exits;  ///< where they leave, in the frame of the beam; not set for a beam from a point [m]
+    std::vector<Hit> hits;    ///< of a bundle
     std::vector<Reflection> reflections;
+    std::vector<SubrayHit> subrays;  ///< all of a pulse, if they are recorded
     decltype(std::declval<const Instrument&>().workspace(0)) detector;
   };
 
   [[nodiscard]] Workspace workspace() const {
     const Laser laser{};
     const std::size_t n = footprint_.size();
-    Workspace w{laser, {receiver_, laser}, std::vector<Vec3>(n), std::vector<Hit>(RayBundle::capacity), {}, detector_.workspace(n)};
-    spread(w.fan, laser.divergence);
+    Workspace w{laser,
+                {receiver_, laser},
+                std::vector<Vec3>(n),
+                std::vector<Vec3>(n),
+                std::vector<Hit>(RayBundle::capacity),
+                {},
+                std::vector<SubrayHit>(recorded_subrays()),
+                detector_.workspace(n)};
+    spread(laser, w);
     w.reflections.reserve(n);
     return w;
   }
 
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
   [[nodiscard]] std::size_t subrays() const noexcept { return footprint_.size(); }
+  [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }  ///< handed on with each pulse
   [[nodiscard]] const Source& source() const noexcept { return source_; }
   [[nodiscard]] const Instrument& detector() const noexcept { return detector_; }
 
@@ -87,13 +103,19 @@ class Survey {
     out.shot.leg = pulse->leg, out.shot.channel = pulse->channel;
 
     if (pulse->laser != w.laser) make_for(pulse->laser, w);
-    out.hits = trace(*pulse, w);
+    const Spent spent = trace(*pulse, reported, w);
+    out.energy = pulse->laser.peak_power * pulse->laser.pulse_length;
+    out.subrays = w.subrays;
+    out.shares[static_cast<std::size_t>(Fate::missed)] = spent.missed;
+    out.shares[static_cast<std::size_t>(Fate::out_of_range)] = spent.out_of_range;
+    out.shares[static_cast<std::size_t>(Fate::absorbed)] = spent.absorbed;
+    out.hits = spent.hits;
     if (w.reflections.empty()) {
-      out.shot.fate = out.hits > 0 ? Fate::out_of_range : Fate::missed;
+      out.shot.fate = spent.any_in_gate ? Fate::absorbed : spent.hits > 0 ? Fate::out_of_range : Fate::missed;
       return out;
     }
 
-    const Detection detection = detector_.detect(pulse->laser, w.reflections, w.detector);
+    const Detection detection = detect(pulse->laser, i, w);
     for (Echo& echo : detection.echoes) {
       echo.reflectance = echo.amplitude / w.budget.power(1, 1, echo.range);
       if (!receiver_.range_errors.none())
@@ -103,45 +125,86 @@ class Survey {
     out.waveform = detection.waveform;
     out.shot.waveform_start = detection.waveform_start;
     out.shot.fate = detection.echoes.empty() ? Fate::below_threshold : Fate::returned;
+    out.shares[static_cast<std::size_t>(out.shot.fate)] = spent.reflected;
     return out;
   }
 
  private:
-  /// Sets the directions of the subrays for a divergence [rad].
-  void spread(std::span<Vec3> fan, double divergence) const noexcept {
-    for (std::size_t j = 0; j < fan.size(); ++j) fan[j] = subray_direction(footprint_.offset(j), divergence);
+  [[nodiscard]] Detection detect(const Laser& laser, PulseIndex i, Workspace& w) const noexcept {
+    const RandomKey key{.seed = seed_, .pulse = i};
+    if constexpr (requires { detector_.detect(laser, w.reflections, w.detector, key); })
+      return detector_.detect(laser, w.reflections, w.detector, key);
+    else
+      return detector_.detect(laser, w.reflections, w.detector);
+  }
+
+  static constexpr bool recorded = requires { requires bool{Pattern::recorded}; };
+
+  void spread(const Laser& laser, Workspace& w) const noexcept {
+    for (std::size_t j = 0; j < w.fan.size(); ++j) w.fan[j] = subray_direction(footprint_.offset(j), laser.divergence);
+    if (laser.from_a_point()) return;
+    for (std::size_t j = 0; j < w.exits.size(); ++j) w.exits[j] = subray_exit(footprint_.offset(j), laser);
   }
 
   void make_for(const Laser& laser, Workspace& w) const noexcept {
-    if (laser.divergence != w.laser.divergence) spread(w.fan, laser.divergence);
+    if (laser.divergence != w.laser.divergence || laser.waist_diameter != w.laser.waist_diameter ||
+        laser.waist_range != w.laser.waist_range)
+      spread(laser, w);
     w.budget = LinkBudget(receiver_, laser);
     w.laser = laser;
   }
 
-  /// Fills in the reflections that pass the range gate; returns how many subrays met anything.
-  std::size_t trace(const Pulse<frame::World>& pulse, Workspace& w) const noexcept {
+  /// What the subrays of a pulse met, and the shares of its energy that they carried there.
+  struct Spent {
+    double missed = 0, out_of_range = 0, absorbed = 0, reflected = 0;
+    std::size_t hits = 0;
+    bool any_in_gate = false;
+  };
+
+  /// Fills in the reflections, and the subrays if they are recorded.
+  Spent trace(const Pulse<frame::World>& pulse, const Pose<frame::Beam, frame::World>& reported, Workspace& w) const noexcept {
     w.reflections.clear();
-    std::size_t met = 0;
+    Spent spent;
     RayBundle rays;
     rays.origin = pulse.origin();
     rays.wavelength = pulse.laser.wavelength, rays.tick = pulse.tick, rays.seed = seed_, rays.pulse = pulse.index;
     const Matrix3 world_from_beam = matrix_of(pulse.pose.rotation);
+    const bool from_a_point = pulse.laser.from_a_point();
     for (std::size_t first = 0; first < w.fan.size(); first += rays.size) {
       rays.first_subray = static_cast<std::uint32_t>(first);
-      rays.size = std::min(RayBundle::capacity, w.fan.size() - first);
+      rays.size = std::min(from_a_point ? RayBundle::capacity : 1, w.fan.size() - first);
+      if (!from_a_point) rays.origin = pulse.origin() + world_from_beam * w.exits[first];
       for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, world_from_beam * w.fan[first + j]);
       rays.pad();
       ask(rays, w.hits);
       for (std::size_t j = 0; j < rays.size; ++j) {
         const Hit& hit = w.hits[j];
-        if (!hit.met()) continue;
-        ++met;
-        if (receiver_.in_gate(hit.range))
-          w.reflections.push_back({hit.range, w.budget.power(footprint_.share(first + j), hit.backscatter, hit.range), hit.object,
-                                   hit.classification, hit.cos_incidence});
+        const double share = footprint_.share(first + j);
+        if constexpr (recorded) {
+          const Vec3 exit = from_a_point ? Vec3{} : w.exits[first + j];
+          w.subrays[first + j] = {hit, 0, hit.met() ? reported.point(exit + hit.range * w.fan[first + j]) : Vec3{}};
+        }
+        if (!hit.met()) {
+          spent.missed += share;
+          continue;
+        }
+        ++spent.hits;
+        if (!receiver_.in_gate(hit.range)) {
+          spent.out_of_range += share;
+          continue;
+        }
+        spent.any_in_gate = true;
+        const double power = w.budget.power(share, hit.backscatter, hit.range);
+        if (!(power > 0)) {
+          spent.absorbed += share;
+          continue;
+        }
+        spent.reflected += share;
+        w.reflections.push_back({hit.range, power, hit.object, hit.classification, hit.cos_incidence});
+        if constexpr (recorded) w.subrays[first + j].power = power;
       }
     }
-    return met;
+    return spent;
   }
 
   void ask(const RayBundle& rays, std::span<Hit> hits) const noexcept {

@@ -39,3 +39,25 @@ TEST_CASE("one sample, none, or no power at all have no width") {
   CHECK(MomentWidth{}.width(std::vector<double>{}, 1e-9) == 0);
   CHECK(MomentWidth{}.width(std::vector<double>{0, 0, 0}, 1e-9) == 0);
 }
+
+TEST_CASE("moments of stretches add up to those of the whole") {
+  WaveformMoments whole, parts;
+  const double samples[] = {1, 4, 2, 7, 1, 3};
+  for (int i = 0; i < 6; ++i) {
+    const double t = i;
+    whole.add({samples[i], samples[i] * t, samples[i] * t * t}, 0);
+    parts.add({samples[i], 0, 0}, t);
+  }
+  CHECK(parts.energy == whole.energy);
+  CHECK(parts.first == support::relative(whole.first, 1e-14));
+  CHECK(parts.second == support::relative(whole.second, 1e-14));
+  CHECK(MomentWidth{}.width(whole) == support::relative(MomentWidth{}.width(samples, 1), 1e-14));
+  CHECK(MomentWidth{}.width(WaveformMoments{}) == 0);
+}
+
+TEST_CASE("the outgoing pulse has the width that a surface met squarely gives") {
+  const PulseShape shape(4e-9);
+  CHECK(pulse_width(NoWidth{}, shape, 0.25e-9) == 0);
+  CHECK(pulse_width(MomentWidth{}, shape, 0.25e-9) == support::relative(shape.deviation(), 1e-3));
+  CHECK(pulse_width(MomentWidth{}, shape, 0.05e-9) == support::relative(shape.deviation(), 1e-4));
+}

@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/detector/gaussian_fit.hpp>
+
 #include "support/generators.hpp"
 #include "support/laws.hpp"
 #include "support/relative.hpp"
@@ -95,7 +97,7 @@ TEST_CASE("a coarser digitiser errs more, by what a quartic through five of its 
   };
   for (const Limits& limit : {Limits{0.25e-9, 0.05e-3, 1e-5}, Limits{0.5e-9, 0.5e-3, 5e-4}, Limits{1e-9, 10e-3, 0.02}}) {
     CAPTURE(limit.interval);
-    const FullWaveform detector(WaveformSettings{.sample_interval = limit.interval});
+    const FullWaveform detector(WaveformSettings{.sample_interval = limit.interval, .timing = EchoTiming::peak});
     double range_error = 0, amplitude_error = 0;
     for (int k = 0; k < 1000; ++k) {
       const double range = 100 + 0.000777 * k;
@@ -141,7 +143,7 @@ TEST_CASE("two equal hits far apart are two echoes of full strength, and two clo
 }
 
 TEST_CASE("echoes are the peaks of the sum of all pulses, as found on a finer grid") {
-  const FullWaveform detector(WaveformSettings{.threshold = 0, .window = 0, .max_returns = 255});
+  const FullWaveform detector(WaveformSettings{.threshold = 0, .window = 0, .max_returns = 255, .timing = EchoTiming::peak});
   int compared = 0, several = 0, peaks_compared = 0, off_by_a_millimetre = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     CAPTURE(seed);
@@ -315,16 +317,126 @@ TEST_CASE("full waveforms keep the laws of a detector") {
 }
 
 TEST_CASE("a waveform detector refuses settings that cannot be") {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double bad : {0.0, -1e-9, nan}) {
-    CHECK_THROWS_AS(FullWaveform(WaveformSettings{.sample_interval = bad}), SettingError);
-    CHECK_THROWS_AS(FullWaveform(WaveformSettings{.shape_divisor = bad}), SettingError);
+  CHECK_THROWS_AS(FullWaveform(WaveformSettings{.sample_interval = 0}), SettingError);
+  CHECK_THROWS_AS(FullWaveform(WaveformSettings{}, NoWidth{}, ReceiverNoise{.deviation = -1}), SettingError);
+}
+
+TEST_CASE("an echo is timed by the energy of its reflections, or by its peak, which is later on a slope") {
+  std::vector<Reflection> slope;
+  for (int k = 0; k <= 100; ++k) slope.push_back({100 + 0.01 * k, 1e-10});
+  const double energy = echoes_of(FullWaveform(WaveformSettings{}), slope).at(0).range;
+  const double peak = echoes_of(FullWaveform(WaveformSettings{.timing = EchoTiming::peak}), slope).at(0).range;
+  CHECK(std::fabs(energy - 100.5) < 1e-9);
+  CHECK(peak > 100.51);
+  CHECK(peak < 100.5 + speed_of_light * PulseShape(laser.pulse_length).tau);
+}
+
+TEST_CASE("peaks closer than the separation are one echo, and an echo makes the receiver blind for its dead time") {
+  const std::vector<Reflection> reflections{{50, 1e-8}, {51, 3e-8}, {60, 1e-8}};
+  const auto two = echoes_of(FullWaveform<MomentWidth>(WaveformSettings{.separation = 10e-9}), reflections);
+  REQUIRE(two.size() == 2);
+  CHECK(two[0].range == support::relative(50.75, 1e-9));
+  // Source: variances add up; two spikes of shares p and 1 - p a distance apart have p (1 - p) of its square
+  const double apart = 2 / speed_of_light, deviation = PulseShape(laser.pulse_length).deviation();
+  CHECK(two[0].width == support::relative(std::sqrt(deviation * deviation + 0.25 * 0.75 * apart * apart), 0.005));
+  const auto blind = echoes_of(FullWaveform(WaveformSettings{.dead_time = 66e-9}), reflections);
+  REQUIRE(blind.size() == 2);
+  CHECK(blind[0].range == support::relative(50, 1e-9));
+  CHECK(blind[1].range == support::relative(60, 1e-9));  // 10 m are 66.7 ns
+  CHECK(echoes_of(FullWaveform(WaveformSettings{.dead_time = 67e-9}), reflections).size() == 1);
+}
+
+TEST_CASE("noise is that of its key: of seed, pulse and sample") {
+  const FullWaveform detector(WaveformSettings{.record_length = 1000e-9}, NoWidth{}, ReceiverNoise{.deviation = 1e-9});
+  auto workspace = detector.workspace(1);
+  const auto record = [&](RandomKey key, double range = 60) {
+    std::vector<Reflection> one{{range, 1e-8}};
+    const auto w = detector.detect(laser, one, workspace, key).waveform;
+    return std::vector<float>(w.begin(), w.end());
+  };
+  CHECK(record({.seed = 1, .pulse = 2}) == record({.seed = 1, .pulse = 2}));
+  CHECK(record({.seed = 1, .pulse = 2}) == record({.seed = 1, .pulse = 2, .subray = 7, .purpose = Purpose::scene}));
+  CHECK(record({.seed = 1, .pulse = 2}) != record({.seed = 1, .pulse = 3}));
+  CHECK(record({.seed = 1, .pulse = 2}) != record({.seed = 2, .pulse = 2}));
+}
+
+TEST_CASE("samples of noise have the deviation and the mean asked for, as long as the record is, on top of the pulse") {
+  const ReceiverNoise noise{.deviation = 1e-9, .background = 5e-9};
+  const WaveformSettings settings{.record_length = 10000e-9};
+  const FullWaveform noisy(settings, NoWidth{}, noise), still(settings);
+  auto workspace = noisy.workspace(2), other = still.workspace(2);
+  std::vector<Reflection> reflections{{60, 1e-7}, {1000, 1e-7}};
+  const auto a = noisy.detect(laser, reflections, workspace, {.seed = 5});
+  const auto b = still.detect(laser, reflections, other);
+  REQUIRE(a.waveform.size() == 40000);
+  CHECK(a.waveform_start == b.waveform_start);
+  double sum = 0, square = 0;
+  for (std::size_t i = 0; i < a.waveform.size(); ++i) {
+    const double error = static_cast<double>(a.waveform[i]) - (i < b.waveform.size() ? static_cast<double>(b.waveform[i]) : 0);
+    sum += error, square += error * error;
   }
-  for (const double bad : {-1e-9, nan}) {
-    CHECK_THROWS_AS(FullWaveform(WaveformSettings{.threshold = bad}), SettingError);
-    CHECK_THROWS_AS(FullWaveform(WaveformSettings{.window = bad}), SettingError);
-    CHECK_THROWS_AS(FullWaveform(WaveformSettings{.record_length = bad}), SettingError);
+  const double mean = sum / 40000, deviation = noise.deviation_of_sample(laser.wavelength, settings.sample_interval);
+  CHECK(std::fabs(mean - 5e-9) < 5 * deviation / 200);
+  CHECK(std::sqrt(square / 40000 - mean * mean) == support::relative(deviation, 5 / std::sqrt(2 * 40000.0)));
+}
+
+TEST_CASE("false echoes come at the rate that the normal distribution predicts") {
+  // A sample is a peak of the noise above T if it is above T and its two neighbours are below it. For independent samples that is
+  // the integral of f F^2 from T on, with f the density and F the distribution: (1 - F(T)^3) / 3.
+  constexpr std::size_t samples = 100'000;
+  for (const double threshold : {0.0, 1.0, 2.0, 3.0}) {
+    CAPTURE(threshold);
+    const WaveformSettings settings{.threshold = threshold * 1e-9, .window = 0, .max_returns = 255, .record_length = 1000 * 0.25e-9};
+    const FullWaveform detector(settings, NoWidth{}, ReceiverNoise{.deviation = 1e-9});
+    auto workspace = detector.workspace(1);
+    std::size_t found = 0, looked_at = 0;
+    for (PulseIndex pulse = 0; looked_at < samples; ++pulse) {
+      std::vector<Reflection> faint{{100, 1e-30}};
+      const Detection d = detector.detect(laser, faint, workspace, {.seed = 11, .pulse = pulse});
+      REQUIRE(d.waveform.size() >= 1000);
+      // where the number of returns ends the search, it was over there
+      const double end = d.echoes.size() < 255 ? static_cast<double>(d.waveform.size())
+                                               : std::round((2 * d.echoes[254].range / speed_of_light - d.waveform_start) / 0.25e-9);
+      found += d.echoes.size(), looked_at += static_cast<std::size_t>(end);
+      for (const Echo& e : d.echoes) CHECK(e.amplitude >= threshold * 1e-9);
+    }
+    const double below = 0.5 * std::erfc(-threshold / std::sqrt(2.0));
+    const double expected = (1 - below * below * below) / 3 * static_cast<double>(looked_at);
+    CHECK(std::fabs(static_cast<double>(found) - expected) <
+          5 * std::sqrt(expected) + 0.005 * expected);  // the ends of a record have no peaks
   }
-  CHECK_THROWS_AS(FullWaveform(WaveformSettings{.max_returns = 0}), SettingError);
-  CHECK_THROWS_AS(FullWaveform(WaveformSettings{.max_returns = 256}), SettingError);
+}
+
+TEST_CASE("the more noise, the more an echo's range and amplitude vary, and without noise nothing does") {
+  const auto spread = [](double deviation) {
+    const FullWaveform detector(WaveformSettings{.threshold = 3e-9, .window = 10e-9}, NoWidth{}, ReceiverNoise{.deviation = deviation});
+    auto workspace = detector.workspace(1);
+    double sum = 0;
+    for (PulseIndex pulse = 0; pulse < 500; ++pulse) {
+      std::vector<Reflection> one{{100, 1e-8}};
+      const Detection d = detector.detect(laser, one, workspace, {.pulse = pulse});
+      REQUIRE(d.echoes.size() == 1);
+      sum += std::pow(d.echoes[0].range - 100, 2);
+    }
+    return std::sqrt(sum / 500);
+  };
+  CHECK(spread(0) < 1e-9);
+  CHECK(spread(1e-16) < 1e-4);
+  CHECK(spread(1e-11) < spread(1e-10));
+  CHECK(spread(1e-10) < spread(5e-10));
+  CHECK(spread(5e-10) < 0.3);
+}
+
+TEST_CASE("noise does not break the laws of a detector, nor grow beyond the workspace") {
+  std::vector<std::vector<Reflection>> cases{{}};
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    support::Generator any(seed);
+    std::vector<Reflection> c(1 + any.whole(20));
+    const double start = any.log_uniform(1, 3000), spread = any.log_uniform(0.01, 300);
+    for (Reflection& r : c) r = {start + any.uniform(0, spread), any.log_uniform(1e-6, 1e-5)};
+    cases.push_back(c);
+  }
+  const WaveformSettings settings{.threshold = 0, .window = 0, .max_returns = 255, .record_length = 10000e-9};
+  CHECK(support::detector_laws(FullWaveform(settings, MomentWidth{}, ReceiverNoise{.deviation = 1e-11}), laser, cases) == "");
+  CHECK(support::detector_laws(FullWaveform(settings, GaussianFit{}, ReceiverNoise{.deviation = 1e-11}), laser, cases) == "");
 }

@@ -52,3 +52,9 @@ TEST_CASE("a pulse's deviation is that of its shape") {
   CHECK(mean == support::relative(shape.tau, 1e-6));  // the mean of a gamma distribution of order 3 is one tau after its peak
   CHECK(std::sqrt(second / sum - mean * mean) == support::relative(shape.deviation(), 1e-6));
 }
+
+TEST_CASE("a pulse has fallen to a share by when it says, and stays below") {
+  const PulseShape shape(4e-9);
+  for (double share = 1; share > 1e-12; share *= 0.7)
+    for (double later = 0; later < 20; later += 0.5) CHECK(shape((PulseShape::fallen_to(share) + later) * shape.tau) <= share);
+}

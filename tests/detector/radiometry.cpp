@@ -53,6 +53,13 @@ TEST_CASE("received power is proportional to share and backscatter, so that shar
   CHECK(budget.power(1, 0, 50) == 0);
 }
 
+TEST_CASE("nothing brings back more than was sent, however near") {
+  const Receiver receiver{.diameter = 0.2, .efficiency = 1, .visibility = infinity};
+  const LinkBudget budget(receiver, Laser{.peak_power = 4});
+  for (const double range : {0.0, 1e-9, 0.01, 0.0999, 0.1}) CHECK(budget.power(1, 1, range) == support::relative(4, 1e-14));
+  CHECK(budget.power(1, 1, 0.2) == support::relative(1, 1e-14));
+}
+
 TEST_CASE("a receiver's gate holds its ends") {
   const Receiver receiver{.range_min = 2, .range_max = 100};
   CHECK(receiver.in_gate(2));

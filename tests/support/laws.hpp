@@ -50,7 +50,8 @@ bool same(const std::optional<Pose<From, To>>& a, const std::optional<Pose<From,
 
 inline bool same(const Laser& a, const Laser& b) noexcept {
   return same(a.wavelength, b.wavelength) && same(a.peak_power, b.peak_power) && same(a.pulse_length, b.pulse_length) &&
-         same(a.divergence, b.divergence);
+         same(a.divergence.across, b.divergence.across) && same(a.divergence.up, b.divergence.up) &&
+         same(a.waist_diameter, b.waist_diameter) && same(a.waist_range, b.waist_range);
 }
 
 template <class Frame>

@@ -3,12 +3,36 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/pulse_shape.hpp>
+#include <pulsecast/detector/pulse_sum.hpp>
 
 namespace pulsecast {
+
+/// Integrals of a stretch of waveform over time: of the power, and of the power times the time and its square since some moment.
+struct WaveformMoments {
+  double energy = 0, first = 0, second = 0;
+
+  /// Adds a stretch whose moment is later by a time.
+  void add(const WaveformMoments& m, double later) noexcept {
+    energy += m.energy;
+    first += m.first + later * m.energy;
+    second += m.second + later * (2 * m.first + later * m.energy);
+  }
+
+  /// Standard deviation in time, in the unit of the moments; 0 if there is none.
+  [[nodiscard]] double deviation() const noexcept {
+    if (!(energy > 0)) return 0;
+    const double mean = first / energy;
+    const double variance = second / energy - mean * mean;
+    return variance > 0 ? std::sqrt(variance) : 0;
+  }
+};
 
 /// Not measured: 0.
 struct NoWidth {
@@ -18,18 +42,35 @@ struct NoWidth {
 /// By the second central moment of the waveform.
 struct MomentWidth {
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {
-    double sum = 0, first = 0, second = 0;
+    WaveformMoments m;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double t = static_cast<double>(i);
-      sum += samples[i], first += samples[i] * t, second += samples[i] * t * t;
+      m.energy += samples[i], m.first += samples[i] * t, m.second += samples[i] * t * t;
     }
-    if (!(sum > 0)) return 0;
-    const double mean = first / sum;
-    const double variance = second / sum - mean * mean;
-    return variance > 0 ? interval * std::sqrt(variance) : 0;
+    return interval * m.deviation();
   }
+
+  [[nodiscard]] double width(const WaveformMoments& moments) const noexcept { return moments.deviation(); }
 };
 
 static_assert(EchoWidth<NoWidth> && EchoWidth<MomentWidth>);
+
+/// How long after the peak of its last pulse a waveform matters to a width [tau].
+template <EchoWidth Width>
+[[nodiscard]] double tail_of(const Width& width) noexcept {
+  if constexpr (requires { width.least_share(); })
+    return std::fmin(SampledSum::negligible, PulseShape::fallen_to(width.least_share()));
+  else
+    return std::same_as<Width, NoWidth> ? 0 : SampledSum::negligible;
+}
+
+/// The width of the outgoing pulse by the measure of its echoes [s], to compare them with: what a surface met squarely would give.
+/// Sampled every `interval` [s]; not for the hot path.
+template <EchoWidth Width>
+[[nodiscard]] double pulse_width(const Width& width, const PulseShape& shape, double interval) {
+  std::vector<double> samples;
+  for (double t = -PulseShape::peak * shape.tau; t < SampledSum::negligible * shape.tau; t += interval) samples.push_back(shape(t));
+  return width.width(samples, interval);
+}
 
 }  // namespace pulsecast

@@ -21,6 +21,10 @@ struct PulseShape {
   /// Standard deviation in time [s]: the shape is a gamma distribution of order 3.
   [[nodiscard]] double deviation() const noexcept { return std::numbers::sqrt3 * tau; }
 
+  /// A time since the peak after which the power is below a share of it [tau]: as u^2 e^(-u/2) is at most 16/e^2, the shape is at most
+  /// 4 e^(-u/2), with u = t/tau.
+  [[nodiscard]] static double fallen_to(double share) noexcept { return 2 * std::log(4 / share) - peak; }
+
   /// Power at time t since the peak [s]; 1 at t = 0.
   [[nodiscard]] double operator()(double t) const noexcept {
     const double u = t / tau + peak;

@@ -69,15 +69,18 @@ class LinkBudget {
  public:
   LinkBudget(const Receiver& receiver, const Laser& laser) noexcept
       : gain_(laser.peak_power * receiver.diameter * receiver.diameter * receiver.efficiency / 4),
+        near_(receiver.diameter * receiver.diameter / 4),
         extinction_(extinction(laser.wavelength, receiver.visibility)) {}
 
   /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in `Hit`) at a range [m].
+  /// Nearer than half its diameter the aperture gets what it gets there: all that comes back, and not more.
   [[nodiscard]] double power(double share, double backscatter, double range) const noexcept {
-    return gain_ * share * backscatter / (range * range) * std::exp(-2 * extinction_ * range);
+    const double square = range * range;
+    return gain_ * share * backscatter / (square > near_ ? square : near_) * std::exp(-2 * extinction_ * range);
   }
 
  private:
-  double gain_, extinction_;
+  double gain_, near_, extinction_;
 };
 
 }  // namespace pulsecast

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/expect.hpp>
@@ -53,7 +54,8 @@ class RingFootprint {
   std::vector<double> shares_;
 };
 
-/// Subrays of equal energy on a sunflower's spiral: the golden angle from one to the next, radii at the quantiles of a Gaussian beam.
+/// Subrays of equal energy on a sunflower's spiral: the golden angle from one to the next, radii at the quantiles of a Gaussian beam, and the
+/// whole shifted so that its middle is on the axis.
 /// Source: Vogel 1979 for the spiral; radius from inverting 1 - exp(-2 r^2 / w^2).
 class SunflowerFootprint {
  public:
@@ -67,6 +69,8 @@ class SunflowerFootprint {
       const double angle = golden_angle * static_cast<double>(j);
       offsets_.push_back({radius * std::sin(angle), radius * std::cos(angle)});
     }
+    const Vec2 aside = std::accumulate(offsets_.begin(), offsets_.end(), Vec2{}) / n;  // else slopes would be met too near or too far
+    for (Vec2& offset : offsets_) offset -= aside;
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return offsets_.size(); }
@@ -79,14 +83,34 @@ class SunflowerFootprint {
 
 static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<SunflowerFootprint>);
 
+/// A footprint whose subrays are handed on to the sinks, each with what it met (`EchoBatch::subrays`), for those who study footprints:
+/// `Recorded{RingFootprint{5}}`.
+template <Footprint Pattern>
+struct Recorded : Pattern {
+  static constexpr bool recorded = true;
+  explicit Recorded(Pattern pattern) : Pattern(std::move(pattern)) {}
+};
+
+static_assert(Footprint<Recorded<RingFootprint>>);
+
 /// The direction of a subray in the frame of its beam: unit, along +y for no offset.
-/// `offset` is in units of the beam's 1/e^2 radius, which stands at half the divergence [rad] in the far field.
-[[nodiscard]] inline Vec3 subray_direction(const Vec2& offset, double divergence) noexcept {
-  const double radius = std::hypot(offset.x, offset.y);
+/// `offset` is in units of the beam's 1/e^2 radius, which stands at half the divergence in the far field.
+[[nodiscard]] inline Vec3 subray_direction(const Vec2& offset, const Divergence& divergence) noexcept {
+  const Vec2 scaled{offset.x, offset.y * divergence.aspect()};
+  const double radius = std::hypot(scaled.x, scaled.y);
   if (radius == 0) return forward;
-  const double angle = radius * divergence / 2;
+  const double angle = radius * divergence.across / 2;
   const double aside = std::sin(angle) / radius;
-  return {aside * offset.x, std::cos(angle), aside * offset.y};
+  return {aside * scaled.x, std::cos(angle), aside * scaled.y};
+}
+
+/// Where a subray leaves, in the frame of its beam, in the plane of the exit [m]: at the origin for a beam from a point. Else the subrays
+/// pass the waist a quarter of a turn ahead of where they are going, so that straight lines make up the hyperboloid that a beam is:
+/// at every range their distances from the axis are those of the footprint times `beam_radius`.
+[[nodiscard]] inline Vec3 subray_exit(const Vec2& offset, const Laser& laser) noexcept {
+  const Vec3 direction = subray_direction(offset, laser.divergence);
+  const Vec3 at_waist = 0.5 * laser.waist_diameter * Vec3{-offset.y, 0, offset.x * laser.divergence.aspect()};
+  return at_waist - direction * (laser.waist_range / direction.y) + Vec3{0, laser.waist_range, 0};
 }
 
 }  // namespace pulsecast

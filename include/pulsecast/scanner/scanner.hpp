@@ -25,7 +25,12 @@ struct Scanner {
     expect_positive("Laser::wavelength", laser.wavelength, "m");
     expect_positive("Laser::peak_power", laser.peak_power, "W");
     expect_positive("Laser::pulse_length", laser.pulse_length, "s");
-    expect_within("Laser::divergence", laser.divergence, 0, 30_deg, "rad");
+    expect_within("Laser::divergence", laser.divergence.across, 0, 30_deg, "rad");
+    expect_within("Laser::divergence", laser.divergence.up, 0, 30_deg, "rad");
+    if ((laser.divergence.across > 0) != (laser.divergence.up > 0))
+      throw SettingError("Laser::divergence", 0, "rad", "greater than 0 both across and up, or neither");
+    expect_not_negative("Laser::waist_diameter", laser.waist_diameter, "m");
+    expect_finite("Laser::waist_range", laser.waist_range, "m");
   }
 
   [[nodiscard]] PulseIndex size() const noexcept { return pulses; }

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/echo_width.hpp>
+#include <pulsecast/detector/peaks.hpp>
+#include <pulsecast/detector/pulse_shape.hpp>
+#include <pulsecast/detector/pulse_sum.hpp>
+#include <pulsecast/detector/waveform_settings.hpp>
+
+namespace pulsecast {
+
+/// The sum of the pulse shapes of all reflections whose leading edges have passed, in closed form until the next one comes in.
+///
+/// An edge that passed an age u ago, in tau, gives P u^2 e^-u. Weigh each age by P e^-u: with the sum W of the weights, the mean m and the
+/// variance v of the ages, the sum of pulses is W (m^2 + v), and after a time x it is W e^-x ((m + x)^2 + v). Its slope is zero at ages
+/// m + x = 1 - sqrt(1 - v), in a valley, and 1 + sqrt(1 - v), at a peak; and nowhere, for v > 1. Derived from `PulseShape`.
+class PulseAges {
+ public:
+  /// A pulse whose leading edge comes in now.
+  void add(double power) noexcept {
+    const double sum = weight_ + power, share = power / sum;
+    variance_ = (1 - share) * (variance_ + share * mean_ * mean_);
+    mean_ *= 1 - share;
+    weight_ = sum;
+  }
+
+  /// After a time [tau].
+  void advance(double x) noexcept {
+    weight_ *= std::exp(-x);
+    mean_ += x;
+  }
+
+  [[nodiscard]] bool can_turn() const noexcept { return variance_ < 1; }
+  [[nodiscard]] double until_valley() const noexcept { return 1 - std::sqrt(1 - variance_) - mean_; }  ///< negative if it has passed [tau]
+  [[nodiscard]] double until_peak() const noexcept { return 1 + std::sqrt(1 - variance_) - mean_; }    ///< negative if it has passed [tau]
+
+  [[nodiscard]] double power() const noexcept { return weight_ * (mean_ * mean_ + variance_) * PulseShape::to_unit_peak; }
+
+  /// Integrals of the sum from now on, times counted from now on [tau].
+  [[nodiscard]] WaveformMoments until(double x) const noexcept {
+    std::array<double, 5> g{};  // integrals of t^k e^-t from 0 to x, by parts
+    const double rest = std::exp(-x);
+    double term = rest;  // x^k e^-x
+    g[0] = 1 - rest;
+    for (std::size_t k = 1; k < g.size(); ++k) {
+      if (term > 0) term *= x;  // an infinite x has none
+      g[k] = static_cast<double>(k) * g[k - 1] - term;
+    }
+    const double c0 = mean_ * mean_ + variance_, c1 = 2 * mean_, w = weight_ * PulseShape::to_unit_peak;
+    return {w * (c0 * g[0] + c1 * g[1] + g[2]), w * (c0 * g[1] + c1 * g[2] + g[3]), w * (c0 * g[2] + c1 * g[3] + g[4])};
+  }
+
+ private:
+  double weight_ = 0, mean_ = 0, variance_ = 0;
+};
+
+/// Finds the peaks of the sum of the pulse shapes of all reflections without sampling it: their times and heights are exact. Between the
+/// leading edges of two pulses the sum is a quadratic polynomial times one exponential, so that it turns at the roots of a quadratic; one
+/// pass over the reflections finds them all.
+///
+/// `WaveformSettings::sample_interval` is that of the record, and of the grid on which a fitted width samples the sum; moments are exact.
+template <EchoWidth Width = NoWidth>
+class AnalyticWaveform {
+ public:
+  explicit AnalyticWaveform(WaveformSettings settings = {}, Width width = {})
+      : s_(validated(settings)), width_(validated(std::move(width))) {}
+
+  [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
+  [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
+
+  /// The width of a laser's outgoing pulse, by the measure of its echoes [s].
+  [[nodiscard]] double pulse_width(const Laser& laser) const {
+    return pulsecast::pulse_width(width_, PulseShape(laser.pulse_length, s_.shape_divisor), s_.sample_interval);
+  }
+
+  struct Workspace {
+    std::vector<Peak> peaks;
+    std::vector<double> samples;  ///< of one echo, for a width that is fitted [W]
+    std::vector<Echo> echoes;
+    std::vector<float> record;
+  };
+
+  [[nodiscard]] Workspace workspace(std::size_t subrays) const {
+    Workspace w;
+    w.peaks.reserve(subrays);
+    if constexpr (by_samples) w.samples.reserve(most_samples);
+    w.echoes.reserve(std::min(subrays, s_.max_returns));
+    w.record.reserve(s_.record_capacity());
+    return w;
+  }
+
+  /// Sorts the reflections by range. Left out are those without power, and those so far away that samples could not be counted.
+  [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> all, Workspace& w) const noexcept {
+    const std::span<const Reflection> reflections = in_order_of_range(all, s_.sample_interval);
+    w.peaks.clear(), w.echoes.clear(), w.record.clear();
+    if (reflections.empty()) return {};
+    const PulseShape shape(laser.pulse_length, s_.shape_divisor);
+    find_peaks(reflections, shape, s_.apart(laser.pulse_length), w);
+    keep_echoes(s_, w.peaks);
+    for (Peak& peak : w.peaks) {
+      if constexpr (by_samples) peak.width = sampled_width(peak, reflections, shape, w.samples);
+      w.echoes.push_back(echo_of(peak, reflections, shape, s_.timing, w.echoes.size() + 1));
+    }
+    const double start = SampledSum::first_sample(reflections.front(), shape, s_.sample_interval);
+    SampledSum sum(reflections, shape, s_.sample_interval, 0, start);
+    while (w.record.size() < w.record.capacity() && (!sum.all_in() || sum.time() < sum.last_peak() + SampledSum::negligible * shape.tau))
+      w.record.push_back(static_cast<float>(sum.power()));
+    return {w.echoes, w.record, start * s_.sample_interval};
+  }
+
+ private:
+  static constexpr bool by_moments = requires(const Width w, const WaveformMoments& m) { w.width(m); };
+  static constexpr bool by_samples = !by_moments && !std::same_as<Width, NoWidth>;
+  static constexpr std::size_t most_samples = 4096;  ///< of one echo; the grid is coarser if they do not reach
+
+  void find_peaks(std::span<const Reflection> reflections, const PulseShape& shape, double apart, Workspace& w) const noexcept {
+    const double per_metre = 2 / (speed_of_light * shape.tau);
+    PulseAges ages;
+    Peak peak;             // the one at hand
+    WaveformMoments m;     // of its stretch so far
+    WaveformMoments last;  // of the peak that was entered last
+    double since = 0;      // from the begin of its stretch to the edge at hand [tau]
+    bool rising = false, met = false;
+    const auto finish = [&](double end) {
+      peak.end = end;
+      if (!met || peak.height < s_.threshold) return;
+      if (!enter(peak, apart, w.peaks)) last = {};
+      last.add(m, (peak.begin - w.peaks.back().begin) / shape.tau);
+      if constexpr (by_moments) w.peaks.back().width = shape.tau * width_.width(last);
+    };
+    for (std::size_t k = 0; k < reflections.size(); ++k) {
+      ages.add(reflections[k].power);
+      const double next = k + 1 == reflections.size() ? std::numeric_limits<double>::infinity()
+                                                      : (reflections[k + 1].range - reflections[k].range) * per_metre;
+      if (next == 0) continue;
+      const double edge = arrival(reflections[k]) - PulseShape::peak * shape.tau;
+      double x = 0;  // since the edge [tau]
+      // A turn that rounding puts just before the edge is taken to be at it, so that peaks and valleys alternate.
+      if (!rising && ages.can_turn() && ages.until_valley() < next && ages.until_peak() > 0) {
+        x = std::fmax(ages.until_valley(), 0);
+        if constexpr (by_moments) m.add(ages.until(x), since);
+        finish(edge + x * shape.tau);
+        peak = {.begin = peak.end}, m = {}, since = 0, met = false, rising = true;
+        ages.advance(x);
+      }
+      const double rest = next - x;
+      if (rising && (!ages.can_turn() || ages.until_peak() < rest)) {
+        const double ahead = ages.can_turn() ? std::fmax(ages.until_peak(), 0) : 0;
+        PulseAges then = ages;
+        then.advance(ahead);
+        peak.time = edge + (x + ahead) * shape.tau;
+        peak.height = then.power(), met = true, rising = false;
+      }
+      if constexpr (by_moments) m.add(ages.until(rest), since);
+      since += rest;
+      ages.advance(rest);
+    }
+    finish(std::numeric_limits<double>::infinity());
+  }
+
+  /// By sampling the sum between the valleys.
+  double sampled_width(const Peak& peak, std::span<const Reflection> reflections, const PulseShape& shape,
+                       std::vector<double>& samples) const noexcept {
+    const auto before = [](double limit) { return [limit](const Reflection& r) { return arrival(r) < limit; }; };
+    const auto last = std::partition_point(reflections.begin() + 1, reflections.end(), before(peak.end)) - 1;
+    const double end = std::fmin(peak.end, arrival(*last) + tail_of(width_) * shape.tau);
+    const double interval = std::fmax(s_.sample_interval, (end - peak.begin) / static_cast<double>(most_samples - 2));
+    const double faded = peak.begin - SampledSum::negligible * shape.tau;
+    const auto first = std::partition_point(reflections.begin(), reflections.end(), before(faded));
+    SampledSum sum(reflections, shape, interval, static_cast<std::size_t>(first - reflections.begin()), std::ceil(peak.begin / interval));
+    samples.clear();
+    while (sum.time() <= end) samples.push_back(sum.power());
+    return width_.width(samples, interval);
+  }
+
+  WaveformSettings s_;
+  Width width_;
+};
+
+static_assert(Detector<AnalyticWaveform<>> && Detector<AnalyticWaveform<MomentWidth>>);
+
+}  // namespace pulsecast

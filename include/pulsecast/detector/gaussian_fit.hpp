@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+/// amplitude exp(-(i - position)^2 / (2 width^2)), over the numbers i of samples.
+struct Gaussian {
+  double amplitude = 0;  ///< in the unit of the samples
+  double position = 0;   ///< [samples]
+  double width = 0;      ///< standard deviation [samples]
+};
+
+/// By the least-squares Gaussian, found by Levenberg and Marquardt's method. An echo to which none could be fitted has a width of NaN.
+///
+/// Each sample weighs what it holds of the power: the Gaussian is to match the echo, not the tail that a pulse has and a Gaussian has not,
+/// and where the samples lie on a steep edge must not matter: it changes the width of a pulse by less than 0.5 %.
+/// Source: Levenberg 1944, Marquardt 1963, with the damping of Marquardt: normal equations whose diagonal is stretched.
+struct GaussianFit {
+  int max_iterations = 50;
+  double share = 0.03;  ///< of the highest sample, in [0, 1): the fit ends to either side where samples are lower
+
+  void validate() const {
+    expect_within("GaussianFit::max_iterations", max_iterations, 1, 1000, "");
+    if (!(share >= 0 && share < 1)) throw SettingError("GaussianFit::share", share, "", "at least 0 and less than 1");
+  }
+
+  [[nodiscard]] double least_share() const noexcept { return share; }
+
+  struct Result {
+    Gaussian gaussian{};
+    int iterations = 0;      ///< that it took
+    bool converged = false;  ///< to a Gaussian that is no wider than the samples reach, and stands among them or within its width of them
+  };
+
+  [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {
+    const Result r = fit(samples);
+    return r.converged ? r.gaussian.width * interval : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  [[nodiscard]] Result fit(std::span<const double> all) const noexcept {
+    if (all.empty()) return {};
+    const auto top = static_cast<std::size_t>(std::max_element(all.begin(), all.end()) - all.begin());
+    const double least = share * all[top];
+    if (!(all[top] > 0)) return {};
+    std::size_t from = top, to = top;
+    while (from > 0 && all[from - 1] >= least) --from;
+    while (to + 1 < all.size() && all[to + 1] >= least) ++to;
+    if (to - from < 2) return {};
+    const std::span<const double> samples = all.subspan(from, to - from + 1);
+
+    // the first guess: the squares of a Gaussian are one of the same position, narrower by the root of two
+    double sum = 0, first = 0, second = 0, x = 0;
+    for (const double y : samples) {
+      const double square = y * y;
+      sum += square, first += square * x, second += square * x * x;
+      ++x;
+    }
+    const double position = first / sum;
+    Result r;
+    r.gaussian = {all[top], position, std::sqrt(2 * std::fmax(second / sum - position * position, 0.1))};
+    Equations e = equations(samples, r.gaussian);
+    double damping = 1e-3;
+    while (r.iterations < max_iterations && !r.converged) {
+      ++r.iterations;
+      const Gaussian step = solution(e, damping);
+      const Gaussian next{r.gaussian.amplitude + step.amplitude, r.gaussian.position + step.position, r.gaussian.width + step.width};
+      const double size = std::fmax(std::fabs(step.amplitude / r.gaussian.amplitude),
+                                    std::fmax(std::fabs(step.position), std::fabs(step.width)) / r.gaussian.width);
+      const bool possible = next.amplitude > 0 && next.width > 0.1 && std::isfinite(size);
+      const Equations there = possible ? equations(samples, next) : Equations{};
+      if (possible && there.squares <= e.squares) {
+        r.gaussian = next, e = there, damping *= 0.1;
+        r.converged = size < small_enough;
+      } else if (possible && size < small_enough) {
+        r.converged = true;  // as low as rounding lets it get
+      } else {
+        damping *= 10;
+      }
+    }
+    const Gaussian& g = r.gaussian;
+    const auto size = static_cast<double>(samples.size());
+    r.converged = r.converged && g.width <= size && g.position >= -g.width && g.position <= size - 1 + g.width;
+    r.gaussian.position += static_cast<double>(from);
+    return r;
+  }
+
+ private:
+  static constexpr double small_enough = 1e-3;  ///< the last step, as a share of amplitude and width: the error left is far smaller
+
+  /// The normal equations at a Gaussian: the products of the derivatives, those with the residuals, and the sum of squared residuals.
+  struct Equations {
+    double aa = 0, ap = 0, aw = 0, pp = 0, pw = 0, ww = 0;
+    double a = 0, p = 0, w = 0;
+    double squares = 0;
+  };
+
+  static Equations equations(std::span<const double> samples, const Gaussian& g) noexcept {
+    // exp(-x^2/2) at every so many-th sample: each step multiplies by a ratio, and the ratio by a constant
+    const double h = 1 / g.width, step = lane_count * h;
+    Lanes x{}, value{}, ratio{};
+    for (std::size_t k = 0; k < lane_count; ++k) {
+      x[k] = (static_cast<double>(k) - g.position) * h;
+      value[k] = std::exp(-0.5 * x[k] * x[k]), ratio[k] = std::exp(-step * (x[k] + 0.5 * step));
+    }
+    const double decay = std::exp(-step * step);
+    // the derivatives are value, value x k and value x^2 k, with k = amplitude / width: what is needed are sums over powers of x
+    Lanes s0{}, s1{}, s2{}, s3{}, s4{}, r0{}, r1{}, r2{}, squares{};
+    for (std::size_t i = 0; i < samples.size(); i += lane_count) {
+      Lanes y{};
+      if (i + lane_count <= samples.size())
+        fill(y, samples[i]);
+      else
+        for (std::size_t k = i; k < samples.size(); ++k) y[k - i] = samples[k];
+      const Lanes residual = y - g.amplitude * value, weighted = y * value, xx = x * x;
+      const Lanes s = weighted * value, r = weighted * residual, sx = s * x, sxx = s * xx;
+      s0 += s, s1 += sx, s2 += sxx, s3 += sx * xx, s4 += sxx * xx;
+      r0 += r, r1 += r * x, r2 += r * xx;
+      squares += y * residual * residual;
+      x += step, value *= ratio, ratio *= decay;
+    }
+    const auto total = [](const Lanes& lanes) {
+      double sum = 0;
+      for (std::size_t k = 0; k < lane_count; ++k) sum += lanes[k];
+      return sum;
+    };
+    const double k = g.amplitude * h;
+    return {total(s0),         total(s1) * k, total(s2) * k, total(s2) * k * k, total(s3) * k * k,
+            total(s4) * k * k, total(r0),     total(r1) * k, total(r2) * k,     total(squares)};
+  }
+
+  /// The step that the damped normal equations give, by Cholesky's decomposition; not finite if there is none.
+  static Gaussian solution(const Equations& e, double damping) noexcept {
+    const double stretch = 1 + damping;
+    const double l11 = std::sqrt(e.aa * stretch), l21 = e.ap / l11, l31 = e.aw / l11;
+    const double l22 = std::sqrt(e.pp * stretch - l21 * l21), l32 = (e.pw - l31 * l21) / l22;
+    const double l33 = std::sqrt(e.ww * stretch - l31 * l31 - l32 * l32);
+    const double z1 = e.a / l11, z2 = (e.p - l21 * z1) / l22, z3 = (e.w - l31 * z1 - l32 * z2) / l33;
+    const double w = z3 / l33, p = (z2 - l32 * w) / l22;
+    return {(z1 - l21 * p - l31 * w) / l11, p, w};
+  }
+};
+
+static_assert(EchoWidth<GaussianFit>);
+
+}  // namespace pulsecast

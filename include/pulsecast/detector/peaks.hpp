@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/pulse_shape.hpp>
+#include <pulsecast/detector/pulse_sum.hpp>
+#include <pulsecast/detector/waveform_settings.hpp>
+
+namespace pulsecast {
+
+/// A peak of a waveform, and the stretch that belongs to it. Times are two-way.
+struct Peak {
+  double time = 0;       ///< of its highest point [s]
+  double height = 0;     ///< there [W]
+  double begin = 0;      ///< of the valley before it [s]
+  double end = 0;        ///< of the valley after it [s]
+  double width = 0;      ///< as in `Echo` [s]
+  bool outdone = false;  ///< by a higher one within the window
+};
+
+/// Enters a peak after those before it, if there is room. True if it has become one with the last of them, for being closer to it than
+/// peaks must be apart [s].
+inline bool enter(const Peak& peak, double apart, std::vector<Peak>& peaks) noexcept {
+  if (!peaks.empty() && peak.time - peaks.back().time < apart) {
+    Peak& one = peaks.back();
+    if (peak.height > one.height) one.time = peak.time, one.height = peak.height;
+    one.end = peak.end;
+    return true;
+  }
+  if (peaks.size() < peaks.capacity()) peaks.push_back(peak);
+  return false;
+}
+
+/// True if a higher peak, or as high a one before it, is within the window of a peak. Peaks are in order of time.
+[[nodiscard]] inline bool outdone(std::size_t i, const WaveformSettings& s, const std::vector<Peak>& peaks) noexcept {
+  const Peak& peak = peaks[i];
+  for (std::size_t j = i; j-- > 0 && peak.time - peaks[j].time <= s.window;)
+    if (peaks[j].height >= peak.height) return true;
+  for (std::size_t j = i; ++j < peaks.size() && peaks[j].time - peak.time <= s.window;)
+    if (peaks[j].height > peak.height) return true;
+  return false;
+}
+
+/// Leaves those of peaks, in order of time, that are echoes by window, dead time and number.
+inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noexcept {
+  for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].outdone = outdone(i, s, peaks);
+  std::size_t kept = 0;
+  for (const Peak& peak : peaks) {
+    if (peak.outdone || kept == s.max_returns) continue;
+    if (kept > 0 && peak.time - peaks[kept - 1].time < s.dead_time) continue;
+    peaks[kept++] = peak;
+  }
+  peaks.resize(kept);
+}
+
+/// The echo of a peak, among reflections sorted by range.
+[[nodiscard]] inline Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const PulseShape& shape, EchoTiming timing,
+                                  std::size_t number) noexcept {
+  const auto before = [](const Reflection& r, double time) { return arrival(r) < time; };
+  const auto from = [&](double time) { return std::lower_bound(reflections.begin(), reflections.end(), time, before); };
+
+  Echo echo{.range = 0.5 * speed_of_light * peak.time,
+            .amplitude = peak.height,
+            .width = peak.width,
+            .number = static_cast<std::uint8_t>(number)};
+  constexpr double faded = 60;  // tau after its peak, 1e-22 of a pulse is left
+  double strongest = 0;
+  for (auto r = from(peak.time - faded * shape.tau); r != reflections.end() && arrival(*r) < peak.time + PulseShape::peak * shape.tau;
+       ++r) {
+    const double power = r->power * shape(peak.time - arrival(*r));
+    if (!(power > strongest)) continue;
+    strongest = power;
+    echo.cos_incidence = r->cos_incidence, echo.object = r->object, echo.classification = r->classification;
+  }
+  if (timing == EchoTiming::energy) {
+    const auto first = from(peak.begin);
+    double sum = 0, beyond = 0;
+    for (auto r = first; r != reflections.end() && arrival(*r) < peak.end; ++r)
+      sum += r->power, beyond += r->power * (r->range - first->range);
+    if (sum > 0) echo.range = first->range + beyond / sum;
+  }
+  return echo;
+}
+
+}  // namespace pulsecast

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/pulse_shape.hpp>
+
+namespace pulsecast {
+
+/// When the peak of a reflection's pulse arrives, since the pulse left [s].
+[[nodiscard]] inline double arrival(const Reflection& r) noexcept { return 2 * r.range / speed_of_light; }
+
+/// Sorts reflections by range. Left out are those without power, and those so far away that samples could not be counted, 2^50 of them.
+[[nodiscard]] inline std::span<Reflection> in_order_of_range(std::span<Reflection> all, double sample_interval) noexcept {
+  const auto useless = [&](const Reflection& r) { return !(r.power > 0) || !(arrival(r) < 0x1p50 * sample_interval); };
+  const std::span<Reflection> useful(all.begin(), std::remove_if(all.begin(), all.end(), useless));
+  std::sort(useful.begin(), useful.end(), [](const Reflection& a, const Reflection& b) { return a.range < b.range; });
+  return useful;
+}
+
+/// The sum of the pulse shapes of reflections, sorted by range, sample by sample.
+///
+/// The shape is a polynomial times an exponential, so the sum of any number of shapes is carried from sample to sample by three moments
+/// about the leading edges, the sums of P e^-u, P u e^-u and P u^2 e^-u: exact, and at a cost of samples plus reflections, not of their
+/// product.
+class SampledSum {
+ public:
+  static constexpr double negligible = 20;  ///< after so many tau since its peak, 1e-6 of a pulse is left
+
+  /// Begins with a reflection, the first that counts, and with a number of a sample; those before it count if their edges have passed.
+  SampledSum(std::span<const Reflection> reflections, const PulseShape& shape, double interval, std::size_t first, double sample) noexcept
+      : reflections_(reflections),
+        shape_(shape),
+        interval_(interval),
+        step_(interval / shape.tau),
+        decay_(std::exp(-step_)),
+        next_(first),
+        sample_(sample) {
+    find_next_edge();
+  }
+
+  /// Number of the first sample that a reflection needs: two before its leading edge.
+  [[nodiscard]] static double first_sample(const Reflection& r, const PulseShape& shape, double interval) noexcept {
+    return std::floor((arrival(r) - PulseShape::peak * shape.tau) / interval) - 2;
+  }
+
+  [[nodiscard]] double sample() const noexcept { return sample_; }            ///< number of the sample that `power` will give
+  [[nodiscard]] double time() const noexcept { return sample_ * interval_; }  ///< and its time [s]
+  [[nodiscard]] std::size_t next() const noexcept { return next_; }           ///< the first reflection that has not come in
+  [[nodiscard]] bool all_in() const noexcept { return next_ == reflections_.size(); }
+  [[nodiscard]] double last_peak() const noexcept { return arrival(reflections_[next_ - 1]); }  ///< of those that have come in [s]
+
+  /// The sum at a sample [W]; goes on to the next.
+  double power() noexcept {
+    second_ = decay_ * (second_ + step_ * (2 * first_ + step_ * zeroth_));
+    first_ = decay_ * (first_ + step_ * zeroth_);
+    zeroth_ *= decay_;
+    for (const double t = time(); next_edge_ <= t; ++next_, find_next_edge()) {
+      const double u = (t - next_edge_) / shape_.tau, p = reflections_[next_].power * std::exp(-u);
+      zeroth_ += p, first_ += p * u, second_ += p * u * u;
+    }
+    ++sample_;
+    return second_ * PulseShape::to_unit_peak;
+  }
+
+ private:
+  void find_next_edge() noexcept {
+    next_edge_ = all_in() ? std::numeric_limits<double>::infinity() : arrival(reflections_[next_]) - PulseShape::peak * shape_.tau;
+  }
+
+  std::span<const Reflection> reflections_;
+  PulseShape shape_;
+  double interval_, step_, decay_;
+  std::size_t next_;
+  double next_edge_ = 0;  ///< of the first reflection that has not come in [s]
+  double sample_;
+  double zeroth_ = 0, first_ = 0, second_ = 0;
+};
+
+}  // namespace pulsecast

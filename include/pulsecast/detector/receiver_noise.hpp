@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/pulse.hpp>
+
+namespace pulsecast {
+
+/// What a receiver measures besides the pulse: nothing, unless told otherwise. Each sample errs for itself.
+struct ReceiverNoise {
+  double deviation = 0;           ///< standard deviation of the electronics' noise, in every sample [W]
+  double background = 0;          ///< power of the sunlight that comes in with the pulse [W]
+  double quantum_efficiency = 1;  ///< share of the photons of the background that are counted, in (0, 1]
+
+  void validate() const {
+    expect_not_negative("ReceiverNoise::deviation", deviation, "W");
+    expect_not_negative("ReceiverNoise::background", background, "W");
+    expect_positive("ReceiverNoise::quantum_efficiency", quantum_efficiency, "");
+    expect_within("ReceiverNoise::quantum_efficiency", quantum_efficiency, 0, 1, "");
+  }
+
+  [[nodiscard]] bool none() const noexcept { return deviation == 0 && background == 0; }
+
+  /// Standard deviation of a sample [W]: electronics, and the shot noise of the background. The number of photons is Poisson-distributed,
+  /// so its variance is its mean; there are many in an interval, so it is taken for normal. Source: Liu et al. 2006, Applied Optics 45.
+  [[nodiscard]] double deviation_of_sample(double wavelength, double interval) const noexcept {
+    constexpr double planck = 6.62607015e-34;  // [J s]. Source: SI, exact by definition of the kilogram (26th CGPM, 2018)
+    const double photon = planck * speed_of_light / wavelength;
+    return std::sqrt(deviation * deviation + background * photon / (quantum_efficiency * interval));
+  }
+};
+
+}  // namespace pulsecast

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <pulsecast/base/expect.hpp>
+
+namespace pulsecast {
+
+/// What of an echo is timed: where on it its range is.
+enum class EchoTiming : std::uint8_t {
+  energy,  ///< the mean of the reflections between its valleys, weighted by power: without bias, however the echo is drawn out
+  peak,    ///< its highest point: on a slope later than the mean, by a tau of `PulseShape` or so, as pulses rise faster than they fall
+};
+
+/// Settings of the waveform detectors. All times are two-way.
+///
+/// A peak of the waveform is an echo if it passes, in this order: it reaches the threshold; it is not closer than `separation` to a peak
+/// before it, with which it would be one; it is the highest within the window; it comes after the dead time of the echo before it; it is
+/// among the first `max_returns`.
+struct WaveformSettings {
+  double sample_interval = 0.25e-9;  ///< of the digitiser: one bin [s]
+  double threshold = 1e-12;          ///< weaker peaks are no echoes [W]
+  double separation = 0;             ///< peaks that are closer to each other are one, as high as the highest of them [s]
+  double window = 1e-9;              ///< an echo is the highest within this time before and after it [s]
+  double dead_time = 0;              ///< so long after the peak of an echo, there is no other [s]
+  std::size_t max_returns = 15;      ///< the first so many in order of range; at least 1
+  EchoTiming timing = EchoTiming::energy;
+  double record_length = 0;    ///< how much of the waveform is kept, from its first sample on; 0 for none [s]
+  double shape_divisor = 3.5;  ///< full width at half maximum of the pulse by its tau, see `PulseShape`
+
+  void validate() const {
+    expect_positive("WaveformSettings::sample_interval", sample_interval, "s");
+    expect_not_negative("WaveformSettings::threshold", threshold, "W");
+    expect_not_negative("WaveformSettings::separation", separation, "s");
+    expect_not_negative("WaveformSettings::window", window, "s");
+    expect_not_negative("WaveformSettings::dead_time", dead_time, "s");
+    expect_within("WaveformSettings::max_returns", static_cast<double>(max_returns), 1, 255, "");
+    expect_within("WaveformSettings::record_length", record_length, 0, 1e7 * sample_interval, "s");
+    expect_positive("WaveformSettings::shape_divisor", shape_divisor, "");
+  }
+
+  /// Peaks closer than this are one echo, for which all that is between its outer valleys counts: the separation; or else, as nobody tells
+  /// the lower from the flank of the higher, the window, unless it is wider than the pulse is long [s].
+  [[nodiscard]] double apart(double pulse_length) const noexcept { return std::fmax(separation, std::fmin(window, pulse_length)); }
+
+  /// The most samples that a record can have.
+  [[nodiscard]] std::size_t record_capacity() const noexcept {
+    return static_cast<std::size_t>(std::ceil(record_length / sample_interval));
+  }
+};
+
+}  // namespace pulsecast

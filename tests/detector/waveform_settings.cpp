@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/detector/waveform_settings.hpp>
+
+#include <limits>
+
+#include <doctest/doctest.h>
+
+using namespace pulsecast;
+
+TEST_CASE("settings of a waveform that cannot be are refused") {
+  CHECK_NOTHROW(WaveformSettings{}.validate());
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  for (const double bad : {0.0, -1e-9, nan, infinity}) {
+    CHECK_THROWS_AS(WaveformSettings{.sample_interval = bad}.validate(), SettingError);
+    CHECK_THROWS_AS(WaveformSettings{.shape_divisor = bad}.validate(), SettingError);
+  }
+  for (const double bad : {-1e-9, nan, infinity}) {
+    CHECK_THROWS_AS(WaveformSettings{.threshold = bad}.validate(), SettingError);
+    CHECK_THROWS_AS(WaveformSettings{.separation = bad}.validate(), SettingError);
+    CHECK_THROWS_AS(WaveformSettings{.window = bad}.validate(), SettingError);
+    CHECK_THROWS_AS(WaveformSettings{.dead_time = bad}.validate(), SettingError);
+    CHECK_THROWS_AS(WaveformSettings{.record_length = bad}.validate(), SettingError);
+  }
+  CHECK_THROWS_AS(WaveformSettings{.max_returns = 0}.validate(), SettingError);
+  CHECK_THROWS_AS(WaveformSettings{.max_returns = 256}.validate(), SettingError);
+}
+
+TEST_CASE("a record has as many samples as begin in its length") {
+  CHECK(WaveformSettings{}.record_capacity() == 0);
+  CHECK(WaveformSettings{.sample_interval = 1, .record_length = 10}.record_capacity() == 10);
+  CHECK(WaveformSettings{.sample_interval = 1, .record_length = 10.5}.record_capacity() == 11);
+}
+
+TEST_CASE("peaks are one if they are closer than the separation, or than window and pulse") {
+  CHECK(WaveformSettings{.separation = 3, .window = 1}.apart(4) == 3);
+  CHECK(WaveformSettings{.separation = 3, .window = 9}.apart(4) == 4);
+  CHECK(WaveformSettings{.window = 1}.apart(4) == 1);
+  CHECK(WaveformSettings{.window = 0}.apart(4) == 0);
+}

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
+#include <pulsecast/detector/first_hit.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+#include <pulsecast/survey.hpp>
+
+namespace pulsecast::validation {
+
+/// What a pulse brought back: an `Outcome` that keeps.
+struct Result {
+  std::array<double, fate_count> shares{};
+  double power = 0;  ///< of all subrays together [W]
+  std::vector<SubrayHit> subrays;
+  std::vector<Echo> echoes;
+
+  [[nodiscard]] double share(Fate fate) const { return shares[static_cast<std::size_t>(fate)]; }
+};
+
+inline constexpr Receiver vacuum{.visibility = std::numeric_limits<double>::infinity()};
+
+/// One pulse from the origin to the north, along +y.
+template <Footprint Pattern, Target Map, Detector Instrument = FirstHit>
+[[nodiscard]] Result one_pulse(const Map& map, const Pattern& footprint, const Laser& laser = {}, const Receiver& receiver = vacuum,
+                               const Instrument& detector = {}) {
+  const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}};
+  const Survey survey{source, Recorded{footprint}, map, receiver, detector};
+  auto workspace = survey.workspace();
+  const Outcome o = survey(0, workspace);
+  Result result{o.shares, 0, {o.subrays.begin(), o.subrays.end()}, {o.echoes.begin(), o.echoes.end()}};
+  for (const SubrayHit& hit : o.subrays) result.power += hit.power;
+  return result;
+}
+
+}  // namespace pulsecast::validation
