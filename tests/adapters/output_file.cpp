@@ -4,6 +4,8 @@
 
 #include <csignal>
 #include <fstream>
+#include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -118,6 +120,47 @@ TEST_CASE("writes and overwrites of any size come out as they would in memory") 
     file.commit();
     CHECK((content(folder / "a.bin") == expected));
   }
+}
+
+TEST_CASE("what was written reads back, and writing goes on at the end") {
+  const TemporaryFolder folder;
+  OutputFile file(folder / "a.txt");
+  std::string bytes(3, ' ');
+  const auto read = [&](std::uint64_t position) {
+    file.read(position, std::as_writable_bytes(std::span(bytes)));
+    return bytes;
+  };
+  file.write("0123456789");
+  CHECK(read(0) == "012");
+  file.overwrite(2, std::as_bytes(std::span("AB", 2)));
+  CHECK(read(1) == "1AB");
+  file.write(std::string(2'000'000, 'x'));
+  CHECK(read(7) == "789");
+  file.write("end");
+  CHECK(read(2'000'010) == "end");
+  CHECK(file.position() == 2'000'013);
+  file.discard();
+  CHECK_THROWS_AS(read(0), FileError);
+  CHECK(folder.empty());
+}
+
+TEST_CASE("an encoder gets every byte once and in order, is told the end, and what it makes is the file") {
+  struct Doubler final : OutputEncoder {
+    void encode(std::span<const std::byte> bytes, bool last, std::vector<std::byte>& out) override {
+      for (const std::byte b : bytes) out.push_back(b), out.push_back(b);
+      if (last) out.push_back(std::byte{'.'});
+    }
+  };
+  const TemporaryFolder folder;
+  OutputFile file(folder / "a.txt", std::make_unique<Doubler>());
+  file.write("ab");
+  file.write(std::string(3'000'000, 'x'));
+  file.write("c");
+  CHECK(file.position() == 3'000'003);
+  file.commit();
+  CHECK((content(folder / "a.txt") == "aabb" + std::string(6'000'000, 'x') + "cc."));
+  OutputFile(folder / "empty", std::make_unique<Doubler>()).commit();
+  CHECK(content(folder / "empty") == ".");
 }
 
 TEST_CASE("a file that is moved goes on where it was, and one that is moved over is given up") {

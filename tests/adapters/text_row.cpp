@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/adapters/text_row.hpp>
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include <doctest/doctest.h>
 
@@ -38,6 +41,11 @@ TEST_CASE("a number without a count of decimals is as short as it can be, and re
   }
 }
 
+TEST_CASE("a word stands as it is, and what is not a number has no sign") {
+  TextRow row;
+  CHECK(row.add(1).add(std::string_view("word")).add(-std::numeric_limits<double>::quiet_NaN(), 4).end() == "1 word nan\n");
+}
+
 TEST_CASE("numbers are written as the C library does, and the largest finds room") {
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     CAPTURE(seed);
@@ -48,7 +56,22 @@ TEST_CASE("numbers are written as the C library does, and the largest finds room
     TextRow row;
     CHECK(row.add(value, 4).end() == std::string(expected.data()));
   }
+  for (std::uint64_t seed = 0; seed < 20000; ++seed) {  // among them those half-way between two, or next to it
+    CAPTURE(seed);
+    support::Generator random(seed);
+    const int decimals = static_cast<int>(random.whole(12));
+    double value = static_cast<double>(random.whole(std::uint64_t{1} << random.whole(50)) * 2 + 1) / 2 / std::pow(10, random.whole(12));
+    if (random.coin()) value = std::nextafter(value, random.coin() ? 0 : 1e300);
+    if (random.coin()) value = -value;
+    std::array<char, 400> expected{};
+    std::snprintf(expected.data(), expected.size(), "%.*f\n", decimals, value);
+    std::string text(expected.data());
+    if (text.find_first_of("123456789") == text.npos && text[0] == '-') text.erase(0, 1);
+    TextRow row;
+    CHECK(row.add(value, decimals).end() == text);
+  }
   TextRow row;
+  CHECK(row.add(0.5, 0).add(1.5, 0).add(0.125, 2).add(0.375, 2).add(1e-9, 9).add(-0.999, 2).end() == "0 2 0.12 0.38 0.000000001 -1.00\n");
   CHECK(row.add(std::numeric_limits<double>::lowest(), 9).end().size() == 1 + 309 + 1 + 9 + 1);
 }
 

@@ -25,23 +25,40 @@ struct LasExtraField {
   std::size_t offset = 0;  ///< from the beginning of the point record
 };
 
+/// Where in a file of packets the waveform of a point is. Source: LAS 1.4 R15, Point Data Record Format 4.
+struct LasWavePacket {
+  unsigned descriptor = 0;  ///< 0 if there is none
+  std::uint64_t offset = 0, size = 0;
+  double location_ps = 0;             ///< from the anchor to the return
+  std::array<double, 3> direction{};  ///< [m/ps]
+};
+
+/// How the packets of a kind are to be read.
+struct LasWaveDescriptor {
+  unsigned index = 0, bits = 0;
+  std::uint64_t samples = 0, spacing_ps = 0;
+  double gain = 0, offset = 0;
+};
+
 struct LasPoint {
   std::array<std::int32_t, 3> stored{};  ///< coordinates in steps
   std::array<double, 3> place{};         ///< coordinates [m]
   unsigned intensity = 0, return_number = 0, returns = 0, flags = 0, channel = 0, scan_direction = 0, edge = 0, classification = 0,
            user_data = 0, source = 0;
   double scan_angle_deg = 0, gps_time = 0;
+  LasWavePacket wave;
   std::string bytes;  ///< the whole record
 };
 
 struct LasFile {
-  unsigned global_encoding = 0, day = 0, year = 0;
+  unsigned minor = 0, format = 0, global_encoding = 0, day = 0, year = 0;
   std::string system, software, wkt;
   unsigned epsg = 0;  ///< of GeoTIFF keys
   std::array<double, 3> scale{}, offset{}, min{}, max{};
   std::uint64_t points_at = 0;  ///< byte at which the points begin
   std::array<std::uint64_t, 15> by_return{};
   std::vector<LasExtraField> extras;
+  std::vector<LasWaveDescriptor> descriptors;
   std::vector<LasPoint> points;
 
   [[nodiscard]] const LasExtraField& extra(const std::string& name) const {
@@ -70,6 +87,7 @@ class LasInput {
     return value;
   }
   [[nodiscard]] double real(std::size_t at) const { return std::bit_cast<double>(whole(at, 8)); }
+  [[nodiscard]] double short_real(std::size_t at) const { return double{std::bit_cast<float>(static_cast<std::uint32_t>(whole(at, 4)))}; }
   [[nodiscard]] std::string text(std::size_t at, std::size_t n) const {
     const std::string b = bytes(at, n);
     return b.substr(0, b.find('\0'));
@@ -98,12 +116,13 @@ inline void las_expect(bool condition, const std::string& what) {
   const detail::LasInput input(point.bytes);
   if (field.type == 10) return input.real(field.offset);
   detail::las_expect(field.type == 9, name + " is not a real number");
-  return double{std::bit_cast<float>(static_cast<std::uint32_t>(input.whole(field.offset, 4)))};
+  return input.short_real(field.offset);
 }
 
-/// Reads a LAS 1.4 file of point format 6 and checks all that it says twice: sizes against the file's length, numbers and bounds in the
-/// header against the points, return numbers against their count. Throws `std::runtime_error` at the first thing that is not so.
-/// Written from the ASPRS LAS Specification 1.4 R15; shares nothing with the writer.
+/// Reads a LAS file, version 1.4 with point format 1, 4, 6 or 9 or version 1.0 with point format 1, and checks all that it says twice:
+/// sizes against the file's length, numbers and bounds in the header against the points, return numbers against their count. Throws
+/// `std::runtime_error` at the first thing that is not so. Written from the ASPRS LAS Specification 1.4 R15; shares nothing with the
+/// writer.
 [[nodiscard]] inline LasFile read_las(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   detail::las_expect(stream.good(), "cannot be opened");
@@ -112,15 +131,20 @@ inline void las_expect(bool condition, const std::string& what) {
 
   LasFile file;
   las_expect(in.bytes(0, 4) == "LASF", "signature");
-  las_expect(in.whole(24, 1) == 1 && in.whole(25, 1) == 4, "version");
-  las_expect(in.whole(94, 2) == 375, "header size");
-  las_expect(in.whole(104, 1) == 6, "point format");
+  file.minor = static_cast<unsigned>(in.whole(25, 1)), file.format = static_cast<unsigned>(in.whole(104, 1));
+  las_expect(in.whole(24, 1) == 1 && (file.minor == 0 || file.minor == 4), "version");
+  las_expect(in.whole(94, 2) == (file.minor == 0 ? 227 : 375), "header size");
+  las_expect(file.format == 1 || (file.minor == 4 && (file.format == 4 || file.format == 6 || file.format == 9)), "point format");
+  const bool old = file.format < 6, waves = file.format == 4 || file.format == 9;  // of the format's points
   file.global_encoding = static_cast<unsigned>(in.whole(6, 2));
-  las_expect((file.global_encoding & ~17U) == 0, "global encoding claims what is not there");
+  las_expect((file.global_encoding & ~(waves ? 21U : 17U)) == 0, "global encoding claims what is not there");
+  las_expect(!waves || (file.global_encoding & 4U) != 0, "waveforms are neither here nor there");
+  las_expect(file.minor == 4 || in.whole(4, 4) == 0, "reserved bytes");
   file.system = in.text(26, 32), file.software = in.text(58, 32);
   file.day = static_cast<unsigned>(in.whole(90, 2)), file.year = static_cast<unsigned>(in.whole(92, 2));
-  for (std::size_t at = 107; at < 131; at += 4) las_expect(in.whole(at, 4) == 0, "legacy numbers are not zero");
-  las_expect(in.whole(227, 8) == 0 && in.whole(235, 8) == 0 && in.whole(243, 4) == 0, "waveforms or extended records");
+  for (std::size_t at = 107; !old && at < 131; at += 4) las_expect(in.whole(at, 4) == 0, "legacy numbers are not zero");
+  if (file.minor == 4)
+    las_expect(in.whole(227, 8) == 0 && in.whole(235, 8) == 0 && in.whole(243, 4) == 0, "waveforms inside, or extended records");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     file.scale[axis] = in.real(131 + 8 * axis), file.offset[axis] = in.real(155 + 8 * axis);
     file.max[axis] = in.real(179 + 16 * axis), file.min[axis] = in.real(187 + 16 * axis);
@@ -128,12 +152,13 @@ inline void las_expect(bool condition, const std::string& what) {
   }
 
   const std::size_t record = in.whole(105, 2);
-  std::size_t at = 375, expected_record = 30;
+  const std::size_t standard = (old ? 28 : 30) + std::size_t{waves ? 29U : 0U};
+  std::size_t at = file.minor == 0 ? 227 : 375, expected_record = standard;
   for (std::uint64_t i = in.whole(100, 4); i > 0; --i) {
     const std::string user = in.text(at + 2, 16);
     const std::uint64_t id = in.whole(at + 18, 2);
     const std::size_t length = in.whole(at + 20, 2), body = at + 54;
-    las_expect(in.whole(at, 2) == 0, "reserved bytes");
+    las_expect(in.whole(at, 2) == (file.minor == 0 ? 0xAABB : 0), "record signature, or reserved bytes");
     if (user == "LASF_Projection" && id == 2112) {
       file.wkt = in.bytes(body, length);
       las_expect(!file.wkt.empty() && file.wkt.back() == '\0', "the WKT has no end");
@@ -157,16 +182,27 @@ inline void las_expect(bool condition, const std::string& what) {
         file.extras.push_back({in.text(d + 4, 32), in.text(d + 160, 32), type, expected_record});
         expected_record += sizes[type];
       }
+    } else if (user == "LASF_Spec" && id >= 100 && id < 355) {
+      las_expect(waves && length == 26 && in.whole(body + 1, 1) == 0, "waveform descriptor");
+      file.descriptors.push_back({static_cast<unsigned>(id - 99), static_cast<unsigned>(in.whole(body, 1)), in.whole(body + 2, 4),
+                                  in.whole(body + 6, 4), in.real(body + 10), in.real(body + 18)});
     } else {
       las_expect(false, "unknown record " + user);
     }
     at = body + length;
   }
+  if (file.minor == 0) {
+    las_expect(in.whole(at, 2) == 0xCCDD, "point data start signature");
+    at += 2;
+  }
   file.points_at = in.whole(96, 4);
   las_expect(at == file.points_at, "points do not begin where the records end");
   las_expect(record == expected_record, "record length");
-  las_expect(((file.global_encoding & 16U) != 0) == (file.epsg == 0), "the WKT bit belongs to format 6, unless there are GeoTIFF keys");
-  const std::uint64_t count = in.whole(247, 8);
+  const bool wkt_bit = (file.global_encoding & 16U) != 0;
+  las_expect(wkt_bit == (old ? !file.wkt.empty() : file.epsg == 0),
+             "the WKT bit belongs to formats 6 and 9, unless there are GeoTIFF keys");
+  const std::uint64_t count = file.minor == 0 ? in.whole(107, 4) : in.whole(247, 8);
+  las_expect(!old || in.whole(107, 4) == count, "legacy number of points");
   las_expect(in.size() >= at && (in.size() - at) % record == 0 && (in.size() - at) / record == count, "number of points");
 
   std::array<std::uint64_t, 15> counted{};
@@ -182,21 +218,34 @@ inline void las_expect(bool condition, const std::string& what) {
       most[axis] = file.points.empty() ? p.stored[axis] : std::max(most[axis], p.stored[axis]);
     }
     p.intensity = static_cast<unsigned>(in.whole(at + 12, 2));
-    const auto numbers = static_cast<unsigned>(in.whole(at + 14, 1)), bits = static_cast<unsigned>(in.whole(at + 15, 1));
-    p.return_number = numbers % 16, p.returns = numbers / 16;
-    p.flags = bits % 16, p.channel = bits / 16 % 4, p.scan_direction = bits / 64 % 2, p.edge = bits / 128;
-    p.classification = static_cast<unsigned>(in.whole(at + 16, 1));
+    const auto numbers = static_cast<unsigned>(in.whole(at + 14, 1)), byte_15 = static_cast<unsigned>(in.whole(at + 15, 1));
     p.user_data = static_cast<unsigned>(in.whole(at + 17, 1));
-    p.scan_angle_deg = static_cast<std::int16_t>(in.whole(at + 18, 2)) * 0.006;
-    p.source = static_cast<unsigned>(in.whole(at + 20, 2));
-    p.gps_time = in.real(at + 22);
+    if (old) {
+      p.return_number = numbers % 8, p.returns = numbers / 8 % 8, p.scan_direction = numbers / 64 % 2, p.edge = numbers / 128;
+      p.classification = byte_15 % 32, p.flags = byte_15 / 32;
+      p.scan_angle_deg = static_cast<std::int8_t>(in.whole(at + 16, 1));
+      p.source = static_cast<unsigned>(in.whole(at + 18, 2));
+      p.gps_time = in.real(at + 20);
+    } else {
+      p.return_number = numbers % 16, p.returns = numbers / 16;
+      p.flags = byte_15 % 16, p.channel = byte_15 / 16 % 4, p.scan_direction = byte_15 / 64 % 2, p.edge = byte_15 / 128;
+      p.classification = static_cast<unsigned>(in.whole(at + 16, 1));
+      p.scan_angle_deg = static_cast<std::int16_t>(in.whole(at + 18, 2)) * 0.006;
+      p.source = static_cast<unsigned>(in.whole(at + 20, 2));
+      p.gps_time = in.real(at + 22);
+    }
+    if (const std::size_t w = at + standard - 29; waves) {
+      p.wave = {static_cast<unsigned>(in.whole(w, 1)), in.whole(w + 1, 8), in.whole(w + 9, 4), in.short_real(w + 13), {}};
+      for (std::size_t axis = 0; axis < 3; ++axis) p.wave.direction[axis] = in.short_real(w + 17 + 4 * axis);
+    }
     las_expect(p.return_number >= 1 && p.return_number <= p.returns, "return number");
-    las_expect(std::fabs(p.scan_angle_deg) <= 180 + 1e-9, "scan angle");
+    las_expect(std::fabs(p.scan_angle_deg) <= (old ? 90 : 180) + 1e-9, "scan angle");
     ++counted[p.return_number - 1];
     file.points.push_back(std::move(p));
   }
-  for (std::size_t i = 0; i < 15; ++i) {
-    file.by_return[i] = in.whole(255 + 8 * i, 8);
+  for (std::size_t i = 0; i < (file.minor == 0 ? 5 : 15); ++i) {
+    file.by_return[i] = file.minor == 0 ? in.whole(111 + 4 * i, 4) : in.whole(255 + 8 * i, 8);
+    las_expect(!old || i >= 5 || in.whole(111 + 4 * i, 4) == counted[i], "legacy number of points of return " + std::to_string(i + 1));
     las_expect(file.by_return[i] == counted[i], "number of points of return " + std::to_string(i + 1));
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -19,7 +18,13 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include <pulsecast/adapters/las_bytes.hpp>
+#include <pulsecast/adapters/las_layout.hpp>
+#include <pulsecast/adapters/las_packets.hpp>
+#include <pulsecast/adapters/las_reference.hpp>
+#include <pulsecast/adapters/las_settings.hpp>
 #include <pulsecast/adapters/output_file.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
@@ -27,181 +32,161 @@
 
 namespace pulsecast::adapters {
 
-static_assert(std::endian::native == std::endian::little, "LAS files are little-endian, and are written as the numbers lie in memory");
-
-/// What the times of a LAS file count from. Source: ASPRS LAS 1.4 R15, global encoding, bit 0.
-enum class GpsTime : std::uint16_t {
-  week = 0,               ///< the start of some GPS week
-  adjusted_standard = 1,  ///< 1e9 s after the GPS epoch: 14 September 2011, 01:46:40 GPS time
-};
-
-struct LasSettings {
-  using Date = std::chrono::year_month_day;
-
-  double scale = 1e-4;                            ///< step of the coordinates [m]
-  std::optional<Vec3> offset = std::nullopt;      ///< what they are relative to [m]; if empty, the multiple of 1e6 steps next to the first
-  std::string wkt = {};                           ///< coordinate reference system in OGC well-known text; if empty, `epsg` counts
-  std::uint16_t epsg = 0;                         ///< its code, if projected and in metres; 0 if it is not known, and none is written
-  GpsTime gps_time = GpsTime::adjusted_standard;  ///< what times count from
-  double start_time = 0;                          ///< when the survey's tick 0 is [s]
-  double intensity_full_scale = 1;                ///< reflectance that is given the greatest intensity, 65535; what is more, is cut
-  double amplitude_reference = 1e-9;              ///< power that amplitudes in dB are relative to [W]
-  std::optional<Date> created = std::nullopt;     ///< in the header; if empty, 0 there, so that the same survey gives the same bytes
-
-  void validate() const {
-    expect_positive("LasSettings::scale", scale, "m");
-    for (int axis = 0; offset && axis < 3; ++axis) expect_finite("LasSettings::offset", (*offset)[axis], "m");
-    expect_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // with its end, 16 bits count it
-    if (epsg != 0) expect_within("LasSettings::epsg", epsg, 1024, 32766, "");  // source: OGC GeoTIFF 1.1, the codes that are EPSG's
-    expect_finite("LasSettings::start_time", start_time, "s");
-    expect_positive("LasSettings::intensity_full_scale", intensity_full_scale, "");
-    expect_positive("LasSettings::amplitude_reference", amplitude_reference, "W");
-    if (created && !created->ok()) throw SettingError("LasSettings::created day", unsigned{created->day()}, "", "a day of its month");
-  }
-};
-
 namespace detail {
-
-/// One of the values that stand after the standard ones in each point.
-struct LasExtra {
-  std::string_view name, description;
-  std::uint8_t type, size;  ///< of data, in the words of the Extra Bytes record: 5 uint32, 7 uint64, 9 float, 10 double
-};
-
-inline constexpr std::array las_extras{
-    LasExtra{"Range", "from the instrument [m]", 10, 8},  // a float would err by 0.5 mm at 10 km
-    LasExtra{"Amplitude", "received power at peak [dB]", 9, 4},
-    LasExtra{"Reflectance", "re white Lambertian target [dB]", 9, 4},
-    LasExtra{"EchoWidth", "standard deviation in time [ns]", 9, 4},
-    LasExtra{"PulseIndex", "number of the pulse, from 0", 7, 8},
-    LasExtra{"ObjectId", "number of the object met", 5, 4},
-};
-
-// Sizes in bytes. Source: LAS 1.4 R15, Public Header Block, Variable Length Records, Point Data Record Format 6, Extra Bytes.
-inline constexpr std::size_t las_header_size = 375, las_vlr_header_size = 54, las_point_size = 30, las_descriptor_size = 192;
-inline constexpr std::size_t las_record_size = [] {
-  std::size_t size = las_point_size;
-  for (const LasExtra& extra : las_extras) size += extra.size;
-  return size;
-}();
-
-/// Bytes that are filled in by their positions.
-template <std::size_t Size>
-struct LasBytes : std::array<std::byte, Size> {
-  template <class Number>
-  void put(std::size_t position, Number value) noexcept {
-    std::memcpy(this->data() + position, &value, sizeof value);
-  }
-  void put_text(std::size_t position, std::string_view text) noexcept { std::memcpy(this->data() + position, text.data(), text.size()); }
-};
-
-/// To the nearest whole number, cut to [low, high]; what is not a number becomes `low`.
-template <class Integer>
-[[nodiscard]] Integer las_rounded(double value, double low, double high) noexcept {
-  return static_cast<Integer>(std::nearbyint(std::fmin(std::fmax(value, low), high)));
-}
 
 /// A ratio of powers as a level [dB], at least -200: the level of nothing.
 [[nodiscard]] inline float las_level(double ratio) noexcept { return static_cast<float>(ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0); }
 
-/// The well-known text of a reference system that is UTM on WGS 84, ETRS89 or NAD83; empty for any other code, as definitions are in a
-/// register of thousands. Source: EPSG registry; OGC 01-009 (Coordinate Transformation Services), 7.
-[[nodiscard]] inline std::string las_utm(std::uint16_t epsg) {
-  struct Family {
-    unsigned first, last;  // codes of its zones
-    unsigned zone;         // the first
-    std::string_view system, system_code, datum, datum_code, ellipsoid, flattening, ellipsoid_code;
-    bool south = false;
-  };
-  static constexpr std::array<Family, 4> families{{
-      {32601, 32660, 1, "WGS 84", "4326", "WGS_1984", "6326", "WGS 84", "298.257223563", "7030"},
-      {32701, 32760, 1, "WGS 84", "4326", "WGS_1984", "6326", "WGS 84", "298.257223563", "7030", true},
-      {25828, 25838, 28, "ETRS89", "4258", "European_Terrestrial_Reference_System_1989", "6258", "GRS 1980", "298.257222101", "7019"},
-      {26901, 26923, 1, "NAD83", "4269", "North_American_Datum_1983", "6269", "GRS 1980", "298.257222101", "7019"},
-  }};
-  const auto family = std::find_if(families.begin(), families.end(), [&](const Family& f) { return epsg >= f.first && epsg <= f.last; });
-  if (family == families.end()) return {};
-  const unsigned zone = epsg - family->first + family->zone;
-  const auto code = [](std::string_view number) { return "AUTHORITY[\"EPSG\",\"" + std::string(number) + "\"]"; };
-  const auto quoted = [](std::string_view name) { return "[\"" + std::string(name) + "\","; };
-  const std::string name = std::string(family->system) + " / UTM zone " + std::to_string(zone) + (family->south ? "S" : "N");
-  return "PROJCS" + quoted(name) + "GEOGCS" + quoted(family->system) + "DATUM" + quoted(family->datum) + "SPHEROID" +
-         quoted(family->ellipsoid) + "6378137," + std::string(family->flattening) + ',' + code(family->ellipsoid_code) + "]," +
-         code(family->datum_code) + "],PRIMEM[\"Greenwich\",0," + code("8901") + "],UNIT[\"degree\",0.0174532925199433," + code("9122") +
-         "]," + code(family->system_code) + "],PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0]," +
-         "PARAMETER[\"central_meridian\"," + std::to_string(6 * static_cast<int>(zone) - 183) +
-         "],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\"," +
-         (family->south ? "10000000" : "0") + "],UNIT[\"metre\",1," + code("9001") + "],AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]," +
-         code(std::to_string(epsg)) + ']';
-}
-
 }  // namespace detail
 
-/// Writes points as LAS 1.4, point format 6 with extra bytes, in pulse order; memory does not grow with their number.
+/// Writes points as LAS with extra bytes, in pulse order; memory does not grow with their number.
 /// Source of every field: ASPRS LAS Specification 1.4 R15. What it leaves open is decided so:
 /// - coordinates are rounded to the nearest step; one that does not fit 32 bits, or is not finite, is a `FileError`;
-/// - intensity is the reflectance, linear; the extra bytes Amplitude and Reflectance are levels [dB], -200 for nothing;
-/// - return numbers and their count end at 15, as the format does: later returns are written as the 15th;
-/// - classes end at 255; point source id is the leg plus 1, at most 65535; scanner channel is the channel's lowest two bits;
+/// - intensity is linear in what `LasIntensity` says; the extra bytes Amplitude and Reflectance are levels [dB], -200 for nothing;
+/// - return numbers and their count end at 15, or 5, as the format does: later returns are written as the 15th;
+/// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; scanner channel is the channel's lowest two bits;
 /// - scan angle counts from down, positive to the right of the flight; GPS time is that of the pulse, alike in all its returns;
 /// - a reference system that is known by its code alone, and not one of UTM, is written as GeoTIFF keys and the WKT bit is left out: the
-///   specification wants well-known text with this point format, but a code that readers understand is more than nothing;
+///   specification wants well-known text with point formats 6 and 9, but a code that readers understand is more than nothing. With legacy
+///   formats, a code is always written as keys;
 /// - flags, scan direction, edge of flight line and user data are 0, for no field of an echo tells them.
-/// Only `close()` makes the file: see `OutputFile`.
+///
+/// Waveforms are written once for all echoes of their pulse, as `detail::LasPackets` says; those of pulses without echoes are not, as no
+/// point could refer to them. The location L of a point's return is the two-way time from the first sample to the echo [ps], and the vector
+/// d points back to the instrument, half the speed of light long [m/ps]. So, as in the specification, `P + L d` is the anchor, where the
+/// first sample is from, and sample i is from `P + (L - i spacing) d`; P is the point.
+/// Only `close()` makes the file: see `OutputFile`. The `.wdp` file is made before the LAS file, so that this is whole when it is there.
 class LasWriter {
  public:
   explicit LasWriter(std::filesystem::path path, LasSettings settings = {})
-      : settings_(validated(std::move(settings))), file_(std::move(path)), offset_(settings_.offset.value_or(Vec3{})) {
-    if (settings_.wkt.empty()) settings_.wkt = detail::las_utm(settings_.epsg);
-    file_.write(header());
+      : settings_(validated(std::move(settings))),
+        layout_(settings_.format, settings_.waveforms),
+        file_(std::move(path)),
+        offset_(settings_.offset.value_or(Vec3{})) {
+    if (settings_.format == LasFormat::las_1_0) settings_.wkt.clear();
+    if (settings_.wkt.empty() && !layout_.legacy) settings_.wkt = detail::las_utm(settings_.epsg);
+    if (settings_.waveforms) packets_.emplace(packets_path());
+    write_header();
     write_extra_bytes_record();
     if (!settings_.wkt.empty()) write_wkt_record();
     if (by_keys()) write_keys_record();
+    descriptors_at_ = file_.position();
+    if (packets_) {
+      file_.write(packets_->descriptors());
+      records_ += detail::LasPackets::descriptor_count;
+    }
+    if (layout_.start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // source: LAS 1.0, Point Data Start Signature
+    points_at_ = file_.position();
   }
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots) {
-      if (shot.echoes != 0) write(shot, batch.echoes_of(shot));
+      if (shot.echoes != 0) write(shot, batch);
     }
   }
 
-  /// Enters numbers and bounds into the header and gives the file its name.
+  /// Enters numbers and bounds into the header, gives intensities their scale if it is automatic, and the file its name.
   void close() {
-    file_.overwrite(0, header());
+    if (layout_.minor == 0 && points_ > std::numeric_limits<std::uint32_t>::max())
+      throw FileError(file_.path().string(), "", "has too many points; expected fewer than 2^32, with version 1.0");
+    if (automatic_intensity()) scale_intensities();
+    write_header();
+    if (packets_) {
+      file_.overwrite(descriptors_at_, packets_->descriptors());
+      packets_->close();
+    }
     file_.commit();
   }
 
  private:
-  using Header = detail::LasBytes<detail::las_header_size>;
-  using Record = detail::LasBytes<detail::las_record_size>;
-  static constexpr std::uint32_t most_returns = 15;  // the format has four bits
+  using Header = detail::LasBytes<375>;  ///< the longest
+  using Record = detail::LasBytes<30 + detail::las_packet_size + detail::las_extras_size>;
+  static constexpr std::size_t range_at = 0, amplitude_at = 8, reflectance_at = 12, width_at = 16, pulse_at = 20, object_at = 28;
 
-  void write(const Shot& shot, std::span<const Echo> echoes) {
-    Record record{};  // positions: LAS 1.4 R15, Point Data Record Format 6; then those of `las_extras`
-    const std::uint32_t returns = std::min(shot.echoes, most_returns);
-    record.put(15, static_cast<std::uint8_t>((shot.channel & 3U) << 4));
-    record.put(18, detail::las_rounded<std::int16_t>(degrees(shot.scan_angle) / 0.006, -30000, 30000));
-    record.put(20, static_cast<std::uint16_t>(std::min(shot.leg + 1U, 65535U)));
-    record.put(22, settings_.start_time + shot.tick.seconds());
-    record.put(50, shot.index);
-    for (const Echo& echo : echoes) {
+  void write(const Shot& shot, const EchoBatch& batch) {
+    Record record{};
+    const std::span<const std::byte> bytes = std::span(record).first(layout_.record());
+    const std::uint32_t returns = std::min(shot.echoes, layout_.most_returns);
+    const auto source = static_cast<std::uint16_t>(std::min(shot.leg + 1U, 65535U));
+    const double time = settings_.start_time + shot.tick.seconds();
+    if (layout_.legacy) {  // positions: LAS 1.4 R15, Point Data Record Format 1
+      record.put(16, detail::las_rounded<std::int8_t>(degrees(shot.scan_angle), -90, 90));
+      record.put(18, source);
+      record.put(20, time);
+    } else {  // Point Data Record Format 6
+      record.put(15, static_cast<std::uint8_t>((shot.channel & 3U) << 4));
+      record.put(18, detail::las_rounded<std::int16_t>(degrees(shot.scan_angle) / 0.006, -30000, 30000));
+      record.put(20, source);
+      record.put(22, time);
+    }
+    const bool has_waveform = packets_ && shot.samples != 0;
+    if (has_waveform) put_packet(record, shot, packets_->add(batch.waveform_of(shot), batch.sample_interval));
+    const std::size_t extras = layout_.extras;
+    record.put(extras + pulse_at, shot.index);
+    for (const Echo& echo : batch.echoes_of(shot)) {
       const Vec3 point = point_of(shot, echo);
       if (points_ == 0 && !settings_.offset) choose_offset(point);
       const std::uint32_t number = std::clamp<std::uint32_t>(echo.number, 1, returns);
+      const float amplitude = detail::las_level(echo.amplitude / settings_.amplitude_reference);
+      most_amplitude_ = std::max(most_amplitude_, amplitude);
       record.put(0, coordinate(point.x, offset_.x, 0));
       record.put(4, coordinate(point.y, offset_.y, 1));
       record.put(8, coordinate(point.z, offset_.z, 2));
-      record.put(12, detail::las_rounded<std::uint16_t>(echo.reflectance / settings_.intensity_full_scale * 65535, 0, 65535));
-      record.put(14, static_cast<std::uint8_t>(number | returns << 4));
-      record.put(16, static_cast<std::uint8_t>(std::min<unsigned>(echo.classification, 255)));
-      record.put(30, echo.range);
-      record.put(38, detail::las_level(echo.amplitude / settings_.amplitude_reference));
-      record.put(42, detail::las_level(echo.reflectance));
-      record.put(46, static_cast<float>(echo.width * 1e9));
-      record.put(58, echo.object);
-      file_.write(record);
+      record.put(12, intensity(echo));
+      record.put(14, static_cast<std::uint8_t>(number | returns << (layout_.legacy ? 3 : 4)));
+      record.put(layout_.legacy ? 15 : 16, static_cast<std::uint8_t>(std::min<std::uint32_t>(echo.classification, layout_.most_class)));
+      if (has_waveform) record.put(layout_.packet + 13, static_cast<float>((2 / speed_of_light * echo.range - shot.waveform_start) * 1e12));
+      record.put(extras + range_at, echo.range);
+      record.put(extras + amplitude_at, amplitude);
+      record.put(extras + reflectance_at, detail::las_level(echo.reflectance));
+      record.put(extras + width_at, static_cast<float>(echo.width * 1e9));
+      record.put(extras + object_at, echo.object);
+      file_.write(bytes);
       ++points_;
       ++points_by_return_[number - 1];
+    }
+  }
+
+  [[nodiscard]] std::filesystem::path packets_path() const {
+    std::filesystem::path path = file_.path();
+    if (path.replace_extension(".wdp") != file_.path()) return path;
+    throw FileError(path.string(), "", "is where its waveforms go; expected a name that ends otherwise, as in .las");
+  }
+
+  /// What of a wave packet all returns share. Positions: LAS 1.4 R15, Point Data Record Format 4, from the packet's first byte.
+  void put_packet(Record& record, const Shot& shot, const detail::LasPacket& packet) const noexcept {
+    record.put(layout_.packet, packet.descriptor);
+    record.put(layout_.packet + 1, packet.offset);
+    record.put(layout_.packet + 9, packet.size);
+    const Vec3 back = shot.direction * (-speed_of_light / 2 * 1e-12);
+    for (int axis = 0; axis < 3; ++axis)
+      record.put(layout_.packet + 17 + 4 * static_cast<std::size_t>(axis), static_cast<float>(back[axis]));
+  }
+
+  [[nodiscard]] bool automatic_intensity() const noexcept {
+    return settings_.intensity == LasIntensity::amplitude && !settings_.intensity_full_scale;
+  }
+
+  [[nodiscard]] std::uint16_t intensity(const Echo& echo) const noexcept {
+    if (automatic_intensity()) return 0;  // until `close()`
+    const double value = settings_.intensity == LasIntensity::amplitude ? echo.amplitude : echo.reflectance;
+    return detail::las_rounded<std::uint16_t>(value / settings_.intensity_full_scale.value_or(1) * 65535, 0, 65535);
+  }
+
+  /// Goes through the points again: the greatest amplitude is known now, and those of the points are in their extra bytes.
+  void scale_intensities() {
+    const std::size_t record = layout_.record(), at_once = (std::size_t{1} << 20) / record;
+    std::vector<std::byte> bytes;
+    for (std::uint64_t first = 0; first < points_; first += at_once) {
+      bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(at_once, points_ - first)) * record);
+      file_.read(points_at_ + first * record, bytes);
+      for (std::size_t at = 0; at < bytes.size(); at += record) {
+        float level = 0;
+        std::memcpy(&level, bytes.data() + at + layout_.extras + amplitude_at, sizeof level);
+        const auto scaled = detail::las_rounded<std::uint16_t>(65535 * std::pow(10, (double{level} - most_amplitude_) / 10), 0, 65535);
+        std::memcpy(bytes.data() + at + 12, &scaled, sizeof scaled);
+      }
+      file_.overwrite(points_at_ + first * record, bytes);
     }
   }
 
@@ -232,17 +217,14 @@ class LasWriter {
     throw FileError(file_.path().string(), "point " + std::to_string(points_ + 1), problem.str());
   }
 
-  /// The header as of now. Positions: LAS 1.4 R15, Public Header Block; what is not put is 0, as the legacy numbers must be with format 6.
-  [[nodiscard]] Header header() const {
-    const std::size_t wkt_record = settings_.wkt.empty() ? 0 : detail::las_vlr_header_size + settings_.wkt.size() + 1;
-    const std::size_t keys_record = by_keys() ? detail::las_vlr_header_size + 2 * keys_size : 0;
-    const std::size_t extra_record = detail::las_vlr_header_size + detail::las_extras.size() * detail::las_descriptor_size;
-    const unsigned wkt_bit = by_keys() ? 0 : 1U << 4;  // LAS 1.4 R15, Global Encoding: must be set with format 6
+  /// Writes the header as of now. Positions: LAS 1.4 R15, Public Header Block; what is not put is 0, as the legacy numbers must be with
+  /// formats 6 and 9, and the start of waveforms with those in a file of their own. Version 1.0 ends before it, and has no global encoding.
+  void write_header() {
     Header h{};
     h.put_text(0, "LASF");
-    h.put(6, static_cast<std::uint16_t>(static_cast<unsigned>(settings_.gps_time) | wkt_bit));
+    if (layout_.minor != 0) h.put(6, global_encoding());
     h.put(24, std::uint8_t{1});
-    h.put(25, std::uint8_t{4});
+    h.put(25, layout_.minor);
     h.put_text(26, "simulation");
     h.put_text(58, "pulsecast " PULSECAST_VERSION);
     if (settings_.created) {
@@ -252,11 +234,15 @@ class LasWriter {
       h.put(90, static_cast<std::uint16_t>(day.count() + 1));  // 1 January is day 1
       h.put(92, static_cast<std::uint16_t>(int{year}));
     }
-    h.put(94, static_cast<std::uint16_t>(detail::las_header_size));
-    h.put(96, static_cast<std::uint32_t>(detail::las_header_size + extra_record + wkt_record + keys_record));  // where the points begin
-    h.put(100, std::uint32_t{settings_.wkt.empty() && !by_keys() ? 1U : 2U});                                  // variable length records
-    h.put(104, std::uint8_t{6});                                                                               // point format
-    h.put(105, static_cast<std::uint16_t>(detail::las_record_size));
+    h.put(94, static_cast<std::uint16_t>(layout_.header));
+    h.put(96, static_cast<std::uint32_t>(points_at_));
+    h.put(100, records_);
+    h.put(104, layout_.format);
+    h.put(105, static_cast<std::uint16_t>(layout_.record()));
+    if (layout_.legacy && points_ <= std::numeric_limits<std::uint32_t>::max()) {
+      h.put(107, static_cast<std::uint32_t>(points_));
+      for (std::size_t i = 0; i < 5; ++i) h.put(111 + 4 * i, static_cast<std::uint32_t>(points_by_return_[i]));
+    }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double offset = offset_[static_cast<int>(axis)];
       h.put(131 + 8 * axis, settings_.scale);
@@ -266,18 +252,26 @@ class LasWriter {
       h.put(187 + 16 * axis, least_[axis] * settings_.scale + offset);
     }
     h.put(247, points_);
-    for (std::size_t i = 0; i < most_returns; ++i) h.put(255 + 8 * i, points_by_return_[i]);
-    return h;
+    for (std::size_t i = 0; i < points_by_return_.size(); ++i) h.put(255 + 8 * i, points_by_return_[i]);
+    const std::span<const std::byte> bytes = std::span(h).first(layout_.header);
+    if (file_.position() == 0)
+      file_.write(bytes);
+    else
+      file_.overwrite(0, bytes);
   }
 
-  /// Source: LAS 1.4 R15, Variable Length Records.
+  /// Source: LAS 1.4 R15, Global Encoding: bit 0 is the kind of time, bit 2 says waveforms are in a file of their own, bit 4 must be set
+  /// with well-known text, and with formats 6 and 9.
+  [[nodiscard]] std::uint16_t global_encoding() const noexcept {
+    const bool wkt = layout_.legacy ? !settings_.wkt.empty() : !by_keys();
+    return static_cast<std::uint16_t>(static_cast<unsigned>(settings_.gps_time) | (packets_ ? 1U << 2 : 0U) | (wkt ? 1U << 4 : 0U));
+  }
+
   void write_record_header(std::string_view user, std::uint16_t record, std::size_t size, std::string_view description) {
-    detail::LasBytes<detail::las_vlr_header_size> h{};
-    h.put_text(2, user);
-    h.put(18, record);
-    h.put(20, static_cast<std::uint16_t>(size));
-    h.put_text(22, description);
+    auto h = detail::las_vlr_header(user, record, size, description);
+    if (layout_.minor == 0) h.put(0, std::uint16_t{0xAABB});  // source: LAS 1.0, Variable Length Records, Record Signature
     file_.write(h);
+    ++records_;
   }
 
   /// Source: LAS 1.4 R15, Extra Bytes.
@@ -301,24 +295,24 @@ class LasWriter {
   /// Whether the reference system is known by its code alone.
   [[nodiscard]] bool by_keys() const noexcept { return settings_.wkt.empty() && settings_.epsg != 0; }
 
-  /// A header and three keys: the model is projected, its code, and its unit, the metre. Source: OGC GeoTIFF 1.1, 7.1.2 and annex B; LAS
-  /// 1.4 R15, GeoKeyDirectoryTag Record.
+  /// Source: LAS 1.4 R15, GeoKeyDirectoryTag Record.
   void write_keys_record() {
-    const std::array<std::uint16_t, keys_size> keys{1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, settings_.epsg, 3076, 0, 1, 9001};
+    const auto keys = detail::las_geo_keys(settings_.epsg);
     write_record_header("LASF_Projection", 34735, sizeof keys, "GeoTIFF GeoKeyDirectoryTag");
-    detail::LasBytes<sizeof keys> bytes{};
-    for (std::size_t i = 0; i < keys.size(); ++i) bytes.put(2 * i, keys[i]);
-    file_.write(bytes);
+    file_.write(std::as_bytes(std::span(keys)));
   }
 
-  static constexpr std::size_t keys_size = 16;
-
   LasSettings settings_;
+  detail::LasLayout layout_;
   OutputFile file_;
+  std::optional<detail::LasPackets> packets_;
   Vec3 offset_;
-  std::array<std::int32_t, 3> least_{}, most_{};  // of the coordinates as stored
+  std::uint32_t records_ = 0;                         // of variable length
+  std::uint64_t descriptors_at_ = 0, points_at_ = 0;  // from the beginning of the file [byte]
+  std::array<std::int32_t, 3> least_{}, most_{};      // of the coordinates as stored
   std::uint64_t points_ = 0;
-  std::array<std::uint64_t, most_returns> points_by_return_{};
+  std::array<std::uint64_t, 15> points_by_return_{};
+  float most_amplitude_ = -200;  // [dB]
 };
 static_assert(EchoSink<LasWriter>);
 

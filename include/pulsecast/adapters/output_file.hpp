@@ -20,18 +20,28 @@
 
 namespace pulsecast::adapters {
 
+/// What turns the bytes of a file into others on their way to it, as a compressor does.
+class OutputEncoder {
+ public:
+  virtual ~OutputEncoder() = default;
+  /// Appends to `out` what becomes of `bytes`; `last` is said once, with the last of them, which may be none.
+  virtual void encode(std::span<const std::byte> bytes, bool last, std::vector<std::byte>& out) = 0;
+};
+
 /// A file in the making: written beside its final name as `NAME.part`, and renamed by `commit()` when it is whole. Until then, and if the
 /// program is killed, nothing stands under the final name but what stood there before. Destroyed uncommitted, it leaves nothing behind.
 /// Every failure is a `FileError` that names the final path; after one, nothing more can be written or committed.
+/// With an encoder, what is written passes through it, a megabyte at a time, and cannot be read again or overwritten.
 /// Limits: data are handed to the system but not forced onto the disk, so a power cut may lose a file that was just committed.
 class OutputFile {
  public:
-  explicit OutputFile(std::filesystem::path path) : path_(std::move(path)) {
+  explicit OutputFile(std::filesystem::path path, std::unique_ptr<OutputEncoder> encoder = nullptr)
+      : path_(std::move(path)), encoder_(std::move(encoder)) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path_, ignored)) throw FileError(path_.string(), "", "is a folder; expected the name of a file");
     const std::filesystem::path temporary = path_.string() + ".part";
     errno = 0;
-    std::FILE* const file = std::fopen(temporary.c_str(), "wb");
+    std::FILE* const file = std::fopen(temporary.c_str(), "w+b");
     if (file == nullptr) fail("cannot be created", errno, "an existing folder that may be written to");
     file_ = {file, Discard{temporary}};
     std::setvbuf(file, nullptr, _IONBF, 0);  // what is buffered is buffered here, so that every error shows where it happens
@@ -44,7 +54,7 @@ class OutputFile {
     if (bytes.size() < capacity) {
       buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
     } else {
-      put(bytes);
+      hand_over(bytes, false);
     }
     position_ += bytes.size();
   }
@@ -53,15 +63,20 @@ class OutputFile {
 
   /// Puts other bytes in the place of some that were written before; writing then goes on at the end.
   void overwrite(std::uint64_t position, std::span<const std::byte> bytes) {
-    PULSECAST_EXPECT(position + bytes.size() <= position_);
-    expect_open();
-    flush();
-    seek(static_cast<long>(position), SEEK_SET);
+    go_back(position, bytes.size());
     put(bytes);
     seek(0, SEEK_END);
   }
 
-  /// How many bytes were written so far: where the next ones will stand.
+  /// Reads bytes that were written before; writing then goes on at the end.
+  void read(std::uint64_t position, std::span<std::byte> bytes) {
+    go_back(position, bytes.size());
+    errno = 0;
+    if (std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail("cannot be read again", errno, "what was written");
+    seek(0, SEEK_END);
+  }
+
+  /// How many bytes were written so far, before any encoding: where the next ones will stand.
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
 
   /// The final name.
@@ -70,7 +85,7 @@ class OutputFile {
   /// Makes the file stand under its final name, in place of any that stood there.
   void commit() {
     expect_open();
-    flush();
+    flush(true);
     const std::filesystem::path temporary = file_.get_deleter().temporary;
     errno = 0;
     std::error_code error;
@@ -117,9 +132,23 @@ class OutputFile {
     fail("cannot be written", errno, "room for " + std::to_string(bytes.size()) + " more bytes");
   }
 
-  void flush() {
-    put(buffer_);
+  void hand_over(std::span<const std::byte> bytes, bool last) {
+    if (!encoder_) return put(bytes);
+    encoded_.clear();
+    encoder_->encode(bytes, last, encoded_);
+    put(encoded_);
+  }
+
+  void flush(bool last = false) {
+    hand_over(buffer_, last);
     buffer_.clear();
+  }
+
+  void go_back(std::uint64_t position, [[maybe_unused]] std::size_t size) {
+    PULSECAST_EXPECT(!encoder_ && position + size <= position_);
+    expect_open();
+    flush();
+    seek(static_cast<long>(position), SEEK_SET);
   }
 
   void seek(long offset, int origin) {
@@ -129,7 +158,8 @@ class OutputFile {
 
   std::filesystem::path path_;
   std::unique_ptr<std::FILE, Discard> file_;
-  std::vector<std::byte> buffer_;
+  std::unique_ptr<OutputEncoder> encoder_;
+  std::vector<std::byte> buffer_, encoded_;
   std::uint64_t position_ = 0;
 };
 

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <string>
 #include <utility>
 
 #include <pulsecast/adapters/output_file.hpp>
-#include <pulsecast/adapters/text_row.hpp>
+#include <pulsecast/adapters/text_output.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast::adapters {
@@ -23,14 +21,16 @@ struct XyzSettings {
 ///
 ///     x y z intensity echo_width returnNumber pulseReturnNumber fullwaveIndex hitObjectId classification gpsTime
 ///
-/// x, y, z [m], intensity, which is the echo's amplitude [nW], and echo_width [ns] have 4 decimals, gpsTime [s] has 9; the others are whole
-/// numbers: return number, returns of the pulse, index of the pulse, object, class. There is no head line.
+/// x, y, z [m], intensity, which is the echo's amplitude [nW], and echo_width [ns], nan if there was none to be found, have 4 decimals,
+/// gpsTime [s] has 9; the others are whole numbers: return number, returns of the pulse, index of the pulse, object, class. There is no
+/// head line.
 /// These are the columns of HELIOS++ point files, so that what reads those reads these; only the unit of intensity is stated here.
 /// Only `close()` makes the file: see `OutputFile`.
 class XyzWriter {
  public:
   explicit XyzWriter(std::filesystem::path path, const XyzSettings& settings = {})
-      : settings_(validated(settings)), file_(std::move(path)) {}
+      : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
+  explicit XyzWriter(OutputFile file, const XyzSettings& settings = {}) : settings_(validated(settings)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots) {
@@ -38,28 +38,18 @@ class XyzWriter {
     }
   }
 
-  void close() { file_.commit(); }
+  void close() { text_.close(); }
 
  private:
   void write(const Shot& shot, const Echo& echo) {
-    const Vec3 point = point_of(shot, echo);
-    if (!finite(point)) {
-      file_.discard();
-      throw FileError(file_.path().string(), "line " + std::to_string(points_ + 1),
-                      "cannot be written: the echo of pulse " + std::to_string(shot.index) + " has no place; expected finite coordinates");
-    }
     constexpr double nano = 1e9;  // of a unit
-    row_.add(point.x, 4).add(point.y, 4).add(point.z, 4).add(echo.amplitude * nano, 4).add(echo.width * nano, 4);
-    row_.add(echo.number).add(shot.echoes).add(shot.index).add(echo.object).add(echo.classification);
-    row_.add(settings_.start_time + shot.tick.seconds(), 9);
-    file_.write(row_.end());
-    ++points_;
+    text_.vector("the place of an echo", point_of(shot, echo), 4).reals(4, echo.amplitude * nano, echo.width * nano);
+    text_.wholes(echo.number, shot.echoes, shot.index, echo.object, echo.classification);
+    text_.reals(9, settings_.start_time + shot.tick.seconds()).end_row();
   }
 
   XyzSettings settings_;
-  OutputFile file_;
-  TextRow row_;
-  std::uint64_t points_ = 0;
+  TextOutput text_;
 };
 static_assert(EchoSink<XyzWriter>);
 
