@@ -1,0 +1,351 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pulsecast/adapters/geotiff.hpp>
+#include <pulsecast/adapters/leaf_angle_file.hpp>
+#include <pulsecast/adapters/mtl.hpp>
+#include <pulsecast/adapters/obj.hpp>
+#include <pulsecast/adapters/point_cloud.hpp>
+#include <pulsecast/adapters/spectral_library.hpp>
+#include <pulsecast/adapters/survey_settings.hpp>
+#include <pulsecast/adapters/voxel_file.hpp>
+#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/scene/moving_scene.hpp>
+#include <pulsecast/scene/on_ground.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/scene/variation.hpp>
+#include <pulsecast/scene/voxel_grid.hpp>
+
+/// The scene of a survey document, as parts of the library.
+namespace pulsecast::adapters {
+
+/// Any shape that a document can name.
+using SurveyPart = Part<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
+using SurveyScene =
+    MovingScene<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
+
+struct SceneBuildOptions {
+  SpectralLibrary spectra{};     ///< what materials may name
+  double pulse_rate = 100e3;     ///< of the first leg: motions may be given per pulse [Hz]
+  std::uint64_t seed = 0;        ///< of what is random in the scene
+  bool fixed_incidence = false;  ///< all surfaces scatter as if they were met squarely
+};
+
+/// The parts of a scene, and what was odd about its files. Files and grids are kept, so that a further scene of the same files costs
+/// little.
+class SceneBuilder {
+ public:
+  SceneBuilder(SceneSettings settings, SceneBuildOptions options) : settings_(std::move(settings)), options_(std::move(options)) {}
+
+  /// How many runs of the survey the swaps ask for.
+  [[nodiscard]] int runs() const {
+    int most = 1;
+    for (const PartSettings& part : settings_.parts) {
+      int all = 1;
+      for (const SwapSettings& swap : part.swaps) all += swap.step;
+      most = std::max(most, all);
+    }
+    return most;
+  }
+
+  /// The parts in a run, from 0.
+  [[nodiscard]] std::vector<SurveyPart> parts(int run = 0) {
+    std::vector<SurveyPart> all;
+    std::vector<int> lifted;  // of each part: as its settings ask for
+    for (std::size_t i = 0; i < settings_.parts.size(); ++i) {
+      const PartSettings& part = settings_.parts[i];
+      const PartSource* source = &part.source;
+      const TransformSettings* transform = &part.transform;
+      int begin = 1;
+      bool removed = false;
+      for (const SwapSettings& swap : part.swaps) {
+        if (run < begin) break;
+        removed = swap.removes, source = swap.source ? &*swap.source : &part.source, transform = &swap.transform;
+        begin += swap.step;
+      }
+      if (removed) continue;
+      add(part, *source, *transform, i, all);
+      lifted.resize(all.size(), transform->on_ground);
+    }
+    stand_on_ground(all, lifted);
+    move(all);
+    return all;
+  }
+
+  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+ private:
+  /// Geometry that files hold, and its materials.
+  struct Loaded {
+    decltype(SurveyPart::geometry) geometry;
+    MaterialTable materials;
+  };
+
+  void warn(const std::vector<std::string>& what) {
+    for (const std::string& text : what)
+      if (warned_.insert(text).second) warnings_.push_back(text);
+  }
+
+  /// Reads once what is asked for twice.
+  const std::vector<Loaded>& load(const PartSource& source) {
+    for (const auto& [known, loaded] : loaded_)
+      if (known == source) return loaded;
+    auto made = std::visit([&](const auto& s) { return read(s); }, source);
+    return loaded_.emplace_back(source, std::move(made)).second;
+  }
+
+  std::vector<Loaded> read(const ObjSource& source) {
+    std::vector<Loaded> all;
+    for (const std::filesystem::path& file : source.files) {
+      ObjModel model = read_obj(file, {.up = source.y_up ? UpAxis::y : UpAxis::z, .spectra = options_.spectra});
+      warn(model.warnings);
+      if (model.mesh.triangles.empty()) {
+        warn({file.string() + ": holds no triangle, and is left out"});
+        continue;
+      }
+      all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh)), table(std::move(model.materials))});
+    }
+    return all;
+  }
+
+  std::vector<Loaded> read(const GeoTiffSource& source) {
+    std::vector<Loaded> all;
+    for (const std::filesystem::path& file : source.files) {
+      GeoTiff tiff = read_geotiff(file);
+      warn(tiff.warnings);
+      all.push_back({std::make_shared<const HeightField>(std::move(tiff.raster)), table({material(source.material)})});
+    }
+    return all;
+  }
+
+  std::vector<Loaded> read(const XyzSource& source) {
+    PointCloudSettings s{.voxel_size = source.voxel_size, .default_normal = source.default_normal};
+    s.normals = source.estimate_normals > 0   ? VoxelNormals::fitted
+                : source.snap_neighbor_normal ? VoxelNormals::nearest
+                                              : VoxelNormals::mean;
+    s.columns.separators = source.separator.empty() ? " " : source.separator;
+    const auto columns = [](const std::array<int, 3>& c) {
+      return PointColumns::Columns{static_cast<std::size_t>(c[0]), static_cast<std::size_t>(c[1]), static_cast<std::size_t>(c[2])};
+    };
+    s.columns.normal = columns(source.normal_columns), s.columns.colour = columns(source.color_columns);
+    std::vector<Loaded> all;
+    for (const std::filesystem::path& file : source.files) {
+      PointCloud cloud = read_point_cloud(file, s);
+      if (s.normals == VoxelNormals::fitted && !s.default_normal)
+        drop_bare(file, cloud);
+      else
+        warn(cloud.warnings);
+      MaterialTable materials = spread(source.material, cloud.voxels);
+      all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(cloud.voxels), std::move(materials)});
+    }
+    return all;
+  }
+
+  /// Leaves out the voxels in which no plane could be fitted.
+  void drop_bare(const std::filesystem::path& file, PointCloud& cloud) {
+    VoxelData& v = cloud.voxels;
+    const auto is_bare = [&](std::size_t i) { return v.normals[i] == std::array<float, 3>{}; };
+    std::size_t kept = 0;
+    const std::size_t all = v.normals.size();
+    for (std::size_t i = 0; i < all; ++i)
+      if (!is_bare(i)) v.cells[kept] = v.cells[i], v.normals[kept++] = v.normals[i];
+    if (kept == all) return warn(cloud.warnings);
+    if (all > 0) v.cells.resize(kept), v.normals.resize(kept);
+    if (v.cells.empty()) throw FileError(file.string(), "", "has no voxel of three points or more, as estimateNormals needs");
+    warn({file.string() + ": " + std::to_string(all - kept) + " of " + std::to_string(all) +
+          " voxels have too few points for a normal, and are left out; defaultNormal would keep them"});
+  }
+
+  std::vector<Loaded> read(const VoxelSource& source) {
+    VoxelFileSettings s{.exponent = source.scaling_exponent};
+    s.use = source.mode == VoxelMode::transmittive ? VoxelUse::transmissive
+            : source.mode == VoxelMode::fixed      ? VoxelUse::opaque
+                                                   : VoxelUse::scaled;
+    if (source.random_shift) s.shift = options_.seed;
+    const LeafAngles leaves = source.leaf_angles.empty() ? LeafAngles::spherical() : read_leaf_angles(source.leaf_angles);
+    std::vector<Loaded> all;
+    for (const std::filesystem::path& file : source.files) {
+      VoxelFile voxels = read_voxel_file(file, s);
+      warn(voxels.warnings);
+      if (voxels.voxels.cells.empty()) {
+        warn({file.string() + ": holds no voxel that light could meet, and is left out"});
+        continue;
+      }
+      MaterialTable materials = spread(source.material, voxels.voxels);
+      if (!source.leaf_angles.empty())  // of surveys, where a `ladlut` is said to give 2 pi times the extinction of a unit of density
+        for (float& density : voxels.voxels.densities) density /= static_cast<float>(2 * pi);
+      if (source.mode == VoxelMode::transmittive)
+        all.push_back({std::make_shared<const VoxelGrid<TransmissiveVoxels>>(voxels.voxels, TransmissiveVoxels{leaves}), materials});
+      else if (source.mode == VoxelMode::fixed)
+        all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(voxels.voxels), materials});
+      else
+        all.push_back({std::make_shared<const VoxelGrid<ScaledVoxels>>(voxels.voxels), materials});
+    }
+    return all;
+  }
+
+  Material material(const MaterialSource& source) {
+    if (source.file.empty()) return undescribed("default");
+    const MaterialLibrary library = read_mtl(source.file, options_.spectra);
+    warn(library.warnings);
+    if (library.materials.empty()) throw FileError(source.file.string(), "", "holds no material");
+    if (!source.name) return library.materials.begin()->second;
+    const auto found = library.materials.find(*source.name);
+    if (found != library.materials.end()) return found->second;
+    std::string known;
+    for (const auto& [name, m] : library.materials) known += (known.empty() ? "" : ", ") + name;
+    throw FileError(source.file.string(), "", "holds no material '" + *source.name + "'; it has " + known);
+  }
+
+  MaterialTable table(std::vector<Material> materials) const {
+    if (options_.fixed_incidence)
+      for (Material& m : materials) m.scattering = Scattering::direction_independent;
+    return material_table(std::move(materials));
+  }
+
+  /// The material of voxels, or its variants, which they take in turn.
+  MaterialTable spread(const MaterialSource& source, VoxelData& voxels) {
+    std::vector<Material> all{material(source)};
+    if (source.random > 0) {
+      const std::vector<Material> variants =
+          varied(all[0], static_cast<std::size_t>(source.random), std::min(1.0, source.random_range), options_.seed);
+      all.insert(all.end(), variants.begin(), variants.end());
+      const std::vector<std::uint32_t> turns = in_turn(voxels.cells.size(), static_cast<std::uint32_t>(all.size()));
+      voxels.materials.assign(turns.begin(), turns.end());
+    }
+    return table(std::move(all));
+  }
+
+  void add(const PartSettings& part, const PartSource& source, const TransformSettings& transform, std::size_t place,
+           std::vector<SurveyPart>& all) {
+    Similarity placement{.scale = transform.scale, .translation = transform.translation};
+    for (const RotationList& turns : transform.rotations) placement.rotation = turns.rotation() * placement.rotation;
+    placement.rotation = normalize(placement.rotation);
+    ObjectId object = 0;
+    const auto [end, error] = std::from_chars(part.id.data(), part.id.data() + part.id.size(), object);
+    const bool is_number = error == std::errc{} && end == part.id.data() + part.id.size();
+    if (!is_number) object = static_cast<ObjectId>(place);
+    if (!is_number && !part.id.empty())
+      warn({"part '" + part.id + "': its id is not a number; its points are marked with its place in the scene, " + std::to_string(place)});
+    for (const Loaded& loaded : load(source)) {
+      all.push_back({loaded.geometry, loaded.materials, placement, object++, part.id, {}});
+      settings_of_.resize(all.size());
+      settings_of_.back() = &part;
+    }
+  }
+
+  static Box box_of(const SurveyPart& part) {
+    return std::visit([&](const auto& shape) { return part.placement.box(shape->bounds()); }, part.geometry);
+  }
+
+  void stand_on_ground(std::vector<SurveyPart>& all, const std::vector<int>& lifted) {
+    if (std::all_of(lifted.begin(), lifted.end(), [](int l) { return l == 0; })) return;
+    std::vector<SurveyPart> fixed;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (lifted[i] == 0) fixed.push_back(all[i]);
+    const SurveyScene carriers(std::move(fixed), {.to = 1});
+    const auto ground = [&](const Vec2& at) { return carriers.ground_height(at); };
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (lifted[i] == 0) continue;
+      auto stood = on_ground(all[i], ground, lifted[i] == -1 ? Standing::touching : Standing::lowest_point);
+      if (stood)
+        all[i] = std::move(*stood);
+      else
+        warn({"part '" + all[i].name + "': there is no ground under it, so it stays where it is"});
+    }
+  }
+
+  void move(std::vector<SurveyPart>& all) {
+    Box box;
+    for (const SurveyPart& part : all) box.extend(box_of(part));
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (!settings_of_[i]->motions.empty()) all[i].motion = motion(*settings_of_[i], box.centre());
+  }
+
+  /// The time from one step of a part to the next [s].
+  [[nodiscard]] double step_of(const PartSettings& part) const {
+    if (settings_.dynamic_interval) {
+      const double scene = *settings_.dynamic_interval;
+      return part.dynamic_interval ? scene * std::max(1.0, std::floor(*part.dynamic_interval / scene)) : scene;
+    }
+    return settings_.dynamic_step * part.dynamic_step / options_.pulse_rate;
+  }
+
+  std::shared_ptr<const PartMotion> motion(const PartSettings& part, const Vec3& scene_centre) const {
+    const double step = step_of(part);
+    std::vector<MotionSequence> sequences;
+    std::optional<std::size_t> again;
+    std::map<std::string, std::size_t> seen;
+    for (const MotionSequenceSettings* s = &part.motions.front(); s != nullptr;) {
+      seen.emplace(s->id, sequences.size());
+      SteadyMotion steady = steady_of(part, *s, scene_centre, step);
+      if (s->loop > 0) steady.duration = step * s->loop;
+      sequences.push_back({.motions = {steady}});
+      if (s->loop == 0 || !s->next) break;
+      const auto next = std::find_if(part.motions.begin(), part.motions.end(), [&](const auto& m) { return m.id == *s->next; });
+      if (next == part.motions.end()) break;
+      if (const auto back = seen.find(next->id); back != seen.end()) {
+        again = back->second;
+        break;
+      }
+      s = &*next;
+    }
+    return std::make_shared<const PartMotion>(sequences, again);
+  }
+
+  /// What all motions of a sequence do in one step.
+  SteadyMotion steady_of(const PartSettings& part, const MotionSequenceSettings& sequence, const Vec3& scene_centre, double step) const {
+    using Move = Pose<frame::World, frame::World>;
+    Move all, own;
+    bool any = false, any_own = false;
+    for (const MotionSettings& m : sequence.motions) {
+      Move move;
+      if (const auto* t = std::get_if<TranslationMotion>(&m.kind)) {
+        move.position = t->by;
+      } else if (const auto* r = std::get_if<RotationMotion>(&m.kind)) {
+        // places are relative to the centre of the scene, unless they are corrected by it
+        const Vec3 centre = m.about_itself ? Vec3{} : r->center.value_or(Vec3{}) + (1 - m.shift_factor) * scene_centre;
+        move.rotation = rotation_about(r->axis, r->angle);
+        move.position = centre - move.rotation * centre + r->glide.value_or(0) * r->axis;
+      } else if (!std::holds_alternative<NoMotion>(m.kind)) {
+        throw SettingError("part '" + part.id + "', dmotion '" + sequence.id + "': reflections (number)", 1, "",
+                           "0: a part can be turned and moved, but not mirrored");
+      }
+      (m.about_itself ? own : all) = move * (m.about_itself ? own : all);
+      (m.about_itself ? any_own : any) = true;
+    }
+    if (any && any_own && all.rotation != no_rotation)
+      throw SettingError("part '" + part.id + "', dmotion '" + sequence.id + "': turns about a place and about itself (number)", 2, "",
+                         "1 of them in a sequence");
+    if (!any_own) return steady_motion(all, step);
+    own.position += all.position;
+    const SteadyMotion turn = steady_motion(Move{own.rotation, {}}, step);
+    return {.velocity = own.position / step, .axis = turn.axis, .rate = turn.rate};
+  }
+
+  SceneSettings settings_;
+  SceneBuildOptions options_;
+  std::vector<std::pair<PartSource, std::vector<Loaded>>> loaded_;
+  std::vector<const PartSettings*> settings_of_;  // of each part of the last run
+  std::vector<std::string> warnings_;
+  std::set<std::string> warned_;
+};
+
+}  // namespace pulsecast::adapters

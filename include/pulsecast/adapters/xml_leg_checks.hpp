@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include <pulsecast/adapters/survey_settings.hpp>
+#include <pulsecast/adapters/xml_element.hpp>
+#include <pulsecast/adapters/xml_library.hpp>
+
+namespace pulsecast::adapters {
+
+/// Holds the legs of a survey against its scanner and platform: what could never end, give a pulse, or be done by the device is a fault.
+class LegChecks {
+ public:
+  /// `survey` must have a scanner with a channel.
+  LegChecks(const XmlLibraryDocument& document, const SurveySettings& survey, XmlReport& report)
+      : document_(document), survey_(survey), report_(report) {}
+
+  /// Checks one leg and where it leads; `leg` is its element.
+  void check(pugi::xml_node leg, std::size_t i) const {
+    check_platform(leg, i);
+    check_scanner(leg, i);
+  }
+
+ private:
+  [[nodiscard]] bool is_moving() const { return survey_.platform.kind != PlatformKind::stationary; }
+
+  void check_platform(pugi::xml_node leg, std::size_t i) const {
+    const LegSettings& settings = survey_.legs[i];
+    const LegPlatformSettings& platform = settings.platform;
+    const XmlInput io(document_.document(), leg.child("platformSettings"), report_, document_.search());
+    const bool follows = survey_.platform.kind == PlatformKind::interpolated;
+    if (follows) {
+      if (!platform.trajectory || platform.trajectory->file.empty())
+        io.fault("trajectory", "<platformSettings> has no attribute 'trajectory', which platform=\"interpolated\" follows");
+      return;
+    }
+    if (platform.trajectory) io.warn("trajectory", "trajectory attributes have no effect unless platform=\"interpolated\"");
+    if (!is_moving() || settings.duration_max) return;
+    if (survey_.legs.size() == 1)
+      io.report().fault(io.place(),
+                        "a single leg of a platform that moves: expected another <leg> that says where it goes, or maxDuration_s");
+    if (platform.speed == 0 && i + 1 < survey_.legs.size())
+      io.fault("movePerSec_m", "the leg could never end: movePerSec_m is 0; expected a speed, or maxDuration_s");
+    if (i + 1 < survey_.legs.size() && platform.position == survey_.legs[i + 1].platform.position && !platform.on_ground)
+      io.warn("x", "the leg begins where the next one does: it has no length");
+  }
+
+  void check_scanner(pugi::xml_node leg, std::size_t i) const {
+    const LegSettings& settings = survey_.legs[i];
+    const LegScannerSettings& s = settings.scanner;
+    const pugi::xml_node own = leg.child("scannerSettings");
+    const XmlInput io(document_.document(), own ? own : leg, report_, document_.search());
+    const ChannelSettings& device = survey_.scanner.channels.front();
+    check_head(io, device, settings, i);
+    if (!s.active) return;
+    const auto hertz = [](double value) { return xml_number(value) + " Hz"; };
+    if (s.scan_frequency < device.scan_frequency_min)
+      io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected at least the scanner's scanFreqMin_Hz, " +
+                                  hertz(device.scan_frequency_min));
+    if (device.scan_frequency_max > 0 && s.scan_frequency > device.scan_frequency_max)
+      io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected at most the scanner's scanFreqMax_Hz, " +
+                                  hertz(device.scan_frequency_max));
+    if (s.scan_frequency == 0 && std::holds_alternative<OscillatingOptic>(device.optic))
+      io.fault("scanFreq_hz", "scanFreq_hz is 0, so the mirror does not swing: expected a frequency");
+    if (s.scan_frequency >= s.pulse_rate)
+      io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected less than pulseFreq_hz, " + hertz(s.pulse_rate));
+    const std::vector<double>& rates = survey_.scanner.pulse_rates;
+    if (std::find(rates.begin(), rates.end(), s.pulse_rate) == rates.end())
+      io.warn("pulseFreq_hz", "pulseFreq_hz of " + hertz(s.pulse_rate) + " is none that the scanner is made for");
+    if (s.scan_angle && device.scan_angle_max > 0 && *s.scan_angle > device.scan_angle_max)
+      io.warn("scanAngle_deg",
+              "scanAngle_deg is more than the scanner can: it is limited to " + xml_number(units::degree.number(device.scan_angle_max)));
+    check_gate(io, device, s);
+  }
+
+  void check_gate(const XmlInput& io, const ChannelSettings& device, const LegScannerSettings& s) const {
+    const auto* const rotating = std::get_if<RotatingOptic>(&device.optic);
+    if (!rotating) {
+      if (s.vertical_angle_min || s.vertical_angle_max)
+        io.warn("verticalAngleMin_deg", "verticalAngleMin_deg and verticalAngleMax_deg have no effect with these optics");
+      return;
+    }
+    const double widest = rotating->effective_angle_max.value_or(device.scan_angle_max);
+    const double half = std::min(widest, s.scan_angle.value_or(widest));
+    const double low = s.vertical_angle_min.value_or(-half), high = s.vertical_angle_max.value_or(half);
+    if (s.scan_frequency > 0 && !(low < high))
+      io.fault("verticalAngleMin_deg", "no pulse could leave between " + xml_number(units::degree.number(low)) + " and " +
+                                           xml_number(units::degree.number(high)) +
+                                           " deg: expected verticalAngleMin_deg below verticalAngleMax_deg");
+    if (high - low > 2 * widest * (1 + 1e-12))
+      io.fault("verticalAngleMin_deg", "verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's " +
+                                           xml_number(units::degree.number(2 * widest)) + " deg");
+  }
+
+  void check_head(const XmlInput& io, const ChannelSettings& device, const LegSettings& settings, std::size_t i) const {
+    const LegScannerSettings& s = settings.scanner;
+    const double speed = std::clamp(s.head_speed, -device.head_speed_max, device.head_speed_max);
+    if (s.head_speed != speed)
+      io.warn("headRotatePerSec_deg", device.head_speed_max == 0
+                                          ? "headRotatePerSec_deg has no effect: the scanner's headRotatePerSecMax_deg is 0"
+                                          : "headRotatePerSec_deg is more than the scanner can: it is limited to " +
+                                                xml_number(units::degree.number(device.head_speed_max)));
+    if ((s.head_speed > 0 && s.head_stop < s.head_start) || (s.head_speed < 0 && s.head_stop > s.head_start))
+      io.fault("headRotateStop_deg", "the head turns away from headRotateStop_deg: expected headRotatePerSec_deg of the other sign");
+    if (settings.duration_max) return;
+    if (speed == 0 && s.head_stop != s.head_start)
+      io.fault("headRotateStop_deg", "the leg could never end: the head does not turn" +
+                                         std::string(device.head_speed_max == 0 ? ", as the scanner's headRotatePerSecMax_deg is 0" : "") +
+                                         "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
+                                         "maxDuration_s");
+    if (is_moving() || s.head_stop != s.head_start) return;
+    if (speed == 0)
+      io.report().fault(io.place(), "the leg could never end: neither platform nor head moves; expected maxDuration_s" +
+                                        std::string(i == 0 ? "" : " for each leg"));
+    else
+      io.warn("headRotateStop_deg", "the head begins where it stops: the leg ends at once");
+  }
+
+  const XmlLibraryDocument& document_;
+  const SurveySettings& survey_;
+  XmlReport& report_;
+};
+
+}  // namespace pulsecast::adapters

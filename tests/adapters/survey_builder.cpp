@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/adapters/survey_builder.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "support/relative.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace pulsecast::adapters {
+namespace {
+
+using support::relative;
+using support::TemporaryFolder;
+
+std::optional<double> flat(const Vec2&) { return 7; }
+
+/// A survey of a rotating mirror and legs at these places.
+SurveySettings survey_of(PlatformKind kind, const std::vector<Vec3>& places, double speed = 10) {
+  SurveySettings s;
+  s.scanner.pulse_rates = {1000};
+  s.scanner.channels = {{.optic = RotatingOptic{}, .scan_angle_max = radians(60), .head_speed_max = radians(360)}};
+  s.platform.kind = kind;
+  for (const Vec3& place : places) {
+    LegSettings leg;
+    leg.platform.position = place, leg.platform.speed = speed;
+    leg.scanner.scan_frequency = 10;
+    s.legs.push_back(leg);
+  }
+  return s;
+}
+
+Vec3 origin(const SurveyPlan& plan, PulseIndex i) { return plan.source.pulse(i).value().pose.position; }
+
+TEST_CASE("a tripod stands where each leg says, until the head has turned") {
+  SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}, {4, 5, 6}});
+  for (LegSettings& leg : s.legs) leg.scanner.head_speed = radians(90), leg.scanner.head_stop = radians(180);
+  s.platform.mount.position = {0, 0, 1.5};
+  const SurveyPlan plan = plan_survey(s, flat);
+  REQUIRE(plan.legs.size() == 2);
+  CHECK(plan.legs[0].end == 2000);
+  CHECK(plan.legs[1].first == 2000);
+  CHECK(plan.legs[1].start.seconds() == 2);
+  CHECK(length(origin(plan, 0) - Vec3{1, 2, 4.5}) < 1e-12);
+  CHECK(length(origin(plan, 2000) - Vec3{4, 5, 7.5}) < 1e-12);
+  CHECK(plan.source.pulse(2000)->leg == 1);
+  CHECK(plan.source.pulse(2000)->tick.seconds() == 2);
+
+  SUBCASE("on the ground, if it asks for that") {
+    s.legs[0].platform.on_ground = true;
+    CHECK(origin(plan_survey(s, flat), 0).z == relative(8.5, 1e-12));
+    const auto none = [](const Vec2&) -> std::optional<double> { return std::nullopt; };
+    CHECK_THROWS_WITH_AS((void)plan_survey(s, none), doctest::Contains("leg 0: onGround"), SettingError);
+  }
+  SUBCASE("not longer than it may") {
+    s.legs[0].duration_max = 0.5;
+    CHECK(plan_survey(s, flat).legs[0].end == 500);
+  }
+  SUBCASE("an inactive leg takes its time, and holds no pulses") {
+    s.legs[0].scanner.active = false;
+    const SurveyPlan later = plan_survey(s, flat);
+    CHECK(later.legs[0].end == 0);
+    CHECK(later.legs[1].end == 2000);
+    CHECK(later.source.pulse(0)->tick.seconds() == 2);
+  }
+  SUBCASE("a leg that would never end is refused") {
+    s.legs[1].scanner.head_speed = 0, s.legs[1].scanner.head_stop = 0;
+    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: maxDuration_s"), SettingError);
+    s.legs[1].scanner.head_stop = 1;
+    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: headRotatePerSec_deg"), SettingError);
+    s.legs[1].scanner.head_speed = -1;
+    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: headRotateStop_deg"), SettingError);
+  }
+}
+
+TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with it") {
+  SurveySettings s = survey_of(PlatformKind::linear_path, {{0, 0, 100}, {50, 0, 100}, {50, 30, 100}});
+  s.platform.mount.position = {0, 2, -1};
+  const SurveyPlan plan = plan_survey(s, flat);
+  CHECK(plan.legs[0].duration.seconds() == 5);
+  CHECK(plan.legs[1].duration.seconds() == 3);
+  CHECK(plan.legs[2].duration.seconds() == 0);
+  // 60 degrees either side of what is swept is measured; the first pulse of a leg is straight ahead
+  CHECK(length(origin(plan, 0) - Vec3{2, 0, 99}) < 1e-9);
+  CHECK(length(origin(plan, plan.legs[1].first) - Vec3{50, 2, 99}) < 1e-9);
+  CHECK(length(plan.source.pulse(0)->direction() - right) < 1e-9);
+
+  SUBCASE("one leg alone has no end") {
+    s.legs.resize(1);
+    CHECK_THROWS_AS((void)plan_survey(s, flat), SettingError);
+  }
+  SUBCASE("it must move") {
+    s.legs[1].platform.speed = 0;
+    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: movePerSec_m"), SettingError);
+  }
+  SUBCASE("legs of one strip have one number") {
+    s.legs[0].strip = s.legs[1].strip = "a";
+    const SurveyPlan strips = plan_survey(s, flat);
+    CHECK(strips.source.pulse(strips.legs[1].first)->leg == 0);
+  }
+}
+
+TEST_CASE("a multicopter that stops is at each place when its leg begins; one that turns smoothly passes there") {
+  SurveySettings s = survey_of(PlatformKind::multicopter, {{-60, 0, 40}, {0, 0, 40}, {0, 60, 40}}, 8);
+  const SurveyPlan stops = plan_survey(s, flat);
+  for (std::size_t k = 0; k < 2; ++k) CHECK(length(stops.source.legs()[k].path().at({}).position - s.legs[k].platform.position) < 1e-6);
+  CHECK(length(stops.source.legs()[1].path().at({}).direction(forward) - forward) < 1e-6);
+
+  for (LegSettings& leg : s.legs) leg.platform.smooth_turn = true, leg.platform.stop_and_turn = false;
+  const SurveyPlan smooth = plan_survey(s, flat);
+  double nearest = 1e9;
+  for (double t = 0; t < smooth.legs[0].duration.seconds(); t += 0.01)
+    nearest = std::min(nearest, length(smooth.source.legs()[0].path().at(Tick::of_seconds(t)).position - s.legs[1].platform.position));
+  CHECK(nearest < 0.15);
+  const auto end = smooth.source.legs()[0].path().at(smooth.legs[0].duration), begin = smooth.source.legs()[1].path().at({});
+  CHECK(length(end.position - begin.position) < 0.02);  // one flight; legs end with a whole slot
+  CHECK(length(smooth.source.legs()[1].path().at(smooth.legs[1].duration).position - s.legs[2].platform.position) < 0.02);
+}
+
+TEST_CASE("a vehicle drives over the ground from leg to leg") {
+  const SurveySettings s = survey_of(PlatformKind::ground_vehicle, {{0, 0, 0}, {40, 0, 0}, {40, 40, 0}}, 5);
+  const SurveyPlan plan = plan_survey(s, flat);
+  const auto at = [&](std::size_t k, double t) { return plan.source.legs()[k].path().at(Tick::of_seconds(t)).position; };
+  CHECK(length(at(0, 0) - Vec3{0, 0, 7}) < 1e-6);
+  CHECK(length(at(1, 0) - Vec3{40, 0, 7}) == relative((std::sqrt(2.0) - 1) * GroundVehicleSettings{}.turn_radius, 0.01));  // cut corner
+  CHECK(length(at(1, plan.legs[1].duration.seconds()) - Vec3{40, 40, 7}) < 0.1);
+  CHECK(plan.legs[2].end == plan.legs[2].first);
+  SUBCASE("where there is none, at the height of the leg") {
+    const SurveyPlan lost = plan_survey(s, [](const Vec2&) -> std::optional<double> { return std::nullopt; });
+    CHECK(std::fabs(lost.source.legs()[0].path().at(Tick::of_seconds(3)).position.z) < 1e-9);
+  }
+}
+
+TEST_CASE("an interpolated platform follows its file, with the columns that the leg names") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "way.trj") << "0,0,0,270,100,200,50\n2,0,0,270,120,200,50\n4,0,0,270,140,200,50\n";
+  SurveySettings s = survey_of(PlatformKind::interpolated, {{}});
+  s.platform.rotation_spec = RotationSpec::canonical;
+  TrajectorySettings t{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
+  t.sync_clock = true, t.start = 1;
+  s.legs[0].platform.trajectory = t;
+  const SurveyPlan plan = plan_survey(s, flat);
+  CHECK(plan.legs[0].duration.seconds() == 3);
+  CHECK(plan.clock_start == 1);
+  CHECK(length(origin(plan, 0) - Vec3{110, 200, 50}) < 1e-9);
+  CHECK(length(plan.source.pulse(0)->direction() - right) < 1e-9);
+  s.legs[0].platform.trajectory.reset();
+  CHECK_THROWS_AS((void)plan_survey(s, flat), SettingError);
+}
+
+TEST_CASE("channels fire together, each from its own place") {
+  SurveySettings s = survey_of(PlatformKind::stationary, {{}});
+  s.legs[0].duration_max = 1;
+  s.scanner.channels.push_back(s.scanner.channels[0]);
+  s.scanner.channels[1].beam_origin.position = {0, 0, 0.3};
+  s.scanner.channels[1].wavelength = 1550e-9;
+  const SurveyPlan plan = plan_survey(s, flat);
+  CHECK(plan.source.size() == 2000);
+  const auto a = plan.source.pulse(20), b = plan.source.pulse(21);
+  REQUIRE((a && b));
+  CHECK(a->tick == b->tick);
+  CHECK(b->channel == 1);
+  CHECK(b->pose.position.z == 0.3);
+  CHECK(b->laser.wavelength == 1550e-9);
+}
+
+TEST_CASE("noise moves what is reported, has the distribution asked for, and can be left out") {
+  SurveySettings s = survey_of(PlatformKind::stationary, {{}});
+  s.legs[0].duration_max = 10;
+  s.legs[0].scanner.scan_frequency = 0;
+  s.platform.position_noise[0] = NoiseSettings{.deviation = 0.1};
+  s.platform.position_noise[1] = NoiseSettings{.distribution = NoiseDistribution::uniform, .low = 1, .high = 3};
+  s.platform.position_noise[2] = NoiseSettings{.mean = 5, .deviation = 0, .clipped = true, .clip_low = 0, .clip_high = 2};
+  const SurveyPlan plan = plan_survey(s, flat, {.seed = 4});
+  double sum = 0, squares = 0, least = 9, most = -9;
+  for (PulseIndex i = 0; i < 10'000; ++i) {
+    const auto p = plan.source.pulse(i);
+    const Vec3 off = p->reported.value().position - p->pose.position;
+    sum += off.x, squares += off.x * off.x, least = std::min(least, off.y), most = std::max(most, off.y);
+    CHECK(off.z == 2);
+  }
+  CHECK(std::fabs(sum / 10'000) < 0.004);
+  CHECK(std::sqrt(squares / 10'000) == relative(0.1, 0.03));
+  CHECK(least == relative(1, 0.01));
+  CHECK(most == relative(3, 0.01));
+  CHECK_FALSE(plan_survey(s, flat, {.seed = 4, .platform_noise = false}).source.pulse(0)->reported);
+
+  SUBCASE("a number serves as many pulses as it should") {
+    s.platform.position_noise[0]->lifespan = 3;
+    const SurveyPlan slow = plan_survey(s, flat);
+    const auto off = [&](PulseIndex i) { return slow.source.pulse(i)->reported->position.x; };
+    CHECK(off(0) == off(2));
+    CHECK(off(2) != off(3));
+  }
+  SUBCASE("legs may begin elsewhere") {
+    s.leg_offset = LegOffsetSettings{.mean = 10, .deviation = 0};
+    CHECK(length(origin(plan_survey(s, flat), 0) - Vec3{10, 10, 10}) < 1e-12);
+    CHECK(length(origin(plan_survey(s, flat, {.leg_noise = false}), 0)) < 1e-12);
+  }
+}
+
+TEST_CASE("what is wrong with an optic names its leg") {
+  SurveySettings s = survey_of(PlatformKind::stationary, {{}, {}});
+  for (LegSettings& leg : s.legs) leg.duration_max = 1;
+  s.scanner.channels[0].scan_frequency_max = 9;
+  s.legs[0].scanner.scan_frequency = 5;
+  CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: scanFreq_hz is 10 Hz"), SettingError);
+}
+
+TEST_CASE("a survey of ten thousand legs is planned at once") {
+  std::vector<Vec3> places;
+  for (int i = 0; i < 10'000; ++i) places.push_back({i * 10.0, 0, 0});
+  const SurveyPlan plan = plan_survey(survey_of(PlatformKind::linear_path, places), flat);
+  CHECK(plan.legs.size() == 10'000);
+  CHECK(plan.source.size() == 9'999'000);
+}
+
+}  // namespace
+}  // namespace pulsecast::adapters

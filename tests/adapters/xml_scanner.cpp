@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/adapters/xml_scanner.hpp>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "adapters/xml_reading.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::adapters;
+using support::contains;
+
+namespace {
+
+/// What is told of an element.
+std::string told(const std::string& text, ScannerSettings& settings) {
+  return support::xml_told(text, [&](XmlInput& io) { xml::fields(io, settings); });
+}
+std::string told(const std::string& text) {
+  ScannerSettings settings;
+  return told(text, settings);
+}
+
+/// The settings of an element with which nothing is wrong or odd.
+ScannerSettings from(const std::string& text) {
+  ScannerSettings settings;
+  CHECK(told(text, settings).empty());
+  return settings;
+}
+
+std::string scanner(const std::string& attributes, const std::string& inside = "") {
+  return "<scanner id=\"s\" pulseFreqs_Hz=\"1000\" " + attributes + ">" + inside + "</scanner>";
+}
+
+}  // namespace
+
+TEST_CASE("a scanner that says nothing has the defaults of the format") {
+  const ScannerSettings settings = from(scanner("optics=\"oscillating\""));
+  REQUIRE(settings.channels.size() == 1);
+  CHECK(settings.channels[0] == ChannelSettings{});
+  CHECK(settings.pulse_rates == std::vector<double>{1000});
+}
+
+TEST_CASE("of a scanner, what cannot be is told") {
+  const auto fault = [](const std::string& attributes, const std::string& inside = "") { return told(scanner(attributes, inside)); };
+  CHECK(contains(fault("optics=\"rotatin\""), "did you mean 'rotating'?"));
+  CHECK(contains(fault(""), "has no attribute 'optics'"));
+  CHECK(contains(fault("optics=\"line\" rangeMin_m=\"5\" rangeMax_m=\"5\""), "rangeMax_m is not beyond rangeMin_m"));
+  CHECK(contains(fault("optics=\"line\" scanFreqMin_Hz=\"5\" scanFreqMax_Hz=\"4\""), "scanFreqMax_Hz is below"));
+  CHECK(contains(fault("optics=\"line\"", "<headError expr=\"0\"/>"), "for rotating optics only"));
+  CHECK(contains(fault("optics=\"line\"", "<rangeError expr=\"\"/>"), "empty formula"));
+  CHECK(contains(fault("optics=\"line\"", "<rangeError/>"), "has no attribute 'expr'"));
+  CHECK(contains(fault("optics=\"rotating\" scanAngleEffectiveMax_deg=\"0\""), "no pulse could leave"));
+  CHECK(contains(fault("optics=\"line\"", "<channels/>"), "holds no <channel>"));
+  CHECK(contains(fault("optics=\"line\" scanProduct=\"5\""), "warning "));
+  CHECK(contains(told("<scanner id=\"s\" optics=\"line\" pulseFreqs_Hz=\"1,,2\"/>"), "pulseFreqs_Hz=\"1,,2\": expected numbers"));
+}
+
+TEST_CASE("a channel with other optics than its scanner begins anew") {
+  const ScannerSettings settings =
+      from(scanner("optics=\"risley\" angle1_deg=\"5\"", "<channels><channel optics=\"line\"/><channel/></channels>"));
+  CHECK(settings.channels.at(0).optic == OpticSettings(LineOptic{}));
+  CHECK(std::get<RisleyOptic>(settings.channels.at(1).optic).prisms[0].angle == radians(5));
+  CHECK(settings.channels[0].id == "0");
+  CHECK(settings.channels[1].id == "1");
+}

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/adapters/xml_source.hpp>
+
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "adapters/xml_reading.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::adapters;
+using support::contains;
+
+namespace {
+
+/// What is told of a filter.
+template <class Source>
+std::string filter_told(const std::string& params, Source& source) {
+  return support::xml_told("<f><filter type=\"x\">" + params + "</filter></f>", [&](XmlInput& outer) {
+    outer.know({}, {"filter"});
+    XmlInput io(outer.document(), outer.node().child("filter"), outer.report(), outer.search(), true);
+    xml::fields(io, source);
+    io.finish();
+  });
+}
+
+}  // namespace
+
+TEST_CASE("a cloud that says little has the defaults of the format") {
+  XyzSource cloud;
+  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="separator" value=""/><param key="voxelSize" value="0"/>)", cloud)
+            .empty());
+  CHECK(cloud.files.at(0).filename() == "mesh.obj");
+  CHECK(cloud.voxel_size == 1);
+  CHECK(cloud.separator == " ");
+  CHECK(cloud.normal_columns[2] == 5);
+  XyzSource other;
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/>)", other), "has no param 'voxelSize'"));
+  CHECK(contains(filter_told(R"(<param key="defaultNormal" value="0;0;0"/>)", other), "it has no direction"));
+}
+
+TEST_CASE("files may be one, those of a pattern, or a list") {
+  ObjSource one, pattern, list, none;
+  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/>)", one).empty());
+  CHECK(filter_told(R"(<param key="filepath" value="nothing"/><param key="efilepath" value="m.*"/>)", pattern).empty());
+  CHECK(filter_told(R"(<param key="filepaths" value="mesh.obj|a.xml"/>)", list).empty());
+  CHECK(one == pattern);
+  CHECK(list.files.size() == 2);
+  CHECK(contains(filter_told(R"(<param key="filepaths" value="mesh.obj|b.xml"/>)", none), "filepaths=\"b.xml\" is not there"));
+  CHECK(contains(filter_told("", none), "has no param 'filepath'"));
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="up" value="x"/>)", none), "up=\"x\" is not known"));
+}
+
+TEST_CASE("voxels have a mode, a table and a material") {
+  VoxelSource voxels;
+  CHECK(filter_told(
+            R"(<param key="filepath" value="mesh.obj"/><param key="intersectionMode" value="Fixed"/><param key="ladlut" value="mesh.obj"/>
+      <param key="matfile" value="mesh.obj"/><param key="matname" value="leaf"/><param key="randomMaterials" value="3"/>)",
+            voxels)
+            .empty());
+  CHECK(voxels.mode == VoxelMode::fixed);
+  CHECK(voxels.leaf_angles.filename() == "mesh.obj");
+  CHECK(voxels.material.name == "leaf");
+  CHECK(voxels.material.random == 3);
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="ladlut" value="no.txt"/>)", voxels), "is not there"));
+}
