@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What the command line asks for.
+struct Options {
+  std::string command = "run";  ///< run, check, info, preview or catalogue
+  std::filesystem::path survey{};
+  std::vector<std::filesystem::path> assets{};  ///< as given, then where the program finds its own
+  std::filesystem::path output = "output";
+  std::string format{};  ///< las, xyz or xyz.gz
+  std::optional<std::uint64_t> seed{};
+  unsigned threads = 0;  ///< 0 for all
+  std::string gps_start_time{};
+  double las_scale = 1e-4;  ///< [m]
+  bool las_1_0 = false;     ///< LAS of version 1.0
+  bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false;
+  bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false, verbose = false;
+  std::vector<std::string> notes{};  ///< what was accepted but has no effect
+};
+
+/// Reads a command line. Empty if nothing is left to do; then `status` is set.
+std::optional<Options> read_command_line(int argc, char** argv, int& status);

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+#include "outputs.hpp"
+
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <variant>
+
+#include <pulsecast/adapters/gzip.hpp>
+#include <pulsecast/adapters/image.hpp>
+#include <pulsecast/adapters/las.hpp>
+#include <pulsecast/adapters/pulse_text.hpp>
+#include <pulsecast/adapters/trajectory_file.hpp>
+#include <pulsecast/adapters/waveform_text.hpp>
+#include <pulsecast/adapters/xyz.hpp>
+
+namespace fs = std::filesystem;
+using namespace pulsecast;
+
+namespace {
+
+using PointWriter = std::variant<adapters::XyzWriter, adapters::LasWriter>;
+
+/// Names of the files of points.
+std::vector<fs::path> point_files(const fs::path& folder, const std::string& prefix, const Options& o,
+                                  const std::vector<std::string>& channels) {
+  if (channels.empty()) return {folder / (prefix + "_points." + o.format)};
+  std::vector<fs::path> all;
+  for (const std::string& channel : channels) all.push_back(folder / (prefix + "_points_dev" + channel + '.' + o.format));
+  return all;
+}
+
+PointWriter point_writer(const fs::path& path, const Options& o, double start_time) {
+  if (o.format == "las") {
+    adapters::LasSettings settings{.scale = o.las_scale, .gps_time = adapters::GpsTime::week, .start_time = start_time};
+    if (o.las_1_0) settings.format = adapters::LasFormat::las_1_0;
+    settings.waveforms = o.write_waveform && !o.las_1_0;
+    return PointWriter(std::in_place_type<adapters::LasWriter>, path, settings);
+  }
+  if (o.format == "xyz.gz")
+    return PointWriter(std::in_place_type<adapters::XyzWriter>, adapters::gzip_file(path), adapters::XyzSettings{.start_time = start_time});
+  return PointWriter(std::in_place_type<adapters::XyzWriter>, path, adapters::XyzSettings{.start_time = start_time});
+}
+
+}  // namespace
+
+struct LegFiles::Inside {
+  std::vector<PointWriter> points;
+  adapters::TrajectoryWriter trajectory;
+  std::optional<adapters::WaveformTextWriter> waveforms;
+  std::optional<adapters::PulseTextWriter> pulses;
+  std::vector<Shot> shots;
+};
+
+LegFiles::LegFiles(const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
+                   const std::vector<std::string>& channels)
+    : inside_(new Inside{{}, adapters::TrajectoryWriter(folder / (prefix + "_trajectory.txt"), {.start_time = start_time}), {}, {}, {}}) {
+  for (const fs::path& path : point_files(folder, prefix, o, channels)) inside_->points.push_back(point_writer(path, o, start_time));
+  if (o.write_waveform) inside_->waveforms.emplace(folder / (prefix + "_fullwave.txt"), adapters::WaveformTextSettings{start_time});
+  if (o.write_pulse) inside_->pulses.emplace(folder / (prefix + "_pulse.txt"), adapters::PulseTextSettings{start_time});
+}
+LegFiles::~LegFiles() = default;
+
+void LegFiles::operator()(const EchoBatch& batch) {
+  for (std::size_t k = 0; k < inside_->points.size(); ++k) {
+    EchoBatch part = batch;
+    if (inside_->points.size() > 1) {
+      inside_->shots.clear();
+      for (const Shot& shot : batch.shots)
+        if (shot.channel == k) inside_->shots.push_back(shot);
+      part.shots = inside_->shots;
+    }
+    std::visit([&](auto& writer) { writer(part); }, inside_->points[k]);
+  }
+  if (inside_->waveforms) (*inside_->waveforms)(batch);
+  if (inside_->pulses) (*inside_->pulses)(batch);
+}
+
+void LegFiles::add_trajectory(const adapters::SurveyLeg& leg, Tick start, double interval) {
+  if (interval > 0) inside_->trajectory.add(leg.path(), start, leg.duration(), interval);
+}
+
+void LegFiles::close() {
+  if (inside_->waveforms) inside_->waveforms->close();
+  if (inside_->pulses) inside_->pulses->close();
+  inside_->trajectory.close();
+  for (PointWriter& writer : inside_->points) std::visit([](auto& w) { w.close(); }, writer);
+}
+
+bool LegFiles::complete(const fs::path& folder, const std::string& prefix, const Options& o, const std::vector<std::string>& channels) {
+  std::vector<fs::path> files = point_files(folder, prefix, o, channels);
+  files.push_back(folder / (prefix + "_trajectory.txt"));
+  if (o.write_waveform) files.push_back(folder / (prefix + "_fullwave.txt"));
+  if (o.write_pulse) files.push_back(folder / (prefix + "_pulse.txt"));
+  for (const fs::path& file : files) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) return false;
+  }
+  return true;
+}
+
+struct Picture::Inside {
+  adapters::ImageWriter writer;
+};
+Picture::Picture(const fs::path& path) : inside_(new Inside{adapters::ImageWriter(path)}) {}
+Picture::~Picture() = default;
+void Picture::operator()(const EchoBatch& batch) { inside_->writer(batch); }
+void Picture::close() { inside_->writer.close(); }

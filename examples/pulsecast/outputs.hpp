@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pulsecast/adapters/survey_builder.hpp>
+#include <pulsecast/echo.hpp>
+
+#include "options.hpp"
+
+/// The files of one leg, or of all legs of a strip. Each is there when it is whole, and not before.
+class LegFiles {
+ public:
+  /// `prefix` as in `leg000`; `channels` are their ids if each is to have a file of its own.
+  LegFiles(const std::filesystem::path& folder, const std::string& prefix, const Options& options, double start_time,
+           const std::vector<std::string>& channels);
+  ~LegFiles();
+  LegFiles(const LegFiles&) = delete;
+  LegFiles& operator=(const LegFiles&) = delete;
+
+  void operator()(const pulsecast::EchoBatch& batch);
+  void add_trajectory(const pulsecast::adapters::SurveyLeg& leg, pulsecast::Tick start, double interval);
+  void close();
+
+  /// Whether all files of a prefix are there.
+  static bool complete(const std::filesystem::path& folder, const std::string& prefix, const Options& options,
+                       const std::vector<std::string>& channels);
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+/// A sink for a picture.
+class Picture {
+ public:
+  explicit Picture(const std::filesystem::path& path);
+  ~Picture();
+  Picture(const Picture&) = delete;
+  Picture& operator=(const Picture&) = delete;
+  void operator()(const pulsecast::EchoBatch& batch);
+  void close();
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
