@@ -90,8 +90,8 @@ TEST_CASE("the middle of every footprint's energy is on the axis") {
     for (std::size_t j = 0; j < f.size(); ++j) sum += f.share(j) * f.offset(j);
     return std::hypot(sum.x, sum.y);
   };
-  for (const std::size_t n : {1, 2, 7, 19, 62, 1000}) CHECK(middle(SunflowerFootprint(n)) < 1e-15);
-  for (const std::size_t n : {1, 2, 3, 5, 10}) CHECK(middle(RingFootprint(n)) < 1e-15);
+  for (const std::size_t n : {1U, 2U, 7U, 19U, 62U, 1000U}) CHECK(middle(SunflowerFootprint(n)) < 1e-15);
+  for (const std::size_t n : {1U, 2U, 3U, 5U, 10U}) CHECK(middle(RingFootprint(n)) < 1e-15);
 }
 
 TEST_CASE("a sunflower's subrays carry equal energy and spread as a Gaussian beam does") {
