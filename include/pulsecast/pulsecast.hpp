@@ -13,6 +13,7 @@
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/rotation_list.hpp>
 #include <pulsecast/base/tick.hpp>

@@ -44,8 +44,8 @@ found() {
   grep -nE "$2" $headers | grep -vE "^include/pulsecast/(${3:-no exception}):?" | violates "$1"
 }
 found 'GLM is named in base/vector.hpp only' '<glm/|glm::' 'base/vector\.hpp'
-found 'threads live in run.hpp only' \
-      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' 'run\.hpp'
+found 'threads live in run.hpp and base/parallel.hpp only' \
+      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel)\.hpp'
 found 'files are for adapters only' '#include <(fstream|filesystem|cstdio|stdio\.h)>' 'adapters/[^:]*'
 found 'degrees and nanoseconds are for adapters only' '[a-z]_(deg|ns)\>[^(]*[;=]' 'adapters/[^:]*|base/units\.hpp'
 found 'the library never prints and never exits' '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('

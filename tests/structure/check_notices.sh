@@ -42,7 +42,7 @@ notices "$below" "$add #include <pulsecast/scene/scene.hpp>\" include/pulsecast/
 notices "$below" "$add #include <pulsecast/adapters/las.hpp>\" include/pulsecast/run.hpp"
 notices "$below" "mkdir include/pulsecast/utils && cp include/pulsecast/pulse.hpp include/pulsecast/utils"
 notices 'GLM is named in base/vector.hpp only' "echo 'inline glm::dvec3 v;' >> include/pulsecast/pulse.hpp"
-notices 'threads live in run.hpp only' "$add #include <mutex>\" include/pulsecast/survey.hpp"
+notices 'threads live in run.hpp and base/parallel.hpp only' "$add #include <mutex>\" include/pulsecast/survey.hpp"
 notices 'files are for adapters only' "$add #include <fstream>\" include/pulsecast/survey.hpp"
 notices 'degrees and nanoseconds are for adapters only' "echo 'inline double angle_deg = 1;' >> include/pulsecast/pulse.hpp"
 notices 'the library never prints and never exits' "echo 'inline void f() { std::exit(1); }' >> include/pulsecast/pulse.hpp"

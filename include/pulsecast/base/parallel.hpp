@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <thread>
+#include <vector>
+
+namespace pulsecast {
+
+/// How many threads to use: as many as asked for, or as the machine runs at once where 0 is asked for.
+[[nodiscard]] inline unsigned thread_count(unsigned asked) noexcept {
+  return asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
+}
+
+/// Calls task(i) once for every i below `count`, the low ones first, on up to so many threads, this one among them; 0 as `thread_count`
+/// says. Tasks that touch nothing in common need no lock. What a task throws comes out here, if several do, one of them; those not yet
+/// begun are then left out.
+template <class Task>
+void for_each_index(std::size_t count, unsigned threads, const Task& task) {
+  std::atomic<std::size_t> next = 0;
+  std::atomic<bool> failed = false;
+  std::exception_ptr failure;
+  const auto work = [&]() noexcept {
+    for (std::size_t i = next++; i < count; i = next++) try {
+        task(i);
+      } catch (...) {
+        next = count;
+        if (!failed.exchange(true)) failure = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    try {
+      for (std::size_t k = 1; k < std::min<std::size_t>(thread_count(threads), count); ++k) helpers.emplace_back(work);
+    } catch (...) {  // no more threads to be had: those there are do it all
+    }
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace pulsecast
