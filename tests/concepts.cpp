@@ -173,6 +173,12 @@ struct MemoryUnknown : LeastAccelerator {
 };
 static_assert(!Accelerator<MemoryUnknown>, "it does not tell its size in memory");
 
+struct OrderUnknown : LeastAccelerator {
+  using LeastAccelerator::LeastAccelerator;
+  void order() const = delete;
+};
+static_assert(!Accelerator<OrderUnknown>, "it does not tell in which order its primitives stand");
+
 struct TraversalMayThrow : LeastAccelerator {
   using LeastAccelerator::LeastAccelerator;
   template <class Test>

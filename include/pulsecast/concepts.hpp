@@ -86,13 +86,16 @@ struct TestsPrimitives {
 }  // namespace detail
 
 /// A search structure over the boxes of numbered primitives. It knows nothing of what is inside them: `test` is called with the
-/// primitives that a bundle may meet, and enters what it finds into `nearest`. A primitive may be offered more than once.
+/// primitives that a bundle may meet, and enters what it finds into `nearest`. What it is called with are stretches of `order()`, in which
+/// every primitive stands that can be met at all, side by side with its neighbours, and maybe in several places. `test.soon(stretch)`, if
+/// there is such a thing, may be told some time before.
 /// Law: where the primitives keep to their boxes, `nearest` ends as if every primitive had been tested; rays of NaN miss.
 template <class A>
 concept Accelerator = std::copyable<A> && std::constructible_from<A, std::span<const Box>> &&
     requires(const A a, const RayBundle& rays, const detail::TestsPrimitives& test, Nearest& nearest) {
   { a.bounds() } noexcept -> std::same_as<const Box&>;
   { a.memory() } noexcept -> std::same_as<std::size_t>;
+  { a.order() } noexcept -> std::same_as<std::span<const PrimitiveIndex>>;
   { a.closest(rays, test, nearest) } noexcept;
 };
 
@@ -104,6 +107,7 @@ struct Surface {
 
 /// A shape that rays can meet, in its own frame [m]. Shared by any number of parts. `memory()` is in bytes; `material_count()` is how
 /// long a part's material table must be.
+/// May say `static constexpr bool flat = true` if a primitive's surface is the same wherever it is met: it is then asked for once.
 /// Law: pure; random draws come from the bundle's names only; `closest` offers primitives to `nearest` and nothing else.
 template <class G>
 concept Geometry = requires(const G g, const RayBundle& rays, Nearest& nearest, PrimitiveIndex i, std::size_t j) {

@@ -8,8 +8,10 @@
 #include <pulsecast/accel/kd_tree.hpp>
 #include <pulsecast/accel/linear.hpp>
 #include <pulsecast/accel/sah.hpp>
+#include <pulsecast/accel/two_tree.hpp>
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
@@ -38,6 +40,7 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/detector/peaks.hpp>
+#include <pulsecast/detector/pulse_bunch.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
 #include <pulsecast/detector/radiometry.hpp>

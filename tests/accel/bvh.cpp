@@ -13,14 +13,14 @@ using namespace pulsecast::support;
 
 static_assert(sizeof(BoundingBox<float>) == 24);
 
-TEST_CASE_TEMPLATE("every primitive stands in exactly one place of a Bvh, and is offered alone", Real, float, double) {
+TEST_CASE_TEMPLATE("every primitive stands in exactly one leaf of a Bvh, beside three others at most", Real, float, double) {
   Generator random(50);
   std::vector<Box> boxes;
   for (int i = 0; i < 5000; ++i) boxes.push_back(random.box(10, 1e-4, 10));
   const Bvh<Real> tree(boxes);
   std::size_t largest = 0;
   CHECK(offers(tree, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
-  CHECK(largest == 1);
+  CHECK(largest <= 4);
   CHECK(tree.depth() <= 64);
   const double bytes = static_cast<double>(tree.memory()) / static_cast<double>(boxes.size());
   CAPTURE(bytes);
@@ -32,7 +32,7 @@ TEST_CASE_TEMPLATE("a Bvh of primitives that all stand at one point is halved", 
   const Bvh<Real> tree(boxes);
   std::size_t largest = 0;
   CHECK(offers(tree, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
-  CHECK(largest == 1);
+  CHECK(largest <= 4);
   CHECK(tree.depth() <= 14);
 }
 

@@ -9,6 +9,7 @@ struct Slab {
   explicit Slab(std::span<const Box>) {}
   const Box& bounds() const noexcept { return bounds_; }
   std::size_t memory() const noexcept { return 0; }
+  std::span<const PrimitiveIndex> order() const noexcept { return {}; }
 #ifdef SHOULD_NOT_COMPILE
   void closest(const RayBundle&, const auto& test, Nearest&) const { test(std::span<const PrimitiveIndex>()); }
 #else

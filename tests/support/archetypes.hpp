@@ -46,6 +46,7 @@ class LeastAccelerator {
   }
   const Box& bounds() const noexcept { return bounds_; }
   std::size_t memory() const noexcept { return all_.size() * sizeof(PrimitiveIndex); }
+  std::span<const PrimitiveIndex> order() const noexcept { return all_; }
   template <class Test>
   void closest(const RayBundle&, const Test& test, Nearest&) const noexcept {
     test(std::span<const PrimitiveIndex>(all_));

@@ -218,6 +218,13 @@ template <class Height>
     rays.direction_length = random.log_uniform(1e-2, 1e2);
     for (std::size_t j = 0; j < size; ++j) rays.set_direction(j, rays.direction(j) * rays.direction_length);
   }
+  if (random.whole(8) == 0) {  // all but along a plane of two axes
+    static constexpr double slight[] = {0, -0.0, 1e-300, -1e-300, 1e-40, -1e-40, 1e-20, -1e-20, 1e-12};
+    RayBundle::Column* const columns[] = {&rays.x, &rays.y, &rays.z};
+    const double component = slight[random.whole(9)] * rays.direction_length;
+    RayBundle::Column& column = *columns[random.whole(3)];
+    for (std::size_t j = 0; j < size; ++j) column[j] = component;
+  }
   if (random.whole(50) == 0) rays.x[random.whole(size)] = std::numeric_limits<double>::quiet_NaN();
   rays.pad();
   return rays;

@@ -39,6 +39,7 @@ class Linear {
 
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return primitives_.memory(); }
+  [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept { return {primitives_.data(), primitives_.size()}; }
 
   template <class Test>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>

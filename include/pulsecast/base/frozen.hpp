@@ -3,13 +3,51 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <memory>
+#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
 namespace pulsecast {
+
+namespace detail {
+
+/// Asks the system for pages of 2 MiB, where it has them, under memory that nothing has been written to: rays go anywhere, and looking
+/// up where a small page is takes longer than reading what is there.
+inline void wish_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t size) noexcept {
+#if defined(__linux__)
+  constexpr std::size_t small = 4096, large = std::size_t{1} << 21;
+  const std::size_t skipped = (small - reinterpret_cast<std::uintptr_t>(memory) % small) % small;
+  if (size >= 2 * large) ::madvise(static_cast<std::byte*>(memory) + skipped, size - skipped, MADV_HUGEPAGE);
+#endif
+}
+
+/// Bytes in memory of their own. Not a template, nor `std::vector::shrink_to_fit`, as compilers work hard on those for every type.
+[[nodiscard]] inline std::shared_ptr<const void> copied(const void* bytes, std::size_t size, std::align_val_t alignment) {
+  std::shared_ptr<void> copy(::operator new(size, alignment), [=](void* memory) { ::operator delete(memory, alignment); });
+  wish_for_large_pages(copy.get(), size);
+  if (size > 0) std::memcpy(copy.get(), bytes, size);
+  return copy;
+}
+
+}  // namespace detail
+
+/// An empty vector with room for so many, where an array that will be read at random is to be made.
+template <class T>
+[[nodiscard]] std::vector<T> room_for(std::size_t count) {
+  std::vector<T> made;
+  made.reserve(count);
+  detail::wish_for_large_pages(made.data(), count * sizeof(T));
+  return made;
+}
 
 /// An array that is done: no element changes any more. It stands in memory of its own, or is a stretch of a file that is mapped into
 /// memory. Copies share it.
@@ -21,29 +59,35 @@ class Frozen {
 
   Frozen() = default;
 
-  /// Takes over what a build has made.
+  /// Takes over what a build has made, and gives back what memory it had to spare.
   Frozen(std::vector<T> made) {  // NOLINT(google-explicit-constructor): a vector that is done is one
-    made.shrink_to_fit();
-    auto owner = std::make_shared<const std::vector<T>>(std::move(made));
-    elements_ = *owner;
-    owner_ = std::move(owner);
+    size_ = made.size();
+    if (size_ == made.capacity()) {
+      elements_ = made.data();
+      owner_ = std::shared_ptr<const void>(new std::vector<T>(std::move(made)));
+    } else {
+      owner_ = detail::copied(made.data(), size_ * sizeof(T), std::align_val_t{alignof(T)});
+      elements_ = static_cast<const T*>(owner_.get());
+    }
   }
 
   /// Elements that live as long as their owner does.
-  Frozen(std::span<const T> elements, std::shared_ptr<const void> owner) : elements_(elements), owner_(std::move(owner)) {}
+  Frozen(std::span<const T> elements, std::shared_ptr<const void> owner)
+      : elements_(elements.data()), size_(elements.size()), owner_(std::move(owner)) {}
 
   [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return elements_[i]; }
-  [[nodiscard]] const T* data() const noexcept { return elements_.data(); }
-  [[nodiscard]] std::size_t size() const noexcept { return elements_.size(); }
-  [[nodiscard]] bool empty() const noexcept { return elements_.empty(); }
-  [[nodiscard]] auto begin() const noexcept { return elements_.begin(); }
-  [[nodiscard]] auto end() const noexcept { return elements_.end(); }
+  [[nodiscard]] const T* data() const noexcept { return elements_; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  [[nodiscard]] const T* begin() const noexcept { return elements_; }
+  [[nodiscard]] const T* end() const noexcept { return elements_ + size_; }
 
   /// [byte]
-  [[nodiscard]] std::size_t memory() const noexcept { return elements_.size_bytes(); }
+  [[nodiscard]] std::size_t memory() const noexcept { return size_ * sizeof(T); }
 
  private:
-  std::span<const T> elements_;
+  const T* elements_ = nullptr;
+  std::size_t size_ = 0;
   std::shared_ptr<const void> owner_;
 };
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 /// SIMD: several numbers that go through the same arithmetic at once, as many as one register of the processor holds. The compilers'
 /// vector types give the operators; comparisons give a `LaneMask` that is all ones where they hold, and `mask ? a : b` chooses by lane.
@@ -39,6 +40,79 @@ using Pack = typename detail::VectorOf<detail::pack_bytes<Real>, Real>::type;
 template <class Real>
 inline constexpr std::size_t pack_count = sizeof(Pack<Real>) / sizeof(Real);
 
+/// Whole numbers of 32 bits, as many as a `Pack`.
+template <class Real>
+using PackWords = typename detail::VectorOf<4 * pack_count<Real>, std::uint32_t>::type;
+
+/// Whole numbers below 2^31 as a `Pack`, exactly.
+template <class Real>
+[[nodiscard]] inline Pack<Real> to_pack(const PackWords<Real>& words) noexcept {
+  using Signed = typename detail::VectorOf<sizeof words, std::int32_t>::type;
+  return __builtin_convertvector(Signed(words), Pack<Real>);
+}
+
+/// The lanes that `number(lane)` gives.
+template <class Number>
+[[nodiscard]] inline Lanes lanes_of(const Number& number) noexcept {
+  return [&]<std::size_t... lane>(std::index_sequence<lane...>) { return Lanes{number(lane)...}; }(std::make_index_sequence<lane_count>());
+}
+
+/// The smaller and the greater of two, lane by lane; b where they cannot be compared.
+template <class Register>
+[[nodiscard]] inline Register smaller(const Register& a, const Register& b) noexcept {
+  return a < b ? a : b;
+}
+template <class Register>
+[[nodiscard]] inline Register greater(const Register& a, const Register& b) noexcept {
+  return a > b ? a : b;
+}
+
+/// Four numbers, in as many registers as they need: coordinates, and one lane to spare.
+template <class Real>
+struct Four {
+  static constexpr std::size_t count = 4 * sizeof(Real) > register_bytes ? 4 * sizeof(Real) / register_bytes : 1;
+  using Part = typename detail::VectorOf<4 * sizeof(Real) / count, Real>::type;
+  Part parts[count];
+
+  Four() = default;
+  explicit Four(Real all) noexcept { each([&](std::size_t i) { parts[i] = Part{} + all; }); }
+  /// The four numbers in memory from this one on.
+  [[nodiscard]] static Four from(const Real& first) noexcept {
+    Four four;
+    std::memcpy(four.parts, &first, sizeof four.parts);
+    return four;
+  }
+  [[nodiscard]] Real operator[](std::size_t i) const noexcept { return parts[i * count / 4][i % (4 / count)]; }
+
+  friend Four operator+(const Four& a, const Four& b) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] + b.parts[i]; });
+  }
+  friend Four operator-(const Four& a, const Four& b) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] - b.parts[i]; });
+  }
+  friend Four operator*(const Four& a, const Four& b) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] * b.parts[i]; });
+  }
+  friend Four smaller(const Four& a, const Four& b) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] < b.parts[i] ? a.parts[i] : b.parts[i]; });
+  }
+  friend Four greater(const Four& a, const Four& b) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] > b.parts[i] ? a.parts[i] : b.parts[i]; });
+  }
+
+ private:
+  template <class Do>
+  static void each(const Do& act) noexcept {
+    for (std::size_t i = 0; i < count; ++i) act(i);
+  }
+  template <class Make>
+  static Four made(const Make& make) noexcept {
+    Four four;
+    each([&](std::size_t i) { four.parts[i] = make(i); });
+    return four;
+  }
+};
+
 /// Fills a register from memory, from this number on.
 template <class Register, class Number>
 inline void fill(Register& r, const Number& first) noexcept {
@@ -57,6 +131,12 @@ template <class Register, class Number>
 template <class Register, class Number>
 inline void store(const Register& r, Number& first) noexcept {
   std::memcpy(&first, &r, sizeof r);
+}
+
+/// Says that an object will be read soon, so that it be on its way from memory.
+template <class T>
+inline void prefetch(const T* object) noexcept {
+  for (std::size_t byte = 0; byte < sizeof(T); byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + byte);
 }
 
 /// The lanes where a mask holds, a bit each.

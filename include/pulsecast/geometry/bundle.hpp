@@ -42,6 +42,7 @@ struct RayBundle : BundleOrigin {
   using Column = std::array<double, capacity>;
 
   alignas(64) Column x, y, z;  ///< directions; only the first `padded_size()` are set
+  Vec3 least, most;            ///< of each component of the directions, leaving out what is not a number; infinite if nothing is left
 
   RayBundle() noexcept {}  // leaves the directions unset
   explicit RayBundle(const BundleOrigin& o) noexcept : BundleOrigin(o) {}
@@ -58,15 +59,28 @@ struct RayBundle : BundleOrigin {
 
   void set_direction(std::size_t j, const Vec3& d) noexcept { x[j] = d.x, y[j] = d.y, z[j] = d.z; }
 
-  /// Makes the idle lanes copies of the last ray, as every reader of `padded_size()` rays expects. Call it when the directions are set.
+  /// Makes the idle lanes copies of the last ray, as every reader of `padded_size()` rays expects, and finds `least` and `most`.
+  /// Call it when the directions are set.
   void pad() noexcept {
     PULSECAST_EXPECT(size > 0 && size <= capacity && !(near < 0));
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
+    const Column* const columns[] = {&x, &y, &z};
+    for (int k = 0; k < 3; ++k) {
+      Lanes low = Lanes{} + std::numeric_limits<double>::infinity(), high = -low;
+      for (std::size_t j = 0; j < size; j += lane_count) {
+        const Lanes d = load<Lanes>((*columns[k])[j]);
+        low = smaller(d, low), high = greater(d, high);  // NaN passes no comparison
+      }
+      least[k] = low[0], most[k] = high[0];
+      for (std::size_t lane = 1; lane < lane_count; ++lane)
+        least[k] = low[lane] < least[k] ? low[lane] : least[k], most[k] = high[lane] > most[k] ? high[lane] : most[k];
+    }
   }
 
  private:
   void copy_directions(const RayBundle& other) noexcept {
     for (std::size_t j = 0; j < padded_size(); ++j) x[j] = other.x[j], y[j] = other.y[j], z[j] = other.z[j];
+    least = other.least, most = other.most;
   }
 };
 
@@ -107,9 +121,11 @@ struct Nearest {
 
   /// The range beyond which no ray of the bundle can find anything nearer.
   [[nodiscard]] double limit(const RayBundle& rays) const noexcept {
-    double last = -std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < rays.size; ++j) last = range[j] > last ? range[j] : last;
-    return last;
+    Lanes last = Lanes{} - std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < rays.size; j += lane_count) last = greater(load<Lanes>(range[j]), last);
+    double limit = last[0];
+    for (std::size_t lane = 1; lane < lane_count; ++lane) limit = last[lane] > limit ? last[lane] : limit;
+    return limit;
   }
 };
 

@@ -75,6 +75,52 @@ struct EightBoxes {
   }
 };
 
+/// Up to eight boxes in half the memory, none smaller than what it stands for: their walls are at steps of a grid of 65,536 an axis.
+/// Source: Mahovsky & Wyvill 2006; Ylitie, Karras & Laine 2017.
+template <std::floating_point Real>
+struct CompactBoxes {
+  std::uint32_t walls[3][8];  ///< by axis: the lower wall in the lower half, the upper wall in the upper one
+  Real origin[3];             ///< of the grid [m]
+  std::int8_t exponent[3];    ///< of two: the grid's step [m]
+  std::uint8_t count = 0;     ///< places that hold a box, the first ones
+
+  CompactBoxes() noexcept {}  // leaves all but the number of boxes unset
+
+  /// Makes the grid; `around` holds all the boxes that will be added.
+  void begin(const BoundingBox<Real>& around) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double extent = static_cast<double>(around.max[k]) - static_cast<double>(around.min[k]);
+      int e;  // of a power of two above the ratio
+      std::frexp(extent / (steps - 1), &e);
+      origin[k] = around.min[k], exponent[k] = static_cast<std::int8_t>(extent > 0 && e > least_exponent ? e : least_exponent);
+      for (std::uint32_t& wall : walls[k]) wall = 0;
+    }
+    count = 0;
+  }
+
+  void add(const BoundingBox<Real>& box) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double start = static_cast<double>(origin[k]), per_step = 1 / static_cast<double>(step(k));
+      const double low = (static_cast<double>(box.min[k]) - start) * per_step, high = (static_cast<double>(box.max[k]) - start) * per_step;
+      const auto down = static_cast<std::uint32_t>(low), truncated = static_cast<std::uint32_t>(high);
+      walls[k][count] = down | (truncated + (truncated < high ? 1U : 0U)) << 16;
+    }
+    ++count;
+  }
+
+  /// The grid's step along an axis [m].
+  [[nodiscard]] Real step(std::size_t k) const noexcept {
+    if constexpr (sizeof(Real) == 4)
+      return std::bit_cast<Real>(static_cast<std::uint32_t>(exponent[k] + 127) << 23);
+    else
+      return std::bit_cast<Real>(static_cast<std::uint64_t>(exponent[k] + 1023) << 52);
+  }
+
+ private:
+  static constexpr double steps = 65535;
+  static constexpr int least_exponent = -126;
+};
+
 /// A whole bundle against boxes and planes, by interval arithmetic. An answer may be too cautious, never too bold: where any ray
 /// of the bundle meets a primitive in double precision, no box around that primitive is passed over, and the range is inside its span.
 /// Rays that are not numbers are left out; if none is left, every span is empty.
@@ -91,17 +137,14 @@ class BundleInterval {
     // Primitive tests round in double relative to the coordinates in play: a hit may lie this far outside of its box.
     const double scale = std::max(max_norm(rays.origin), std::max(max_norm(bounds.min), max_norm(bounds.max)));
     const double slack = 64 * std::numeric_limits<double>::epsilon() * scale;
-    const RayBundle::Column* columns[3] = {&rays.x, &rays.y, &rays.z};
     if (!finite(rays.origin)) near_ = infinity;
     for (int k = 0; k < 3; ++k) {
-      double low = std::numeric_limits<double>::infinity(), high = -low;  // comparisons that NaN never passes
-      for (std::size_t j = 0; j < rays.size; ++j) {
-        const double d = (*columns[k])[j];
-        low = d < low ? d : low, high = d > high ? d : high;
-      }
+      const double low = rays.least[k], high = rays.most[k];
       if (!(low <= high)) near_ = infinity;
       const double o = rays.origin[k] - centre[k];
-      const double margin = slack + std::fabs(o) * static_cast<double>(std::numeric_limits<Real>::epsilon());  // of rounding to Real
+      // of rounding to Real; a wall is at most three times the half of the bounds away from where a grid begins, see `inside`
+      const double extent = 0.5 * (bounds.max[k] - bounds.min[k]);
+      const double margin = slack + (4 * std::fabs(o) + 8 * extent) * static_cast<double>(std::numeric_limits<Real>::epsilon());
       Axis& axis = axes_[k];
       axis.origin_low = static_cast<Real>(o - margin), axis.origin_high = static_cast<Real>(o + margin);
       if (low > 0)
@@ -126,27 +169,25 @@ class BundleInterval {
 
   /// The boxes that any ray may be inside of at a range of at most `limit`, a bit each, and where it may enter them.
   [[nodiscard]] unsigned inside(const EightBoxes<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
-    const Pack<Real> zero = {};
-    unsigned met = 0;
-    for (std::size_t first = 0; first < 8; first += pack_count<Real>) {
-      Pack<Real> entry = zero + near_, exit = zero + std::min(limit, std::numeric_limits<Real>::max());
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Axis& axis = axes_[k];
-        const Pack<Real> from_min = (load<Pack<Real>>(boxes.min[k][first]) - axis.origin_high) * axis.per_min;
-        const Pack<Real> from_max = (load<Pack<Real>>(boxes.max[k][first]) - axis.origin_low) * axis.per_max;
-        if (axis.sense > 0) {
-          entry = from_min > entry ? from_min : entry, exit = from_max < exit ? from_max : exit;
-        } else if (axis.sense < 0) {
-          entry = from_max > entry ? from_max : entry, exit = from_min < exit ? from_min : exit;
-        } else {
-          entry = from_min > entry ? from_min : entry;
-          entry = from_max > entry ? from_max : entry;
-        }
-      }
-      store(entry, entries[first]);
-      met |= bits(entry <= exit) << first;
+    return inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
+      const Axis& axis = axes_[k];
+      return {(load<Pack<Real>>(boxes.min[k][first]) - axis.origin_high) * axis.per_min,
+              (load<Pack<Real>>(boxes.max[k][first]) - axis.origin_low) * axis.per_max};
+    });
+  }
+  [[nodiscard]] unsigned inside(const CompactBoxes<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
+    // two roundings of how far a wall is from the origin, as its grid's steps are powers of two
+    Real to_low[3], to_high[3], steps[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      to_low[k] = boxes.origin[k] - axes_[k].origin_high, to_high[k] = boxes.origin[k] - axes_[k].origin_low;
+      steps[k] = boxes.step(k);
     }
-    return met;
+    const unsigned met = inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
+      const PackWords<Real> walls = load<PackWords<Real>>(boxes.walls[k][first]);
+      return {(to_pack<Real>(walls & 0xFFFF) * steps[k] + to_low[k]) * axes_[k].per_min,
+              (to_pack<Real>(walls >> 16) * steps[k] + to_high[k]) * axes_[k].per_max};
+    });
+    return met & ((1U << boxes.count) - 1);
   }
 
   /// The part of a stretch over which any ray may be at or above the plane at `position` along axis k.
@@ -170,6 +211,31 @@ class BundleInterval {
     Real origin_low, origin_high, per_min, per_max;
     int sense;
   };
+
+  /// The ranges to the lower and the upper walls of boxes, no numbers where a ray on a wall stays on it.
+  struct Walls {
+    Pack<Real> low, high;
+  };
+
+  template <class WallsOf>
+  [[nodiscard]] unsigned inside(Real limit, std::array<Real, 8>& entries, const WallsOf& walls_of) const noexcept {
+    unsigned met = 0;
+    for (std::size_t first = 0; first < 8; first += pack_count<Real>) {
+      Pack<Real> entry = Pack<Real>{} + near_, exit = Pack<Real>{} + std::min(limit, std::numeric_limits<Real>::max());
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Walls walls = walls_of(k, first);
+        if (axes_[k].sense > 0)  // what is no number passes no comparison
+          entry = greater(walls.low, entry), exit = smaller(walls.high, exit);
+        else if (axes_[k].sense < 0)
+          entry = greater(walls.high, entry), exit = smaller(walls.low, exit);
+        else
+          entry = greater(walls.high, greater(walls.low, entry));
+      }
+      store(entry, entries[first]);
+      met |= bits(entry <= exit) << first;
+    }
+    return met;
+  }
 
   static constexpr Real infinity = std::numeric_limits<Real>::infinity();
   static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());

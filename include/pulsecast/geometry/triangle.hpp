@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/vector.hpp>
@@ -28,83 +31,149 @@ struct Triangle {
   [[nodiscard]] Vec3 normal() const noexcept { return normalize(cross(b - a, c - a)); }
 };
 
-/// Tests a triangle against every ray of a bundle. This is the test that decides, always in double precision.
+/// As many triangles as go through the same arithmetic at once; the last of them stands in the idle lanes too.
+struct TrianglePacket {
+  struct Corner {
+    Lanes x, y, z;  ///< [m]
+  };
+  Corner a, b, c;
+  std::array<PrimitiveIndex, lane_count> primitives;
+  std::size_t size;  ///< lanes in use, at least one
+
+  /// `triangle_of(n)` gives the triangle of the n-th of these primitives.
+  template <class TriangleOf>
+  TrianglePacket(std::span<const PrimitiveIndex> of, const TriangleOf& triangle_of) noexcept : size(of.size()) {
+    const auto in_use = [&](std::size_t lane) noexcept { return std::min(lane, size - 1); };
+    for (std::size_t lane = 0; lane < lane_count; ++lane) primitives[lane] = of[in_use(lane)];
+    const auto triangles = [&]<std::size_t... lane>(std::index_sequence<lane...>) noexcept {
+      return std::array{triangle_of(in_use(lane))...};
+    }(std::make_index_sequence<lane_count>());
+    const auto corner = [&](Vec3 Triangle::*which) noexcept {
+      return Corner{lanes_of([&](std::size_t lane) { return (triangles[lane].*which).x; }),
+                    lanes_of([&](std::size_t lane) { return (triangles[lane].*which).y; }),
+                    lanes_of([&](std::size_t lane) { return (triangles[lane].*which).z; })};
+    };
+    a = corner(&Triangle::a), b = corner(&Triangle::b), c = corner(&Triangle::c);
+  }
+};
+
+/// Tests triangles against every ray of a bundle. This is the test that decides, always in double precision.
 ///
 /// Inside means on the same side of the three planes through the origin and an edge; the planes depend on the bundle alone, so a ray
-/// costs three dot products. A ray counts as inside if rounding leaves it in doubt: no ray slips between two triangles that share
-/// an edge or a corner. A hit lies in the triangle's own box, widened by a few roundings, so that no box of an accelerator hides it.
-/// A ray within 1e-12 rad of the triangle's plane misses.
+/// costs three dot products, and none where the whole bundle passes a plane on one side. A ray counts as inside if rounding leaves it in
+/// doubt: no ray slips between two triangles that share an edge or a corner. A hit lies in the triangle's own box, widened by a few
+/// roundings, so that no box of an accelerator hides it. A ray within 1e-12 rad of the triangle's plane misses.
 /// Never inlined, so that every accelerator gets the same bits.
 /// Source: the volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin 2007; the stretch inside
 /// the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
-[[gnu::noinline]] inline void intersect(const Triangle& triangle, PrimitiveIndex primitive, const RayBundle& rays,
-                                        Nearest& nearest) noexcept {
+[[gnu::noinline]] inline void intersect(const TrianglePacket& triangles, const RayBundle& rays, Nearest& nearest) noexcept {
   static_assert(RayBundle::lanes % lane_count == 0);
   constexpr double unit = std::numeric_limits<double>::epsilon();
-  const Vec3 a = triangle.a - rays.origin, b = triangle.b - rays.origin, c = triangle.c - rays.origin;
+  using Corner = TrianglePacket::Corner;
+  const auto magnitude = [](const Lanes& v) noexcept { return greater(v, -v); };
+  const auto from_origin = [&](const Corner& p) noexcept -> Corner {
+    return {p.x - rays.origin.x, p.y - rays.origin.y, p.z - rays.origin.z};
+  };
+  const Corner a = from_origin(triangles.a), b = from_origin(triangles.b), c = from_origin(triangles.c);
 
   // the planes through the origin and an edge, and for how long their side is in doubt: |e||s| in the 1-norm bounds each of the sums of
   // products, and seven roundings stand between them and the true ones
-  struct Plane {
-    double x, y, z, doubt;
-    Plane(const Vec3& from, const Vec3& to, double tolerance) noexcept {
-      const double ex = to.x - from.x, ey = to.y - from.y, ez = to.z - from.z;
-      const double sx = to.x + from.x, sy = to.y + from.y, sz = to.z + from.z;
-      x = ey * sz - ez * sy, y = ez * sx - ex * sz, z = ex * sy - ey * sx;
-      doubt = (std::fabs(ex) + std::fabs(ey) + std::fabs(ez)) * (std::fabs(sx) + std::fabs(sy) + std::fabs(sz)) * tolerance;
-    }
+  struct Planes {
+    Lanes x, y, z, doubt;
   };
-  const double tolerance = 4 * unit * rays.direction_length;
-  const Plane ab(a, b, tolerance), bc(b, c, tolerance), ca(c, a, tolerance);
+  const Lanes tolerance = Lanes{} + 4 * unit * rays.direction_length;
+  const auto planes = [&](const Corner& from, const Corner& to) noexcept -> Planes {
+    const Lanes ex = to.x - from.x, ey = to.y - from.y, ez = to.z - from.z;
+    const Lanes sx = to.x + from.x, sy = to.y + from.y, sz = to.z + from.z;
+    return {ey * sz - ez * sy, ez * sx - ex * sz, ex * sy - ey * sx,
+            (magnitude(ex) + magnitude(ey) + magnitude(ez)) * (magnitude(sx) + magnitude(sy) + magnitude(sz)) * tolerance};
+  };
+  const Planes ab = planes(a, b), bc = planes(b, c), ca = planes(c, a);
 
-  bool prepared = false;
-  Vec3 normal, low, high;
-  double offset = 0, grazing = 0;
-  for (std::size_t j = 0; j < rays.size; j += lane_count) {
-    const Lanes x = load<Lanes>(rays.x[j]), y = load<Lanes>(rays.y[j]), z = load<Lanes>(rays.z[j]);
-    const Lanes u = x * ab.x + y * ab.y + z * ab.z;
-    const Lanes v = x * bc.x + y * bc.y + z * bc.z;
-    const Lanes w = x * ca.x + y * ca.y + z * ca.z;
-    const LaneMask on_left = (u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt);
-    const LaneMask on_right = (u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt);
-    const LaneMask between = on_left | on_right;
-    if (bits(between) == 0) continue;
+  // no ray is inside where all of them pass one plane on its right and one on its left; rounding may come in here once more
+  const auto most = [&](const Planes& p) noexcept {
+    return greater(p.x * rays.least.x, p.x * rays.most.x) + greater(p.y * rays.least.y, p.y * rays.most.y) +
+           greater(p.z * rays.least.z, p.z * rays.most.z);
+  };
+  const auto least = [&](const Planes& p) noexcept {
+    return smaller(p.x * rays.least.x, p.x * rays.most.x) + smaller(p.y * rays.least.y, p.y * rays.most.y) +
+           smaller(p.z * rays.least.z, p.z * rays.most.z);
+  };
+  const LaneMask may_left = (most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt);
+  const LaneMask may_right = (least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt);
+  unsigned candidates = bits(may_left | may_right) & ((1U << triangles.size) - 1);
+  if (candidates == 0) return;
 
-    if (!prepared) {  // most triangles are done with before this
-      prepared = true;
-      normal = cross(b - a, a - c);
-      offset = dot(normal, a);
-      grazing = 1e-12 * 1e-12 * dot(normal, normal) * rays.direction_length * rays.direction_length;
-      const Vec3 least = min(a, min(b, c)), most = max(a, max(b, c));
-      const Vec3 margin = Vec3(8 * unit * max_norm(max(most, -least)));
-      low = least - margin, high = most + margin;
+  // their own planes and boxes, the boxes widened by the roundings of a hit
+  const auto cross_of = [](const Corner& u, const Corner& v) noexcept -> Corner {
+    return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+  };
+  const auto minus = [](const Corner& u, const Corner& v) noexcept -> Corner { return {u.x - v.x, u.y - v.y, u.z - v.z}; };
+  const Corner normals = cross_of(minus(b, a), minus(a, c));
+  const Lanes offsets = normals.x * a.x + normals.y * a.y + normals.z * a.z;
+  const Lanes grazing = 1e-12 * 1e-12 * rays.direction_length * rays.direction_length *
+                        (normals.x * normals.x + normals.y * normals.y + normals.z * normals.z);
+  const Corner lowest{smaller(a.x, smaller(b.x, c.x)), smaller(a.y, smaller(b.y, c.y)), smaller(a.z, smaller(b.z, c.z))};
+  const Corner highest{greater(a.x, greater(b.x, c.x)), greater(a.y, greater(b.y, c.y)), greater(a.z, greater(b.z, c.z))};
+  const Lanes extent =
+      greater(greater(greater(magnitude(lowest.x), magnitude(highest.x)), greater(magnitude(lowest.y), magnitude(highest.y))),
+              greater(magnitude(lowest.z), magnitude(highest.z)));
+  const Lanes margin = 8 * unit * extent;
+
+  for (; candidates != 0; candidates &= candidates - 1) {
+    const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
+    const PrimitiveIndex primitive = triangles.primitives[t];
+    for (std::size_t j = 0; j < rays.size; j += lane_count) {
+      const Lanes x = load<Lanes>(rays.x[j]), y = load<Lanes>(rays.y[j]), z = load<Lanes>(rays.z[j]);
+      const Lanes u = x * ab.x[t] + y * ab.y[t] + z * ab.z[t];
+      const Lanes v = x * bc.x[t] + y * bc.y[t] + z * bc.z[t];
+      const Lanes w = x * ca.x[t] + y * ca.y[t] + z * ca.z[t];
+      const LaneMask on_left = (u >= -ab.doubt[t]) & (v >= -bc.doubt[t]) & (w >= -ca.doubt[t]);
+      const LaneMask on_right = (u <= ab.doubt[t]) & (v <= bc.doubt[t]) & (w <= ca.doubt[t]);
+      const LaneMask between = on_left | on_right;
+      if (bits(between) == 0) continue;
+
+      const Lanes slope = x * normals.x[t] + y * normals.y[t] + z * normals.z[t];
+      const LaneMask inside = between & (slope * slope > grazing[t]);
+
+      // the stretch inside the box; a direction of zero becomes so small a one that the walls which it never reaches lie at infinity
+      const Lanes tiny = Lanes{} + 1e-300;
+      Lanes entry = Lanes{} - std::numeric_limits<double>::infinity(), exit = -entry;
+      const auto between_walls = [&](const Lanes& direction, double low, double high) noexcept {
+        const Lanes per = 1 / (direction * direction > 0 ? direction : tiny);
+        const Lanes to_low = low * per, to_high = high * per;
+        entry = greater(smaller(to_low, to_high), entry), exit = smaller(greater(to_low, to_high), exit);
+      };
+      between_walls(x, lowest.x[t] - margin[t], highest.x[t] + margin[t]);
+      between_walls(y, lowest.y[t] - margin[t], highest.y[t] + margin[t]);
+      between_walls(z, lowest.z[t] - margin[t], highest.z[t] + margin[t]);
+      const Lanes crossing = offsets[t] / slope;
+      const Lanes after_entry = crossing < entry ? entry : crossing;
+      const Lanes at = after_entry > exit ? exit : after_entry;
+
+      const Lanes best = load<Lanes>(nearest.range[j]);
+      const LaneIds best_id = load<LaneIds>(nearest.id[j]), own_id = LaneIds{} + (nearest.part | primitive);
+      const LaneMask nearer = (at < best) | ((at == best) & (own_id < best_id));
+      const LaneMask hit = inside & (entry <= exit) & (at > rays.near) & nearer;
+      store(hit ? at : best, nearest.range[j]);
+      store(hit ? own_id : best_id, nearest.id[j]);
     }
-    const Lanes slope = x * normal.x + y * normal.y + z * normal.z;
-    const LaneMask inside = between & (slope * slope > grazing);
-
-    // a direction of zero becomes so small a one that the walls which it never reaches lie at infinity
-    const Lanes zero = {}, tiny = zero + 1e-300;
-    const Lanes per_x = 1 / (x * x > zero ? x : tiny), per_y = 1 / (y * y > zero ? y : tiny), per_z = 1 / (z * z > zero ? z : tiny);
-    const Lanes to_low_x = low.x * per_x, to_low_y = low.y * per_y, to_low_z = low.z * per_z;
-    const Lanes to_high_x = high.x * per_x, to_high_y = high.y * per_y, to_high_z = high.z * per_z;
-    const LaneMask rising_x = to_low_x < to_high_x, rising_y = to_low_y < to_high_y, rising_z = to_low_z < to_high_z;
-    const Lanes in_x = rising_x ? to_low_x : to_high_x, in_y = rising_y ? to_low_y : to_high_y, in_z = rising_z ? to_low_z : to_high_z;
-    const Lanes out_x = rising_x ? to_high_x : to_low_x, out_y = rising_y ? to_high_y : to_low_y, out_z = rising_z ? to_high_z : to_low_z;
-    const Lanes in_xy = in_x > in_y ? in_x : in_y, entry = in_xy > in_z ? in_xy : in_z;
-    const Lanes out_xy = out_x < out_y ? out_x : out_y, exit = out_xy < out_z ? out_xy : out_z;
-    const Lanes crossing = offset / slope;
-    const Lanes after_entry = crossing < entry ? entry : crossing;
-    const Lanes at = after_entry > exit ? exit : after_entry;
-
-    const Lanes best = load<Lanes>(nearest.range[j]);
-    const LaneIds best_id = load<LaneIds>(nearest.id[j]), own_id = LaneIds{} + (nearest.part | primitive);
-    const LaneMask nearer = (at < best) | ((at == best) & (own_id < best_id));
-    const LaneMask hit = inside & (entry <= exit) & (at > rays.near) & nearer;
-    const Lanes range = hit ? at : best;
-    const LaneIds ids = hit ? own_id : best_id;
-    store(range, nearest.range[j]);
-    store(ids, nearest.id[j]);
   }
+}
+
+/// Tests as many triangles as there are primitives; `triangle_of(n)` gives the n-th.
+template <class TriangleOf>
+void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const RayBundle& rays,
+               Nearest& nearest) noexcept {
+  for (std::size_t first = 0; first < primitives.size(); first += lane_count)
+    intersect({primitives.subspan(first, std::min(lane_count, primitives.size() - first)),
+               [&](std::size_t n) noexcept { return triangle_of(first + n); }},
+              rays, nearest);
+}
+
+/// Tests one triangle.
+inline void intersect(const Triangle& triangle, PrimitiveIndex primitive, const RayBundle& rays, Nearest& nearest) noexcept {
+  intersect(std::span(&primitive, 1), [&](std::size_t) noexcept { return triangle; }, rays, nearest);
 }
 
 }  // namespace pulsecast

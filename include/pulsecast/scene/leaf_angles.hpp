@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -35,25 +36,15 @@ class LeafAngles {
   // Densities of the inclination t of leaves, from 0 (lying) to pi/2 (standing). Source: de Wit 1965; closed forms: Goel & Strebel 1984.
 
   /// Mostly lying.
-  [[nodiscard]] static LeafAngles planophile() {
-    return of_density([](double t) { return 2 / pi * (1 + std::cos(2 * t)); });
-  }
+  [[nodiscard]] static LeafAngles planophile() { return of_density({.second = 1}); }
   /// Mostly standing.
-  [[nodiscard]] static LeafAngles erectophile() {
-    return of_density([](double t) { return 2 / pi * (1 - std::cos(2 * t)); });
-  }
+  [[nodiscard]] static LeafAngles erectophile() { return of_density({.second = -1}); }
   /// Mostly oblique.
-  [[nodiscard]] static LeafAngles plagiophile() {
-    return of_density([](double t) { return 2 / pi * (1 - std::cos(4 * t)); });
-  }
+  [[nodiscard]] static LeafAngles plagiophile() { return of_density({.fourth = -1}); }
   /// Mostly either lying or standing.
-  [[nodiscard]] static LeafAngles extremophile() {
-    return of_density([](double t) { return 2 / pi * (1 + std::cos(4 * t)); });
-  }
+  [[nodiscard]] static LeafAngles extremophile() { return of_density({.fourth = 1}); }
   /// Every inclination as likely as every other.
-  [[nodiscard]] static LeafAngles uniform() {
-    return of_density([](double) { return 2 / pi; });
-  }
+  [[nodiscard]] static LeafAngles uniform() { return of_density({}); }
 
   /// As the surface of an ellipsoid whose horizontal axes are `chi` times the vertical one: 1 is spherical, less stands, more lies.
   /// Source: Campbell 1986; the surface of the ellipsoid is its exact one.
@@ -71,9 +62,10 @@ class LeafAngles {
 
   /// G by the angle between direction and vertical, in any order, none twice; linear in between, and as the nearest before the first
   /// and behind the last. Refuses a hole: 10 degrees without an entry are bridged, more are not.
-  [[nodiscard]] static LeafAngles table(std::vector<LeafProjection> entries) {
+  template <std::same_as<LeafProjection> Entry = LeafProjection>  // so that only who has a table compiles it
+  [[nodiscard]] static LeafAngles table(std::vector<Entry> entries) {
     constexpr double widest = 10 * pi / 180 * (1 + 1e-6);
-    for (const LeafProjection& entry : entries) {
+    for (const Entry& entry : entries) {
       expect_within("LeafProjection::zenith", entry.zenith, 0, pi / 2 * (1 + 1e-6), "rad");
       expect_within("LeafProjection::g", entry.g, 0, 1, "");
     }
@@ -117,15 +109,22 @@ class LeafAngles {
     if (to - from > widest) throw SettingError("LeafProjection::zenith", from, "rad", "followed by another within 0.1745 rad");
   }
 
-  template <class Density>
-  static LeafAngles of_density(Density density) {
+  /// Density of the inclination t: 2 / pi (1 + second cos 2t + fourth cos 4t).
+  struct Density {
+    double second = 0, fourth = 0;
+    double operator()(double t) const noexcept { return 2 / pi * (1 + second * std::cos(2 * t) + fourth * std::cos(4 * t)); }
+  };
+
+  static LeafAngles of_density(const Density& density) {
     const Nodes nodes;
     std::vector<LeafProjection> entries(intervals + 1);
     for (std::size_t i = 0; i <= intervals; ++i) {
       const double zenith = pi / 2 * static_cast<double>(i) / intervals;
       entries[i] = {zenith, projection(density, zenith, nodes)};
     }
-    return table(std::move(entries));
+    LeafAngles made;
+    made.table_ = Frozen<LeafProjection>(std::move(entries));
+    return made;
   }
 
   /// Where and with what weight to take an integrand over [0, 1]: exact for polynomials up to the degree 47.
@@ -153,8 +152,7 @@ class LeafAngles {
 
   /// The integral over all inclinations of their density and of how much a leaf of that inclination, at any azimuth, faces the direction.
   /// Source: Ross 1981; Goel & Strebel 1984. Leaves less inclined than pi/2 - zenith show one side whatever their azimuth.
-  template <class Density>
-  static double projection(Density density, double zenith, const Nodes& nodes) noexcept {
+  static double projection(const Density& density, double zenith, const Nodes& nodes) noexcept {
     const double c = std::cos(zenith), s = std::sin(zenith), one_sided = pi / 2 - zenith;
     double sum = 0;
     for (std::size_t i = 0; i < Nodes::size; ++i) {

@@ -69,6 +69,7 @@ struct Similarity {
       local.y[j] = x.y * rays.x[j] + y.y * rays.y[j] + z.y * rays.z[j];
       local.z[j] = x.z * rays.x[j] + y.z * rays.y[j] + z.z * rays.z[j];
     }
+    local.pad();
     return local;
   }
 };
