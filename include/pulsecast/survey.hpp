@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
@@ -45,31 +46,37 @@ class Survey {
 
   Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would be gone
 
+  /// The subrays in the frame of the beam, number by number, and some lanes to spare.
+  struct Fan {
+    std::vector<double> x, y, z;  ///< directions
+    std::vector<double> shares;
+    std::vector<Vec3> exits;  ///< where they leave; not set for a beam from a point [m]
+  };
+
   /// The scratch memory of one worker, and what need not be computed again from pulse to pulse.
   struct Workspace {
     Laser laser;  ///< that `budget` and `fan` are made for
     LinkBudget budget;
-    std::vector<Vec3> fan;    ///< directions of the subrays in the frame of the beam
-    std::vector<Vec3> exits;  ///< where they leave, in the frame of the beam; not set for a beam from a point [m]
-    std::vector<Hit> hits;    ///< of a bundle
-    std::vector<Reflection> reflections;
-    std::vector<SubrayHit> subrays;  ///< all of a pulse, if they are recorded
+    Fan fan;
+    std::vector<Hit> hits;                ///< of a bundle
+    std::vector<Reflection> reflections;  ///< of a pulse, as many as there are, and room for more
+    std::vector<SubrayHit> subrays;       ///< all of a pulse, if they are recorded
     decltype(std::declval<const Instrument&>().workspace(0)) detector;
   };
 
   [[nodiscard]] Workspace workspace() const {
     const Laser laser{};
     const std::size_t n = footprint_.size();
+    const std::vector<double> column(n + RayBundle::lanes);
     Workspace w{laser,
                 {receiver_, laser},
-                std::vector<Vec3>(n),
-                std::vector<Vec3>(n),
+                {column, column, column, column, std::vector<Vec3>(n)},
                 std::vector<Hit>(RayBundle::capacity),
-                {},
+                std::vector<Reflection>(n),
                 std::vector<SubrayHit>(recorded_subrays()),
                 detector_.workspace(n)};
-    spread(laser, w);
-    w.reflections.reserve(n);
+    for (std::size_t j = 0; j < n; ++j) w.fan.shares[j] = footprint_.share(j);
+    spread(laser, w.fan);
     return w;
   }
 
@@ -110,12 +117,12 @@ class Survey {
     out.shares[static_cast<std::size_t>(Fate::out_of_range)] = spent.out_of_range;
     out.shares[static_cast<std::size_t>(Fate::absorbed)] = spent.absorbed;
     out.hits = spent.hits;
-    if (w.reflections.empty()) {
+    if (spent.reflections == 0) {
       out.shot.fate = spent.any_in_gate ? Fate::absorbed : spent.hits > 0 ? Fate::out_of_range : Fate::missed;
       return out;
     }
 
-    const Detection detection = detect(pulse->laser, i, w);
+    const Detection detection = detect(pulse->laser, i, {w.reflections.data(), spent.reflections}, w.detector);
     for (Echo& echo : detection.echoes) {
       echo.reflectance = echo.amplitude / w.budget.power(1, 1, echo.range);
       if (!receiver_.range_errors.none())
@@ -130,26 +137,30 @@ class Survey {
   }
 
  private:
-  [[nodiscard]] Detection detect(const Laser& laser, PulseIndex i, Workspace& w) const noexcept {
+  using Scratch = decltype(Workspace::detector);
+
+  [[nodiscard]] Detection detect(const Laser& laser, PulseIndex i, std::span<Reflection> reflections, Scratch& scratch) const noexcept {
     const RandomKey key{.seed = seed_, .pulse = i};
-    if constexpr (requires { detector_.detect(laser, w.reflections, w.detector, key); })
-      return detector_.detect(laser, w.reflections, w.detector, key);
+    if constexpr (requires { detector_.detect(laser, reflections, scratch, key); })
+      return detector_.detect(laser, reflections, scratch, key);
     else
-      return detector_.detect(laser, w.reflections, w.detector);
+      return detector_.detect(laser, reflections, scratch);
   }
 
   static constexpr bool recorded = requires { requires bool{Pattern::recorded}; };
 
-  void spread(const Laser& laser, Workspace& w) const noexcept {
-    for (std::size_t j = 0; j < w.fan.size(); ++j) w.fan[j] = subray_direction(footprint_.offset(j), laser.divergence);
-    if (laser.from_a_point()) return;
-    for (std::size_t j = 0; j < w.exits.size(); ++j) w.exits[j] = subray_exit(footprint_.offset(j), laser);
+  void spread(const Laser& laser, Fan& fan) const noexcept {
+    for (std::size_t j = 0; j < footprint_.size(); ++j) {
+      const Vec3 direction = subray_direction(footprint_.offset(j), laser.divergence);
+      fan.x[j] = direction.x, fan.y[j] = direction.y, fan.z[j] = direction.z;
+      if (!laser.from_a_point()) fan.exits[j] = subray_exit(footprint_.offset(j), laser);
+    }
   }
 
   void make_for(const Laser& laser, Workspace& w) const noexcept {
     if (laser.divergence != w.laser.divergence || laser.waist_diameter != w.laser.waist_diameter ||
         laser.waist_range != w.laser.waist_range)
-      spread(laser, w);
+      spread(laser, w.fan);
     w.budget = LinkBudget(receiver_, laser);
     w.laser = laser;
   }
@@ -157,32 +168,34 @@ class Survey {
   /// What the subrays of a pulse met, and the shares of its energy that they carried there.
   struct Spent {
     double missed = 0, out_of_range = 0, absorbed = 0, reflected = 0;
-    std::size_t hits = 0;
+    std::size_t hits = 0, reflections = 0;
     bool any_in_gate = false;
   };
 
   /// Fills in the reflections, and the subrays if they are recorded.
   Spent trace(const Pulse<frame::World>& pulse, const Pose<frame::Beam, frame::World>& reported, Workspace& w) const noexcept {
-    w.reflections.clear();
     Spent spent;
     RayBundle rays;
     rays.origin = pulse.origin();
     rays.wavelength = pulse.laser.wavelength, rays.tick = pulse.tick, rays.seed = seed_, rays.pulse = pulse.index;
     const Matrix3 world_from_beam = matrix_of(pulse.pose.rotation);
     const bool from_a_point = pulse.laser.from_a_point();
-    for (std::size_t first = 0; first < w.fan.size(); first += rays.size) {
+    const std::size_t subrays = footprint_.size();
+    RayBundle::Column power;
+    for (std::size_t first = 0; first < subrays; first += rays.size) {
       rays.first_subray = static_cast<std::uint32_t>(first);
-      rays.size = std::min(from_a_point ? RayBundle::capacity : 1, w.fan.size() - first);
-      if (!from_a_point) rays.origin = pulse.origin() + world_from_beam * w.exits[first];
-      for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, world_from_beam * w.fan[first + j]);
-      rays.pad();
+      rays.size = std::min(from_a_point ? RayBundle::capacity : 1, subrays - first);
+      if (!from_a_point) rays.origin = pulse.origin() + world_from_beam * w.fan.exits[first];
+      turn(world_from_beam, w.fan, first, rays);
       ask(rays, w.hits);
+      receive(w, first, rays.padded_size(), power);
       for (std::size_t j = 0; j < rays.size; ++j) {
         const Hit& hit = w.hits[j];
-        const double share = footprint_.share(first + j);
+        const double share = w.fan.shares[first + j];
         if constexpr (recorded) {
-          const Vec3 exit = from_a_point ? Vec3{} : w.exits[first + j];
-          w.subrays[first + j] = {hit, 0, hit.met() ? reported.point(exit + hit.range * w.fan[first + j]) : Vec3{}};
+          const Vec3 exit = from_a_point ? Vec3{} : w.fan.exits[first + j];
+          const Vec3 direction{w.fan.x[first + j], w.fan.y[first + j], w.fan.z[first + j]};
+          w.subrays[first + j] = {hit, 0, hit.met() ? reported.point(exit + hit.range * direction) : Vec3{}};
         }
         if (!hit.met()) {
           spent.missed += share;
@@ -194,17 +207,37 @@ class Survey {
           continue;
         }
         spent.any_in_gate = true;
-        const double power = w.budget.power(share, hit.backscatter, hit.range);
-        if (!(power > 0)) {
+        if (!(power[j] > 0)) {
           spent.absorbed += share;
           continue;
         }
         spent.reflected += share;
-        w.reflections.push_back({hit.range, power, hit.object, hit.classification, hit.cos_incidence});
-        if constexpr (recorded) w.subrays[first + j].power = power;
+        w.reflections[spent.reflections++] = {hit.range, power[j], hit.object, hit.classification, hit.cos_incidence};
+        if constexpr (recorded) w.subrays[first + j].power = power[j];
       }
     }
     return spent;
+  }
+
+  /// Sets the directions of a bundle to those of a fan from a number on.
+  static void turn(const Matrix3& world_from_beam, const Fan& fan, std::size_t first, RayBundle& rays) noexcept {
+    const Vec3 across = world_from_beam[0], ahead = world_from_beam[1], above = world_from_beam[2];
+    for (std::size_t j = 0; j < rays.size; j += lane_count) {
+      const Lanes x = load<Lanes>(fan.x[first + j]), y = load<Lanes>(fan.y[first + j]), z = load<Lanes>(fan.z[first + j]);
+      store(Lanes(x * across.x + y * ahead.x + z * above.x), rays.x[j]);
+      store(Lanes(x * across.y + y * ahead.y + z * above.y), rays.y[j]);
+      store(Lanes(x * across.z + y * ahead.z + z * above.z), rays.z[j]);
+    }
+    rays.pad();
+  }
+
+  /// What the receiver gets of the hits of a bundle, were it open at all ranges [W]. No number where nothing was met.
+  static void receive(const Workspace& w, std::size_t first, std::size_t padded_size, RayBundle::Column& power) noexcept {
+    for (std::size_t j = 0; j < padded_size; j += lane_count) {
+      const Lanes range = lanes_of([&](std::size_t lane) { return w.hits[j + lane].range; });
+      const Lanes backscatter = lanes_of([&](std::size_t lane) { return w.hits[j + lane].backscatter; });
+      store(w.budget.power(load<Lanes>(w.fan.shares[first + j]), backscatter, range), power[j]);
+    }
   }
 
   void ask(const RayBundle& rays, std::span<Hit> hits) const noexcept {

@@ -168,6 +168,35 @@ TEST_CASE("echoes are the peaks of the sum of all pulses, as found on a finer gr
   CHECK(off_by_a_millimetre * 20 < peaks_compared);
 }
 
+TEST_CASE("reflections close to one another, of which the echo is found directly, give what all samples give") {
+  int compared = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Reflection> reflections(1 + any.whole(30));
+    const double start = any.log_uniform(1, 3000), spread = any.log_uniform(1e-6, 3) * 0.5 * speed_of_light * laser.pulse_length / 3.5;
+    for (Reflection& r : reflections) r = {start + any.uniform(0, spread), any.log_uniform(1e-9, 1e-8)};
+    for (std::size_t k = 0; k < reflections.size(); ++k)
+      reflections[k].object = static_cast<ObjectId>(k), reflections[k].cos_incidence = any.uniform();
+    WaveformSettings settings{.sample_interval = any.log_uniform(0.05e-9, 2e-9),
+                              .threshold = any.log_uniform(1e-9, 1e-6),
+                              .timing = any.coin() ? EchoTiming::energy : EchoTiming::peak};
+    const auto directly = echoes_of(FullWaveform(settings), reflections);
+    settings.record_length = 100e-9;  // what is kept has to be sampled
+    const auto by_samples = echoes_of(FullWaveform(settings), reflections);
+    REQUIRE(directly.size() == by_samples.size());
+    for (std::size_t k = 0; k < directly.size(); ++k) {
+      ++compared;
+      CHECK(std::fabs(directly[k].range - by_samples[k].range) < 1e-8);
+      CHECK(directly[k].amplitude == support::relative(by_samples[k].amplitude, 1e-9));
+      CHECK(directly[k].object == by_samples[k].object);
+      CHECK(directly[k].cos_incidence == by_samples[k].cos_incidence);
+      CHECK(directly[k].number == by_samples[k].number);
+    }
+  }
+  CHECK(compared > 1000);
+}
+
 TEST_CASE("a long row of hits gives an echo each, all of the same strength and width") {
   const FullWaveform<MomentWidth> detector(WaveformSettings{.max_returns = 255});
   const double deviation = PulseShape(laser.pulse_length).deviation();

@@ -318,6 +318,20 @@ TEST_CASE("a height field holds less than 6 bytes a cell, and less than a tenth 
   CHECK(HeightField(raster).memory() * 10 < TriangleMesh<>(raster.mesh()).memory());
 }
 
+TEST_CASE("a height field is the same on however many threads it is built") {
+  const auto rough = [](std::uint32_t c, std::uint32_t r) {
+    return c % 97 == 5 && r % 89 == 7 ? missing : static_cast<float>((c * 7919U + r * 104729U) % 1009U);
+  };
+  const Raster raster = raster_of(1100, 1000, rough);
+  const HeightField one(raster, 1), three(raster, 3);
+  CHECK(one.bounds() == three.bounds());
+  Generator random(5);
+  for (int time = 0; time < 2000; ++time) {
+    const Ray ray{{random.uniform(0, 1100), random.uniform(-1000, 0), 1500}, normalize(random.unit() - 1.2 * up)};
+    REQUIRE(range_of(one, ray) == range_of(three, ray));
+  }
+}
+
 TEST_CASE("a raster is taken over, not copied") {
   Raster raster = slope();
   raster.heights.shrink_to_fit();

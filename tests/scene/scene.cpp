@@ -53,6 +53,38 @@ MeshData some_triangles(support::Generator& any, std::size_t n) {
   return data;
 }
 
+/// A floor that counts how often it is asked for its surface.
+template <bool Flat>
+struct Counted {
+  static constexpr bool flat = Flat;
+  static inline int asked = 0;
+  Box box{{-1, -1, 0}, {1, 1, 0}};
+  const Box& bounds() const noexcept { return box; }
+  std::size_t memory() const noexcept { return 0; }
+  std::size_t material_count() const noexcept { return 1; }
+  void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
+    for (std::size_t j = 0; j < rays.size; ++j) nearest.offer(j, -rays.origin.z / rays.z[j], 0);
+  }
+  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return ++asked, Surface{up, 0}; }
+};
+
+/// How often it is for a bundle of seven rays, each of which is described as it should be.
+template <class Shape>
+int surfaces_asked() {
+  const Scene<Shape> scene({{std::make_shared<const Shape>()}});
+  RayBundle rays;
+  rays.origin = {0, 0, 5}, rays.size = 7;
+  for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, normalize(Vec3{0.01 * static_cast<double>(j), 0, -1}));
+  rays.pad();
+  std::vector<Hit> hits(rays.size);
+  scene.closest(rays, hits);
+  for (std::size_t j = 0; j < rays.size; ++j) {
+    CHECK(hits[j].cos_incidence == -rays.z[j]);
+    CHECK(hits[j].backscatter == 0.5 * -rays.z[j]);
+  }
+  return Shape::asked;
+}
+
 }  // namespace
 
 TEST_CASE("a disc met squarely, at a slant, and missed") {
@@ -196,6 +228,11 @@ TEST_CASE("parts of several kinds of geometry stand in one scene") {
   CHECK(ask(scene, {{0, 0, 10}, {0, 0, -1}}).range == 9);
   CHECK(ask(scene, {{10, 0, 10}, {0, 0, -1}}).object == 2);
   CHECK(ask(scene, {{10, 0, 10}, {0, 0, -1}}).range == 8);
+}
+
+TEST_CASE("a flat primitive is asked for its surface once for all neighbours that met it, any other by each ray") {
+  CHECK(surfaces_asked<Counted<true>>() == 1);
+  CHECK(surfaces_asked<Counted<false>>() == 7);
 }
 
 TEST_CASE("rays of NaN miss and do not disturb their neighbours") {

@@ -13,10 +13,13 @@
 #include <vector>
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/peaks.hpp>
+#include <pulsecast/detector/pulse_bunch.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
 #include <pulsecast/detector/receiver_noise.hpp>
@@ -51,10 +54,11 @@ class FullWaveform {
     std::vector<Peak> peaks;
     std::vector<Echo> echoes;
     std::vector<float> record;
+    PulseBunch::Workspace bunch;
   };
 
   [[nodiscard]] Workspace workspace(std::size_t subrays) const {
-    Workspace w;
+    Workspace w{{}, {}, {}, {}, PulseBunch::Workspace(subrays)};
     w.samples.reserve(stretch);
     w.peaks.reserve(noise_.none() ? subrays : std::max(subrays, stretch));
     w.echoes.reserve(std::min(w.peaks.capacity(), s_.max_returns));
@@ -65,11 +69,14 @@ class FullWaveform {
   /// Sorts the reflections by range. Left out are those without power, and those so far away that samples could not be counted. Noise is
   /// that of the key, a number for each sample: it has seed and pulse.
   [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> all, Workspace& w, RandomKey key = {}) const noexcept {
-    const std::span<const Reflection> reflections = in_order_of_range(all, s_.sample_interval);
     w.peaks.clear(), w.echoes.clear(), w.record.clear();
-    if (reflections.empty()) return {};
-
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
+    if (std::same_as<Width, NoWidth> && s_.record_length == 0 && noise_.none()) {
+      const PulseBunch bunch(all, shape, s_.sample_interval, w.bunch);
+      if (bunch.one() && detect(bunch, shape, w.echoes)) return {w.echoes, {}, 0};
+    }
+    const std::span<const Reflection> reflections = in_order_of_range(all, s_.sample_interval);
+    if (reflections.empty()) return {};
     const bool noisy = !noise_.none();
     const double deviation = noisy ? noise_.deviation_of_sample(laser.wavelength, s_.sample_interval) : 0;
     const auto record_size = static_cast<double>(s_.record_capacity());
@@ -113,6 +120,30 @@ class FullWaveform {
 
  private:
   static constexpr std::size_t stretch = 4096;  ///< samples at hand at one time
+
+  /// Enters the only echo of a bunch, if it reaches the threshold: what sampling all of it would give, from the samples about its peak.
+  /// False if these reach back to where edges come in.
+  bool detect(const PulseBunch& bunch, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
+    const double per_tau = 1 / shape.tau;
+    const double before =
+        std::floor((bunch.last_edge() + bunch.peak() * shape.tau) / s_.sample_interval);  // the last sample before the peak
+    const double first = ((before - 2) * s_.sample_interval - bunch.last_edge()) * per_tau, step = s_.sample_interval * per_tau;
+    if (!(first >= 0)) return false;
+    std::array<double, 8> y;  // from two samples before that one on
+    for (std::size_t j = 0; j < y.size(); j += lane_count)
+      store(bunch.power(lanes_of([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), y[j]);
+    const std::size_t top = y[3] > y[2] ? 3 : 2;
+    const auto [offset, height] = vertex(&y[top]);
+    if (height < s_.threshold) return true;
+    const double time = (before - 2 + static_cast<double>(top) + offset) * s_.sample_interval;
+    const Reflection& strongest = bunch.strongest((time - bunch.last_edge()) * per_tau);
+    echoes.push_back({.range = s_.timing == EchoTiming::energy ? bunch.mean_range() : 0.5 * speed_of_light * time,
+                      .amplitude = height,
+                      .cos_incidence = strongest.cos_incidence,
+                      .object = strongest.object,
+                      .classification = strongest.classification});
+    return true;
+  }
 
   void keep(double at, double power, std::vector<float>& record) const noexcept {
     if (at < 0 || at >= static_cast<double>(s_.record_capacity())) return;

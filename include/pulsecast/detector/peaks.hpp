@@ -75,6 +75,7 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
   double strongest = 0;
   for (auto r = from(peak.time - faded * shape.tau); r != reflections.end() && arrival(*r) < peak.time + PulseShape::peak * shape.tau;
        ++r) {
+    if (!(r->power > strongest)) continue;  // nor is it with what is left of its pulse
     const double power = r->power * shape(peak.time - arrival(*r));
     if (!(power > strongest)) continue;
     strongest = power;

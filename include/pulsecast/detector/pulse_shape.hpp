@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <pulsecast/base/exponential.hpp>
+
 namespace pulsecast {
 
 /// A laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge at t = 0, here scaled to a peak of 1, which stands at 2 tau.
@@ -28,7 +30,7 @@ struct PulseShape {
   /// Power at time t since the peak [s]; 1 at t = 0.
   [[nodiscard]] double operator()(double t) const noexcept {
     const double u = t / tau + peak;
-    return u > 0 ? u * u * std::exp(-u) * to_unit_peak : 0;
+    return u > 0 ? u * u * exponential(-u) * to_unit_peak : 0;
   }
 };
 

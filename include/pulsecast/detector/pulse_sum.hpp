@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 
+#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
@@ -17,11 +18,17 @@ namespace pulsecast {
 /// When the peak of a reflection's pulse arrives, since the pulse left [s].
 [[nodiscard]] inline double arrival(const Reflection& r) noexcept { return 2 * r.range / speed_of_light; }
 
-/// Sorts reflections by range. Left out are those without power, and those so far away that samples could not be counted, 2^50 of them.
+/// Whether a reflection can be an echo: it has power, and is not so far away that samples could not be counted, 2^50 of them.
+[[nodiscard]] inline bool can_count(const Reflection& r, double sample_interval) noexcept {
+  return r.power > 0 && r.range < 0x1p49 * speed_of_light * sample_interval;
+}
+
+/// Sorts reflections by range. Left out are those that cannot be echoes.
 [[nodiscard]] inline std::span<Reflection> in_order_of_range(std::span<Reflection> all, double sample_interval) noexcept {
-  const auto useless = [&](const Reflection& r) { return !(r.power > 0) || !(arrival(r) < 0x1p50 * sample_interval); };
+  const auto nearer = [](const Reflection& a, const Reflection& b) { return a.range < b.range; };
+  const auto useless = [&](const Reflection& r) { return !can_count(r, sample_interval); };
   const std::span<Reflection> useful(all.begin(), std::remove_if(all.begin(), all.end(), useless));
-  std::sort(useful.begin(), useful.end(), [](const Reflection& a, const Reflection& b) { return a.range < b.range; });
+  if (!std::is_sorted(useful.begin(), useful.end(), nearer)) std::sort(useful.begin(), useful.end(), nearer);
   return useful;
 }
 
@@ -63,7 +70,7 @@ class SampledSum {
     first_ = decay_ * (first_ + step_ * zeroth_);
     zeroth_ *= decay_;
     for (const double t = time(); next_edge_ <= t; ++next_, find_next_edge()) {
-      const double u = (t - next_edge_) / shape_.tau, p = reflections_[next_].power * std::exp(-u);
+      const double u = (t - next_edge_) / shape_.tau, p = reflections_[next_].power * exponential(-u);
       zeroth_ += p, first_ += p * u, second_ += p * u * u;
     }
     ++sample_;

@@ -6,6 +6,8 @@
 #include <limits>
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/exponential.hpp>
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/pulse.hpp>
 
@@ -70,17 +72,25 @@ class LinkBudget {
   LinkBudget(const Receiver& receiver, const Laser& laser) noexcept
       : gain_(laser.peak_power * receiver.diameter * receiver.diameter * receiver.efficiency / 4),
         near_(receiver.diameter * receiver.diameter / 4),
-        extinction_(extinction(laser.wavelength, receiver.visibility)) {}
+        both_ways_(-2 * extinction(laser.wavelength, receiver.visibility)) {}
 
   /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in `Hit`) at a range [m].
   /// Nearer than half its diameter the aperture gets what it gets there: all that comes back, and not more.
-  [[nodiscard]] double power(double share, double backscatter, double range) const noexcept {
-    const double square = range * range;
-    return gain_ * share * backscatter / (square > near_ ? square : near_) * std::exp(-2 * extinction_ * range);
+  [[nodiscard]] double power(double share, double backscatter, double range) const noexcept { return of(share, backscatter, range); }
+
+  /// The same of several subrays.
+  [[nodiscard]] Lanes power(const Lanes& share, const Lanes& backscatter, const Lanes& range) const noexcept {
+    return of(share, backscatter, range);
   }
 
  private:
-  double gain_, near_, extinction_;
+  template <class Number>
+  [[nodiscard]] Number of(const Number& share, const Number& backscatter, const Number& range) const noexcept {
+    const Number square = range * range, near = Number{} + near_;
+    return gain_ * share * backscatter / (square > near ? square : near) * exponential(Number(both_ways_ * range));
+  }
+
+  double gain_, near_, both_ways_;  ///< the last: by which the logarithm of the power grows with the range [1/m]
 };
 
 }  // namespace pulsecast

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 #include <pulsecast/geometry/triangle.hpp>
@@ -130,11 +132,14 @@ struct Raster {
 /// Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic).
 class HeightField {
  public:
-  explicit HeightField(Raster raster) {
+  static constexpr bool flat = true;
+
+  /// `threads`: how many build it, as `thread_count` says.
+  explicit HeightField(Raster raster, unsigned threads = 0) {
     raster.validate();
     grid_ = raster.grid();
     heights_ = std::move(raster.heights);
-    build();
+    build(threads);
   }
 
   explicit HeightField(Unfilled) {}
@@ -168,19 +173,29 @@ class HeightField {
   void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
     if (bounds_.empty()) return;
     Walk walk(*this, rays, nearest);
-    const auto span = walk.interval.inside(BoundingBox<float>::around(bounds_, centre_));
-    std::uint32_t west = 0, east = levels_[0].columns - 1, north = 0, south = levels_[0].rows - 1;
-    if (span.empty() || !walk.narrow(0, span, west, east) || !walk.narrow(1, span, north, south)) return;
-    // from where few nodes hold all that is passed between the greatest height and the least: from the air that is near the ground
-    unsigned level = 1;
-    const auto nodes = [](std::uint32_t first, std::uint32_t last, unsigned shift) { return (last >> shift) - (first >> shift) + 1; };
-    while (level < top_ && std::size_t{nodes(west, east, levels_[level].shift[0])} * nodes(north, south, levels_[level].shift[1]) > 4)
-      ++level;
+    auto span = walk.interval.inside(slab(static_cast<float>(bounds_.min.z), static_cast<float>(bounds_.max.z)));
+    Cells cells{0, levels_[0].columns - 1, 0, levels_[0].rows - 1};
+    if (span.empty() || !walk.narrow(span, cells)) return;
+    // rays are near the ground only between the greatest height and the least of the cells that they pass, and pass fewer there
+    unsigned level = level_of(cells, top_);
+    for (std::size_t before = std::numeric_limits<std::size_t>::max() / 4; cells.count() > 1 && 4 * cells.count() <= 3 * before;) {
+      before = cells.count();
+      const auto [low, high] = heights(cells, level);
+      span = walk.interval.above(walk.interval.below(span, 2, high), 2, low);
+      if (span.empty() || !walk.narrow(span, cells)) return;
+      level = level_of(cells, level);
+    }
+    if (cells.count() <= few) {
+      for (std::uint32_t row = cells.north; row <= cells.south; ++row)
+        for (std::uint32_t column = cells.west; column <= cells.east; ++column) walk.take(*this, column, row);
+      return walk.test();
+    }
+    level = std::max(1U, level);
     const auto [x, y] = levels_[level].shift;
-    west >>= x, east >>= x, north >>= y, south >>= y;
-    for (std::uint32_t i = 0; i <= south - north; ++i)
-      for (std::uint32_t j = 0; j <= east - west; ++j)
-        visit(walk, level, walk.westward ? east - j : west + j, walk.northward ? south - i : north + i);
+    const Cells nodes = cells.in_nodes(x, y);
+    for (std::uint32_t i = 0; i <= nodes.south - nodes.north; ++i)
+      for (std::uint32_t j = 0; j <= nodes.east - nodes.west; ++j)
+        visit(walk, level, walk.westward ? nodes.east - j : nodes.west + j, walk.northward ? nodes.south - i : nodes.north + i);
   }
 
   [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle&, std::size_t) const noexcept {
@@ -190,6 +205,19 @@ class HeightField {
 
  private:
   static constexpr float most = std::numeric_limits<float>::max();
+
+  static constexpr std::size_t few = 4;  ///< cells are tested without more ado
+
+  /// A rectangle of cells or nodes, its ends within it.
+  struct Cells {
+    std::uint32_t west, east, north, south;
+
+    [[nodiscard]] std::size_t count() const noexcept { return (std::size_t{east} - west + 1) * (south - north + 1); }
+    /// The nodes that hold them, as wide and as high as these powers of 2.
+    [[nodiscard]] Cells in_nodes(std::uint32_t wide, std::uint32_t tall) const noexcept {
+      return {west >> wide, east >> wide, north >> tall, south >> tall};
+    }
+  };
 
   /// Level 0 are the cells. A node of each further one has eight children in the one below: 4 by 2 cells, 2 by 4 of these, and so on by
   /// turns. The heights of the children stand in `pyramid_`, node by node: eight least, then eight greatest; where there is no triangle,
@@ -204,6 +232,11 @@ class HeightField {
 
     [[nodiscard]] std::size_t node(std::uint32_t column, std::uint32_t row) const noexcept {
       return begin + (std::size_t{row} * columns + column) * 16;
+    }
+    /// Where the least height of a child is, by its own column and row; the greatest is eight numbers on.
+    [[nodiscard]] std::size_t of_child(std::uint32_t column, std::uint32_t row) const noexcept {
+      const std::uint32_t w = wide(), tall = 3 - w;
+      return node(column >> w, row >> tall) + (column & ((1U << w) - 1)) + ((row & ((1U << tall) - 1)) << w);
     }
     /// The bits of a child's place that are its column.
     [[nodiscard]] std::uint32_t wide() const noexcept { return shift[0] - below[0]; }
@@ -220,30 +253,54 @@ class HeightField {
     double from[2], slack[2];      ///< origin and what rounding may make of it, likewise
     float pad[2];                  ///< walls of cells err by less [m]
     bool westward, northward;      ///< which nodes come first
+    unsigned turns[2];             ///< and which children of a node, by its `wide()` less one: see `turned`
     float limit;
+    std::array<Triangle, lane_count> triangles;  ///< to be tested, and their numbers
+    std::array<PrimitiveIndex, lane_count> primitives;
+    std::size_t taken = 0;
 
     Walk(const HeightField& field, const RayBundle& r, Nearest& n) noexcept
         : rays(r), nearest(n), interval(r, field.bounds_, field.centre_), limit(round_up<float>(n.limit(r))) {
       const double scale = std::max(max_norm(r.origin), std::max(max_norm(field.bounds_.min), max_norm(field.bounds_.max)));
       const double rounding = 128 * std::numeric_limits<double>::epsilon() * scale;
-      const RayBundle::Column* columns[2] = {&r.x, &r.y};
       for (int k = 0; k < 2; ++k) {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (std::size_t j = 0; j < r.size; ++j) {
-          const double d = (*columns[k])[j];
-          low = d < low ? d : low, high = d > high ? d : high;
-        }
         const double per_metre = field.per_metre_[k];
-        least[k] = (k == 0 ? low : high) * per_metre, greatest[k] = (k == 0 ? high : low) * per_metre;
+        least[k] = (k == 0 ? r.least[k] : r.most[k]) * per_metre, greatest[k] = (k == 0 ? r.most[k] : r.least[k]) * per_metre;
         from[k] = (r.origin[k] - field.grid_.first[k]) * per_metre;
         slack[k] = rounding * std::fabs(per_metre);
         pad[k] = static_cast<float>(field.pad_[k] + rounding);
       }
       westward = least[0] < 0, northward = least[1] < 0;
+      turns[0] = (westward ? 1U : 0U) | (northward ? 6U : 0U), turns[1] = (westward ? 3U : 0U) | (northward ? 4U : 0U);
     }
 
-    /// Narrows [low, high] to what any ray passes in a stretch of range, by columns (k = 0) or rows (k = 1). False if nothing is left.
-    [[nodiscard]] bool narrow(int k, const BundleInterval<float>::Span& span, std::uint32_t& low, std::uint32_t& high) const noexcept {
+    using Span = BundleInterval<float>::Span;
+
+    /// Takes the triangles of a cell to be tested, as soon as there are enough to be tested at once.
+    void take(const HeightField& field, std::uint32_t column, std::uint32_t row) noexcept {
+      const detail::RasterCell cell(field.grid_, field.heights_.data(), column, row);
+      const auto first = static_cast<PrimitiveIndex>(2 * (std::size_t{row} * (field.grid_.columns - 1) + column));
+      for (const int which : {0, 1})
+        if (cell.has(which))
+          triangles[taken] = cell.triangle(field.grid_, which), primitives[taken++] = first + static_cast<unsigned>(which);
+      if (taken + 2 > triangles.size()) test();
+    }
+
+    /// Tests what was taken.
+    void test() noexcept {
+      if (taken == 0) return;
+      const auto triangle_of = [this](std::size_t n) noexcept { return triangles[n]; };
+      intersect(std::span<const PrimitiveIndex>(primitives.data(), taken), triangle_of, rays, nearest);
+      taken = 0, limit = round_up<float>(nearest.limit(rays));
+    }
+
+    /// Narrows a rectangle to the cells that any ray passes in a stretch of range. False if nothing is left.
+    [[nodiscard]] bool narrow(const Span& span, Cells& cells) const noexcept {
+      return narrow(0, span, cells.west, cells.east) && narrow(1, span, cells.north, cells.south);
+    }
+
+    /// The same by columns (k = 0) or rows (k = 1).
+    [[nodiscard]] bool narrow(int k, const Span& span, std::uint32_t& low, std::uint32_t& high) const noexcept {
       const auto entry = static_cast<double>(span.entry), exit = static_cast<double>(span.exit);
       const double a = from[k] + least[k] * (least[k] < 0 ? exit : entry) - slack[k];
       const double b = from[k] + greatest[k] * (greatest[k] < 0 ? entry : exit) + slack[k];
@@ -254,6 +311,49 @@ class HeightField {
     }
   };
 
+  /// All that is between two heights.
+  static BoundingBox<float> slab(float low, float high) noexcept { return {{-most, -most, low}, {most, most, high}}; }
+
+  /// The lowest level on which two nodes by two hold the cells, from one down on which they do; the top one is taken to.
+  [[nodiscard]] unsigned level_of(const Cells& cells, unsigned level) const noexcept {
+    for (; level > 0; --level) {
+      const Cells nodes = cells.in_nodes(levels_[level - 1].shift[0], levels_[level - 1].shift[1]);
+      if (nodes.east - nodes.west > 1 || nodes.south - nodes.north > 1) break;
+    }
+    return level;
+  }
+
+  struct Heights {
+    float least = most, greatest = -most;
+
+    void extend(float low, float high) noexcept {  // what is missing passes no comparison
+      least = low < least ? low : least, greatest = high > greatest ? high : greatest;
+    }
+  };
+
+  /// What the heights of cells are between, by the nodes of a level that hold them.
+  [[nodiscard]] Heights heights(const Cells& cells, unsigned level) const noexcept {
+    Heights all;
+    if (level == top_) {
+      all.extend(static_cast<float>(bounds_.min.z), static_cast<float>(bounds_.max.z));
+    } else if (level == 0) {
+      for (std::uint32_t row = cells.north; row <= cells.south + 1; ++row)
+        for (std::uint32_t column = cells.west; column <= cells.east + 1; ++column) {
+          const float height = heights_[grid_.index(column, row)];
+          all.extend(height, height);
+        }
+    } else {
+      const Level &own = levels_[level], &above = levels_[level + 1];
+      const Cells nodes = cells.in_nodes(own.shift[0], own.shift[1]);
+      for (std::uint32_t row = nodes.north; row <= nodes.south; ++row)
+        for (std::uint32_t column = nodes.west; column <= nodes.east; ++column) {
+          const float* own_heights = pyramid_.data() + above.of_child(column, row);
+          all.extend(own_heights[0], own_heights[8]);
+        }
+    }
+    return all;
+  }
+
   void visit(Walk& walk, unsigned level, std::uint32_t column, std::uint32_t row) const noexcept {
     const Level& own = levels_[level];
     EightBoxes<float> boxes;
@@ -261,13 +361,14 @@ class HeightField {
     const unsigned taken = level == 1 ? put_cells(boxes, column, row) : put_nodes(boxes, level, column, row);
     std::array<float, 8> entries;
     const unsigned wide = own.wide(), tall = 3 - wide;
-    const unsigned turn = (walk.westward ? (1U << wide) - 1 : 0U) | (walk.northward ? ((1U << tall) - 1) << wide : 0U);
+    const unsigned turn = walk.turns[wide - 1];
     for (unsigned open = turned(walk.interval.inside(boxes, walk.limit, entries) & taken, turn); open != 0; open &= open - 1) {
       const unsigned place = static_cast<unsigned>(std::countr_zero(open)) ^ turn;
       if (entries[place] > walk.limit) continue;
       const std::uint32_t c = (column << wide) + (place & ((1U << wide) - 1)), r = (row << tall) + (place >> wide);
-      level == 1 ? test(walk, c, r) : visit(walk, level - 1, c, r);
+      level == 1 ? walk.take(*this, c, r) : visit(walk, level - 1, c, r);
     }
+    if (level == 1) walk.test();
   }
 
   /// Moves bit i of eight to the place i ^ turn.
@@ -276,14 +377,6 @@ class HeightField {
     if ((turn & 2U) != 0) bits = (bits & 0x33U) << 2 | (bits >> 2 & 0x33U);
     if ((turn & 4U) != 0) bits = (bits & 0x0FU) << 4 | bits >> 4;
     return bits;
-  }
-
-  void test(Walk& walk, std::uint32_t column, std::uint32_t row) const noexcept {
-    const detail::RasterCell cell(grid_, heights_.data(), column, row);
-    const auto first = static_cast<PrimitiveIndex>(2 * (std::size_t{row} * (grid_.columns - 1) + column));
-    if (cell.has(0)) intersect(cell.triangle(grid_, 0), first, walk.rays, walk.nearest);
-    if (cell.has(1)) intersect(cell.triangle(grid_, 1), first + 1, walk.rays, walk.nearest);
-    walk.limit = round_up<float>(walk.nearest.limit(walk.rays));
   }
 
   /// Enters the walls of a node's children.
@@ -372,33 +465,35 @@ class HeightField {
     return size;
   }
 
-  void build() {
+  void build(unsigned threads) {
     per_metre_ = {1 / grid_.pixel.x, -1 / grid_.pixel.y};
     constexpr double single = std::numeric_limits<float>::epsilon();
     pad_ = {16 * single * grid_.columns * grid_.pixel.x, 16 * single * grid_.rows * grid_.pixel.y};
     centre_ = {grid_.first.x + 0.5 * grid_.columns * grid_.pixel.x, grid_.first.y - 0.5 * grid_.rows * grid_.pixel.y, 0};
     std::vector<float> pyramid(lay_out());
     for (std::size_t i = 0; i < pyramid.size(); ++i) pyramid[i] = i % 16 < 8 ? most : -most;
+    std::vector<Box> grounds(levels_[1].rows);
+    if (heights_.size() < 1'000'000) threads = 1;  // threads would take longer to start
     for (unsigned level = 1; level <= top_; ++level)
-      for (std::uint32_t row = 0; row < levels_[level].rows; ++row)
+      for_each_index(levels_[level].rows, level <= 2 ? threads : 1, [&](std::size_t task) {
+        const auto row = static_cast<std::uint32_t>(task);
         for (std::uint32_t column = 0; column < levels_[level].columns; ++column) {
-          float low = most, high = -most;
+          Heights own;
           if (level == 1) {
             const Box ground = ground_of(column, row);
             if (ground.empty()) continue;
-            bounds_.extend(ground);
-            low = static_cast<float>(ground.min.z), high = static_cast<float>(ground.max.z);
+            grounds[row].extend(ground);
+            own = {static_cast<float>(ground.min.z), static_cast<float>(ground.max.z)};
           } else {
-            const float* heights = pyramid.data() + levels_[level].node(column, row);
-            low = *std::min_element(heights, heights + 8), high = *std::max_element(heights + 8, heights + 16);
+            const float* below = pyramid.data() + levels_[level].node(column, row);
+            own = {*std::min_element(below, below + 8), *std::max_element(below + 8, below + 16)};
           }
           if (level == top_) continue;
-          const Level& above = levels_[level + 1];
-          const std::uint32_t wide = above.wide(), tall = 3 - wide;
-          float* place = pyramid.data() + above.node(column >> wide, row >> tall) + (column & ((1U << wide) - 1)) +
-                         ((row & ((1U << tall) - 1)) << wide);
-          place[0] = low, place[8] = high;
+          float* place = pyramid.data() + levels_[level + 1].of_child(column, row);
+          place[0] = own.least, place[8] = own.greatest;
         }
+      });
+    for (const Box& ground : grounds) bounds_.extend(ground);
     pyramid_ = std::move(pyramid);
   }
 

@@ -19,6 +19,22 @@ enum class Scattering : std::uint8_t {
   direction_independent,  ///< the same from everywhere
 };
 
+/// What a surface of a material sends back of light of one wavelength, by the cosine of the incidence.
+/// Source: Jutzi & Gross 2009; the lobe stands about the mirror direction, twice the incidence away, and ends at 90 degrees.
+struct Backscatter {
+  double reflectance = 0;                 ///< a fraction, of which the other three have shares
+  double even = 0, cosine = 0, lobe = 0;  ///< the same from everywhere; as the cosine; as a glossy lobe
+  double exponent = 0;                    ///< of the lobe
+
+  /// For light that arrives at an angle of this cosine, in [0, 1], and returns the way it came.
+  [[nodiscard]] double operator()(double cos_incidence) const noexcept {
+    const double rough = cosine * cos_incidence + even;
+    if (lobe == 0) return reflectance * rough;
+    const double cos_to_mirror = 2 * cos_incidence * cos_incidence - 1;
+    return reflectance * (rough + (cos_to_mirror > 0 ? lobe * std::pow(cos_to_mirror, exponent) : 0));
+  }
+};
+
 /// What a surface is made of.
 struct Material {
   std::string name = "default";
@@ -41,23 +57,26 @@ struct Material {
     return spectrum ? spectrum->reflectance(wavelength) : reflectance;
   }
 
-  /// Reflectance times the angular law, for light of a wavelength [m] that arrives at an angle of this cosine, in [0, 1], and returns the
-  /// way it came.
-  /// Source: Jutzi & Gross 2009; the lobe stands about the mirror direction, twice the incidence away, and ends at 90 degrees.
-  [[nodiscard]] double backscatter(double cos_incidence, double wavelength) const noexcept {
-    const double all = reflectance_at(wavelength);
+  /// Reflectance times the angular law, for light of a wavelength [m].
+  [[nodiscard]] Backscatter backscatter(double wavelength) const noexcept {
+    Backscatter all{.reflectance = reflectance_at(wavelength)};
     switch (scattering) {
       case Scattering::lambert:
-        return all * cos_incidence;
-      case Scattering::phong: {
-        const double cos_to_mirror = 2 * cos_incidence * cos_incidence - 1;
-        const double lobe = cos_to_mirror > 0 ? std::pow(cos_to_mirror, specular_exponent) : 0;
-        return all * ((1 - specular_share) * cos_incidence + specular_share * lobe);
-      }
+        all.cosine = 1;
+        break;
+      case Scattering::phong:
+        all.cosine = 1 - specular_share, all.lobe = specular_share, all.exponent = specular_exponent;
+        break;
       case Scattering::direction_independent:
+        all.even = 1;
         break;
     }
     return all;
+  }
+
+  /// The same for one angle, given by its cosine.
+  [[nodiscard]] double backscatter(double cos_incidence, double wavelength) const noexcept {
+    return backscatter(wavelength)(cos_incidence);
   }
 };
 

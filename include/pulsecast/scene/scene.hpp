@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -15,6 +17,14 @@
 #include <pulsecast/scene/part.hpp>
 
 namespace pulsecast {
+
+namespace detail {
+/// Whether a primitive of a shape has the same surface wherever it is met.
+template <class Shape>
+inline constexpr bool flat = requires {
+  requires bool{Shape::flat};
+};
+}  // namespace detail
 
 /// Parts of the given kinds of geometry, and no code for any other kind: `Scene<TriangleMesh<>>`. They stand; `MovingScene` moves some.
 ///
@@ -72,7 +82,10 @@ class Scene {
   enum class Motions : std::uint8_t { refused, left_out };
 
   /// Parts that move are refused, or left out of the index.
-  Scene(std::vector<Part> parts, Motions motions) : parts_(std::move(parts)), index_(boxes(parts_, motions)) { parts_.shrink_to_fit(); }
+  Scene(std::vector<Part> parts, Motions motions) : parts_(std::move(parts)), index_(boxes(parts_, motions)) {
+    parts_.shrink_to_fit();
+    alone_ = parts_.size() == 1 && !parts_[0].motion;
+  }
 
   static std::vector<Box> boxes(const std::vector<Part>& parts, Motions motions) {
     std::vector<Box> boxes;
@@ -98,7 +111,10 @@ class Scene {
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
       for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, nearest);
     };
-    index_.closest(rays, test, nearest);
+    if (alone_)
+      closest_in(0, parts_[0].placement, rays, nearest);  // it has bounds of its own
+    else
+      index_.closest(rays, test, nearest);
     return nearest;
   }
 
@@ -118,35 +134,63 @@ class Scene {
     placement.identity() ? closest(rays) : closest(placement.to_local(rays));
   }
 
+  /// What there is to know of a primitive to describe how rays met it.
+  struct Sight {
+    Vec3 normal{};            ///< by the length of the directions, in the frame of its part
+    double least_cosine = 0;  ///< 1 if the surface has no direction
+    Backscatter backscatter{};
+    ObjectId object = 0;
+    std::uint16_t classification = 0;
+    bool flat = false;  ///< the same for every ray that met the primitive
+  };
+
+  Sight sight(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j) const noexcept {
+    const auto look = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept -> Sight {
+      const Surface surface = shape->surface(primitive, local, j);
+      const Material& material = (*part.materials)[surface.material];
+      return {.normal = surface.normal / local.direction_length,
+              .least_cosine = surface.normal == Vec3{} ? 1.0 : 0.0,
+              .backscatter = material.backscatter(local.wavelength),
+              .object = part.object,
+              .classification = material.classification,
+              .flat = detail::flat<Shape>};
+    };
+    return std::visit(look, part.geometry);
+  }
+
   /// `placement_of` gives where the part of a number stands.
   template <class PlacementOf>
   void describe(const RayBundle& rays, const Nearest& nearest, std::span<Hit> hits, const PlacementOf& placement_of) const noexcept {
+    // neighbours mostly meet the same part, and often the same primitive: what is known of it need not be found again
+    std::uint64_t known = Nearest::none;
+    Sight sight;
     constexpr std::size_t nothing = std::size_t(-1);
-    std::size_t at = nothing;  // the part whose frame `local` is in: neighbours mostly meet the same
-    RayBundle local;
+    std::size_t at = nothing;  // the part whose frame `local` is in
+    const RayBundle* local = &rays;
+    RayBundle turned;
     for (std::size_t j = 0; j < rays.size; ++j) {
-      hits[j] = Hit{};
-      if (!nearest.met(j)) continue;
-      const Part& part = parts_[nearest.part_of(j)];
-      if (at != nearest.part_of(j)) {
-        at = nearest.part_of(j);
-        const Similarity& placement = placement_of(at);
-        local = placement.identity() ? rays : placement.to_local(rays);
+      if (!nearest.met(j)) {
+        hits[j] = Hit{};
+        continue;
       }
-      const Surface surface =
-          std::visit([&](const auto& shape) noexcept { return shape->surface(nearest.primitive_of(j), local, j); }, part.geometry);
-      const Material& material = (*part.materials)[surface.material];
-      const double cosine = std::fabs(dot(surface.normal, local.direction(j))) / local.direction_length;
-      Hit& hit = hits[j];
-      hit.range = nearest.range[j];
-      hit.cos_incidence = surface.normal == Vec3{} ? 1 : cosine < 1 ? cosine : 1;
-      hit.backscatter = material.backscatter(hit.cos_incidence, rays.wavelength);
-      hit.object = part.object, hit.classification = material.classification;
+      if (nearest.id[j] != known) {
+        if (at != nearest.part_of(j)) {
+          at = nearest.part_of(j);
+          const Similarity& placement = placement_of(at);
+          local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
+        }
+        sight = this->sight(parts_[at], nearest.primitive_of(j), *local, j);
+        known = sight.flat ? nearest.id[j] : Nearest::none;
+      }
+      const double projection = std::fabs(dot(sight.normal, local->direction(j)));
+      const double cosine = projection > 1 ? 1 : projection > sight.least_cosine ? projection : sight.least_cosine;
+      hits[j] = {nearest.range[j], cosine, sight.backscatter(cosine), sight.object, sight.classification};
     }
   }
 
   std::vector<Part> parts_;
   Bvh<float> index_;
+  bool alone_ = false;  ///< there is one part, which stands
 };
 
 }  // namespace pulsecast

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <pulsecast/base/exponential.hpp>
+#include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/pulse_shape.hpp>
+#include <pulsecast/detector/pulse_sum.hpp>
+
+namespace pulsecast {
+
+/// The sum of the pulse shapes of reflections so close to one another that the last one's leading edge comes in before the first one has
+/// peaked. All of them rise until then, so that the sum turns once, at its only peak. Reflections come in any order.
+///
+/// An edge that passed an age u before the last one, in tau, gives P (u + x)^2 e^-(u + x) a time x after it. Weigh each by P e^-u: with
+/// the sums M0, M1 and M2 of the weights times u^0, u and u^2, the sum of pulses is e^-x (M2 + 2 M1 x + M0 x^2), and its slope is zero at
+/// x = 1 + sqrt(1 - v) - m, with the mean m = M1 / M0 and the variance v = M2 / M0 - m^2 of the ages. Derived from `PulseShape`.
+class PulseBunch {
+ public:
+  /// A number a reflection, and lanes to spare.
+  struct Workspace {
+    std::vector<double> ages, weights;
+    explicit Workspace(std::size_t reflections) : ages(reflections + lane_count), weights(reflections + lane_count) {}
+  };
+
+  /// Looks at reflections, and notes their ages and weights in a workspace, which is to be there as long as the bunch is. If they are none
+  /// (`!one()`), for being too far apart, too many for the workspace, without power, or of no range, nothing else is to be asked.
+  PulseBunch(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval, Workspace& w) noexcept
+      : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()) {
+    if (reflections.empty() || reflections.size() + lane_count > w.ages.size()) return;
+    double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+    bool useful = true;
+    for (const Reflection& r : reflections) {
+      nearest = r.range < nearest ? r.range : nearest, farthest = r.range > farthest ? r.range : farthest;
+      useful &= can_count(r, sample_interval);
+    }
+    const double per_metre = 2 / (speed_of_light * shape.tau);
+    one_ = useful && (farthest - nearest) * per_metre < PulseShape::peak;
+    if (!one_) return;
+    last_edge_ = 2 * farthest / speed_of_light - PulseShape::peak * shape.tau;
+
+    const std::size_t n = reflections.size();
+    for (std::size_t j = 0; j < n; ++j) ages_[j] = farthest - reflections[j].range, weights_[j] = reflections[j].power;
+    for (std::size_t j = n; j < n + lane_count; ++j) ages_[j] = 0, weights_[j] = 0;
+    Lanes power{}, before{}, zeroth{}, first{}, second{};
+    for (std::size_t j = 0; j < n; j += lane_count) {
+      const Lanes distance = load<Lanes>(ages_[j]), p = load<Lanes>(weights_[j]);
+      const Lanes age = distance * per_metre, weight = p * exponential(Lanes(-age));
+      power += p, before += p * distance;
+      zeroth += weight, first += weight * age, second += weight * age * age;
+      store(age, ages_[j]), store(weight, weights_[j]);
+    }
+    zeroth_ = sum(zeroth), first_ = sum(first), second_ = sum(second);
+    mean_range_ = farthest - sum(before) / sum(power);
+  }
+
+  [[nodiscard]] bool one() const noexcept { return one_; }
+  [[nodiscard]] double last_edge() const noexcept { return last_edge_; }    ///< two-way travel time; times below count from there [s]
+  [[nodiscard]] double mean_range() const noexcept { return mean_range_; }  ///< of the reflections, weighed by their power [m]
+
+  /// Of the peak of the sum [tau].
+  [[nodiscard]] double peak() const noexcept {
+    const double mean = first_ / zeroth_, variance = second_ / zeroth_ - mean * mean;
+    return 1 + std::sqrt(1 - variance) - mean;
+  }
+
+  /// The sum at times [tau] from the last edge on [W].
+  [[nodiscard]] Lanes power(const Lanes& x) const noexcept {
+    return PulseShape::to_unit_peak * exponential(Lanes(-x)) * (second_ + x * (2 * first_ + x * zeroth_));
+  }
+
+  /// What has the greatest share of the sum at a time from the last edge on [tau]; the first of several.
+  [[nodiscard]] const Reflection& strongest(double x) const noexcept {
+    Lanes most{}, number{}, best{};
+    for (std::size_t lane = 0; lane < lane_count; ++lane) number[lane] = static_cast<double>(lane);
+    for (std::size_t j = 0; j < reflections_.size(); j += lane_count) {
+      const Lanes u = load<Lanes>(ages_[j]) + x, power = load<Lanes>(weights_[j]) * u * u;
+      best = power > most ? number : best, most = greater(power, most);
+      number += lane_count;
+    }
+    std::size_t first = 0;
+    for (std::size_t lane = 1; lane < lane_count; ++lane)
+      if (most[lane] > most[first] || (most[lane] == most[first] && best[lane] < best[first])) first = lane;
+    return reflections_[static_cast<std::size_t>(best[first])];
+  }
+
+ private:
+  static double sum(const Lanes& lanes) noexcept {
+    double all = 0;
+    for (std::size_t k = 0; k < lane_count; ++k) all += lanes[k];
+    return all;
+  }
+
+  std::span<const Reflection> reflections_;
+  double *ages_, *weights_;
+  bool one_ = false;
+  double last_edge_ = 0, mean_range_ = 0;
+  double zeroth_ = 0, first_ = 0, second_ = 0;
+};
+
+}  // namespace pulsecast
