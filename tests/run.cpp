@@ -343,21 +343,52 @@ TEST_CASE("what the progress callback throws comes out too") {
   }
 }
 
-TEST_CASE("workers do not run ahead of the sink without bound, so that memory is bounded") {
-  const unsigned threads = 3;
-  const PulseIndex total = 300000;
-  std::atomic<PulseIndex> asked = 0;
-  PulseIndex delivered = 0, farthest = 0, largest_batch = 0;
-  run(rain(total, &asked), {.threads = threads}, [&](const EchoBatch& batch) {
-    if (delivered == 0)  // the others get all the time that they could want
-      for (int k = 0; k < 100000 && asked < total; ++k) std::this_thread::yield();
+namespace {
+
+/// How far the workers get while the first batch is being delivered.
+struct Ahead {
+  double batches = 0;
+  std::size_t batch_bytes = 0;  ///< of the largest
+};
+
+template <class Survey>
+Ahead ahead_of_a_slow_sink(const Survey& survey, unsigned threads, const std::atomic<PulseIndex>& asked) {
+  PulseIndex delivered = 0, farthest = 0, largest = 0;
+  Ahead ahead;
+  run(survey, {.threads = threads}, [&](const EchoBatch& batch) {
+    if (delivered == 0) {  // the others get all the time that they could want
+      PulseIndex seen = 0;
+      for (int k = 0; k < 100000 && seen < survey.size(); ++k, std::this_thread::yield())
+        if (asked > seen) seen = asked, k = 0;
+    }
     farthest = std::max(farthest, asked - delivered);
     delivered += batch.shots.size();
-    largest_batch = std::max<PulseIndex>(largest_batch, batch.shots.size());
+    largest = std::max<PulseIndex>(largest, batch.shots.size());
+    ahead.batch_bytes = std::max(ahead.batch_bytes, batch.shots.size_bytes() + batch.echoes.size_bytes() + batch.subrays.size_bytes());
   });
-  CHECK(delivered == total);
-  CHECK(farthest <= (2 * threads + 2) * largest_batch);
-  CHECK(farthest > largest_batch);  // but they do run ahead
+  CHECK(delivered == survey.size());
+  ahead.batches = static_cast<double>(farthest) / static_cast<double>(largest);
+  return ahead;
+}
+
+}  // namespace
+
+TEST_CASE("workers run ahead of the sink by some megabytes, so that memory is bounded") {
+  const unsigned threads = 3;
+  std::atomic<PulseIndex> asked = 0;
+  const Ahead ahead = ahead_of_a_slow_sink(rain(300000, &asked), threads, asked);
+  CHECK(ahead.batches > 2 * threads + 2);
+  CHECK((ahead.batches - threads - 1) * static_cast<double>(ahead.batch_bytes) <= 6 << 20);
+}
+
+TEST_CASE("workers run ahead of the sink by two batches each and two if batches are large") {
+  const unsigned threads = 3;
+  std::atomic<PulseIndex> asked = 0;
+  const Survey survey{Rain{8000, &asked}, Recorded{RingFootprint{7}}, steps, Receiver{}, FirstHit{}};
+  const Ahead ahead = ahead_of_a_slow_sink(survey, threads, asked);
+  CHECK(ahead.batch_bytes > 3 << 20);
+  CHECK(ahead.batches > 1);
+  CHECK(ahead.batches <= 2 * threads + 2);
 }
 
 TEST_CASE("a run refuses a stride of zero") { CHECK_THROWS_AS(run(rain(), {.stride = 0}), SettingError); }

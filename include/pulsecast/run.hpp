@@ -11,13 +11,16 @@
 #include <exception>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <mutex>
-#include <optional>
+#include <span>
 #include <stop_token>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/survey.hpp>
 
 namespace pulsecast {
@@ -59,11 +62,18 @@ namespace detail {
 
 /// The results of consecutive slots, in memory of their own that is used again and again.
 struct Chunk {
+  std::uint64_t number = 0;
+  Chunk* next_free = nullptr;
   std::vector<Shot> shots;
   std::vector<Echo> echoes;
   std::vector<float> samples;
   std::vector<SubrayHit> subrays;
   RunSummary counts;
+
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return std::span(shots).size_bytes() + std::span(echoes).size_bytes() + std::span(samples).size_bytes() +
+           std::span(subrays).size_bytes();
+  }
 
   void clear() noexcept { shots.clear(), echoes.clear(), samples.clear(), subrays.clear(), counts = {}; }
 
@@ -74,45 +84,57 @@ struct Chunk {
     Shot& shot = shots.emplace_back(outcome.shot);
     shot.first_echo = static_cast<std::uint32_t>(echoes.size()), shot.echoes = static_cast<std::uint32_t>(outcome.echoes.size());
     shot.first_sample = samples.size(), shot.samples = static_cast<std::uint32_t>(outcome.waveform.size());
-    echoes.insert(echoes.end(), outcome.echoes.begin(), outcome.echoes.end());
-    if (!outcome.waveform.empty()) samples.insert(samples.end(), outcome.waveform.begin(), outcome.waveform.end());
-    if (!outcome.subrays.empty()) subrays.insert(subrays.end(), outcome.subrays.begin(), outcome.subrays.end());
+    for (const Echo& echo : outcome.echoes) echoes.push_back(echo);
+    samples.insert(samples.end(), outcome.waveform.begin(), outcome.waveform.end());
+    for (const SubrayHit& subray : outcome.subrays) subrays.push_back(subray);
     counts.echoes += outcome.echoes.size();
     counts.energy += outcome.energy;
     for (std::size_t f = 0; f < fate_count; ++f) counts.spent[f] += outcome.energy * outcome.shares[f];
   }
 };
 
-/// Hands out chunk numbers to workers, and the finished chunks, in order and one at a time, to whoever takes them. No worker runs
-/// farther ahead than there are chunks, which bounds the memory.
+/// Hands out chunks to workers, and the finished ones, in order and one at a time, to whoever takes them. Workers run ahead, so that none
+/// waits for one that is slow, or that the system has put aside; but only until what is finished fills a few megabytes, or until there are
+/// two chunks a worker if these are large, which bounds the memory. The chunk delivered last is the next to be used, as it is in the cache.
 class Conveyor {
  public:
-  Conveyor(std::uint64_t chunks, std::size_t ahead, std::stop_token stop)
-      : chunks_(chunks), ring_(ahead), ready_(ahead, false), stop_(std::move(stop)) {}
+  Conveyor(std::uint64_t chunks, std::size_t workers, std::stop_token stop)
+      : chunks_(chunks),
+        always_ahead_(2 * workers + 2),
+        most_ahead_(16 * always_ahead_),
+        room_(std::make_unique<Chunk[]>(most_ahead_)),
+        finished_(std::make_unique<Chunk*[]>(most_ahead_)),
+        stop_(std::move(stop)) {
+    for (std::size_t i = 0; i < most_ahead_; ++i) room_[i].next_free = std::exchange(free_, &room_[i]);
+  }
 
-  [[nodiscard]] Chunk& chunk(std::uint64_t number) noexcept { return ring_[number % ring_.size()]; }
-
-  /// The next number to work on; none at the end, or when the run is stopped.
-  [[nodiscard]] std::optional<std::uint64_t> next() {
+  /// The next chunk to work on, empty; none at the end, or when the run is stopped.
+  [[nodiscard]] Chunk* next() {
     std::unique_lock lock(mutex_);
-    moved_.wait(lock, [&] { return failure_ || handed_out_ == chunks_ || handed_out_ < delivered_ + ring_.size(); });
-    if (failure_ || handed_out_ == chunks_ || stop_.stop_requested()) return std::nullopt;
-    return handed_out_++;
+    moved_.wait(lock, [&] { return failure_ || handed_out_ == chunks_ || may_go_ahead(); });
+    if (failure_ || handed_out_ == chunks_ || stop_.stop_requested()) return nullptr;
+    Chunk* const chunk = std::exchange(free_, free_->next_free);
+    chunk->clear();
+    chunk->number = handed_out_++;
+    return chunk;
   }
 
   /// Takes a chunk back, and delivers all that are due unless another worker is at it already.
   template <class Deliver>
-  void finish(std::uint64_t number, const Deliver& deliver) {
+  void finish(Chunk& chunk, const Deliver& deliver) {
     std::unique_lock lock(mutex_);
-    ready_[number % ring_.size()] = true;
+    finished_bytes_ += chunk.bytes();
+    place(chunk.number) = &chunk;
     if (delivering_) return;
     delivering_ = true;
-    while (!failure_ && ready_[delivered_ % ring_.size()]) {
+    while (!failure_ && place(delivered_)) {
+      Chunk* const due = std::exchange(place(delivered_), nullptr);
       lock.unlock();
-      deliver(ring_[delivered_ % ring_.size()]);
+      deliver(*due);
       lock.lock();
-      ready_[delivered_ % ring_.size()] = false;
       ++delivered_;
+      finished_bytes_ -= due->bytes();
+      due->next_free = std::exchange(free_, due);
       moved_.notify_all();
     }
     delivering_ = false;
@@ -128,9 +150,19 @@ class Conveyor {
   [[nodiscard]] std::exception_ptr failure() const noexcept { return failure_; }
 
  private:
+  static constexpr std::size_t most_bytes = std::size_t{6} << 20;  // finished and not delivered: some milliseconds of fast work
+
+  [[nodiscard]] bool may_go_ahead() const noexcept {
+    const std::uint64_t ahead = handed_out_ - delivered_;
+    return ahead < always_ahead_ || (ahead < most_ahead_ && finished_bytes_ < most_bytes);
+  }
+  [[nodiscard]] Chunk*& place(std::uint64_t number) noexcept { return finished_[number % most_ahead_]; }
+
   std::uint64_t chunks_, handed_out_ = 0, delivered_ = 0;
-  std::vector<Chunk> ring_;
-  std::vector<bool> ready_;
+  std::size_t always_ahead_, most_ahead_, finished_bytes_ = 0;
+  std::unique_ptr<Chunk[]> room_;
+  std::unique_ptr<Chunk*[]> finished_;  // each at its place, which is empty before
+  Chunk* free_ = nullptr;               // the first of them
   std::stop_token stop_;
   bool delivering_ = false;
   std::exception_ptr failure_;
@@ -150,13 +182,13 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
       std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, PulseIndex{2048});
   const PulseIndex end = std::min(options.end, survey.size()), first = std::min(options.first, end);
   const PulseIndex slots = (end - first + options.stride - 1) / options.stride;
-  const unsigned threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  const unsigned threads = thread_count(options.threads);
   const auto began = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
 
-  detail::Conveyor conveyor((slots + slots_per_chunk - 1) / slots_per_chunk, 2 * std::size_t{threads} + 2, options.stop);
+  detail::Conveyor conveyor((slots + slots_per_chunk - 1) / slots_per_chunk, threads, options.stop);
   RunSummary summary;
-  const auto deliver = [&](detail::Chunk& chunk) {
+  const auto deliver = [&](const detail::Chunk& chunk) {
     const EchoBatch batch{chunk.shots, chunk.echoes, chunk.samples, survey.sample_interval(), chunk.subrays};
     (sinks(batch), ...);
     summary.slots += chunk.counts.slots;
@@ -168,12 +200,10 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   const auto work = [&]() noexcept {
     try {
       auto workspace = survey.workspace();
-      while (const auto number = conveyor.next()) {
-        detail::Chunk& chunk = conveyor.chunk(*number);
-        chunk.clear();
-        const PulseIndex from = *number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots);
-        for (PulseIndex n = from; n < to; ++n) chunk.append(survey(first + n * options.stride, workspace));
-        conveyor.finish(*number, deliver);
+      while (detail::Chunk* chunk = conveyor.next()) {
+        const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots);
+        for (PulseIndex n = from; n < to; ++n) chunk->append(survey(first + n * options.stride, workspace));
+        conveyor.finish(*chunk, deliver);
       }
     } catch (...) {
       conveyor.fail(std::current_exception());

@@ -9,9 +9,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <locale>
 #include <map>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +21,7 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/random.hpp>
+#include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pulsecast;
@@ -395,6 +398,78 @@ TEST_CASE("an MTL file that is not there is an error at the line that names it")
   CHECK(error.path() == (folder.path() / "a.obj").string());
   CHECK(error.place() == "line 2");
   CHECK(contains(error.problem(), (folder.path() / "gone.mtl").string()));
+}
+
+/// All that comes of reading a file, in words.
+std::string told(const std::filesystem::path& path, unsigned threads, std::size_t piece_bytes) {
+  std::ostringstream all;
+  try {
+    const ObjModel model = adapters::detail::ObjReader(path, {.up = UpAxis::y}, threads, piece_bytes).read();
+    for (const Vec3& v : model.mesh.vertices) all << v.x << ' ' << v.y << ' ' << v.z << '\n';
+    for (std::size_t i = 0; i < model.mesh.triangles.size(); ++i) {
+      for (const std::uint32_t corner : model.mesh.triangles[i]) all << corner << ' ';
+      all << model.materials[model.mesh.materials[i]].name << '\n';
+    }
+    for (const Material& material : model.materials) all << material.name << ' ' << material.reflectance << '\n';
+    for (const std::string& warning : model.warnings) all << warning << '\n';
+  } catch (const FileError& error) {
+    all << error.what();
+  }
+  return all.str();
+}
+
+TEST_CASE("a file gives the same, or the same error, in pieces of any size and on any number of threads") {
+  const Folder folder;
+  folder.write("m.mtl", "newmtl a\nhelios_reflectance 20\nnewmtl b c\nhelios_reflectance 0.3\nhelios_spectra none\n");
+  const std::vector<std::string> statements{"v 0 0 0",
+                                            "v 1 0 0",
+                                            "v 1 1 0.5",
+                                            "v \\\r\n0 1 \\\n0",
+                                            "v 2 2 2  # a corner",
+                                            "v 0 0 0",
+                                            "f 1 2 3",
+                                            "f -1 -2 -3",
+                                            "f -4 -3 -2 -1",
+                                            "f 4/1 3/1 2/1 1",
+                                            "f -1 -3 \\\n\\\n-2",
+                                            "usemtl a",
+                                            "usemtl b c",
+                                            "usemtl d",
+                                            "mtllib m.mtl",
+                                            "# nothing \\",
+                                            "",
+                                            " \\",
+                                            "what is this",
+                                            "vt 0 0\nvn 1 0 0",
+                                            "g x y\t",
+                                            "o z",
+                                            "f 1 3 2 4 \\\r\n ",
+                                            "\tv 1e1 -2 .5 ",
+                                            "s off",
+                                            "f 2 2 3"};
+  const std::vector<std::string> wrong{"f 1 2 99",  "f 1 2 -99", "v 1 2 x", "mtllib gone.mtl", "f 1 2", std::string("v \0", 3),
+                                       "v 1 2 1e13"};
+  const std::vector<std::string> ends{"\n", "\n", "\r\n", " \n"};
+  int whole = 0;
+  for (std::uint64_t seed = 0; seed < 150; ++seed) {
+    CAPTURE(seed);
+    support::Generator random(seed);
+    std::string text = random.coin() ? "\xEF\xBB\xBF" : "";
+    for (const char* corner : {"v 0 0 1\n", "v 3 0 1\n", "v 3 3 1\n", "v 0 3 1\n"}) text += corner;
+    for (std::uint64_t k = random.whole(60); k-- > 0;) {
+      const auto& from = seed % 2 == 0 || random.uniform() < 0.97 ? statements : wrong;
+      text += from[random.whole(from.size())] + ends[random.whole(ends.size())];
+    }
+    if (random.coin()) text += "f 1 2 3";
+    const auto path = folder.write("pieces.obj", text);
+    const std::string expected = told(path, 1, std::size_t{1} << 20);
+    whole += !contains(expected, "expected");
+    for (const std::size_t bytes : std::initializer_list<std::size_t>{1, 7, 50, 300}) {
+      CAPTURE(bytes);
+      for (const unsigned threads : {1U, 3U}) CHECK(told(path, threads, bytes) == expected);
+    }
+  }
+  CHECK(whole > 60);
 }
 
 TEST_CASE("a mutated file gives finite geometry in range, or a FileError") {

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <ios>
 #include <istream>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -27,6 +29,7 @@
 
 #include <pulsecast/adapters/mtl.hpp>
 #include <pulsecast/adapters/spectral_library.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
@@ -53,9 +56,10 @@ struct ObjModel {
 
 /// Reads an OBJ file and the MTL files that it names. Polygons are cut into triangles, also concave ones.
 /// Throws a `FileError` with path and line at the first thing that cannot be right.
+/// Up to so many threads read; 0 stands for as many as the machine runs at once. Not more than some megabytes of the file are held.
 /// Limits: faces refer to vertices above them and have at most 4096 corners; coordinates stay within 1e12, where double resolves 0.1 mm,
 /// and are right to some units in the last place.
-[[nodiscard]] ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings = {});
+[[nodiscard]] ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings = {}, unsigned threads = 0);
 
 namespace detail {
 
@@ -119,49 +123,101 @@ inline constexpr std::size_t largest_polygon = 4096;  ///< corners; cutting take
   return triangles;
 }
 
-class ObjReader : private StatementBuffer {
+/// What the statements in a stretch of an OBJ file say, as far as that does not depend on those before it.
+class ObjPiece : private StatementBuffer {
  public:
-  ObjReader(const std::filesystem::path& path, const ObjSettings& settings)
-      : StatementBuffer(path), folder_(path.parent_path()), settings_(settings) {}
-
-  [[nodiscard]] ObjModel read() {
-    tinyobj::callback_t callbacks;
-    callbacks.vertex_cb = [](void* self, double x, double y, double z, double) { static_cast<ObjReader*>(self)->vertex({x, y, z}); };
-    callbacks.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
-      static_cast<ObjReader*>(self)->face({corners, static_cast<std::size_t>(count)});
-    };
-    callbacks.usemtl_cb = [](void* self, const char* name, int) {
-      ObjReader& reader = *static_cast<ObjReader*>(self);
-      reader.use_ = {name, reader.line(), std::nullopt};
-    };
-    std::istream stream(this);
-    stream.exceptions(std::ios::badbit);  // so that those thrown while it reads pass through
-    tinyobj::LoadObjWithCallback(stream, callbacks, this);
-
-    if (model_.mesh.triangles.empty())
-      fail(flat_ > 0 ? "all its faces are without area: expected at least one that has some"
-                     : "holds no face: expected at least one 'f' statement");
-    if (cut_ > 0) warn(cut_, "the last line has no end: the file may have been cut short");
-    if (unknown_ > 0)
-      warn(first_unknown_.first, first_unknown_.second + " is not known and left out, the first of " + std::to_string(unknown_));
-    if (flat_ > 0) warn(first_flat_, "a triangle without area is left out, the first of " + std::to_string(flat_));
-    resolve_materials();
-    return std::move(model_);
-  }
-
- private:
+  /// Name of a material, the line of its `usemtl`, and its number, once a triangle needs it.
   struct Use {
     std::string name = "default";
     std::size_t line = 0;
-    std::optional<std::uint32_t> index;  ///< in `uses_`, once a face needs it
+    std::optional<std::uint32_t> number;
+  };
+
+  /// An `mtllib` statement.
+  struct Libraries {
+    std::size_t line;
+    std::string quoted, rest;
+    std::vector<std::string> names;
+  };
+
+  /// What went wrong first, and in which line.
+  struct Failure {
+    std::size_t line = std::numeric_limits<std::size_t>::max();
+    std::exception_ptr error;
+  };
+
+  /// About some line.
+  struct Note {
+    std::size_t line;
+    std::string text;
+  };
+
+  ObjPiece(const std::string& path, std::string text, std::size_t lines_before, UpAxis up)
+      : StatementBuffer(path, std::move(text), lines_before), up_(up) {}
+
+  /// Reads as far as nothing is wrong.
+  void read() {
+    tinyobj::callback_t callbacks;
+    callbacks.vertex_cb = [](void* self, double x, double y, double z, double) { static_cast<ObjPiece*>(self)->vertex({x, y, z}); };
+    callbacks.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
+      static_cast<ObjPiece*>(self)->face({corners, static_cast<std::size_t>(count)});
+    };
+    callbacks.usemtl_cb = [](void* self, const char* name, int) {
+      ObjPiece& piece = *static_cast<ObjPiece*>(self);
+      piece.uses.push_back({name, piece.line(), std::nullopt});
+    };
+    try {
+      std::istream stream(this);
+      stream.exceptions(std::ios::badbit);  // so that those thrown while it reads pass through
+      tinyobj::LoadObjWithCallback(stream, callbacks, this);
+    } catch (...) {
+      failure = {line(), std::current_exception()};
+    }
+  }
+
+  /// Cuts the faces into triangles, as far as nothing is wrong. `all` has the vertices of this piece, and those before it, `before` many.
+  void triangulate(std::span<const Vec3> all, std::size_t before) {
+    triangles.reserve(faces_.size()), triangle_uses.reserve(faces_.size());
+    std::span<const int> rest = corners_;
+    for (const Face& face : faces_) {
+      const auto given = rest.first(face.corners);
+      rest = rest.subspan(face.corners);
+      numbers_.clear(), positions_.clear();
+      const auto count = static_cast<std::int64_t>(before + face.above);
+      for (const int corner : given) {
+        const std::int64_t index = corner < 0 ? count + corner : std::int64_t{corner} - 1;
+        if (index < 0 || index >= count) return refuse(face.line, corner, count);
+        numbers_.push_back(static_cast<std::uint32_t>(index));
+        positions_.push_back(all[numbers_.back()]);
+      }
+      cut(face);
+    }
+  }
+
+  std::vector<Vec3> vertices;
+  std::vector<Use> uses = std::vector<Use>(1);  ///< the first is the one in force before
+  std::vector<Libraries> libraries;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> triangle_uses;  ///< of each triangle: a number of `uses`
+  std::vector<Note> crossings;               ///< polygons whose outline crosses itself
+  std::optional<Note> first_unknown, first_flat;
+  std::size_t unknown = 0, flat = 0;
+  std::size_t open_line = 0;  ///< of a last statement without an end; 0 if there is none
+  Failure failure;
+
+ private:
+  /// A polygon.
+  struct Face {
+    std::size_t line;
+    std::uint32_t corners, above, use;  ///< how many corners, and how many vertices of this piece stand above it
   };
 
   /// Statements that say nothing about surfaces, of those that the OBJ specification (Wavefront 1995) knows.
   static constexpr std::array<std::string_view, 15> ignored{"vn", "vt", "vp",     "vw",     "o",   "g",          "s",        "l",
                                                             "p",  "mg", "usemap", "maplib", "lod", "shadow_obj", "trace_obj"};
 
-  std::string checked() override {
-    const std::vector<std::string_view> given = words();
+  void check(std::string& ready) override {
+    const std::vector<std::string_view>& given = words();
     if (keyword() == "v") {
       expect(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
              "three finite numbers, none beyond 1e12");
@@ -170,13 +226,17 @@ class ObjReader : private StatementBuffer {
       expect(given.size() >= 3 && given.size() <= largest_polygon, "a face of 3 to 4096 corners");
     } else if (keyword() == "usemtl") {
       expect(!given.empty(), "the name of a material");
-    } else if (keyword() == "mtllib") {
-      libraries(given);  // tinyobjloader would read the first of several only
-    } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
-      if (unknown_++ == 0) first_unknown_ = {line(), quoted()};
+    } else {
+      if (keyword() == "mtllib") {  // tinyobjloader would read the first of several only
+        expect(!given.empty(), "the name of an MTL file");
+        libraries.push_back({line(), quoted(), std::string(rest()), {given.begin(), given.end()}});
+      } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
+        if (unknown++ == 0) first_unknown = {line(), quoted()};
+      }
+      return;
     }
-    if (line_is_open() && (keyword() == "v" || keyword() == "f")) cut_ = line();
-    return statement();
+    if (line_is_open() && keyword() != "usemtl") open_line = line();
+    ready = statement();
   }
 
   static bool is_corner(std::string_view word) {
@@ -192,67 +252,154 @@ class ObjReader : private StatementBuffer {
 
   void vertex(const Vec3& p) {
     expect(max_norm(p) <= largest_number, "three finite numbers, none beyond 1e12");
-    if (model_.mesh.vertices.size() == std::numeric_limits<int>::max()) fail_here("expected fewer than 2^31 vertices");
-    model_.mesh.vertices.push_back(settings_.up == UpAxis::y ? Vec3{p.x, -p.z, p.y} : p);
+    vertices.push_back(up_ == UpAxis::y ? Vec3{p.x, -p.z, p.y} : p);
   }
 
-  void face(std::span<const tinyobj::index_t> corners) {
-    corners_.clear(), positions_.clear();
-    const auto count = static_cast<std::int64_t>(model_.mesh.vertices.size());
-    for (const tinyobj::index_t& corner : corners) {
-      const std::int64_t index = corner.vertex_index < 0 ? count + corner.vertex_index : std::int64_t{corner.vertex_index} - 1;
-      if (index < 0 || index >= count)
-        fail_here(quoted() + " names vertex " + std::to_string(corner.vertex_index) + ": expected from 1 to the " + std::to_string(count) +
-                  " vertices above, or from -1 backwards");
-      corners_.push_back(static_cast<std::uint32_t>(index));
-      positions_.push_back(model_.mesh.vertices[corners_.back()]);
+  void face(std::span<const tinyobj::index_t> given) {
+    for (const tinyobj::index_t& corner : given) corners_.push_back(corner.vertex_index);
+    faces_.push_back({line(), static_cast<std::uint32_t>(given.size()), static_cast<std::uint32_t>(vertices.size()),
+                      static_cast<std::uint32_t>(uses.size() - 1)});
+  }
+
+  /// The face in a line names a vertex that is not there.
+  void refuse(std::size_t face_line, int corner, std::int64_t count) {
+    try {
+      rewind();
+      while (next_statement() && line() < face_line) continue;
+      fail_here(quoted() + " names vertex " + std::to_string(corner) + ": expected from 1 to the " + std::to_string(count) +
+                " vertices above, or from -1 backwards");
+    } catch (...) {
+      failure = {face_line, std::current_exception()};
     }
-    if (corners_.size() == 3) return triangle(0, 1, 2);
-    const auto triangles = triangulated(positions_);
-    for (const auto& [a, b, c] : triangles) triangle(a, b, c);
-    if (!triangles.empty()) return;
-    warn(line(), "the outline of the polygon crosses itself: it becomes a fan about its first corner");
-    for (std::size_t k = 2; k < corners_.size(); ++k) triangle(0, k - 1, k);
   }
 
-  void triangle(std::size_t a, std::size_t b, std::size_t c) {
+  /// Cuts the polygon at hand.
+  void cut(const Face& face) {
+    if (numbers_.size() == 3) return triangle(face, 0, 1, 2);
+    const auto pieces = triangulated(positions_);
+    for (const auto& [a, b, c] : pieces) triangle(face, a, b, c);
+    if (!pieces.empty()) return;
+    crossings.push_back({face.line, "the outline of the polygon crosses itself: it becomes a fan about its first corner"});
+    for (std::size_t k = 2; k < numbers_.size(); ++k) triangle(face, 0, k - 1, k);
+  }
+
+  void triangle(const Face& face, std::size_t a, std::size_t b, std::size_t c) {
     const Vec3 area = cross(positions_[b] - positions_[a], positions_[c] - positions_[a]);
     if (area == Vec3{0, 0, 0}) {
-      if (flat_++ == 0) first_flat_ = line();
+      if (flat++ == 0) first_flat = {face.line, {}};
       return;
     }
-    model_.mesh.triangles.push_back({corners_[a], corners_[b], corners_[c]});
-    model_.mesh.materials.push_back(material());
+    triangles.push_back({numbers_[a], numbers_[b], numbers_[c]});
+    triangle_uses.push_back(face.use);
   }
 
-  /// Number of the material in use; names get theirs when a triangle first needs them.
-  [[nodiscard]] std::uint32_t material() {
-    if (!use_.index) {
-      use_.index = numbers_.try_emplace(use_.name, static_cast<std::uint32_t>(numbers_.size())).first->second;
-      if (*use_.index == uses_.size()) uses_.push_back(use_);
+  UpAxis up_;
+  std::vector<Face> faces_;
+  std::vector<int> corners_;            // of all faces, as the file numbers them
+  std::vector<std::uint32_t> numbers_;  // of the face at hand
+  std::vector<Vec3> positions_;
+};
+
+/// Reads a file in windows of some pieces, each of which may be read on a thread of its own; so is each cut into triangles, once the
+/// vertices before it are known. What comes of them is put together in the order of the file.
+class ObjReader {
+ public:
+  ObjReader(const std::filesystem::path& path, const ObjSettings& settings, unsigned threads,
+            std::size_t piece_bytes = StatementFile::piece_bytes)
+      : file_(path), folder_(path.parent_path()), settings_(settings), threads_(thread_count(threads)), piece_bytes_(piece_bytes) {}
+
+  [[nodiscard]] ObjModel read() {
+    while (read_window()) continue;
+    MeshData& mesh = model_.mesh;
+    if (mesh.triangles.empty())
+      file_.fail(flat_ > 0 ? "all its faces are without area: expected at least one that has some"
+                           : "holds no face: expected at least one 'f' statement");
+    if (open_line_ > 0) warn(open_line_, "the last line has no end: the file may have been cut short");
+    if (unknown_ > 0)
+      warn(first_unknown_->line, first_unknown_->text + " is not known and left out, the first of " + std::to_string(unknown_));
+    if (flat_ > 0) warn(first_flat_->line, "a triangle without area is left out, the first of " + std::to_string(flat_));
+    resolve_materials();
+    return std::move(model_);
+  }
+
+ private:
+  using Note = ObjPiece::Note;
+  using Use = ObjPiece::Use;
+
+  /// False at the end of the file.
+  bool read_window() {
+    std::vector<std::unique_ptr<ObjPiece>> pieces;
+    while (pieces.size() < std::size_t{4} * threads_) {
+      std::string text = file_.next(piece_bytes_);
+      if (text.empty()) break;
+      const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+      pieces.push_back(std::make_unique<ObjPiece>(file_.path(), std::move(text), lines_, settings_.up));
+      lines_ += lines;
     }
-    return *use_.index;
+    for_each_index(pieces.size(), threads_, [&](std::size_t i) { pieces[i]->read(); });
+    std::vector<Vec3>& vertices = model_.mesh.vertices;
+    std::vector<std::size_t> before;  // vertices
+    for (const auto& piece : pieces) {
+      before.push_back(vertices.size());
+      vertices.insert(vertices.end(), piece->vertices.begin(), piece->vertices.end());
+      if (vertices.size() > std::numeric_limits<int>::max()) file_.fail("has too many vertices: expected fewer than 2^31");
+    }
+    for_each_index(pieces.size(), threads_, [&](std::size_t i) { pieces[i]->triangulate(vertices, before[i]); });
+    for (const auto& piece : pieces) add(*piece);
+    return !pieces.empty();
+  }
+
+  void add(ObjPiece& piece) {
+    auto crossing = piece.crossings.begin();
+    const auto warn_before = [&](std::size_t line) {
+      for (; crossing != piece.crossings.end() && crossing->line < line; ++crossing) warn(crossing->line, crossing->text);
+    };
+    for (const ObjPiece::Libraries& statement : piece.libraries) {
+      if (statement.line > piece.failure.line) break;
+      warn_before(statement.line);
+      libraries(statement);
+    }
+    if (piece.failure.error) std::rethrow_exception(piece.failure.error);
+    warn_before(std::numeric_limits<std::size_t>::max());
+
+    piece.uses.front() = use_;
+    MeshData& mesh = model_.mesh;
+    mesh.triangles.insert(mesh.triangles.end(), piece.triangles.begin(), piece.triangles.end());
+    for (const std::uint32_t use : piece.triangle_uses) mesh.materials.push_back(material(piece.uses[use]));
+    use_ = piece.uses.back();
+    if (unknown_ == 0) first_unknown_ = piece.first_unknown;
+    if (flat_ == 0) first_flat_ = piece.first_flat;
+    unknown_ += piece.unknown, flat_ += piece.flat;
+    open_line_ = std::max(open_line_, piece.open_line);
+  }
+
+  /// Number of a material in use; names get theirs when a triangle first needs them.
+  [[nodiscard]] std::uint32_t material(Use& use) {
+    if (!use.number) {
+      use.number = numbers_.try_emplace(use.name, static_cast<std::uint32_t>(numbers_.size())).first->second;
+      if (*use.number == uses_.size()) uses_.push_back(use);
+    }
+    return *use.number;
   }
 
   /// `mtllib` names one file, whose name may have blanks, or several.
-  void libraries(const std::vector<std::string_view>& names) {
-    expect(!names.empty(), "the name of an MTL file");
+  void libraries(const ObjPiece::Libraries& statement) {
     std::error_code ignored_error;
-    if (std::filesystem::exists(library_path(rest()), ignored_error)) return library(rest());
-    for (const std::string_view name : names) library(name);
+    if (std::filesystem::exists(library_path(statement.rest), ignored_error)) return library(statement.rest, statement);
+    for (const std::string& name : statement.names) library(name, statement);
   }
 
-  [[nodiscard]] std::filesystem::path library_path(std::string_view name) const {
-    std::string path(name);
+  [[nodiscard]] std::filesystem::path library_path(std::string path) const {
     std::replace(path.begin(), path.end(), '\\', '/');
     return folder_ / path;
   }
 
-  void library(std::string_view name) {
+  void library(const std::string& name, const ObjPiece::Libraries& statement) {
     const std::filesystem::path path = library_path(name);
     std::error_code ignored_error;
     if (!std::filesystem::is_regular_file(path, ignored_error))
-      fail_here(quoted() + ": expected an MTL file at " + path.string() + ", but there is none");
+      throw FileError(file_.path(), "line " + std::to_string(statement.line),
+                      statement.quoted + ": expected an MTL file at " + path.string() + ", but there is none");
     if (!read_.insert(path.string()).second) return;
     MaterialLibrary more = read_mtl(path, settings_.spectra);
     library_.merge(more.materials);  // of one name, the first counts
@@ -269,28 +416,29 @@ class ObjReader : private StatementBuffer {
   }
 
   void warn(std::size_t line, const std::string& text) {
-    model_.warnings.push_back(path() + ", line " + std::to_string(line) + ": " + text);
+    model_.warnings.push_back(file_.path() + ", line " + std::to_string(line) + ": " + text);
   }
 
+  StatementFile file_;
   std::filesystem::path folder_;
   ObjSettings settings_;
+  unsigned threads_;
+  std::size_t piece_bytes_, lines_ = 0;  // `lines_`: before what is read next
   ObjModel model_;
   std::map<std::string, Material, std::less<>> library_;
   std::set<std::string> read_;                    // MTL files
   Use use_;                                       // in force
   std::vector<Use> uses_;                         // that triangles have
   std::map<std::string, std::uint32_t> numbers_;  // of `uses_`, by name
-  std::pair<std::size_t, std::string> first_unknown_;
-  std::size_t unknown_ = 0, flat_ = 0, first_flat_ = 0;
-  std::size_t cut_ = 0;                 // the line of a last statement without an end
-  std::vector<std::uint32_t> corners_;  // of the face at hand
-  std::vector<Vec3> positions_;
+  std::optional<Note> first_unknown_, first_flat_;
+  std::size_t unknown_ = 0, flat_ = 0;
+  std::size_t open_line_ = 0;
 };
 
 }  // namespace detail
 
-inline ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings) {
-  return detail::ObjReader(path, settings).read();
+inline ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings, unsigned threads) {
+  return detail::ObjReader(path, settings, threads).read();
 }
 
 }  // namespace pulsecast::adapters
