@@ -1,99 +1,220 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What tracing costs: one pulse after another from a scanner's place, by scene, accelerator and number of subrays. A figure counts only
-// once the accelerator has agreed with `Linear` on a sample of the same pulses.
-
-#define CATCH_CONFIG_MAIN
-#define CATCH_CONFIG_ENABLE_BENCHMARKING
-#include <catch2/catch.hpp>
+// What tracing costs on one thread: beams and rays a second, by scene, accelerator, precision and subrays a beam, and beside them Embree 3
+// on the same rays, by turns in the same run. A row is printed only once the accelerator has given the same answers as `Linear`, bit by
+// bit, on a sample; of Embree it is printed how many of its ranges agree.
+//
+// Rows are named scene/subrays/accelerator: `--only '*/19/Bvh<float>' --only '*/19/Embree*'`. An OBJ file in metres, if one is given, is
+// scanned as a scene of its own. A beam's ratio is to the best of Embree's rows; a single ray's, to the best of `rtcIntersect1`.
 
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
+#include <pulsecast/adapters/obj.hpp>
 #include <pulsecast/pulsecast.hpp>
 
-#include "../examples/tree.hpp"
+#include "report.hpp"
+#include "scenes.hpp"
+#ifdef PULSECAST_BENCH_EMBREE
+#include "embree.hpp"
+#endif
 
-using namespace pulsecast;
-using namespace pulsecast::literals;
+using namespace bench;
 
 namespace {
 
-/// Hills, 1 km by 1 km, of 2 * cells^2 triangles.
-MeshData hills(std::uint32_t cells) {
-  MeshData mesh;
-  const double step = 1_km / cells;
-  for (std::uint32_t j = 0; j <= cells; ++j)
-    for (std::uint32_t i = 0; i <= cells; ++i) {
-      const double x = i * step, y = j * step;
-      mesh.vertices.push_back({x, y, 20 * std::sin(x / 90) * std::cos(y / 70) + 2 * std::sin(x / 7 + y / 11)});
-    }
-  for (std::uint32_t j = 0; j < cells; ++j)
-    for (std::uint32_t i = 0; i < cells; ++i) {
-      const std::uint32_t a = j * (cells + 1) + i, c = a + cells + 1;
-      mesh.triangles.push_back({a, a + 1, c + 1});
-      mesh.triangles.push_back({a, c + 1, c});
-    }
-  return mesh;
+/// Something that rays are traced in.
+struct Subject {
+  std::string name;
+  std::function<double(const Bundles&)> trace;
+  std::function<std::vector<Answer>(const Bundles&)> answers;
+};
+
+template <class Shape>
+Subject subject(const std::string& name, std::shared_ptr<const Shape> shape) {
+  return {name, [shape](const Bundles& all) { return sum_of_ranges(*shape, all); },
+          [shape](const Bundles& all) { return bench::answers(*shape, all); }};
 }
 
-/// The pulses of a line scanner that turns, as bundles: `subrays` each, from `place`, within the given elevations.
-std::vector<RayBundle> pulses(const Vec3& place, double low, double high, std::size_t subrays, std::size_t count) {
-  const SunflowerFootprint footprint(subrays);
-  std::vector<RayBundle> all;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(count);
-    const double line = 50 * share - std::floor(50 * share);
-    const Rotation aim = rotation_about(up, 2 * pi * share) * rotation_about(right, low + (high - low) * line);
-    RayBundle rays;
-    rays.origin = place, rays.size = subrays;
-    for (std::size_t j = 0; j < subrays; ++j) rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.3_mrad));
-    rays.pad();
-    all.push_back(rays);
-  }
+struct Course {
+  std::string name;
+  MeshData mesh;
+  Aims aims;
+  double divergence;
+  std::function<std::shared_ptr<const HeightField>()> field{};  ///< the same ground as one; empty if there is none
+};
+
+/// Rays that are traced together: beams of one size, or rays that have nothing in common.
+struct Group {
+  std::string name;
+  Bundles bundles;
+  std::size_t subrays;  ///< in each
+  std::size_t sampled;  ///< bundles that `Linear` is asked about
+};
+
+std::vector<Group> groups(const Course& course) {
+  std::vector<Group> all;
+  for (const std::size_t subrays : {1U, 7U, 19U, 61U})
+    all.push_back({course.name + "/" + std::to_string(subrays), beams(course.aims, subrays, course.divergence), subrays, 16});
+  all.push_back({course.name + "/incoherent", incoherent_rays(bounds_of(course.mesh), 4 * pulse_count), 1, 64});
   return all;
 }
 
-double sum_of_ranges(const auto& mesh, const std::vector<RayBundle>& all) {
-  double sum = 0;
-  for (const RayBundle& rays : all) {
-    Nearest nearest(rays);
-    mesh.closest(rays, nearest);
-    for (std::size_t j = 0; j < rays.size; ++j) sum += nearest.met(j) ? nearest.range[j] : 0;
-  }
-  return sum;
-}
+#ifdef PULSECAST_BENCH_EMBREE
 
-template <template <class> class Index>
-void measure(const std::string& what, const MeshData& data, const TriangleMesh<Linear>& oracle, const Vec3& place, double low,
-             double high) {
-  const TriangleMesh<Index> mesh(data);
-  for (const std::size_t subrays : {std::size_t{1}, std::size_t{19}}) {
-    const auto sample = pulses(place, low, high, subrays, 20);
-    REQUIRE(sum_of_ranges(mesh, sample) == sum_of_ranges(oracle, sample));
-    const auto all = pulses(place, low, high, subrays, 10'000);
-    BENCHMARK("10,000 pulses of " + std::to_string(subrays) + ", " + what) { return sum_of_ranges(mesh, all); };
+struct EmbreeSubject {
+  std::string name;
+  std::unique_ptr<EmbreeMesh> mesh;
+};
+
+template <std::size_t Width>
+void add_embree(const Report& report, const Group& group, const std::vector<EmbreeSubject>& subjects, std::vector<std::string>& names,
+                std::vector<std::function<void()>>& works, double& sum) {
+  if (Width > 1 && group.subrays == 1) return;  // there is no packet in a single ray
+  const auto rays = std::make_shared<EmbreeRays<Width>>(group.bundles, group.subrays > 1);
+  for (const EmbreeSubject& subject : subjects) {
+    const std::string name = group.name + "/" + subject.name + " " + std::to_string(Width);
+    if (!subject.mesh || !report.wanted(name)) continue;
+    names.push_back(name);
+    works.emplace_back([rays, mesh = subject.mesh.get(), &sum] { sum += rays->sum_of_ranges(*mesh); });
   }
 }
 
-void measure_all(const std::string& scene, const MeshData& data, const Vec3& place, double low, double high) {
-  const TriangleMesh<Linear> oracle(data);
-  const std::string what = scene + " of " + std::to_string(data.triangles.size()) + " triangles, ";
-  measure<Bvh>(what + "Bvh", data, oracle, place, low, high);
-  measure<KdTree>(what + "KdTree", data, oracle, place, low, high);
+/// How many of Embree's ranges are ours, but for what single precision makes of them.
+void print_agreement(const Report& report, const Group& group, const EmbreeSubject& embree, const Subject& ours) {
+  const auto theirs = EmbreeRays<1>(group.bundles, true).ranges(*embree.mesh);
+  const auto expected = ours.answers(group.bundles);
+  std::size_t same = 0, met = 0;
+  for (std::size_t i = 0; i < theirs.size(); ++i) {
+    const bool both = std::isfinite(theirs[i]) && std::isfinite(expected[i].range);
+    met += std::isfinite(expected[i].range) ? 1U : 0U;
+    same += both ? std::fabs(theirs[i] - expected[i].range) < 1e-5 * expected[i].range + 1e-3
+                 : std::isfinite(theirs[i]) == std::isfinite(expected[i].range);
+  }
+  const double all = static_cast<double>(theirs.size()), share = static_cast<double>(same) / all;
+  char note[128];
+  std::snprintf(note, sizeof note, "%.1f %% of %zu rays meet something; Embree gives the same range for %.3f %%",
+                100 * static_cast<double>(met) / all, theirs.size(), 100 * share);
+  report.note(note);
+  if (share < 0.98) std::printf("these are not the same rays\n"), std::exit(1);
 }
+
+#endif
+
+class Races {
+ public:
+  Races(Report& report, const Course& course) : report_(report), course_(course), groups_(groups(course)) {
+    add<Bvh, float>("Bvh<float>"), add<Bvh, double>("Bvh<double>");
+    add<KdTree, float>("KdTree<float>"), add<KdTree, double>("KdTree<double>");
+    if (course.field && wanted("HeightField")) subjects_.push_back(subject("HeightField", course.field()));
+#ifdef PULSECAST_BENCH_EMBREE
+    for (const auto& [name, quality, robust] :
+         {std::tuple{"Embree", RTC_BUILD_QUALITY_MEDIUM, false}, std::tuple{"Embree high", RTC_BUILD_QUALITY_HIGH, false},
+          std::tuple{"Embree high robust", RTC_BUILD_QUALITY_HIGH, true}})
+      if (wanted(std::string(name) + " 1") || wanted(std::string(name) + " 8") || wanted(std::string(name) + " 16"))
+        embree_.push_back({name, std::make_unique<EmbreeMesh>(course.mesh, quality, robust)});
+#endif
+  }
+
+  void run() {
+    for (const Group& group : groups_) run(group);
+  }
+
+ private:
+  [[nodiscard]] bool wanted(const std::string& subject) const {
+    return std::ranges::any_of(groups_, [&](const Group& group) { return report_.wanted(group.name + "/" + subject); });
+  }
+
+  template <template <class> class Index, class Real>
+  void add(const std::string& name) {
+    if (wanted(name)) subjects_.push_back(subject(name, std::make_shared<const TriangleMesh<Index, Real>>(course_.mesh)));
+  }
+
+  void check(const Group& group, const Subject& subject, std::vector<Answer>& expected, const Bundles& some) {
+    if (!linear_) linear_ = std::make_unique<TriangleMesh<Linear>>(course_.mesh);
+    if (expected.empty()) expected = bench::answers(*linear_, some);
+    auto found = subject.answers(some);
+    if (subject.name == "HeightField")  // its triangles have other numbers
+      for (std::size_t i = 0; i < found.size(); ++i) found[i].id = found[i].range == expected[i].range ? expected[i].id : found[i].id;
+    if (found != expected) std::printf("%s/%s DIFFERS from Linear\n", group.name.c_str(), subject.name.c_str()), std::exit(1);
+  }
+
+  void run(const Group& group) {
+    std::vector<std::string> names;
+    std::vector<std::function<void()>> works;
+    double sum = 0;
+    std::vector<Answer> expected;
+    const Bundles some = group.bundles.sample(group.sampled);
+    [[maybe_unused]] const Subject* checked = nullptr;
+    for (const Subject& subject : subjects_) {
+      const std::string name = group.name + "/" + subject.name;
+      if (!report_.wanted(name)) continue;
+      check(group, subject, expected, some);
+      checked = &subject;
+      names.push_back(name);
+      works.emplace_back([&] { sum += subject.trace(group.bundles); });
+    }
+    const std::size_t ours = works.size();
+#ifdef PULSECAST_BENCH_EMBREE
+    add_embree<1>(report_, group, embree_, names, works, sum);
+    add_embree<8>(report_, group, embree_, names, works, sum);
+    add_embree<16>(report_, group, embree_, names, works, sum);
+#endif
+    if (works.empty()) return;
+    report_.heading(group.name + ": " + std::to_string(course_.mesh.triangles.size()) + " triangles, " +
+                    std::to_string(group.bundles.size()) + " bundles of " + std::to_string(group.subrays));
+#ifdef PULSECAST_BENCH_EMBREE
+    if (checked && !embree_.empty()) print_agreement(report_, group, embree_.back(), *checked);
+#endif
+    const std::vector<Times> times = report_.by_turns(works);
+    keep(sum);
+    std::size_t best = ours;  // of Embree's
+    for (std::size_t i = ours; i < times.size(); ++i)
+      if (median(times[i]) < median(times[best])) best = i;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const double per_second = static_cast<double>(group.bundles.size()) / median(times[i]) / 1e6;
+      Figures figures;
+      if (group.subrays > 1) figures.emplace_back("Mbeams/s", per_second);
+      figures.emplace_back("Mrays/s", per_second * static_cast<double>(group.subrays));
+      if (best < times.size()) figures.emplace_back("of Embree's best", speed_ratio(times[i], times[best]));
+      report_.row(names[i], figures);
+    }
+  }
+
+  Report& report_;
+  const Course& course_;
+  std::vector<Group> groups_;
+  std::vector<Subject> subjects_;
+  std::unique_ptr<TriangleMesh<Linear>> linear_;
+#ifdef PULSECAST_BENCH_EMBREE
+  std::vector<EmbreeSubject> embree_;
+#endif
+};
 
 }  // namespace
 
-TEST_CASE("hills from the air") { measure_all("hills", hills(500), {500, 500, 1000}, -90_deg, -60_deg); }
-
-TEST_CASE("a tree from the ground") { measure_all("a tree", wood::broadleaf({}, wood::Dice(1, 0)), {8, 0, 1.7}, -10_deg, 60_deg); }
-
-TEST_CASE("a build") {
-  const MeshData data = hills(500);
-  BENCHMARK("a Bvh of 500,000 triangles") { return TriangleMesh<Bvh>(data).size(); };
-  BENCHMARK("a KdTree of 500,000 triangles") { return TriangleMesh<KdTree>(data).size(); };
+int main(int count, char** words) {
+  Report report("trace", count, words);
+  const auto race = [&](const Course& course) { Races(report, course).run(); };
+  const auto beside = [&](const std::string& name, MeshData mesh) {
+    const Box box = bounds_of(mesh);
+    race({name, std::move(mesh), from_a_tripod(box), 0.3_mrad});
+  };
+  const Raster ground = hills(866);
+  race({"hills", ground.mesh(), from_the_air(), 0.25_mrad, [&] { return std::make_shared<const HeightField>(ground); }});
+  beside("tree", tree());
+  for (const std::string& file : report.files())
+    beside(std::filesystem::path(file).stem().string() + ".obj", adapters::read_obj(file).mesh);
+  race({"street", flattened(street::scene(1)), from_a_car(), 0.3_mrad});
+  return report.finish();
 }

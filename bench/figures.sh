@@ -1,0 +1,32 @@
+#!/bin/bash
+# SPDX-FileCopyrightText: 2026 the pulsecast contributors
+# SPDX-License-Identifier: MIT
+
+# Takes the figures of docs/performance.md anew: runs the benchmarks of a build and puts their tables between the marks there. Takes some ten
+# minutes; nothing else should run. Usage: figures.sh [BUILD [OBJ]]; build/release if not told, and no OBJ file besides the scenes made by code.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+build=${1:-build/release}
+files=("${@:2}")
+page=docs/performance.md
+tables=$(mktemp)
+trap 'rm -f "$tables"' EXIT
+
+# take NAME ARGUMENTS...: the tables of bench_NAME under a heading.
+take() {
+  echo "taking $1" >&2
+  printf '\n### %s\n\n' "$1" >> "$tables"
+  "$build/bench/bench_$1" --markdown "${@:2}" >> "$tables"
+}
+take trace --only '*/19/*' --only '*/incoherent/*' "${files[@]}"
+take build "${files[@]}"
+take pipeline --only '*/19/'
+take detect --only '*/19/*' --only 'plane/1/*'
+take write
+take scale
+
+awk -v tables="$tables" '
+  /^<!-- figures: begin/ { print; while ((getline line < tables) > 0) print line; print ""; inside = 1 }
+  /^<!-- figures: end/ { inside = 0 }
+  !inside' "$page" > "$page.new"
+mv "$page.new" "$page"
