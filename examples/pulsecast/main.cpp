@@ -21,11 +21,13 @@
 #include <sstream>
 #include <stop_token>
 
-#include <pulsecast/adapters/output_file.hpp>
+#include <pulsecast/adapters/digest.hpp>
+#include <pulsecast/version.hpp>
 
 #include "../summary.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "run_folder.hpp"
 #include "simulation.hpp"
 #include "survey_files.hpp"
 
@@ -40,9 +42,11 @@ enum ExitStatus { success = 0, bad_input = 1, bad_usage = 2, interrupted = 3 };
 
 std::stop_source stopping;
 std::atomic<int> signals = 0;
+std::atomic<bool> simulating = false;
 
+/// Results are made whole first; unless there are none, or whoever asks twice is in a hurry.
 extern "C" void on_signal(int) {
-  if (signals.fetch_add(1) > 0) _exit(interrupted);  // whoever asks twice is in a hurry
+  if (signals.fetch_add(1) > 0 || !simulating) _exit(interrupted);
 }
 
 /// Seconds of the GPS week at a moment of UTC, given as seconds since 1970. Source: IS-GPS-200; leap seconds: IERS Bulletin C.
@@ -68,55 +72,11 @@ std::int64_t unix_time_of(const std::string& text) {
   return timegm(&t);
 }
 
-std::string local_time() {
-  const std::time_t now = std::time(nullptr);
-  std::tm t{};
-  localtime_r(&now, &t);
-  std::ostringstream out;
-  out << std::put_time(&t, "%Y-%m-%d_%H-%M-%S");
-  return out.str();
-}
-
 std::string prefix_of(const SurveyPlan::LegPlan& leg) {
   if (leg.strip) return "strip" + std::string(3 - std::min<std::size_t>(3, leg.strip->size()), '0') + *leg.strip;
   const std::string number = std::to_string(leg.number);
   return "leg" + std::string(3 - std::min<std::size_t>(3, number.size()), '0') + number;
 }
-
-/// What a run must know to be gone on with, in a file beside its results until it is complete.
-struct Log {
-  static constexpr const char* name = "unfinished.txt";
-  std::uint64_t seed = 0;
-  double start_time = 0;           ///< of the first run [s]
-  int run = 0;                     ///< which repetition this is
-  std::string how{};               ///< what else decides about the results
-  std::vector<std::string> cut{};  ///< prefixes of files that are whole, but end too early
-
-  void write(const fs::path& folder) const {
-    adapters::OutputFile file(folder / name);
-    std::ostringstream text;
-    text << "seed " << seed << "\nstart_time " << std::setprecision(17) << start_time << "\nrun " << run << "\nhow " << how << '\n';
-    for (const std::string& prefix : cut) text << "cut " << prefix << '\n';
-    file.write(text.str());
-    file.commit();
-  }
-
-  static std::optional<Log> read(const fs::path& folder) {
-    std::ifstream in(folder / name);
-    if (!in) return std::nullopt;
-    Log log;
-    for (std::string line; std::getline(in, line);) {
-      const std::size_t blank = line.find(' ');
-      const std::string key = line.substr(0, blank), value = blank == std::string::npos ? "" : line.substr(blank + 1);
-      if (key == "seed") log.seed = std::stoull(value);
-      if (key == "start_time") log.start_time = std::stod(value);
-      if (key == "run") log.run = std::stoi(value);
-      if (key == "how") log.how = value;
-      if (key == "cut") log.cut.push_back(value);
-    }
-    return log;
-  }
-};
 
 void sum_up(RunSummary& all, const RunSummary& one) {
   all.slots += one.slots, all.echoes += one.echoes, all.rays += one.rays, all.seconds += one.seconds, all.energy += one.energy;
@@ -124,17 +84,31 @@ void sum_up(RunSummary& all, const RunSummary& one) {
   all.complete = all.complete && one.complete;
 }
 
+Simulation::Settings settings_of(const Options& o, const SurveyFile& file, std::uint64_t seed) {
+  return {.seed = seed,
+          .echo_width = o.echo_width,
+          .waveforms = o.write_waveform,
+          .waveform_noise = o.waveform_noise,
+          .fixed_incidence = o.fixed_incidence,
+          .platform_noise = o.platform_noise,
+          .leg_noise = o.leg_noise,
+          .assets = o.assets,
+          .scene_text = file.scene_text,
+          .store = o.store,
+          .threads = o.threads};
+}
+
 /// The command `run`.
 class Session {
  public:
-  Session(const Options& options, SurveySettings survey, std::uint64_t seed)
-      : options_(options), survey_(std::move(survey)), log_{.seed = seed} {}
+  Session(const Options& options, const SurveyFile& file, std::uint64_t seed)
+      : options_(options), file_(file), survey_(file.survey), log_{.seed = seed} {}
 
   int run() {
     const fs::path parent = options_.output / survey_.name;
     std::optional<fs::path> again;
     if (options_.resume) {
-      const Found found = runs_in(parent);
+      const RunFolders found = runs_in(parent);
       again = found.unfinished;
       if (!again && found.newest) {
         note("there is nothing to resume: the newest run, " + found.newest->string() + ", is complete");
@@ -143,37 +117,24 @@ class Session {
       if (!again) note("there is nothing to resume in " + parent.string() + ": this is a new run");
     }
     log_.how = how();
-    if (again) {
-      const Log before = *Log::read(*again);
-      if (before.how != log_.how)
-        throw std::invalid_argument(again->string() + ": was begun with other options, '" + before.how + "'; now they are '" + log_.how +
-                                    "'");
-      log_ = before;
-    } else {
+    if (again)
+      go_on_from(*again);
+    else
       log_.start_time = gps_week_seconds(unix_time_of(options_.gps_start_time));
-    }
-    Simulation simulation(survey_, {.seed = log_.seed,
-                                    .echo_width = options_.echo_width,
-                                    .waveforms = options_.write_waveform,
-                                    .waveform_noise = options_.waveform_noise,
-                                    .fixed_incidence = options_.fixed_incidence,
-                                    .platform_noise = options_.platform_noise,
-                                    .leg_noise = options_.leg_noise,
-                                    .assets = options_.assets});
+    Simulation simulation(survey_, settings_of(options_, file_, log_.seed));
     if (!again && simulation.plan().clock_start) log_.start_time = *simulation.plan().clock_start;
-    for (const std::string& warning : simulation.warnings()) note(warning);
+    tell_notes(simulation);
     RunSummary all;
-    fs::path folder = again ? *again : new_folder(parent, log_);
+    fs::path folder = again ? *again : new_run_folder(parent, log_);
     for (int r = log_.run; r < simulation.runs() && all.complete; ++r) {
       log_.run = r;
-      if (r > 0) simulation.begin(r);
+      if (r > 0) simulation.begin(r), tell_notes(simulation);
       sum_up(all, play(simulation, folder));
       const fs::path done = folder;
       if (!all.complete) break;
-      log_.run = r + 1, log_.cut.clear();
-      if (r + 1 < simulation.runs()) folder = new_folder(parent, log_);  // so that there is always one that is not finished
-      std::error_code ignored;
-      fs::remove(done / Log::name, ignored);
+      log_.run = r + 1, log_.cut.clear(), log_.before = done.filename().string();
+      if (r + 1 < simulation.runs()) folder = new_run_folder(parent, log_);  // so that there is always one that is not finished
+      RunLog::remove(done);
     }
     if (!options_.quiet) {
       print(all);
@@ -181,60 +142,46 @@ class Session {
         if (all.count(f) > 0)
           std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << all.count(f) << " pulses\n";
       };
-      fate("with echoes", Fate::returned), fate("absorbed", Fate::absorbed), fate("blocked", Fate::blocked);
+      fate("with echoes", Fate::returned), fate("blocked", Fate::blocked);
       for (const std::string& written : folders_) std::cout << "  " << written << '\n';
     }
     return all.complete ? success : interrupted;
   }
 
  private:
-  void note(const std::string& text) const {
-    if (!options_.quiet) std::cerr << "note: " << text << '\n';
+  /// Once.
+  void note(const std::string& text) {
+    if (!options_.quiet && told_.insert(text).second) std::cerr << "note: " << text << '\n';
   }
 
+  void tell_notes(const Simulation& simulation) {
+    for (const std::string& warning : simulation.warnings()) note(warning);
+    for (const std::string& text : simulation.notes()) note(text);
+  }
+
+  /// All that decides about the results beside the seed and the time, in one line.
   [[nodiscard]] std::string how() const {
+    adapters::Digest survey;
+    survey.add(std::string_view(file_.text));
     std::ostringstream out;
-    out << fs::weakly_canonical(options_.survey).string() << " format=" << options_.format << " scale=" << options_.las_scale
-        << " las10=" << options_.las_1_0 << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width
-        << options_.waveform_noise << options_.fixed_incidence << options_.split_by_channel << options_.platform_noise
-        << options_.leg_noise;
+    out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec << " format=" << options_.format
+        << " scale=" << options_.las_scale << " las10=" << options_.las_1_0 << " flags=" << options_.write_waveform << options_.write_pulse
+        << options_.echo_width << options_.waveform_noise << options_.fixed_incidence << options_.split_by_channel
+        << options_.platform_noise << options_.leg_noise;
     return out.str();
   }
 
-  struct Found {
-    std::optional<fs::path> unfinished{}, newest{};
-  };
-
-  /// The newest runs of a survey.
-  static Found runs_in(const fs::path& parent) {
-    Found found;
-    std::error_code error;
-    for (fs::directory_iterator i(parent, error), end; !error && i != end; i.increment(error)) {
-      const std::string name = i->path().filename().string();
-      if (name.starts_with('.') || !i->is_directory(error)) continue;
-      if (!found.newest || i->path() > *found.newest) found.newest = i->path();
-      if (fs::exists(i->path() / Log::name, error) && (!found.unfinished || i->path() > *found.unfinished)) found.unfinished = i->path();
-    }
-    return found;
-  }
-
-  /// A folder of its own for each run, by the time of its start; it has its log from the beginning.
-  static fs::path new_folder(const fs::path& parent, const Log& log) {
-    const std::string stamp = local_time();
-    std::error_code error;
-    fs::create_directories(parent, error);
-    if (error) throw FileError(parent.string(), "", "the output folder cannot be made (" + error.message() + ")");
-    const fs::path making = parent / ('.' + stamp + '_' + std::to_string(getpid()));
-    fs::create_directory(making, error);
-    if (error) throw FileError(making.string(), "", "the output folder cannot be made (" + error.message() + ")");
-    log.write(making);
-    for (int n = 1; n < 1000; ++n) {
-      const fs::path folder = parent / (n == 1 ? stamp : stamp + '_' + std::to_string(n));
-      if (fs::exists(folder, error)) continue;
-      fs::rename(making, folder, error);
-      if (!error) return folder;
-    }
-    throw FileError((parent / stamp).string(), "", "the output folder cannot be made");
+  void go_on_from(const fs::path& folder) {
+    RunLog log = RunLog::read(folder);
+    const auto expect_same = [&](const std::string& then, const std::string& now) {
+      if (then != now)
+        throw std::invalid_argument(folder.string() + ": was begun with another survey or other options, '" + then + "'; now they are '" +
+                                    now + "'");
+    };
+    expect_same(log.how, log_.how);
+    if (options_.seed) expect_same("--seed " + std::to_string(log.seed), "--seed " + std::to_string(*options_.seed));
+    if (!log.before.empty()) RunLog::remove(folder.parent_path() / log.before);
+    log_ = std::move(log);
   }
 
   RunSummary play(const Simulation& simulation, const fs::path& folder) {
@@ -276,6 +223,7 @@ class Session {
         if (signals > 0) stopping.request_stop();
         if (!options_.quiet) line({before + p.done, total, all.echoes + p.echoes, all.seconds + p.seconds});
       };
+      simulating = true;
       if (signals > 0) stopping.request_stop();
       sum_up(all, simulation.run(run, [&](const EchoBatch& batch) { files(batch); }));
       before += leg.end - leg.first;
@@ -293,19 +241,19 @@ class Session {
   }
 
   const Options& options_;
-  SurveySettings survey_;
-  Log log_;
+  const SurveyFile& file_;
+  const SurveySettings& survey_;
+  RunLog log_;
   std::vector<std::string> folders_;
+  std::set<std::string> told_;
 };
 
-Simulation::Settings settings_of(const Options& o, std::uint64_t seed) {
-  return {
-      .seed = seed, .fixed_incidence = o.fixed_incidence, .platform_noise = o.platform_noise, .leg_noise = o.leg_noise, .assets = o.assets};
-}
-
-void tell(const Options& options, const SurveySettings& survey, std::uint64_t seed) {
-  const Simulation simulation(survey, settings_of(options, seed));
-  for (const std::string& warning : simulation.warnings()) std::cerr << "note: " << warning << '\n';
+void tell(const Options& options, const SurveyFile& file, std::uint64_t seed) {
+  const SurveySettings& survey = file.survey;
+  const Simulation simulation(survey, settings_of(options, file, seed));
+  for (const auto& texts : {simulation.warnings(), simulation.notes()})
+    for (const std::string& text : texts)
+      if (!options.quiet) std::cerr << "note: " << text << '\n';
   const SurveyPlan& plan = simulation.plan();
   const Simulation::Scene scene = simulation.scene();
   std::cout << std::fixed << std::setprecision(3) << "survey   " << survey.name << "\nscanner  " << survey.scanner.id << ", "
@@ -327,12 +275,12 @@ void tell(const Options& options, const SurveySettings& survey, std::uint64_t se
             << std::setw(14) << plan.source.size() << '\n';
 }
 
-void preview(const Options& options, const SurveySettings& survey, std::uint64_t seed) {
-  const Simulation simulation(survey, settings_of(options, seed));
+void preview(const Options& options, const SurveyFile& file, std::uint64_t seed) {
+  const Simulation simulation(file.survey, settings_of(options, file, seed));
   std::error_code error;
   fs::create_directories(options.output, error);
   if (error) throw FileError(options.output.string(), "", "the output folder cannot be made (" + error.message() + ")");
-  const fs::path path = options.output / (survey.name + "_preview.png");
+  const fs::path path = options.output / (file.survey.name + "_preview.png");
   constexpr PulseIndex enough = 400'000;
   const PulseIndex slots = simulation.plan().source.size();
   PulseIndex stride = std::max<PulseIndex>(1, slots / enough);
@@ -349,7 +297,7 @@ int work(const Options& options) {
   for (const std::string& text : options.notes)
     if (!options.quiet) std::cerr << "note: " << text << '\n';
   if (options.command == "catalogue") return print_catalogue(options), success;
-  SurveyFile file = read_survey_file(options);
+  const SurveyFile file = read_survey_file(options);
   for (const std::string& warning : file.warnings)
     if (!options.quiet) std::cerr << "note: " << warning << '\n';
   std::optional<std::uint64_t> seed = options.seed ? options.seed : file.survey.seed;
@@ -358,12 +306,12 @@ int work(const Options& options) {
     check_without_scene(file.survey);
     if (!options.quiet) std::cout << options.survey.string() << ": nothing is wrong\n";
   } else if (options.command == "info") {
-    tell(options, file.survey, *seed);
+    tell(options, file, *seed);
   } else if (options.command == "preview") {
-    preview(options, file.survey, *seed);
+    preview(options, file, *seed);
   } else {
     check_without_scene(file.survey);  // before anything expensive
-    return Session(options, std::move(file.survey), *seed).run();
+    return Session(options, file, *seed).run();
   }
   return success;
 }
@@ -379,7 +327,7 @@ int main(int argc, char** argv) {
   try {
     return work(*options);
   } catch (const std::exception& error) {
-    std::cerr << (options->quiet ? "" : "\n") << "error: " << error.what() << '\n';
+    std::cerr << (simulating && !options->quiet && isatty(STDERR_FILENO) != 0 ? "\n" : "") << "error: " << error.what() << '\n';
     return bad_input;
   }
 }

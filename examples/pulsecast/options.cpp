@@ -5,15 +5,29 @@
 
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <iostream>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
+#include <pulsecast/adapters/xml_document.hpp>
 #include <pulsecast/version.hpp>
 
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* all_commands[] = {"run", "check", "info", "preview", "catalogue"};
+
+/// "; did you mean '--format'?"
+std::string nearest_option(const CLI::App& app, const std::string& given) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  const std::string name = given.substr(0, given.find('='));
+  const std::string text = pulsecast::adapters::suggestion(name, known);
+  return text.starts_with("; did") ? text : "";
+}
 
 /// Folders of assets that belong to the program: beside it in a build, and under its prefix where it is installed.
 std::vector<fs::path> own_assets() {
@@ -28,6 +42,17 @@ std::vector<fs::path> own_assets() {
   return all;
 }
 
+/// The folder of this user for scenes that are kept. Source: XDG Base Directory Specification 0.8.
+fs::path scene_folder() {
+  const auto folder = [](const char* name) {
+    const char* const value = std::getenv(name);
+    return fs::path(value != nullptr && fs::path(value).is_absolute() ? value : "");
+  };
+  if (const fs::path cache = folder("XDG_CACHE_HOME"); !cache.empty()) return cache / "pulsecast";
+  const fs::path home = folder("HOME");
+  return home.empty() ? home : home / ".cache" / "pulsecast";
+}
+
 /// `fullwaveNoise` and `fullwave-noise`, as CLI11 wants its names.
 std::string both(const std::string& name) {
   std::string kebab;
@@ -38,8 +63,9 @@ std::string both(const std::string& name) {
   return kebab == name ? "--" + name : "--" + name + ",--" + kebab;
 }
 
-std::optional<std::uint64_t> seed_of(const std::string& text) {
-  std::uint64_t value = 0;
+template <class Number>
+std::optional<Number> number_in(const std::string& text) {
+  Number value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
@@ -50,7 +76,7 @@ std::optional<std::uint64_t> seed_of(const std::string& text) {
 std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   Options o;
   std::vector<std::string> words(argv + 1, argv + argc);
-  for (const char* command : {"run", "check", "info", "preview", "catalogue"})
+  for (const char* command : all_commands)
     if (!words.empty() && words.front() == command) {
       o.command = command;
       words.erase(words.begin());
@@ -71,10 +97,10 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   app.get_formatter()->column_width(46);
   app.set_version_flag("--version", std::string("pulsecast ") + PULSECAST_VERSION);
   app.option_defaults()->ignore_case();
-  auto* survey = app.add_option("survey", o.survey, "The document")->type_name("SURVEY.xml");
-  if (o.command != "catalogue") survey->required();
+  app.add_option("survey", o.survey, "The document")->type_name("SURVEY.xml");
   app.add_option("--assets", o.assets, "Folder of what the document names; may be given again")
       ->type_name("DIR")
+      ->check(CLI::ExistingDirectory)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("-o,--output", o.output, "Folder for the results")->type_name("DIR")->capture_default_str();
@@ -85,17 +111,23 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   app.add_option("--seed", seed, "Of all that is random; the survey's own, or another one each time")
       ->type_name("N")
       ->check([](const std::string& text) {
-        return text == "AUTO" || seed_of(text) ? std::string() : "'" + text + "' is no whole number from 0";
+        return text == "AUTO" || number_in<std::uint64_t>(text) ? std::string() : "'" + text + "' is no whole number from 0";
       });
   app.add_option("-j,--threads,--nthreads,--njobs", o.threads, "How many compute; 0 for as many as the machine runs at once")
       ->type_name("N")
-      ->check(CLI::Range(0U, 1024U));
+      ->check([](const std::string& text) {
+        const auto threads = number_in<unsigned>(text);
+        return threads && *threads <= 1024 ? std::string() : "'" + text + "' is no whole number from 0 to 1024";
+      });
   app.add_option(both("gpsStartTime"), o.gps_start_time, "When the survey begins: UTC, or seconds since 1970")
       ->type_name("'YYYY-MM-DD hh:mm:ss'");
   bool las = false, zip = false, no_platform_noise = false, no_leg_noise = false;
   app.add_flag(both("lasOutput"), las, "Points as LAS 1.4: --format las");
   app.add_flag("--las10", o.las_1_0, "Points as LAS 1.0, for readers of long ago");
-  app.add_option(both("lasScale"), o.las_scale, "Step of the coordinates in LAS [m]")->type_name("M")->check(CLI::Range(1e-9, 1e3));
+  app.add_option(both("lasScale"), o.las_scale, "Step of the coordinates in LAS [m]")->type_name("M")->check([](const std::string& text) {
+    const auto step = number_in<double>(text);
+    return step && *step >= 1e-9 && *step <= 1e3 ? std::string() : "'" + text + "' is no length from 1e-9 to 1000 m";
+  });
   app.add_flag(both("zipOutput"), zip, "Points as compressed text: --format xyz.gz");
   app.add_flag(both("writeWaveform"), o.write_waveform, "Leave waveforms, too");
   app.add_flag(both("writePulse"), o.write_pulse, "Leave a table of all pulses, too");
@@ -105,6 +137,9 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   app.add_flag(both("splitByChannel"), o.split_by_channel, "A file of points for each channel");
   app.add_flag(both("disablePlatformNoise"), no_platform_noise, "The platform knows where it is");
   app.add_flag(both("disableLegNoise"), no_leg_noise, "Legs begin where they should");
+  bool rebuild_scene = false, no_scene_writing = false;
+  app.add_flag(both("rebuildScene"), rebuild_scene, "Build the scene anew, even if it was kept from an earlier run");
+  app.add_flag(both("noSceneWriting"), no_scene_writing, "Do not keep the scene for later runs");
   app.add_flag("--resume", o.resume, "Go on with the newest run of this survey that was not finished");
   app.add_flag("-q,--quiet,--silent", o.quiet, "Say nothing but errors");
   app.add_flag("-v,--verbose", o.verbose, "Say more");
@@ -119,8 +154,6 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   static constexpr Unused none[] = {{"parallelization", true, "work is always shared out evenly"},
                                     {"chunkSize", true, "work is always shared out evenly"},
                                     {"warehouseFactor", true, "work is always shared out evenly"},
-                                    {"rebuildScene", false, "scenes are always built from their files"},
-                                    {"noSceneWriting", false, "scenes are not written"},
                                     {"kdt", true, "there is one search structure"},
                                     {"kdtJobs", true, "there is one search structure"},
                                     {"kdtGeomJobs", true, "there is one search structure"},
@@ -135,23 +168,39 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
     given.push_back(option->group(""));
   }
 
+  app.allow_extras();  // which are told of below
+  const auto refuse = [&](const std::string& problem) {
+    std::cerr << "error: " << problem << "\nTry --help.\n";
+    status = 2;
+    return std::nullopt;
+  };
   try {
     std::vector<std::string> reversed(words.rbegin(), words.rend());
     app.parse(std::move(reversed));
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {
-      status = app.exit(error);
-    } else {
-      std::cerr << "error: " << error.what() << "\nTry --help.\n";
-      status = 2;
-    }
+    if (error.get_exit_code() != 0) return refuse(error.what());
+    status = app.exit(error);
     return std::nullopt;
   }
+  const std::vector<std::string> extras = app.remaining();
+  for (const std::string& extra : extras)
+    if (extra.starts_with('-')) return refuse("there is no option " + extra + nearest_option(app, extra));
+  const std::vector<std::string> commands(std::begin(all_commands), std::end(all_commands));
+  if (!extras.empty() && o.survey.extension() != ".xml")
+    return refuse("there is no command '" + o.survey.string() + "'" + pulsecast::adapters::suggestion(o.survey.string(), commands));
+  if (o.command == "catalogue" && !o.survey.empty()) return refuse("'" + o.survey.string() + "' is too much: catalogue takes no document");
+  if (!extras.empty()) return refuse("'" + extras.front() + "' is too much: one document at a time");
+  if (o.command != "catalogue" && o.survey.empty()) return refuse("no document is given: expected SURVEY.xml");
   for (std::size_t i = 0; i < std::size(none); ++i)
     if (given[i]->count() > 0) o.notes.push_back(std::string("--") + none[i].name + " has no effect: " + none[i].why);
+  if (!o.format.empty() && ((las && o.format != "las") || (zip && o.format != "xyz.gz")))
+    o.notes.push_back("--format " + o.format + " counts, not " + (las ? "--lasOutput" : "--zipOutput"));
+  else if ((las || o.las_1_0) && zip)
+    o.notes.push_back("--zipOutput has no effect on LAS files: they are not compressed");
   if (o.format.empty()) o.format = las || o.las_1_0 ? "las" : zip ? "xyz.gz" : "xyz";
-  if (!seed.empty() && seed != "AUTO") o.seed = seed_of(seed);
+  if (!seed.empty() && seed != "AUTO") o.seed = number_in<std::uint64_t>(seed);
   o.platform_noise = !no_platform_noise, o.leg_noise = !no_leg_noise;
+  o.store = {scene_folder(), !rebuild_scene, !no_scene_writing};
   std::error_code error;
   o.assets.push_back(fs::current_path(error));
   for (fs::path& folder : own_assets()) o.assets.push_back(std::move(folder));

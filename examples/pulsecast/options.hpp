@@ -8,6 +8,12 @@
 #include <string>
 #include <vector>
 
+/// Where built scenes are kept from run to run, and whether they are.
+struct SceneStore {
+  std::filesystem::path folder{};  ///< none if empty
+  bool read = true, write = true;
+};
+
 /// What the command line asks for.
 struct Options {
   std::string command = "run";  ///< run, check, info, preview or catalogue
@@ -22,6 +28,7 @@ struct Options {
   bool las_1_0 = false;     ///< LAS of version 1.0
   bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false;
   bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false, verbose = false;
+  SceneStore store{};
   std::vector<std::string> notes{};  ///< what was accepted but has no effect
 };
 

@@ -20,6 +20,9 @@ class Simulation {
     std::uint64_t seed = 0;
     bool echo_width = false, waveforms = false, waveform_noise = false, fixed_incidence = false, platform_noise = true, leg_noise = true;
     std::vector<std::filesystem::path> assets{};
+    std::string scene_text{};  ///< says all settings of the scene
+    SceneStore store{};
+    unsigned threads = 0;  ///< that build the scene; 0 for all
   };
   struct Scene {
     pulsecast::Vec3 least{}, most{};  ///< of its box [m]
@@ -40,6 +43,7 @@ class Simulation {
   [[nodiscard]] const pulsecast::adapters::SurveyPlan& plan() const;
   [[nodiscard]] Scene scene() const;
   [[nodiscard]] const std::vector<std::string>& warnings() const;
+  [[nodiscard]] const std::vector<std::string>& notes() const;  ///< for those who want to know more
 
   pulsecast::RunSummary run(const pulsecast::RunOptions& options, const std::function<void(const pulsecast::EchoBatch&)>& sink) const;
 

@@ -17,7 +17,9 @@ using namespace pulsecast;
 
 SurveyFile read_survey_file(const Options& options) {
   adapters::SurveyDocument document = adapters::read_survey(options.survey, {.assets = options.assets});
-  return {std::move(document.survey), std::move(document.warnings)};
+  std::string text = adapters::xml_text(document.survey),
+              scene_text = adapters::xml_text(adapters::AssetDocument{.scenes = {document.survey.scene}});
+  return {std::move(document.survey), std::move(document.warnings), std::move(text), std::move(scene_text)};
 }
 
 namespace {
@@ -35,8 +37,11 @@ const char* kind_name(adapters::PlatformKind kind) {
 std::vector<fs::path> documents_of(const Options& options) {
   std::vector<fs::path> files;
   std::set<std::string> seen;
+  std::error_code ignored;
+  const fs::path here_now = fs::current_path(ignored);  // its documents are surveys
   for (const fs::path& folder : options.assets)
     for (const fs::path& inside : {folder, folder / "data"}) {
+      if (inside == here_now) continue;
       std::error_code error;
       std::vector<fs::path> here;
       for (fs::directory_iterator i(inside, error), end; !error && i != end; i.increment(error))

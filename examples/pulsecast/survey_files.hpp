@@ -15,6 +15,7 @@
 struct SurveyFile {
   pulsecast::adapters::SurveySettings survey;
   std::vector<std::string> warnings;
+  std::string text{}, scene_text{};  ///< of all settings, and of those of the scene: the same text, the same settings
 };
 SurveyFile read_survey_file(const Options& options);
 

@@ -136,9 +136,30 @@ TEST_CASE("motions go on from step to step, at the pulse rate") {
     CHECK(below(orbit, 0, 10, 1).object == 1);
     CHECK(below(orbit, 10, 0, 1).object == 0);
   }
-  SUBCASE("mirrors are refused") {
+  SUBCASE("one mirror is refused; two parallel ones are a way, two that meet are a turn") {
     cube.motions = {sequence("mirror", 0, {ReflectionMotion{}})};
     CHECK_THROWS_AS((void)built(scene_of({cube}), options), SettingError);
+    cube.motions = {sequence("mirror", 0, {RotoreflectionMotion{.axis = up, .angle = 0.1}})};
+    CHECK_THROWS_AS((void)built(scene_of({cube}), options), SettingError);
+
+    cube.motions = {sequence("glide", 0, {ReflectionMotion{.normal = {3, 4, 0}, .shift = Vec3{0, 0, -0.0005}}})};
+    cube.motions[0].motions.push_back(cube.motions[0].motions[0]);
+    const SurveyScene sinks = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(sinks, 0, 0, 0).range == relative(98, 1e-12));
+    CHECK(below(sinks, 0.9, -0.9, 1.5).range == relative(99.5, 1e-9));
+
+    cube.transform.translation = {10, 0, 0};
+    const double half = pi / 4 / 1000;  // twice the angle between the mirrors is that of the turn
+    cube.motions = {sequence("turn", 0, {ReflectionMotion{.normal = right}})};
+    cube.motions[0].motions.push_back({ReflectionMotion{.normal = {std::cos(half), std::sin(half), 0}}});
+    const SurveyScene orbit = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(orbit, 0, 10, 1).object == 1);
+    CHECK(below(orbit, 10, 0, 1).object == 0);
+    cube.motions = {sequence("turn", 0, {RotoreflectionMotion{.axis = up, .angle = half, .center = Vec3{0, 0, 1}}})};
+    cube.motions[0].motions.push_back(cube.motions[0].motions[0]);
+    const SurveyScene same = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(same, 0, 10, 1).object == 1);
+    CHECK(below(same, 0, 10, 1).range == relative(98, 1e-9));
   }
 }
 

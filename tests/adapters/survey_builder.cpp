@@ -172,39 +172,17 @@ TEST_CASE("channels fire together, each from its own place") {
   CHECK(b->laser.wavelength == 1550e-9);
 }
 
-TEST_CASE("noise moves what is reported, has the distribution asked for, and can be left out") {
+TEST_CASE("noise of platform and legs is as the settings say, and can be left out") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{}});
-  s.legs[0].duration_max = 10;
+  s.legs[0].duration_max = 1;
   s.legs[0].scanner.scan_frequency = 0;
-  s.platform.position_noise[0] = NoiseSettings{.deviation = 0.1};
-  s.platform.position_noise[1] = NoiseSettings{.distribution = NoiseDistribution::uniform, .low = 1, .high = 3};
-  s.platform.position_noise[2] = NoiseSettings{.mean = 5, .deviation = 0, .clipped = true, .clip_low = 0, .clip_high = 2};
-  const SurveyPlan plan = plan_survey(s, flat, {.seed = 4});
-  double sum = 0, squares = 0, least = 9, most = -9;
-  for (PulseIndex i = 0; i < 10'000; ++i) {
-    const auto p = plan.source.pulse(i);
-    const Vec3 off = p->reported.value().position - p->pose.position;
-    sum += off.x, squares += off.x * off.x, least = std::min(least, off.y), most = std::max(most, off.y);
-    CHECK(off.z == 2);
-  }
-  CHECK(std::fabs(sum / 10'000) < 0.004);
-  CHECK(std::sqrt(squares / 10'000) == relative(0.1, 0.03));
-  CHECK(least == relative(1, 0.01));
-  CHECK(most == relative(3, 0.01));
+  s.platform.position_noise[2] = NoiseSettings{.mean = 5, .deviation = 0};
+  const auto first = plan_survey(s, flat, {.seed = 4}).source.pulse(0);
+  CHECK(first->reported.value().position.z - first->pose.position.z == 5);
   CHECK_FALSE(plan_survey(s, flat, {.seed = 4, .platform_noise = false}).source.pulse(0)->reported);
-
-  SUBCASE("a number serves as many pulses as it should") {
-    s.platform.position_noise[0]->lifespan = 3;
-    const SurveyPlan slow = plan_survey(s, flat);
-    const auto off = [&](PulseIndex i) { return slow.source.pulse(i)->reported->position.x; };
-    CHECK(off(0) == off(2));
-    CHECK(off(2) != off(3));
-  }
-  SUBCASE("legs may begin elsewhere") {
-    s.leg_offset = LegOffsetSettings{.mean = 10, .deviation = 0};
-    CHECK(length(origin(plan_survey(s, flat), 0) - Vec3{10, 10, 10}) < 1e-12);
-    CHECK(length(origin(plan_survey(s, flat, {.leg_noise = false}), 0)) < 1e-12);
-  }
+  s.leg_offset = LegOffsetSettings{.mean = 10, .deviation = 0};
+  CHECK(length(origin(plan_survey(s, flat), 0) - Vec3{10, 10, 10}) < 1e-12);
+  CHECK(length(origin(plan_survey(s, flat, {.leg_noise = false}), 0)) < 1e-12);
 }
 
 TEST_CASE("what is wrong with an optic names its leg") {

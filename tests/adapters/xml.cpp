@@ -223,6 +223,7 @@ TEST_CASE("a survey, read, written and read again, gives equal settings") {
     CAPTURE(name);
     const SurveyDocument first = read_survey(sample(name), options);
     write_survey(folder / "again.xml", first.survey);
+    CHECK(xml_text(first.survey) == support::content(folder / "again.xml"));
     const SurveyDocument second = read_survey(folder / "again.xml");
     CHECK(second.survey == first.survey);
     CHECK(second.warnings.empty());
@@ -237,6 +238,7 @@ TEST_CASE("assets, read, written and read again, give equal settings") {
     CAPTURE(name);
     const AssetDocument first = read_assets(sample(name), options);
     write_assets(folder / "again.xml", first);
+    CHECK(xml_text(first) == support::content(folder / "again.xml"));
     const AssetDocument second = read_assets(folder / "again.xml");
     CHECK(second.scanners == first.scanners);
     CHECK(second.platforms == first.platforms);
@@ -263,6 +265,12 @@ TEST_CASE("settings that a program makes are written and read") {
   CHECK(again.seed == survey.seed);
   CHECK(again.legs[0].scanner.scan_angle.value() == support::relative(0.3, 1e-15));
   CHECK(again.scanner.channels[0].optic == survey.scanner.channels[0].optic);
+}
+
+TEST_CASE("a survey without a name has that of its file") {
+  CHECK(read_text(survey_text("", leg(""))).survey.name == "survey");
+  CHECK(read_text(survey_text(R"(name="")", leg(""))).survey.name == "survey");
+  CHECK(read_text(survey_text(R"(name="one")", leg(""))).survey.name == "one");
 }
 
 TEST_CASE("a value that equals the default can be set against a template") {
@@ -418,6 +426,7 @@ TEST_CASE("hostile documents are refused at once") {
   refuses("<?xml version=\"1.0\"?><document><survey name=\"" + std::string(100'000, 'x') + "\"/></document>", "is longer than");
   refuses(survey_text(R"(scene="../../../../../../etc/scenes.xml#yard")", leg("")), "leads out of the assets folders");
   refuses(survey_text(R"(name="../../elsewhere")", leg("")), "no slashes");
+  refuses(survey_text(R"(name=".")", leg("")), "no slashes");
   refuses(survey_text(R"(name="a" name="b")", leg("")), "is given twice");
   std::string deep;
   for (int i = 0; i < 200'000; ++i) deep += "<a>";

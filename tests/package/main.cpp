@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/pulsecast.hpp>
 
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #ifdef WITH_las
 #include <pulsecast/adapters/las.hpp>
@@ -10,6 +12,35 @@
 #include <pulsecast/adapters/obj.hpp>
 #endif
 
+#ifdef WITH_scene_builder
+#include <pulsecast/adapters/scene_builder.hpp>
+#include <pulsecast/adapters/survey_builder.hpp>
+#include <pulsecast/adapters/xml.hpp>
+
+/// Builds a survey of a document.
+static void build_survey(const std::filesystem::path& folder) {
+  using namespace pulsecast::adapters;
+  std::ofstream(folder / "plane.obj") << "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n";
+  std::ofstream(folder / "survey.xml") << R"(<document>
+  <scanner id="mirror" optics="rotating" pulseFreqs_Hz="1000" scanAngleMax_deg="60"/>
+  <platform id="stand" type="static"/>
+  <scene id="plane"><part id="7"><filter type="objloader"><param type="string" key="filepath" value="plane.obj"/></filter></part></scene>
+  <survey name="test" scene="#plane" platform="#stand" scanner="#mirror">
+    <leg maxDuration_s="0.1"><platformSettings z="1"/><scannerSettings scanFreq_hz="10"/></leg>
+  </survey>
+</document>)";
+  const SurveySettings survey = read_survey(folder / "survey.xml", {.assets = {folder}}).survey;
+  const SurveyScene scene(SceneBuilder(survey.scene, {}).parts(), {.to = 1});
+  const SurveyPlan plan = plan_survey(survey, [&](const pulsecast::Vec2& at) { return scene.ground_height(at); });
+  std::cout << scene.parts().size() << " parts and " << plan.source.size() << " pulses\n";
+}
+#endif
+
 static void unused() {}
 
-int main() { std::cout << "pulsecast " PULSECAST_VERSION " has a consumer with " ADAPTERS "\n"; }
+int main([[maybe_unused]] int argc, [[maybe_unused]] char** argv) {
+#ifdef WITH_scene_builder
+  build_survey(std::filesystem::path(argv[0]).parent_path());
+#endif
+  std::cout << "pulsecast " PULSECAST_VERSION " has a consumer with " ADAPTERS "\n";
+}

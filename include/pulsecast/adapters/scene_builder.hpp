@@ -46,6 +46,7 @@ struct SceneBuildOptions {
   double pulse_rate = 100e3;     ///< of the first leg: motions may be given per pulse [Hz]
   std::uint64_t seed = 0;        ///< of what is random in the scene
   bool fixed_incidence = false;  ///< all surfaces scatter as if they were met squarely
+  unsigned threads = 0;          ///< that read and build; 0 for as many as the machine runs
 };
 
 /// The parts of a scene, and what was odd about its files. Files and grids are kept, so that a further scene of the same files costs
@@ -114,13 +115,14 @@ class SceneBuilder {
   std::vector<Loaded> read(const ObjSource& source) {
     std::vector<Loaded> all;
     for (const std::filesystem::path& file : source.files) {
-      ObjModel model = read_obj(file, {.up = source.y_up ? UpAxis::y : UpAxis::z, .spectra = options_.spectra});
+      const UpAxis up_axis = source.y_up ? UpAxis::y : UpAxis::z;
+      ObjModel model = read_obj(file, {.up = up_axis, .spectra = options_.spectra}, options_.threads);
       warn(model.warnings);
       if (model.mesh.triangles.empty()) {
         warn({file.string() + ": holds no triangle, and is left out"});
         continue;
       }
-      all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh)), table(std::move(model.materials))});
+      all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh), options_.threads), table(std::move(model.materials))});
     }
     return all;
   }
@@ -130,7 +132,7 @@ class SceneBuilder {
     for (const std::filesystem::path& file : source.files) {
       GeoTiff tiff = read_geotiff(file);
       warn(tiff.warnings);
-      all.push_back({std::make_shared<const HeightField>(std::move(tiff.raster)), table({material(source.material)})});
+      all.push_back({std::make_shared<const HeightField>(std::move(tiff.raster), options_.threads), table({material(source.material)})});
     }
     return all;
   }
@@ -310,27 +312,64 @@ class SceneBuilder {
     return std::make_shared<const PartMotion>(sequences, again);
   }
 
+  using Move = Pose<frame::World, frame::World>;
+
+  /// A rigid motion, or one of a mirror image: each point p goes to `position + sign * rotation * p`.
+  struct Step {
+    Move move{};
+    double sign = 1;
+    int mirrors = 0;  ///< that it is made of
+
+    [[nodiscard]] Step after(const Step& first) const {
+      return {{move.rotation * first.move.rotation, move.position + sign * (move.rotation * first.move.position)},
+              sign * first.sign,
+              mirrors + first.mirrors};
+    }
+
+    /// Without the roundings of reflections that undo each other.
+    [[nodiscard]] Move settled() const {
+      const bool turns = mirrors == 0 || length(Vec3{move.rotation.x, move.rotation.y, move.rotation.z}) > 1e-14;
+      return {turns ? move.rotation : no_rotation, move.position};
+    }
+  };
+
+  /// Places are relative to the centre of the scene, unless they are corrected by it.
+  static Step step_of(const MotionSettings& m, const Vec3& scene_centre) {
+    Step out;
+    Vec3 centre = m.about_itself ? Vec3{} : (1 - m.shift_factor) * scene_centre, shift{};
+    const auto about = [&](const std::optional<Vec3>& point) {
+      if (!m.about_itself) centre += point.value_or(Vec3{});
+    };
+    if (const auto* t = std::get_if<TranslationMotion>(&m.kind)) {
+      shift = t->by;
+    } else if (const auto* r = std::get_if<RotationMotion>(&m.kind)) {
+      about(r->center);
+      out.move.rotation = rotation_about(r->axis, r->angle), shift = r->glide.value_or(0) * r->axis;
+    } else if (const auto* f = std::get_if<ReflectionMotion>(&m.kind)) {  // half a turn about the normal, and all through the centre
+      out = {{rotation_about(f->normal, pi), {}}, -1, 1};
+      shift = f->shift.value_or(Vec3{});
+    } else if (const auto* s = std::get_if<RotoreflectionMotion>(&m.kind)) {
+      about(s->center);
+      out = {{rotation_about(s->axis, s->angle + pi), {}}, -1, 1};
+    }
+    out.move.position = centre - out.sign * (out.move.rotation * centre) + shift;
+    return out;
+  }
+
   /// What all motions of a sequence do in one step.
   SteadyMotion steady_of(const PartSettings& part, const MotionSequenceSettings& sequence, const Vec3& scene_centre, double step) const {
-    using Move = Pose<frame::World, frame::World>;
-    Move all, own;
+    Step all_steps, own_steps;
     bool any = false, any_own = false;
     for (const MotionSettings& m : sequence.motions) {
-      Move move;
-      if (const auto* t = std::get_if<TranslationMotion>(&m.kind)) {
-        move.position = t->by;
-      } else if (const auto* r = std::get_if<RotationMotion>(&m.kind)) {
-        // places are relative to the centre of the scene, unless they are corrected by it
-        const Vec3 centre = m.about_itself ? Vec3{} : r->center.value_or(Vec3{}) + (1 - m.shift_factor) * scene_centre;
-        move.rotation = rotation_about(r->axis, r->angle);
-        move.position = centre - move.rotation * centre + r->glide.value_or(0) * r->axis;
-      } else if (!std::holds_alternative<NoMotion>(m.kind)) {
-        throw SettingError("part '" + part.id + "', dmotion '" + sequence.id + "': reflections (number)", 1, "",
-                           "0: a part can be turned and moved, but not mirrored");
-      }
-      (m.about_itself ? own : all) = move * (m.about_itself ? own : all);
+      (m.about_itself ? own_steps : all_steps) = step_of(m, scene_centre).after(m.about_itself ? own_steps : all_steps);
       (m.about_itself ? any_own : any) = true;
     }
+    for (const Step& s : {all_steps, own_steps})
+      if (s.sign < 0)
+        throw SettingError("part '" + part.id + "', dmotion '" + sequence.id + "': reflections (number)", s.mirrors, "",
+                           "even: nothing moves into its own mirror image, but two reflections are a turn or a way");
+    const Move all = all_steps.settled();
+    Move own = own_steps.settled();
     if (any && any_own && all.rotation != no_rotation)
       throw SettingError("part '" + part.id + "', dmotion '" + sequence.id + "': turns about a place and about itself (number)", 2, "",
                          "1 of them in a sequence");

@@ -123,14 +123,15 @@ struct ErrorFormulas {
   bool operator==(const ErrorFormulas&) const = default;
 };
 
-/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements.
+/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements. The position of its `beam_origin` counts along
+/// the axes of the platform, as that of the mount: the rotation of the mount does not turn it, but heading and head do.
 struct ChannelSettings {
   std::string id{};                                            ///< `id` of the channel; empty if the scanner has but one
   OpticSettings optic{};                                       ///< `optics` and what belongs to it
   double scan_angle_max = 0;                                   ///< to either side; `scanAngleMax_deg` [rad]
   double scan_frequency_min = 0;                               ///< `scanFreqMin_Hz` [Hz]
   double scan_frequency_max = 0;                               ///< 0 stands for no limit; `scanFreqMax_Hz` [Hz]
-  MountSettings beam_origin{};                                 ///< in the frame of the instrument; `<beamOrigin>`
+  MountSettings beam_origin{};                                 ///< rotated in the frame of the instrument; `<beamOrigin>`
   Vec3 head_axis = up;                                         ///< of any length but zero; `<headRotateAxis>`
   double head_speed_max = 0;                                   ///< 0: it cannot turn; `headRotatePerSecMax_deg` [rad/s]
   double divergence = 0.3e-3;                                  ///< full angle at 1/e^2 of the peak; `beamDivergence_rad` [rad]

@@ -60,12 +60,14 @@ struct AssetDocument {
 /// Writes a survey with its scanner, platform and scene as one document. Read again, it gives equal settings; where these were made by a
 /// program, a number that is not in SI in a document may differ in its last digit.
 void write_survey(const std::filesystem::path& path, const SurveySettings& survey);
+[[nodiscard]] std::string xml_text(const SurveySettings& survey);  ///< what would be written
 
 /// Reads the scanners, platforms and scenes of a document. Throws as `read_survey`.
 [[nodiscard]] AssetDocument read_assets(const std::filesystem::path& path, const XmlOptions& options = {});
 
 /// Writes scanners, platforms and scenes as one document.
 void write_assets(const std::filesystem::path& path, const AssetDocument& assets);
+[[nodiscard]] std::string xml_text(const AssetDocument& assets);  ///< what would be written
 
 namespace detail {
 
@@ -127,9 +129,9 @@ class SurveyReader {
   }
 
   void read_survey(XmlInput& io, std::string name) {
-    survey_.name = std::move(name);
     io.text("name", survey_.name);
-    if (survey_.name.find_first_of("/\\") != std::string::npos || survey_.name == "..")
+    if (survey_.name.empty()) survey_.name = std::move(name);
+    if (survey_.name.find_first_of("/\\") != std::string::npos || survey_.name == ".." || survey_.name == ".")
       io.fault("name", "name is that of a folder for results: expected no slashes in it");
     seed(io);
     io.without_effect({"numRuns", "simSpeed"});
@@ -375,14 +377,19 @@ class DocumentWriter {
     xml::fields(io, settings);
   }
 
-  void write(const std::filesystem::path& path) const {
+  [[nodiscard]] std::string text() const {
     struct Writer : pugi::xml_writer {
-      explicit Writer(const std::filesystem::path& name) : file(name) {}
-      void write(const void* data, std::size_t size) override { file.write({static_cast<const char*>(data), size}); }
-      OutputFile file;
-    } writer(path);
+      void write(const void* data, std::size_t size) override { all.append(static_cast<const char*>(data), size); }
+      std::string all;
+    } writer;
     document_.save(writer, "  ", pugi::format_indent, pugi::encoding_utf8);
-    writer.file.commit();
+    return std::move(writer.all);
+  }
+
+  void write(const std::filesystem::path& path) const {
+    OutputFile file(path);
+    file.write(text());
+    file.commit();
   }
 
  private:
@@ -404,21 +411,11 @@ Settings with_id(Settings settings, const char* id) {
   return settings;
 }
 
-}  // namespace detail
-
-inline SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options) {
-  return detail::SurveyReader(path, options).read();
-}
-
-inline AssetDocument read_assets(const std::filesystem::path& path, const XmlOptions& options) {
-  return detail::SurveyReader(path, options).read_assets();
-}
-
-inline void write_survey(const std::filesystem::path& path, const SurveySettings& survey) {
-  detail::DocumentWriter document;
-  const ScannerSettings scanner = detail::with_id(survey.scanner, "scanner");
-  const PlatformSettings platform = detail::with_id(survey.platform, "platform");
-  const SceneSettings scene = detail::with_id(survey.scene, "scene");
+inline DocumentWriter document_of(const SurveySettings& survey) {
+  DocumentWriter document;
+  const ScannerSettings scanner = with_id(survey.scanner, "scanner");
+  const PlatformSettings platform = with_id(survey.platform, "platform");
+  const SceneSettings scene = with_id(survey.scene, "scene");
   document.add("scanner", scanner);
   document.add("platform", platform);
   document.add("scene", scene);
@@ -439,16 +436,34 @@ inline void write_survey(const std::filesystem::path& path, const SurveySettings
     io.number("legRandomOffsetMean", survey.leg_offset->mean, units::metre, 0, 0);
     io.number("legRandomOffsetStdev", survey.leg_offset->deviation, units::metre, 0, 0);
   }
-  io.children("leg", survey.legs, [](XmlOutput& inner, const LegSettings& leg) { detail::write_leg(inner, leg); });
-  document.write(path);
+  io.children("leg", survey.legs, [](XmlOutput& inner, const LegSettings& leg) { write_leg(inner, leg); });
+  return document;
 }
 
-inline void write_assets(const std::filesystem::path& path, const AssetDocument& assets) {
-  detail::DocumentWriter document;
+inline DocumentWriter document_of(const AssetDocument& assets) {
+  DocumentWriter document;
   for (const ScannerSettings& scanner : assets.scanners) document.add("scanner", scanner);
   for (const PlatformSettings& platform : assets.platforms) document.add("platform", platform);
   for (const SceneSettings& scene : assets.scenes) document.add("scene", scene);
-  document.write(path);
+  return document;
 }
+
+}  // namespace detail
+
+inline SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options) {
+  return detail::SurveyReader(path, options).read();
+}
+
+inline AssetDocument read_assets(const std::filesystem::path& path, const XmlOptions& options) {
+  return detail::SurveyReader(path, options).read_assets();
+}
+
+inline void write_survey(const std::filesystem::path& path, const SurveySettings& survey) { detail::document_of(survey).write(path); }
+
+inline std::string xml_text(const SurveySettings& survey) { return detail::document_of(survey).text(); }
+
+inline void write_assets(const std::filesystem::path& path, const AssetDocument& assets) { detail::document_of(assets).write(path); }
+
+inline std::string xml_text(const AssetDocument& assets) { return detail::document_of(assets).text(); }
 
 }  // namespace pulsecast::adapters

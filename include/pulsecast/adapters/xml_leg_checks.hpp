@@ -43,12 +43,12 @@ class LegChecks {
       return;
     }
     if (platform.trajectory) io.warn("trajectory", "trajectory attributes have no effect unless platform=\"interpolated\"");
-    if (!is_moving() || settings.duration_max) return;
+    if (!is_moving()) return;
     if (survey_.legs.size() == 1)
       io.report().fault(io.place(),
-                        "a single leg of a platform that moves: expected another <leg> that says where it goes, or maxDuration_s");
+                        "a single leg of a platform that moves: expected another <leg> that says where it goes");
     if (platform.speed == 0 && i + 1 < survey_.legs.size())
-      io.fault("movePerSec_m", "the leg could never end: movePerSec_m is 0; expected a speed, or maxDuration_s");
+      io.fault("movePerSec_m", "the leg could never end: movePerSec_m is 0; expected a speed");
     if (i + 1 < survey_.legs.size() && platform.position == survey_.legs[i + 1].platform.position && !platform.on_ground)
       io.warn("x", "the leg begins where the next one does: it has no length");
   }

@@ -180,7 +180,7 @@ void pulse_rates(Io& io, Of<Io, std::vector<double>>& rates) {
     }
   } else {
     std::string text;
-    for (const double rate : rates) text += (text.empty() ? "" : ",") + xml_number(rate);
+    for (const double rate : rates) text.append(text.empty() ? "" : ",").append(xml_number(rate));
     io.text("pulseFreqs_Hz", text);
   }
 }

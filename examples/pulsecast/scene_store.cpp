@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+#include "scene_store.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <random>
+#include <system_error>
+#include <utility>
+
+#include <pulsecast/adapters/digest.hpp>
+#include <pulsecast/adapters/output_file.hpp>
+#include <pulsecast/adapters/scene_cache.hpp>
+
+namespace fs = std::filesystem;
+using namespace pulsecast;
+using adapters::Fingerprint;
+using adapters::SurveyScene;
+
+namespace {
+
+constexpr std::uintmax_t worth_keeping = std::uintmax_t{16}
+                                         << 20;                 ///< of the scene's files: what is less is built in a second or so [byte]
+constexpr std::uintmax_t most_kept = std::uintmax_t{16} << 30;  ///< of all scenes, but for the newest [byte]
+
+std::string hex(std::uint64_t number) {
+  std::array<char, 16> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number, 16).ptr;
+  const std::string text(digits.data(), end);
+  return std::string(16 - text.size(), '0') + text;
+}
+
+std::string hex(const Fingerprint& f) { return hex(f.high) + hex(f.low); }
+
+/// Says which program this is: one that was built anew may make other scenes.
+std::string this_program() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const auto size = fs::file_size(program, error);
+  if (error) return {};
+  return std::to_string(size) + ' ' + std::to_string(fs::last_write_time(program, error).time_since_epoch().count());
+}
+
+/// One place for one scene: if its files change, what is kept of it is replaced.
+std::string place_of(const SceneInputs& inputs) {
+  adapters::Digest digest;
+  digest.add(std::string_view(inputs.settings));
+  std::error_code error;
+  for (const fs::path& file : inputs.files) digest.add(std::string_view(fs::absolute(file, error).string()));
+  std::string name = inputs.name.substr(0, 40);
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return name + '-' + hex(digest.value().low);
+}
+
+/// What was odd about a scene is kept beside it, below the key of the scene.
+std::optional<std::vector<std::string>> read_warnings(const fs::path& path, const Fingerprint& key) {
+  std::ifstream in(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(std::move(line));
+  if (lines.size() < 2 || lines.front() != hex(key) || lines.back() != "end") return std::nullopt;
+  return std::vector(lines.begin() + 1, lines.end() - 1);
+}
+
+/// Puts a file in its place that `write` makes. The way there is no one else's, so that programs that start at the same time do no harm.
+template <class Write>
+void replace(const fs::path& path, const Write& write) {
+  const fs::path own = path.string() + '.' + hex(std::uint64_t{std::random_device{}()} << 32 | std::random_device{}());
+  write(own);
+  std::error_code error;
+  fs::rename(own, path, error);
+  if (!error) return;
+  std::error_code ignored;
+  fs::remove(own, ignored);
+  throw FileError(path.string(), "", "cannot be replaced: " + error.message());
+}
+
+/// Lets go of what was not used for the longest time, until the rest is not too much.
+void tidy(const fs::path& folder, const fs::path& newest) {
+  struct Kept {
+    fs::path path;
+    fs::file_time_type used;
+    std::uintmax_t size;
+  };
+  std::vector<Kept> all;
+  std::uintmax_t sum = 0;
+  std::error_code error;
+  for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
+    std::error_code gone;
+    Kept kept{i->path(), i->last_write_time(gone), i->file_size(gone)};
+    if (gone || kept.path == newest) continue;
+    sum += kept.size;
+    all.push_back(std::move(kept));
+  }
+  std::sort(all.begin(), all.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });
+  for (const Kept& kept : all) {
+    if (sum <= most_kept) break;
+    std::error_code ignored;
+    if (fs::remove(kept.path, ignored)) sum -= kept.size;
+  }
+}
+
+}  // namespace
+
+BuiltParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const std::function<BuiltParts()>& build,
+                        std::vector<std::string>& notes) {
+  std::uintmax_t size = 0;
+  for (const fs::path& file : inputs.files) {
+    std::error_code error;
+    const std::uintmax_t one = fs::file_size(file, error);
+    size += error ? 0 : one;
+  }
+  if (store.folder.empty() || (!store.read && !store.write) || size < worth_keeping) return build();
+
+  const fs::path path = store.folder / (place_of(inputs) + ".scene"), warnings_path = fs::path(path).replace_extension(".notes");
+  adapters::SceneSources sources{inputs.files, inputs.settings + this_program()};
+  sources.files.insert(sources.files.end(), inputs.more.begin(), inputs.more.end());
+  Fingerprint key;
+  try {
+    key = adapters::scene_key(sources);
+  } catch (const FileError&) {  // whoever builds the scene will say so
+    return build();
+  }
+  if (store.read) {
+    auto warnings = read_warnings(warnings_path, key);
+    auto opened = warnings ? adapters::open_scene<SurveyScene>(path, key, TimeWindows{.to = 1}) : adapters::OpenedScene<SurveyScene>{};
+    if (opened.scene) {
+      std::error_code ignored;
+      for (const fs::path& used : {path, warnings_path}) fs::last_write_time(used, fs::file_time_type::clock::now(), ignored);
+      notes.push_back("the scene was built before, and comes from " + path.string());
+      return {{opened.scene->parts().begin(), opened.scene->parts().end()}, *std::move(warnings)};
+    }
+  }
+  BuiltParts built = build();
+  if (!store.write) return built;
+  try {
+    std::error_code error;
+    fs::create_directories(store.folder, error);
+    if (error) throw FileError(store.folder.string(), "", "the folder cannot be made: " + error.message());
+    const SurveyScene scene(built.parts, TimeWindows{.to = 1});
+    const std::uintmax_t room = fs::space(store.folder, error).available;
+    if (scene.memory() > (error ? most_kept : std::min(most_kept, room)) / 2)
+      throw FileError(store.folder.string(), "", "it is too large for there");
+    replace(warnings_path, [&](const fs::path& own) {
+      adapters::OutputFile file(own);
+      file.write(hex(key) + '\n');
+      for (const std::string& warning : built.warnings) file.write(warning + '\n');
+      file.write(std::string_view("end\n"));
+      file.commit();
+    });
+    replace(path, [&](const fs::path& own) { adapters::save_scene(own, scene, key); });
+    tidy(store.folder, path);
+    notes.push_back("the scene is kept for the next run, in " + path.string());
+  } catch (const FileError& error) {
+    notes.push_back(std::string("the scene is not kept for the next run: ") + error.what());
+  }
+  return built;
+}

@@ -1,0 +1,95 @@
+#!/bin/bash
+# SPDX-FileCopyrightText: 2026 the pulsecast contributors
+# SPDX-License-Identifier: MIT
+
+# Kills the survey program at ten random moments and resumes it: it must leave the same bytes as a run that was let alone.
+# Usage: pulsecast_resume.sh PROGRAM SURVEY FOLDER [SEED], where FOLDER is emptied and SEED begins the random moments.
+set -u
+export LC_ALL=C
+program=$1 survey=$2 folder=$3
+seed=${4:-$(($(date +%s%N) % 32768))}
+RANDOM=$seed
+rm -rf "$folder"
+mkdir -p "$folder" || exit 2
+cd "$folder" || exit 2
+
+fail() {
+  echo "seed $seed: $*"
+  exit 1
+}
+
+options=("$survey" --gpsStartTime 1577836800 --threads 2 --quiet)
+run() { "$program" "${options[@]}" --output "$1" --format "$2" "${@:3}"; }  # run OUTPUT FORMAT [OPTION...]
+
+# Kills a run after so many milliseconds: killed TIME OUTPUT FORMAT [OPTION...]. Fails if it had come to its end before.
+killed() {
+  local pid wait=$(printf '%d.%03d' $(($1 / 1000)) $(($1 % 1000)))
+  "$program" "${options[@]}" --output "$2" --format "$3" "${@:4}" &
+  pid=$!
+  sleep "$wait"
+  kill -KILL $pid 2> /dev/null
+  ! wait $pid 2> /dev/null
+}
+
+# Names and sums of all files below the runs of an output, without the time in their names.
+sums() { (cd "$1" && find . -type f ! -path './*/.*' -printf '%f ' -exec md5sum {} ';' | sed 's| \./.*||' | sort); }
+
+declare -A expected
+for format in las xyz; do
+  run whole_$format $format || fail "the run that is let alone failed"
+  expected[$format]=$(sums whole_$format)
+  [ "$(wc -l <<< "${expected[$format]}")" = 16 ] || fail "16 files were expected, not ${expected[$format]}"
+done
+begin=$(date +%s%N)
+run measured las || fail "a run failed"
+duration=$((($(date +%s%N) - begin) / 1000000))
+
+# One run after the other, each killed again and again until it is complete.
+kills=0 cut_short=0 n=0
+for ((tries = 0; kills < 10 && tries < 200; ++tries)); do
+  format=$([ $((n % 2)) = 0 ] && echo las || echo xyz)
+  resume=$([ -e "killed_$n" ] && echo --resume)
+  moment=$((RANDOM % duration + 1))
+  if killed $moment killed_$n $format $resume; then
+    kills=$((kills + 1))
+    moments="${moments:-} $moment"
+    [ -n "$(find "killed_$n" -name '*.part' 2> /dev/null)" ] && cut_short=$((cut_short + 1))
+    [ $((kills % 3)) != 0 ] && continue
+    run killed_$n $format --resume || fail "moments [ms]$moments: a run could not be resumed"
+  fi
+  duration=$((duration > 20 ? duration - duration / 20 : duration))  # so that moments do not always come too late
+  [ "$(sums killed_$n)" = "${expected[$format]}" ] ||
+    fail "moments [ms]$moments: resumed, killed_$n is not what it should be:
+$(diff <(sums killed_$n) <(echo "${expected[$format]}"))"
+  n=$((n + 1))
+done
+[ $kills = 10 ] || fail "only $kills runs could be killed"
+[ $cut_short != 0 ] || fail "no run was killed while it wrote"
+
+# Interrupted in the middle, it says so by its status, and all it leaves is whole.
+for ((n = 0, status = 0; n < 20 && (status != 3 || $(find interrupted -name unfinished.txt 2> /dev/null | wc -l) == 0); ++n)); do
+  rm -rf interrupted
+  "$program" "${options[@]}" --output interrupted --format xyz &
+  pid=$!
+  sleep "0.$(printf '%03d' $((RANDOM % (duration < 1000 ? duration : 999))))"
+  kill -INT $pid 2> /dev/null
+  wait $pid
+  status=$?
+done
+[ $status = 3 ] || fail "it ended with $status when it was interrupted"
+[ -z "$(find interrupted -name '*.part')" ] || fail "files are left open by a run that was interrupted"
+find interrupted -name '*_points.xyz' -exec awk 'NF != columns && columns { exit 1 } { columns = NF }' {} ';' || fail "a line is not whole"
+[ -z "$(find interrupted -name '*_points.xyz' -size +0 -exec tail -c 1 {} ';' | tr -d '\n')" ] || fail "a last line is not whole"
+run interrupted xyz --resume || fail "a run that was interrupted could not be resumed"
+[ "$(sums interrupted)" = "${expected[xyz]}" ] || fail "an interrupted run is not what it should be when resumed"
+
+# What would go wrong if the state were, and that these comparisons would tell.
+until killed $((RANDOM % duration + 1)) broken las && state=$(find broken -name unfinished.txt) && [ -n "$state" ]; do rm -rf broken; done
+cp "$state" state
+head -c -1 state > "$state"
+run broken las --resume 2> message && fail "a state that lacks a byte was taken"
+grep -q 'unfinished.txt.*cut short' message || fail "of a state that lacks a byte it was said: $(cat message)"
+sed 's/^seed .*/seed 6/' state > "$state"
+run broken las --resume || fail "a run of another seed could not be resumed"
+[ "$(sums broken)" != "${expected[las]}" ] || fail "a run that was resumed with another seed has the same bytes"
+echo "seed $seed: killed after$moments ms, $cut_short times while files were open, and all the same when resumed"
