@@ -65,6 +65,13 @@ struct RayBundle : BundleOrigin {
     PULSECAST_EXPECT(size > 0 && size <= capacity && !(near < 0));
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
     const Column* const columns[] = {&x, &y, &z};
+    if (size == 1) {
+      const auto number = [](double d, double otherwise) noexcept { return d == d ? d : otherwise; };
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      least = {number(x[0], infinity), number(y[0], infinity), number(z[0], infinity)};
+      most = {number(x[0], -infinity), number(y[0], -infinity), number(z[0], -infinity)};
+      return;
+    }
     for (int k = 0; k < 3; ++k) {
       Lanes low = Lanes{} + std::numeric_limits<double>::infinity(), high = -low;
       for (std::size_t j = 0; j < size; j += lane_count) {
@@ -121,7 +128,9 @@ struct Nearest {
 
   /// The range beyond which no ray of the bundle can find anything nearer.
   [[nodiscard]] double limit(const RayBundle& rays) const noexcept {
-    Lanes last = Lanes{} - std::numeric_limits<double>::infinity();
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (rays.size == 1) return range[0] > -infinity ? range[0] : -infinity;
+    Lanes last = Lanes{} - infinity;
     for (std::size_t j = 0; j < rays.size; j += lane_count) last = greater(load<Lanes>(range[j]), last);
     double limit = last[0];
     for (std::size_t lane = 1; lane < lane_count; ++lane) limit = last[lane] > limit ? last[lane] : limit;
