@@ -9,6 +9,7 @@
 #include <span>
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
@@ -109,12 +110,10 @@ struct GaussianFit {
   static Equations equations(std::span<const double> samples, const Gaussian& g) noexcept {
     // exp(-x^2/2) at every so many-th sample: each step multiplies by a ratio, and the ratio by a constant
     const double h = 1 / g.width, step = lane_count * h;
-    Lanes x{}, value{}, ratio{};
-    for (std::size_t k = 0; k < lane_count; ++k) {
-      x[k] = (static_cast<double>(k) - g.position) * h;
-      value[k] = std::exp(-0.5 * x[k] * x[k]), ratio[k] = std::exp(-step * (x[k] + 0.5 * step));
-    }
-    const double decay = std::exp(-step * step);
+    Lanes x = (lanes_of([](std::size_t lane) { return static_cast<double>(lane); }) - g.position) * h;
+    const Lanes growth = -step * (x + 0.5 * step), none = Lanes{} + std::numeric_limits<double>::infinity();
+    Lanes value = exponential(Lanes(-0.5 * x * x)), ratio = growth < 700 ? exponential(growth) : none;
+    const double decay = exponential(-step * step);
     // the derivatives are value, value x k and value x^2 k, with k = amplitude / width: what is needed are sums over powers of x
     Lanes s0{}, s1{}, s2{}, s3{}, s4{}, r0{}, r1{}, r2{}, squares{};
     for (std::size_t i = 0; i < samples.size(); i += lane_count) {
