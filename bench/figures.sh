@@ -24,6 +24,10 @@ take pipeline --only '*/19/'
 take detect --only '*/19/*' --only 'plane/1/*'
 take write
 take scale
+take short_cuts
+echo "taking needs" >&2
+printf '\n### needs\n\n' >> "$tables"
+bash bench/needs.sh "$build" >> "$tables"
 
 awk -v tables="$tables" '
   /^<!-- figures: begin/ { print; while ((getline line < tables) > 0) print line; print ""; inside = 1 }
