@@ -166,8 +166,9 @@ struct Detection {
 /// Turns what the subrays brought back into echoes. Reflections come in the order of the subrays, those without power left out. All that it
 /// needs to write on is its `Workspace`, made once per worker by `workspace(subrays)`.
 /// Law: pure; echoes are sorted by range; their energy is not more than what came in.
-/// Not required: to use all reflections; randomness. A detector that draws random numbers also takes a last argument, a `RandomKey` that
-/// names seed and pulse, and draws from its own `purpose` and `subray` of it.
+/// Not required: to use all reflections; randomness; `void validate(const Laser&) const`, which refuses lasers before the first pulse. A
+/// detector that draws random numbers also takes a last argument, a `RandomKey` that names seed and pulse, and draws from its own
+/// `purpose`, `subray` and `part` of it.
 template <class D>
 concept Detector = std::copyable<D> && requires(const D d, const Laser& laser, std::span<Reflection> reflections, std::size_t subrays,
                                                 decltype(d.workspace(subrays))& workspace) {

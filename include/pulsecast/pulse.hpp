@@ -24,14 +24,15 @@ struct Divergence {
   friend bool operator==(const Divergence&, const Divergence&) = default;
 };
 
-/// What a laser sends, in the terms of its data sheet. A beam from a point, or through one, has a waist without diameter.
+/// What a laser sends, in the terms of its data sheet. A beam from a point, or through one, has a waist without diameter. Ranges are those
+/// that `Scanner` takes: received powers, which may be 10^-30 of what was sent, keep clear of the ends of a double's range, squared too.
 struct Laser {
-  double wavelength = 1.064e-6;  ///< [m]
-  double peak_power = 4;         ///< of a pulse [W]
-  double pulse_length = 4e-9;    ///< full width at half maximum [s]
-  Divergence divergence = 0.3e-3;
-  double waist_diameter = 0;  ///< at 1/e^2, where the beam is narrowest: across; up, in the proportion of the divergences [m]
-  double waist_range = 0;     ///< where that is, from the exit: a focus if it is positive [m]
+  double wavelength = 1.064e-6;    ///< [m]
+  double peak_power = 4;           ///< of a pulse, from 1e-20 to 1e20 [W]
+  double pulse_length = 4e-9;      ///< full width at half maximum, from 1 fs to 1 s [s]
+  Divergence divergence = 0.3e-3;  ///< from 0 to 30 degrees; across and up within a factor of 1e6 of each other [rad]
+  double waist_diameter = 0;       ///< at 1/e^2, where the beam is narrowest: across; up, in the proportion of the divergences [m]
+  double waist_range = 0;          ///< where that is, from the exit: a focus if it is positive [m]
 
   [[nodiscard]] bool from_a_point() const noexcept { return waist_diameter == 0 && waist_range == 0; }
 

@@ -9,6 +9,7 @@
 #include <pulsecast/accel/linear.hpp>
 #include <pulsecast/accel/sah.hpp>
 #include <pulsecast/accel/two_tree.hpp>
+#include <pulsecast/base/arithmetic.hpp>
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/exponential.hpp>

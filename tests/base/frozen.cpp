@@ -20,6 +20,17 @@ TEST_CASE("a frozen array holds what a vector held, and nothing more") {
   CHECK(Frozen<int>().empty());
 }
 
+TEST_CASE("a draft is written to, and then frozen without a copy") {
+  Draft<int> draft(3);
+  for (int i = 0; i < 3; ++i) draft[static_cast<std::size_t>(i)] = i * i;
+  const Frozen<int> frozen = draft;
+  CHECK(frozen.data() == draft.data());
+  draft = {};
+  CHECK(draft.empty());
+  CHECK(std::vector<int>(frozen.begin(), frozen.end()) == std::vector<int>{0, 1, 4});
+  CHECK(Draft<double>(0).empty());
+}
+
 TEST_CASE("copies of a frozen array share it, and the last one lets its owner go") {
   const auto owner = std::make_shared<const std::vector<int>>(5, 7);
   {

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 
 # Compiles SOURCE twice with COMPILER and INCLUDES: as it is, which must succeed, and with SHOULD_NOT_COMPILE defined, which must
-# fail with a message that matches the regular expression in the source's comment `// error: ...`.
+# fail with a message that matches the regular expression in the source's comment `// error: ...`. Where that is the fault of options of
+# the compiler, each comment `// option: ...` names one; they are tried in turn.
 
 set(ENV{LC_ALL} C)
 
@@ -26,9 +27,16 @@ if(NOT count EQUAL 1)
 endif()
 string(REGEX REPLACE "^// error: " "" expected "${expected}")
 
-execute_process(COMMAND ${compile} -DSHOULD_NOT_COMPILE RESULT_VARIABLE failure ERROR_VARIABLE messages)
-if(NOT failure)
-  fail("compiles, but should not")
-elseif(NOT messages MATCHES "${expected}")
-  fail("fails without the message `${expected}`:\n${messages}")
+file(STRINGS ${SOURCE} options REGEX "^// option: ")
+list(TRANSFORM options REPLACE "^// option: " "")
+if(NOT options)
+  set(options -DSHOULD_NOT_COMPILE)
 endif()
+foreach(option IN LISTS options)
+  execute_process(COMMAND ${compile} -DSHOULD_NOT_COMPILE ${option} RESULT_VARIABLE failure ERROR_VARIABLE messages)
+  if(NOT failure)
+    fail("compiles, but should not (${option})")
+  elseif(NOT messages MATCHES "${expected}")
+    fail("fails without the message `${expected}`:\n${messages}")
+  endif()
+endforeach()

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -104,5 +105,15 @@ TEST_CASE("a range error is its bias, and a deviation that grows with range and 
   CHECK(RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(100, 0.5, 1) == support::relative(0.01, 1e-14));
   CHECK(std::isfinite(RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(100, 0, 1)));
   CHECK_THROWS_AS(RangeErrors{.deviation = -1}.validate(), SettingError);
+  const RangeErrors table{.bias = 0.5, .deviations = std::vector<DeviationAtRange>{{10, 0.01}, {20, 0.03}, {100, 0.02}}};
+  CHECK_NOTHROW(table.validate());
+  CHECK_FALSE(table.none());
+  CHECK(table.at(5, 1, 1) == support::relative(0.51, 1e-14));
+  CHECK(table.at(10, 1, 1) == support::relative(0.51, 1e-14));
+  CHECK(table.at(12.5, 1, 1) == support::relative(0.515, 1e-14));
+  CHECK(table.at(60, 1, -2) == support::relative(0.45, 1e-14));
+  CHECK(table.at(1e6, 1, 1) == support::relative(0.52, 1e-14));
+  CHECK_THROWS_AS((RangeErrors{.deviations = std::vector<DeviationAtRange>{{10, 0.01}, {10, 0.02}}}.validate()), SettingError);
+  CHECK_THROWS_AS((RangeErrors{.deviations = std::vector<DeviationAtRange>{{10, -0.01}}}.validate()), SettingError);
   CHECK_THROWS_AS(RangeErrors{.bias = std::numeric_limits<double>::infinity()}.validate(), SettingError);
 }

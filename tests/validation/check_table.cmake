@@ -1,36 +1,41 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Holds the table of docs/validation.md against what the validation tests print:
-# cmake -DPROGRAM=test_validation -DDOCUMENT=docs/validation.md [-DUPDATE=ON] -P check_table.cmake
+# Holds a table of a document against what a test program prints: the rows between the program's two marks, below the two lines of the
+# table's head. cmake -DPROGRAM=test_validation -DDOCUMENT=docs/validation.md [-DUPDATE=ON] -P check_table.cmake
 
 execute_process(COMMAND ${PROGRAM} OUTPUT_VARIABLE printed RESULT_VARIABLE failed)
 if(failed)
-  message(FATAL_ERROR "The validation tests fail:\n${printed}")
+  message(FATAL_ERROR "The tests fail:\n${printed}")
 endif()
 string(REGEX REPLACE "\n[^|\n][^\n]*" "" rows "\n${printed}")
 string(REGEX REPLACE "\n\n+" "\n" rows "${rows}")
 string(STRIP "${rows}" rows)
-set(table "| case | closed form | simulated | tolerance |\n|---|---:|---:|---:|\n${rows}\n")
+set(rows "${rows}\n")
 
-set(begin "<!-- What follows is printed by the tests. -->\n")
-set(end "<!-- End of what the tests print. -->")
+cmake_path(GET PROGRAM STEM name)
+set(begin "<!-- What follows is printed by ${name}. -->\n")
+set(end "<!-- End of what ${name} prints. -->")
 file(READ ${DOCUMENT} document)
 string(FIND "${document}" "${begin}" from)
 string(FIND "${document}" "${end}" to)
 if(from EQUAL -1 OR to EQUAL -1)
-  message(FATAL_ERROR "${DOCUMENT} has no place for the table")
+  message(FATAL_ERROR "${DOCUMENT} has no place for the table of ${name}")
 endif()
 string(LENGTH "${begin}" length)
 math(EXPR from "${from} + ${length}")
 math(EXPR length "${to} - ${from}")
-string(SUBSTRING "${document}" ${from} ${length} written)
-if(written STREQUAL table)
+string(SUBSTRING "${document}" ${from} ${length} table)
+if(NOT table MATCHES "^(\\|[^\n]*\n\\|[-:| ]+\n)")
+  message(FATAL_ERROR "The table of ${name} in ${DOCUMENT} has no head")
+endif()
+set(head "${CMAKE_MATCH_1}")
+if(table STREQUAL "${head}${rows}")
   return()
 endif()
 if(NOT UPDATE)
-  message(FATAL_ERROR "${DOCUMENT} has another table than the tests print; -DUPDATE=ON writes it:\n${table}")
+  message(FATAL_ERROR "${DOCUMENT} has another table than ${name} prints; -DUPDATE=ON writes it:\n${rows}")
 endif()
 string(SUBSTRING "${document}" 0 ${from} before)
 string(SUBSTRING "${document}" ${to} -1 after)
-file(WRITE ${DOCUMENT} "${before}${table}${after}")
+file(WRITE ${DOCUMENT} "${before}${head}${rows}${after}")

@@ -28,7 +28,7 @@ struct Result {
   [[nodiscard]] double share(Fate fate) const { return shares[static_cast<std::size_t>(fate)]; }
 };
 
-inline constexpr Receiver vacuum{.visibility = std::numeric_limits<double>::infinity()};
+inline const Receiver vacuum{.visibility = std::numeric_limits<double>::infinity()};
 
 /// One pulse from the origin to the north, along +y.
 template <Footprint Pattern, Target Map, Detector Instrument = FirstHit>

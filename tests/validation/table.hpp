@@ -8,18 +8,25 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/base/error.hpp>
+
 namespace pulsecast::validation {
 
-/// A number to a tenth of a tolerance: what is below, compilers may round differently.
+/// A number to a tenth of a tolerance: what is below, compilers may round differently. In full if there is no tolerance; by a power of ten
+/// if there would be too many digits before or behind the point.
 [[nodiscard]] inline std::string to_a_tenth(double value, double tolerance) {
-  const int digits = static_cast<int>(std::fmax(0, 1 - std::floor(std::log10(tolerance) + 1e-9)));
-  const double step = std::pow(10.0, -digits);
+  const auto exponent = [](double size) { return static_cast<int>(std::floor(std::log10(size) + 1e-9)); };
+  if (tolerance == 0 || !std::isfinite(value)) return pulsecast::detail::written(value);
+  const int last = exponent(tolerance) - 1;  // of the last digit
+  if (std::fabs(value) < 0.5 * std::pow(10.0, last)) value = 0;
+  const bool plain = last >= -16 && std::fabs(value) < 1e15;
+  const int digits = plain ? -last : value == 0 ? 0 : exponent(std::fabs(value)) - last;  // behind the point
   char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, std::fabs(value) < step / 2 ? 0.0 : value);
+  std::snprintf(text, sizeof text, plain || value == 0 ? "%.*f" : "%.*e", digits < 0 ? 0 : digits, value);
   return text;
 }
 
-/// Checks a simulated figure against its closed form, and prints both as a row of the table in docs/validation.md. The tolerance is in the
+/// Checks a simulated figure against its closed form, and prints both as a row of a table in docs/validation.md. The tolerance is in the
 /// unit of the figures, which `what` names.
 inline void row(const std::string& what, double closed_form, double simulated, double tolerance) {
   char allowed[32];
@@ -29,7 +36,7 @@ inline void row(const std::string& what, double closed_form, double simulated, d
   CAPTURE(what);
   CAPTURE(closed_form);
   CAPTURE(simulated);
-  CHECK(std::fabs(simulated - closed_form) <= tolerance);
+  CHECK((simulated == closed_form || std::fabs(simulated - closed_form) <= tolerance));
 }
 
 }  // namespace pulsecast::validation

@@ -18,6 +18,11 @@ inline void expect_positive(std::string_view field, double value, std::string_vi
   if (!(value > 0) || !std::isfinite(value)) throw SettingError(std::string(field), value, std::string(unit), "finite and greater than 0");
 }
 
+/// Refuses a rate [Hz] outside (0, 1e12]: a `Tick` tells the phase of what is faster by less than a ten-thousandth of a turn.
+inline void expect_rate(std::string_view field, double value) {
+  if (!(value > 0 && value <= 1e12)) throw SettingError(std::string(field), value, "Hz", "greater than 0 and at most 1e12");
+}
+
 /// Refuses a setting that is not finite or less than zero.
 inline void expect_not_negative(std::string_view field, double value, std::string_view unit) {
   if (!(value >= 0) || !std::isfinite(value)) throw SettingError(std::string(field), value, std::string(unit), "finite and at least 0");

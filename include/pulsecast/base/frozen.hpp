@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <new>
 #include <span>
@@ -30,24 +30,39 @@ inline void wish_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]]
 #endif
 }
 
-/// Bytes in memory of their own. Not a template, nor `std::vector::shrink_to_fit`, as compilers work hard on those for every type.
-[[nodiscard]] inline std::shared_ptr<const void> copied(const void* bytes, std::size_t size, std::align_val_t alignment) {
-  std::shared_ptr<void> copy(::operator new(size, alignment), [=](void* memory) { ::operator delete(memory, alignment); });
-  wish_for_large_pages(copy.get(), size);
-  if (size > 0) std::memcpy(copy.get(), bytes, size);
-  return copy;
+/// Memory of its own, so many bytes that nothing has been written to. Not a template, as compilers work hard on those for every type.
+[[nodiscard]] inline std::shared_ptr<void> memory_of(std::size_t size, std::align_val_t alignment) {
+  std::shared_ptr<void> memory(::operator new(size, alignment), [=](void* bytes) { ::operator delete(bytes, alignment); });
+  wish_for_large_pages(memory.get(), size);
+  return memory;
 }
 
 }  // namespace detail
 
-/// An empty vector with room for so many, where an array that will be read at random is to be made.
+/// An array in the making: as made, its elements hold anything. Several threads may write to it, each where no other does. Copies share it.
 template <class T>
-[[nodiscard]] std::vector<T> room_for(std::size_t count) {
-  std::vector<T> made;
-  made.reserve(count);
-  detail::wish_for_large_pages(made.data(), count * sizeof(T));
-  return made;
-}
+requires std::is_trivially_copyable_v<T>
+class Draft {
+ public:
+  Draft() = default;
+  explicit Draft(std::size_t size)
+      : memory_(detail::memory_of(size * sizeof(T), std::align_val_t{alignof(T)})),
+        elements_(static_cast<T*>(memory_.get())),
+        size_(size) {}
+
+  [[nodiscard]] T& operator[](std::size_t i) const noexcept { return elements_[i]; }
+  [[nodiscard]] T* data() const noexcept { return elements_; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  [[nodiscard]] T* begin() const noexcept { return elements_; }
+  [[nodiscard]] T* end() const noexcept { return elements_ + size_; }
+  [[nodiscard]] const std::shared_ptr<void>& memory() const noexcept { return memory_; }
+
+ private:
+  std::shared_ptr<void> memory_;
+  T* elements_ = nullptr;
+  std::size_t size_ = 0;
+};
 
 /// An array that is done: no element changes any more. It stands in memory of its own, or is a stretch of a file that is mapped into
 /// memory. Copies share it.
@@ -66,10 +81,13 @@ class Frozen {
       elements_ = made.data();
       owner_ = std::shared_ptr<const void>(new std::vector<T>(std::move(made)));
     } else {
-      owner_ = detail::copied(made.data(), size_ * sizeof(T), std::align_val_t{alignof(T)});
-      elements_ = static_cast<const T*>(owner_.get());
+      const Draft<T> copy(size_);
+      std::copy(made.begin(), made.end(), copy.data());
+      elements_ = copy.data(), owner_ = copy.memory();
     }
   }
+  Frozen(const Draft<T>& made)  // NOLINT(google-explicit-constructor): so is a draft
+      : elements_(made.data()), size_(made.size()), owner_(made.memory()) {}
 
   /// Elements that live as long as their owner does.
   Frozen(std::span<const T> elements, std::shared_ptr<const void> owner)

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include <pulsecast/base/arithmetic.hpp>
+
 /// SIMD: several numbers that go through the same arithmetic at once, as many as one register of the processor holds. The compilers'
 /// vector types give the operators; comparisons give a `LaneMask` that is all ones where they hold, and `mask ? a : b` chooses by lane.
 namespace pulsecast {
@@ -40,15 +42,31 @@ using Pack = typename detail::VectorOf<detail::pack_bytes<Real>, Real>::type;
 template <class Real>
 inline constexpr std::size_t pack_count = sizeof(Pack<Real>) / sizeof(Real);
 
-/// Whole numbers of 32 bits, as many as a `Pack`.
+/// As many whole numbers of 16 bits in memory, from this one on, as a `Pack`.
 template <class Real>
-using PackWords = typename detail::VectorOf<4 * pack_count<Real>, std::uint32_t>::type;
-
-/// Whole numbers below 2^31 as a `Pack`, exactly.
-template <class Real>
-[[nodiscard]] inline Pack<Real> to_pack(const PackWords<Real>& words) noexcept {
-  using Signed = typename detail::VectorOf<sizeof words, std::int32_t>::type;
-  return __builtin_convertvector(Signed(words), Pack<Real>);
+[[nodiscard]] inline Pack<Real> pack_from(const std::uint16_t& first) noexcept {
+  using Halves = typename detail::VectorOf<16, std::uint16_t>::type;
+  using Words = typename detail::VectorOf<4 * pack_count<Real>, std::int32_t>::type;
+  if constexpr (pack_count<Real> == 8) {
+    Halves halves;
+    std::memcpy(&halves, &first, sizeof halves);
+#if defined(__AVX2__) && !defined(__clang__)  // g++ 12 would take them by halves
+    using Signed = typename detail::VectorOf<16, short>::type;
+    return __builtin_convertvector(Words(__builtin_ia32_pmovzxwd256(Signed(halves))), Pack<Real>);
+#else
+    return __builtin_convertvector(__builtin_convertvector(halves, Words), Pack<Real>);
+#endif
+  } else if constexpr (pack_count<Real> == 4) {
+    using Pair = typename detail::VectorOf<16, std::uint64_t>::type;
+    std::uint64_t four;
+    std::memcpy(&four, &first, sizeof four);
+    const Halves halves = Halves(Pair{four, 0});
+    return __builtin_convertvector(Words(__builtin_shufflevector(halves, Halves{}, 0, 8, 1, 9, 2, 10, 3, 11)), Pack<Real>);
+  } else {
+    static_assert(pack_count<Real> == 2);
+    const std::uint16_t* two = &first;
+    return Pack<Real>{static_cast<Real>(two[0]), static_cast<Real>(two[1])};
+  }
 }
 
 /// The lanes that `number(lane)` gives.
@@ -76,6 +94,10 @@ struct Four {
 
   Four() = default;
   explicit Four(Real all) noexcept { each([&](std::size_t i) { parts[i] = Part{} + all; }); }
+  Four(Real x, Real y, Real z) noexcept {  // a place, and 1
+    const Whole<Real> whole{x, y, z, 1};
+    std::memcpy(parts, &whole, sizeof parts);
+  }
   /// The four numbers in memory from this one on.
   [[nodiscard]] static Four from(const Real& first) noexcept {
     Four four;
@@ -83,6 +105,17 @@ struct Four {
     return four;
   }
   [[nodiscard]] Real operator[](std::size_t i) const noexcept { return parts[i * count / 4][i % (4 / count)]; }
+
+  /// In another precision.
+  template <class Other>
+  [[nodiscard]] Four<Other> as() const noexcept {
+    Whole<Real> whole;
+    std::memcpy(&whole, parts, sizeof parts);
+    const auto converted = __builtin_convertvector(whole, Whole<Other>);
+    Four<Other> four;
+    std::memcpy(four.parts, &converted, sizeof four.parts);
+    return four;
+  }
 
   friend Four operator+(const Four& a, const Four& b) noexcept {
     return made([&](std::size_t i) { return a.parts[i] + b.parts[i]; });
@@ -93,6 +126,16 @@ struct Four {
   friend Four operator*(const Four& a, const Four& b) noexcept {
     return made([&](std::size_t i) { return a.parts[i] * b.parts[i]; });
   }
+  friend Four operator/(const Four& a, const Four& b) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] / b.parts[i]; });
+  }
+  friend Four magnitude(const Four& a) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] < 0 ? -a.parts[i] : a.parts[i]; });
+  }
+  /// -1 for what is negative, else 1.
+  friend Four sense(const Four& a) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] < 0 ? Part{} - 1 : Part{} + 1; });
+  }
   friend Four smaller(const Four& a, const Four& b) noexcept {
     return made([&](std::size_t i) { return a.parts[i] < b.parts[i] ? a.parts[i] : b.parts[i]; });
   }
@@ -101,6 +144,9 @@ struct Four {
   }
 
  private:
+  template <class Number>
+  using Whole = typename detail::VectorOf<4 * sizeof(Number), Number>::type;
+
   template <class Do>
   static void each(const Do& act) noexcept {
     for (std::size_t i = 0; i < count; ++i) act(i);

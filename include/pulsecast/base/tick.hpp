@@ -6,6 +6,8 @@
 #include <compare>
 #include <cstdint>
 
+#include <pulsecast/base/arithmetic.hpp>
+
 namespace pulsecast {
 
 /// Number of a pulse slot in its source, from 0.

@@ -14,6 +14,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include <pulsecast/base/arithmetic.hpp>
+
 /// Vectors and rotations. GLM is named in this header only.
 namespace pulsecast {
 

@@ -16,12 +16,12 @@ namespace pulsecast {
 /// from the first.
 struct FiberArray {
   std::uint32_t fibers = 128;        ///< how many stand in the row
-  double fibers_per_second = 100e3;  ///< changes from one to the next: best the pulse rate [Hz]
+  double fibers_per_second = 100e3;  ///< changes from one to the next: best the pulse rate; at most 1e12 [Hz]
   double half_angle = pi / 9;        ///< of the outermost fibres, either side of forward [rad]
 
   void validate() const {
     expect_within("FiberArray::fibers", fibers, 1, 4294967295.0, "");
-    expect_positive("FiberArray::fibers_per_second", fibers_per_second, "Hz");
+    expect_rate("FiberArray::fibers_per_second", fibers_per_second);
     expect_within("FiberArray::half_angle", half_angle, 0, pi, "rad");
   }
 

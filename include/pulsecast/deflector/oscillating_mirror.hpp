@@ -20,13 +20,13 @@ enum class Swing : std::uint8_t {
 /// A mirror that swings the beam to and fro in the plane of forward and up, from -half_angle to +half_angle and back. It starts at the
 /// lower end. One cycle is two lines.
 struct OscillatingMirror {
-  double cycles_per_second = 50;  ///< to and fro [Hz]
+  double cycles_per_second = 50;  ///< to and fro, at most 1e12 [Hz]
   double half_angle = pi / 9;     ///< of the beam either side of forward; the mirror itself turns half as far [rad]
   Swing swing = Swing::triangle;  ///< how it gets from end to end
   double turning_time = 0;  ///< of one turning round, half of it before the end and half after; of a triangle, at most half a cycle [s]
 
   void validate() const {
-    expect_positive("OscillatingMirror::cycles_per_second", cycles_per_second, "Hz");
+    expect_rate("OscillatingMirror::cycles_per_second", cycles_per_second);
     expect_within("OscillatingMirror::half_angle", half_angle, 0, pi, "rad");
     expect_within("OscillatingMirror::turning_time", turning_time, 0, swing == Swing::triangle ? 0.5 / cycles_per_second : 0, "s");
   }

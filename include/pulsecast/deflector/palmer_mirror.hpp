@@ -14,12 +14,12 @@ namespace pulsecast {
 /// A nutating mirror: the beam runs around a cone about forward once a turn, from up over right. With a second half angle the cone is
 /// elliptical: the beam is off forward by the two half angles' shares of cosine and sine, upwards and to the right.
 struct PalmerMirror {
-  double turns_per_second = 50;               ///< around the cone [Hz]
+  double turns_per_second = 50;               ///< around the cone, at most 1e12 [Hz]
   double half_angle = pi / 9;                 ///< of the cone, upwards and downwards [rad]
   std::optional<double> half_angle_across{};  ///< of the cone, to the right and left; if empty, the cone is circular [rad]
 
   void validate() const {
-    expect_positive("PalmerMirror::turns_per_second", turns_per_second, "Hz");
+    expect_rate("PalmerMirror::turns_per_second", turns_per_second);
     expect_within("PalmerMirror::half_angle", half_angle, 0, pi / 2, "rad");
     if (half_angle_across) expect_within("PalmerMirror::half_angle_across", *half_angle_across, 0, pi / 2, "rad");
   }

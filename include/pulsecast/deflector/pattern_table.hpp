@@ -21,11 +21,11 @@ struct BeamAngles {
 /// Directions from a table, one after the other, then again from the first: any solid-state sensor, or the log of a real one.
 struct PatternTable {
   std::vector<BeamAngles> entries{};  ///< in the order in which they are taken; at least one
-  double entries_per_second = 100e3;  ///< changes from one to the next: best the pulse rate [Hz]
+  double entries_per_second = 100e3;  ///< changes from one to the next: best the pulse rate; at most 1e12 [Hz]
 
   void validate() const {
     expect_within("PatternTable::entries (number)", static_cast<double>(entries.size()), 1, 1e9, "");
-    expect_positive("PatternTable::entries_per_second", entries_per_second, "Hz");
+    expect_rate("PatternTable::entries_per_second", entries_per_second);
     for (const BeamAngles& e : entries) {
       expect_finite("BeamAngles::azimuth", e.azimuth, "rad");
       expect_within("BeamAngles::elevation", e.elevation, -pi / 2, pi / 2, "rad");

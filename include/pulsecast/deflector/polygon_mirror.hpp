@@ -15,14 +15,14 @@ namespace pulsecast {
 /// A rotating polygon mirror: every facet sweeps the beam once from low to high, in the plane of forward and up, then the next one takes
 /// over. Pulses outside the gate are blocked. The angle of a beam above forward counts from -sweep to +sweep.
 struct PolygonMirror {
-  double lines_per_second = 100;      ///< facets that pass [Hz]
+  double lines_per_second = 100;      ///< facets that pass, at most 1e12 [Hz]
   double sweep = 2 * pi / 3;          ///< half angle that one facet sweeps: a full turn by the number of facets [rad]
   double angle_min = -pi;             ///< the gate opens above this angle [rad]
   double angle_max = pi;              ///< and closes above this one [rad]
   std::vector<double> facet_tilts{};  ///< how far out of the plane, to the right, each facet in turn sends the beam; none if empty [rad]
 
   void validate() const {
-    expect_positive("PolygonMirror::lines_per_second", lines_per_second, "Hz");
+    expect_rate("PolygonMirror::lines_per_second", lines_per_second);
     expect_within("PolygonMirror::sweep", sweep, 0, pi, "rad");
     expect_within("PolygonMirror::angle_min", angle_min, -pi, pi, "rad");
     expect_within("PolygonMirror::angle_max", angle_max, angle_min, pi, "rad");

@@ -16,9 +16,9 @@ namespace pulsecast {
 /// end, to which it bends the beam, is below.
 struct Prism {
   double wedge = pi / 10;          ///< angle between its faces [rad]
-  double turns_per_second = 100;   ///< from up to the right, as seen along forward; negative the other way [Hz]
+  double turns_per_second = 100;   ///< from up to the right, as seen along forward; negative the other way; 1e12 at most [Hz]
   double refractive_index = 1.51;  ///< of the glass, at the laser's wavelength
-  double start = 0;                ///< how far it is turned at the survey's start [rad]
+  double start = 0;                ///< how far it is turned at the survey's start, from -1e6 to 1e6 [rad]
   bool inclined_exit = false;      ///< the inclined face is the one where the beam leaves; else where it enters
 };
 
@@ -43,9 +43,9 @@ struct RisleyPrisms {
     expect_within("RisleyPrisms::prisms (number)", static_cast<double>(prisms.size()), 1, 16, "");
     for (const Prism& p : prisms) {
       expect_within("Prism::wedge", p.wedge, 0, 1.5, "rad");
-      expect_finite("Prism::turns_per_second", p.turns_per_second, "Hz");
+      expect_within("Prism::turns_per_second", p.turns_per_second, -1e12, 1e12, "Hz");
       expect_within("Prism::refractive_index", p.refractive_index, 0.5, 10, "");
-      expect_finite("Prism::start", p.start, "rad");
+      expect_within("Prism::start", p.start, -1e6, 1e6, "rad");
     }
     expect_within("RisleyPrisms::surrounding_index", surrounding_index, 0.5, 10, "");
     expect_positive("RisleyPrisms::incident (length)", length(incident), "");

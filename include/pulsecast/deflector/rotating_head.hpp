@@ -9,13 +9,14 @@ namespace pulsecast {
 
 /// A head that turns a whole instrument at a constant rate.
 struct RotatingHead {
-  double rate = 2 * pi;  ///< positive turns left about an axis that points up [rad/s]
-  double start = 0;      ///< angle at the survey's start [rad]
+  double rate = 2 * pi;  ///< positive turns left about an axis that points up; from -1e12 to 1e12; it goes by what a
+                         ///< double holds of its turns a second [rad/s]
+  double start = 0;      ///< angle at the survey's start, from -1e6 to 1e6 [rad]
   Vec3 axis = up;        ///< of any length but zero
 
   void validate() const {
-    expect_finite("RotatingHead::rate", rate, "rad/s");
-    expect_finite("RotatingHead::start", start, "rad");
+    expect_within("RotatingHead::rate", rate, -1e12, 1e12, "rad/s");
+    expect_within("RotatingHead::start", start, -1e6, 1e6, "rad");
     expect_positive("RotatingHead::axis (length)", length(axis), "");
   }
 

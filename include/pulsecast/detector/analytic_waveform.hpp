@@ -82,9 +82,25 @@ class AnalyticWaveform {
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
+  /// Refuses pulses that samples do not resolve, if samples are taken: for a record, or a width that is fitted.
+  void validate(const Laser& laser) const {
+    if (by_samples || s_.record_length > 0) s_.expect_sampled(laser.pulse_length, infinity);
+  }
+
   /// The width of a laser's outgoing pulse, by the measure of its echoes [s].
   [[nodiscard]] double pulse_width(const Laser& laser) const {
-    return pulsecast::pulse_width(width_, PulseShape(laser.pulse_length, s_.shape_divisor), s_.sample_interval);
+    validate(laser);
+    const PulseShape shape(laser.pulse_length, s_.shape_divisor);
+    if constexpr (by_samples) {
+      const double whole = (PulseShape::peak + SampledSum::negligible) * shape.tau;
+      return pulsecast::pulse_width(width_, shape, std::fmax(s_.sample_interval, whole / static_cast<double>(most_samples - 2)));
+    } else if constexpr (by_moments) {
+      PulseAges pulse;
+      pulse.add(1);
+      return shape.tau * width_.width(pulse.until(infinity));
+    } else {
+      return 0;
+    }
   }
 
   struct Workspace {
@@ -126,6 +142,7 @@ class AnalyticWaveform {
   static constexpr bool by_moments = requires(const Width w, const WaveformMoments& m) { w.width(m); };
   static constexpr bool by_samples = !by_moments && !std::same_as<Width, NoWidth>;
   static constexpr std::size_t most_samples = 4096;  ///< of one echo; the grid is coarser if they do not reach
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   void find_peaks(std::span<const Reflection> reflections, const PulseShape& shape, double apart, Workspace& w) const noexcept {
     const double per_metre = 2 / (speed_of_light * shape.tau);
@@ -144,8 +161,7 @@ class AnalyticWaveform {
     };
     for (std::size_t k = 0; k < reflections.size(); ++k) {
       ages.add(reflections[k].power);
-      const double next = k + 1 == reflections.size() ? std::numeric_limits<double>::infinity()
-                                                      : (reflections[k + 1].range - reflections[k].range) * per_metre;
+      const double next = k + 1 == reflections.size() ? infinity : (reflections[k + 1].range - reflections[k].range) * per_metre;
       if (next == 0) continue;
       const double edge = arrival(reflections[k]) - PulseShape::peak * shape.tau;
       double x = 0;  // since the edge [tau]
@@ -169,7 +185,7 @@ class AnalyticWaveform {
       since += rest;
       ages.advance(rest);
     }
-    finish(std::numeric_limits<double>::infinity());
+    finish(infinity);
   }
 
   /// By sampling the sum between the valleys.

@@ -34,7 +34,8 @@ namespace pulsecast {
 /// background, and echoes are timed by their peaks: what made them cannot be told from noisy samples. The record has the background in it.
 ///
 /// Limits: a lone echo's peak errs by 0.03 mm where an interval is a sixteenth of the pulse's length, by 0.5 mm at an eighth and by
-/// 10 mm at a quarter, where its amplitude errs by 2 %. Of the peaks in one pulse's noise, no more than 4096 are looked at.
+/// 10 mm at a quarter, where its amplitude errs by 2 %. A pulse that is shorter than an interval, or longer than 10,000, is refused.
+/// Of the peaks in one pulse's noise, no more than 4096 are looked at.
 template <EchoWidth Width = NoWidth>
 class FullWaveform {
  public:
@@ -44,8 +45,12 @@ class FullWaveform {
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
+  /// Refuses pulses that the samples do not resolve, or that do not fit into those at hand.
+  void validate(const Laser& laser) const { s_.expect_sampled(laser.pulse_length, 1e4); }
+
   /// The width of a laser's outgoing pulse, by the measure of its echoes [s].
   [[nodiscard]] double pulse_width(const Laser& laser) const {
+    validate(laser);
     return pulsecast::pulse_width(width_, PulseShape(laser.pulse_length, s_.shape_divisor), s_.sample_interval);
   }
 
@@ -60,7 +65,7 @@ class FullWaveform {
   [[nodiscard]] Workspace workspace(std::size_t subrays) const {
     Workspace w{{}, {}, {}, {}, PulseBunch::Workspace(subrays)};
     w.samples.reserve(stretch);
-    w.peaks.reserve(noise_.none() ? subrays : std::max(subrays, stretch));
+    w.peaks.reserve(noise_.none() ? subrays : std::max(subrays, most_peaks));
     w.echoes.reserve(std::min(w.peaks.capacity(), s_.max_returns));
     w.record.reserve(s_.record_capacity());
     return w;
@@ -96,7 +101,8 @@ class FullWaveform {
         double power = sum.power();
         next = sum.next();
         if (noisy) {
-          key.subray = static_cast<std::uint32_t>(static_cast<std::uint64_t>(n - record_start));
+          const auto number = static_cast<std::uint64_t>(n - record_start);
+          key.subray = static_cast<std::uint32_t>(number), key.part = static_cast<std::uint32_t>(number >> 32);
           power += deviation * normal(key);
         }
         w.samples.push_back(power);
@@ -119,7 +125,8 @@ class FullWaveform {
   }
 
  private:
-  static constexpr std::size_t stretch = 4096;  ///< samples at hand at one time
+  static constexpr std::size_t stretch = 262144;   ///< samples at hand at one time: the longest pulse until it has died away
+  static constexpr std::size_t most_peaks = 4096;  ///< of the noise
 
   /// Enters the only echo of a bunch, if it reaches the threshold: what sampling all of it would give, from the samples about its peak.
   /// False if these reach back to where edges come in.

@@ -18,9 +18,9 @@ namespace pulsecast {
 /// When the peak of a reflection's pulse arrives, since the pulse left [s].
 [[nodiscard]] inline double arrival(const Reflection& r) noexcept { return 2 * r.range / speed_of_light; }
 
-/// Whether a reflection can be an echo: it has power, and is not so far away that samples could not be counted, 2^50 of them.
+/// Whether a reflection can be an echo: it has power, and is not so far away that samples could not be counted, 2^52 of them.
 [[nodiscard]] inline bool can_count(const Reflection& r, double sample_interval) noexcept {
-  return r.power > 0 && r.range < 0x1p49 * speed_of_light * sample_interval;
+  return r.power > 0 && r.range < 0x1p51 * speed_of_light * sample_interval;
 }
 
 /// Sorts reflections by range. Left out are those that cannot be echoes.

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/exponential.hpp>
+#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/pulse.hpp>
@@ -21,26 +24,50 @@ namespace pulsecast {
   return 3.91 / v * std::pow(wavelength / 0.55e-6, -q) * 1e-3;
 }
 
+/// One row of a table of how an instrument errs.
+struct DeviationAtRange {
+  double range = 0;      ///< [m]
+  double deviation = 0;  ///< standard deviation of the noise there [m]
+};
+
 /// How an instrument errs about ranges: not at all, unless told otherwise.
 struct RangeErrors {
   double bias = 0;                    ///< reported less true [m]
   double deviation = 0;               ///< standard deviation of the noise, at any range [m]
   double deviation_per_metre = 0;     ///< by which it grows with range
   bool grows_with_incidence = false;  ///< divided by the cosine of the incidence. Source: Soudarissanane et al. 2011
+  /// If it has rows, in place of the two deviations above: a straight line from row to row, and level beyond them. Ranges ascend.
+  Frozen<DeviationAtRange> deviations{};
 
   void validate() const {
     expect_finite("RangeErrors::bias", bias, "m");
     expect_not_negative("RangeErrors::deviation", deviation, "m");
     expect_not_negative("RangeErrors::deviation_per_metre", deviation_per_metre, "");
+    for (std::size_t i = 0; i < deviations.size(); ++i) {
+      expect_finite("RangeErrors::deviations (range)", deviations[i].range, "m");
+      expect_not_negative("RangeErrors::deviations (deviation)", deviations[i].deviation, "m");
+      if (i > 0) expect_positive("RangeErrors::deviations (from range to range)", deviations[i].range - deviations[i - 1].range, "m");
+    }
   }
 
-  [[nodiscard]] bool none() const noexcept { return bias == 0 && deviation == 0 && deviation_per_metre == 0; }
+  [[nodiscard]] bool none() const noexcept { return bias == 0 && deviation == 0 && deviation_per_metre == 0 && deviations.size() == 0; }
+
+  /// Standard deviation of the noise at a range, faced squarely [m].
+  [[nodiscard]] double deviation_at(double range) const noexcept {
+    if (deviations.size() == 0) return deviation + deviation_per_metre * range;
+    const auto after =
+        std::upper_bound(deviations.begin(), deviations.end(), range, [](double r, const DeviationAtRange& row) { return r < row.range; });
+    if (after == deviations.begin()) return deviations.begin()->deviation;
+    const DeviationAtRange& from = *(after - 1);
+    if (after == deviations.end()) return from.deviation;
+    return from.deviation + (after->deviation - from.deviation) * (range - from.range) / (after->range - from.range);
+  }
 
   /// Reported less true range [m] of an echo at a range [m], for a draw from the standard normal distribution.
   [[nodiscard]] double at(double range, double cos_incidence, double draw) const noexcept {
     constexpr double least_cosine = 0.01;  // an edge-on surface has no noise without bound
     const double slant = grows_with_incidence ? (cos_incidence > least_cosine ? cos_incidence : least_cosine) : 1;
-    return bias + draw * (deviation + deviation_per_metre * range) / slant;
+    return bias + draw * deviation_at(range) / slant;
   }
 };
 

@@ -14,13 +14,13 @@ namespace pulsecast {
 
 /// What a receiver measures besides the pulse: nothing, unless told otherwise. Each sample errs for itself.
 struct ReceiverNoise {
-  double deviation = 0;           ///< standard deviation of the electronics' noise, in every sample [W]
-  double background = 0;          ///< power of the sunlight that comes in with the pulse [W]
+  double deviation = 0;           ///< standard deviation of the electronics' noise, in every sample, from 0 to 1e20 [W]
+  double background = 0;          ///< power of the sunlight that comes in with the pulse, from 0 to 1e20 [W]
   double quantum_efficiency = 1;  ///< share of the photons of the background that are counted, in (0, 1]
 
   void validate() const {
-    expect_not_negative("ReceiverNoise::deviation", deviation, "W");
-    expect_not_negative("ReceiverNoise::background", background, "W");
+    expect_within("ReceiverNoise::deviation", deviation, 0, 1e20, "W");
+    expect_within("ReceiverNoise::background", background, 0, 1e20, "W");
     expect_positive("ReceiverNoise::quantum_efficiency", quantum_efficiency, "");
     expect_within("ReceiverNoise::quantum_efficiency", quantum_efficiency, 0, 1, "");
   }

@@ -21,26 +21,37 @@ enum class EchoTiming : std::uint8_t {
 /// A peak of the waveform is an echo if it passes, in this order: it reaches the threshold; it is not closer than `separation` to a peak
 /// before it, with which it would be one; it is the highest within the window; it comes after the dead time of the echo before it; it is
 /// among the first `max_returns`.
+///
+/// The bins are on the front of docs/tradeoff.md: at a sixteenth of a pulse they cost hardly more than wider ones, which lose echoes that
+/// are close to each other, and narrower ones gain little. Widths of echoes cost more than any other setting here, so there are none unless
+/// they are asked for.
 struct WaveformSettings {
-  double sample_interval = 0.25e-9;  ///< of the digitiser: one bin [s]
+  double sample_interval = 0.25e-9;  ///< of the digitiser: one bin, from 1e-16 to 1; no longer than a pulse, where samples matter [s]
   double threshold = 1e-12;          ///< weaker peaks are no echoes [W]
   double separation = 0;             ///< peaks that are closer to each other are one, as high as the highest of them [s]
   double window = 1e-9;              ///< an echo is the highest within this time before and after it [s]
   double dead_time = 0;              ///< so long after the peak of an echo, there is no other [s]
   std::size_t max_returns = 15;      ///< the first so many in order of range; at least 1
   EchoTiming timing = EchoTiming::energy;
-  double record_length = 0;    ///< how much of the waveform is kept, from its first sample on; 0 for none [s]
-  double shape_divisor = 3.5;  ///< full width at half maximum of the pulse by its tau, see `PulseShape`
+  double record_length = 0;    ///< how much of the waveform is kept, from its first sample on, at most 1e7 bins; 0 for none [s]
+  double shape_divisor = 3.5;  ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
 
   void validate() const {
-    expect_positive("WaveformSettings::sample_interval", sample_interval, "s");
+    expect_within("WaveformSettings::sample_interval", sample_interval, 1e-16, 1, "s");
     expect_not_negative("WaveformSettings::threshold", threshold, "W");
     expect_not_negative("WaveformSettings::separation", separation, "s");
     expect_not_negative("WaveformSettings::window", window, "s");
     expect_not_negative("WaveformSettings::dead_time", dead_time, "s");
     expect_within("WaveformSettings::max_returns", static_cast<double>(max_returns), 1, 255, "");
     expect_within("WaveformSettings::record_length", record_length, 0, 1e7 * sample_interval, "s");
-    expect_positive("WaveformSettings::shape_divisor", shape_divisor, "");
+    expect_within("WaveformSettings::shape_divisor", shape_divisor, 1, 10, "");
+  }
+
+  /// Refuses bins that are longer than a pulse [s], which would fall between two samples, or so short that it has more than so many.
+  void expect_sampled(double pulse_length, double most) const {
+    if (sample_interval <= pulse_length && pulse_length <= most * sample_interval) return;
+    throw SettingError("WaveformSettings::sample_interval", sample_interval, "s",
+                       "from " + detail::written(pulse_length / most) + " to " + detail::written(pulse_length) + " for such a pulse");
   }
 
   /// Peaks closer than this are one echo, for which all that is between its outer valleys counts: the separation; or else, as nobody tells

@@ -20,13 +20,13 @@ namespace pulsecast {
 /// How an instrument errs about where it is and looks: nothing, unless told otherwise. Deviations are standard deviations along or about
 /// each axis of the body.
 struct PoseErrors {
-  double position_noise = 0;               ///< white [m]
-  double attitude_noise = 0;               ///< white [rad]
-  double position_drift = 0;               ///< Gauss-Markov: wanders slowly, within this deviation [m]
-  double attitude_drift = 0;               ///< Gauss-Markov [rad]
-  double drift_time = 60;                  ///< after which a drift has forgotten all but 1/e of itself [s]
-  double angular_jitter = 0;               ///< of each beam, beside where the optic says that it goes; white, right and up [rad]
-  Vec3 lever_arm_error{};                  ///< reported less true [m]
+  double position_noise = 0;  ///< white [m]
+  double attitude_noise = 0;  ///< white [rad]
+  double position_drift = 0;  ///< Gauss-Markov: wanders slowly, within this deviation [m]
+  double attitude_drift = 0;  ///< Gauss-Markov [rad]
+  double drift_time = 60;     ///< after which a drift has forgotten all but 1/e of itself, 2.4 kB; at least 1e-6 of the survey's length [s]
+  double angular_jitter = 0;  ///< of each beam, beside where the optic says that it goes; white, right and up [rad]
+  Vec3 lever_arm_error{};     ///< reported less true [m]
   Rotation boresight_error = no_rotation;  ///< from the true frame of the instrument to the reported one
   std::uint64_t seed = 0;                  ///< of all that is random; give each leg its own
 
@@ -81,15 +81,15 @@ class Misreported {
     return angle > 0 ? rotation_about(angles, angle) : no_rotation;
   }
 
-  static Vec3 normals(std::uint64_t seed, std::uint64_t moment, Purpose purpose) noexcept {
-    return {normal({seed, moment, 0, purpose}), normal({seed, moment, 1, purpose}), normal({seed, moment, 2, purpose})};
+  static Vec3 normals(std::uint64_t seed, std::uint64_t moment, Purpose purpose, std::uint32_t second = 0) noexcept {
+    const std::uint32_t first = 3 * second;
+    return {normal({seed, moment, first, purpose}), normal({seed, moment, first + 1, purpose}), normal({seed, moment, first + 2, purpose})};
   }
 
-  /// Emitters that fire at the same time share it.
+  /// Emitters that fire at the same time share it. No two moments within 45 years do.
   Vec3 white(Tick t, Purpose purpose, double deviation) const noexcept {
     if (deviation == 0) return {};
-    const std::uint64_t moment = std::bit_cast<std::uint64_t>(t.fraction) ^ (static_cast<std::uint64_t>(t.second) << 1);
-    return deviation * normals(errors_.seed, moment, purpose);
+    return deviation * normals(errors_.seed, std::bit_cast<std::uint64_t>(t.fraction), purpose, static_cast<std::uint32_t>(t.second));
   }
 
   Pulse<frame::Instrument> jittered(Pulse<frame::Instrument> p) const noexcept {

@@ -59,7 +59,9 @@ class Waypoints {
     if (after == points_.begin()) return {points_.front().rotation, points_.front().position};
     if (after == points_.end()) return {points_.back().rotation, points_.back().position};
     const Waypoint &a = *(after - 1), &b = *after;
-    const double interval = b.time - a.time, s = (t - a.time) / interval;
+    // counted from the waypoint, for as late as it is, the time is as exact as its fraction of a second
+    const double since = (static_cast<double>(tick.second) - a.time) + tick.fraction;
+    const double interval = b.time - a.time, s = since / interval;
     const Vec3 path = b.position - a.position;
     const Rotation rotation = normalize(slerp(a.rotation, b.rotation, s));
     if (velocities_.empty()) return {rotation, a.position + s * path};

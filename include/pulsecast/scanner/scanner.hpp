@@ -12,23 +12,26 @@ namespace pulsecast {
 
 /// A pulsed laser at a constant rate: the innermost stage of every pipeline.
 struct Scanner {
-  double pulse_rate = 100e3;      ///< pulses a second [Hz]
-  PulseIndex pulses = 1'000'000;  ///< how many slots the scan lasts
+  double pulse_rate = 100e3;      ///< pulses a second, at most 1e12 [Hz]
+  PulseIndex pulses = 1'000'000;  ///< how many slots the scan lasts, at most 2^52, and no longer than 1e15 s
   double delay = 0;               ///< of every pulse after its slot begins; less than one slot [s]
   Laser laser{};
 
   void validate() const {
     using namespace literals;
-    expect_positive("Scanner::pulse_rate", pulse_rate, "Hz");
+    expect_rate("Scanner::pulse_rate", pulse_rate);
+    expect_within("Scanner::pulses", static_cast<double>(pulses), 0, 0x1p52, "");  // as a Tick and a clockwork count
+    expect_within("Scanner::pulses (duration)", static_cast<double>(pulses) / pulse_rate, 0, 1e15, "s");
     if (!(delay >= 0 && delay < 1 / pulse_rate))
       throw SettingError("Scanner::delay", delay, "s", "at least 0 and less than " + detail::written(1 / pulse_rate));
     expect_positive("Laser::wavelength", laser.wavelength, "m");
-    expect_positive("Laser::peak_power", laser.peak_power, "W");
-    expect_positive("Laser::pulse_length", laser.pulse_length, "s");
+    expect_within("Laser::peak_power", laser.peak_power, 1e-20, 1e20, "W");
+    expect_within("Laser::pulse_length", laser.pulse_length, 1e-15, 1, "s");
     expect_within("Laser::divergence", laser.divergence.across, 0, 30_deg, "rad");
     expect_within("Laser::divergence", laser.divergence.up, 0, 30_deg, "rad");
     if ((laser.divergence.across > 0) != (laser.divergence.up > 0))
       throw SettingError("Laser::divergence", 0, "rad", "greater than 0 both across and up, or neither");
+    expect_within("Laser::divergence (up by across)", laser.divergence.aspect(), 1e-6, 1e6, "");
     expect_not_negative("Laser::waist_diameter", laser.waist_diameter, "m");
     expect_finite("Laser::waist_range", laser.waist_range, "m");
   }

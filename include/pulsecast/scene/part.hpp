@@ -41,7 +41,7 @@ struct Similarity {
 
   void validate() const {
     expect_within("Similarity::rotation (norm)", length(rotation), 1 - 1e-9, 1 + 1e-9, "");
-    expect_positive("Similarity::scale", scale, "");
+    expect_within("Similarity::scale", scale, 1e-30, 1e30, "");  // squares of lengths stay numbers in the part's own frame
     if (!finite(translation)) throw SettingError("Similarity::translation (length)", length(translation), "m", "finite");
   }
 

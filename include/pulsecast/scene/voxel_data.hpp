@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +34,10 @@ struct VoxelData {
     for (int k = 0; k < 3; ++k)
       if (!(std::fabs(corner[k]) <= farthest)) throw SettingError("VoxelData::corner", corner[k], "m", "within 1e18 m of the origin");
     expect_positive("VoxelData::edge", edge, "m");
+    // far from the origin, coordinates round: by an eighth of such a cell
+    const double least = 4 * std::numeric_limits<double>::epsilon() * max_norm(corner);
+    if (!(edge >= least))
+      throw SettingError("VoxelData::edge", edge, "m", "at least " + detail::written(least) + " so far from the origin");
     if (cells.empty()) throw SettingError("VoxelData::cells", 0, "", "at least one in number");
     if (cells.size() > 4294967294) throw SettingError("VoxelData::cells", count(cells), "", "at most 4294967294 in number");
     for (std::size_t i = 0; i < cells.size(); ++i)

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+// Power: from 1e-300 W to 1e300 W.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/scanner/scanner.hpp>
+
+#include "extremes/detectors.hpp"
+#include "extremes/row.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::extremes;
+
+namespace {
+
+const std::string axis = "power";
+
+/// The energy of the record of a wall, of the right one.
+template <class Detector>
+double energy_of_record(const Laser& laser, double range) {
+  const WaveformSettings settings{.threshold = 0, .record_length = 200e-9};
+  const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}};
+  const Wall wall{range};
+  const Survey survey{source, SingleRay{}, wall, validation::vacuum, Detector{settings}};
+  auto workspace = survey.workspace();
+  double energy = 0;
+  for (const float power : survey(0, workspace).waveform) energy += static_cast<double>(power) * settings.sample_interval;
+  return energy / (from_wall(laser, range) * std::exp(2.0) / 2 * laser.pulse_length / 3.5);
+}
+
+}  // namespace
+
+TEST_CASE("powers before a wall") {
+  struct Case {
+    const char* name;
+    double power, range;
+  };
+  for (const auto& [name, power, range] : {Case{"1e-20 W, wall at 1 m", 1e-20, 1},
+                                           {"1e-20 W, wall at 40 000 km", 1e-20, 4e7},
+                                           {"1 W, wall at 40 000 km", 1, 4e7},
+                                           {"1e20 W, wall at 1 m", 1e20, 1},
+                                           {"1e20 W, wall at 40 000 km", 1e20, 4e7}}) {
+    const Laser laser{.peak_power = power};
+    const Errors errors = errors_at_wall(laser, range, WaveformSettings{.threshold = 0});
+    const std::string wall = name + std::string(", all detectors and widths: ");
+    row(axis, wall + "largest error of the range [m]", 0, errors.range, 1e-6);
+    row(axis, wall + "largest error of the amplitude, as a share", 0, errors.amplitude, 1e-3);
+    row(axis, wall + "largest error of the width, as a share", 0, errors.width, 0.01);
+    row(axis, name + std::string(", record of FullWaveform: energy, of the right one"), 1, energy_of_record<FullWaveform<>>(laser, range),
+        1e-3);
+    row(axis, name + std::string(", record of AnalyticWaveform: energy, of the right one"), 1,
+        energy_of_record<AnalyticWaveform<>>(laser, range), 1e-3);
+  }
+}
+
+TEST_CASE("powers that cannot be") {
+  for (const auto& [name, power] : {std::pair{"1e-300 W", 1e-300}, {"1e-21 W", 1e-21}, {"1e21 W", 1e21}, {"1e300 W", 1e300}, {"0 W", 0.0}})
+    refused(axis, name, [power = power] { Scanner{.laser = {.peak_power = power}}.validate(); });
+  refused(axis, "a threshold without bound",
+          [] { return FullWaveform{WaveformSettings{.threshold = std::numeric_limits<double>::infinity()}}; });
+  refused(axis, "noise of 1e300 W", [] { ReceiverNoise{.deviation = 1e300}.validate(); });
+  refused(axis, "sunlight of 1e300 W", [] { ReceiverNoise{.background = 1e300}.validate(); });
+}
