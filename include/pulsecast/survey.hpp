@@ -42,7 +42,9 @@ class Survey {
         map_(&map),
         receiver_(validated(receiver)),
         detector_(validated(std::move(detector))),
-        seed_(seed) {}
+        seed_(seed) {
+    if constexpr (requires(const Laser& laser) { detector_.validate(laser); }) expect_lasers();
+  }
 
   Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would be gone
 
@@ -62,6 +64,10 @@ class Survey {
     std::vector<Reflection> reflections;  ///< of a pulse, as many as there are, and room for more
     std::vector<SubrayHit> subrays;       ///< all of a pulse, if they are recorded
     decltype(std::declval<const Instrument&>().workspace(0)) detector;
+    struct {
+      double range = -1;  ///< last asked for [m]
+      double power = 0;   ///< what a white surface there gives of the whole pulse [W]
+    } white{};
   };
 
   [[nodiscard]] Workspace workspace() const {
@@ -124,7 +130,7 @@ class Survey {
 
     const Detection detection = detect(pulse->laser, i, {w.reflections.data(), spent.reflections}, w.detector);
     for (Echo& echo : detection.echoes) {
-      echo.reflectance = echo.amplitude / w.budget.power(1, 1, echo.range);
+      echo.reflectance = echo.amplitude / white(w, echo.range);
       if (!receiver_.range_errors.none())
         echo.range += receiver_.range_errors.at(echo.range, echo.cos_incidence, normal({seed_, i, echo.number, Purpose::range_noise}));
     }
@@ -138,6 +144,15 @@ class Survey {
 
  private:
   using Scratch = decltype(Workspace::detector);
+
+  /// Refuses a laser that the detector cannot serve, as far as the first slots, of every channel, and some from all over tell.
+  void expect_lasers() const {
+    constexpr PulseIndex first = 256;
+    for (PulseIndex k = 0; k < 2 * first && k < size(); ++k) {
+      const PulseIndex i = k < first ? k : static_cast<PulseIndex>(uniform({.pulse = k}) * static_cast<double>(size()));
+      if (const auto pulse = source_.pulse(i)) detector_.validate(pulse->laser);
+    }
+  }
 
   [[nodiscard]] Detection detect(const Laser& laser, PulseIndex i, std::span<Reflection> reflections, Scratch& scratch) const noexcept {
     const RandomKey key{.seed = seed_, .pulse = i};
@@ -161,7 +176,7 @@ class Survey {
     if (laser.divergence != w.laser.divergence || laser.waist_diameter != w.laser.waist_diameter ||
         laser.waist_range != w.laser.waist_range)
       spread(laser, w.fan);
-    w.budget = LinkBudget(receiver_, laser);
+    w.budget = LinkBudget(receiver_, laser), w.white = {};
     w.laser = laser;
   }
 
@@ -188,7 +203,7 @@ class Survey {
       if (!from_a_point) rays.origin = pulse.origin() + world_from_beam * w.fan.exits[first];
       turn(world_from_beam, w.fan, first, rays);
       ask(rays, w.hits);
-      receive(w, first, rays.padded_size(), power);
+      receive(w, first, rays.size, power);
       for (std::size_t j = 0; j < rays.size; ++j) {
         const Hit& hit = w.hits[j];
         const double share = w.fan.shares[first + j];
@@ -231,9 +246,19 @@ class Survey {
     rays.pad();
   }
 
+  /// What the receiver gets of a whole pulse from a white surface; the echo of a single ray is asked about where the ray was [W].
+  static double white(Workspace& w, double range) noexcept {
+    if (range != w.white.range) w.white = {range, w.budget.power(1, 1, range)};
+    return w.white.power;
+  }
+
   /// What the receiver gets of the hits of a bundle, were it open at all ranges [W]. No number where nothing was met.
-  static void receive(const Workspace& w, std::size_t first, std::size_t padded_size, RayBundle::Column& power) noexcept {
-    for (std::size_t j = 0; j < padded_size; j += lane_count) {
+  static void receive(Workspace& w, std::size_t first, std::size_t size, RayBundle::Column& power) noexcept {
+    if (size == 1) {
+      power[0] = w.fan.shares[first] * w.hits[0].backscatter * white(w, w.hits[0].range);
+      return;
+    }
+    for (std::size_t j = 0; j < size; j += lane_count) {
       const Lanes range = lanes_of([&](std::size_t lane) { return w.hits[j + lane].range; });
       const Lanes backscatter = lanes_of([&](std::size_t lane) { return w.hits[j + lane].backscatter; });
       store(w.budget.power(load<Lanes>(w.fan.shares[first + j]), backscatter, range), power[j]);

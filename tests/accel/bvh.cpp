@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "support/scenes.hpp"
@@ -43,4 +44,28 @@ TEST_CASE("a Bvh of boxes that crowd at a point is no deeper than 64 levels, and
   CHECK(offers(tree, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
   CHECK(tree.depth() <= 64);
   CHECK(tree.depth() > 40);  // it came near to the limit: 510 without one
+}
+
+TEST_CASE_TEMPLATE("a Bvh is the same on any number of threads, and of boxes that are made as they are asked for", Real, float, double) {
+  Generator random(51);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 40'000; ++i) boxes.push_back(random.box(100, 1e-3, 1));  // several stretches, and several subtrees
+  struct Made {
+    const std::vector<Box>& all;
+    [[nodiscard]] std::size_t size() const noexcept { return all.size(); }
+    [[nodiscard]] Box operator[](std::size_t i) const noexcept { return all[i]; }
+  };
+  const Bvh<Real> alone(boxes, 1);
+  std::size_t largest = 0;
+  CHECK(offers(alone, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
+  CHECK(alone.sound(boxes.size()));
+  for (const unsigned threads : {2U, 5U}) {
+    CAPTURE(threads);
+    const Bvh<Real> other(Made{boxes}, threads);
+    CHECK(std::equal(other.order().begin(), other.order().end(), alone.order().begin(), alone.order().end()));
+    CHECK(other.memory() == alone.memory());
+    CHECK(other.depth() == alone.depth());
+    CHECK(other.sound(boxes.size()));
+    CHECK(offers(other, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
+  }
 }

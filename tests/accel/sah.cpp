@@ -4,6 +4,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "support/generators.hpp"
@@ -11,30 +16,55 @@
 using namespace pulsecast;
 using namespace pulsecast::support;
 
-TEST_CASE_TEMPLATE("slices are numbered in order, begin at their edge, and take in what lies outside", Real, float, double) {
-  const pulsecast::detail::Slices<Real, 16> slices(-4, 4);
-  CHECK(slices.valid());
-  CHECK(slices.edge(0) == -4);
-  CHECK(slices.edge(8) == 0);
-  CHECK(slices.of(-4) == 0);
-  CHECK(slices.of(static_cast<Real>(-3.75)) == 0);
-  CHECK(slices.of(static_cast<Real>(-3.25)) == 1);
-  CHECK(slices.of(4) == 15);
-  CHECK(slices.of(-1000) == 0);
-  CHECK(slices.of(static_cast<Real>(1e30)) == 15);
-  std::size_t before = 0;
-  for (Real x = -5; x < 5; x += static_cast<Real>(0.01)) {
-    CHECK(slices.of(x) >= before);
-    before = slices.of(x);
-  }
+namespace {
+
+/// A corner of a box; the fourth lane means nothing.
+template <class Real>
+pulsecast::Four<Real> corner(Real x, Real y, Real z) {
+  const Real all[4] = {x, y, z, std::numeric_limits<Real>::quiet_NaN()};
+  return pulsecast::Four<Real>::from(all[0]);
 }
 
-TEST_CASE_TEMPLATE("an interval without length, or too short to divide, is not sliced", Real, float, double) {
-  using Slices = pulsecast::detail::Slices<Real, 16>;
-  CHECK_FALSE(Slices(3, 3).valid());
-  CHECK_FALSE(Slices(3, 2).valid());
-  CHECK_FALSE(Slices(0, std::numeric_limits<Real>::denorm_min()).valid());
-  CHECK(Slices(3, 4).valid());
+/// Slices along the second axis alone.
+template <class Real>
+pulsecast::detail::Slices<Real> slices_of(Real low, Real high, std::size_t count) {
+  return {corner<Real>(0, low, 0), corner<Real>(0, high, 0), count};
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("slices are numbered in order, begin at their edge, and take in what lies outside", Real, float, double) {
+  const auto slices = slices_of<Real>(-4, 4, 16);
+  const auto of = [&](Real y) { return slices.of(corner<Real>(7, y, -7))[1]; };
+  CHECK(slices.count() == 16);
+  CHECK(slices.valid(1));
+  CHECK(slices.edge(1, 0) == -4);
+  CHECK(slices.edge(1, 8) == 0);
+  CHECK(of(-4) == 0);
+  CHECK(of(static_cast<Real>(-3.75)) == 0);
+  CHECK(of(static_cast<Real>(-3.25)) == 1);
+  CHECK(of(4) == 15);
+  CHECK(of(-1000) == 0);
+  CHECK(of(static_cast<Real>(1e30)) == 15);
+  CHECK(of(std::numeric_limits<Real>::quiet_NaN()) == 0);
+  std::size_t before = 0, different = 0;
+  for (Real y = -5; y < 5; y += static_cast<Real>(0.01)) {
+    CHECK(of(y) >= before);
+    before = of(y);
+    for (std::size_t i = 1; i < 16; ++i) different += slices.reaches(1, y, i) == (before >= i) ? 0 : 1;
+  }
+  CHECK(different == 0);
+}
+
+TEST_CASE_TEMPLATE("axes are sliced each by itself; one without length, or too short to divide, is not", Real, float, double) {
+  const pulsecast::detail::Slices<Real> slices(corner<Real>(0, 5, -1), corner<Real>(4, 5, 1), 4);
+  CHECK(slices.valid(0));
+  CHECK_FALSE(slices.valid(1));
+  CHECK(slices.valid(2));
+  CHECK(slices.of(corner<Real>(static_cast<Real>(3.5), 5, static_cast<Real>(-0.25))) == std::array<std::uint32_t, 3>{3, 0, 1});
+  CHECK_FALSE(slices_of<Real>(3, 2, 16).valid(1));
+  CHECK_FALSE(slices_of<Real>(0, std::numeric_limits<Real>::denorm_min(), 16).valid(1));
+  CHECK(slices_of<Real>(3, 4, 16).valid(1));
 }
 
 TEST_CASE("half of the surface of a box is that of three of its sides") {
@@ -42,16 +72,18 @@ TEST_CASE("half of the surface of a box is that of three of its sides") {
   CHECK(pulsecast::detail::half_area(BoundingBox<double>{{1, 1, 1}, {1, 1, 1}}) == 0);
 }
 
-TEST_CASE("a box that takes in another holds both") {
-  auto box = pulsecast::detail::no_box<float>();
-  pulsecast::detail::extend(box, {{0, 1, 2}, {3, 4, 5}});
-  pulsecast::detail::extend(box, {{-1, 2, 3}, {1, 2, 9}});
+TEST_CASE_TEMPLATE("a box that takes in others holds them", Real, float, double) {
+  const pulsecast::detail::Boxed<Real> boxes[2] = {{{{0, 1, 2}, {3, 4, 5}}, 0xFFFFFFFE}, {{{-1, 2, 3}, {1, 2, 9}}, 1}};
+  pulsecast::detail::GrowingBox<Real> growing;
+  for (const auto& boxed : boxes) growing.extend(boxed.low(), boxed.high());
+  const BoundingBox<Real> box = growing.box();
   CHECK(box.min[0] == -1);
   CHECK(box.min[1] == 1);
   CHECK(box.min[2] == 2);
   CHECK(box.max[0] == 3);
   CHECK(box.max[1] == 4);
   CHECK(box.max[2] == 9);
+  CHECK(growing.half_area() == pulsecast::detail::half_area(box));
 }
 
 TEST_CASE_TEMPLATE("a build sees every box but the empty ones, relative to the centre, never smaller than it is", Real, float, double) {
@@ -71,6 +103,25 @@ TEST_CASE_TEMPLATE("a build sees every box but the empty ones, relative to the c
       CHECK(static_cast<double>(box.max[k]) + input.centre[k] >= boxes[i].max[k]);
     }
   }
+}
+
+TEST_CASE_TEMPLATE("a build sees the same on any number of threads", Real, float, double) {
+  Generator random(42);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 50'000; ++i) boxes.push_back(i % 7 == 3 ? Box{} : random.box(500, 1e-3, 10));  // several stretches
+  const pulsecast::detail::BuildInput<Real> alone(boxes);
+  const pulsecast::detail::BuildInput<Real> shared(boxes, 3);
+  CHECK(shared.bounds == alone.bounds);
+  REQUIRE(shared.primitives.size() == alone.primitives.size());
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < alone.primitives.size(); ++i) {
+    const auto &a = alone.primitives[i], &b = shared.primitives[i];
+    different +=
+        a.primitive == b.primitive && std::equal(a.box.min, a.box.min + 3, b.box.min) && std::equal(a.box.max, a.box.max + 3, b.box.max)
+            ? 0
+            : 1;
+  }
+  CHECK(different == 0);
 }
 
 TEST_CASE("boxes too far away and too many primitives are refused") {

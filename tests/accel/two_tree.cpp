@@ -87,14 +87,14 @@ TEST_CASE_TEMPLATE("a tree of twos holds every primitive once, in boxes that hol
 TEST_CASE("a tree of twos is the same on any number of threads") {
   const std::vector<Box> boxes = random_boxes(61, 200'000);  // more than one stretch, and subtrees enough for all
   pulsecast::detail::BuildInput<float> input(boxes);
-  auto alone = input.primitives;
+  std::vector<pulsecast::detail::Boxed<float>> alone(input.primitives.begin(), input.primitives.end());
   const Tree<float> tree(alone, 1);
   const Shape shape = shape_of(tree);
   CHECK(shape.primitives == boxes.size());
   CHECK(shape.torn == 0);
   for (const unsigned threads : {2U, 7U}) {
     CAPTURE(threads);
-    auto primitives = input.primitives;
+    std::vector<pulsecast::detail::Boxed<float>> primitives(input.primitives.begin(), input.primitives.end());
     const Tree<float> other(primitives, threads);
     CHECK(shape_of(other).leaves == shape.leaves);
     std::size_t different = 0;

@@ -196,22 +196,25 @@ TEST_CASE_TEMPLATE("no compact box that any ray of a bundle meets is passed over
     const Vec3 origin = aim - direction * (scale * random.log_uniform(1e-3, 1e2));
     RayBundle rays = random.cone(origin, direction, random.coin() ? 0 : 1e-3, 1 + random.whole(19));
     if (random.coin()) rays = bundle_of({origin, direction});
-    const BundleInterval<Real> interval(rays, bounds, centre);
-    std::array<Real, 8> entries;
-    const unsigned found = interval.inside(compact, std::numeric_limits<Real>::max(), entries);
-    for (std::size_t i = 0; i < 8; ++i) {
-      spared += (found >> i & 1U) != 0 ? 0 : 1;
-      for (std::size_t j = 0; j < rays.size; ++j) {
-        const Stretch s = stretch(boxes[i], origin, rays.direction(j));
-        const long double entry = std::max(s.entry, static_cast<long double>(rays.near));
-        if (!(entry <= s.exit)) continue;
-        ++met;
-        if ((found >> i & 1U) == 0)
-          ++passed;
-        else
-          late += static_cast<long double>(entries[i]) > entry ? 1 : 0;
+    const auto check = [&](const auto& interval) {
+      std::array<Real, 8> entries;
+      const unsigned found = interval.inside(compact, std::numeric_limits<Real>::max(), entries);
+      for (std::size_t i = 0; i < 8; ++i) {
+        spared += (found >> i & 1U) != 0 ? 0 : 1;
+        for (std::size_t j = 0; j < rays.size; ++j) {
+          const Stretch s = stretch(boxes[i], origin, rays.direction(j));
+          const long double entry = std::max(s.entry, static_cast<long double>(rays.near));
+          if (!(entry <= s.exit)) continue;
+          ++met;
+          if ((found >> i & 1U) == 0)
+            ++passed;
+          else
+            late += static_cast<long double>(entries[i]) > entry ? 1 : 0;
+        }
       }
-    }
+    };
+    check(BundleInterval<Real>(rays, bounds, centre));
+    if (rays.size == 1) check(RayInterval<Real>(rays, bounds, centre));
   }
   CHECK(passed == 0);
   CHECK(late == 0);
@@ -265,6 +268,13 @@ TEST_CASE_TEMPLATE("rays that are not numbers do not hide what the others meet, 
   rays.pad();
   CHECK(BundleInterval<Real>(rays, box, {}).inside(around).empty());
   CHECK(BundleInterval<Real>(bundle_of({{nan, 0, 0}, forward}), box, {}).inside(around).empty());
+  CompactBoxes<Real> boxes;
+  boxes.begin(around), boxes.add(around);
+  std::array<Real, 8> entries;
+  const auto found = [&](const Ray& ray) { return RayInterval<Real>(bundle_of(ray), box, {}).inside(boxes, 100, entries); };
+  CHECK(found({{}, forward}) == 1);
+  CHECK(found({{}, {0, 1, nan}}) == 0);
+  CHECK(found({{nan, 0, 0}, forward}) == 0);
 }
 
 TEST_CASE_TEMPLATE("an empty box is never met", Real, float, double) {

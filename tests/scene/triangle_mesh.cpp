@@ -4,8 +4,12 @@
 
 #include <doctest/doctest.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <pulsecast/accel/kd_tree.hpp>
 #include <pulsecast/accel/linear.hpp>
@@ -142,4 +146,73 @@ TEST_CASE_TEMPLATE("a mesh that was built is sound, and one that was not filled 
   Nearest nearest(rays);
   none.closest(rays, nearest);
   CHECK_FALSE(nearest.met(0));
+}
+
+namespace {
+
+/// A grid of so many by so many squares of two triangles each, with heights; each triangle has corners of its own.
+MeshData torn_ground(std::uint32_t squares) {
+  Generator random(70);
+  const std::size_t side = squares + 1;
+  std::vector<double> heights(side * side);
+  for (double& height : heights) height = random.uniform(-0.3, 0.3);
+  const auto point = [&](std::uint32_t x, std::uint32_t y) { return Vec3{0.1 * x, 0.1 * y, heights[y * side + x]}; };
+  MeshData data;
+  for (std::uint32_t y = 0; y < squares; ++y)
+    for (std::uint32_t x = 0; x < squares; ++x)
+      for (const std::uint32_t half : {0U, 1U}) {
+        const auto first = static_cast<std::uint32_t>(data.vertices.size());
+        for (const Vec3& corner : {point(x + half, y + half), point(x + 1, y), point(x, y + 1)}) data.vertices.push_back(corner);
+        data.triangles.push_back({first, first + 1, first + 2});
+      }
+  return data;
+}
+
+bool same_bits(const Triangle& a, const Triangle& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("triangles of a mesh of several blocks keep their numbers and corners on any number of threads", Mesh, TriangleMesh<>,
+                   TriangleMesh<Bvh, double>, TriangleMesh<KdTree>, TriangleMesh<Linear>) {
+  MeshData data = torn_ground(100);
+  data.vertices[4].x = -0.0, data.vertices[5].x = 0.0;
+  for (const unsigned threads : {1U, 3U}) {
+    CAPTURE(threads);
+    const Mesh mesh(data, threads);
+    REQUIRE(mesh.size() == data.triangles.size());
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+      different += same_bits(mesh.triangle(static_cast<PrimitiveIndex>(i)), data.triangle(i)) ? 0 : 1;
+    CHECK(different == 0);
+    CHECK(mesh.sound());
+  }
+}
+
+TEST_CASE("corners that are equal are shared") {
+  const MeshData data = torn_ground(100);
+  const TriangleMesh<> mesh(data);
+  const double bytes = static_cast<double>(mesh.memory() - mesh.index().memory()) / static_cast<double>(mesh.size());
+  CAPTURE(bytes);
+  CHECK(bytes < 6 + 4 + 0.6 * sizeof(Vec3));  // numbers, places, and half a corner a triangle, but for some at the ends of blocks
+}
+
+TEST_CASE("a mesh of up to 256 materials spends a byte on each, one of a single material none") {
+  MeshData data = torn_ground(20);
+  const std::size_t bare = TriangleMesh<>(data).memory();
+  const auto with = [&](std::uint32_t count) {
+    data.materials.resize(data.triangles.size());
+    for (std::size_t i = 0; i < data.materials.size(); ++i) data.materials[i] = static_cast<std::uint32_t>(i * 7) % count;
+    const TriangleMesh<> mesh(data);
+    CHECK(mesh.material_count() == count);
+    CHECK(mesh.sound());
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+      different += mesh.surface(static_cast<PrimitiveIndex>(i), bundle_of({}), 0).material == data.materials[i] ? 0 : 1;
+    CHECK(different == 0);
+    return mesh.memory();
+  };
+  CHECK(with(1) == bare);
+  CHECK(with(2) == bare + data.triangles.size());
+  CHECK(with(256) == bare + data.triangles.size());
+  CHECK(with(257) == bare + 4 * data.triangles.size());
 }

@@ -10,33 +10,40 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/accel/two_tree.hpp>
 #include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
 
 /// A tree of boxes with up to eight children a node, all of whose boxes a bundle is tested against at once. It is split in two by the
-/// surface-area heuristic, down to single primitives; then some levels are made one, and up to four primitives a leaf, as costs least.
-/// Every primitive stands in exactly one leaf. A bundle goes through it as a whole, front to back. Where a split would make the tree of
-/// twos deeper than 64 levels, halves are made. The tree is the same for every number of threads that it is built on; 0 for as many as
+/// surface-area heuristic, down to single primitives; then some levels are made one, and up to `LeafSize` primitives a leaf, as costs
+/// least. Every primitive stands in exactly one leaf. A bundle goes through it as a whole, front to back. Where a split would make the tree
+/// of twos deeper than 64 levels, halves are made. The tree is the same for every number of threads that it is built on; 0 for as many as
 /// the machine runs.
 /// Source: Wald 2007 (build in bins); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic); Wald, Benthin & Boulos 2008
 /// (collapsing).
-template <std::floating_point Real = float>
-class Bvh {
+template <std::floating_point Real, std::size_t LeafSize>
+class BvhOf {
  public:
-  explicit Bvh(std::span<const Box> boxes, unsigned threads = 0) {
-    detail::BuildInput<Real> input(boxes);
+  /// `boxes` has a size, and gives a `Box` of each number, twice the same: a span, or what makes them as they are asked for.
+  template <class Boxes>
+  requires requires(const Boxes& boxes) {
+    { boxes[boxes.size()] } -> std::convertible_to<Box>;
+  }
+  explicit BvhOf(const Boxes& boxes, unsigned threads = 0) {
+    detail::BuildInput<Real> input(boxes, threads);
     bounds_ = input.bounds, centre_ = input.centre;
     if (input.primitives.empty()) return;
-    Twos twos(input.primitives, threads);
-    collapse(twos);
+    const Twos twos(input.primitives, threads);
+    collapse(twos, threads);
   }
 
-  explicit Bvh(Unfilled) {}
+  explicit BvhOf(Unfilled) {}
   template <class Archive>
   void archive(Archive& a) {
     a(bounds_, centre_, depth_, nodes_, primitives_);
@@ -74,49 +81,14 @@ class Bvh {
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
   void closest(const RayBundle& rays, const Test& test, Nearest& nearest) const noexcept {
     if (nodes_.empty()) return;
-    const BundleInterval<Real> interval(rays, bounds_, centre_);
-    std::array<Waiting, (places - 1) * detail::deepest + 1> stack;
-    std::size_t waiting = 0;
-    Real limit = round_up<Real>(nearest.limit(rays));
-    const Node* node = nodes_.data();
-    for (;;) {
-      std::array<Real, places> entries;
-      unsigned met = interval.inside(node->boxes, limit, entries);
-      if (std::has_single_bit(met)) {  // mostly: nothing to put in order
-        const auto place = static_cast<std::size_t>(std::countr_zero(met));
-        if (node->size(place) == 0) {
-          node = &nodes_[node->first(place)];
-          continue;
-        }
-      }
-      const std::size_t bottom = waiting;
-      for (; met != 0; met &= met - 1) {  // to the stack, the nearest on top
-        const auto place = static_cast<std::size_t>(std::countr_zero(met));
-        const Waiting next{entries[place], node->first(place), node->size(place)};
-        if (next.size == 0)
-          prefetch(&nodes_[next.first]);
-        else if constexpr (requires { test.soon(std::span<const PrimitiveIndex>()); })
-          test.soon(std::span<const PrimitiveIndex>(primitives_.data() + next.first, next.size));
-        std::size_t at = waiting++;
-        for (; at > bottom && stack[at - 1].entry < next.entry; --at) stack[at] = stack[at - 1];
-        stack[at] = next;
-      }
-      for (;;) {
-        if (waiting == 0) return;
-        const Waiting& next = stack[--waiting];
-        if (next.entry > limit) continue;
-        if (next.size == 0) {
-          node = &nodes_[next.first];
-          break;
-        }
-        test(std::span<const PrimitiveIndex>(primitives_.data() + next.first, next.size));
-        limit = round_up<Real>(nearest.limit(rays));
-      }
-    }
+    if (rays.size == 1)
+      descend(RayInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
+    else
+      descend(BundleInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
   }
 
  private:
-  static constexpr std::size_t places = 8, leaf_size = 4;
+  static constexpr std::size_t places = 8;
 
   struct alignas(64) Node {
     CompactBoxes<Real> boxes;
@@ -135,32 +107,128 @@ class Bvh {
     Real entry;
     std::uint32_t first, size;  ///< of a leaf's primitives, or the number of a node and 0
   };
+  static constexpr std::uint32_t nothing = 0xFFFFFFFF;  ///< in place of a size
 
-  using Twos = detail::TwoTree<Real, places, leaf_size>;
+  template <class Interval, class Test>
+  void descend(const Interval& interval, const RayBundle& rays, const Test& test, Nearest& nearest) const noexcept {
+    std::array<Waiting, (places - 1) * detail::deepest + 1> stack;
+    std::size_t waiting = 0;
+    Real limit = interval.limit(rays, nearest);
+    const Node* node = nodes_.data();
+    for (;;) {
+      std::array<Real, places> entries;
+      unsigned met = interval.inside(node->boxes, limit, entries);
+      const auto take_first = [&]() noexcept -> Waiting {
+        const auto place = static_cast<std::size_t>(std::countr_zero(met));
+        met &= met - 1;
+        return {entries[place], node->first(place), node->size(place)};
+      };
+      Waiting next{0, 0, nothing};
+      if (met != 0) {  // the nearest at once; the others to the stack, the nearest of them on top
+        next = take_first();
+        const std::size_t bottom = waiting;
+        while (met != 0) {
+          Waiting other = take_first();
+          if (other.entry < next.entry) std::swap(other, next);
+          announce(other, test);
+          std::size_t at = waiting++;
+          for (; at > bottom && stack[at - 1].entry < other.entry; --at) stack[at] = stack[at - 1];
+          stack[at] = other;
+        }
+      }
+      while (next.size > 0) {
+        if (next.size != nothing) {
+          test(std::span<const PrimitiveIndex>(primitives_.data() + next.first, next.size));
+          limit = interval.limit(rays, nearest);
+        }
+        do {
+          if (waiting == 0) return;
+          next = stack[--waiting];
+        } while (next.entry > limit);
+      }
+      node = &nodes_[next.first];
+    }
+  }
 
-  void collapse(const Twos& twos) {
-    struct Open {
-      typename Twos::Range range;
-      std::uint32_t node, depth;
+  template <class Test>
+  void announce(const Waiting& next, const Test& test) const noexcept {
+    if (next.size == 0)
+      prefetch(&nodes_[next.first]);
+    else if constexpr (requires { test.soon(std::span<const PrimitiveIndex>()); })
+      test.soon(std::span<const PrimitiveIndex>(primitives_.data() + next.first, next.size));
+  }
+
+  using Twos = detail::TwoTree<Real, places, LeafSize>;
+
+  /// A node to be made of what is below one of twos.
+  struct Open {
+    typename Twos::Range range;
+    std::uint32_t node, depth;
+  };
+
+  /// Makes the upper nodes one after another, and what is below them side by side: first by themselves, then where they stand in the end.
+  void collapse(const Twos& twos, unsigned threads) {
+    const std::size_t count = twos.primitives().size();
+    const Draft<PrimitiveIndex> primitives(count);
+    std::vector<Node> upper(1);
+    std::vector<Open> below;
+    const std::size_t grain = std::max<std::size_t>(count / 64, 4096);
+    std::size_t next = 0;
+    std::size_t depth = make_nodes(
+        twos, {twos.root(), 0, 1}, upper, primitives, next, [&](const Open& open) { return open.range.size() <= grain; }, below);
+    struct Subtree {
+      std::vector<Node> nodes;
+      std::size_t first_node = 0, first_primitive = 0, depth = 0;
     };
-    std::vector<Node> nodes(1);
-    auto primitives = room_for<PrimitiveIndex>(twos.primitives().size());
-    std::vector<Open> tasks{{twos.root(), 0, 1}};
+    std::vector<Subtree> subtrees(below.size());
+    for (std::size_t i = 0; i < below.size(); ++i) subtrees[i].first_primitive = next, next += below[i].range.size();
+    for_each_index(below.size(), threads, [&](std::size_t i) {
+      Subtree& own = subtrees[i];
+      own.nodes.resize(1);
+      std::size_t at = own.first_primitive;
+      std::vector<Open> none;
+      own.depth = make_nodes(
+          twos, {below[i].range, 0, below[i].depth}, own.nodes, primitives, at, [](const Open&) { return false; }, none);
+    });
+    std::size_t nodes = upper.size();
+    for (Subtree& own : subtrees) own.first_node = nodes, nodes += own.nodes.size() - 1, depth = std::max(depth, own.depth);
+    const Draft<Node> all(nodes);
+    std::copy(upper.begin(), upper.end(), all.begin());
+    for_each_index(subtrees.size(), threads, [&](std::size_t i) {  // its first node takes the place that was left for it
+      const Subtree& own = subtrees[i];
+      for (std::size_t k = 0; k < own.nodes.size(); ++k) {
+        Node& node = all[k == 0 ? below[i].node : own.first_node + k - 1] = own.nodes[k];
+        node.children += static_cast<std::uint32_t>(own.first_node - 1);
+      }
+    });
+    nodes_ = all, primitives_ = primitives, depth_ = depth;
+  }
+
+  /// Makes a node, for which there is a place, and all that is below it but for what is `left`, which goes to `below`. Gives the depth.
+  template <class Left>
+  static std::size_t make_nodes(const Twos& twos, const Open& top, std::vector<Node>& nodes, const Draft<PrimitiveIndex>& primitives,
+                                std::size_t& next, const Left& left, std::vector<Open>& below) {
+    std::size_t depth = 0;
+    std::vector<Open> tasks{top};
     std::vector<typename Twos::Range> children;
     while (!tasks.empty()) {
       const Open task = tasks.back();
       tasks.pop_back();
+      if (left(task)) {
+        below.push_back(task);
+        continue;
+      }
       children.clear();
       twos.gather(task.range, places, children);
       Node node;
-      node.children = static_cast<std::uint32_t>(nodes.size()), node.primitives = static_cast<std::uint32_t>(primitives.size());
+      node.children = static_cast<std::uint32_t>(nodes.size()), node.primitives = static_cast<std::uint32_t>(next);
       node.boxes.begin(twos.box(task.range));
       for (std::size_t place = 0; place < children.size(); ++place) {
         const auto& child = children[place];
         node.boxes.add(twos.box(child));
         if (twos.leaf(child)) {
-          node.kinds[place] = static_cast<std::uint8_t>((primitives.size() - node.primitives) << 3U | child.size());
-          for (std::uint32_t i = child.begin; i < child.end; ++i) primitives.push_back(twos.primitives()[i].primitive);
+          node.kinds[place] = static_cast<std::uint8_t>((next - node.primitives) << 3U | child.size());
+          for (std::uint32_t i = child.begin; i < child.end; ++i) primitives[next++] = twos.primitives()[i].primitive;
         } else {
           node.kinds[place] = static_cast<std::uint8_t>((nodes.size() - node.children) << 3U);
           tasks.push_back({child, static_cast<std::uint32_t>(nodes.size()), task.depth + 1});
@@ -168,9 +236,9 @@ class Bvh {
         }
       }
       nodes[task.node] = node;
-      depth_ = std::max<std::size_t>(depth_, task.depth);
+      depth = std::max<std::size_t>(depth, task.depth);
     }
-    nodes_ = std::move(nodes), primitives_ = std::move(primitives);
+    return depth;
   }
 
   Box bounds_;
@@ -178,6 +246,14 @@ class Bvh {
   Frozen<Node> nodes_;                 ///< the root first
   Frozen<PrimitiveIndex> primitives_;  ///< of the leaves
   std::size_t depth_ = 0;
+};
+
+/// For primitives that are tested several at once. Where a test is a search of its own, as in the parts of a scene, take one a leaf, each
+/// behind its own box: `BvhOf<float, 1>`.
+template <std::floating_point Real = float>
+class Bvh : public BvhOf<Real, 4> {
+ public:
+  using BvhOf<Real, 4>::BvhOf;
 };
 
 static_assert(Accelerator<Bvh<float>> && Accelerator<Bvh<double>>);

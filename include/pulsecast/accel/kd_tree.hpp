@@ -29,7 +29,7 @@ class KdTree {
     detail::BuildInput<Real> input(boxes);
     bounds_ = input.bounds, centre_ = input.centre;
     if (input.primitives.empty()) return;
-    build(std::move(input.primitives));
+    build({input.primitives.begin(), input.primitives.end()});
   }
 
   explicit KdTree(Unfilled) {}
@@ -106,7 +106,7 @@ class KdTree {
   using Span = typename BundleInterval<Real>::Span;
   using Boxed = detail::Boxed<Real>;
 
-  static constexpr std::size_t slices = 32;
+  static constexpr std::size_t slice_count = 32;
   static constexpr double leaves_per_primitive = 4;
   static constexpr double empty_bonus = 0.8;  ///< factor on the cost where one side is empty. Source: Wald & Havran 2006, sec. 3.2
 
@@ -144,8 +144,7 @@ class KdTree {
   static bool reaches_upper(const Boxed& b, const Split& s) noexcept { return b.box.max[s.axis] > s.at; }
 
   void build(std::vector<Boxed> heap) {
-    cell_ = detail::no_box<Real>();
-    for (const Boxed& boxed : heap) detail::extend(cell_, boxed.box);
+    cell_ = box_of(heap).box();
     const auto n = static_cast<double>(heap.size());
     // Source: Pharr, Jakob & Humphreys 2016, sec. 4.4
     const std::size_t deepest = std::min(detail::deepest, static_cast<std::size_t>(8 + 1.3 * std::log2(n)));
@@ -191,23 +190,33 @@ class KdTree {
     nodes_ = std::move(nodes), order_ = std::move(order);
   }
 
+  static detail::GrowingBox<Real> box_of(std::span<const Boxed> part) noexcept {
+    detail::GrowingBox<Real> box;
+    for (const Boxed& boxed : part) box.extend(boxed.low(), boxed.high());
+    return box;
+  }
+
   static Split best_split(std::span<const Boxed> part, const BoundingBox<Real>& cell) noexcept {
     Split best;
     const auto n = static_cast<double>(part.size());
     const double area = detail::half_area(cell);
     double best_cost = detail::test_cost * n;
-    auto filled = detail::no_box<Real>();
-    for (const Boxed& boxed : part) detail::extend(filled, boxed.box);
-    for (int k = 0; k < 3; ++k) {
-      const Real low = std::max(filled.min[k], cell.min[k]), high = std::min(filled.max[k], cell.max[k]);
-      const detail::Slices<Real, static_cast<int>(slices)> slice(low, high);
-      if (!slice.valid()) continue;
-      std::array<std::uint32_t, slices> begun{}, ended{};
-      for (const Boxed& boxed : part) ++begun[slice.of(boxed.box.min[k])], ++ended[slice.of(boxed.box.max[k])];
+    const detail::GrowingBox<Real> filled = box_of(part);
+    const Boxed within{cell, 0};
+    const auto low = greater(filled.min, within.low()), high = smaller(filled.max, within.high());
+    const detail::Slices<Real> slices(low, high, slice_count);
+    std::array<std::uint32_t, slice_count> begun[3] = {}, ended[3] = {};
+    for (const Boxed& boxed : part) {
+      const auto first = slices.of(boxed.low()), last = slices.of(boxed.high());
+      for (std::size_t k = 0; k < 3; ++k) ++begun[k][first[k]], ++ended[k][last[k]];
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!slices.valid(axis)) continue;
+      const int k = static_cast<int>(axis);
       double lower = 0, upper = n;
-      for (std::size_t i = 0; i <= slices; ++i) {
-        if (i > 0) lower += begun[i - 1], upper -= ended[i - 1];
-        const Real at = i == slices ? high : slice.edge(i);
+      for (std::size_t i = 0; i <= slice_count; ++i) {
+        if (i > 0) lower += begun[axis][i - 1], upper -= ended[axis][i - 1];
+        const Real at = i == slice_count ? high[axis] : slices.edge(axis, i);
         if (!(at > cell.min[k] && at < cell.max[k])) continue;
         BoundingBox<Real> below = cell, above = cell;
         below.max[k] = above.min[k] = at;

@@ -3,16 +3,19 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 
 /// What the builds by the surface-area heuristic share: the cost of a node is that of the tests which a ray that meets it must expect,
@@ -29,20 +32,6 @@ inline constexpr std::size_t deepest = 64;
 /// Coordinates beyond are refused, so that sums and areas of any Real stay finite [m].
 inline constexpr double farthest = 1e18;
 
-template <std::floating_point Real>
-[[nodiscard]] constexpr BoundingBox<Real> no_box() noexcept {
-  constexpr Real most = std::numeric_limits<Real>::max();
-  return {{most, most, most}, {-most, -most, -most}};
-}
-
-template <std::floating_point Real>
-void extend(BoundingBox<Real>& box, const BoundingBox<Real>& by) noexcept {
-  for (int k = 0; k < 3; ++k) {
-    box.min[k] = by.min[k] < box.min[k] ? by.min[k] : box.min[k];
-    box.max[k] = by.max[k] > box.max[k] ? by.max[k] : box.max[k];
-  }
-}
-
 /// Half of the surface [m^2].
 template <std::floating_point Real>
 [[nodiscard]] double half_area(const BoundingBox<Real>& box) noexcept {
@@ -52,58 +41,127 @@ template <std::floating_point Real>
   return x * y + y * z + z * x;
 }
 
-/// Equal slices of an interval, the places where a build considers to split.
-template <std::floating_point Real, int Count>
-class Slices {
- public:
-  Slices(Real low, Real high) noexcept : low_(low), width_((high - low) / Count), per_width_(Count / (high - low)) {}
-
-  /// Whether the interval is long enough to be sliced.
-  [[nodiscard]] bool valid() const noexcept { return width_ > 0 && per_width_ <= std::numeric_limits<Real>::max(); }
-
-  /// The slice that holds x, or the one next to it.
-  [[nodiscard]] std::size_t of(Real x) const noexcept {
-    const Real s = (x - low_) * per_width_;
-    return static_cast<std::size_t>(s > 0 ? (s < Count - 1 ? s : Count - 1) : 0);
-  }
-
-  /// Where slice i begins.
-  [[nodiscard]] Real edge(std::size_t i) const noexcept { return low_ + static_cast<Real>(i) * width_; }
-
- private:
-  Real low_, width_, per_width_;
-};
-
 /// A primitive as a build handles it.
 template <std::floating_point Real>
 struct Boxed {
   BoundingBox<Real> box;
   PrimitiveIndex primitive;
+
+  /// The corners of its box; the fourth lane means nothing.
+  [[nodiscard]] Four<Real> low() const noexcept { return Four<Real>::from(box.min[0]); }
+  [[nodiscard]] Four<Real> high() const noexcept {
+    static_assert(sizeof(Boxed) >= 7 * sizeof(Real), "one lane beyond the box is read");
+    return Four<Real>::from(box.max[0]);
+  }
 };
 
-/// The primitives that can be met at all, in coordinates relative to the centre of their bounds.
+/// A box as it grows; as made, the one that nothing is inside of.
+template <std::floating_point Real>
+struct GrowingBox {
+  Four<Real> min{std::numeric_limits<Real>::max()}, max{-std::numeric_limits<Real>::max()};
+
+  void extend(const Four<Real>& low, const Four<Real>& high) noexcept { min = smaller(low, min), max = greater(high, max); }
+  void extend(const GrowingBox& by) noexcept { extend(by.min, by.max); }
+  [[nodiscard]] BoundingBox<Real> box() const noexcept { return {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}}; }
+  /// The same as of `box()`, give or take rounding [m^2].
+  [[nodiscard]] double half_area() const noexcept {
+    const Four<Real> size = max - min;
+    const auto x = static_cast<double>(size[0]), y = static_cast<double>(size[1]), z = static_cast<double>(size[2]);
+    return x * y + y * z + z * x;
+  }
+};
+
+/// Equal slices of a box along each axis, between which a build considers to split.
+template <std::floating_point Real>
+class Slices {
+ public:
+  Slices(const Four<Real>& low, const Four<Real>& high, std::size_t count) noexcept
+      : count_(count), low_(low), last_(static_cast<Real>(count - 1)) {
+    Real per_width[4] = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Real extent = high[k] - low[k], slices = static_cast<Real>(count) / extent;
+      valid_[k] = extent > 0 && slices <= std::numeric_limits<Real>::max();
+      width_[k] = extent / static_cast<Real>(count), per_width[k] = valid_[k] ? slices : 0;
+    }
+    per_width_ = Four<Real>::from(per_width[0]);
+  }
+
+  /// How many along an axis.
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+
+  /// Whether the box is long enough along an axis to be sliced.
+  [[nodiscard]] bool valid(std::size_t k) const noexcept { return valid_[k]; }
+
+  /// The slice along each axis that holds a point, or the one next to it; 0 along those that are not sliced.
+  [[nodiscard]] std::array<std::uint32_t, 3> of(const Four<Real>& point) const noexcept {
+    const Four<Real> slice = smaller(greater((point - low_) * per_width_, Four<Real>(0)), last_);
+    const auto whole = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(slice[k])); };
+    return {whole(0), whole(1), whole(2)};
+  }
+
+  /// Whether a coordinate along axis k is in slice i, which is not the first, or in one after it, as `of` says.
+  [[nodiscard]] bool reaches(std::size_t k, Real x, std::size_t i) const noexcept {
+    return (x - low_[k]) * per_width_[k] >= static_cast<Real>(i);
+  }
+
+  /// Where slice i along an axis begins.
+  [[nodiscard]] Real edge(std::size_t k, std::size_t i) const noexcept { return low_[k] + static_cast<Real>(i) * width_[k]; }
+
+ private:
+  std::size_t count_;
+  Four<Real> low_, last_, per_width_;
+  Real width_[3];
+  bool valid_[3];
+};
+
+/// Calls act(part, i) for the i-th stretch of an array, on several threads if there is more than one. The results are the same for any
+/// number of threads if stretches are put together in order, or if the order does not matter.
+inline constexpr std::size_t stretch = std::size_t{1} << 14;
+[[nodiscard]] constexpr std::size_t stretches(std::size_t count) noexcept { return (count + stretch - 1) / stretch; }
+template <class Act>
+void for_each_stretch(std::size_t count, unsigned threads, const Act& act) {
+  for_each_index(stretches(count), threads, [&](std::size_t i) { act(i, i * stretch, std::min(count, (i + 1) * stretch)); });
+}
+
+/// The primitives that can be met at all, in coordinates relative to the centre of their bounds. `boxes` has a size, and gives a `Box` of
+/// each number, twice the same.
 template <std::floating_point Real>
 struct BuildInput {
   Box bounds;
   Vec3 centre{};
-  std::vector<Boxed<Real>> primitives;
+  Draft<Boxed<Real>> primitives;
 
-  explicit BuildInput(std::span<const Box> boxes) {
+  template <class Boxes>
+  explicit BuildInput(const Boxes& boxes, unsigned threads = 1) {
     constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // one more would be taken for `Nearest::none`
     if (boxes.size() > most)
       throw SettingError("Accelerator::boxes", static_cast<double>(boxes.size()), "", "at most 4294967294 in number");
+    struct Stretch {
+      Box bounds;
+      std::size_t first = 0, met = 0;  // in `primitives`
+    };
+    std::vector<Stretch> all(stretches(boxes.size()));
+    for_each_stretch(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+      Stretch own;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Box box = boxes[i];
+        if (box.empty()) continue;
+        const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
+        if (!(extent <= farthest)) throw SettingError("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
+        own.bounds.extend(box), ++own.met;
+      }
+      all[part] = own;
+    });
     std::size_t met = 0;
-    for (const Box& box : boxes) {
-      if (box.empty()) continue;
-      const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
-      if (!(extent <= farthest)) throw SettingError("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
-      bounds.extend(box), ++met;
-    }
+    for (Stretch& own : all) bounds.extend(own.bounds), own.first = met, met += own.met;
     if (met == 0) return;
     centre = bounds.centre();
-    primitives.reserve(met);
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      if (!boxes[i].empty()) primitives.push_back({BoundingBox<Real>::around(boxes[i], centre), static_cast<PrimitiveIndex>(i)});
+    primitives = Draft<Boxed<Real>>(met);
+    for_each_stretch(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+      Boxed<Real>* to = primitives.data() + all[part].first;
+      for (std::size_t i = begin; i < end; ++i)
+        if (const Box box = boxes[i]; !box.empty()) *to++ = {BoundingBox<Real>::around(box, centre), static_cast<PrimitiveIndex>(i)};
+    });
   }
 };
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <pulsecast/accel/sah.hpp>
+#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/parallel.hpp>
 
@@ -32,38 +33,40 @@ class TwoTree {
   };
 
   /// At least one primitive, which must outlive the tree.
-  TwoTree(std::span<Boxed<Real>> primitives, unsigned threads) : primitives_(primitives), nodes_(primitives.size()) {
-    // the upper levels one after another, each on all threads; then what is below them side by side
-    struct Subtree {
+  TwoTree(std::span<Boxed<Real>> primitives, unsigned threads)
+      : primitives_(primitives), spare_(primitives.size()), nodes_(primitives.size()) {
+    // the upper levels node by node, each on all threads; then what is below them side by side
+    struct Step {
       Task task;
-      Sums sums;
+      Sums sums{};
+      std::size_t halves = 0;  // where the first is, the other after it; 0 if it is built as a whole
     };
-    std::vector<Subtree> subtrees;
-    std::vector<Task> upper{{0, static_cast<std::uint32_t>(primitives.size()), 0, &root_}};
-    const std::size_t grain = std::max<std::size_t>(primitives.size() / 64, 4096);
-    while (!upper.empty()) {
-      const Task task = upper.back();
-      upper.pop_back();
-      if (task.end - task.begin > grain)
-        split(task, upper, threads);
-      else
-        subtrees.push_back({task, {}});
-    }
-    for_each_index(subtrees.size(), threads, [&](std::size_t i) {
-      Subtree& subtree = subtrees[i];
-      std::vector<Task> tasks{subtree.task};
-      while (!tasks.empty()) {
-        const Task task = tasks.back();
-        tasks.pop_back();
-        split(task, tasks, 1);
+    threads = thread_count(threads);
+    const std::size_t grain = threads == 1 ? primitives.size() : std::max<std::size_t>(primitives.size() / (8 * threads), 4096);
+    std::vector<Step> steps{{{0, static_cast<std::uint32_t>(primitives.size()), 0, false, &root_, bounds(threads)}}};
+    std::vector<std::size_t> subtrees;
+    std::vector<Stretch> space(1);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (steps[i].task.size() <= grain) {
+        subtrees.push_back(i);
+        continue;
       }
-      subtree.sums = plan({subtree.task.begin, subtree.task.end, *subtree.task.number}, [](const Range&) noexcept { return nullptr; });
+      const auto halves = split(steps[i].task, space, threads);
+      steps[i].halves = steps.size();
+      for (const Task& half : halves) steps.push_back({half});
+    }
+    std::sort(subtrees.begin(), subtrees.end(), [&](std::size_t a, std::size_t b) { return steps[a].task.size() > steps[b].task.size(); });
+    for_each_index(subtrees.size(), threads, [&](std::size_t i) {
+      Step& step = steps[subtrees[i]];
+      std::vector<Stretch> own(1);
+      step.sums = build(step.task, own);
     });
-    std::sort(subtrees.begin(), subtrees.end(), [](const Subtree& a, const Subtree& b) { return a.task.begin < b.task.begin; });
-    plan(root(), [&](const Range& range) noexcept -> const Sums* {
-      const auto at = std::partition_point(subtrees.begin(), subtrees.end(), [&](const Subtree& s) { return s.task.begin < range.begin; });
-      return at != subtrees.end() && at->task.begin == range.begin && at->task.end == range.end ? &at->sums : nullptr;
-    });
+    for (std::size_t i = steps.size(); i-- > 0;)
+      if (const std::size_t halves = steps[i].halves; halves > 0) {
+        const Step &first = steps[halves], &second = steps[halves + 1];
+        steps[i].sums = plan(nodes_[*steps[i].task.number], first.sums, first.task.size(), second.sums, second.task.size());
+      }
+    spare_ = {};
   }
 
   [[nodiscard]] std::span<const Boxed<Real>> primitives() const noexcept { return primitives_; }
@@ -84,7 +87,9 @@ class TwoTree {
   }
 
  private:
-  static constexpr std::size_t bins = 16;
+  static constexpr std::size_t most_slices = 16;
+  static constexpr std::size_t few =
+      4096;  ///< primitives: a tree of so few is built at once, and these may be shapes with trees of their own
   static constexpr double leaf_cost = 1;  ///< of the tests in a leaf, where a step of the traversal costs 1
 
   /// What the best plan costs where a node takes up to j + 1 places of the one above, j being the index.
@@ -98,159 +103,206 @@ class TwoTree {
     bool leaf;
   };
 
-  struct Task {
-    std::uint32_t begin, end, depth;
-    std::uint32_t* number;  ///< where the number of the node is to stand
-  };
-
-  using Corner = Four<Real>;  ///< x, y, z and one lane that means nothing
-
-  /// A box as it grows.
-  struct Growing {
-    Corner min{std::numeric_limits<Real>::max()}, max{-std::numeric_limits<Real>::max()};
-
-    void extend(const Corner& low, const Corner& high) noexcept { min = smaller(low, min), max = greater(high, max); }
-    void extend(const Growing& by) noexcept { extend(by.min, by.max); }
-    [[nodiscard]] BoundingBox<Real> box() const noexcept { return {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}}; }
-  };
-
-  static Corner low(const Boxed<Real>& boxed) noexcept { return Corner::from(boxed.box.min[0]); }
-  static Corner high(const Boxed<Real>& boxed) noexcept { return Corner::from(boxed.box.max[0]); }
-  static_assert(sizeof(Boxed<Real>) >= 7 * sizeof(Real), "high() reads one lane beyond the box");
+  using Corner = Four<Real>;
+  using Growing = GrowingBox<Real>;
 
   struct Bounds {
     Growing boxes, centres;  ///< the centres doubled
-  };
 
-  /// Where splits are considered: slices of the centres' box, along each axis.
-  struct Slicing {
-    Corner low, per_width;
-    bool valid[3];
-
-    explicit Slicing(const Growing& centres) noexcept : low(centres.min) {
-      Real per[4] = {};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Real extent = centres.max[k] - centres.min[k], slices = static_cast<Real>(bins) / extent;
-        valid[k] = extent > 0 && slices <= std::numeric_limits<Real>::max();
-        per[k] = valid[k] ? slices : 0;
-      }
-      per_width = Corner::from(per[0]);
+    void extend(const Boxed<Real>& boxed) noexcept {
+      const Corner low = boxed.low(), high = boxed.high(), centre = low + high;
+      boxes.extend(low, high), centres.extend(centre, centre);
     }
-    /// The slice along each axis that holds a box.
-    [[nodiscard]] std::array<std::uint32_t, 3> of(const Boxed<Real>& boxed) const noexcept {
-      const Corner slice = (TwoTree::low(boxed) + TwoTree::high(boxed) - low) * per_width;
-      const Corner within = smaller(greater(slice, Corner(0)), Corner(bins - 1));
-      return {static_cast<std::uint32_t>(within[0]), static_cast<std::uint32_t>(within[1]), static_cast<std::uint32_t>(within[2])};
+    void extend(const Bounds& by) noexcept { boxes.extend(by.boxes), centres.extend(by.centres); }
+  };
+
+  struct Task {
+    std::uint32_t begin, end, depth;
+    bool spare;             ///< whether its primitives are in the spare array
+    std::uint32_t* number;  ///< where the number of its node is to stand
+    Bounds bounds;
+
+    [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
+  };
+
+  /// What is in the slices along each axis.
+  struct Bins {
+    Growing boxes[3][most_slices];
+    std::uint32_t counts[3][most_slices];
+
+    void clear(std::size_t slices) noexcept {
+      for (std::size_t k = 0; k < 3; ++k) std::fill_n(boxes[k], slices, Growing()), std::fill_n(counts[k], slices, 0U);
+    }
+    void add(const Bins& others, std::size_t slices) noexcept {
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < slices; ++i) boxes[k][i].extend(others.boxes[k][i]), counts[k][i] += others.counts[k][i];
     }
   };
 
-  struct Bin {
-    Growing box;
-    std::uint32_t count = 0;
+  /// A stretch of the primitives of a node, as a thread splits it.
+  struct Stretch {
+    Bins bins;
+    std::uint32_t to[2];  ///< where its primitives of either half go
+    Growing centres[2];   ///< of these, doubled
   };
-  using Bins = std::array<std::array<Bin, bins>, 3>;
 
   struct Split {
-    int axis = -1;  ///< -1 if there is none
-    std::size_t bin = 0;
+    std::size_t axis = 0, slice = 0;  ///< the first slice of the second half; 0 if there is no split
     double cost = std::numeric_limits<double>::infinity();
   };
 
-  /// Puts together what `part(begin, end, result)` makes of stretches of a part, on several threads where it is large.
-  template <class Result, class Part, class Join>
-  static Result over(std::span<Boxed<Real>> all, unsigned threads, const Part& part, const Join& join) {
-    constexpr std::size_t stretch = 1U << 16;
-    Result result;
-    if (threads == 1 || all.size() <= stretch) {
-      part(all, result);
-      return result;
-    }
-    std::vector<Result> results((all.size() + stretch - 1) / stretch);
-    for_each_index(results.size(), threads,
-                   [&](std::size_t i) { part(all.subspan(i * stretch, std::min(stretch, all.size() - i * stretch)), results[i]); });
-    for (const Result& r : results) join(result, r);
-    return result;
+  [[nodiscard]] Bounds bounds(unsigned threads) const {
+    std::vector<Bounds> all(stretches(primitives_.size()));
+    for_each_stretch(primitives_.size(), threads, [&](std::size_t i, std::size_t begin, std::size_t end) {
+      Bounds own;
+      for (std::size_t at = begin; at < end; ++at) own.extend(primitives_[at]);
+      all[i] = own;
+    });
+    Bounds bounds;
+    for (const Bounds& own : all) bounds.extend(own);
+    return bounds;
   }
 
-  /// Makes a node of a range, and gives its halves to do.
-  void split(const Task& task, std::vector<Task>& tasks, unsigned threads) {
-    const std::span<Boxed<Real>> part = primitives_.subspan(task.begin, task.end - task.begin);
-    if (part.size() == 1) {
-      *task.number = 0;
-      return;
+  /// The array that a task's primitives are in, and the other one.
+  [[nodiscard]] Boxed<Real>* array(bool spare) const noexcept { return spare ? spare_.data() : primitives_.data(); }
+
+  /// Makes a node and all that is below it, and plans them.
+  Sums build(const Task& task, std::vector<Stretch>& space) {
+    if (task.size() > 2) {
+      const auto [first, second] = split(task, space, 1);
+      const Sums of_first = build(first, space), of_second = build(second, space);
+      return plan(nodes_[*task.number], of_first, first.size(), of_second, second.size());
     }
-    const auto bounds = over<Bounds>(
-        part, threads,
-        [](std::span<const Boxed<Real>> some, Bounds& b) noexcept {
-          for (const Boxed<Real>& boxed : some) {
-            const Corner low = TwoTree::low(boxed), high = TwoTree::high(boxed);
-            b.boxes.extend(low, high), b.centres.extend(low + high, low + high);
-          }
-        },
-        [](Bounds& b, const Bounds& other) noexcept { b.boxes.extend(other.boxes), b.centres.extend(other.centres); });
-    const std::uint32_t middle = task.begin + static_cast<std::uint32_t>(divide(part, bounds.centres, task.depth, threads));
-    Node& node = nodes_[middle];
-    node.box = bounds.boxes.box();
-    *task.number = middle;
-    tasks.push_back({middle, task.end, task.depth + 1, &node.second});
-    tasks.push_back({task.begin, middle, task.depth + 1, &node.first});
+    if (task.spare) std::copy_n(spare_.data() + task.begin, task.size(), primitives_.data() + task.begin);
+    const auto sums_of = [&](std::uint32_t i) {
+      Sums sums;
+      sums.fill(half_area(primitives_[i].box) * leaf_cost);
+      return sums;
+    };
+    *task.number = task.size() == 1 ? 0 : task.end - 1;
+    if (task.size() == 1) return sums_of(task.begin);
+    Node& node = nodes_[*task.number];
+    node.box = task.bounds.boxes.box(), node.first = node.second = 0;
+    return plan(node, sums_of(task.begin), 1, sums_of(task.begin + 1), 1);
   }
 
-  /// Moves the left part to the front and gives its size; both parts are left with levels enough to be halved down to single primitives.
-  static std::size_t divide(std::span<Boxed<Real>> part, const Growing& centres, std::size_t depth, unsigned threads) {
-    if (part.size() == 2) return 1;
-    const Slicing slicing(centres);
-    if (const Split split = best_split(part, slicing, threads); split.axis >= 0) {
-      const auto k = static_cast<std::size_t>(split.axis);
-      const auto in_left = [&](const Boxed<Real>& boxed) { return slicing.of(boxed)[k] < split.bin; };
-      const auto left = static_cast<std::size_t>(std::partition(part.begin(), part.end(), in_left) - part.begin());
-      const std::size_t larger = std::max(left, part.size() - left);
-      if (depth + 1 + levels_of_halving(larger) <= deepest) return left;
+  /// Makes a node of three primitives or more, and divides them. Both parts are left with levels enough to be halved down to single ones.
+  std::array<Task, 2> split(const Task& task, std::vector<Stretch>& space, unsigned threads) {
+    const Boxed<Real>* const from = array(task.spare) + task.begin;
+    if (threads == 1 || task.size() <= 2 * stretch) threads = 1;
+    const std::size_t parts = threads == 1 ? 1 : stretches(task.size());
+    space.resize(std::max(space.size(), parts));
+    const auto each_part = [&](const auto& act) {
+      if (threads == 1) return act(space[0], from, from + task.size());
+      for_each_stretch(task.size(), threads,
+                       [&](std::size_t i, std::size_t begin, std::size_t end) { act(space[i], from + begin, from + end); });
+    };
+    const std::size_t count = primitives_.size() <= few ? most_slices : std::min<std::size_t>(most_slices, 4 + task.size() / 16);
+    const Slices<Real> slices(task.bounds.centres.min, task.bounds.centres.max, count);
+    each_part(
+        [&](Stretch& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept { put_in_bins(part.bins, slices, begin, end); });
+    Bins together;
+    const Bins* all = &space[0].bins;
+    if (parts > 1) {
+      together.clear(slices.count());
+      for (std::size_t i = 0; i < parts; ++i) together.add(space[i].bins, slices.count());
+      all = &together;
     }
+    const Split split = best_split(*all, slices, task.size());
+    if (split.slice == 0) return halve(task);
+    std::uint32_t left = 0;
+    Task first{task.begin, 0, task.depth + 1, !task.spare, nullptr, {}}, second{0, task.end, task.depth + 1, !task.spare, nullptr, {}};
+    for (std::size_t i = 0; i < slices.count(); ++i) {
+      (i < split.slice ? first : second).bounds.boxes.extend(all->boxes[split.axis][i]);
+      if (i < split.slice) left += all->counts[split.axis][i];
+    }
+    if (task.depth + 1 + levels_of_halving(std::max(left, task.size() - left)) > deepest) return halve(task);
+    const std::uint32_t middle = first.end = second.begin = task.begin + left;
+    std::uint32_t to[2] = {task.begin, middle};
+    for (std::size_t i = 0; i < parts; ++i) {
+      Stretch& part = space[i];
+      std::copy_n(to, 2, part.to);
+      for (std::size_t s = 0; s < slices.count(); ++s) to[s < split.slice ? 0 : 1] += part.bins.counts[split.axis][s];
+    }
+    each_part([&](Stretch& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
+      scatter(part, slices, split, array(!task.spare), begin, end);
+    });
+    for (std::size_t i = 0; i < parts; ++i)
+      first.bounds.centres.extend(space[i].centres[0]), second.bounds.centres.extend(space[i].centres[1]);
+    return made(task, first, second);
+  }
+
+  std::array<Task, 2> made(const Task& task, Task& first, Task& second) noexcept {
+    Node& node = nodes_[second.begin];
+    node.box = task.bounds.boxes.box();
+    *task.number = second.begin, first.number = &node.first, second.number = &node.second;
+    return {first, second};
+  }
+
+  static void put_in_bins(Bins& bins, const Slices<Real>& slices, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
+    const auto put = [&](const Boxed<Real>& boxed, Bins& to) noexcept {
+      const Corner low = boxed.low(), high = boxed.high();
+      const auto of = slices.of(low + high);
+      for (std::size_t k = 0; k < 3; ++k) to.boxes[k][of[k]].extend(low, high), ++to.counts[k][of[k]];
+    };
+    bins.clear(slices.count());
+    if (end - begin > 256) {  // neighbours are often in one slice, and would wait for each other
+      Bins other;
+      other.clear(slices.count());
+      for (; end - begin > 1; begin += 2) put(begin[0], bins), put(begin[1], other);
+      bins.add(other, slices.count());
+    }
+    for (; begin != end; ++begin) put(*begin, bins);
+  }
+
+  /// Brings primitives to their halves, in the order in which they are.
+  static void scatter(Stretch& part, const Slices<Real>& slices, const Split& split, Boxed<Real>* to, const Boxed<Real>* begin,
+                      const Boxed<Real>* end) noexcept {
+    part.centres[0] = part.centres[1] = Growing();
+    for (; begin != end; ++begin) {
+      const Corner centre = begin->low() + begin->high();
+      const std::size_t half = slices.reaches(split.axis, begin->box.min[split.axis] + begin->box.max[split.axis], split.slice) ? 1 : 0;
+      to[part.to[half]++] = *begin;
+      part.centres[half].extend(centre, centre);
+    }
+  }
+
+  /// Divides in the middle along the longest axis.
+  std::array<Task, 2> halve(const Task& task) {
+    const Growing& centres = task.bounds.centres;
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k)
       if (centres.max[k] - centres.min[k] > centres.max[axis] - centres.min[axis]) axis = k;
     const auto centre = [axis](const Boxed<Real>& boxed) { return boxed.box.min[axis] + boxed.box.max[axis]; };
-    std::nth_element(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(part.size() / 2), part.end(),
+    Boxed<Real>* const all = array(task.spare);
+    const std::uint32_t middle = task.begin + task.size() / 2;
+    std::nth_element(all + task.begin, all + middle, all + task.end,
                      [&](const Boxed<Real>& a, const Boxed<Real>& b) { return centre(a) < centre(b); });
-    return part.size() / 2;
+    Task first{task.begin, middle, task.depth + 1, task.spare, nullptr, {}},
+        second{middle, task.end, task.depth + 1, task.spare, nullptr, {}};
+    for (std::uint32_t i = task.begin; i < task.end; ++i) (i < middle ? first : second).bounds.extend(all[i]);
+    return made(task, first, second);
   }
 
   /// The cheapest split between slices, its cost being the sum of area times number.
-  static Split best_split(std::span<Boxed<Real>> part, const Slicing& slicing, unsigned threads) {
-    const auto all = over<Bins>(
-        part, threads,
-        [&](std::span<const Boxed<Real>> some, Bins& to) noexcept {
-          for (const Boxed<Real>& boxed : some) {
-            const Corner low = TwoTree::low(boxed), high = TwoTree::high(boxed);
-            const auto slices = slicing.of(boxed);
-            for (std::size_t k = 0; k < 3; ++k) {
-              Bin& bin = to[k][slices[k]];
-              bin.box.extend(low, high), ++bin.count;
-            }
-          }
-        },
-        [](Bins& to, const Bins& others) noexcept {
-          for (std::size_t k = 0; k < 3; ++k)
-            for (std::size_t i = 0; i < bins; ++i) to[k][i].box.extend(others[k][i].box), to[k][i].count += others[k][i].count;
-        });
+  static Split best_split(const Bins& bins, const Slices<Real>& slices, std::uint32_t size) noexcept {
     Split best;
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!slicing.valid[k]) continue;
-      std::array<double, bins> right_cost;
+      if (!slices.valid(k)) continue;
+      std::array<double, most_slices> second_cost;
       Growing box;
       std::uint32_t count = 0;
-      for (std::size_t i = bins; i-- > 1;) {
-        if (all[k][i].count > 0) box.extend(all[k][i].box), count += all[k][i].count;
-        right_cost[i] = count == 0 ? 0 : half_area(box.box()) * count;
+      for (std::size_t i = slices.count(); i-- > 1;) {
+        box.extend(bins.boxes[k][i]), count += bins.counts[k][i];
+        second_cost[i] = count == 0 ? 0 : box.half_area() * count;
       }
       box = Growing(), count = 0;
-      for (std::size_t i = 1; i < bins; ++i) {
-        if (all[k][i - 1].count == 0) continue;  // the same split as the one before
-        box.extend(all[k][i - 1].box), count += all[k][i - 1].count;
-        if (count == part.size()) break;
-        const double cost = half_area(box.box()) * count + right_cost[i];
-        if (cost < best.cost) best = {static_cast<int>(k), i, cost};
+      for (std::size_t i = 1; i < slices.count(); ++i) {
+        if (bins.counts[k][i - 1] == 0) continue;  // the same split as the one before
+        box.extend(bins.boxes[k][i - 1]), count += bins.counts[k][i - 1];
+        if (count == size) break;
+        const double cost = box.half_area() * count + second_cost[i];
+        if (cost < best.cost) best = {k, i, cost};
       }
     }
     return best;
@@ -259,25 +311,22 @@ class TwoTree {
   [[nodiscard]] Range first(const Range& r) const noexcept { return {r.begin, r.middle, nodes_[r.middle].first}; }
   [[nodiscard]] Range second(const Range& r) const noexcept { return {r.middle, r.end, nodes_[r.middle].second}; }
 
-  /// Plans a node and all below it, but for those whose sums `known` gives.
-  template <class Known>
-  Sums plan(const Range& range, const Known& known) {
-    if (const Sums* sums = known(range)) return *sums;
+  /// Plans a node, of whose halves the sums and sizes are known.
+  static Sums plan(Node& node, const Sums& first, std::size_t in_first, const Sums& second, std::size_t in_second) noexcept {
     Sums sums;
-    if (range.middle == 0) {
-      sums.fill(half_area(primitives_[range.begin].box) * leaf_cost);
-      return sums;
-    }
-    const Sums of_first = plan(first(range), known), of_second = plan(second(range), known);
-    Node& node = nodes_[range.middle];
+    const std::size_t size = in_first + in_second;
     for (std::size_t j = 1; j < Places; ++j) {
+      if (j >= size) {  // more places than primitives
+        sums[j] = sums[j - 1], node.left[j - 1] = node.left[j - 2];
+        continue;
+      }
       sums[j] = std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < j; ++k)
-        if (const double sum = of_first[k] + of_second[j - 1 - k]; sum < sums[j])
+      for (std::size_t k = j > in_second ? j - in_second : 0; k < std::min(j, in_first); ++k)
+        if (const double sum = first[k] + second[j - 1 - k]; sum < sums[j])
           sums[j] = sum, node.left[j - 1] = static_cast<std::uint8_t>(k + 1);
     }
     const double area = half_area(node.box), as_node = area + sums[Places - 1];
-    const double as_leaf = range.size() <= LeafSize ? area * leaf_cost : std::numeric_limits<double>::infinity();
+    const double as_leaf = size <= LeafSize ? area * leaf_cost : std::numeric_limits<double>::infinity();
     node.leaf = as_leaf <= as_node;
     sums[0] = std::min(as_leaf, as_node);
     for (std::size_t j = 1; j < Places - 1; ++j)  // not the last, which is the node itself
@@ -286,7 +335,8 @@ class TwoTree {
   }
 
   std::span<Boxed<Real>> primitives_;
-  std::vector<Node> nodes_;
+  Draft<Boxed<Real>> spare_;  ///< while it is built
+  Draft<Node> nodes_;
   std::uint32_t root_ = 0;
 };
 

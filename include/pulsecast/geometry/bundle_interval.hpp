@@ -9,6 +9,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <type_traits>
 
@@ -79,10 +80,10 @@ struct EightBoxes {
 /// Source: Mahovsky & Wyvill 2006; Ylitie, Karras & Laine 2017.
 template <std::floating_point Real>
 struct CompactBoxes {
-  std::uint32_t walls[3][8];  ///< by axis: the lower wall in the lower half, the upper wall in the upper one
-  Real origin[3];             ///< of the grid [m]
-  std::int8_t exponent[3];    ///< of two: the grid's step [m]
-  std::uint8_t count = 0;     ///< places that hold a box, the first ones
+  std::uint16_t walls[3][2][8];  ///< by axis, the lower ones first
+  Real origin[3];                ///< of the grid [m]
+  std::uint8_t exponent[3];      ///< of two, and 127 more: the grid's step [m]
+  std::uint8_t count = 0;        ///< places that hold a box, the first ones
 
   CompactBoxes() noexcept {}  // leaves all but the number of boxes unset
 
@@ -92,8 +93,8 @@ struct CompactBoxes {
       const double extent = static_cast<double>(around.max[k]) - static_cast<double>(around.min[k]);
       int e;  // of a power of two above the ratio
       std::frexp(extent / (steps - 1), &e);
-      origin[k] = around.min[k], exponent[k] = static_cast<std::int8_t>(extent > 0 && e > least_exponent ? e : least_exponent);
-      for (std::uint32_t& wall : walls[k]) wall = 0;
+      origin[k] = around.min[k], exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 && e > least_exponent ? e : least_exponent));
+      for (auto& side : walls[k]) std::fill(std::begin(side), std::end(side), std::uint16_t{0});
     }
     count = 0;
   }
@@ -103,7 +104,8 @@ struct CompactBoxes {
       const double start = static_cast<double>(origin[k]), per_step = 1 / static_cast<double>(step(k));
       const double low = (static_cast<double>(box.min[k]) - start) * per_step, high = (static_cast<double>(box.max[k]) - start) * per_step;
       const auto down = static_cast<std::uint32_t>(low), truncated = static_cast<std::uint32_t>(high);
-      walls[k][count] = down | (truncated + (truncated < high ? 1U : 0U)) << 16;
+      walls[k][0][count] = static_cast<std::uint16_t>(down);
+      walls[k][1][count] = static_cast<std::uint16_t>(truncated + (truncated < high ? 1U : 0U));
     }
     ++count;
   }
@@ -111,9 +113,9 @@ struct CompactBoxes {
   /// The grid's step along an axis [m].
   [[nodiscard]] Real step(std::size_t k) const noexcept {
     if constexpr (sizeof(Real) == 4)
-      return std::bit_cast<Real>(static_cast<std::uint32_t>(exponent[k] + 127) << 23);
+      return std::bit_cast<Real>(std::uint32_t{exponent[k]} << 23);
     else
-      return std::bit_cast<Real>(static_cast<std::uint64_t>(exponent[k] + 1023) << 52);
+      return std::bit_cast<Real>((std::uint64_t{exponent[k]} + (1023 - 127)) << 52);
   }
 
  private:
@@ -157,6 +159,9 @@ class BundleInterval {
     }
   }
 
+  /// The range beyond which no ray can find anything nearer.
+  [[nodiscard]] Real limit(const RayBundle& rays, const Nearest& nearest) const noexcept { return round_up<Real>(nearest.limit(rays)); }
+
   /// The stretch of range over which any ray may be inside the box; empty if none can be.
   [[nodiscard]] Span inside(const BoundingBox<Real>& box) const noexcept {
     Span span{near_, std::numeric_limits<Real>::max()};
@@ -183,9 +188,8 @@ class BundleInterval {
       steps[k] = boxes.step(k);
     }
     const unsigned met = inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
-      const PackWords<Real> walls = load<PackWords<Real>>(boxes.walls[k][first]);
-      return {(to_pack<Real>(walls & 0xFFFF) * steps[k] + to_low[k]) * axes_[k].per_min,
-              (to_pack<Real>(walls >> 16) * steps[k] + to_high[k]) * axes_[k].per_max};
+      return {(pack_from<Real>(boxes.walls[k][0][first]) * steps[k] + to_low[k]) * axes_[k].per_min,
+              (pack_from<Real>(boxes.walls[k][1][first]) * steps[k] + to_high[k]) * axes_[k].per_max};
     });
     return met & ((1U << boxes.count) - 1);
   }
@@ -265,6 +269,75 @@ class BundleInterval {
 
   Real near_;
   Axis axes_[3];
+};
+
+/// A single ray against eight boxes, as cautious as a `BundleInterval`, in half the time: it enters through one wall along each axis, and
+/// leaves through the other.
+template <std::floating_point Real>
+class RayInterval {
+ public:
+  /// Of the only ray of a bundle. `bounds` is what the accelerator holds, `centre` what its boxes are relative to.
+  RayInterval(const RayBundle& ray, const Box& bounds, const Vec3& centre) noexcept {
+    using Axes = Four<double>;
+    const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
+    const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin), low = axes(bounds.min), high = axes(bounds.max);
+    const Axes o = origin - axes(centre);
+    // the margin of a bundle, for the same reasons
+    const Axes farthest = greater(greater(magnitude(low), magnitude(high)), magnitude(origin));
+    const double slack = 64 * std::numeric_limits<double>::epsilon() * std::max(std::max(farthest[0], farthest[1]), farthest[2]);
+    const Axes margin = Axes(slack) + (magnitude(o) + (high - low)) * Axes(4 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
+    const Axes outwards = margin * sense(direction);
+    const Axes slowness = sense(direction) / greater(magnitude(direction), Axes(least_speed * ray.direction_length));
+    put(0, o + outwards, slowness * Axes(1 - tolerance));
+    put(1, o - outwards, slowness * Axes(1 + tolerance));
+    for (std::size_t k = 0; k < 3; ++k) upper_[k] = direction[k] < 0 ? 1 : 0;
+    const Axes both = o + direction;
+    const double sum = both[0] + both[1] + both[2];
+    near_ =
+        sum - sum == 0 ? static_cast<Real>(ray.near * (1 - tolerance)) : std::numeric_limits<Real>::infinity();  // what is no ray misses
+  }
+
+  /// The range beyond which the ray can find nothing nearer.
+  [[nodiscard]] Real limit(const RayBundle&, const Nearest& nearest) const noexcept {
+    return static_cast<Real>(std::min(nearest.range[0] * (1 + tolerance), double{std::numeric_limits<Real>::max()}));
+  }
+
+  /// The boxes that the ray may be inside of at a range of at most `limit`, a bit each, and where it may enter them.
+  [[nodiscard]] unsigned inside(const CompactBoxes<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
+    Real steps[3];
+    for (std::size_t k = 0; k < 3; ++k) steps[k] = boxes.step(k);
+    unsigned met = 0;
+    for (std::size_t first = 0; first < 8; first += pack_count<Real>) {
+      // the range to a wall is a line over its number; where it lies errs by two roundings of how far the origin is, and four and a half of
+      // half the bounds
+      const auto ranges = [&](std::size_t k, std::size_t side) noexcept -> Pack<Real> {
+        const Real per = per_[side][k], start = boxes.origin[k] * per + start_[side][k];
+        return pack_from<Real>(boxes.walls[k][upper_[k] ^ side][first]) * (steps[k] * per) + start;
+      };
+      Pack<Real> entry = near_ - Pack<Real>{}, exit = limit - Pack<Real>{};
+      for (std::size_t k = 0; k < 3; ++k)  // what is no number passes no comparison
+        entry = greater(ranges(k, 0), entry), exit = smaller(ranges(k, 1), exit);
+      store(entry, entries[first]);
+      met |= bits(entry <= exit) << first;
+    }
+    return met & ((1U << boxes.count) - 1);
+  }
+
+ private:
+  static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+  /// By the length of the direction. A slower ray counts as one of this speed: from the margin on, it leaves a box so late all the same
+  /// that nothing is met beyond.
+  static constexpr double least_speed = 1e-18;
+
+  void put(std::size_t side, const Four<double>& from, const Four<double>& slowness) noexcept {
+    per_[side] = slowness.template as<Real>();
+    start_[side] = (Four<double>(0) - from).template as<Real>() * per_[side];
+  }
+
+  /// What turns the place of a wall along each axis into the range to it, where a box is entered and where it is left.
+  Four<Real> per_[2], start_[2];
+  Real near_;
+  std::size_t upper_[3];  ///< 1 where boxes are entered through their upper walls
 };
 
 }  // namespace pulsecast

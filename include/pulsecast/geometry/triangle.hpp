@@ -45,13 +45,11 @@ struct TrianglePacket {
   TrianglePacket(std::span<const PrimitiveIndex> of, const TriangleOf& triangle_of) noexcept : size(of.size()) {
     const auto in_use = [&](std::size_t lane) noexcept { return std::min(lane, size - 1); };
     for (std::size_t lane = 0; lane < lane_count; ++lane) primitives[lane] = of[in_use(lane)];
-    const auto triangles = [&]<std::size_t... lane>(std::index_sequence<lane...>) noexcept {
-      return std::array{triangle_of(in_use(lane))...};
-    }(std::make_index_sequence<lane_count>());
     const auto corner = [&](Vec3 Triangle::*which) noexcept {
-      return Corner{lanes_of([&](std::size_t lane) { return (triangles[lane].*which).x; }),
-                    lanes_of([&](std::size_t lane) { return (triangles[lane].*which).y; }),
-                    lanes_of([&](std::size_t lane) { return (triangles[lane].*which).z; })};
+      const auto coordinate = [&](double Vec3::*axis) noexcept {
+        return lanes_of([&](std::size_t lane) { return triangle_of(in_use(lane)).*which.*axis; });
+      };
+      return Corner{coordinate(&Vec3::x), coordinate(&Vec3::y), coordinate(&Vec3::z)};
     };
     a = corner(&Triangle::a), b = corner(&Triangle::b), c = corner(&Triangle::c);
   }
@@ -62,7 +60,10 @@ struct TrianglePacket {
 /// Inside means on the same side of the three planes through the origin and an edge; the planes depend on the bundle alone, so a ray
 /// costs three dot products, and none where the whole bundle passes a plane on one side. A ray counts as inside if rounding leaves it in
 /// doubt: no ray slips between two triangles that share an edge or a corner. A hit lies in the triangle's own box, widened by a few
-/// roundings, so that no box of an accelerator hides it. A ray within 1e-12 rad of the triangle's plane misses.
+/// roundings, so that no box of an accelerator hides it; and beside an edge by at most 32 roundings of the distance, divided by the sine of
+/// the angle between ray and plane. Its range errs by as much, times one more than the triangle's aspect.
+/// A ray within 1e-12 rad of the triangle's plane misses, and so does every ray where two edges are parallel to within 8 roundings: such a
+/// triangle has no area.
 /// Never inlined, so that every accelerator gets the same bits.
 /// Source: the volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin 2007; the stretch inside
 /// the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
@@ -70,7 +71,7 @@ struct TrianglePacket {
   static_assert(RayBundle::lanes % lane_count == 0);
   constexpr double unit = std::numeric_limits<double>::epsilon();
   using Corner = TrianglePacket::Corner;
-  const auto magnitude = [](const Lanes& v) noexcept { return greater(v, -v); };
+  const auto magnitude = [](const Lanes& v) noexcept { return Lanes(LaneIds(v) & 0x7FFF'FFFF'FFFF'FFFF); };
   const auto from_origin = [&](const Corner& p) noexcept -> Corner {
     return {p.x - rays.origin.x, p.y - rays.origin.y, p.z - rays.origin.z};
   };
@@ -91,6 +92,7 @@ struct TrianglePacket {
   const Planes ab = planes(a, b), bc = planes(b, c), ca = planes(c, a);
 
   // no ray is inside where all of them pass one plane on its right and one on its left; rounding may come in here once more
+  LaneMask may_meet;
   const auto most = [&](const Planes& p) noexcept {
     return greater(p.x * rays.least.x, p.x * rays.most.x) + greater(p.y * rays.least.y, p.y * rays.most.y) +
            greater(p.z * rays.least.z, p.z * rays.most.z);
@@ -99,9 +101,15 @@ struct TrianglePacket {
     return smaller(p.x * rays.least.x, p.x * rays.most.x) + smaller(p.y * rays.least.y, p.y * rays.most.y) +
            smaller(p.z * rays.least.z, p.z * rays.most.z);
   };
-  const LaneMask may_left = (most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt);
-  const LaneMask may_right = (least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt);
-  unsigned candidates = bits(may_left | may_right) & ((1U << triangles.size) - 1);
+  if (rays.size == 1) {
+    const auto side = [&](const Planes& p) noexcept { return p.x * rays.x[0] + p.y * rays.y[0] + p.z * rays.z[0]; };
+    const Lanes u = side(ab), v = side(bc), w = side(ca), doubt = 4 * greater(ab.doubt, greater(bc.doubt, ca.doubt));
+    may_meet = (smaller(u, smaller(v, w)) >= -doubt) | (greater(u, greater(v, w)) <= doubt);
+  } else {
+    may_meet = ((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
+               ((least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt));
+  }
+  unsigned candidates = bits(may_meet) & ((1U << triangles.size) - 1);
   if (candidates == 0) return;
 
   // their own planes and boxes, the boxes widened by the roundings of a hit
@@ -109,10 +117,13 @@ struct TrianglePacket {
     return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
   };
   const auto minus = [](const Corner& u, const Corner& v) noexcept -> Corner { return {u.x - v.x, u.y - v.y, u.z - v.z}; };
-  const Corner normals = cross_of(minus(b, a), minus(a, c));
-  const Lanes offsets = normals.x * a.x + normals.y * a.y + normals.z * a.z;
-  const Lanes grazing = 1e-12 * 1e-12 * rays.direction_length * rays.direction_length *
-                        (normals.x * normals.x + normals.y * normals.y + normals.z * normals.z);
+  const auto square = [](const Corner& v) noexcept { return v.x * v.x + v.y * v.y + v.z * v.z; };
+  const Corner from_a = minus(triangles.b, triangles.a), to_a = minus(triangles.a, triangles.c);  // not rounded by their distance
+  const Corner normals = cross_of(from_a, to_a);
+  const Lanes offsets = normals.x * a.x + normals.y * a.y + normals.z * a.z, area = square(normals);
+  const LaneMask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // an angle of none but roundings
+  const Lanes grazing =
+      flat ? Lanes{} + std::numeric_limits<double>::infinity() : 1e-12 * 1e-12 * rays.direction_length * rays.direction_length * area;
   const Corner lowest{smaller(a.x, smaller(b.x, c.x)), smaller(a.y, smaller(b.y, c.y)), smaller(a.z, smaller(b.z, c.z))};
   const Corner highest{greater(a.x, greater(b.x, c.x)), greater(a.y, greater(b.y, c.y)), greater(a.z, greater(b.z, c.z))};
   const Lanes extent =

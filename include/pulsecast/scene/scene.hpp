@@ -189,7 +189,7 @@ class Scene {
   }
 
   std::vector<Part> parts_;
-  Bvh<float> index_;
+  BvhOf<float, 1> index_;
   bool alone_ = false;  ///< there is one part, which stands
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -14,7 +15,9 @@
 #include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
+#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 
@@ -31,6 +34,7 @@ struct MeshData {
       throw SettingError(field, value, unit, std::move(allowed));
     };
     if (triangles.empty()) refuse("MeshData::triangles", 0, "", "at least one in number");
+    validate_counts(vertices.size(), triangles.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       for (int k = 0; k < 3; ++k)
         if (!std::isfinite(vertices[i][k])) refuse("MeshData::vertices", vertices[i][k], "m", "finite; see vertex " + std::to_string(i));
@@ -46,6 +50,12 @@ struct MeshData {
              "as many as triangles, " + std::to_string(triangles.size()) + ", or none");
   }
 
+  /// Refuses more than can be numbered by 32 bits, before memory is asked for to index them; `Nearest::none` is no triangle.
+  static void validate_counts(std::size_t vertices, std::size_t triangles) {
+    expect_within("MeshData::vertices (number)", static_cast<double>(vertices), 0, 4294967295.0, "");
+    expect_within("MeshData::triangles (number)", static_cast<double>(triangles), 1, 4294967294.0, "");
+  }
+
   /// The triangle of a number [m].
   [[nodiscard]] Triangle triangle(std::size_t i) const noexcept {
     const auto& corners = triangles[i];
@@ -53,8 +63,10 @@ struct MeshData {
   }
 };
 
-/// Triangles that share their corners. Both sides count; a triangle without area is never met. They keep their numbers, but stand in
-/// memory as the index meets them, and so do the corners.
+/// Triangles that share their corners where these are equal, to the last bit. Both sides count; a triangle without area is never met. They
+/// keep their numbers, but stand in memory as the index meets them, in blocks with corners of their own, which two bytes are enough to
+/// number. So a triangle takes 10 bytes beside its index and its corners of 24 bytes each, and one more if there are several materials.
+/// `float` is on the front of docs/tradeoff.md: it finds what `double` finds, in less time and memory, as triangles are met in double.
 template <template <class> class Index = Bvh, std::floating_point Real = float>
 requires Accelerator<Index<Real>>
 class TriangleMesh {
@@ -63,43 +75,52 @@ class TriangleMesh {
 
   /// `threads` to build it on; 0 for as many as the machine runs.
   explicit TriangleMesh(MeshData data, unsigned threads = 0) : index_(built(data, threads)) {
+    arrange(data, threads);
     for (const std::uint32_t m : data.materials) material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
-    materials_ = std::move(data.materials);
-    arrange(std::move(data));
+    if (material_count_ > 256)
+      materials_ = std::move(data.materials);
+    else if (material_count_ > 1)
+      few_materials_ = std::vector<std::uint8_t>(data.materials.begin(), data.materials.end());
   }
 
   explicit TriangleMesh(Unfilled unfilled) requires std::constructible_from<Index<Real>, Unfilled> : index_(unfilled) {}
   template <class Archive>
   void archive(Archive& a) {
-    a(corners_, triangles_, places_, materials_, index_, material_count_);
+    a(corners_, first_corners_, triangles_, places_, few_materials_, materials_, index_, material_count_);
   }
   [[nodiscard]] bool sound() const {
-    const auto has_corners = [&](const std::array<std::uint32_t, 3>& t) { return std::max({t[0], t[1], t[2]}) < corners_.size(); };
-    if (!std::all_of(triangles_.begin(), triangles_.end(), has_corners)) return false;
-    if (triangles_.size() != index_.order().size()) return false;
+    if (triangles_.size() != index_.order().size() || first_corners_.size() != detail::stretches(triangles_.size())) return false;
+    for (std::size_t place = 0; place < triangles_.size(); ++place) {
+      const std::uint64_t first = first_corners_[place / detail::stretch];
+      for (const std::uint16_t corner : triangles_[place])
+        if (first >= corners_.size() || corner >= corners_.size() - first) return false;
+    }
     if (!std::all_of(places_.begin(), places_.end(), [&](std::uint32_t place) { return place < triangles_.size(); })) return false;
-    if (material_count_ == 0 || (!materials_.empty() && materials_.size() != size())) return false;
-    if (!std::all_of(materials_.begin(), materials_.end(), [&](std::uint32_t m) { return m < material_count_; })) return false;
+    const auto in_table = [&](const auto& materials) {
+      return (materials.empty() || materials.size() == size()) &&
+             std::all_of(materials.begin(), materials.end(), [&](std::uint32_t m) { return m < material_count_; });
+    };
+    if (material_count_ == 0 || !in_table(few_materials_) || !in_table(materials_)) return false;
     if constexpr (requires { index_.sound(size()); }) return index_.sound(size());
     return true;
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
-  [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept { return triangle_of(triangles_[places_[i]]); }
+  [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept { return triangle_at(places_[i]); }
   [[nodiscard]] const Index<Real>& index() const noexcept { return index_; }
   [[nodiscard]] std::size_t material_count() const noexcept { return material_count_; }
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   [[nodiscard]] std::size_t memory() const noexcept {
-    return index_.memory() + corners_.memory() + triangles_.memory() + places_.memory() + materials_.memory();
+    return index_.memory() + corners_.memory() + first_corners_.memory() + triangles_.memory() + places_.memory() +
+           few_materials_.memory() + materials_.memory();
   }
 
-  void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
-    index_.closest(rays, Test{*this, rays, nearest}, nearest);
-  }
+  void closest(const RayBundle& rays, Nearest& nearest) const noexcept { index_.closest(rays, Test{*this, rays, nearest}, nearest); }
 
   [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
-    return {finite(normal) ? normal : Vec3{}, materials_.empty() ? 0 : materials_[i]};
+    const std::uint32_t material = !few_materials_.empty() ? few_materials_[i] : !materials_.empty() ? materials_[i] : 0;
+    return {finite(normal) ? normal : Vec3{}, material};
   }
 
  private:
@@ -110,61 +131,110 @@ class TriangleMesh {
     Nearest& nearest;
 
     void operator()(std::span<const PrimitiveIndex> primitives) const noexcept {
-      const auto* const triangles = found(primitives);
-      intersect(primitives, [&](std::size_t n) noexcept { return mesh.triangle_of(triangles[n]); }, rays, nearest);
+      const std::size_t place = place_of(primitives);
+      const auto triangle_of = [&](std::size_t n) noexcept { return mesh.triangle_at(place + n); };
+      intersect(primitives, triangle_of, rays, nearest);
     }
-    void soon(std::span<const PrimitiveIndex> primitives) const noexcept { prefetch(primitives.data()), prefetch(found(primitives)); }
+    void soon(std::span<const PrimitiveIndex> primitives) const noexcept {
+      prefetch(primitives.data()), prefetch(mesh.triangles_.data() + place_of(primitives));
+    }
 
-    [[nodiscard]] const std::array<std::uint32_t, 3>* found(std::span<const PrimitiveIndex> primitives) const noexcept {
-      return mesh.triangles_.data() + (primitives.data() - mesh.index_.order().data());
+    [[nodiscard]] std::size_t place_of(std::span<const PrimitiveIndex> primitives) const noexcept {
+      return static_cast<std::size_t>(primitives.data() - mesh.index_.order().data());
     }
   };
 
-  [[nodiscard]] Triangle triangle_of(const std::array<std::uint32_t, 3>& corners) const noexcept {
-    return {corners_[corners[0]], corners_[corners[1]], corners_[corners[2]]};
+  [[nodiscard]] Triangle triangle_at(std::size_t place) const noexcept {
+    const Vec3* const corners = corners_.data() + first_corners_[place / detail::stretch];
+    const auto& triangle = triangles_[place];
+    return {corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
   }
+
+  /// The boxes of triangles, made as they are asked for.
+  struct Boxes {
+    const MeshData& data;
+    [[nodiscard]] std::size_t size() const noexcept { return data.triangles.size(); }
+    [[nodiscard]] Box operator[](std::size_t i) const noexcept { return data.triangle(i).bounds(); }
+  };
 
   static Index<Real> built(const MeshData& data, unsigned threads) {
-    const std::vector<Box> all = boxes(data);
-    if constexpr (std::constructible_from<Index<Real>, std::span<const Box>, unsigned>)
-      return Index<Real>(all, threads);
-    else
-      return Index<Real>(all);
+    data.validate();
+    const Boxes boxes{data};
+    if constexpr (std::constructible_from<Index<Real>, Boxes, unsigned>) {
+      return Index<Real>(boxes, threads);
+    } else {
+      std::vector<Box> all;
+      all.reserve(boxes.size());
+      for (std::size_t i = 0; i < boxes.size(); ++i) all.push_back(boxes[i]);
+      if constexpr (std::constructible_from<Index<Real>, std::span<const Box>, unsigned>)
+        return Index<Real>(all, threads);
+      else
+        return Index<Real>(all);
+    }
   }
 
-  /// Puts triangles and corners where the index meets them.
-  void arrange(MeshData data) {
-    constexpr std::uint32_t nowhere = 0xFFFFFFFF;
-    const auto order = index_.order();
-    std::vector<std::uint32_t> moved(data.vertices.size(), nowhere);
-    auto places = room_for<std::uint32_t>(data.triangles.size());
-    places.resize(data.triangles.size());
-    auto triangles = room_for<std::array<std::uint32_t, 3>>(order.size());
-    triangles.resize(order.size());
-    auto corners = room_for<Vec3>(data.vertices.size());
-    for (std::size_t place = 0; place < order.size(); ++place) {
-      places[order[place]] = static_cast<std::uint32_t>(place);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t corner = data.triangles[order[place]][k];
-        if (moved[corner] == nowhere) moved[corner] = static_cast<std::uint32_t>(corners.size()), corners.push_back(data.vertices[corner]);
-        triangles[place][k] = moved[corner];
+  using Corners = std::array<std::uint16_t, 3>;  ///< of a triangle: their numbers in its block
+  static_assert(3 * detail::stretch < 0xFFFF);
+
+  /// The corners of a block, each once, and what finds them.
+  class CornerTable {
+   public:
+    explicit CornerTable(std::size_t triangles) : places_(std::bit_ceil(4 * triangles), nowhere) { corners_.reserve(triangles); }
+
+    [[nodiscard]] std::uint16_t number_of(const Vec3& corner) {
+      const auto bits = std::bit_cast<Bits>(corner);
+      // multiplicative hashing. Source: Knuth 1998, sec. 6.4
+      std::uint64_t hash = 0;
+      for (const std::uint64_t word : bits) hash = (hash ^ hash >> 32 ^ word) * 0x9E3779B97F4A7C15;
+      for (std::size_t i = hash >> 32;; ++i) {
+        std::uint16_t& place = places_[i & (places_.size() - 1)];
+        if (place == nowhere) place = static_cast<std::uint16_t>(corners_.size()), corners_.push_back(corner);
+        if (std::bit_cast<Bits>(corners_[place]) == bits) return place;
       }
     }
-    corners_ = std::move(corners), triangles_ = std::move(triangles), places_ = std::move(places);
-  }
 
-  static std::vector<Box> boxes(const MeshData& data) {
-    data.validate();
-    std::vector<Box> all;
-    all.reserve(data.triangles.size());
-    for (std::size_t i = 0; i < data.triangles.size(); ++i) all.push_back(data.triangle(i).bounds());
-    return all;
+    [[nodiscard]] std::vector<Vec3> corners() && noexcept { return std::move(corners_); }
+
+   private:
+    using Bits = std::array<std::uint64_t, 3>;
+    static constexpr std::uint16_t nowhere = 0xFFFF;
+
+    std::vector<std::uint16_t> places_;
+    std::vector<Vec3> corners_;
+  };
+
+  /// Puts triangles and corners where the index meets them, block by block.
+  void arrange(const MeshData& data, unsigned threads) {
+    const auto order = index_.order();
+    if (order.size() > data.triangles.size()) threads = 1;  // a triangle may be in several blocks, of which the last will be its place
+    const Draft<std::uint32_t> places(data.triangles.size());
+    if (order.size() < places.size()) std::fill(places.begin(), places.end(), 0);  // what the index leaves out is never met
+    const Draft<Corners> triangles(order.size());
+    std::vector<std::vector<Vec3>> parts(detail::stretches(order.size()));
+    detail::for_each_stretch(order.size(), threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+      CornerTable table(end - begin);
+      for (std::size_t place = begin; place < end; ++place) {
+        places[order[place]] = static_cast<std::uint32_t>(place);
+        const auto& corners = data.triangles[order[place]];
+        for (std::size_t k = 0; k < 3; ++k) triangles[place][k] = table.number_of(data.vertices[corners[k]]);
+      }
+      parts[block] = std::move(table).corners();
+    });
+    const Draft<std::uint64_t> first_corners(parts.size());
+    std::size_t count = 0;
+    for (std::size_t block = 0; block < parts.size(); ++block) first_corners[block] = count, count += parts[block].size();
+    const Draft<Vec3> corners(count);
+    for_each_index(parts.size(), threads,
+                   [&](std::size_t block) { std::copy(parts[block].begin(), parts[block].end(), corners.data() + first_corners[block]); });
+    corners_ = corners, first_corners_ = first_corners, triangles_ = triangles, places_ = places;
   }
 
   Frozen<Vec3> corners_;
-  Frozen<std::array<std::uint32_t, 3>> triangles_;  ///< the corners' numbers, in the order of the index
-  Frozen<std::uint32_t> places_;                    ///< of each triangle, in that order
-  Frozen<std::uint32_t> materials_;  ///< empty if all are 0
+  Frozen<std::uint64_t> first_corners_;  ///< of the blocks
+  Frozen<Corners> triangles_;            ///< in the order of the index
+  Frozen<std::uint32_t> places_;         ///< of each triangle, in that order
+  Frozen<std::uint8_t> few_materials_;   ///< empty if all are 0, or if they are
+  Frozen<std::uint32_t> materials_;      ///< numbers too large for these
   Index<Real> index_;
   std::size_t material_count_ = 1;
 };
