@@ -13,6 +13,7 @@
 
 #include <pulsecast/adapters/gzip.hpp>
 #include <pulsecast/adapters/las.hpp>
+#include <pulsecast/adapters/laz.hpp>
 #include <pulsecast/adapters/waveform_text.hpp>
 #include <pulsecast/adapters/xyz.hpp>
 #include <pulsecast/pulsecast.hpp>
@@ -52,6 +53,7 @@ int main(int count, char** words) {
   add("LAS 1.4 f6.las", many, las(LasFormat::las_1_4, false));
   add("LAS 1.4 f9.las", many, las(LasFormat::las_1_4, true));
   add("LAS 1.0.las", many, las(LasFormat::las_1_0, false));
+  add("LAZ 1.4 f6.laz", many, [](const std::filesystem::path& path) { return LazWriter(path, {}, 1); });
   add("text.xyz", many, [](const std::filesystem::path& path) { return XyzWriter(path); });
   add("text.xyz.gz", many / 4, [](const std::filesystem::path& path) { return XyzWriter(gzip_file(path)); });
   add("waveforms.txt", many / 4, [](const std::filesystem::path& path) { return WaveformTextWriter(path); });

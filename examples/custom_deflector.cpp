@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
     const Deflector deflector{Rosette{.bend = 11_deg, .first = 41.5_Hz, .second = -23_Hz}, scanner};
     const Mount downwards{.boresight = rotation_about(right, -90_deg)};
     const Platform balloon{Tripod{.position = {0, 0, 80}}, downwards, deflector};
-    const Survey survey{balloon, SunflowerFootprint{19}, scene, Receiver{}, FullWaveform{}, line.seed};
+    const Survey survey{balloon, LatticeFootprint{19}, scene, Receiver{}, FullWaveform{}, line.seed};
 
     adapters::ImageWriter map(line.output / "custom_deflector.png", {.width = 1200, .height = 1200, .azimuth = 0, .elevation = 90_deg});
     print(run(survey, {.threads = line.threads, .progress = ProgressLine{}}, map));

@@ -21,7 +21,7 @@ int main() {
   const Platform platform{Tripod{.position = {0, 0, 0}}, Mount{.lever_arm = {0, 0, 1.7}}, turning};
 
   // the survey: from the number of a pulse to its echoes
-  const Survey survey{platform, SunflowerFootprint{19}, scene, Receiver{}, FullWaveform{}};
+  const Survey survey{platform, LatticeFootprint{19}, scene, Receiver{}, FullWaveform{}};
   Cloud cloud;
   run(survey, {}, cloud);
   std::cout << cloud.size() << " points\n";

@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
     std::vector<decltype(airplane({}))> legs;
     for (const StraightLine& strip : strips) legs.push_back(airplane(strip));
 
-    const Survey survey{Legs{legs}, RingFootprint{3}, forest, Receiver{}, FullWaveform{}, line.seed};
+    const Survey survey{Legs{legs}, LatticeFootprint{19}, forest, Receiver{}, FullWaveform{}, line.seed};
     adapters::LasWriter las(line.output / "cloud.las");
     adapters::ImageWriter image(line.output / "cloud.png",
                                 {.azimuth = 30_deg, .elevation = 25_deg, .field_of_view = 20_deg, .point_size = 2});

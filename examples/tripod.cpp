@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
     std::vector<decltype(set_up({}, 1))> set_ups;
     for (const Vec3& place : positions) set_ups.push_back(set_up(place, radians(step_deg)));
 
-    const Survey survey{Legs{set_ups}, RingFootprint{3}, scene, Receiver{}, FullWaveform{}, line.seed};
+    const Survey survey{Legs{set_ups}, LatticeFootprint{19}, scene, Receiver{}, FullWaveform{}, line.seed};
     adapters::LasWriter las(line.output / "cloud.las");
     adapters::ImageWriter image(line.output / "cloud.png", files.empty() ? view_of_hut(line.seed) : adapters::ImageSettings{});
     std::optional<adapters::XyzWriter> text;

@@ -34,8 +34,10 @@ TEST_CASE("all footprints keep the law, of any size") {
     CAPTURE(n);
     CHECK(support::footprint_laws(RingFootprint(n)) == "");
     CHECK(support::footprint_laws(SunflowerFootprint(n)) == "");
+    CHECK(support::footprint_laws(LatticeFootprint(n)) == "");
   }
   CHECK(support::footprint_laws(SunflowerFootprint(100000)) == "");
+  CHECK(support::footprint_laws(LatticeFootprint(100000)) == "");
 }
 
 TEST_CASE("a single ray is on the axis") {
@@ -43,6 +45,7 @@ TEST_CASE("a single ray is on the axis") {
   CHECK(SingleRay{}.offset(0) == Vec2{0, 0});
   CHECK(RingFootprint(1).offset(0) == Vec2{0, 0});
   CHECK(SunflowerFootprint(1).offset(0) == Vec2{0, 0});
+  CHECK(LatticeFootprint(1).offset(0) == Vec2{0, 0});
 }
 
 TEST_CASE("ring i of a footprint holds floor(2 pi i) subrays about the central one") {
@@ -91,6 +94,7 @@ TEST_CASE("the middle of every footprint's energy is on the axis") {
     return std::hypot(sum.x, sum.y);
   };
   for (const std::size_t n : {1U, 2U, 7U, 19U, 62U, 1000U}) CHECK(middle(SunflowerFootprint(n)) < 1e-15);
+  for (const std::size_t n : {1U, 2U, 7U, 19U, 62U, 1000U}) CHECK(middle(LatticeFootprint(n)) < 1e-15);
   for (const std::size_t n : {1U, 2U, 3U, 5U, 10U}) CHECK(middle(RingFootprint(n)) < 1e-15);
 }
 
@@ -112,7 +116,55 @@ TEST_CASE("a sunflower's subrays carry equal energy and spread as a Gaussian bea
   CHECK(radius(centre_of_energy(f)) < 1e-3);
 }
 
+TEST_CASE("a lattice's subrays carry equal energy and spread as a Gaussian beam does, across and up") {
+  const std::size_t n = 20000;
+  const LatticeFootprint f(n);
+  REQUIRE(f.size() == n);
+  double xx = 0, yy = 0, xy = 0;
+  std::size_t inside = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    REQUIRE(f.share(j) == f.share(0));
+    if (j > 0) REQUIRE(f.offset(j).x > f.offset(j - 1).x);  // each has a column of its own
+    const Vec2 offset = f.offset(j);
+    xx += f.share(j) * offset.x * offset.x, yy += f.share(j) * offset.y * offset.y, xy += f.share(j) * offset.x * offset.y;
+    inside += radius(offset) < 1;
+  }
+  // Source: the variance across and up of exp(-2 r^2) is 1/4, and 1 - exp(-2) of it is inside of r = 1
+  CHECK(xx == support::relative(0.25, 1e-3));
+  CHECK(yy == support::relative(0.25, 1e-3));
+  CHECK(std::fabs(xy) < 3e-4);
+  CHECK(static_cast<double>(inside) / n == support::relative(1 - std::exp(-2), 1e-3));
+}
+
+TEST_CASE("a lattice knows edges and wires, upright and level, as well as rings of twice as many subrays") {
+  const auto inside = [](double x) { return 0.5 * std::erfc(-std::sqrt(2.0) * x); };
+  // root of the mean square error of the energy past edges, or onto wires of a width, that stand all over the beam
+  const auto error = [&](const auto& f, double width) {
+    constexpr int places = 401;
+    double squares = 0;
+    for (int k = 0; k < 2 * places; ++k) {
+      const double at = -1.0001 + 2.0 * (k / 2) / (places - 1), end = width > 0 ? at + width : 10;
+      double found = 0;
+      for (std::size_t j = 0; j < f.size(); ++j) {
+        const double aside = k % 2 == 0 ? f.offset(j).x : f.offset(j).y;
+        if (aside > at && aside < end) found += f.share(j);
+      }
+      squares += std::pow(found - (inside(end) - inside(at)), 2);
+    }
+    return std::sqrt(squares / (2 * places));
+  };
+  for (const double width : {0.0, 0.2, 0.4, 0.6}) {  // 0 for an edge
+    CAPTURE(width);
+    CHECK(error(LatticeFootprint(9), width) < error(RingFootprint(3), width));    // of 19
+    CHECK(error(LatticeFootprint(18), width) < error(RingFootprint(4), width));   // of 37
+    CHECK(error(LatticeFootprint(31), width) < error(RingFootprint(5), width));   // of 62
+    CHECK(error(LatticeFootprint(46), width) < error(RingFootprint(10), width));  // of 279
+  }
+}
+
 TEST_CASE("a footprint without subrays is refused") {
+  CHECK_THROWS_AS(LatticeFootprint(0), SettingError);
+  CHECK_THROWS_AS(LatticeFootprint(100001), SettingError);
   CHECK_THROWS_AS(RingFootprint(0), SettingError);
   CHECK_THROWS_AS(SunflowerFootprint(0), SettingError);
 }

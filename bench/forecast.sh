@@ -1,0 +1,54 @@
+#!/bin/bash
+# SPDX-FileCopyrightText: 2026 the pulsecast contributors
+# SPDX-License-Identifier: MIT
+
+# Holds what `pulsecast plan` forecasts against what runs come to, one after the other, in a table. Times are without loading, and those of
+# runs are of the processors, by thread: they hardly depend on what else the machine does. Usage: forecast.sh PROGRAM SURVEY.xml ... [-- OPTIONS], as in
+#   bench/forecast.sh build/release/examples/pulsecast benchmark/surveys/*.xml -- --assets . --format las --seed 1 --threads 2
+set -euo pipefail
+program=$1
+shift
+surveys=()
+while [ $# -gt 0 ] && [ "$1" != -- ]; do surveys+=("$1"); shift; done
+[ $# -eq 0 ] || shift
+threads=2
+previous=
+for option in "$@"; do
+  case $previous in -j | --threads) threads=$option ;; esac
+  previous=$option
+done
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+TIMEFORMAT='%R %U %S'
+printf '%-12s %22s %30s %26s %26s %8s\n' survey 'simulating [s]' points 'memory [MB]' 'files [MB]' 'plan [s]'
+for survey in "${surveys[@]}"; do
+  "$program" plan "$survey" -v "$@" > "$folder/plan" 2> "$folder/said" || { cat "$folder/said" >&2; exit 1; }
+  { time "$program" info "$survey" "$@" > "$folder/info" 2> "$folder/said"; } 2> "$folder/time_to_load"
+  rm -rf "$folder/output"
+  { time "$program" "$survey" "$@" --output "$folder/output" > "$folder/run" 2> "$folder/said"; } 2> "$folder/time"
+  bytes=$(find "$folder/output" -type f -printf '%s\n' | awk '{ sum += $1 } END { print sum + 0 }')
+  awk -v survey="$(basename "$survey" .xml)" -v threads="$threads" -v bytes="$bytes" '
+    function in_si(number, unit) {
+      return number * (unit == "min" ? 60 : unit == "h" ? 3600 : unit == "kB" ? 1e3 : unit == "MB" ? 1e6 : unit == "GB" ? 1e9 : 1)
+    }
+    function against(forecast, actual, digits) {
+      return sprintf("%." digits "f / %." digits "f (%+.1f %%)", forecast, actual, actual > 0 ? 100 * (forecast / actual - 1) : 0)
+    }
+    FILENAME ~ /plan$/ && !seen[$1 $2]++ {
+      if (/^  run time/) time = in_si($3, $4)
+      if (/^  memory/) memory = in_si($2, $3) / 1e6
+      if (/^  points/) points = $2
+      if (/^  files/) files = in_si($2, $3) / 1e6
+      if (/ s to load$/) loading = $(NF - 3)
+      if (/^planned in/) took = $3
+    }
+    FILENAME ~ /run$/ && $1 == "echoes" { echoes = $2 }
+    FILENAME ~ /run$/ && $1 == "peak" { peak = $3 * 1.048576 }
+    FILENAME ~ /load$/ { load = $2 + $3 }
+    FILENAME ~ /time$/ { wall = $1; processor = $2 + $3 }
+    END {
+      printf "%-12s %22s %30s %26s %26s %8.2f   wall %.2f s\n", survey, against(time - loading, (processor - load) / threads, 2), against(points, echoes, 0),
+        against(memory, peak, 1), against(files, bytes / 1e6, 1), took, wall
+    }' "$folder/plan" "$folder/run" "$folder/time_to_load" "$folder/time"
+done
