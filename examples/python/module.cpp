@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+// The Python module `pulsecast`: surveys as people describe them, run as the survey program runs them. Pipelines of one's own are for
+// `bind_survey`; see `own_scanner.cpp`.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/stl/filesystem.h>
+
+#include <pulsecast/adapters/attitude.hpp>
+#include <pulsecast/adapters/python.hpp>
+#include <pulsecast/adapters/xml.hpp>
+
+#include "../pulsecast/simulation.hpp"
+#include "settings.hpp"
+
+namespace py = pybind11;
+using namespace pulsecast;
+using namespace py::literals;
+using adapters::SurveyPlan;
+using Paths = std::vector<std::filesystem::path>;
+
+namespace {
+
+/// Where a platform is, as a row of a NumPy array.
+struct PoseRow {
+  double time, x, y, z, roll, pitch, yaw;
+  std::int32_t leg, spare{};
+};
+
+/// A leg, as a row of a NumPy array.
+struct LegRow {
+  std::int32_t number;
+  bool active;
+  std::uint8_t spare[3]{};
+  double start, duration, pulse_rate;
+  std::int64_t first, end;
+};
+
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& text : warnings)
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+/// Triangles of arrays, with one material.
+Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices,
+                         const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>& triangles, ObjectId object,
+                         double reflectance, std::uint16_t classification, bool ground) {
+  const auto expect_rows_of_three = [](const py::array& array, const char* field) {
+    if (array.ndim() != 2 || array.shape(1) != 3)
+      throw SettingError(std::string("Mesh::") + field + " (columns)", array.ndim() == 2 ? static_cast<double>(array.shape(1)) : 0, "",
+                         "3: shape (n, 3)");
+  };
+  expect_rows_of_three(vertices, "vertices"), expect_rows_of_three(triangles, "triangles");
+  Simulation::Mesh mesh{.material = {.reflectance = reflectance, .classification = classification, .ground = ground}, .object = object};
+  mesh.material.validate();
+  for (py::ssize_t i = 0; i < vertices.shape(0); ++i)
+    mesh.data.vertices.push_back({vertices.at(i, 0), vertices.at(i, 1), vertices.at(i, 2)});
+  for (py::ssize_t i = 0; i < triangles.shape(0); ++i) {
+    std::array<std::uint32_t, 3>& corners = mesh.data.triangles.emplace_back();
+    for (py::ssize_t k = 0; k < 3; ++k) {
+      const std::int64_t corner = triangles.at(i, k);
+      if (corner < 0 || corner >= vertices.shape(0))
+        throw SettingError("Mesh::triangles", static_cast<double>(corner), "", "the number of a vertex; see triangle " + std::to_string(i));
+      corners[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(corner);
+    }
+  }
+  mesh.data.validate();
+  return mesh;
+}
+
+std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
+                                          std::optional<std::uint64_t> seed, bool echo_width, bool waveforms, bool waveform_noise,
+                                          bool fixed_incidence, bool platform_noise, bool leg_noise, unsigned threads, int run) {
+  const adapters::SurveySettings settings = survey_of(survey);
+  for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
+    assets.push_back(std::move(folder));
+  std::unique_ptr<Simulation> simulation;
+  {
+    const py::gil_scoped_release free;
+    check_without_scene(settings);
+    simulation = std::make_unique<Simulation>(settings, Simulation::Settings{.seed = seed ? *seed : settings.seed.value_or(0),
+                                                                             .echo_width = echo_width,
+                                                                             .waveforms = waveforms,
+                                                                             .waveform_noise = waveform_noise,
+                                                                             .fixed_incidence = fixed_incidence,
+                                                                             .platform_noise = platform_noise,
+                                                                             .leg_noise = leg_noise,
+                                                                             .assets = std::move(assets),
+                                                                             .meshes = std::move(meshes),
+                                                                             .threads = threads});
+    if (run > 0) simulation->begin(run);
+  }
+  warn(simulation->warnings());
+  return simulation;
+}
+
+py::array trajectory_of(const Simulation& simulation, double interval) {
+  expect_positive("Simulation.trajectory interval", interval, "s");
+  adapters::python::Rows<PoseRow> rows;
+  const SurveyPlan& plan = simulation.plan();
+  for (std::size_t k = 0; k < plan.legs.size(); ++k) {
+    const auto& path = plan.source.legs()[k].path();
+    const auto add = [&](Tick tick) {
+      const Pose<frame::Body, frame::World> pose = path.at(tick);
+      const adapters::RollPitchYaw angles = adapters::roll_pitch_yaw(pose.rotation, {});
+      const Vec3& p = pose.position;
+      rows.push_back({(plan.legs[k].start + tick).seconds(), p.x, p.y, p.z, angles.roll, angles.pitch, angles.yaw,
+                      static_cast<std::int32_t>(plan.legs[k].number)});
+    };
+    const double duration = plan.legs[k].duration.seconds();
+    for (std::size_t i = 0; static_cast<double>(i) * interval < duration; ++i) add(Tick::of_seconds(static_cast<double>(i) * interval));
+    add(plan.legs[k].duration);
+  }
+  return rows.take();
+}
+
+py::array legs_of(const Simulation& simulation) {
+  adapters::python::Rows<LegRow> rows;
+  for (const SurveyPlan::LegPlan& leg : simulation.plan().legs)
+    rows.push_back({static_cast<std::int32_t>(leg.number),
+                    leg.active,
+                    {},
+                    leg.start.seconds(),
+                    leg.duration.seconds(),
+                    leg.pulse_rate,
+                    static_cast<std::int64_t>(leg.first),
+                    static_cast<std::int64_t>(leg.end)});
+  return rows.take();
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_core, m) {
+  adapters::python::bind_common(m);
+  bind_settings(m);
+  PYBIND11_NUMPY_DTYPE(PoseRow, time, x, y, z, roll, pitch, yaw, leg);
+  PYBIND11_NUMPY_DTYPE(LegRow, number, active, start, duration, pulse_rate, first, end);
+
+  m.def(
+      "read_survey",
+      [](const std::filesystem::path& path, const Paths& assets) {
+        adapters::SurveyDocument document = adapters::read_survey(path, {.assets = assets});
+        warn(document.warnings);
+        return to_python(document.survey);
+      },
+      "path"_a, "assets"_a = Paths{},
+      "Reads the XML document of a survey and all that it refers to, and returns its SurveySettings. Files are looked for in the folders "
+      "`assets` first, then beside the document. Raises FileError with all that is wrong; what is odd becomes a warning.");
+  m.def(
+      "write_survey", [](const std::filesystem::path& path, py::handle survey) { adapters::write_survey(path, survey_of(survey)); },
+      "path"_a, "survey"_a, "Writes SurveySettings as one XML document, which `read_survey` and the survey program read.");
+  m.def(
+      "xml_text", [](py::handle survey) { return adapters::xml_text(survey_of(survey)); }, "survey"_a, "What `write_survey` would write.");
+  m.def(
+      "read_assets",
+      [](const std::filesystem::path& path, const Paths& assets) {
+        const adapters::AssetDocument document = adapters::read_assets(path, {.assets = assets});
+        warn(document.warnings);
+        return to_python(document);
+      },
+      "path"_a, "assets"_a = Paths{}, "Reads an XML document of scanners, platforms and scenes: a dict of three lists of settings.");
+
+  py::class_<Simulation::Mesh>(m, "Mesh", "Triangles that stand in the scene beside the parts that the survey names.")
+      .def(py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
+           "ground"_a = false,
+           "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), numbers of vertices from 0; object: what its points are marked "
+           "with; "
+           "reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: whether platforms may stand on it.")
+      .def_property_readonly(
+          "size", [](const Simulation::Mesh& mesh) { return mesh.data.triangles.size(); }, "Triangles.");
+
+  py::class_<Simulation> simulation(m, "Simulation", "A survey with its scene loaded and its legs planned, ready to run.");
+  simulation
+      .def(py::init(&simulation_of), "survey"_a, py::kw_only(), "assets"_a = Paths{}, "meshes"_a = std::vector<Simulation::Mesh>{},
+           "seed"_a = py::none(), "echo_width"_a = false, "waveforms"_a = false, "waveform_noise"_a = false, "fixed_incidence"_a = false,
+           "platform_noise"_a = true, "leg_noise"_a = true, "threads"_a = 0, "repetition"_a = 0,
+           "survey: SurveySettings. assets: folders where files are looked for. meshes: what stands in the scene besides. seed: the "
+           "survey's own, or "
+           "0, unless given. echo_width: fit widths. waveforms: keep the samples. The rest switch what they say. threads: that build the "
+           "scene, 0 "
+           "for all. repetition: which scene, where parts are swapped from run to run. Raises SettingError or FileError.")
+      .def(
+          "__len__", [](const Simulation& s) { return s.plan().source.size(); }, "Pulse slots.")
+      .def("trajectory", &trajectory_of, "interval"_a,
+           "Where the platform is, every `interval` seconds of each leg and at its end: a structured array of time [s], x, y, z [m, "
+           "world], roll, "
+           "pitch, yaw [rad; yaw clockwise from north] and leg.")
+      .def_property_readonly("legs", &legs_of,
+                             "Structured array: number, active, start [s], duration [s], pulse_rate [Hz], first, end: its slots.")
+      .def_property_readonly("repetitions", &Simulation::runs, "How many scenes there are, where parts are swapped from run to run.")
+      .def_property_readonly(
+          "bounds",
+          [](const Simulation& s) -> py::object {
+            const Simulation::Scene scene = s.scene();
+            if (scene.empty) return py::none();
+            return py::make_tuple(py::make_tuple(scene.least.x, scene.least.y, scene.least.z),
+                                  py::make_tuple(scene.most.x, scene.most.y, scene.most.z));
+          },
+          "Two corners of the scene's box [m, world]; None if there is nothing.")
+      .def_property_readonly(
+          "triangles", [](const Simulation& s) { return s.scene().triangles; }, "In the scene.")
+      .def_property_readonly(
+          "memory", [](const Simulation& s) { return s.scene().memory; }, "Of the scene [byte].");
+  adapters::python::bind_run(simulation, [](const Simulation& s) {
+    return [&s](const RunOptions& options, const auto& sink) { return s.run(options, [&](const EchoBatch& batch) { sink(batch); }); };
+  });
+}

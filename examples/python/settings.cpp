@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+#include "settings.hpp"
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pulsecast/base/vector.hpp>
+
+namespace py = pybind11;
+using namespace pulsecast;
+
+namespace {
+
+/// What there is to know of a struct or enum: made of the header by `describe_settings.py`.
+template <class Settings>
+struct Described;
+#include <settings_members.inc>
+
+template <class T>
+concept Struct = requires {
+  Described<T>::doc;
+};
+template <class T>
+concept Enum = std::is_enum_v<T>;
+
+template <class T, template <class...> class Template>
+inline constexpr bool is_a = false;
+template <template <class...> class Template, class... Types>
+inline constexpr bool is_a<Template<Types...>, Template> = true;
+template <class T>
+inline constexpr bool is_array = false;
+template <class T, std::size_t N>
+inline constexpr bool is_array<std::array<T, N>> = true;
+
+/// The Python class of a struct; as the module, it is never taken down.
+template <Struct Settings>
+py::handle& class_of() {
+  static py::handle made;
+  return made;
+}
+
+// ------------------------------------------------------------------------------------------------------------- to Python
+
+template <class T>
+py::object object_of(const T& value) {
+  if constexpr (Enum<T>) {
+    return py::str(Described<T>::values[static_cast<std::size_t>(value)]);
+  } else if constexpr (std::same_as<T, std::filesystem::path>) {
+    return py::str(value.string());
+  } else if constexpr (std::same_as<T, Vec3>) {
+    return py::make_tuple(value.x, value.y, value.z);
+  } else if constexpr (std::same_as<T, char>) {
+    return py::str(&value, 1);
+  } else if constexpr (is_a<T, std::optional>) {
+    return value ? object_of(*value) : py::none();
+  } else if constexpr (is_a<T, std::variant>) {
+    return std::visit([](const auto& one) { return object_of(one); }, value);
+  } else if constexpr (is_a<T, std::vector> || is_array<T>) {
+    py::list all;
+    for (const auto& one : value) all.append(object_of(one));
+    return all;
+  } else if constexpr (Struct<T>) {
+    py::list members;
+    Described<T>::members(value, [&](const char*, const auto& member, const char*) { members.append(object_of(member)); });
+    return class_of<T>()(*members);
+  } else {
+    return py::cast(value);
+  }
+}
+
+// ----------------------------------------------------------------------------------------------------------- from Python
+
+[[noreturn]] void refuse(const std::string& where, const std::string& expected, py::handle found) {
+  throw py::type_error(where + ": expected " + expected + ", not " + std::string(py::repr(found)));
+}
+
+template <class T>
+T value_of(py::handle object, const std::string& where);
+
+template <class T>
+T number_of(py::handle object, const std::string& where) {
+  if constexpr (std::floating_point<T>) {
+    const double number = PyFloat_AsDouble(object.ptr());
+    if (number == -1 && PyErr_Occurred()) PyErr_Clear(), refuse(where, "a number", object);
+    return number;
+  } else {
+    const py::object whole = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
+    if (!whole) PyErr_Clear(), refuse(where, "a whole number", object);
+    try {
+      return whole.cast<T>();
+    } catch (const py::cast_error&) {
+      refuse(where, std::is_unsigned_v<T> ? "a whole number that is not negative" : "a whole number of 32 bits", object);
+    }
+  }
+}
+
+template <class Variant, std::size_t I = 0>
+Variant alternative_of(py::handle object, const std::string& where, std::string names = {}) {
+  if constexpr (I == std::variant_size_v<Variant>) {
+    refuse(where, names, object);
+  } else {
+    using One = std::variant_alternative_t<I, Variant>;
+    if (py::isinstance(object, class_of<One>())) return value_of<One>(object, where);
+    return alternative_of<Variant, I + 1>(object, where, std::move(names) + (I > 0 ? " or " : "") + Described<One>::name);
+  }
+}
+
+template <class T>
+T value_of(py::handle object, const std::string& where) {
+  if constexpr (Enum<T>) {
+    std::string names;
+    for (std::size_t i = 0; i < Described<T>::values.size(); ++i) {
+      if (py::str(Described<T>::values[i]).equal(object)) return static_cast<T>(i);
+      names += std::string(i > 0 ? " or '" : "'") + Described<T>::values[i] + "'";
+    }
+    refuse(where, names, object);
+  } else if constexpr (std::same_as<T, bool>) {
+    if (!py::isinstance<py::bool_>(object)) refuse(where, "True or False", object);
+    return object.cast<bool>();
+  } else if constexpr (std::same_as<T, std::string>) {
+    if (!py::isinstance<py::str>(object)) refuse(where, "a text", object);
+    return object.cast<std::string>();
+  } else if constexpr (std::same_as<T, char>) {
+    const auto text = value_of<std::string>(object, where);
+    if (text.size() != 1) refuse(where, "one character", object);
+    return text.front();
+  } else if constexpr (std::same_as<T, std::filesystem::path>) {
+    const py::object path = py::reinterpret_steal<py::object>(PyOS_FSPath(object.ptr()));
+    if (!path || !py::isinstance<py::str>(path)) PyErr_Clear(), refuse(where, "a path", object);
+    return path.cast<std::string>();
+  } else if constexpr (std::same_as<T, Vec3>) {
+    const auto [x, y, z] = value_of<std::array<double, 3>>(object, where);
+    return {x, y, z};
+  } else if constexpr (is_a<T, std::optional>) {
+    if (object.is_none()) return std::nullopt;
+    return value_of<typename T::value_type>(object, where);
+  } else if constexpr (is_a<T, std::variant>) {
+    return alternative_of<T>(object, where);
+  } else if constexpr (is_a<T, std::vector> || is_array<T>) {
+    if (py::isinstance<py::str>(object) || !PySequence_Check(object.ptr())) refuse(where, "a list", object);
+    const auto sequence = py::reinterpret_borrow<py::sequence>(object);
+    const std::size_t n = py::len(sequence);
+    T all{};
+    if constexpr (is_array<T>) {
+      if (n != all.size()) refuse(where, "a list of " + std::to_string(all.size()), object);
+    } else {
+      all.resize(n);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const py::object one = sequence[i];
+      all[i] = value_of<typename T::value_type>(one, where + "[" + std::to_string(i) + "]");
+    }
+    return all;
+  } else if constexpr (Struct<T>) {
+    if (!py::isinstance(object, class_of<T>())) refuse(where, Described<T>::name, object);
+    T settings;
+    Described<T>::members(settings, [&](const char* name, auto& member, const char*) {
+      member = value_of<std::remove_cvref_t<decltype(member)>>(py::object(object.attr(name)), where + "." + name);
+    });
+    return settings;
+  } else {
+    return number_of<T>(object, where);
+  }
+}
+
+// --------------------------------------------------------------------------------------------------------------- classes
+
+/// A type as Python writes it.
+template <class T>
+std::string annotation() {
+  const auto either = []<class... Types>(const std::variant<Types...>*) {
+    std::string all;
+    ((all += (all.empty() ? "" : " | ") + annotation<Types>()), ...);
+    return all;
+  };
+  if constexpr (Enum<T>) {
+    std::string all = "Literal[";
+    for (std::size_t i = 0; i < Described<T>::values.size(); ++i) all += std::string(i > 0 ? ", '" : "'") + Described<T>::values[i] + "'";
+    return all + "]";
+  } else if constexpr (std::same_as<T, bool>) {
+    return "bool";
+  } else if constexpr (std::floating_point<T>) {
+    return "float";
+  } else if constexpr (std::same_as<T, std::string> || std::same_as<T, char>) {
+    return "str";
+  } else if constexpr (std::same_as<T, std::filesystem::path>) {
+    return "str | os.PathLike[str]";
+  } else if constexpr (std::same_as<T, Vec3>) {
+    return "tuple[float, float, float]";
+  } else if constexpr (is_a<T, std::optional>) {
+    return annotation<typename T::value_type>() + " | None";
+  } else if constexpr (is_a<T, std::variant>) {
+    return either(static_cast<const T*>(nullptr));
+  } else if constexpr (is_a<T, std::vector> || is_array<T>) {
+    return "list[" + annotation<typename T::value_type>() + "]";
+  } else if constexpr (Struct<T>) {
+    return Described<T>::name;
+  } else {
+    return "int";
+  }
+}
+
+template <Struct Settings>
+void bind(py::module_& m) {
+  const py::module_ dataclasses = py::module_::import("dataclasses"), functools = py::module_::import("functools");
+  const py::object deepcopy = py::module_::import("copy").attr("deepcopy");
+  py::list members;
+  std::string doc = std::string(Described<Settings>::doc) + "\n\n";
+  const Settings defaults{};
+  Described<Settings>::members(defaults, [&](const char* name, const auto& member, const char* what) {
+    const std::string type = annotation<std::remove_cvref_t<decltype(member)>>();
+    const py::object first = functools.attr("partial")(deepcopy, object_of(member));
+    members.append(py::make_tuple(name, type, dataclasses.attr("field")(py::arg("default_factory") = first)));
+    doc += std::string(name) + ": " + type + "\n    " + what + "\n";
+  });
+  py::dict space;
+  space["__doc__"] = doc;
+  space["__module__"] = "pulsecast";
+  const char* name = Described<Settings>::name;
+  py::object made = dataclasses.attr("make_dataclass")(name, members, py::arg("namespace") = space, py::arg("slots") = true);
+  m.attr(name) = made;
+  class_of<Settings>() = made.release();
+}
+
+template <Struct... Settings>
+void bind_all(py::module_& m, const std::tuple<Settings...>*) {
+  (bind<Settings>(m), ...);
+}
+
+}  // namespace
+
+void bind_settings(py::module_& m) { bind_all(m, static_cast<const AllSettings*>(nullptr)); }
+
+py::object to_python(const adapters::SurveySettings& settings) { return object_of(settings); }
+
+adapters::SurveySettings survey_of(py::handle settings) { return value_of<adapters::SurveySettings>(settings, "SurveySettings"); }
+
+py::object to_python(const adapters::AssetDocument& assets) {
+  py::dict all;
+  all["scanners"] = object_of(assets.scanners), all["platforms"] = object_of(assets.platforms), all["scenes"] = object_of(assets.scenes);
+  return all;
+}

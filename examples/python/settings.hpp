@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <pulsecast/adapters/survey_settings.hpp>
+#include <pulsecast/adapters/xml.hpp>
+
+/// Settings of surveys as Python's own dataclasses: they are copied, compared, printed and pickled as any other, and lists in them are
+/// lists.
+
+/// Makes the classes.
+void bind_settings(pybind11::module_& m);
+
+/// To and from them. What comes from Python is checked: a `TypeError` or `ValueError` names the member.
+pybind11::object to_python(const pulsecast::adapters::SurveySettings& settings);
+pulsecast::adapters::SurveySettings survey_of(pybind11::handle settings);
+pybind11::object to_python(const pulsecast::adapters::AssetDocument& assets);
