@@ -1,0 +1,35 @@
+# SPDX-FileCopyrightText: 2026 the pulsecast contributors
+# SPDX-License-Identifier: MIT
+
+# Writes a header and all that it includes of the library as one file:
+# cmake -DINCLUDE=include -DHEADER=pulsecast/pulsecast.hpp -DOUT=pulsecast.hpp -P single_header.cmake
+cmake_minimum_required(VERSION 3.25)
+set(written)
+set(text)
+
+# Adds a header, after those that it includes.
+function(add header)
+  if(header IN_LIST written)
+    return()
+  endif()
+  list(APPEND written ${header})
+  file(STRINGS ${INCLUDE}/${header} includes REGEX "^#include <pulsecast/")
+  foreach(include IN LISTS includes)
+    string(REGEX REPLACE "^#include <(.*)>.*" "\\1" include "${include}")
+    add(${include})
+  endforeach()
+  file(READ ${INCLUDE}/${header} own)
+  string(REGEX REPLACE "^(//[^\n]*\n)+#pragma once\n" "" own "${own}")
+  string(REGEX REPLACE "#include <pulsecast/[^\n]*\n" "" own "${own}")
+  set(text "${text}\n// ---- ${header}\n${own}")
+  set(text "${text}" PARENT_SCOPE)
+  set(written ${written} PARENT_SCOPE)
+endfunction()
+
+add(${HEADER})
+file(WRITE ${OUT} "// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+// The whole of ${HEADER} in one file, for those who copy rather than install. It needs GLM, C++20 and threads.
+${text}")
