@@ -27,6 +27,7 @@
 #include "../summary.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "plan.hpp"
 #include "run_folder.hpp"
 #include "simulation.hpp"
 #include "survey_files.hpp"
@@ -94,6 +95,7 @@ Simulation::Settings settings_of(const Options& o, const SurveyFile& file, std::
           .leg_noise = o.leg_noise,
           .assets = o.assets,
           .scene_text = file.scene_text,
+          .leg_places = file.leg_places,
           .store = o.store,
           .threads = o.threads};
 }
@@ -303,14 +305,17 @@ int work(const Options& options) {
   std::optional<std::uint64_t> seed = options.seed ? options.seed : file.survey.seed;
   if (!seed) seed = std::random_device{}();
   if (options.command == "check") {
-    check_without_scene(file.survey);
+    check_without_scene(file.survey, file.leg_places);
     if (!options.quiet) std::cout << options.survey.string() << ": nothing is wrong\n";
   } else if (options.command == "info") {
     tell(options, file, *seed);
   } else if (options.command == "preview") {
     preview(options, file, *seed);
+  } else if (options.command == "plan") {
+    check_without_scene(file.survey, file.leg_places);
+    return plan(options, file, settings_of(options, file, *seed)) ? success : bad_input;
   } else {
-    check_without_scene(file.survey);  // before anything expensive
+    check_without_scene(file.survey, file.leg_places);  // before anything expensive
     return Session(options, file, *seed).run();
   }
   return success;

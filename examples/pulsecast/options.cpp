@@ -13,11 +13,13 @@
 #include <pulsecast/adapters/xml_document.hpp>
 #include <pulsecast/version.hpp>
 
+#include "quantity.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* all_commands[] = {"run", "check", "info", "preview", "catalogue"};
+constexpr const char* all_commands[] = {"run", "check", "info", "preview", "plan", "catalogue"};
 
 /// "; did you mean '--format'?"
 std::string nearest_option(const CLI::App& app, const std::string& given) {
@@ -92,6 +94,7 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
       "  pulsecast check SURVEY.xml      says what is wrong with it\n"
       "  pulsecast info SURVEY.xml       says what would be simulated\n"
       "  pulsecast preview SURVEY.xml    draws a quick look of its points\n"
+      "  pulsecast plan SURVEY.xml       says what a run takes, and which settings are the cheapest that meet what is asked\n"
       "  pulsecast catalogue             lists the scanners and platforms that surveys may name\n",
       "pulsecast");
   app.get_formatter()->column_width(46);
@@ -104,9 +107,9 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("-o,--output", o.output, "Folder for the results")->type_name("DIR")->capture_default_str();
-  app.add_option("--format", o.format, "Of the points: las, xyz or xyz.gz; xyz if not given")
+  app.add_option("--format", o.format, "Of the points: las, laz, xyz or xyz.gz; xyz if not given")
       ->type_name("FORMAT")
-      ->check(CLI::IsMember({"las", "xyz", "xyz.gz"}));
+      ->check(CLI::IsMember({"las", "laz", "xyz", "xyz.gz"}));
   std::string seed;
   app.add_option("--seed", seed, "Of all that is random; the survey's own, or another one each time")
       ->type_name("N")
@@ -128,7 +131,7 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
     const auto step = number_in<double>(text);
     return step && *step >= 1e-9 && *step <= 1e3 ? std::string() : "'" + text + "' is no length from 1e-9 to 1000 m";
   });
-  app.add_flag(both("zipOutput"), zip, "Points as compressed text: --format xyz.gz");
+  app.add_flag(both("zipOutput"), zip, "Points compressed: --format xyz.gz; with --lasOutput, --format laz");
   app.add_flag(both("writeWaveform"), o.write_waveform, "Leave waveforms, too");
   app.add_flag(both("writePulse"), o.write_pulse, "Leave a table of all pulses, too");
   app.add_flag(both("calcEchowidth"), o.echo_width, "Measure the width of echoes");
@@ -143,6 +146,20 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   app.add_flag("--resume", o.resume, "Go on with the newest run of this survey that was not finished");
   app.add_flag("-q,--quiet,--silent", o.quiet, "Say nothing but errors");
   app.add_flag("-v,--verbose", o.verbose, "Say more");
+
+  std::vector<CLI::Option*> of_plan;
+  std::string range_error, intensity_error, time, memory, apply_to;
+  const auto demand = [&](const std::string& name, std::string& text, const QuantityKind& kind, const char* help, const char* type) {
+    of_plan.push_back(app.add_option(name, text, help)->type_name(type)->check([&kind](const std::string& given) {
+      return quantity(given, kind) ? std::string() : "'" + given + "': expected " + kind.expected;
+    }));
+  };
+  demand("--range-error", range_error, a_length, "plan: largest error of ranges, as in 5mm", "LENGTH");
+  demand("--intensity-error", intensity_error, a_share, "plan: largest error of intensities, as in 2%", "SHARE");
+  demand("--time", time, a_duration, "plan: longest run, as in 10min", "DURATION");
+  demand("--memory", memory, a_size, "plan: most memory, as in 4GB", "SIZE");
+  of_plan.push_back(
+      app.add_option("--apply", apply_to, "plan: changes the survey, or writes it to FILE")->type_name("[FILE]")->expected(0, 1));
 
   // what users of HELIOS++ type, and what makes no sense here
   const std::string unused = "No effect here";
@@ -191,13 +208,24 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   if (o.command == "catalogue" && !o.survey.empty()) return refuse("'" + o.survey.string() + "' is too much: catalogue takes no document");
   if (!extras.empty()) return refuse("'" + extras.front() + "' is too much: one document at a time");
   if (o.command != "catalogue" && o.survey.empty()) return refuse("no document is given: expected SURVEY.xml");
+  for (const CLI::Option* option : of_plan)
+    if (option->count() > 0 && o.command != "plan") return refuse(option->get_name() + " is for plan only");
+  if (o.command == "plan") {
+    o.plan = {quantity(range_error, a_length), quantity(intensity_error, a_share), quantity(time, a_duration),
+              quantity(memory, a_size),        of_plan.back()->count() > 0,        apply_to};
+    if (o.plan.apply && !o.plan.asks())
+      return refuse("--apply must know what for: expected --range-error, --intensity-error, --time or --memory");
+  }
   for (std::size_t i = 0; i < std::size(none); ++i)
     if (given[i]->count() > 0) o.notes.push_back(std::string("--") + none[i].name + " has no effect: " + none[i].why);
-  if (!o.format.empty() && ((las && o.format != "las") || (zip && o.format != "xyz.gz")))
+  const bool is_las = las || o.las_1_0;
+  const std::string asked_by_flags = is_las ? (zip && !o.las_1_0 ? "laz" : "las") : zip ? "xyz.gz" : "xyz";
+  if (o.format.empty())
+    o.format = asked_by_flags;
+  else if ((las || zip) && o.format != asked_by_flags)
     o.notes.push_back("--format " + o.format + " counts, not " + (las ? "--lasOutput" : "--zipOutput"));
-  else if ((las || o.las_1_0) && zip)
-    o.notes.push_back("--zipOutput has no effect on LAS files: they are not compressed");
-  if (o.format.empty()) o.format = las || o.las_1_0 ? "las" : zip ? "xyz.gz" : "xyz";
+  if (o.las_1_0 && o.format == "laz") return refuse("--las10 and --format laz: only LAS 1.4 is compressed");
+  if (o.las_1_0 && zip && o.format == "las") o.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
   if (!seed.empty() && seed != "AUTO") o.seed = number_in<std::uint64_t>(seed);
   o.platform_noise = !no_platform_noise, o.leg_noise = !no_leg_noise;
   o.store = {scene_folder(), !rebuild_scene, !no_scene_writing};

@@ -14,13 +14,25 @@ struct SceneStore {
   bool read = true, write = true;
 };
 
+/// What the command `plan` is asked.
+struct PlanOptions {
+  std::optional<double> range_error{};      ///< at most [m]
+  std::optional<double> intensity_error{};  ///< at most, as a share
+  std::optional<double> time{};             ///< of a run, at most [s]
+  std::optional<double> memory{};           ///< at most [byte]
+  bool apply = false;
+  std::filesystem::path apply_to{};  ///< the survey itself if empty
+
+  [[nodiscard]] bool asks() const { return range_error || intensity_error || time || memory; }
+};
+
 /// What the command line asks for.
 struct Options {
-  std::string command = "run";  ///< run, check, info, preview or catalogue
+  std::string command = "run";  ///< run, check, info, preview, plan or catalogue
   std::filesystem::path survey{};
   std::vector<std::filesystem::path> assets{};  ///< as given, then where the program finds its own
   std::filesystem::path output = "output";
-  std::string format{};  ///< las, xyz or xyz.gz
+  std::string format{};  ///< las, laz, xyz or xyz.gz
   std::optional<std::uint64_t> seed{};
   unsigned threads = 0;  ///< 0 for all
   std::string gps_start_time{};
@@ -29,6 +41,7 @@ struct Options {
   bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false;
   bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false, verbose = false;
   SceneStore store{};
+  PlanOptions plan{};
   std::vector<std::string> notes{};  ///< what was accepted but has no effect
 };
 

@@ -12,6 +12,7 @@
 #include <pulsecast/adapters/image.hpp>
 #include <pulsecast/adapters/las.hpp>
 #include <pulsecast/adapters/pulse_text.hpp>
+#include <pulsecast/adapters/laz.hpp>
 #include <pulsecast/adapters/trajectory_file.hpp>
 #include <pulsecast/adapters/waveform_text.hpp>
 #include <pulsecast/adapters/xyz.hpp>
@@ -21,7 +22,7 @@ using namespace pulsecast;
 
 namespace {
 
-using PointWriter = std::variant<adapters::XyzWriter, adapters::LasWriter>;
+using PointWriter = std::variant<adapters::XyzWriter, adapters::LasWriter, adapters::LazWriter>;
 
 /// Names of the files of points.
 std::vector<fs::path> point_files(const fs::path& folder, const std::string& prefix, const Options& o,
@@ -33,8 +34,9 @@ std::vector<fs::path> point_files(const fs::path& folder, const std::string& pre
 }
 
 PointWriter point_writer(const fs::path& path, const Options& o, double start_time) {
+  adapters::LasSettings settings{.scale = o.las_scale, .gps_time = adapters::GpsTime::week, .start_time = start_time};
+  if (o.format == "laz") return PointWriter(std::in_place_type<adapters::LazWriter>, path, settings, o.threads);
   if (o.format == "las") {
-    adapters::LasSettings settings{.scale = o.las_scale, .gps_time = adapters::GpsTime::week, .start_time = start_time};
     if (o.las_1_0) settings.format = adapters::LasFormat::las_1_0;
     settings.waveforms = o.write_waveform && !o.las_1_0;
     return PointWriter(std::in_place_type<adapters::LasWriter>, path, settings);

@@ -3,8 +3,11 @@
 
 #include "simulation.hpp"
 
+#include <time.h>
+
 #include <algorithm>
 #include <iomanip>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <system_error>
@@ -14,6 +17,7 @@
 #include <pulsecast/adapters/scene_builder.hpp>
 #include <pulsecast/adapters/scene_files.hpp>
 #include <pulsecast/adapters/survey_receivers.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 
@@ -24,9 +28,6 @@ using adapters::SurveyScene;
 using adapters::SurveySettings;
 
 namespace {
-
-template <class Width>
-using Pipeline = adapters::SurveyByChannel<SurveyScene, FullWaveform<Width>>;
 
 adapters::SpectralLibrary spectra_of(const SurveySettings& survey, const std::vector<std::filesystem::path>& assets) {
   adapters::SpectralLibrary all;
@@ -55,6 +56,62 @@ bool is_random(const adapters::PartSource& source) {
         return random;
       },
       source);
+}
+
+/// A survey of any kind of receiver, so that what runs and samples it is compiled once, and the pipeline of each kind in one place.
+class AnySurvey {
+ public:
+  struct Scratch {
+    virtual ~Scratch() = default;
+  };
+  using Workspace = std::unique_ptr<Scratch>;
+
+  AnySurvey() = default;
+  AnySurvey(const AnySurvey&) = delete;
+  AnySurvey& operator=(const AnySurvey&) = delete;
+  virtual ~AnySurvey() = default;
+  [[nodiscard]] virtual Workspace workspace() const = 0;
+  [[nodiscard]] virtual PulseIndex size() const noexcept = 0;
+  [[nodiscard]] virtual std::size_t subrays() const noexcept = 0;
+  [[nodiscard]] virtual std::size_t recorded_subrays() const noexcept = 0;
+  [[nodiscard]] virtual double sample_interval() const noexcept = 0;
+  [[nodiscard]] virtual Outcome operator()(PulseIndex i, Workspace& w) const noexcept = 0;
+};
+
+template <class Survey>
+class SurveyOf final : public AnySurvey {
+ public:
+  explicit SurveyOf(Survey survey) : survey_(std::move(survey)) {}
+  [[nodiscard]] Workspace workspace() const override { return std::make_unique<Own>(survey_.workspace()); }
+  [[nodiscard]] PulseIndex size() const noexcept override { return survey_.size(); }
+  [[nodiscard]] std::size_t subrays() const noexcept override { return survey_.subrays(); }
+  [[nodiscard]] std::size_t recorded_subrays() const noexcept override { return survey_.recorded_subrays(); }
+  [[nodiscard]] double sample_interval() const noexcept override { return survey_.sample_interval(); }
+  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept override { return survey_(i, static_cast<Own&>(*w).own); }
+
+ private:
+  struct Own : Scratch {
+    explicit Own(typename Survey::Workspace w) : own(std::move(w)) {}
+    typename Survey::Workspace own;
+  };
+  Survey survey_;
+};
+
+/// What this thread has had of a processor [s].
+double processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+void append(const Outcome& outcome, Sample& sample) {
+  ++sample.fates[static_cast<std::size_t>(outcome.shot.fate)];
+  if (outcome.shot.fate == Fate::blocked) return;
+  Shot& shot = sample.shots.emplace_back(outcome.shot);
+  shot.first_echo = static_cast<std::uint32_t>(sample.echoes.size()), shot.echoes = static_cast<std::uint32_t>(outcome.echoes.size());
+  shot.first_sample = sample.samples.size(), shot.samples = static_cast<std::uint32_t>(outcome.waveform.size());
+  sample.echoes.insert(sample.echoes.end(), outcome.echoes.begin(), outcome.echoes.end());
+  sample.samples.insert(sample.samples.end(), outcome.waveform.begin(), outcome.waveform.end());
 }
 
 /// All that a scene depends on in a run.
@@ -86,7 +143,9 @@ struct Simulation::Inside {
   adapters::SceneBuilder builder;
   std::optional<adapters::SurveyPlan> plan;
   std::optional<SurveyScene> scene;
-  std::variant<std::monostate, Pipeline<NoWidth>, Pipeline<GaussianFit>> pipeline;
+  std::unique_ptr<const AnySurvey> pipeline;
+  std::vector<adapters::SurveyPart> meshes;  // beside the survey's own parts
+  std::uint64_t seed = 0;                    // of this repetition
   std::vector<std::string> scene_warnings, warnings, notes;
 
   Inside(const SurveySettings& s, const Settings& how)
@@ -96,11 +155,15 @@ struct Simulation::Inside {
                           .pulse_rate = first_rate(s),
                           .seed = how.seed,
                           .fixed_incidence = how.fixed_incidence,
-                          .threads = how.threads}) {}
+                          .threads = how.threads}) {
+    for (const Mesh& mesh : how.meshes)
+      meshes.push_back({.geometry = std::make_shared<const TriangleMesh<>>(mesh.data, how.threads),
+                        .materials = material_table({mesh.material}),
+                        .object = mesh.object});
+  }
 
   /// Batches hold waveforms of one kind of bins, so all channels are sampled as the finest of them is.
-  [[nodiscard]] adapters::ScannerSettings sampled_alike(std::vector<std::string>& told) const {
-    adapters::ScannerSettings scanner = survey.scanner;
+  [[nodiscard]] static adapters::ScannerSettings sampled_alike(adapters::ScannerSettings scanner, std::vector<std::string>& told) {
     double finest = scanner.channels.front().waveform.bin_size, coarsest = finest;
     for (const auto& c : scanner.channels)
       finest = std::min(finest, c.waveform.bin_size), coarsest = std::max(coarsest, c.waveform.bin_size);
@@ -110,18 +173,37 @@ struct Simulation::Inside {
     return scanner;
   }
 
+  [[nodiscard]] adapters::ScannerSettings scanner_of(const Receiving& how) const {
+    adapters::ScannerSettings scanner = survey.scanner;
+    for (adapters::ChannelSettings& channel : scanner.channels) {
+      channel.waveform.rings = how.rings.value_or(channel.waveform.rings);
+      channel.waveform.bin_size = how.bin_size.value_or(channel.waveform.bin_size);
+      if (how.ideal) channel.accuracy = 0, channel.errors.range_noise.clear();
+    }
+    return scanner;
+  }
+
+  void receive(const Receiving& how) {
+    std::vector<std::string> told;
+    const adapters::ScannerSettings scanner = sampled_alike(scanner_of(how), told);
+    for (std::string& text : told)
+      if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(std::move(text));
+    settings.echo_width && !how.ideal ? make<GaussianFit>(scanner, how.ideal) : make<NoWidth>(scanner, how.ideal);
+  }
+
   template <class Width>
-  void make(std::uint64_t seed) {
+  void make(const adapters::ScannerSettings& scanner, bool ideal) {
     const Vec3 size = scene->bounds().empty() ? Vec3{} : scene->bounds().size();
-    const adapters::ScannerSettings scanner = sampled_alike(warnings);
+    const bool waveforms = settings.waveforms && !ideal, noisy = settings.waveform_noise && !ideal;
     const auto receiver = [&](const adapters::ChannelSettings& channel) -> adapters::ChannelReceiver<FullWaveform<Width>> {
       const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
       ReceiverNoise noise;
-      if (settings.waveform_noise) noise.deviation = 0.25 * channel.received_power_min;
+      if (noisy) noise.deviation = 0.25 * channel.received_power_min;
       return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings))), adapters::survey_receiver(channel),
-              FullWaveform<Width>(adapters::survey_waveform(channel, settings.waveforms ? longest : 0), {}, noise)};
+              FullWaveform<Width>(adapters::survey_waveform(channel, waveforms ? longest : 0), {}, noise)};
     };
-    pipeline.emplace<Pipeline<Width>>(adapters::survey_by_channel(scanner, plan->source, *scene, seed, receiver));
+    using Pipeline = adapters::SurveyByChannel<SurveyScene, FullWaveform<Width>>;
+    pipeline = std::make_unique<SurveyOf<Pipeline>>(adapters::survey_by_channel(scanner, plan->source, *scene, seed, receiver));
   }
 
   std::vector<adapters::SurveyPart> parts(int run) {
@@ -134,19 +216,20 @@ struct Simulation::Inside {
   }
 
   void begin(int run) {
-    const std::vector<adapters::SurveyPart> all = parts(run);
+    std::vector<adapters::SurveyPart> all = parts(run);
+    all.insert(all.end(), meshes.begin(), meshes.end());
     scene.emplace(all, TimeWindows{.to = 1});
     const auto ground = [&](const Vec2& at) { return scene->ground_height(at); };
-    const adapters::SurveyBuildOptions options{settings.seed, settings.platform_noise, settings.leg_noise};
+    const adapters::SurveyBuildOptions options{settings.seed, settings.platform_noise, settings.leg_noise, settings.leg_places};
     plan.emplace(adapters::plan_survey(survey, ground, options));
     const double duration = plan->source.duration().seconds();
     const bool moves = std::any_of(all.begin(), all.end(), [](const auto& p) { return p.motion != nullptr; });
     if (moves) scene.emplace(all, TimeWindows{.to = std::max(1e-3, duration)});
 
-    const std::uint64_t seed = settings.seed + static_cast<std::uint64_t>(run) * 0x9e3779b97f4a7c15U;
+    seed = settings.seed + static_cast<std::uint64_t>(run) * 0x9e3779b97f4a7c15U;
     warnings = scene_warnings;
     warnings.insert(warnings.end(), plan->warnings.begin(), plan->warnings.end());
-    settings.echo_width ? make<GaussianFit>(seed) : make<NoWidth>(seed);
+    receive({});
   }
 };
 
@@ -172,19 +255,48 @@ Simulation::Scene Simulation::scene() const {
 }
 
 RunSummary Simulation::run(const RunOptions& options, const std::function<void(const EchoBatch&)>& sink) const {
-  return std::visit(
-      [&](const auto& survey) -> RunSummary {
-        if constexpr (std::is_same_v<std::decay_t<decltype(survey)>, std::monostate>)
-          return {};
-        else
-          return pulsecast::run(survey, options, sink);
-      },
-      inside_->pipeline);
+  return pulsecast::run(*inside_->pipeline, options, sink);
 }
 
-void check_without_scene(const SurveySettings& survey) {
+void Simulation::receive(const Receiving& how) { inside_->receive(how); }
+
+std::vector<Sample> Simulation::sample(std::span<const SampleBlock> blocks, unsigned threads) const {
+  constexpr std::size_t at_once = 8;
+  const AnySurvey& survey = *inside_->pipeline;
+  std::vector<Sample> all(blocks.size());
+  for_each_index((blocks.size() + at_once - 1) / at_once, threads, [&](std::size_t task) {
+    AnySurvey::Workspace workspace = survey.workspace();
+    for (std::size_t k = task * at_once; k < std::min((task + 1) * at_once, blocks.size()); ++k) {
+      const SampleBlock& block = blocks[k];
+      Sample before, &sample = all[k];
+      sample.sample_interval = survey.sample_interval();
+      sample.shots.reserve(block.end - block.from), sample.echoes.reserve(4 * (block.end - block.from));
+      for (PulseIndex i = block.first; i < block.from; ++i) append(survey(i, workspace), before);
+      const double start = processor_seconds();
+      for (PulseIndex i = block.from; i < block.end; ++i) append(survey(i, workspace), sample);
+      sample.seconds = processor_seconds() - start;
+    }
+  });
+  return all;
+}
+
+std::vector<SlotCount> Simulation::count(std::span<const PulseIndex> slots, unsigned threads) const {
+  constexpr std::size_t at_once = 1024;
+  const AnySurvey& survey = *inside_->pipeline;
+  std::vector<SlotCount> all(slots.size());
+  for_each_index((slots.size() + at_once - 1) / at_once, threads, [&](std::size_t k) {
+    AnySurvey::Workspace workspace = survey.workspace();
+    for (std::size_t i = k * at_once; i < std::min((k + 1) * at_once, slots.size()); ++i) {
+      const Outcome outcome = survey(slots[i], workspace);
+      all[i] = {outcome.shot.fate, static_cast<std::uint8_t>(outcome.echoes.size())};
+    }
+  });
+  return all;
+}
+
+void check_without_scene(const SurveySettings& survey, const std::vector<std::string>& leg_places) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
-  (void)adapters::plan_survey(survey, ground);
+  (void)adapters::plan_survey(survey, ground, {.leg_places = leg_places});
   for (const auto& channel : survey.scanner.channels) {
     adapters::survey_receiver(channel).validate();
     adapters::survey_waveform(channel).validate();

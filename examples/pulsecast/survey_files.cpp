@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <iterator>
 #include <set>
+#include <string>
 #include <system_error>
 
 #include <pulsecast/adapters/xml.hpp>
@@ -19,7 +22,76 @@ SurveyFile read_survey_file(const Options& options) {
   adapters::SurveyDocument document = adapters::read_survey(options.survey, {.assets = options.assets});
   std::string text = adapters::xml_text(document.survey),
               scene_text = adapters::xml_text(adapters::AssetDocument{.scenes = {document.survey.scene}});
-  return {std::move(document.survey), std::move(document.warnings), std::move(text), std::move(scene_text)};
+  return {std::move(document.survey), std::move(document.warnings), std::move(text), std::move(scene_text), std::move(document.leg_places)};
+}
+
+namespace {
+
+/// Where the tag that begins at `from` ends: its `>`.
+std::size_t end_of_tag(const std::string& text, std::size_t from) {
+  char quote = 0;
+  for (std::size_t i = from; i < text.size(); ++i) {
+    if (quote == 0 && text[i] == '>') return i;
+    if (quote == 0 && (text[i] == '"' || text[i] == '\''))
+      quote = text[i];
+    else if (text[i] == quote)
+      quote = 0;
+  }
+  return text.size();
+}
+
+/// Puts a value into the tag whose name begins at `tag`, in place of that which is there.
+void set_attribute(std::string& text, std::size_t tag, const std::string& name, const std::string& value) {
+  constexpr const char* blanks = " \t\r\n";
+  const std::size_t end = end_of_tag(text, tag), name_end = text.find_first_of(" \t\r\n/>", tag);
+  for (std::size_t at = name_end; at < end;) {
+    at = text.find_first_not_of(blanks, at);
+    const std::size_t equals = text.find('=', at);
+    if (equals >= end) break;
+    const std::size_t open = text.find_first_of("\"'", equals), close = text.find(text[open], open + 1);
+    if (text.substr(at, text.find_last_not_of(blanks, equals - 1) + 1 - at) == name) {
+      text.replace(open + 1, close - open - 1, value);
+      return;
+    }
+    at = close + 1;
+  }
+  text.insert(name_end, ' ' + name + "=\"" + value + '"');
+}
+
+}  // namespace
+
+void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change, const fs::path& path) {
+  std::ifstream in(options.survey, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  pugi::xml_document document;
+  if (!in || !document.load_buffer(text.data(), text.size())) throw FileError(options.survey.string(), "", "cannot be read again");
+  const pugi::xml_node survey = document.document_element().child("survey"), waveforms = survey.child("FWFSettings");
+  auto tag = static_cast<std::size_t>((waveforms ? waveforms : survey).offset_debug());
+  if (!waveforms) {  // a new element, indented as the one after it
+    const std::size_t end = end_of_tag(text, tag) + 1, next = text.find('<', end);
+    const std::string before = text.substr(end, next - end) + "<";
+    text.insert(end, before + "FWFSettings/>");
+    tag = end + before.size();
+  }
+  set_attribute(text, tag, "binSize_ns", adapters::xml_number(adapters::units::nanosecond.number(change.bin_size)));
+  set_attribute(text, tag, "beamSampleQuality", std::to_string(change.rings));
+
+  const fs::path trial = path.string() + ".part";
+  try {
+    std::ofstream out(trial, std::ios::binary);
+    if (!(out << text).flush()) throw FileError(path.string(), "", "cannot be written");
+    const adapters::SurveySettings written = adapters::read_survey(trial, {.assets = options.assets}).survey;
+    adapters::SurveySettings wanted = file.survey;
+    wanted.name = written.name;  // that of the file unless the survey has one
+    for (adapters::ChannelSettings& channel : wanted.scanner.channels)
+      channel.waveform.rings = change.rings, channel.waveform.bin_size = change.bin_size;
+    if (written != wanted) throw FileError(path.string(), "", "would not be the same survey; nothing is written");
+    fs::rename(trial, path);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(trial, ignored);
+    throw;
+  }
 }
 
 namespace {

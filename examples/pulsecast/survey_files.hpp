@@ -15,9 +15,20 @@
 struct SurveyFile {
   pulsecast::adapters::SurveySettings survey;
   std::vector<std::string> warnings;
-  std::string text{}, scene_text{};  ///< of all settings, and of those of the scene: the same text, the same settings
+  std::string text{}, scene_text{};       ///< of all settings, and of those of the scene: the same text, the same settings
+  std::vector<std::string> leg_places{};  ///< where each leg stands in it, for messages
 };
 SurveyFile read_survey_file(const Options& options);
+
+/// What `write_survey_file` changes, of all channels.
+struct WaveformChange {
+  int rings = 0;        ///< `beamSampleQuality`
+  double bin_size = 0;  ///< `binSize_ns` [s]
+};
+
+/// Writes the document of a survey with other settings, and all else as it stands there, comments too. Throws a `FileError` and leaves what
+/// was there if what is written would not say the same.
+void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change, const std::filesystem::path& path);
 
 /// Scanners and platforms in the assets that the program finds.
 void print_catalogue(const Options& options);

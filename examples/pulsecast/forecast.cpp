@@ -1,0 +1,533 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+#include "forecast.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <random>
+#include <set>
+#include <span>
+#include <thread>
+#include <utility>
+
+#include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/random.hpp>
+
+#include "outputs.hpp"
+
+namespace fs = std::filesystem;
+using namespace pulsecast;
+using adapters::SurveyPlan;
+using adapters::SurveySettings;
+
+namespace {
+
+/// Slots that cost alike.
+enum Kind : std::uint8_t { blocked, missed, met };
+constexpr std::size_t kinds = 3;
+
+Kind kind_of(Fate fate) { return fate == Fate::blocked ? blocked : fate == Fate::missed ? missed : met; }
+
+/// Time that may be used up, on processors that are free, so that samples do not depend on what else they do.
+class Allowance {
+ public:
+  Allowance(double seconds, double workers) : ticks_(seconds * workers * CLOCKS_PER_SEC) {}
+  [[nodiscard]] bool left() const { return static_cast<double>(std::clock() - start_) < ticks_; }
+
+ private:
+  std::clock_t start_ = std::clock();
+  double ticks_;
+};
+
+// ------------------------------------------------------------------------------------------------------------------ slots
+
+/// What single slots come to that are spread over the whole survey.
+struct Census {
+  std::array<double, kinds> slots{};  ///< of the survey, by kind
+  Estimate points{};
+  std::array<std::vector<PulseIndex>, kinds> found{};  ///< in order
+  std::uint64_t sampled = 0;
+};
+
+/// One slot at random from each of many equal stretches of the survey, which are visited in rounds so that each round is spread over all of
+/// it. A small survey is counted as a whole. The mean of a stratified sample, and its variance from differences of neighbours.
+/// Source: Cochran 1977, sections 5.3 and 5A.12.
+Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned threads, double workers) {
+  constexpr std::uint64_t rounds = 64, most = rounds << 12;
+  const std::uint64_t size = simulation.plan().source.size(), stretches = std::min(size, most),
+                      each_round = (stretches + rounds - 1) / rounds;
+  std::vector<std::optional<SlotCount>> counts(stretches);
+  std::vector<PulseIndex> places(stretches);
+  const Allowance allowance(0.35, workers);
+  for (std::uint64_t round = 0; round < rounds && (round == 0 || allowance.left()); ++round) {
+    std::vector<std::uint64_t> numbers;
+    std::vector<PulseIndex> slots;
+    for (std::uint64_t k = 0; k < each_round; ++k) {
+      const auto turn = static_cast<std::uint64_t>(uniform({.seed = seed, .pulse = k, .subray = 1}) * rounds);
+      const std::uint64_t i = k * rounds + (round * 37 + turn) % rounds;  // 37 has no divisor in common with the rounds
+      if (i >= stretches) continue;
+      const double from = static_cast<double>(size) * static_cast<double>(i) / static_cast<double>(stretches);
+      const double width = static_cast<double>(size) / static_cast<double>(stretches);
+      const double place = stretches == size ? static_cast<double>(i) : from + width * uniform({.seed = seed, .pulse = i, .subray = 2});
+      numbers.push_back(i), slots.push_back(std::min(size - 1, static_cast<PulseIndex>(place)));
+    }
+    const std::vector<SlotCount> found = simulation.count(slots, threads);
+    for (std::size_t k = 0; k < slots.size(); ++k) counts[numbers[k]] = found[k], places[numbers[k]] = slots[k];
+  }
+  Census census;
+  double sum = 0, differences = 0, before = 0;
+  std::array<double, kinds> of_kind{};
+  for (std::uint64_t i = 0; i < stretches; ++i) {
+    if (!counts[i]) continue;
+    const double echoes = counts[i]->echoes;
+    const Kind kind = kind_of(counts[i]->fate);
+    if (census.sampled > 0) differences += (echoes - before) * (echoes - before);
+    before = echoes, sum += echoes;
+    ++census.sampled, ++of_kind[kind];
+    census.found[kind].push_back(places[i]);
+  }
+  if (census.sampled == 0) return census;
+  const double n = static_cast<double>(census.sampled), all = static_cast<double>(size), per_slot = all / n;
+  for (std::size_t k = 0; k < kinds; ++k) census.slots[k] = of_kind[k] * per_slot;
+  const double deviation = n < 2 ? 0 : per_slot * std::sqrt((1 - n / all) * n * differences / (2 * (n - 1)));
+  const double value = sum * per_slot;
+  // Where nothing is found in n trials, it is rarer than 3 in n. Source: Hanley & Lippman-Hand 1983.
+  const double none = census.sampled == size ? 0 : 3 * per_slot;
+  census.points = {value, std::max(sum, value - 2 * deviation), sum > 0 ? value + 2 * deviation : none};
+  return census;
+}
+
+/// Places of a list, such that any number of the first of them is spread over all of it. Source: Weyl 1916, steps of the golden section.
+PulseIndex spread_over(const std::vector<PulseIndex>& list, std::uint64_t number, double start) {
+  const double at = start + static_cast<double>(number) * 0.6180339887498949;
+  return list[std::min(list.size() - 1, static_cast<std::size_t>((at - std::floor(at)) * static_cast<double>(list.size())))];
+}
+
+// ------------------------------------------------------------------------------------------------------------------- time
+
+/// Blocks of consecutive slots that begin at one of a kind.
+std::vector<SampleBlock> blocks_at(const Census& census, Kind kind, std::uint64_t first, std::uint64_t end, PulseIndex before,
+                                   PulseIndex length, std::uint64_t seed, PulseIndex size) {
+  std::vector<SampleBlock> blocks;
+  const std::vector<PulseIndex>& all = census.found[kind];
+  const double start = uniform({.seed = seed, .pulse = kind, .subray = 3});
+  for (std::uint64_t k = first; k < end && !all.empty(); ++k) {
+    const PulseIndex from = spread_over(all, k, start);
+    blocks.push_back({from - std::min(from, before), from, std::min(size, from + length)});
+  }
+  return blocks;
+}
+
+/// Slots of a block by kind.
+std::array<double, kinds> kinds_in(const Sample& sample) {
+  std::array<double, kinds> n{};
+  for (std::size_t f = 0; f < fate_count; ++f) n[kind_of(static_cast<Fate>(f))] += static_cast<double>(sample.fates[f]);
+  return n;
+}
+
+/// What a slot of each kind takes [s]: least squares over blocks. A kind that is not there costs nothing.
+std::array<double, kinds> cost_of_kinds(std::span<const Sample> kinds_of, std::span<const Sample> times) {
+  std::array<std::array<double, kinds + 1>, kinds> m{};
+  for (std::size_t b = 0; b < kinds_of.size(); ++b) {
+    const auto n = kinds_in(kinds_of[b]);
+    for (std::size_t i = 0; i < kinds; ++i) {
+      for (std::size_t j = 0; j < kinds; ++j) m[i][j] += n[i] * n[j];
+      m[i][kinds] += n[i] * times[b].seconds;
+    }
+  }
+  double trace = 0;
+  for (std::size_t i = 0; i < kinds; ++i) trace += m[i][i];
+  for (std::size_t i = 0; i < kinds; ++i) m[i][i] += 1e-9 * trace;
+  for (std::size_t i = 0; i < kinds; ++i)  // Gauss's elimination; the matrix is positive definite
+    for (std::size_t row = 0; row < kinds; ++row) {
+      if (row == i || !(m[i][i] > 0)) continue;
+      const double factor = m[row][i] / m[i][i];
+      for (std::size_t j = i; j <= kinds; ++j) m[row][j] -= factor * m[i][j];
+    }
+  std::array<double, kinds> cost{};
+  for (std::size_t i = 0; i < kinds; ++i) cost[i] = m[i][i] > 0 ? std::max(0.0, m[i][kinds] / m[i][i]) : 0;
+  return cost;
+}
+
+double dot(const std::array<double, kinds>& a, const std::array<double, kinds>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < kinds; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+// ---------------------------------------------------------------------------------------------------------------- writing
+
+/// What it takes to write.
+struct Writing {
+  struct Cost {
+    double seconds = 0, bytes = 0;  ///< [s], [byte]
+  };
+  Cost point{};   ///< with all that belongs to it
+  Cost empty{};   ///< a pulse without a point
+  Cost leg{};     ///< what has its own files, without points
+  Cost record{};  ///< of a trajectory
+};
+
+/// Some place to write to, which is gone at the end.
+struct TemporaryFolder {
+  fs::path path = fs::temp_directory_path() / ("pulsecast_plan_" + std::to_string(getpid()) + '_' + std::to_string(std::random_device{}()));
+  TemporaryFolder() { fs::create_directories(path); }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+};
+
+/// Pulses of a sample that have echoes, or those that have not.
+Sample only(const Sample& sample, bool with_echoes) {
+  Sample some{.echoes = sample.echoes, .samples = sample.samples, .sample_interval = sample.sample_interval};
+  for (const Shot& shot : sample.shots)
+    if ((shot.echoes > 0) == with_echoes) some.shots.push_back(shot);
+  return some;
+}
+
+Writing measure_writing(std::span<const Sample> samples, const SurveyPlan& plan, const Options& options) {
+  const auto processor = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+  const auto write = [&](const auto& what) {
+    const TemporaryFolder folder;
+    const double start = processor();
+    LegFiles files(folder.path, "leg", options, 0, {});
+    what(files);
+    files.close();
+    Writing::Cost cost{processor() - start, 0};
+    for (const auto& file : fs::directory_iterator(folder.path)) cost.bytes += static_cast<double>(file.file_size());
+    return cost;
+  };
+  Writing w;
+  write([](LegFiles&) {});  // whatever is done once
+  w.leg = write([](LegFiles&) {});
+  const auto each = [&](const Writing::Cost& all, std::uint64_t number) -> Writing::Cost {
+    if (number == 0) return {};
+    const double n = static_cast<double>(number);
+    return {std::max(0.0, all.seconds - w.leg.seconds) / n, std::max(0.0, all.bytes - w.leg.bytes) / n};
+  };
+  for (const bool with_echoes : {true, false}) {
+    std::vector<Sample> some;
+    std::uint64_t number = 0;
+    for (const Sample& sample : samples) {
+      some.push_back(only(sample, with_echoes));
+      number += with_echoes ? sample.echoes.size() : some.back().shots.size();
+    }
+    const Writing::Cost all = write([&](LegFiles& files) {
+      for (const Sample& sample : some) files(sample.batch());
+    });
+    (with_echoes ? w.point : w.empty) = each(all, number);
+  }
+  for (std::size_t k = 0; k < plan.legs.size(); ++k) {
+    const SurveyPlan::LegPlan& leg = plan.legs[k];
+    if (!leg.active || !(leg.trajectory_interval > 0)) continue;
+    constexpr double some = 1000;
+    const double records = std::min(some, std::ceil(leg.duration.seconds() / leg.trajectory_interval));
+    const Writing::Cost all = write(
+        [&](LegFiles& files) { files.add_trajectory(plan.source.legs()[k], leg.start, leg.duration.seconds() / std::max(1.0, records)); });
+    w.record = each(all, static_cast<std::uint64_t>(records) + 1);
+    break;
+  }
+  return w;
+}
+
+/// Records of all trajectories.
+double records_of(const SurveyPlan& plan) {
+  double sum = 0;
+  for (const auto& leg : plan.legs)
+    if (leg.active && leg.trajectory_interval > 0) sum += std::ceil(leg.duration.seconds() / leg.trajectory_interval) + 1;
+  return sum;
+}
+
+/// Sets of files: legs, and strips.
+double files_of(const SurveyPlan& plan) {
+  std::set<std::string> strips;
+  double legs = 0;
+  for (const auto& leg : plan.legs)
+    if (leg.active && !(leg.strip && !strips.insert(*leg.strip).second)) ++legs;
+  return legs;
+}
+
+// ----------------------------------------------------------------------------------------------------------------- memory
+
+double resident_now() {
+  std::ifstream in("/proc/self/statm");
+  double pages = 0, resident = 0;
+  in >> pages >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+double resident_at_most() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024;  // Linux counts in KiB. Source: getrusage(2)
+}
+
+// ----------------------------------------------------------------------------------------------------------------- errors
+
+/// What 19 of 20 do not exceed, and, by the order of those that there are, what that may be of all. Source: David & Nagaraja 2003,
+/// section 7.1, with the normal approximation of the binomial distribution.
+Estimate exceeded_by_few(std::vector<double>& all) {
+  if (all.empty()) return {0, 0, std::numeric_limits<double>::infinity()};
+  std::sort(all.begin(), all.end());
+  constexpr double share = 0.95;
+  const double n = static_cast<double>(all.size()), margin = 2 * std::sqrt(n * share * (1 - share));
+  const auto at = [&](double rank) { return all[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
+  return {at(n * share), at(n * share - margin), at(n * share + margin)};
+}
+
+/// How the echoes of pulses differ from those of the same pulses, simulated finer.
+struct Differences {
+  std::vector<double> range{}, intensity{};  ///< [m], and as shares; of echoes that are in both
+  double of_finer = 0, of_other = 0;         ///< echoes
+
+  /// Each echo of the finer simulation is matched by the nearest one within a reach [m].
+  void add(std::span<const Echo> finer, std::span<const Echo> other, double reach) {
+    std::size_t next = 0;
+    for (const Echo& echo : finer) {
+      const auto distance = [&](std::size_t k) { return std::fabs(other[k].range - echo.range); };
+      std::size_t nearest = next;
+      for (std::size_t k = next; k < other.size(); ++k)
+        if (distance(k) < distance(nearest)) nearest = k;
+      if (nearest >= other.size() || distance(nearest) > reach) continue;
+      range.push_back(distance(nearest)), intensity.push_back(std::fabs(other[nearest].amplitude / echo.amplitude - 1));
+      next = nearest + 1;
+    }
+    of_finer += static_cast<double>(finer.size()), of_other += static_cast<double>(other.size());
+  }
+};
+
+// --------------------------------------------------------------------------------------------------------------- together
+
+/// 1, 2, 5, 10 and so on that are not farther from each other than these two.
+std::vector<double> round_numbers(double from, double to) {
+  std::vector<double> all;
+  for (int power = static_cast<int>(std::floor(std::log10(from))); std::pow(10.0, power) <= to; ++power)
+    for (const int digit : {1, 2, 5})
+      if (const double x = power < 0 ? digit / std::pow(10.0, -power) : digit * std::pow(10.0, power); x >= from && x <= to)
+        all.push_back(x);
+  return all;
+}
+
+std::size_t subrays_of(int rings) { return RingFootprint(static_cast<std::size_t>(rings)).size(); }
+
+class Forecaster {
+ public:
+  Forecaster(Simulation& simulation, const SurveySettings& survey, const Options& options, std::uint64_t seed, double loading)
+      : simulation_(simulation),
+        survey_(survey),
+        plan_(simulation.plan()),
+        options_(options),
+        seed_(seed),
+        threads_(thread_count(options.threads)),
+        workers_(std::min(threads_, thread_count(0))),
+        loading_(loading),
+        resident_(resident_now()),
+        peak_(resident_at_most()),
+        census_(take_census(simulation, seed, threads_, workers_)) {
+    for (const adapters::ChannelSettings& channel : survey_.scanner.channels) {
+      pulse_length_ = std::min(pulse_length_, channel.pulse_length);
+      rings_ = std::max(rings_, channel.waveform.rings);
+      bin_size_ = std::min(bin_size_, channel.waveform.bin_size);
+    }
+    finest_ = {.rings = std::clamp(2 * rings_, 26, 100), .bin_size = pulse_length_ / 128, .ideal = true};
+  }
+
+  Forecasts all() {
+    Forecasts out{.loading = loading_, .slots = plan_.source.size(), .finest = subrays_of(*finest_.rings)};
+    if (plan_.source.size() == 0) return out;
+    measure_as_is();
+    out.sampled = sampled_;
+    prepare_others();
+    for (const Receiving& how : candidates()) out.all.push_back(forecast(how));
+    return out;
+  }
+
+ private:
+  using ByKind = std::array<double, kinds>;
+
+  [[nodiscard]] std::vector<SampleBlock> blocks(Kind kind, std::uint64_t first, std::uint64_t end, PulseIndex before,
+                                                PulseIndex length) const {
+    return blocks_at(census_, kind, first, end, before, length, seed_, plan_.source.size());
+  }
+
+  /// The survey as it is: what slots of each kind take, and what it takes to write what comes of them.
+  void measure_as_is() {
+    constexpr std::uint64_t most_rounds = 12;
+    std::vector<Sample> samples;
+    const Allowance allowance(0.35, workers_);
+    for (std::uint64_t round = 0; round < most_rounds && (round == 0 || allowance.left()); ++round)
+      for (const Kind kind : {met, missed, blocked}) {
+        const std::uint64_t each = kind == met ? 32 : 8;
+        for (Sample& sample : simulation_.sample(blocks(kind, round * each, (round + 1) * each, 64, 448), threads_))
+          samples.push_back(std::move(sample));
+      }
+    const ByKind cost = cost_of_kinds(samples, samples);
+    double rest = 0, sum = 0, slots = 0;
+    for (const Sample& sample : samples) {
+      const ByKind n = kinds_in(sample);
+      rest += std::pow(sample.seconds - dot(n, cost), 2), sum += sample.seconds, slots += dot(n, {1, 1, 1});
+      shots_ += static_cast<double>(sample.shots.size()), echoes_ += static_cast<double>(sample.echoes.size());
+      samples_ += static_cast<double>(sample.samples.size());
+    }
+    shots_ /= slots, echoes_ /= slots, samples_ /= slots;
+    sampled_ = census_.sampled + static_cast<std::uint64_t>(slots);
+    computing_ = dot(census_.slots, cost);
+    met_cost_ = std::max({cost[met], cost[missed], 1e-8});
+    unsure_ = sum > 0 ? 2 * std::sqrt(rest) / sum : 0;
+    writing_ = measure_writing(samples, plan_, options_);
+  }
+
+  /// What the other settings are held against, on so many pulses that trying them all takes a second or so.
+  void prepare_others() {
+    double trials = 0;  // in units of the survey's own settings
+    const auto own = static_cast<double>(subrays_of(rings_));
+    const auto effort = [&](int rings) { return 0.3 + 0.7 * static_cast<double>(subrays_of(rings)) / own; };
+    for (const Receiving& how : candidates()) trials += effort(how.rings.value_or(rings_));
+    const auto affordable = [&](double seconds, double each, double least, double most) {
+      return static_cast<std::uint64_t>(std::clamp(seconds * workers_ / (each * met_cost_), least, most));
+    };
+    const std::uint64_t n = affordable(0.8, 1.4 * 80 * trials, 8, 96);
+    for (const Kind kind : {met, missed, blocked})
+      for (const SampleBlock& block : blocks(kind, 0, kind == met ? n : n / 4, 16, 64))
+        blocks_.push_back(block), kind_of_block_.push_back(kind);
+    own_ = simulation_.sample(blocks_, threads_);
+    own_cost_ = dot(census_.slots, cost_of_kinds(own_, own_));
+    compared_ = blocks(met, 0, affordable(0.5, effort(*finest_.rings) + trials, 128, 2048), 0, 1);
+    simulation_.receive(finest_);
+    finer_ = simulation_.sample(compared_, threads_);
+    simulation_.receive({});
+  }
+
+  /// As the survey is, and all else that may be worth it.
+  [[nodiscard]] std::vector<Receiving> candidates() const {
+    std::vector<Receiving> all{{}};
+    std::vector<double> bins = round_numbers(pulse_length_ * 1e9 / 64, pulse_length_ * 1e9 / 4);
+    for (double& bin : bins) bin /= 1e9;
+    bins.push_back(bin_size_);
+    for (const int rings : {1, 2, 3, 4, 5, 6, 8, 10})
+      for (const double bin : bins)
+        if (rings != rings_ || bin != bin_size_) all.push_back({rings, bin});
+    return all;
+  }
+
+  Forecast forecast(const Receiving& how) {
+    Forecast f{.how = how, .subrays = subrays_of(how.rings.value_or(rings_)), .points = census_.points};
+    const bool other = how != Receiving{};
+    double computing = computing_;
+    if (other) {
+      simulation_.receive(how);
+      const std::vector<Sample> samples = simulation_.sample(blocks_, threads_);
+      if (own_cost_ > 0) computing *= dot(census_.slots, cost_of_kinds(own_, samples)) / own_cost_;
+      add_points(samples, f.points);
+    }
+    entire(f, computing);
+    simulation_.receive({how.rings, how.bin_size, true});
+    compare(simulation_.sample(compared_, threads_), f);
+    simulation_.receive({});
+    return f;
+  }
+
+  /// By how many points more there are than of the survey as it is: the same pulses are compared.
+  void add_points(const std::vector<Sample>& samples, Estimate& points) const {
+    double more = 0, variance = 0;
+    for (const Kind kind : {met, missed}) {
+      double sum = 0, number = 0, squares = 0;
+      std::vector<std::pair<double, double>> all;
+      for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        if (kind_of_block_[b] != kind) continue;
+        auto& [difference, slots] = all.emplace_back(0, 0);
+        for (std::size_t k = 0; k < own_[b].shots.size(); ++k) {
+          if (kind_of(own_[b].shots[k].fate) != kind) continue;
+          difference += static_cast<double>(samples[b].shots[k].echoes) - static_cast<double>(own_[b].shots[k].echoes), ++slots;
+        }
+        sum += difference, number += slots;
+      }
+      if (number == 0) continue;
+      for (const auto& [difference, slots] : all) squares += std::pow(difference - sum / number * slots, 2);
+      more += census_.slots[kind] * sum / number, variance += std::pow(census_.slots[kind] / number, 2) * squares;
+    }
+    const auto margin = [&](double end) { return std::sqrt(std::pow(end - points.value, 2) + 4 * variance); };
+    const double low = margin(points.low), high = margin(points.high);
+    points.value = std::max(0.0, points.value + more);
+    points.low = std::max(0.0, points.value - low), points.high = points.value + high;
+  }
+
+  /// Time, memory and files from what was measured.
+  void entire(Forecast& f, double computing) const {
+    const double repetitions = simulation_.runs(), legs = files_of(plan_), records = records_of(plan_),
+                 shots = census_.slots[met] + census_.slots[missed];
+    const auto bytes = [&](double points, double unsure) {
+      return repetitions * (unsure * (points * writing_.point.bytes + std::max(0.0, shots - points) * writing_.empty.bytes) +
+                            legs * writing_.leg.bytes + records * writing_.record.bytes);
+    };
+    const auto seconds = [&](double points, double unsure) {
+      const double writing = points * writing_.point.seconds + std::max(0.0, shots - points) * writing_.empty.seconds;
+      const double alone = legs * writing_.leg.seconds + records * writing_.record.seconds;
+      // One thread writes at a time, while the others go on.
+      return repetitions * (loading_ + unsure * (alone + std::max(writing, (computing + writing) / workers_)));
+    };
+    const double unsure = std::hypot(0.1, unsure_);  // what a sample cannot know is put at a tenth
+    f.seconds = {seconds(f.points.value, 1), seconds(f.points.low, 1 - unsure), seconds(f.points.high, 1 + unsure)};
+    f.bytes = {bytes(f.points.value, 1), bytes(f.points.low, 0.99), bytes(f.points.high, 1.01)};
+    // Threads run ahead of the one that writes as `Conveyor` lets them; vectors have up to twice the room that they need.
+    const double chunk = 2048 * (shots_ * sizeof(Shot) + echoes_ * sizeof(Echo) + samples_ * sizeof(float)) + 1, always = 2 * threads_ + 2;
+    const double ahead = std::max(always, std::min(16 * always, 6e6 / chunk));
+    const bool waits = writing_.point.seconds * f.points.value > computing / workers_;
+    const auto memory = [&](double buffers) { return std::max(peak_, resident_ + buffers); };
+    f.memory = {memory((waits ? 1.5 * ahead : threads_ + 2) * chunk + 3e6), memory(threads_ * chunk), memory(3 * ahead * chunk + 6e6)};
+    for (double* end : {&f.points.value, &f.points.low, &f.points.high}) *end *= repetitions;
+  }
+
+  void compare(const std::vector<Sample>& samples, Forecast& f) const {
+    Differences all;
+    const double reach = 0.25 * speed_of_light * pulse_length_;  // half a pulse, there and back
+    for (std::size_t b = 0; b < samples.size(); ++b)
+      for (std::size_t k = 0; k < samples[b].shots.size(); ++k)
+        all.add(finer_[b].batch().echoes_of(finer_[b].shots[k]), samples[b].batch().echoes_of(samples[b].shots[k]), reach);
+    const double of_both = static_cast<double>(all.range.size());
+    f.range_error = exceeded_by_few(all.range), f.intensity_error = exceeded_by_few(all.intensity);
+    f.lost = all.of_finer > 0 ? 1 - of_both / all.of_finer : 0;
+    f.invented = all.of_other > 0 ? 1 - of_both / all.of_other : 0;
+  }
+
+  Simulation& simulation_;
+  const SurveySettings& survey_;
+  const SurveyPlan& plan_;
+  const Options& options_;
+  std::uint64_t seed_;
+  unsigned threads_;
+  double workers_;  ///< that run at the same time
+  double loading_, resident_, peak_;
+  Census census_;
+  double pulse_length_ = std::numeric_limits<double>::infinity(), bin_size_ = std::numeric_limits<double>::infinity();
+  int rings_ = 1;
+  Receiving finest_{};
+  // of the survey as it is
+  double computing_ = 0, met_cost_ = 0, unsure_ = 0, shots_ = 0, echoes_ = 0, samples_ = 0;
+  std::uint64_t sampled_ = 0;
+  Writing writing_{};
+  // what other settings are held against
+  std::vector<SampleBlock> blocks_, compared_;
+  std::vector<Kind> kind_of_block_;
+  std::vector<Sample> own_, finer_;
+  double own_cost_ = 0;
+};
+
+}  // namespace
+
+Forecasts forecasts_of(Simulation& simulation, const SurveySettings& survey, const Options& options, std::uint64_t seed, double loading) {
+  return Forecaster(simulation, survey, options, seed, loading).all();
+}

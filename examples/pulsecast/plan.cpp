@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+#include "plan.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <initializer_list>
+#include <iomanip>
+#include <iostream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <pulsecast/base/parallel.hpp>
+
+#include "forecast.hpp"
+
+namespace {
+
+/// Three digits that count, and never powers of ten.
+std::string digits(double x) {
+  if (!std::isfinite(x)) return "unknown";
+  const int before = x == 0 ? 3 : static_cast<int>(std::floor(std::log10(std::fabs(x)))) + 1;
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(std::clamp(3 - before, 0, 9)) << x;
+  return out.str();
+}
+
+struct Unit {
+  double size;
+  const char* name;
+};
+
+/// The largest of which there is one; else the first.
+Unit unit_of(double x, std::initializer_list<Unit> units) {
+  Unit best = *units.begin();
+  for (const Unit& unit : units)
+    if (x >= unit.size) best = unit;
+  return best;
+}
+
+Unit time_unit(double x) { return x < 120 ? Unit{1, "s"} : unit_of(x / 2, {{60, "min"}, {3600, "h"}}); }
+Unit bytes_unit(double x) { return unit_of(x, {{1e3, "kB"}, {1e6, "MB"}, {1e9, "GB"}, {1e12, "TB"}}); }
+Unit length_unit(double x) { return unit_of(x, {{1e-3, "mm"}, {1, "m"}}); }
+constexpr Unit one{1, ""}, percent{1e-2, "%"};
+
+/// `12.3 s (11.0 to 13.5)`
+std::string told(const Estimate& e, const Unit& unit) {
+  if (!std::isfinite(e.high)) return "unknown";
+  return digits(e.value / unit.size) + (*unit.name ? " " : "") + unit.name + " (" + digits(e.low / unit.size) + " to " +
+         digits(e.high / unit.size) + ')';
+}
+
+/// Chooses settings, and says why.
+class Planner {
+ public:
+  Planner(const Options& options, const pulsecast::adapters::SurveySettings& survey, const Forecasts& found)
+      : options_(options), asked_(options.plan), survey_(survey), found_(found) {}
+
+  [[nodiscard]] const Forecast* choose() const {
+    std::vector<const Forecast*> able;
+    for (const Forecast& f : found_.all)
+      if (worst(f) <= 1) able.push_back(&f);
+    if (able.empty()) return nullptr;
+    // What differs by less than a twentieth is the same; then the other counts, and then what the survey has.
+    constexpr double same = 1.05;
+    const auto best = [&](const auto& first, const auto& second) {
+      const auto by = [](const auto& figure) {
+        return [&figure](const Forecast* a, const Forecast* b) { return figure(*a) < figure(*b); };
+      };
+      const double limit = same * first(**std::min_element(able.begin(), able.end(), by(first)));
+      std::erase_if(able, [&](const Forecast* f) { return first(*f) > limit; });
+      if (able.front() == &found_.all.front()) return able.front();
+      return *std::min_element(able.begin(), able.end(), by(second));
+    };
+    const auto seconds = [](const Forecast& f) { return f.seconds.value; };
+    const auto error = [](const Forecast& f) { return f.range_error.value; };
+    return asked_.range_error || asked_.intensity_error ? best(seconds, error) : best(error, seconds);
+  }
+
+  /// That comes nearest to what was asked.
+  [[nodiscard]] const Forecast& nearest() const {
+    return *std::min_element(found_.all.begin(), found_.all.end(),
+                             [&](const Forecast& a, const Forecast& b) { return worst(a) < worst(b); });
+  }
+
+  [[nodiscard]] int rings(const Forecast& f) const { return f.how.rings.value_or(survey_.scanner.channels.front().waveform.rings); }
+  [[nodiscard]] double bin_size(const Forecast& f) const {
+    return f.how.bin_size.value_or(survey_.scanner.channels.front().waveform.bin_size);
+  }
+
+  [[nodiscard]] std::string settings(const Forecast& f) const {
+    return "beamSampleQuality " + std::to_string(rings(f)) + " (" + std::to_string(f.subrays) + (f.subrays == 1 ? " subray" : " subrays") +
+           "), binSize_ns " + digits(bin_size(f) * 1e9);
+  }
+
+  [[nodiscard]] std::string demands() const {
+    std::string all;
+    const auto add = [&](const char* name, const std::optional<double>& asked, const Unit& unit) {
+      if (asked) all += (all.empty() ? "" : ", ") + std::string(name) + ' ' + digits(*asked / unit.size) + ' ' + unit.name;
+    };
+    add("a range error of", asked_.range_error, length_unit(asked_.range_error.value_or(1)));
+    add("an intensity error of", asked_.intensity_error, percent);
+    add("a run time of", asked_.time, time_unit(asked_.time.value_or(1)));
+    add("a memory of", asked_.memory, bytes_unit(asked_.memory.value_or(1)));
+    return all;
+  }
+
+  void print() const {
+    const Forecast& as_is = found_.all.front();
+    std::cout << "survey   " << survey_.name << ": " << found_.slots << " pulses, " << pulsecast::thread_count(options_.threads)
+              << " threads, points as " << options_.format << "\nsample   " << found_.sampled << " pulses; the scene took "
+              << digits(found_.loading) << " s to load\n\n";
+    print("as it is: ", as_is);
+    std::cout
+        << "\n"
+           "  beamSampleQuality  subrays  binSize_ns    time [s]      points  range error [mm]  intensity error [%]  lost [%]  false [%]\n";
+    for (const Forecast* f : table()) {
+      const auto column = [](int width, const std::string& text) { std::cout << std::setw(width) << text; };
+      std::cout << (f == &as_is ? "  *" : "   ");
+      column(16, std::to_string(rings(*f))), column(9, std::to_string(f->subrays)), column(12, digits(bin_size(*f) * 1e9));
+      column(12, digits(f->seconds.value)), column(12, digits(f->points.value)), column(18, digits(f->range_error.value * 1e3));
+      column(21, digits(f->intensity_error.value * 1e2)), column(10, digits(f->lost * 1e2)), column(11, digits(f->invented * 1e2));
+      std::cout << '\n';
+    }
+    std::cout << "  * as it is\n";
+  }
+
+  void print(const char* title, const Forecast& f) const {
+    const auto line = [](const char* name, const std::string& text) {
+      std::cout << "  " << std::left << std::setw(17) << name << std::right << text << '\n';
+    };
+    std::cout << title << settings(f) << '\n';
+    line("run time", told(f.seconds, time_unit(f.seconds.value)));
+    line("memory", told(f.memory, bytes_unit(f.memory.value)));
+    line("points", told(f.points, one));
+    line("files", told(f.bytes, bytes_unit(f.bytes.value)));
+    line("range error", told(f.range_error, length_unit(f.range_error.value)));
+    line("intensity error", told(f.intensity_error, percent));
+  }
+
+ private:
+  /// By how much a forecast misses what it misses most, on the safe side; up to 1, it meets all.
+  [[nodiscard]] double worst(const Forecast& f) const {
+    double most = 0;
+    const auto hold = [&](const Estimate& e, const std::optional<double>& asked) {
+      if (asked) most = std::max(most, e.high / *asked);
+    };
+    hold(f.range_error, asked_.range_error), hold(f.intensity_error, asked_.intensity_error);
+    hold(f.seconds, asked_.time), hold(f.memory, asked_.memory);
+    return most;
+  }
+
+  /// The survey as it is, and those settings than which no other is faster and at least as close; all, for those who want to know more.
+  [[nodiscard]] std::vector<const Forecast*> table() const {
+    std::vector<const Forecast*> rows;
+    for (const Forecast& f : found_.all) {
+      const bool outdone = std::any_of(found_.all.begin(), found_.all.end(), [&](const Forecast& other) {
+        return other.seconds.value < f.seconds.value && other.range_error.value <= f.range_error.value &&
+               other.intensity_error.value <= f.intensity_error.value;
+      });
+      if (!outdone || options_.verbose || &f == &found_.all.front()) rows.push_back(&f);
+    }
+    std::sort(rows.begin(), rows.end(), [](const Forecast* a, const Forecast* b) { return a->seconds.value < b->seconds.value; });
+    return rows;
+  }
+
+  const Options& options_;
+  const PlanOptions& asked_;
+  const pulsecast::adapters::SurveySettings& survey_;
+  const Forecasts& found_;
+};
+
+}  // namespace
+
+bool plan(const Options& options, const SurveyFile& file, const Simulation::Settings& settings) {
+  const auto start = std::chrono::steady_clock::now();
+  Simulation simulation(file.survey, settings);
+  const double loading = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (const std::string& text : simulation.warnings())
+    if (!options.quiet) std::cerr << "note: " << text << '\n';
+  if (simulation.plan().source.size() == 0) {
+    std::cerr << "error: no leg is active: there is nothing to plan\n";
+    return false;
+  }
+  const Forecasts found = forecasts_of(simulation, file.survey, options, settings.seed, loading);
+  const Planner planner(options, file.survey, found);
+  planner.print();
+  if (options.verbose)
+    std::cout << "planned in " << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading)
+              << " s\n";
+  if (!options.plan.asks()) return true;
+
+  std::cout << '\n';
+  const Forecast* const chosen = planner.choose();
+  if (chosen == nullptr) {
+    planner.print("nearest: ", planner.nearest());
+    std::cerr << "error: no settings meet what was asked, " << planner.demands() << '\n';
+    return false;
+  }
+  planner.print("best for what was asked: ", *chosen);
+  if (options.plan.apply) {
+    const std::filesystem::path& to = options.plan.apply_to.empty() ? options.survey : options.plan.apply_to;
+    write_survey_file(options, file, {planner.rings(*chosen), planner.bin_size(*chosen)}, to);
+    if (!options.quiet) std::cout << "written to " << to.string() << '\n';
+  }
+  return true;
+}
