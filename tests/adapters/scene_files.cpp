@@ -47,6 +47,26 @@ TEST_CASE("an OBJ file brings the materials that it names, as one name and as se
   CHECK(std::find(found.begin(), found.end(), "missing.mtl") == found.end());
 }
 
+TEST_CASE("a scene has ground if any of its MTL files says so") {
+  const Folder folder({"p.xyz", "v.vox"});
+  folder.put("a.mtl", "newmtl a\nKd 1 1 1\n# helios_isGround true\nhelios_isGround false\n");
+  folder.put("b.mtl", "newmtl b\n  helios_isGround TRUE\r\n");
+  folder.put("a.obj", "mtllib a.mtl\nv 0 0 0\n");
+  folder.put("ab.obj", "mtllib a.mtl b.mtl\nv 0 0 0\n");
+  const auto ground = [](const PartSource& source) {
+    SceneSettings scene;
+    scene.parts.push_back({.source = ObjSource{}});
+    scene.parts[0].swaps.push_back({.source = source});
+    return has_ground(scene);
+  };
+  CHECK_FALSE(ground(ObjSource{{folder / "a.obj"}}));
+  CHECK(ground(ObjSource{{folder / "ab.obj"}}));
+  CHECK_FALSE(ground(XyzSource{.files = {folder / "p.xyz"}, .material = {.file = folder / "a.mtl"}}));
+  CHECK(ground(XyzSource{.files = {folder / "p.xyz"}, .material = {.file = folder / "b.mtl"}}));
+  CHECK_FALSE(ground(XyzSource{.files = {folder / "b.mtl"}}));  // not as a material
+  CHECK_FALSE(has_ground({}));
+}
+
 TEST_CASE("other sources bring the files that their settings name; each counts once, and those that are not there do not") {
   const Folder folder({"a.tif", "b.tif", "m.mtl", "v.vox", "l.txt", "p.xyz", "y.obj"});
   CHECK(folder.files(GeoTiffSource{{folder / "a.tif", folder / "b.tif"}, {folder / "m.mtl", {}}}) == Names{"a.tif", "b.tif", "m.mtl"});

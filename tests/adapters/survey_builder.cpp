@@ -95,7 +95,21 @@ TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with 
 
   SUBCASE("one leg alone has no end") {
     s.legs.resize(1);
-    CHECK_THROWS_AS((void)plan_survey(s, flat), SettingError);
+    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 0: maxDuration_s"), SettingError);
+  }
+  SUBCASE("what is wrong is told with the place where it stands") {
+    s.legs[1].platform.speed = 0;
+    SurveyBuildOptions options;
+    options.leg_places = {"a.xml:3:5", "a.xml:7:5", "a.xml:9:5"};
+    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat, options), doctest::Contains("a.xml:7:5: leg 1: movePerSec_m"), SettingError);
+  }
+  SUBCASE("the last leg says where the way ends, whatever the scanner could do there") {
+    for (ChannelSettings& channel : s.scanner.channels) channel.scan_frequency_min = 5;
+    s.legs.back().scanner.scan_frequency = 0;
+    s.legs.back().duration_max = 4;
+    const SurveyPlan later = plan_survey(s, flat);
+    CHECK(later.source.size() == plan.source.size());
+    CHECK(later.legs[2].duration.seconds() == 0);
   }
   SUBCASE("it must move") {
     s.legs[1].platform.speed = 0;
@@ -114,7 +128,7 @@ TEST_CASE("a multicopter that stops is at each place when its leg begins; one th
   for (std::size_t k = 0; k < 2; ++k) CHECK(length(stops.source.legs()[k].path().at({}).position - s.legs[k].platform.position) < 1e-6);
   CHECK(length(stops.source.legs()[1].path().at({}).direction(forward) - forward) < 1e-6);
 
-  for (LegSettings& leg : s.legs) leg.platform.smooth_turn = true, leg.platform.stop_and_turn = false;
+  for (LegSettings& leg : s.legs) leg.platform.smooth_turn = true;
   const SurveyPlan smooth = plan_survey(s, flat);
   double nearest = 1e9;
   for (double t = 0; t < smooth.legs[0].duration.seconds(); t += 0.01)
@@ -139,6 +153,50 @@ TEST_CASE("a vehicle drives over the ground from leg to leg") {
   }
 }
 
+TEST_CASE("a platform that moves stays where the next leg begins at the same place, for as long as it may, and looks as it came") {
+  const std::vector<Vec3> places{{0, 0, 40}, {0, 0, 40}, {30, 0, 40}, {30, 0, 40}, {30, 0, 40}, {30, 30, 40}};
+  for (const PlatformKind kind : {PlatformKind::linear_path, PlatformKind::multicopter, PlatformKind::ground_vehicle})
+    for (const bool smooth : {false, true}) {
+      CAPTURE(static_cast<int>(kind));
+      CAPTURE(smooth);
+      SurveySettings s = survey_of(kind, places, 5);
+      for (LegSettings& leg : s.legs) leg.platform.smooth_turn = smooth;
+      s.legs[0].duration_max = 2, s.legs[2].duration_max = 3;
+      s.leg_offset = LegOffsetSettings{.mean = 0, .deviation = 0.5};
+      const SurveyPlan plan = plan_survey(s, flat, {.seed = 3});
+      CHECK(plan.legs[0].duration.seconds() == 2);
+      CHECK(plan.legs[2].duration.seconds() == 3);
+      CHECK(plan.legs[3].duration.seconds() == 0);  // nobody says for how long
+      CHECK(plan.legs[0].end == 2000);
+      const auto at = [&](std::size_t k, double t) { return plan.source.legs()[k].path().at(Tick::of_seconds(t)); };
+      for (const std::size_t k : {0U, 2U}) CHECK(at(k, 0).position == at(k, 1.7).position);
+      for (std::size_t k = 0; k < 5; ++k) {
+        CAPTURE(k);
+        const auto end = at(k, plan.legs[k].duration.seconds()), begin = at(k + 1, 0);
+        CHECK(length(end.position - begin.position) < 0.01);             // legs end with a whole slot
+        const bool jumps = kind != PlatformKind::multicopter && k == 3;  // it cannot turn on the spot, and leaves as if it had
+        CHECK((jumps || length(end.direction(forward) - begin.direction(forward)) < 0.01));
+      }
+    }
+}
+
+TEST_CASE("a platform that moves, and has but one leg, stays there") {
+  for (const PlatformKind kind : {PlatformKind::linear_path, PlatformKind::multicopter, PlatformKind::ground_vehicle}) {
+    SurveySettings s = survey_of(kind, {{3, 4, 7}}, 5);
+    s.legs[0].duration_max = 2;
+    const SurveyPlan plan = plan_survey(s, flat);
+    CHECK(plan.source.size() == 2000);
+    CHECK(origin(plan, 0) == Vec3{3, 4, 7});
+    CHECK(plan.source.pulse(1999)->pose.position == Vec3{3, 4, 7});
+    s.legs[0].duration_max.reset();
+    s.legs[0].scanner.head_speed = radians(90), s.legs[0].scanner.head_stop = radians(360);
+    CHECK(plan_survey(s, flat).source.size() == 4000);
+  }
+  SurveySettings s = survey_of(PlatformKind::multicopter, {{0, 0, 40}});
+  s.legs[0].duration_max = 1, s.legs[0].platform.yaw_at_departure = radians(90);
+  CHECK(length(plan_survey(s, flat).source.pulse(0)->direction() + right) < 1e-9);
+}
+
 TEST_CASE("an interpolated platform follows its file, with the columns that the leg names") {
   const TemporaryFolder folder;
   std::ofstream(folder / "way.trj") << "0,0,0,270,100,200,50\n2,0,0,270,120,200,50\n4,0,0,270,140,200,50\n";
@@ -154,6 +212,21 @@ TEST_CASE("an interpolated platform follows its file, with the columns that the 
   CHECK(length(plan.source.pulse(0)->direction() - right) < 1e-9);
   s.legs[0].platform.trajectory.reset();
   CHECK_THROWS_AS((void)plan_survey(s, flat), SettingError);
+}
+
+TEST_CASE("what one leg says of the columns of a file, and what separates them, holds for all that follow it; others do not count") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "way.trj") << "100,200,50,0,1;5,fixed\n120,200,50,1,1;5,fixed\n140,200,50,2,1;5,float\n";
+  SurveySettings s = survey_of(PlatformKind::interpolated, {{}, {}});
+  const TrajectoryIndices columns{.time = 3, .x = 0, .y = 1, .z = 2};
+  for (LegSettings& leg : s.legs) leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .position_only = true};
+  s.legs[0].platform.trajectory->columns = columns, s.legs[0].platform.trajectory->separator = ',';
+  s.legs[1].platform.trajectory->start = 1;
+  const SurveyPlan plan = plan_survey(s, flat);
+  CHECK(plan.legs[0].duration.seconds() == 2);
+  CHECK(length(origin(plan, plan.legs[1].first) - Vec3{120, 200, 50}) < 1e-9);
+  s.legs[0].platform.trajectory->separator.reset();
+  CHECK_THROWS_AS((void)plan_survey(s, flat), FileError);
 }
 
 TEST_CASE("channels fire together, each from its own place") {

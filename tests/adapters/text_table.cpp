@@ -5,6 +5,7 @@
 #include <clocale>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,9 +26,9 @@ std::filesystem::path put(const TemporaryFolder& folder, const std::string& text
   return folder / "t.txt";
 }
 
-Rows rows(const std::string& text) {
+Rows rows(const std::string& text, std::optional<char> separator = {}) {
   const TemporaryFolder folder;
-  TextTable table(put(folder, text), "a table");
+  TextTable table(put(folder, text), "a table", separator);
   Rows result;
   while (table.next()) result.emplace_back(table.cells().begin(), table.cells().end());
   return result;
@@ -51,6 +52,8 @@ TEST_CASE("columns are separated by what the first row has") {
   CHECK(rows("  a  b   c \n1\t2 3") == expected);
   CHECK(rows("\"a\" , \"b\",c\n 1,\t2 , 3 \n") == expected);
   CHECK(rows("a;b,x\n1;2,5\n") == Rows{{"a", "b,x"}, {"1", "2,5"}});
+  CHECK(rows("a;b,x\n1;2,5\n", ',') == Rows{{"a;b", "x"}, {"1;2", "5"}});
+  CHECK(rows("a, b\n", ' ') == Rows{{"a,", "b"}});
 }
 
 TEST_CASE("empty cells count, except among blanks") {

@@ -142,7 +142,8 @@ TEST_CASE("comments that say less leave the usual order, and those that contradi
   CHECK(contains(error("#TIME_COLUMN: 7\n1,2,3,4,5,6,7\n", helios_format()).problem(), "expected #TIME_COLUMN to be one of them"));
   CHECK(error("#TIME_COLUMN: two\n1,2,3,4,5,6,7\n", helios_format()).place() == "line 1");
   CHECK(error("0,1,2,3,4,5\n", helios_format()).problem() == "has 6 columns: expected 7");
-  CHECK(error("#HEADER: \"t\",\"x\",\"y\",\"z\",\"rolle\"\n0,1,2,3,4\n", helios_format()).place() == "line 2, column 5");
+  CHECK(error("#HEADER: \"t\",\"x\",\"y\",\"z\",\"roll\",\"yaw_m\",\"roll\"\n0,1,2,3,4,5,6\n", helios_format()).place() ==
+        "line 2, column 7");
   TrajectoryFormat radian = helios_format();
   radian.angle_unit = AngleUnit::radian;
   CHECK(same(read("0,0.1,0.2,0.3,4,5,6\n", radian).poses[0].rotation, rotation_of({0.1, 0.2, 0.3}, helios_arinc_705)));
@@ -263,6 +264,41 @@ TEST_CASE("columns that are no matter may be left out by name") {
   const TrajectoryTable table = read("time_s,satellites,x,y,z,roll,pitch,yaw,qx\n0,many,1,2,3,0,0,0,nan\n", format);
   CHECK(table.warnings.empty());
   CHECK(table.poses[0].position == Vec3{1, 2, 3});
+}
+
+TEST_CASE("further columns do not count where the file or the format says which ones are which, if the format allows for them") {
+  const std::string named = "#HEADER: \"t\", \"quality\", \"roll\", \"pitch\", \"yaw\", \"x\", \"y\", \"z\"\n";
+  const TrajectoryTable table = read(named + "7,good,1,2,3,4,5,6,more,and more\n", helios_format());
+  REQUIRE(table.poses.size() == 1);
+  CHECK(table.poses[0].position == Vec3{4, 5, 6});
+  REQUIRE(table.warnings.size() == 1);
+  CHECK(contains(table.warnings[0], "not known are left out: 'quality'"));
+  CHECK(contains(error(named + "7,good,1,2,3,4,5\n", helios_format()).problem(), "has 7 columns: expected 8"));
+  CHECK(contains(error("0,1,2,3,4,5,6,7\n", helios_format()).problem(), "has 8 columns: expected 7"));  // which ones?
+  TrajectoryFormat format = helios_format();
+  format.names = ColumnNames::nowhere;
+  CHECK(read("7,1,2,3,4,5,6,more\n", format).warnings.empty());
+  format.more_columns = false;
+  CHECK(contains(error("7,1,2,3,4,5,6,more\n", format).problem(), "has 8 columns: expected 7"));
+  CHECK(contains(error(named + "7,good,1,2,3,4,5,6\n",
+                       [] {
+                         TrajectoryFormat strict = helios_format();
+                         strict.more_columns = false;
+                         return strict;
+                       }())
+                     .problem(),
+                 "'quality' is no known column"));
+}
+
+TEST_CASE("a separator is found, unless it is fixed") {
+  TrajectoryFormat format = helios_format();
+  const std::string text = "#HEADER: \"t\", \"roll\", \"pitch\", \"yaw\", \"x\", \"y\", \"z\"\n0,1,2,3,4,5,6,fixed;float\n";
+  CHECK(contains(error(text, format).problem(), "has 2 columns: expected 7"));
+  format.fixed_separator = true;
+  CHECK(read(text, format).poses.at(0).position == Vec3{4, 5, 6});
+  format.separator = ';';
+  CHECK(read("0;1;2;3;4;5;6\n", format).poses.at(0).position == Vec3{4, 5, 6});
+  CHECK(contains(error("0,1,2,3,4,5,6\n", format).problem(), "has 1 columns: expected 7"));
 }
 
 TEST_CASE("numbers are the same in every locale") {

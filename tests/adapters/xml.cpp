@@ -187,7 +187,6 @@ TEST_CASE("parts have their filters, motions and swaps") {
   const PartSettings& swapped = moving.parts.at(2);
   REQUIRE(swapped.swaps.size() == 3);
   CHECK(swapped.swaps[0].step == 2);
-  CHECK_FALSE(swapped.swaps[0].keep_crs);
   CHECK(swapped.swaps[0].transform.scale == 2);
   CHECK_FALSE(swapped.swaps[0].source);
   CHECK(swapped.swaps[1].source);
@@ -207,7 +206,6 @@ TEST_CASE("an interpolated platform takes mount and noise from another, and the 
   CHECK(trajectory.columns == TrajectoryIndices{});
   CHECK(trajectory.start == 1);
   CHECK(trajectory.end == 2.5);
-  CHECK(trajectory.teleport_to_start);
   for (const char* name : {"trajectory_seperator", "trajectory_separator"}) {
     const std::string text =
         survey_text(R"(platform="interpolated")", "<leg><platformSettings trajectory=\"flight.trj\" " + std::string(name) +
@@ -378,7 +376,6 @@ TEST_CASE("the departure's yaw is not inherited, and a smooth turn is no stop") 
           .survey;
   CHECK_FALSE(survey.legs[0].platform.yaw_at_departure);
   CHECK(survey.legs[0].platform.smooth_turn);
-  CHECK_FALSE(survey.legs[0].platform.stop_and_turn);
 }
 
 TEST_CASE("files that match a pattern become parts of their own, if the part has no name") {

@@ -210,6 +210,10 @@ TEST_CASE("children are read in order, once where there may be one, and unknown 
   idle.io.without_effect({"b"});
   CHECK(idle.faults().empty());
   CHECK(idle.report.warnings().size() == 1);
+  Reading number("<a b=\"1\" c=\"5\"/>");
+  for (const char* name : {"b", "c", "d"}) number.io.idle_number(name, units::metre, 0, 2);
+  CHECK(number.report.warnings().size() == 2);
+  CHECK(contains(number.faults(), "c=\"5\": expected a number from 0 to 2 m"));
 }
 
 TEST_CASE("params are checked as attributes are") {

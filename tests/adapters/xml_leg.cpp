@@ -53,8 +53,28 @@ TEST_CASE("any index of a column means that all are agreed") {
 TEST_CASE("of a trajectory, what cannot be is told") {
   CHECK(contains(told(R"(<p trajectory="none.trj"/>)"), "is not there"));
   CHECK(contains(told(R"(<p trajectory="mesh.obj" tStart="2" tEnd="2"/>)"), "tEnd is not after tStart"));
-  CHECK(contains(told(R"(<p trajectory="mesh.obj" trajectory_separator=";;"/>)"), "a single character"));
+  CHECK(contains(told(R"(<p trajectory="mesh.obj" trajectory_separator=";;"/>)"), "expected a comma, a semicolon, a tab or a blank"));
+  CHECK(contains(told(R"(<p trajectory="mesh.obj" trajectory_separator="|"/>)"), "expected a comma"));
+  CHECK(contains(told(R"(<p trajectory="mesh.obj" tIndex="1000"/>)"), "from 0 to 999"));
   CHECK(contains(told(R"(<p trajectory="mesh.obj" interpolationDomain="positions"/>)"), "did you mean 'position'?"));
+}
+
+TEST_CASE("a multicopter that does not stop to turn turns smoothly") {
+  CHECK_FALSE(from(R"(<p stopAndTurn="true"/>)").smooth_turn);
+  CHECK(from(R"(<p stopAndTurn="false"/>)").smooth_turn);
+  CHECK(from(R"(<p stopAndTurn="true" smoothTurn="true"/>)").smooth_turn);
+  LegPlatformSettings inherited{.smooth_turn = true};
+  CHECK(told(R"(<p smoothTurn="false"/>)", inherited).empty());
+  CHECK_FALSE(inherited.smooth_turn);
+}
+
+TEST_CASE("what of a leg does nothing is told, and what is as it says is not") {
+  CHECK(contains(told(R"(<p slowdownEnabled="false"/>)"), "warning"));
+  CHECK(told(R"(<p slowdownEnabled="true"/>)").empty());
+  CHECK(contains(told(R"(<p slowdownEnabled="no"/>)"), "is not known"));
+  CHECK(contains(told(R"(<p trajectory="mesh.obj" teleportToStart="true"/>)"), "warning"));
+  CHECK(contains(told(R"(<p trajectory="mesh.obj" slopeFilterThreshold="0.1"/>)"), "all samples are kept"));
+  CHECK(told(R"(<p trajectory="mesh.obj" slopeFilterThreshold="0"/>)").empty());
 }
 
 TEST_CASE("figures of a leg that make no sense are told") {

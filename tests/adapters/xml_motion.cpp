@@ -52,3 +52,21 @@ TEST_CASE("of a motion, what cannot be is told") {
   CHECK(contains(told(R"(<motion type="rotasion" axis="0;0;1"/>)"), "did you mean 'rotation'?"));
   CHECK(contains(told(R"(<motion/>)"), "has no attribute 'type'"));
 }
+
+TEST_CASE("a sequence that nothing can do is told, with its place") {
+  const auto sequence = [](const std::string& motions) {
+    MotionSequenceSettings settings;
+    return support::xml_told("<dmotion id=\"m\" loop=\"0\">" + motions + "</dmotion>", [&](XmlInput& io) { xml::fields(io, settings); });
+  };
+  const std::string mirror = R"(<motion type="reflection" ortho="1;0;0"/>)",
+                    own = R"(<motion type="rotsym" axis="0;0;1" angle="9" selfMode="1"/>)";
+  const std::string turn = R"(<motion type="rotation" axis="0;0;1" angle="9"/>)",
+                    own_turn = R"(<motion type="rotation" axis="0;0;1" angle="9" selfMode="1"/>)";
+  CHECK(contains(sequence(mirror), "a.xml:1:2: <dmotion id='m'> cannot be done: expected reflections even in number"));
+  CHECK(contains(sequence(mirror + own), "even in number"));
+  CHECK(sequence(mirror + mirror).empty());
+  CHECK(sequence(own + own).empty());
+  CHECK(contains(sequence(turn + own_turn), "not both in one sequence"));
+  CHECK(sequence(mirror + mirror + own_turn).empty());
+  CHECK_FALSE(contains(sequence(R"(<motion type="rotation" axis="0;0;0" angle="1"/>)" + own_turn), "not both"));
+}

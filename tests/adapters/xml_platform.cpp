@@ -41,7 +41,15 @@ TEST_CASE("a platform that says nothing has the defaults of the format") {
 
 TEST_CASE("of a platform, what cannot be is told") {
   CHECK(contains(told("<platform id=\"p\" type=\"statik\"/>"), "did you mean 'static'?"));
-  CHECK(contains(told("<platform id=\"p\" type=\"static\" drag=\"1\"/>"), "has no effect with this type"));
+  CHECK(contains(told("<platform id=\"p\" type=\"static\" yaw_speed_deg=\"1\"/>"), "has no effect with this type"));
+  for (const char* type : {"static", "multicopter", "groundvehicle"})
+    for (const char* name : {"drag", "engine_max_force", "speedup_magnitude", "slowdown_magnitude", "slowdown_distance", "base_pitch_deg",
+                             "pitch_speed_deg", "roll_speed_deg", "roll_offset_deg"}) {
+      const std::string begin = "<platform id=\"p\" type=\"" + std::string(type) + "\" " + name + "=\"";
+      CHECK(contains(told(begin + "1\"/>"), "warning"));
+      CHECK(contains(told(begin + "1\"/>"), "'" + std::string(name) + "' has no effect: ways are planned"));
+      CHECK(contains(told(begin + "much\"/>"), "expected a number"));
+    }
   CHECK(contains(told(R"(<platform id="p" type="static"><attitudeYNoise type="UNIFORM" min="2"/></platform>)"), "max is below min"));
   CHECK(contains(told(R"(<platform id="p" type="static"><attitudeYNoise clipEnabled="1" clipMin="2"/></platform>)"), "clipMax is below"));
   CHECK(contains(told("<platform type=\"static\"/>"), "has no attribute 'id'"));

@@ -54,10 +54,22 @@ TEST_CASE("of a scanner, what cannot be is told") {
   CHECK(contains(fault("optics=\"line\"", "<headError expr=\"0\"/>"), "for rotating optics only"));
   CHECK(contains(fault("optics=\"line\"", "<rangeError expr=\"\"/>"), "empty formula"));
   CHECK(contains(fault("optics=\"line\"", "<rangeError/>"), "has no attribute 'expr'"));
+  CHECK(contains(fault("optics=\"line\"", "<rangeError expr=\"2*(THETA\"/>"), "a.xml:1:"));
+  CHECK(fault("optics=\"line\"", "<rangeError expr=\"2*(THETA)\"/>").empty());
+  CHECK(contains(fault("optics=\"line\" distanceMeasurementError=\"2*THETA\""), "a.xml:1:"));
+  CHECK(fault("optics=\"line\" distanceMeasurementError=\"2*t^2\"").empty());
   CHECK(contains(fault("optics=\"rotating\" scanAngleEffectiveMax_deg=\"0\""), "no pulse could leave"));
   CHECK(contains(fault("optics=\"line\"", "<channels/>"), "holds no <channel>"));
   CHECK(contains(fault("optics=\"line\" scanProduct=\"5\""), "warning "));
   CHECK(contains(told("<scanner id=\"s\" optics=\"line\" pulseFreqs_Hz=\"1,,2\"/>"), "pulseFreqs_Hz=\"1,,2\": expected numbers"));
+}
+
+TEST_CASE("a beam quality of 1 says nothing, and another one holds for all channels that say none") {
+  CHECK_FALSE(from(scanner("optics=\"line\" beamQualityFactor=\"1\"")).channels.at(0).beam_quality);
+  const ScannerSettings settings =
+      from(scanner("optics=\"line\" beamQualityFactor=\"2.5\"", "<channels><channel/><channel beamQualityFactor=\"1.0\"/></channels>"));
+  CHECK(settings.channels.at(0).beam_quality == 2.5);
+  CHECK_FALSE(settings.channels.at(1).beam_quality);
 }
 
 TEST_CASE("a channel with other optics than its scanner begins anew") {

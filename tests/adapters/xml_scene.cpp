@@ -66,6 +66,8 @@ TEST_CASE("of a scene, what cannot be is told") {
   CHECK(contains(fault(loads + R"(<filter type="scale"><param key="scale" value="-2"/></filter>)"), "scale=\"-2\""));
   CHECK(contains(fault(loads + R"(<dmotion id="a" loop="1" next="b"/>)"), "next=\"b\": there is no such <dmotion>"));
   CHECK(contains(fault(loads + R"(<swap swapStep="0"/>)"), "swapStep=\"0\": expected a whole number"));
+  CHECK(contains(fault(loads + R"(<swap keepCRS="false"/>)"), "keepCRS of false has no effect"));
+  CHECK(fault(loads + R"(<swap keepCRS="true"/>)").empty());
 }
 
 TEST_CASE("a part's number counts parts without geometry") {

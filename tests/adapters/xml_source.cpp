@@ -38,6 +38,14 @@ TEST_CASE("a cloud that says little has the defaults of the format") {
   XyzSource other;
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/>)", other), "has no param 'voxelSize'"));
   CHECK(contains(filter_told(R"(<param key="defaultNormal" value="0;0;0"/>)", other), "it has no direction"));
+  CHECK(contains(filter_told(R"(<param key="normalXIndex" value="1000"/>)", other), "from 0 to 999"));
+  for (const char* name : {"rgbRIndex", "rgbGIndex", "rgbBIndex", "maxColorValue", "sparse"}) {
+    const std::string told = filter_told("<param key=\"filepath\" value=\"mesh.obj\"/><param key=\"voxelSize\" value=\"1\"/><param key=\"" +
+                                             std::string(name) + "\" value=\"1\"/>",
+                                         other);
+    CHECK(contains(told, "warning"));
+    CHECK(contains(told, "param '" + std::string(name) + "' has no effect"));
+  }
 }
 
 TEST_CASE("files may be one, those of a pattern, or a list") {
@@ -64,4 +72,6 @@ TEST_CASE("voxels have a mode, a table and a material") {
   CHECK(voxels.material.name == "leaf");
   CHECK(voxels.material.random == 3);
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="ladlut" value="no.txt"/>)", voxels), "is not there"));
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="intersectionArgument" value="-1"/>)", voxels),
+                 "from 0 to 100"));
 }

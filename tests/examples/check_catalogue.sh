@@ -49,8 +49,7 @@ for file in data/*.xml; do
       known["scanner"] = " id name optics wavelength_nm beamDivergence_rad pulseLength_ns accuracy_m rangeMin_m rangeMax_m maxNOR" \
         " pulseFreqs_Hz receiverDiameter_m atmosphericVisibility_km scanFreqMin_Hz scanFreqMax_Hz scanProduct scanAngleMax_deg scanAngleEffectiveMax_deg " \
         " headRotatePerSecMax_deg rotorFreq1_Hz rotorFreq2_Hz angle1_deg angle2_deg refrIndex1 refrIndex2 refrIndex_air "
-      known["platform"] = " id name type drag engine_max_force speedup_magnitude slowdown_magnitude slowdown_distance base_pitch_deg" \
-        " roll_speed_deg pitch_speed_deg yaw_speed_deg roll_offset_deg pitch_offset_deg "
+      known["platform"] = " id name type yaw_speed_deg pitch_offset_deg "
       known["FWFSettings"] = " beamSampleQuality binSize_ns "
       known["scannerMount"] = " x y z rotations "
       known["beamOrigin"] = known["headRotateAxis"] = known["incidentBeam"] = " x y z "

@@ -24,6 +24,7 @@
 #include <pulsecast/adapters/obj.hpp>
 #include <pulsecast/adapters/point_cloud.hpp>
 #include <pulsecast/adapters/spectral_library.hpp>
+#include <pulsecast/adapters/survey_motion.hpp>
 #include <pulsecast/adapters/survey_settings.hpp>
 #include <pulsecast/adapters/voxel_file.hpp>
 #include <pulsecast/scene/height_field.hpp>
@@ -143,10 +144,10 @@ class SceneBuilder {
                 : source.snap_neighbor_normal ? VoxelNormals::nearest
                                               : VoxelNormals::mean;
     s.columns.separators = source.separator.empty() ? " " : source.separator;
-    const auto columns = [](const std::array<int, 3>& c) {
-      return PointColumns::Columns{static_cast<std::size_t>(c[0]), static_cast<std::size_t>(c[1]), static_cast<std::size_t>(c[2])};
-    };
-    s.columns.normal = columns(source.normal_columns), s.columns.colour = columns(source.color_columns);
+    PointColumns::Columns normal{};
+    std::transform(source.normal_columns.begin(), source.normal_columns.end(), normal.begin(),
+                   [](int column) { return static_cast<std::size_t>(column); });
+    s.columns.normal = normal;
     std::vector<Loaded> all;
     for (const std::filesystem::path& file : source.files) {
       PointCloud cloud = read_point_cloud(file, s);
@@ -312,71 +313,17 @@ class SceneBuilder {
     return std::make_shared<const PartMotion>(sequences, again);
   }
 
-  using Move = Pose<frame::World, frame::World>;
-
-  /// A rigid motion, or one of a mirror image: each point p goes to `position + sign * rotation * p`.
-  struct Step {
-    Move move{};
-    double sign = 1;
-    int mirrors = 0;  ///< that it is made of
-
-    [[nodiscard]] Step after(const Step& first) const {
-      return {{move.rotation * first.move.rotation, move.position + sign * (move.rotation * first.move.position)},
-              sign * first.sign,
-              mirrors + first.mirrors};
-    }
-
-    /// Without the roundings of reflections that undo each other.
-    [[nodiscard]] Move settled() const {
-      const bool turns = mirrors == 0 || length(Vec3{move.rotation.x, move.rotation.y, move.rotation.z}) > 1e-14;
-      return {turns ? move.rotation : no_rotation, move.position};
-    }
-  };
-
-  /// Places are relative to the centre of the scene, unless they are corrected by it.
-  static Step step_of(const MotionSettings& m, const Vec3& scene_centre) {
-    Step out;
-    Vec3 centre = m.about_itself ? Vec3{} : (1 - m.shift_factor) * scene_centre, shift{};
-    const auto about = [&](const std::optional<Vec3>& point) {
-      if (!m.about_itself) centre += point.value_or(Vec3{});
-    };
-    if (const auto* t = std::get_if<TranslationMotion>(&m.kind)) {
-      shift = t->by;
-    } else if (const auto* r = std::get_if<RotationMotion>(&m.kind)) {
-      about(r->center);
-      out.move.rotation = rotation_about(r->axis, r->angle), shift = r->glide.value_or(0) * r->axis;
-    } else if (const auto* f = std::get_if<ReflectionMotion>(&m.kind)) {  // half a turn about the normal, and all through the centre
-      out = {{rotation_about(f->normal, pi), {}}, -1, 1};
-      shift = f->shift.value_or(Vec3{});
-    } else if (const auto* s = std::get_if<RotoreflectionMotion>(&m.kind)) {
-      about(s->center);
-      out = {{rotation_about(s->axis, s->angle + pi), {}}, -1, 1};
-    }
-    out.move.position = centre - out.sign * (out.move.rotation * centre) + shift;
-    return out;
-  }
-
   /// What all motions of a sequence do in one step.
   SteadyMotion steady_of(const PartSettings& part, const MotionSequenceSettings& sequence, const Vec3& scene_centre, double step) const {
-    Step all_steps, own_steps;
-    bool any = false, any_own = false;
-    for (const MotionSettings& m : sequence.motions) {
-      (m.about_itself ? own_steps : all_steps) = step_of(m, scene_centre).after(m.about_itself ? own_steps : all_steps);
-      (m.about_itself ? any_own : any) = true;
-    }
-    for (const Step& s : {all_steps, own_steps})
-      if (s.sign < 0)
-        throw SettingError("part '" + part.id + "', dmotion '" + sequence.id + "': reflections (number)", s.mirrors, "",
-                           "even: nothing moves into its own mirror image, but two reflections are a turn or a way");
-    const Move all = all_steps.settled();
-    Move own = own_steps.settled();
-    if (any && any_own && all.rotation != no_rotation)
-      throw SettingError("part '" + part.id + "', dmotion '" + sequence.id + "': turns about a place and about itself (number)", 2, "",
-                         "1 of them in a sequence");
-    if (!any_own) return steady_motion(all, step);
-    own.position += all.position;
-    const SteadyMotion turn = steady_motion(Move{own.rotation, {}}, step);
-    return {.velocity = own.position / step, .axis = turn.axis, .rate = turn.rate};
+    if (const std::string problem = motion_problem(sequence); !problem.empty())
+      throw SettingError("part '" + part.id + "', dmotion '" + sequence.id + "': motions (number)",
+                         static_cast<double>(sequence.motions.size()), "", problem);
+    const MotionSteps steps = motion_steps(sequence, scene_centre);
+    const auto all = steps.all.value_or(MotionStep{}).settled();
+    if (!steps.own) return steady_motion(all, step);
+    const auto own = steps.own->settled();
+    const SteadyMotion turn = steady_motion({own.rotation, {}}, step);
+    return {.velocity = (own.position + all.position) / step, .axis = turn.axis, .rate = turn.rate};
   }
 
   SceneSettings settings_;

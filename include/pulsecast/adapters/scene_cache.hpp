@@ -117,7 +117,7 @@ namespace detail {
 struct CacheHeader {
   static constexpr std::array<char, 8> own_mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
   static constexpr std::uint32_t own_order = 0x01020304;  ///< reads otherwise where bytes stand in another order
-  static constexpr std::uint32_t own_format = 1;          ///< counts the ways in which what follows was written
+  static constexpr std::uint32_t own_format = 2;          ///< counts the ways in which what follows was written
 
   std::array<char, 8> mark = own_mark;
   std::uint32_t order = own_order, format = own_format;

@@ -218,26 +218,43 @@ struct OpticBuilder {
   return out;
 }
 
-/// The laser of a channel in a leg.
+/// The laser of a channel in a leg. With a beam quality, its waist is where the beam leaves, as wide as quality and divergence make it.
 [[nodiscard]] inline Laser survey_laser(const ChannelSettings& channel, const LegScannerSettings& leg) {
-  return {.wavelength = channel.wavelength,
-          .peak_power = channel.average_power,
-          .pulse_length = channel.pulse_length,
-          .divergence = leg.divergence.value_or(channel.divergence)};
+  const double divergence = leg.divergence.value_or(channel.divergence);
+  Laser laser{.wavelength = channel.wavelength,
+              .peak_power = channel.average_power,
+              .pulse_length = channel.pulse_length,
+              .divergence = divergence};
+  if (channel.beam_quality)  // Source: ISO 11146-1:2005, M^2 = pi d0 theta / (4 lambda)
+    laser.waist_diameter = 4 * *channel.beam_quality * channel.wavelength / (pi * divergence);
+  return laser;
 }
 
-/// The receiver of a channel. Throws a `SettingError` or a `std::invalid_argument` if noise is to depend on the range in a way that it
-/// cannot.
-[[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel) {
-  RangeErrors errors{.deviation = channel.accuracy};
-  if (!channel.errors.range_noise.empty()) {
-    const Formula times(channel.errors.range_noise, "t");
-    const double at_0 = times(0), per_metre = (times(1000) - at_0) / 1000;
-    for (const double range : {1.0, 10.0, 100.0, 500.0, 3000.0})
-      if (!(std::fabs(times(range) - at_0 - per_metre * range) <= 1e-6 * (1 + std::fabs(times(range)))) || !(times(range) >= 0))
-        throw SettingError("distanceMeasurementError at t", range, "m", "where it grows with t as a straight line, and is not negative");
-    errors.deviation = channel.accuracy * at_0, errors.deviation_per_metre = channel.accuracy * per_metre;
+namespace detail {
+
+/// Noise of the range by a formula: a table so fine that it is off by less than 1e-4 of what a power of the range is. A factor below zero
+/// is as good as one above, as noise is as often positive as negative.
+[[nodiscard]] inline RangeErrors range_noise(const ChannelSettings& channel) {
+  const Formula times(channel.errors.range_noise, "t");
+  const double first = std::max(channel.range_min, 0.01), last = std::isfinite(channel.range_max) ? channel.range_max : 1e6;
+  constexpr int rows = 2000;
+  std::vector<DeviationAtRange> table;
+  for (int i = 0; i <= rows && (i == 0 || first < last); ++i) {
+    const double range = first * std::pow(last / first, i / static_cast<double>(rows)),
+                 deviation = channel.accuracy * std::fabs(times(range));
+    if (!std::isfinite(deviation))
+      throw SettingError("distanceMeasurementError at t", range, "m", "a formula with a finite value from rangeMin_m to rangeMax_m");
+    table.push_back({range, deviation});
   }
+  return {.deviations = std::move(table)};
+}
+
+}  // namespace detail
+
+/// The receiver of a channel. Throws a `SettingError` or a `std::invalid_argument` if there is no noise as its formula says.
+[[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel) {
+  const bool by_formula = !channel.errors.range_noise.empty();
+  const RangeErrors errors = by_formula ? detail::range_noise(channel) : RangeErrors{.deviation = channel.accuracy};
   return {.diameter = channel.receiver_diameter,
           .efficiency = channel.efficiency,
           .visibility = channel.visibility,
@@ -246,8 +263,8 @@ struct OpticBuilder {
           .range_errors = errors};
 }
 
-/// How the receiver of a channel makes echoes of a waveform, of which it keeps `record_length` [s]. Times in documents are those of light
-/// on its way there only; here they count both ways.
+/// How the receiver of a channel makes echoes of a waveform, of which it keeps `record_length` [s]. The times of `winSize_ns` and
+/// `maxFullwaveRange_ns` are those of light on its way there only, and count twice here; `binSize_ns` is that of a digitiser, both ways.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0) {
   const FullWaveformSettings& s = channel.waveform;
   WaveformSettings out;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -137,7 +138,7 @@ struct ChannelSettings {
   double divergence = 0.3e-3;                                  ///< full angle at 1/e^2 of the peak; `beamDivergence_rad` [rad]
   double pulse_length = 4e-9;                                  ///< full width at half maximum; `pulseLength_ns` [s]
   double average_power = 4;                                    ///< `averagePower_w` [W]
-  double beam_quality = 1;                                     ///< M^2; `beamQualityFactor`
+  std::optional<double> beam_quality{};                        ///< M^2; comes from a point unless given. `beamQualityFactor` but for 1
   double wavelength = 1064e-9;                                 ///< `wavelength_nm` [m]
   double efficiency = 0.99;                                    ///< `opticalEfficiency`
   double receiver_diameter = 0.15;                             ///< `receiverDiameter_m` [m]
@@ -166,7 +167,7 @@ struct ScannerSettings {
 // --------------------------------------------------------------------------------------------------------------- platform
 
 enum class PlatformKind : std::uint8_t {
-  stationary,      ///< `type="static"`, and any other
+  stationary,      ///< `type="static"`
   linear_path,     ///< `type="linearpath"`
   multicopter,     ///< `type="multicopter"`
   ground_vehicle,  ///< `type="groundvehicle"`
@@ -179,18 +180,10 @@ enum class RotationSpec : std::uint8_t {
   canonical,  ///< `CANONICAL`
 };
 
-/// How a multicopter flies. These are the attributes' own figures: HELIOS++ takes forces per step of its simulation.
+/// How a multicopter flies.
 struct MulticopterDynamics {
-  double engine_force_max = 0.1;        ///< `engine_max_force`
-  double speedup_magnitude = 2;         ///< `speedup_magnitude`
-  double slowdown_magnitude = 2;        ///< `slowdown_magnitude`
-  double slowdown_distance = 5;         ///< `slowdown_distance` [m]
-  double base_pitch = radians(-5);      ///< `base_pitch_deg` [rad]
-  double pitch_speed = radians(85.94);  ///< `pitch_speed_deg` [rad/s]
-  double roll_speed = radians(28.65);   ///< `roll_speed_deg` [rad/s]
-  double yaw_speed = radians(85.94);    ///< `yaw_speed_deg` [rad/s]
-  double pitch_offset = radians(35);    ///< either side of the base at most; `pitch_offset_deg` [rad]
-  double roll_offset = radians(25);     ///< at most; `roll_offset_deg` [rad]
+  double yaw_speed = radians(85.94);  ///< at most; `yaw_speed_deg` [rad/s]
+  double pitch_offset = radians(35);  ///< by which it leans at most; `pitch_offset_deg` [rad]
 
   bool operator==(const MulticopterDynamics&) const = default;
 };
@@ -221,7 +214,6 @@ struct PlatformSettings {
   std::string name{};                                            ///< `name`
   PlatformKind kind = PlatformKind::stationary;                  ///< `type`
   MountSettings mount{};                                         ///< of the instrument on the body; `<scannerMount>`
-  double drag = 1;                                               ///< of ground vehicle and multicopter; `drag`
   MulticopterDynamics multicopter{};                             ///< of the multicopter
   RotationSpec rotation_spec = RotationSpec::arinc_705;          ///< of the interpolated one; `rotationSpec`
   std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`, Y and Z [m]
@@ -264,12 +256,10 @@ struct XyzSource {
   MaterialSource material{};
   std::string separator = " ";                 ///< any of these separates columns; `separator`
   double voxel_size = 1;                       ///< edge; `voxelSize` [m]
-  double color_max = 255;                      ///< `maxColorValue`
   std::optional<Vec3> default_normal{};        ///< of any length but zero; `defaultNormal`
   int estimate_normals = 0;                    ///< 0: from the file, else a plane is fitted in each voxel; `estimateNormals`
   bool snap_neighbor_normal = false;           ///< the normal of the point nearest to the centre, not the mean; `snapNeighborNormal`
   std::array<int, 3> normal_columns{3, 4, 5};  ///< from 0; `normalXIndex`, Y and Z
-  std::array<int, 3> color_columns{6, 7, 8};   ///< from 0; `rgbRIndex`, G and B
 
   bool operator==(const XyzSource&) const = default;
 };
@@ -365,7 +355,6 @@ struct MotionSequenceSettings {
 /// What stands in a part's place in later runs of the survey: `<swap>`.
 struct SwapSettings {
   int step = 1;                        ///< for how many runs; `swapStep`
-  bool keep_crs = true;                ///< the origin of the scene stays; `keepCRS`
   bool removes = false;                ///< nothing stands there; `force_null`
   std::optional<PartSource> source{};  ///< the part's own unless given
   TransformSettings transform{};
@@ -415,15 +404,13 @@ struct TrajectoryIndices {
 /// What an interpolated platform follows: attributes of `<platformSettings>`.
 struct TrajectorySettings {
   std::filesystem::path file{};                ///< `trajectory`
-  char separator = ',';                        ///< `trajectory_separator`, or `trajectory_seperator`
+  std::optional<char> separator{};             ///< found unless given; `trajectory_separator`, or `trajectory_seperator`
   std::optional<TrajectoryIndices> columns{};  ///< the file's own head says it unless given; `tIndex`...
   bool position_only = false;                  ///< `interpolationDomain="position"`
   bool angles_in_degrees = true;               ///< of the file; `toRadians`
   bool sync_clock = false;                     ///< the clock begins at the time in the file; `syncGPSTime`
-  double slope_filter = 0;                     ///< drops samples that bend the path by less, 0 none; `slopeFilterThreshold`
   std::optional<double> start{};               ///< by the clock of the file, its first sample unless given; `tStart` [s]
   std::optional<double> end{};                 ///< by the clock of the file, its last sample unless given; `tEnd` [s]
-  bool teleport_to_start = false;              ///< it need not fly to where it starts; `teleportToStart`
 
   bool operator==(const TrajectorySettings&) const = default;
 };
@@ -433,9 +420,7 @@ struct LegPlatformSettings {
   Vec3 position{};                                 ///< where the leg begins, in the scene's own coordinates; `x`, `y`, `z` [m]
   bool on_ground = false;                          ///< z is that of the ground; `onGround`
   double speed = 70;                               ///< `movePerSec_m` [m/s]
-  bool stop_and_turn = true;                       ///< multicopter; false if it turns smoothly. `stopAndTurn`
-  bool smooth_turn = false;                        ///< multicopter; `smoothTurn`
-  bool slowdown = true;                            ///< multicopter; `slowdownEnabled`
+  bool smooth_turn = false;                        ///< multicopter: turns as it flies on; `smoothTurn`, or `stopAndTurn="false"`
   std::optional<double> yaw_at_departure{};        ///< multicopter; counter-clockwise from +y. `yawAtDeparture_deg` [rad]
   std::optional<TrajectorySettings> trajectory{};  ///< interpolated only
 
@@ -469,6 +454,14 @@ struct LegSettings {
 
   bool operator==(const LegSettings&) const = default;
 };
+
+/// Whether a leg of a platform that moves stays where it begins: the next one begins there, too, or there is none.
+[[nodiscard]] inline bool hovers(const std::vector<LegSettings>& legs, std::size_t k) {
+  if (k + 1 >= legs.size()) return legs.size() == 1;
+  const LegPlatformSettings &here = legs[k].platform, &next = legs[k + 1].platform;
+  const bool is_above = here.position.x == next.position.x && here.position.y == next.position.y;
+  return is_above && here.on_ground == next.on_ground && (here.on_ground || here.position.z == next.position.z);
+}
 
 // ----------------------------------------------------------------------------------------------------------------- survey
 

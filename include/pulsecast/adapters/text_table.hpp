@@ -19,12 +19,13 @@
 namespace pulsecast::adapters {
 
 /// Reads a table of text row by row, the same whatever the locale, and knows the line and column that an error is about. What separates
-/// the columns is found in the first row asked for: semicolons if there are any, else commas, else tabs, else blanks, of which many count
-/// as one. Quotation marks do not shelter separators. Lines may end as on any system; blank ones do not count.
+/// the columns is given, or found in the first row asked for: semicolons if there are any, else commas, else tabs, else blanks, of which
+/// many count as one. Quotation marks do not shelter separators. Lines may end as on any system; blank ones do not count.
 class TextTable {
  public:
   /// `expected` is what the file should be, as in "a trajectory".
-  TextTable(const std::filesystem::path& path, std::string_view expected) : path_(path.string()), expected_(expected) {
+  TextTable(const std::filesystem::path& path, std::string_view expected, std::optional<char> separator = {})
+      : path_(path.string()), expected_(expected), separator_(separator) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) fail("is not there: expected " + expected_);
     if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected " + expected_);
@@ -118,11 +119,11 @@ class TextTable {
   }
 
   std::string path_, expected_;
+  std::optional<char> separator_;
   std::ifstream file_;
   std::string buffer_;
   std::size_t line_ = 0;
   bool line_is_open_ = false;
-  std::optional<char> separator_;
   std::vector<std::string_view> cells_;
 };
 

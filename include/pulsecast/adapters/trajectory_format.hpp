@@ -27,9 +27,11 @@ struct TrajectoryFormat {
   ColumnNames names = ColumnNames::first_line;  ///< where they stand
   /// What is written, in this order; and what is read from a file that does not name its columns.
   std::vector<std::string> columns{"time_s", "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "heading_deg"};
-  std::vector<std::string> left_out{};          ///< columns of the file that are no matter
-  char separator = ',';                         ///< comma, semicolon, tab or blank when writing; when reading it is found
-  AngleUnit angle_unit = AngleUnit::degree;     ///< of angles in columns whose names do not say it
+  std::vector<std::string> left_out{};       ///< columns of the file that are no matter
+  char separator = ',';                      ///< comma, semicolon, tab or blank when writing; when reading it is found, unless fixed
+  bool fixed_separator = false;              ///< whether files that are read must have that one
+  bool more_columns = false;                 ///< whether a file may have columns of other names, or beyond those named, which do not count
+  AngleUnit angle_unit = AngleUnit::degree;  ///< of angles in columns whose names do not say it
   AngleConvention angles = heading_pitch_roll;  ///< what roll, pitch and yaw mean
   Axes axes{};                                  ///< of x, y, z and of qx, qy, qz
 
@@ -54,9 +56,12 @@ struct TrajectoryFormat {
 /// Columns that are named, with units, in the first line, in any order.
 [[nodiscard]] inline TrajectoryFormat csv_format() { return {}; }
 
-/// What HELIOS++ reads: names and the place of the time in comments, angles in degrees.
+/// What HELIOS++ reads: names and the place of the time in comments, angles in degrees. Other columns may stand between, if they are named.
 [[nodiscard]] inline TrajectoryFormat helios_format() {
-  return {.names = ColumnNames::comments, .columns = {"t", "roll", "pitch", "yaw", "x", "y", "z"}, .angles = helios_arinc_705};
+  return {.names = ColumnNames::comments,
+          .columns = {"t", "roll", "pitch", "yaw", "x", "y", "z"},
+          .more_columns = true,
+          .angles = helios_arinc_705};
 }
 
 /// What HELIOS++ and `TrajectoryWriter` write: position, time and angles in degrees, with blanks between them.

@@ -57,7 +57,9 @@ inline constexpr double largest_in_trajectory = 1e12;  ///< s, m or rad; where d
 class TrajectoryReader {
  public:
   TrajectoryReader(const std::filesystem::path& path, const TrajectoryFormat& format)
-      : format_(validated(format)), names_(format_.columns), table_(path, "a trajectory") {}
+      : format_(validated(format)),
+        names_(format_.columns),
+        table_(path, "a trajectory", format_.fixed_separator ? std::optional(format_.separator) : std::nullopt) {}
 
   [[nodiscard]] TrajectoryTable read(const TimeWindow& window) {
     while (table_.next()) {
@@ -135,18 +137,36 @@ class TrajectoryReader {
   }
 
   void understand() {
+    if (may_have_more()) leave_out_unknown();
     columns_.emplace(names_, format_.left_out, format_.angle_unit);
     if (columns_->problem().empty()) return;
     if (!columns_->culprit()) table_.fail_here(columns_->problem());
     table_.fail_here(*columns_->culprit(), TextTable::quoted(names_[*columns_->culprit()]) + " " + columns_->problem());
   }
 
+  /// Whether columns that are not asked for may be there: where the file or the format says which ones are which.
+  [[nodiscard]] bool may_have_more() const noexcept { return format_.more_columns && (named_ || format_.names != ColumnNames::comments); }
+
+  void leave_out_unknown() {
+    std::string unknown;
+    const auto is_left_out = [this](const std::string& name) {
+      return std::find(format_.left_out.begin(), format_.left_out.end(), name) != format_.left_out.end();
+    };
+    for (const std::string& name : names_) {
+      if (trajectory_column(name, format_.angle_unit) || is_left_out(name)) continue;
+      format_.left_out.push_back(name);
+      unknown += (unknown.empty() ? "" : ", ") + TextTable::quoted(name);
+    }
+    if (!unknown.empty())
+      result_.warnings.push_back(table_.path() + ": columns of names that are not known are left out: " + unknown.substr(0, 1000));
+  }
+
   void row() {
     const std::vector<std::string_view>& cells = table_.cells();
-    if (cells.size() != names_.size())
+    if (cells.size() < names_.size() || (cells.size() > names_.size() && !may_have_more()))
       table_.fail_here("has " + std::to_string(cells.size()) + " columns: expected " + std::to_string(names_.size()));
     QuantityValues values;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
       const std::optional<TrajectoryColumn>& column = columns_->all()[i];
       if (!column) continue;
       const std::optional<double> number = TextTable::number_in(cells[i]);

@@ -41,7 +41,8 @@ struct XmlOptions {
 /// What a document of a survey says.
 struct SurveyDocument {
   SurveySettings survey{};
-  std::vector<std::string> warnings{};  ///< what is odd, but could be read, as in `survey.xml:3:10: attribute 'numRuns' has no effect`
+  std::vector<std::string> warnings{};    ///< what is odd, but could be read, as in `survey.xml:3:10: attribute 'numRuns' has no effect`
+  std::vector<std::string> leg_places{};  ///< where each leg stands, as in `survey.xml:12:5`, for `SurveyBuildOptions`
 };
 
 /// What a document of assets holds, each in its order.
@@ -90,7 +91,7 @@ class SurveyReader {
       read_unused_templates();
     }
     report_.expect_clean();
-    return {std::move(survey_), report_.warnings()};
+    return {std::move(survey_), report_.warnings(), std::move(leg_places_)};
   }
 
   [[nodiscard]] AssetDocument read_assets() {
@@ -203,7 +204,6 @@ class SurveyReader {
     survey_.platform.id = "interpolated";
     if (const auto base = io.given("basePlatform"))
       if (const XmlReference found = library_.find(io, document_, "basePlatform", *base, "platform")) asset(found, survey_.platform);
-    survey_.platform.drag = PlatformSettings{}.drag;
     survey_.platform.multicopter = {};
     survey_.platform.kind = PlatformKind::interpolated;
     io.choice("rotationSpec", survey_.platform.rotation_spec,
@@ -219,7 +219,7 @@ class SurveyReader {
       io.child("FWFSettings", [&](XmlInput& inner) { xml::fields(inner, channel.waveform); });
       io.child("detectorSettings", [&](XmlInput& inner) {
         xml::detector_fields(inner, channel);
-        inner.text("distanceMeasurementError", channel.errors.range_noise);
+        xml::range_noise(inner, channel);
         if (!(channel.range_min < channel.range_max))
           inner.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
       });
@@ -235,6 +235,7 @@ class SurveyReader {
       read_leg(leg, survey_.legs.emplace_back());
       leg.finish();
       nodes.push_back(node);
+      leg_places_.push_back(leg.place().text());
     }
     if (nodes.empty()) report_.fault(io.place(), "<survey> holds no <leg>: nothing would be scanned");
     if (!report_.is_clean()) return;
@@ -292,7 +293,6 @@ class SurveyReader {
       if (is_leg) settings.yaw_at_departure.reset();  // is not inherited
       xml::fields(inner, settings);
     });
-    if (settings.smooth_turn) settings.stop_and_turn = false;
   }
 
   void read_leg_scanner(XmlInput& io, LegScanner& scanner) {
@@ -357,6 +357,7 @@ class SurveyReader {
   XmlLibrary library_;
   const XmlLibraryDocument& document_;
   SurveySettings survey_;
+  std::vector<std::string> leg_places_;
 };
 
 /// Writes a document with a root.

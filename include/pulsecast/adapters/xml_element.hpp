@@ -253,7 +253,14 @@ class XmlInput {
   /// Attributes that may be there, but do nothing, with a warning.
   void without_effect(std::initializer_list<const char*> names, const char* why = "has no effect") {
     for (const char* name : names)
-      if (given(name)) warn(name, "attribute " + xml_quoted(name) + " " + why);
+      if (given(name)) warn(name, (params_ ? "param " : "attribute ") + xml_quoted(name) + " " + why);
+  }
+
+  /// One that must be a number all the same.
+  void idle_number(const char* name, const XmlUnit& unit, double low, double high, const char* why = "has no effect") {
+    double ignored = 0;
+    number(name, ignored, unit, low, high);
+    without_effect({name}, why);
   }
 
   /// Names that are known beside those asked for.
@@ -434,6 +441,7 @@ class XmlOutput {
   }
 
   void without_effect(std::initializer_list<const char*> /*names*/, const char* /*why*/ = "") {}
+  void idle_number(const char* /*name*/, const XmlUnit& /*unit*/, double /*low*/, double /*high*/, const char* /*why*/ = "") {}
   void require(std::initializer_list<const char*> /*names*/) {}
 
  private:

@@ -21,18 +21,19 @@ void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
   if constexpr (Io::reads) {
     for (const char* name : {"trajectory_separator", "trajectory_seperator"}) {
       const auto text = io.given(name);
-      if (text && text->size() == 1) trajectory.separator = text->front();
-      if (text && text->size() != 1) io.fault(name, XmlInput::said(name, *text) + ": expected a single character");
+      const bool is_one = text && text->size() == 1 && std::string_view(",;\t ").find(text->front()) != std::string_view::npos;
+      if (is_one) trajectory.separator = text->front();
+      if (text && !is_one) io.fault(name, XmlInput::said(name, *text) + ": expected a comma, a semicolon, a tab or a blank");
     }
     for (const char* name : names)
       if (io.has(name) && !trajectory.columns) trajectory.columns.emplace();
-  } else {
-    io.text("trajectory_separator", std::string(1, trajectory.separator));
+  } else if (trajectory.separator) {
+    io.text("trajectory_separator", std::string(1, *trajectory.separator));
   }
   TrajectoryIndices c = trajectory.columns.value_or(TrajectoryIndices{});
   std::size_t i = 0;
   for (int* index : {&c.time, &c.roll, &c.pitch, &c.yaw, &c.x, &c.y, &c.z}) {
-    if (Io::reads || trajectory.columns) io.whole(names[i], *index, 0, 1000);
+    if (Io::reads || trajectory.columns) io.whole(names[i], *index, 0, 999);
     ++i;
   }
   if constexpr (Io::reads)
@@ -40,10 +41,14 @@ void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
   io.choice("interpolationDomain", trajectory.position_only, {{"position_and_attitude", false}, {"position", true}});
   io.flag("toRadians", trajectory.angles_in_degrees);
   io.flag("syncGPSTime", trajectory.sync_clock);
-  io.number("slopeFilterThreshold", trajectory.slope_filter, units::one, 0, 1e9);
+  if constexpr (Io::reads) {
+    double slope = 0;
+    io.number("slopeFilterThreshold", slope, units::one, 0, 1e9);
+    if (slope > 0) io.warn("slopeFilterThreshold", "slopeFilterThreshold has no effect: all samples are kept");
+  }
   io.number("tStart", trajectory.start, units::second, -1e12, 1e12);
   io.number("tEnd", trajectory.end, units::second, -1e12, 1e12);
-  io.flag("teleportToStart", trajectory.teleport_to_start);
+  io.without_effect({"teleportToStart"}, "has no effect: a leg begins where its part of the trajectory does");
   if constexpr (Io::reads)
     if (trajectory.start && trajectory.end && !(*trajectory.start < *trajectory.end)) io.fault("tEnd", "tEnd is not after tStart");
 }
@@ -53,9 +58,17 @@ void fields(Io& io, Of<Io, LegPlatformSettings>& platform) {
   components(io, platform.position);
   io.flag("onGround", platform.on_ground);
   io.number("movePerSec_m", platform.speed, units::metre_per_second, 0, 1e5);
-  io.flag("stopAndTurn", platform.stop_and_turn);
-  io.flag("smoothTurn", platform.smooth_turn);
-  io.flag("slowdownEnabled", platform.slowdown);
+  if constexpr (Io::reads) {
+    bool smooth = platform.smooth_turn, stops = true, slows = true;
+    io.flag("smoothTurn", smooth);
+    io.flag("stopAndTurn", stops);
+    io.flag("slowdownEnabled", slows);
+    platform.smooth_turn = smooth || !stops;
+    if (!slows)
+      io.warn("slowdownEnabled", "slowdownEnabled of false has no effect: a multicopter slows down as it must to turn and to stop");
+  } else {
+    io.flag("smoothTurn", platform.smooth_turn);
+  }
   io.number("yawAtDeparture_deg", platform.yaw_at_departure, units::degree, -3600, 3600);
   if constexpr (Io::reads) {
     const TrajectorySettings before = platform.trajectory.value_or(TrajectorySettings{});

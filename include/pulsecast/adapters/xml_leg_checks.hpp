@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include <pugixml.hpp>
 
+#include <pulsecast/adapters/scene_files.hpp>
 #include <pulsecast/adapters/survey_settings.hpp>
 #include <pulsecast/adapters/xml_element.hpp>
 #include <pulsecast/adapters/xml_library.hpp>
@@ -26,11 +28,20 @@ class LegChecks {
   /// Checks one leg and where it leads; `leg` is its element.
   void check(pugi::xml_node leg, std::size_t i) const {
     check_platform(leg, i);
-    check_scanner(leg, i);
+    const bool is_end = goes_on() && survey_.legs.size() > 1 && i + 1 == survey_.legs.size();  // says where the way ends, and scans nothing
+    if (!is_end) check_scanner(leg, i);
   }
 
  private:
-  [[nodiscard]] bool is_moving() const { return survey_.platform.kind != PlatformKind::stationary; }
+  /// Whether legs go to where the next one begins.
+  [[nodiscard]] bool goes_on() const {
+    return survey_.platform.kind != PlatformKind::stationary && survey_.platform.kind != PlatformKind::interpolated;
+  }
+
+  /// Whether the platform stays where it is for as long as a leg lasts.
+  [[nodiscard]] bool stays(std::size_t i) const {
+    return survey_.platform.kind == PlatformKind::stationary || (goes_on() && hovers(survey_.legs, i));
+  }
 
   void check_platform(pugi::xml_node leg, std::size_t i) const {
     const LegSettings& settings = survey_.legs[i];
@@ -43,14 +54,38 @@ class LegChecks {
       return;
     }
     if (platform.trajectory) io.warn("trajectory", "trajectory attributes have no effect unless platform=\"interpolated\"");
-    if (!is_moving()) return;
-    if (survey_.legs.size() == 1)
+    check_ground(io, platform);
+    if (survey_.platform.kind != PlatformKind::multicopter) {
+      const char* const why = " has no effect with this type of platform";
+      if (platform.smooth_turn) io.warn("smoothTurn", std::string("a smooth turn") + why);
+      if (platform.yaw_at_departure) io.warn("yawAtDeparture_deg", std::string("yawAtDeparture_deg") + why);
+    }
+    if (!goes_on()) return;
+    const std::size_t legs = survey_.legs.size();
+    const bool turns = settings.scanner.head_stop != settings.scanner.head_start;
+    if (legs == 1 && !settings.duration_max && !turns)
       io.report().fault(io.place(),
-                        "a single leg of a platform that moves: expected another <leg> that says where it goes");
-    if (platform.speed == 0 && i + 1 < survey_.legs.size())
+                        "a single leg of a platform that moves: expected another <leg> that says where it goes, or maxDuration_s "
+                        "for which it stays here");
+    if (legs > 1 && i + 1 == legs && settings.duration_max && settings.scanner.active)
+      io.report().warn(io.place(),
+                       "the last leg of a platform that moves says where the way ends, and has no pulses: to stay there for "
+                       "maxDuration_s, expected another <leg> at the same place");
+    if (i + 1 == legs) return;
+    if (hovers(survey_.legs, i)) {
+      if (!settings.duration_max && !turns)
+        io.warn("x",
+                "the leg begins where the next one does, and ends at once: expected maxDuration_s for which it stays here, if it should");
+    } else if (platform.speed == 0) {
       io.fault("movePerSec_m", "the leg could never end: movePerSec_m is 0; expected a speed");
-    if (i + 1 < survey_.legs.size() && platform.position == survey_.legs[i + 1].platform.position && !platform.on_ground)
-      io.warn("x", "the leg begins where the next one does: it has no length");
+    }
+  }
+
+  void check_ground(const XmlInput& io, const LegPlatformSettings& platform) const {
+    if (!platform.on_ground) return;
+    if (!has_ground_) has_ground_ = has_ground(survey_.scene);
+    if (!*has_ground_)
+      io.fault("onGround", "nothing in the scene is ground: expected a material with helios_isGround in an MTL file of it");
   }
 
   void check_scanner(pugi::xml_node leg, std::size_t i) const {
@@ -116,7 +151,8 @@ class LegChecks {
                                          std::string(device.head_speed_max == 0 ? ", as the scanner's headRotatePerSecMax_deg is 0" : "") +
                                          "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
                                          "maxDuration_s");
-    if (is_moving() || s.head_stop != s.head_start) return;
+    if (!stays(i) || s.head_stop != s.head_start) return;
+    if (speed == 0 && goes_on()) return;  // has been told of already
     if (speed == 0)
       io.report().fault(io.place(), "the leg could never end: neither platform nor head moves; expected maxDuration_s" +
                                         std::string(i == 0 ? "" : " for each leg"));
@@ -127,6 +163,7 @@ class LegChecks {
   const XmlLibraryDocument& document_;
   const SurveySettings& survey_;
   XmlReport& report_;
+  mutable std::optional<bool> has_ground_{};
 };
 
 }  // namespace pulsecast::adapters

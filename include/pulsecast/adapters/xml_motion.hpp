@@ -6,6 +6,7 @@
 #include <string>
 #include <variant>
 
+#include <pulsecast/adapters/survey_motion.hpp>
 #include <pulsecast/adapters/survey_settings.hpp>
 #include <pulsecast/adapters/xml_element.hpp>
 #include <pulsecast/adapters/xml_fields.hpp>
@@ -86,6 +87,9 @@ void fields(Io& io, Of<Io, MotionSequenceSettings>& sequence) {
   io.whole("loop", sequence.loop, 0, 2'000'000'000);
   io.text("next", sequence.next);
   io.children("motion", sequence.motions, [](auto& inner, auto& motion) { fields(inner, motion); });
+  if constexpr (Io::reads)
+    if (const std::string problem = motion_problem(sequence); !problem.empty())
+      io.report().fault(io.place(), "<dmotion id=" + xml_quoted(sequence.id) + "> cannot be done: expected " + problem);
 }
 
 }  // namespace pulsecast::adapters::xml

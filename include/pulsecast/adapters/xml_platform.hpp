@@ -47,16 +47,8 @@ void noise_fields(Io& io, Of<Io, PlatformSettings>& platform) {
 
 template <class Io>
 void fields(Io& io, Of<Io, MulticopterDynamics>& copter) {
-  io.number("engine_max_force", copter.engine_force_max, units::one, 0, 1e6);
-  io.number("speedup_magnitude", copter.speedup_magnitude, units::one, 0, 1e6);
-  io.number("slowdown_magnitude", copter.slowdown_magnitude, units::one, 0, 1e6);
-  io.number("slowdown_distance", copter.slowdown_distance, units::metre, 0, 1e6);
-  io.number("base_pitch_deg", copter.base_pitch, units::degree, -90, 90);
-  io.number("pitch_speed_deg", copter.pitch_speed, units::degree, 0, 1e5);
-  io.number("roll_speed_deg", copter.roll_speed, units::degree, 0, 1e5);
   io.number("yaw_speed_deg", copter.yaw_speed, units::degree, 0, 1e5);
   io.number("pitch_offset_deg", copter.pitch_offset, units::degree, 0, 90);
-  io.number("roll_offset_deg", copter.roll_offset, units::degree, 0, 90);
 }
 
 template <class Io>
@@ -80,14 +72,15 @@ void fields(Io& io, Of<Io, PlatformSettings>& platform) {
   }
   io.child("scannerMount", [&](auto& inner) { fields(inner, platform.mount); });
   noise_fields(io, platform);
-  const bool flies = platform.kind == PlatformKind::multicopter, has_drag = flies || platform.kind == PlatformKind::ground_vehicle;
-  if (has_drag) io.number("drag", platform.drag, units::one, 0, 1e6);
-  if (flies) fields(io, platform.multicopter);
-  if constexpr (Io::reads) {
-    for (const char* name : {"drag", "engine_max_force", "speedup_magnitude", "slowdown_magnitude", "slowdown_distance", "base_pitch_deg",
-                             "pitch_speed_deg", "roll_speed_deg", "yaw_speed_deg", "pitch_offset_deg", "roll_offset_deg"})
-      if (!io.knows(name)) io.without_effect({name}, "has no effect with this type of platform");
-  }
+  if (platform.kind == PlatformKind::multicopter)
+    fields(io, platform.multicopter);
+  else
+    io.without_effect({"yaw_speed_deg", "pitch_offset_deg"}, "has no effect with this type of platform");
+  const char* const why = "has no effect: ways are planned by speed and acceleration";
+  for (const char* name : {"drag", "engine_max_force", "speedup_magnitude", "slowdown_magnitude", "slowdown_distance", "pitch_speed_deg",
+                           "roll_speed_deg", "roll_offset_deg"})
+    io.idle_number(name, units::one, 0, 1e6, why);
+  io.idle_number("base_pitch_deg", units::degree, -90, 90, why);
 }
 
 }  // namespace pulsecast::adapters::xml

@@ -4,12 +4,14 @@
 
 #include <array>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include <pulsecast/adapters/formula.hpp>
 #include <pulsecast/adapters/survey_settings.hpp>
 #include <pulsecast/adapters/xml_element.hpp>
 #include <pulsecast/adapters/xml_fields.hpp>
@@ -82,12 +84,22 @@ void fields(Io& io, Of<Io, OpticSettings>& optic) {
   }
 }
 
+/// Reports a formula that is none.
+inline void check_formula(const XmlInput& io, const char* name, const std::string& text, const char* variable) {
+  try {
+    if (!text.empty()) (void)Formula(text, variable);
+  } catch (const std::invalid_argument& error) {
+    io.fault(name, error.what());
+  }
+}
+
 /// An element with a formula, if there is one.
 template <class Io, class More>
 void formula(Io& io, const char* name, Of<Io, std::string>& text, More more) {
   const auto all = [&](auto& inner) {
     inner.require({"expr"});
     inner.text("expr", text);
+    if constexpr (Io::reads) check_formula(inner, "expr", text, "THETA");
     more(inner);
   };
   if constexpr (Io::reads) {
@@ -114,6 +126,11 @@ void detector_fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("rangeMax_m", channel.range_max, units::metre, 0, any);
 }
 
+inline void range_noise(XmlInput& io, ChannelSettings& channel) {
+  io.text("distanceMeasurementError", channel.errors.range_noise);
+  check_formula(io, "distanceMeasurementError", channel.errors.range_noise, "t");
+}
+
 /// All that may be said of a scanner or of each of its channels.
 template <class Io>
 void fields(Io& io, Of<Io, ChannelSettings>& channel) {
@@ -128,6 +145,8 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("pulseLength_ns", channel.pulse_length, units::nanosecond, 1e-3, 1e4);
   io.number("averagePower_w", channel.average_power, units::watt, 1e-12, 1e9);
   io.number("beamQualityFactor", channel.beam_quality, units::one, 0.1, 1e3);
+  if constexpr (Io::reads)
+    if (channel.beam_quality == 1.0) channel.beam_quality.reset();  // the default of the format, which says nothing of the instrument
   io.number("wavelength_nm", channel.wavelength, units::nanometre, 100, 1e5);
   io.number("opticalEfficiency", channel.efficiency, units::one, 0, 1);
   io.number("receiverDiameter_m", channel.receiver_diameter, units::metre, 1e-6, 1e3);
@@ -139,7 +158,7 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   fields(io, channel.errors);
   // Of ours: where the survey says it, it is in <detectorSettings>.
   if constexpr (Io::reads) {
-    io.text("distanceMeasurementError", channel.errors.range_noise);
+    range_noise(io, channel);
   } else if (!channel.errors.range_noise.empty()) {
     io.text("distanceMeasurementError", channel.errors.range_noise);
   }

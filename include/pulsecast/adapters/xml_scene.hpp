@@ -113,8 +113,10 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
 template <class Io>
 void fields(Io& io, Of<Io, SwapSettings>& swap) {
   io.whole("swapStep", swap.step, 1, 1'000'000);
-  io.flag("keepCRS", swap.keep_crs);
   if constexpr (Io::reads) {
+    bool keeps = true;
+    io.flag("keepCRS", keeps);
+    if (!keeps) io.warn("keepCRS", "keepCRS of false has no effect: coordinates are those of the files in all runs");
     swap.removes = io.given("force_null").has_value();
     filters(io, swap.source, swap.transform);
   } else {
@@ -131,10 +133,8 @@ void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
   io.children("dmotion", part.motions, [](auto& inner, auto& sequence) { fields(inner, sequence); });
   io.children("swap", part.swaps, [](auto& inner, auto& swap) { fields(inner, swap); });
   if constexpr (Io::reads) {
-    int ignored = 1;  // how stale the index of a moving part may be, there; here it never is
-    double ignored_time = 1;
-    io.whole("kdtDynStep", ignored, 0, 1'000'000'000);
-    io.number("kdtDynTimeStep", ignored_time, units::second, 0, 1e6);
+    for (const char* name : {"kdtDynStep", "kdtDynTimeStep"})
+      io.idle_number(name, units::one, 0, 1e9, "has no effect: a part is met where it is");
     pugi::xml_node node = io.node().child("dmotion");
     if (part.motions.size() > 1000) io.report().fault(io.place(), "<part> holds more than 1000 <dmotion>");
     if (io.report().is_full() || part.motions.size() > 1000) return;

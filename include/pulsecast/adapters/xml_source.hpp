@@ -77,17 +77,17 @@ void fields(Io& io, Of<Io, XyzSource>& source) {
   fields(io, source.material);
   io.text("separator", source.separator);
   io.number("voxelSize", source.voxel_size, units::metre, 0, 1e6);
-  io.number("maxColorValue", source.color_max, units::one, 0, 1e9);
   io.vector("defaultNormal", source.default_normal, 1e6);
   io.whole("estimateNormals", source.estimate_normals, 0, 1'000'000);
   io.flag("snapNeighborNormal", source.snap_neighbor_normal);
   static constexpr std::array normals{"normalXIndex", "normalYIndex", "normalZIndex"};
-  static constexpr std::array colors{"rgbRIndex", "rgbGIndex", "rgbBIndex"};
-  for (std::size_t i = 0; i < 3; ++i) io.whole(normals[i], source.normal_columns[i], 0, 1000);
-  for (std::size_t i = 0; i < 3; ++i) io.whole(colors[i], source.color_columns[i], 0, 1000);
+  for (std::size_t i = 0; i < 3; ++i) io.whole(normals[i], source.normal_columns[i], 0, 999);
+  for (const char* name : {"rgbRIndex", "rgbGIndex", "rgbBIndex", "maxColorValue"})
+    io.idle_number(name, units::one, 0, 1e9, "has no effect: voxels have no colour");
   if constexpr (Io::reads) {
-    bool sparse = true;  // is about memory, there
+    bool sparse = true;
     io.flag("sparse", sparse);
+    io.without_effect({"sparse"});
     if (source.voxel_size == 0) source.voxel_size = 1;
     if (source.separator.empty()) source.separator = " ";
     if (source.default_normal && *source.default_normal == Vec3{}) io.fault("defaultNormal", "defaultNormal is zero: it has no direction");
@@ -101,7 +101,7 @@ void fields(Io& io, Of<Io, VoxelSource>& source) {
   fields(io, source.material);
   io.choice("intersectionMode", source.mode,
             {{"transmittive", VoxelMode::transmittive}, {"fixed", VoxelMode::fixed}, {"scaled", VoxelMode::scaled}});
-  io.number("intersectionArgument", source.scaling_exponent, units::one, -100, 100);
+  io.number("intersectionArgument", source.scaling_exponent, units::one, 0, 100);
   io.flag("randomShift", source.random_shift);
   io.file("ladlut", source.leaf_angles);
 }
