@@ -365,13 +365,13 @@ class Forecaster {
 
   /// The survey as it is: what slots of each kind take, and what it takes to write what comes of them.
   void measure_as_is() {
-    constexpr std::uint64_t most_rounds = 12;
+    constexpr std::uint64_t most_rounds = 48;
     std::vector<Sample> samples;
-    const Allowance allowance(0.35, workers_);
+    const Allowance allowance(1.0, workers_);
     for (std::uint64_t round = 0; round < most_rounds && (round == 0 || allowance.left()); ++round)
       for (const Kind kind : {met, missed, blocked}) {
-        const std::uint64_t each = kind == met ? 32 : 8;
-        for (Sample& sample : simulation_.sample(blocks(kind, round * each, (round + 1) * each, 64, 448), threads_))
+        const std::uint64_t each = kind == met ? 16 : 4;
+        for (Sample& sample : simulation_.sample(blocks(kind, round * each, (round + 1) * each, 128, 896), threads_))
           samples.push_back(std::move(sample));
       }
     const ByKind cost = cost_of_kinds(samples, samples);
