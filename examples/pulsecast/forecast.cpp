@@ -131,7 +131,7 @@ std::vector<SampleBlock> blocks_at(const Census& census, Kind kind, std::uint64_
 /// Slots of a block by kind.
 std::array<double, kinds> kinds_in(const Sample& sample) {
   std::array<double, kinds> n{};
-  for (std::size_t f = 0; f < fate_count; ++f) n[kind_of(static_cast<Fate>(f))] += static_cast<double>(sample.fates[f]);
+  for (std::size_t f = 0; f < fate_count; ++f) n[kind_of(static_cast<Fate>(f))] += static_cast<double>(sample.counts.fates[f]);
   return n;
 }
 
@@ -192,7 +192,8 @@ struct TemporaryFolder {
 
 /// Pulses of a sample that have echoes, or those that have not.
 Sample only(const Sample& sample, bool with_echoes) {
-  Sample some{.echoes = sample.echoes, .samples = sample.samples, .sample_interval = sample.sample_interval};
+  Sample some;
+  some.echoes = sample.echoes, some.samples = sample.samples, some.sample_interval = sample.sample_interval;
   for (const Shot& shot : sample.shots)
     if ((shot.echoes > 0) == with_echoes) some.shots.push_back(shot);
   return some;

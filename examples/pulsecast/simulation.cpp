@@ -104,16 +104,6 @@ double processor_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-void append(const Outcome& outcome, Sample& sample) {
-  ++sample.fates[static_cast<std::size_t>(outcome.shot.fate)];
-  if (outcome.shot.fate == Fate::blocked) return;
-  Shot& shot = sample.shots.emplace_back(outcome.shot);
-  shot.first_echo = static_cast<std::uint32_t>(sample.echoes.size()), shot.echoes = static_cast<std::uint32_t>(outcome.echoes.size());
-  shot.first_sample = sample.samples.size(), shot.samples = static_cast<std::uint32_t>(outcome.waveform.size());
-  sample.echoes.insert(sample.echoes.end(), outcome.echoes.begin(), outcome.echoes.end());
-  sample.samples.insert(sample.samples.end(), outcome.waveform.begin(), outcome.waveform.end());
-}
-
 /// All that a scene depends on in a run.
 SceneInputs inputs_of(const SurveySettings& survey, const Simulation::Settings& how, int run) {
   SceneInputs inputs{.files = adapters::scene_files(survey.scene), .name = survey.scene.id};
@@ -268,12 +258,13 @@ std::vector<Sample> Simulation::sample(std::span<const SampleBlock> blocks, unsi
     AnySurvey::Workspace workspace = survey.workspace();
     for (std::size_t k = task * at_once; k < std::min((task + 1) * at_once, blocks.size()); ++k) {
       const SampleBlock& block = blocks[k];
-      Sample before, &sample = all[k];
+      Collected before;
+      Sample& sample = all[k];
       sample.sample_interval = survey.sample_interval();
       sample.shots.reserve(block.end - block.from), sample.echoes.reserve(4 * (block.end - block.from));
-      for (PulseIndex i = block.first; i < block.from; ++i) append(survey(i, workspace), before);
+      for (PulseIndex i = block.first; i < block.from; ++i) before.append(survey(i, workspace));
       const double start = processor_seconds();
-      for (PulseIndex i = block.from; i < block.end; ++i) append(survey(i, workspace), sample);
+      for (PulseIndex i = block.from; i < block.end; ++i) sample.append(survey(i, workspace));
       sample.seconds = processor_seconds() - start;
     }
   });

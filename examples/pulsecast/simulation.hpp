@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -33,15 +32,11 @@ struct SampleBlock {
 };
 
 /// What came of the slots of a block that count.
-struct Sample {
-  double seconds = 0;  ///< of one processor [s]
-  std::array<std::uint64_t, pulsecast::fate_count> fates{};
-  std::vector<pulsecast::Shot> shots{};
-  std::vector<pulsecast::Echo> echoes{};
-  std::vector<float> samples{};
+struct Sample : pulsecast::Collected {
+  double seconds = 0;          ///< of one processor [s]
   double sample_interval = 0;  ///< [s]
 
-  [[nodiscard]] pulsecast::EchoBatch batch() const { return {shots, echoes, samples, sample_interval}; }
+  [[nodiscard]] pulsecast::EchoBatch batch() const { return Collected::batch(sample_interval); }
 };
 
 /// What came of a single slot.

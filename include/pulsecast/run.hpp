@@ -58,22 +58,13 @@ struct RunSummary {
   [[nodiscard]] PulseIndex pulses() const noexcept { return slots - count(Fate::blocked); }  ///< that were sent
 };
 
-namespace detail {
-
-/// The results of consecutive slots, in memory of their own that is used again and again.
-struct Chunk {
-  std::uint64_t number = 0;
-  Chunk* next_free = nullptr;
-  std::vector<Shot> shots;
-  std::vector<Echo> echoes;
-  std::vector<float> samples;
-  std::vector<SubrayHit> subrays;
-  RunSummary counts;
-
-  [[nodiscard]] std::size_t bytes() const noexcept {
-    return std::span(shots).size_bytes() + std::span(echoes).size_bytes() + std::span(samples).size_bytes() +
-           std::span(subrays).size_bytes();
-  }
+/// What came of slots, one after another, for those who ask a survey for single ones.
+struct Collected {
+  std::vector<Shot> shots{};
+  std::vector<Echo> echoes{};
+  std::vector<float> samples{};
+  std::vector<SubrayHit> subrays{};
+  RunSummary counts{};  ///< all but rays and seconds
 
   void clear() noexcept { shots.clear(), echoes.clear(), samples.clear(), subrays.clear(), counts = {}; }
 
@@ -90,6 +81,22 @@ struct Chunk {
     counts.echoes += outcome.echoes.size();
     counts.energy += outcome.energy;
     for (std::size_t f = 0; f < fate_count; ++f) counts.spent[f] += outcome.energy * outcome.shares[f];
+  }
+
+  /// The batch that sinks get; it lives as long as this is not changed.
+  [[nodiscard]] EchoBatch batch(double sample_interval) const noexcept { return {shots, echoes, samples, sample_interval, subrays}; }
+};
+
+namespace detail {
+
+/// The results of consecutive slots, in memory of their own that is used again and again.
+struct Chunk : Collected {
+  std::uint64_t number = 0;
+  Chunk* next_free = nullptr;
+
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return std::span(shots).size_bytes() + std::span(echoes).size_bytes() + std::span(samples).size_bytes() +
+           std::span(subrays).size_bytes();
   }
 };
 
@@ -189,7 +196,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   detail::Conveyor conveyor((slots + slots_per_chunk - 1) / slots_per_chunk, threads, options.stop);
   RunSummary summary;
   const auto deliver = [&](const detail::Chunk& chunk) {
-    const EchoBatch batch{chunk.shots, chunk.echoes, chunk.samples, survey.sample_interval(), chunk.subrays};
+    [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
     (sinks(batch), ...);
     summary.slots += chunk.counts.slots;
     summary.echoes += chunk.counts.echoes;
