@@ -16,6 +16,7 @@
 
 #include <pulsecast/adapters/attitude.hpp>
 #include <pulsecast/adapters/python.hpp>
+#include <pulsecast/adapters/trajectory_file.hpp>
 #include <pulsecast/adapters/xml.hpp>
 
 #include "../pulsecast/simulation.hpp"
@@ -108,16 +109,13 @@ py::array trajectory_of(const Simulation& simulation, double interval) {
   const SurveyPlan& plan = simulation.plan();
   for (std::size_t k = 0; k < plan.legs.size(); ++k) {
     const auto& path = plan.source.legs()[k].path();
-    const auto add = [&](Tick tick) {
+    adapters::for_each_record(plan.legs[k].duration, interval, [&](const Tick& tick) {
       const Pose<frame::Body, frame::World> pose = path.at(tick);
       const adapters::RollPitchYaw angles = adapters::roll_pitch_yaw(pose.rotation, {});
       const Vec3& p = pose.position;
       rows.push_back({(plan.legs[k].start + tick).seconds(), p.x, p.y, p.z, angles.roll, angles.pitch, angles.yaw,
                       static_cast<std::int32_t>(plan.legs[k].number)});
-    };
-    const double duration = plan.legs[k].duration.seconds();
-    for (std::size_t i = 0; static_cast<double>(i) * interval < duration; ++i) add(Tick::of_seconds(static_cast<double>(i) * interval));
-    add(plan.legs[k].duration);
+    });
   }
   return rows.take();
 }

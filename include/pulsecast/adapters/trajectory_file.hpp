@@ -29,6 +29,16 @@ struct TrajectoryFileSettings {
   void validate() const { expect_finite("TrajectoryFileSettings::start_time", start_time, "s"); }
 };
 
+/// Calls `record` with the times of the records of a leg: 0, `interval` [s, positive], twice that and so on, and the end, `duration`.
+template <class Record>
+void for_each_record(const Tick& duration, double interval, const Record& record) {
+  const double end = duration.seconds();
+  constexpr double least = 0.5e-9;  // records that would show the same time are one [s]
+  for (std::uint64_t i = 0; end - static_cast<double>(i) * interval > least; ++i)
+    record(Tick::of_seconds(static_cast<double>(i) * interval));
+  record(duration);
+}
+
 /// Writes where a platform was and how it was turned as text, one record a line, with these columns and a blank between them:
 ///
 ///     x y z gpsTime roll pitch yaw
@@ -59,13 +69,7 @@ class TrajectoryWriter {
   /// and so on, and at the end, `duration`.
   void add(const Trajectory auto& trajectory, Tick start, Tick duration, double interval) {
     expect_positive("TrajectoryWriter::add interval", interval, "s");
-    const double end = duration.seconds();
-    constexpr double least = 0.5e-9;  // records that would show the same time are one [s]
-    for (std::uint64_t i = 0; end - static_cast<double>(i) * interval > least; ++i) {
-      const Tick tick = Tick::of_seconds(static_cast<double>(i) * interval);
-      add(start + tick, trajectory.at(tick));
-    }
-    add(start + duration, trajectory.at(duration));
+    for_each_record(duration, interval, [&](const Tick& tick) { add(start + tick, trajectory.at(tick)); });
   }
 
   void close() { file_.commit(); }
