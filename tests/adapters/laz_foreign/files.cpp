@@ -129,7 +129,7 @@ int main(int count, char** words) {
     write_survey(folder, "large", std::strtoull(points, nullptr, 10) * 7 / 10, {});
     return 0;
   }
-  for (const std::size_t points : {0, 1, 2, 49'999, 50'000, 50'001}) write_random(folder, "any_" + std::to_string(points), points, 1, 4);
+  for (const std::size_t points : {0u, 1u, 2u, 49'999u, 50'000u, 50'001u}) write_random(folder, "any_" + std::to_string(points), points, 1, 4);
   write_random(folder, "calm", 60'000, 0.1, 1);
   write_random(folder, "calm_channels", 60'000, 0.1, 4);
   write_random(folder, "still", 60'000, 0.001, 2);
