@@ -15,7 +15,6 @@
 #include <mutex>
 #include <span>
 #include <stop_token>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -204,10 +203,12 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
     for (std::size_t f = 0; f < fate_count; ++f) summary.fates[f] += chunk.counts.fates[f], summary.spent[f] += chunk.counts.spent[f];
     if (options.progress) options.progress({summary.slots, slots, summary.echoes, elapsed()});
   };
-  const auto work = [&]() noexcept {
+  for_each_index(threads, threads, [&](std::size_t) noexcept {  // each works on as long as there is something to do
     try {
+      detail::Chunk* chunk = conveyor.next();
+      if (!chunk) return;
       auto workspace = survey.workspace();
-      while (detail::Chunk* chunk = conveyor.next()) {
+      for (; chunk; chunk = conveyor.next()) {
         const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots);
         for (PulseIndex n = from; n < to; ++n) chunk->append(survey(first + n * options.stride, workspace));
         conveyor.finish(*chunk, deliver);
@@ -215,16 +216,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
     } catch (...) {
       conveyor.fail(std::current_exception());
     }
-  };
-  {
-    std::vector<std::jthread> helpers;
-    try {
-      for (unsigned k = 1; k < threads; ++k) helpers.emplace_back(work);
-    } catch (...) {
-      conveyor.fail(std::current_exception());  // no more threads to be had
-    }
-    work();
-  }
+  });
   if (conveyor.failure()) std::rethrow_exception(conveyor.failure());
   summary.rays = summary.pulses() * survey.subrays();
   summary.seconds = elapsed();

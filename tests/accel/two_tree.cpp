@@ -17,7 +17,7 @@ using namespace pulsecast::support;
 namespace {
 
 template <class Real>
-using Tree = pulsecast::detail::TwoTree<Real, 8, 4>;
+using Tree = pulsecast::detail::TwoTree<Real>;
 
 std::vector<Box> random_boxes(std::uint64_t seed, std::size_t count) {
   Generator random(seed);
@@ -72,7 +72,7 @@ TEST_CASE_TEMPLATE("a tree of twos holds every primitive once, in boxes that hol
   for (const std::size_t count : {1U, 2U, 3U, 4U, 5U, 9U, 100U, 5000U}) {
     CAPTURE(count);
     pulsecast::detail::BuildInput<Real> input(random_boxes(60 + count, count));
-    const Tree<Real> tree(input.primitives, 1);
+    const Tree<Real> tree(input.primitives, 4, 1);
     const Shape shape = shape_of(tree);
     CHECK(shape.torn == 0);
     CHECK(shape.primitives == count);
@@ -88,14 +88,14 @@ TEST_CASE("a tree of twos is the same on any number of threads") {
   const std::vector<Box> boxes = random_boxes(61, 200'000);  // more than one stretch, and subtrees enough for all
   pulsecast::detail::BuildInput<float> input(boxes);
   std::vector<pulsecast::detail::Boxed<float>> alone(input.primitives.begin(), input.primitives.end());
-  const Tree<float> tree(alone, 1);
+  const Tree<float> tree(alone, 4, 1);
   const Shape shape = shape_of(tree);
   CHECK(shape.primitives == boxes.size());
   CHECK(shape.torn == 0);
   for (const unsigned threads : {2U, 7U}) {
     CAPTURE(threads);
     std::vector<pulsecast::detail::Boxed<float>> primitives(input.primitives.begin(), input.primitives.end());
-    const Tree<float> other(primitives, threads);
+    const Tree<float> other(primitives, 4, threads);
     CHECK(shape_of(other).leaves == shape.leaves);
     std::size_t different = 0;
     for (std::size_t i = 0; i < primitives.size(); ++i) different += primitives[i].primitive == alone[i].primitive ? 0 : 1;
@@ -107,7 +107,7 @@ TEST_CASE("boxes in a row are put in leaves of neighbours") {
   std::vector<Box> boxes;
   for (int i = 0; i < 64; ++i) boxes.push_back({{i * 10.0, 0, 0}, {i * 10.0 + 1, 1, 1}});
   pulsecast::detail::BuildInput<double> input(boxes);
-  const Tree<double> tree(input.primitives, 1);
+  const Tree<double> tree(input.primitives, 4, 1);
   for (std::uint32_t i = 0; i < 64; ++i) CHECK(tree.primitives()[i].primitive == i);
   CHECK(shape_of(tree).nodes == 9);  // eight leaves of eight would be too large, so eight nodes and one above
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <pulsecast/accel/two_tree.hpp>
+#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/concepts.hpp>
@@ -21,29 +22,28 @@
 namespace pulsecast {
 
 /// A tree of boxes with up to eight children a node, all of whose boxes a bundle is tested against at once. It is split in two by the
-/// surface-area heuristic, down to single primitives; then some levels are made one, and up to `LeafSize` primitives a leaf, as costs
+/// surface-area heuristic, down to single primitives; then some levels are made one, and up to `leaf_size` primitives a leaf, as costs
 /// least. Every primitive stands in exactly one leaf. A bundle goes through it as a whole, front to back. Where a split would make the tree
 /// of twos deeper than 64 levels, halves are made. The tree is the same for every number of threads that it is built on; 0 for as many as
 /// the machine runs.
 /// Source: Wald 2007 (build in bins); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic); Wald, Benthin & Boulos 2008
 /// (collapsing).
-template <std::floating_point Real, std::size_t LeafSize>
-class BvhOf {
+template <std::floating_point Real = float>
+class Bvh {
  public:
-  /// `boxes` has a size, and gives a `Box` of each number, twice the same: a span, or what makes them as they are asked for.
-  template <class Boxes>
-  requires requires(const Boxes& boxes) {
-    { boxes[boxes.size()] } -> std::convertible_to<Box>;
-  }
-  explicit BvhOf(const Boxes& boxes, unsigned threads = 0) {
+  /// Of a span of boxes, or of anything that has a size and gives a `Box` of each number. Leaves of some primitives, at most 7, are for
+  /// those that are tested several at once; where a test is a search of its own, as in the parts of a scene, take one a leaf, each behind
+  /// its own box.
+  explicit Bvh(const detail::BoxSource& boxes, unsigned threads = 0, std::uint32_t leaf_size = 4) {
+    expect_within("Bvh::leaf_size", leaf_size, 1, 7, "");
     detail::BuildInput<Real> input(boxes, threads);
     bounds_ = input.bounds, centre_ = input.centre;
     if (input.primitives.empty()) return;
-    const Twos twos(input.primitives, threads);
+    const Twos twos(input.primitives, leaf_size, threads);
     collapse(twos, threads);
   }
 
-  explicit BvhOf(Unfilled) {}
+  explicit Bvh(Unfilled) {}
   template <class Archive>
   void archive(Archive& a) {
     a(bounds_, centre_, depth_, nodes_, primitives_);
@@ -88,7 +88,8 @@ class BvhOf {
   }
 
  private:
-  static constexpr std::size_t places = 8;
+  using Twos = detail::TwoTree<Real>;
+  static constexpr std::size_t places = Twos::places;
 
   struct alignas(64) Node {
     CompactBoxes<Real> boxes;
@@ -157,8 +158,6 @@ class BvhOf {
     else if constexpr (requires { test.soon(std::span<const PrimitiveIndex>()); })
       test.soon(std::span<const PrimitiveIndex>(primitives_.data() + next.first, next.size));
   }
-
-  using Twos = detail::TwoTree<Real, places, LeafSize>;
 
   /// A node to be made of what is below one of twos.
   struct Open {
@@ -246,14 +245,6 @@ class BvhOf {
   Frozen<Node> nodes_;                 ///< the root first
   Frozen<PrimitiveIndex> primitives_;  ///< of the leaves
   std::size_t depth_ = 0;
-};
-
-/// For primitives that are tested several at once. Where a test is a search of its own, as in the parts of a scene, take one a leaf, each
-/// behind its own box: `BvhOf<float, 1>`.
-template <std::floating_point Real = float>
-class Bvh : public BvhOf<Real, 4> {
- public:
-  using BvhOf<Real, 4>::BvhOf;
 };
 
 static_assert(Accelerator<Bvh<float>> && Accelerator<Bvh<double>>);

@@ -123,16 +123,48 @@ void for_each_stretch(std::size_t count, unsigned threads, const Act& act) {
   for_each_index(stretches(count), threads, [&](std::size_t i) { act(i, i * stretch, std::min(count, (i + 1) * stretch)); });
 }
 
-/// The primitives that can be met at all, in coordinates relative to the centre of their bounds. `boxes` has a size, and gives a `Box` of
-/// each number, twice the same.
+/// Boxes by number, of whatever has a size and gives a `Box` of each number, the same at all times: an array, or what makes them as they
+/// are asked for. It must outlive this, which is there so that a build need be compiled but once.
+class BoxSource {
+ public:
+  template <class Boxes>
+  requires requires(const Boxes& boxes) {
+    { boxes[boxes.size()] } -> std::convertible_to<Box>;
+  }
+  BoxSource(const Boxes& boxes)  // NOLINT(google-explicit-constructor): an array is one
+      : boxes_(&boxes), size_(boxes.size()), copy_([](const void* all, std::size_t begin, std::size_t end, Box* to) {
+          for (std::size_t i = begin; i < end; ++i) *to++ = (*static_cast<const Boxes*>(all))[i];
+        }) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+
+  /// Calls act(i, box) for those of a stretch that are not empty.
+  template <class Act>
+  void for_each(std::size_t begin, std::size_t end, const Act& act) const {
+    constexpr std::size_t at_once = 64;
+    std::array<Box, at_once> some;
+    for (; begin < end; begin += at_once) {
+      const std::size_t count = std::min(at_once, end - begin);
+      copy_(boxes_, begin, begin + count, some.data());
+      for (std::size_t i = 0; i < count; ++i)
+        if (!some[i].empty()) act(begin + i, some[i]);
+    }
+  }
+
+ private:
+  const void* boxes_;
+  std::size_t size_;
+  void (*copy_)(const void* boxes, std::size_t begin, std::size_t end, Box* to);
+};
+
+/// The primitives that can be met at all, in coordinates relative to the centre of their bounds.
 template <std::floating_point Real>
 struct BuildInput {
   Box bounds;
   Vec3 centre{};
   Draft<Boxed<Real>> primitives;
 
-  template <class Boxes>
-  explicit BuildInput(const Boxes& boxes, unsigned threads = 1) {
+  explicit BuildInput(const BoxSource& boxes, unsigned threads = 1) {
     constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // one more would be taken for `Nearest::none`
     if (boxes.size() > most)
       throw SettingError("Accelerator::boxes", static_cast<double>(boxes.size()), "", "at most 4294967294 in number");
@@ -143,13 +175,11 @@ struct BuildInput {
     std::vector<Stretch> all(stretches(boxes.size()));
     for_each_stretch(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
       Stretch own;
-      for (std::size_t i = begin; i < end; ++i) {
-        const Box box = boxes[i];
-        if (box.empty()) continue;
+      boxes.for_each(begin, end, [&](std::size_t, const Box& box) {
         const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
         if (!(extent <= farthest)) throw SettingError("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
         own.bounds.extend(box), ++own.met;
-      }
+      });
       all[part] = own;
     });
     std::size_t met = 0;
@@ -159,8 +189,9 @@ struct BuildInput {
     primitives = Draft<Boxed<Real>>(met);
     for_each_stretch(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
       Boxed<Real>* to = primitives.data() + all[part].first;
-      for (std::size_t i = begin; i < end; ++i)
-        if (const Box box = boxes[i]; !box.empty()) *to++ = {BoundingBox<Real>::around(box, centre), static_cast<PrimitiveIndex>(i)};
+      boxes.for_each(begin, end, [&](std::size_t i, const Box& box) {
+        *to++ = {BoundingBox<Real>::around(box, centre), static_cast<PrimitiveIndex>(i)};
+      });
     });
   }
 };

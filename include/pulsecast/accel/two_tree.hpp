@@ -20,21 +20,23 @@
 namespace pulsecast::detail {
 
 /// A tree of boxes that is split in two by the surface-area heuristic down to single primitives, and the plan of how it turns into one of
-/// `Places` children a node with up to `LeafSize` primitives a leaf, so that the surface of its boxes, times what is done in them, is least
+/// eight children a node with as many primitives a leaf as may be, so that the surface of its boxes, times what is done in them, is least
 /// in sum. The primitives are brought into the order of its leaves.
 /// Source: Wald 2007 (bins); Ylitie, Karras & Laine 2017, sec. 3.2 (plan).
-template <std::floating_point Real, std::size_t Places, std::size_t LeafSize>
+template <std::floating_point Real>
 class TwoTree {
  public:
+  static constexpr std::size_t places = 8;  ///< of the nodes that are planned
+
   /// What is below a node: primitives side by side. `middle` is where the second child begins, and the node's number; 0 for one primitive.
   struct Range {
     std::uint32_t begin, end, middle;
     [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
   };
 
-  /// At least one primitive, which must outlive the tree.
-  TwoTree(std::span<Boxed<Real>> primitives, unsigned threads)
-      : primitives_(primitives), spare_(primitives.size()), nodes_(primitives.size()) {
+  /// At least one primitive, which must outlive the tree; up to so many a leaf.
+  TwoTree(std::span<Boxed<Real>> primitives, std::uint32_t leaf_size, unsigned threads)
+      : primitives_(primitives), leaf_size_(leaf_size), spare_(primitives.size()), nodes_(primitives.size()) {
     // the upper levels node by node, each on all threads; then what is below them side by side
     struct Step {
       Task task;
@@ -48,14 +50,14 @@ class TwoTree {
     std::vector<Stretch> space(1);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (steps[i].task.size() <= grain) {
-        subtrees.push_back(i);
+        const auto larger = [&](std::size_t a, std::size_t b) { return steps[a].task.size() > steps[b].task.size(); };
+        subtrees.insert(std::upper_bound(subtrees.begin(), subtrees.end(), i, larger), i);  // the largest first
         continue;
       }
       const auto halves = split(steps[i].task, space, threads);
       steps[i].halves = steps.size();
       for (const Task& half : halves) steps.push_back({half});
     }
-    std::sort(subtrees.begin(), subtrees.end(), [&](std::size_t a, std::size_t b) { return steps[a].task.size() > steps[b].task.size(); });
     for_each_index(subtrees.size(), threads, [&](std::size_t i) {
       Step& step = steps[subtrees[i]];
       std::vector<Stretch> own(1);
@@ -93,13 +95,13 @@ class TwoTree {
   static constexpr double leaf_cost = 1;  ///< of the tests in a leaf, where a step of the traversal costs 1
 
   /// What the best plan costs where a node takes up to j + 1 places of the one above, j being the index.
-  using Sums = std::array<double, Places>;
+  using Sums = std::array<double, places>;
 
   /// An inner node. Every place between two primitives that are neighbours in the end splits just one of them, and so is its number.
   struct Node {
     BoundingBox<Real> box;
     std::uint32_t first, second;    ///< the numbers of its children, 0 for one primitive
-    std::uint8_t left[Places - 1];  ///< of j + 2 places, how many its first child gets; 0 if it takes but one itself
+    std::uint8_t left[places - 1];  ///< of j + 2 places, how many its first child gets; 0 if it takes but one itself
     bool leaf;
   };
 
@@ -312,10 +314,10 @@ class TwoTree {
   [[nodiscard]] Range second(const Range& r) const noexcept { return {r.middle, r.end, nodes_[r.middle].second}; }
 
   /// Plans a node, of whose halves the sums and sizes are known.
-  static Sums plan(Node& node, const Sums& first, std::size_t in_first, const Sums& second, std::size_t in_second) noexcept {
+  Sums plan(Node& node, const Sums& first, std::size_t in_first, const Sums& second, std::size_t in_second) const noexcept {
     Sums sums;
     const std::size_t size = in_first + in_second;
-    for (std::size_t j = 1; j < Places; ++j) {
+    for (std::size_t j = 1; j < places; ++j) {
       if (j >= size) {  // more places than primitives
         sums[j] = sums[j - 1], node.left[j - 1] = node.left[j - 2];
         continue;
@@ -325,16 +327,17 @@ class TwoTree {
         if (const double sum = first[k] + second[j - 1 - k]; sum < sums[j])
           sums[j] = sum, node.left[j - 1] = static_cast<std::uint8_t>(k + 1);
     }
-    const double area = half_area(node.box), as_node = area + sums[Places - 1];
-    const double as_leaf = size <= LeafSize ? area * leaf_cost : std::numeric_limits<double>::infinity();
+    const double area = half_area(node.box), as_node = area + sums[places - 1];
+    const double as_leaf = size <= leaf_size_ ? area * leaf_cost : std::numeric_limits<double>::infinity();
     node.leaf = as_leaf <= as_node;
     sums[0] = std::min(as_leaf, as_node);
-    for (std::size_t j = 1; j < Places - 1; ++j)  // not the last, which is the node itself
+    for (std::size_t j = 1; j < places - 1; ++j)  // not the last, which is the node itself
       if (sums[0] <= sums[j]) sums[j] = sums[0], node.left[j - 1] = 0;
     return sums;
   }
 
   std::span<Boxed<Real>> primitives_;
+  std::uint32_t leaf_size_;
   Draft<Boxed<Real>> spare_;  ///< while it is built
   Draft<Node> nodes_;
   std::uint32_t root_ = 0;

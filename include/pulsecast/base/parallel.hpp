@@ -16,17 +16,16 @@ namespace pulsecast {
   return asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
 }
 
-/// Calls task(i) once for every i below `count`, the low ones first, on up to so many threads, this one among them; 0 as `thread_count`
-/// says. Tasks that touch nothing in common need no lock. What a task throws comes out here, if several do, one of them; those not yet
-/// begun are then left out.
-template <class Task>
-void for_each_index(std::size_t count, unsigned threads, const Task& task) {
+namespace detail {
+
+/// `for_each_index` of whatever call(task, i) makes of a task: compiled once for all of them.
+inline void call_for_each_index(std::size_t count, unsigned threads, void (*call)(const void*, std::size_t), const void* task) {
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> failed = false;
   std::exception_ptr failure;
   const auto work = [&]() noexcept {
     for (std::size_t i = next++; i < count; i = next++) try {
-        task(i);
+        call(task, i);
       } catch (...) {
         next = count;
         if (!failed.exchange(true)) failure = std::current_exception();
@@ -41,6 +40,16 @@ void for_each_index(std::size_t count, unsigned threads, const Task& task) {
     work();
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace detail
+
+/// Calls task(i) once for every i below `count`, the low ones first, on up to so many threads, this one among them; 0 as `thread_count`
+/// says. Tasks that touch nothing in common need no lock. What a task throws comes out here, if several do, one of them; those not yet
+/// begun are then left out.
+template <class Task>
+void for_each_index(std::size_t count, unsigned threads, const Task& task) {
+  detail::call_for_each_index(count, threads, [](const void* t, std::size_t i) { (*static_cast<const Task*>(t))(i); }, &task);
 }
 
 }  // namespace pulsecast

@@ -82,7 +82,7 @@ class Scene {
   enum class Motions : std::uint8_t { refused, left_out };
 
   /// Parts that move are refused, or left out of the index.
-  Scene(std::vector<Part> parts, Motions motions) : parts_(std::move(parts)), index_(boxes(parts_, motions)) {
+  Scene(std::vector<Part> parts, Motions motions) : parts_(std::move(parts)), index_(boxes(parts_, motions), 0, 1) {
     parts_.shrink_to_fit();
     alone_ = parts_.size() == 1 && !parts_[0].motion;
   }
@@ -189,7 +189,7 @@ class Scene {
   }
 
   std::vector<Part> parts_;
-  BvhOf<float, 1> index_;
+  Bvh<float> index_;
   bool alone_ = false;  ///< there is one part, which stands
 };
 
