@@ -45,9 +45,12 @@ struct TrianglePacket {
   TrianglePacket(std::span<const PrimitiveIndex> of, const TriangleOf& triangle_of) noexcept : size(of.size()) {
     const auto in_use = [&](std::size_t lane) noexcept { return std::min(lane, size - 1); };
     for (std::size_t lane = 0; lane < lane_count; ++lane) primitives[lane] = of[in_use(lane)];
+    const auto triangles = [&]<std::size_t... lane>(std::index_sequence<lane...>) noexcept {
+      return std::array{triangle_of(in_use(lane))...};
+    }(std::make_index_sequence<lane_count>());
     const auto corner = [&](Vec3 Triangle::*which) noexcept {
       const auto coordinate = [&](double Vec3::*axis) noexcept {
-        return lanes_of([&](std::size_t lane) { return triangle_of(in_use(lane)).*which.*axis; });
+        return lanes_of([&](std::size_t lane) { return triangles[lane].*which.*axis; });
       };
       return Corner{coordinate(&Vec3::x), coordinate(&Vec3::y), coordinate(&Vec3::z)};
     };
