@@ -135,14 +135,16 @@ std::array<double, kinds> kinds_in(const Sample& sample) {
   return n;
 }
 
-/// What a slot of each kind takes [s]: least squares over blocks. A kind that is not there costs nothing.
-std::array<double, kinds> cost_of_kinds(std::span<const Sample> kinds_of, std::span<const Sample> times) {
+/// What a slot of each kind takes [s], such that it comes out right for all slots together: least squares over blocks, each of which stands
+/// for so many. Slots of a kind do not take the same everywhere, nor does each block hold one kind only: so a kind may come out below zero.
+/// Source: Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, chapter 6, the regression estimator.
+std::array<double, kinds> cost_of_kinds(std::span<const Sample> kinds_of, std::span<const Sample> times, std::span<const double> weights) {
   std::array<std::array<double, kinds + 1>, kinds> m{};
   for (std::size_t b = 0; b < kinds_of.size(); ++b) {
     const auto n = kinds_in(kinds_of[b]);
     for (std::size_t i = 0; i < kinds; ++i) {
-      for (std::size_t j = 0; j < kinds; ++j) m[i][j] += n[i] * n[j];
-      m[i][kinds] += n[i] * times[b].seconds;
+      for (std::size_t j = 0; j < kinds; ++j) m[i][j] += weights[b] * n[i] * n[j];
+      m[i][kinds] += weights[b] * n[i] * times[b].seconds;
     }
   }
   double trace = 0;
@@ -155,8 +157,21 @@ std::array<double, kinds> cost_of_kinds(std::span<const Sample> kinds_of, std::s
       for (std::size_t j = i; j <= kinds; ++j) m[row][j] -= factor * m[i][j];
     }
   std::array<double, kinds> cost{};
-  for (std::size_t i = 0; i < kinds; ++i) cost[i] = m[i][i] > 0 ? std::max(0.0, m[i][kinds] / m[i][i]) : 0;
+  for (std::size_t i = 0; i < kinds; ++i) cost[i] = m[i][i] > 0 ? m[i][kinds] / m[i][i] : 0;
   return cost;
+}
+
+double bytes_of(const Sample& s) {
+  return static_cast<double>(std::span(s.shots).size_bytes() + std::span(s.echoes).size_bytes() + std::span(s.samples).size_bytes());
+}
+
+/// How many blocks of the survey each block of a sample stands for, if it begins at a slot of a kind. Source: Horvitz & Thompson 1952.
+std::vector<double> weights_of(const Census& census, std::span<const Kind> begin_at) {
+  std::array<double, kinds> number{};
+  for (const Kind kind : begin_at) ++number[kind];
+  std::vector<double> weights;
+  for (const Kind kind : begin_at) weights.push_back(census.slots[kind] / number[kind]);
+  return weights;
 }
 
 double dot(const std::array<double, kinds>& a, const std::array<double, kinds>& b) {
@@ -201,33 +216,39 @@ Sample only(const Sample& sample, bool with_echoes) {
 
 Writing measure_writing(std::span<const Sample> samples, const SurveyPlan& plan, const Options& options) {
   const auto processor = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+  // What is written may take some time [s] to get ready, which is told.
   const auto write = [&](const auto& what) {
     const TemporaryFolder folder;
     const double start = processor();
     LegFiles files(folder.path, "leg", options, 0, {});
-    what(files);
+    const double readying = what(files);
     files.close();
-    Writing::Cost cost{processor() - start, 0};
+    Writing::Cost cost{processor() - start - readying, 0};
     for (const auto& file : fs::directory_iterator(folder.path)) cost.bytes += static_cast<double>(file.file_size());
     return cost;
   };
+  const auto nothing = [](LegFiles&) { return 0.0; };
   Writing w;
-  write([](LegFiles&) {});  // whatever is done once
-  w.leg = write([](LegFiles&) {});
+  write(nothing);  // whatever is done once
+  w.leg = write(nothing);
   const auto each = [&](const Writing::Cost& all, std::uint64_t number) -> Writing::Cost {
     if (number == 0) return {};
     const double n = static_cast<double>(number);
     return {std::max(0.0, all.seconds - w.leg.seconds) / n, std::max(0.0, all.bytes - w.leg.bytes) / n};
   };
   for (const bool with_echoes : {true, false}) {
-    std::vector<Sample> some;
     std::uint64_t number = 0;
-    for (const Sample& sample : samples) {
-      some.push_back(only(sample, with_echoes));
-      number += with_echoes ? sample.echoes.size() : some.back().shots.size();
-    }
+    const Allowance allowance(0.4, 1);  // samples come in rounds, each from all over the survey
     const Writing::Cost all = write([&](LegFiles& files) {
-      for (const Sample& sample : some) files(sample.batch());
+      double readying = 0;
+      for (std::size_t k = 0; k < samples.size() && allowance.left(); ++k) {
+        const double start = processor();
+        const Sample some = only(samples[k], with_echoes);
+        readying += processor() - start;
+        number += with_echoes ? samples[k].echoes.size() : some.shots.size();
+        files(some.batch());
+      }
+      return readying;
     });
     (with_echoes ? w.point : w.empty) = each(all, number);
   }
@@ -236,8 +257,10 @@ Writing measure_writing(std::span<const Sample> samples, const SurveyPlan& plan,
     if (!leg.active || !(leg.trajectory_interval > 0)) continue;
     constexpr double some = 1000;
     const double records = std::min(some, std::ceil(leg.duration.seconds() / leg.trajectory_interval));
-    const Writing::Cost all = write(
-        [&](LegFiles& files) { files.add_trajectory(plan.source.legs()[k], leg.start, leg.duration.seconds() / std::max(1.0, records)); });
+    const Writing::Cost all = write([&](LegFiles& files) {
+      files.add_trajectory(plan.source.legs()[k], leg.start, leg.duration.seconds() / std::max(1.0, records));
+      return 0.0;
+    });
     w.record = each(all, static_cast<std::uint64_t>(records) + 1);
     break;
   }
@@ -368,24 +391,28 @@ class Forecaster {
   void measure_as_is() {
     constexpr std::uint64_t most_rounds = 48;
     std::vector<Sample> samples;
+    std::vector<Kind> begin_at;
     const Allowance allowance(1.0, workers_);
     for (std::uint64_t round = 0; round < most_rounds && (round == 0 || allowance.left()); ++round)
       for (const Kind kind : {met, missed, blocked}) {
         const std::uint64_t each = kind == met ? 16 : 4;
         for (Sample& sample : simulation_.sample(blocks(kind, round * each, (round + 1) * each, 128, 896), threads_))
-          samples.push_back(std::move(sample));
+          samples.push_back(std::move(sample)), begin_at.push_back(kind);
       }
-    const ByKind cost = cost_of_kinds(samples, samples);
-    double rest = 0, sum = 0, slots = 0;
-    for (const Sample& sample : samples) {
-      const ByKind n = kinds_in(sample);
-      rest += std::pow(sample.seconds - dot(n, cost), 2), sum += sample.seconds, slots += dot(n, {1, 1, 1});
-      shots_ += static_cast<double>(sample.shots.size()), echoes_ += static_cast<double>(sample.echoes.size());
-      samples_ += static_cast<double>(sample.samples.size());
+    const std::vector<double> weights = weights_of(census_, begin_at);
+    const ByKind cost = cost_of_kinds(samples, samples, weights);
+    double rest = 0, sum = 0, bytes = 0, squares = 0;
+    sampled_ = census_.sampled;
+    for (std::size_t b = 0; b < samples.size(); ++b) {
+      const Sample& sample = samples[b];
+      rest += std::pow(weights[b] * (sample.seconds - dot(kinds_in(sample), cost)), 2);
+      sum += weights[b] * sample.seconds;
+      const double chunk = bytes_of(sample) * 2048 / static_cast<double>(sample.counts.slots);
+      bytes += weights[b] * chunk, squares += weights[b] * chunk * chunk;
+      sampled_ += sample.counts.slots;
     }
-    shots_ /= slots, echoes_ /= slots, samples_ /= slots;
-    sampled_ = census_.sampled + static_cast<std::uint64_t>(slots);
-    computing_ = dot(census_.slots, cost);
+    chunk_ = bytes > 0 ? squares / bytes : 0;
+    computing_ = std::max(0.0, dot(census_.slots, cost));
     met_cost_ = std::max({cost[met], cost[missed], 1e-8});
     unsure_ = sum > 0 ? 2 * std::sqrt(rest) / sum : 0;
     writing_ = measure_writing(samples, plan_, options_);
@@ -404,8 +431,9 @@ class Forecaster {
     for (const Kind kind : {met, missed, blocked})
       for (const SampleBlock& block : blocks(kind, 0, kind == met ? n : n / 4, 16, 64))
         blocks_.push_back(block), kind_of_block_.push_back(kind);
+    weights_ = weights_of(census_, kind_of_block_);
     own_ = simulation_.sample(blocks_, threads_);
-    own_cost_ = dot(census_.slots, cost_of_kinds(own_, own_));
+    own_cost_ = dot(census_.slots, cost_of_kinds(own_, own_, weights_));
     compared_ = blocks(met, 0, affordable(0.5, effort(*finest_.rings) + trials, 128, 2048), 0, 1);
     simulation_.receive(finest_);
     finer_ = simulation_.sample(compared_, threads_);
@@ -431,7 +459,7 @@ class Forecaster {
     if (other) {
       simulation_.receive(how);
       const std::vector<Sample> samples = simulation_.sample(blocks_, threads_);
-      if (own_cost_ > 0) computing *= dot(census_.slots, cost_of_kinds(own_, samples)) / own_cost_;
+      if (own_cost_ > 0) computing *= std::max(0.0, dot(census_.slots, cost_of_kinds(own_, samples, weights_)) / own_cost_);
       add_points(samples, f.points);
     }
     entire(f, computing);
@@ -483,12 +511,15 @@ class Forecaster {
     const double unsure = std::hypot(0.1, unsure_);  // what a sample cannot know is put at a tenth
     f.seconds = {seconds(f.points.value, 1), seconds(f.points.low, 1 - unsure), seconds(f.points.high, 1 + unsure)};
     f.bytes = {bytes(f.points.value, 1), bytes(f.points.low, 0.99), bytes(f.points.high, 1.01)};
-    // Threads run ahead of the one that writes as `Conveyor` lets them; vectors have up to twice the room that they need.
-    const double chunk = 2048 * (shots_ * sizeof(Shot) + echoes_ * sizeof(Echo) + samples_ * sizeof(float)) + 1, always = 2 * threads_ + 2;
-    const double ahead = std::max(always, std::min(16 * always, 6e6 / chunk));
-    const bool waits = writing_.point.seconds * f.points.value > computing / workers_;
-    const auto memory = [&](double buffers) { return std::max(peak_, resident_ + buffers); };
-    f.memory = {memory((waits ? 1.5 * ahead : threads_ + 2) * chunk + 3e6), memory(threads_ * chunk), memory(3 * ahead * chunk + 6e6)};
+    // Threads run ahead of the one that writes as `Conveyor` lets them, more and more as that one has more to do than they. Vectors grow to
+    // twice the room that they need, and then keep it.
+    const double chunk = chunk_ + 1, always = 2 * threads_ + 2;
+    const double ahead = std::clamp(6.3e6 / chunk + threads_ + 1, always, 16 * always);
+    const double busy = computing > 0 ? writing_.point.seconds * f.points.value * workers_ / computing : 1;
+    const auto memory = [&](double chunks, double room) { return std::max(peak_, resident_ + chunks * chunk * room + 3e6); };
+    // One thread alone writes what it has before it goes on.
+    const double few = threads_ == 1 ? 1 : threads_ + 2, waiting = threads_ == 1 ? 0 : std::clamp(busy - 0.5, 0.0, 1.0);
+    f.memory = {memory(few + waiting * (ahead - few), 1 + 0.75 * waiting), memory(few, 0.5), memory(threads_ == 1 ? 1 : ahead, 3)};
     for (double* end : {&f.points.value, &f.points.low, &f.points.high}) *end *= repetitions;
   }
 
@@ -517,12 +548,14 @@ class Forecaster {
   int rings_ = 1;
   Receiving finest_{};
   // of the survey as it is
-  double computing_ = 0, met_cost_ = 0, unsure_ = 0, shots_ = 0, echoes_ = 0, samples_ = 0;
+  double computing_ = 0, met_cost_ = 0, unsure_ = 0;
+  double chunk_ = 0;  ///< of 2048 slots: that which a byte is in, on average [byte]
   std::uint64_t sampled_ = 0;
   Writing writing_{};
   // what other settings are held against
   std::vector<SampleBlock> blocks_, compared_;
   std::vector<Kind> kind_of_block_;
+  std::vector<double> weights_;
   std::vector<Sample> own_, finer_;
   double own_cost_ = 0;
 };

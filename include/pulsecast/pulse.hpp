@@ -27,7 +27,7 @@ struct Divergence {
 /// What a laser sends, in the terms of its data sheet. A beam from a point, or through one, has a waist without diameter. Ranges are those
 /// that `Scanner` takes: received powers, which may be 10^-30 of what was sent, keep clear of the ends of a double's range, squared too.
 struct Laser {
-  double wavelength = 1.064e-6;    ///< [m]
+  double wavelength = 1.064e-6;    ///< from 10 nm to 1 cm [m]
   double peak_power = 4;           ///< of a pulse, from 1e-20 to 1e20 [W]
   double pulse_length = 4e-9;      ///< full width at half maximum, from 1 fs to 1 s [s]
   Divergence divergence = 0.3e-3;  ///< from 0 to 30 degrees; across and up within a factor of 1e6 of each other [rad]

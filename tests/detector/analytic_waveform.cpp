@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -163,6 +164,53 @@ TEST_CASE("both waveform detectors find the same peaks, but for those that are l
   }
   CHECK(alike > 960);
   CHECK(close * 100 > peaks * 97);
+}
+
+TEST_CASE("the echo of a bunch, found directly, is what the pass over its edges finds") {
+  // A reflection without power makes the bunch none, and nothing else.
+  const auto both = [](const auto& detector, std::vector<Reflection> reflections) {
+    const auto directly = echoes_of(detector, reflections);
+    reflections.push_back({reflections.front().range, 0, 77, 7});
+    return std::pair(directly, echoes_of(detector, reflections));
+  };
+  for (const EchoTiming timing : {EchoTiming::energy, EchoTiming::peak}) {
+    const AnalyticWaveform<MomentWidth> detector(WaveformSettings{.timing = timing});
+    for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+      CAPTURE(seed);
+      support::Generator any(seed);
+      std::vector<Reflection> reflections(1 + any.whole(40));
+      const double start = any.log_uniform(1e-3, 1e5), spread = any.log_uniform(1e-9, 1.999) * metres_per_tau;
+      for (Reflection& r : reflections) r = {start + any.uniform(0, spread), any.log_uniform(1e-11, 1e-7)};
+      for (std::size_t k = 0; k < reflections.size(); ++k) reflections[k].object = static_cast<ObjectId>(k);
+      if (seed % 2 == 0) reflections.front().range = start, reflections.back().range = start + spread;  // as far apart as may be
+      const auto [found, expected] = both(detector, reflections);
+      REQUIRE(found.size() == 1);
+      REQUIRE(expected.size() == 1);
+      const Echo &a = found[0], &b = expected[0];
+      // Of the last edge, whose two-way time is rounded, comes as much as the time has digits.
+      const double rounding = 1e-15 * start, near = 1e-9 + rounding / metres_per_tau;
+      REQUIRE(std::fabs(a.range - b.range) < (timing == EchoTiming::energy ? 0 : 1e-7 * metres_per_tau) + 4 * rounding + 1e-14);
+      REQUIRE(a.amplitude == support::relative(b.amplitude, near));
+      REQUIRE(a.width == support::relative(b.width, near));
+      REQUIRE(a.number == 1);
+      if (a.object == b.object) continue;  // else both must have as great a share
+      const double time = 2 * b.range / speed_of_light;
+      const auto share = [&](ObjectId k) { return reflections[k].power * shape(time - arrival(reflections[k])); };
+      if (timing == EchoTiming::peak) REQUIRE(share(a.object) == support::relative(share(b.object), 1e-6));
+    }
+  }
+  // at the threshold, and with edges so far apart that the ages' variance is 1 but for rounding
+  const double least = echoes_of(AnalyticWaveform(), {{50, 1e-8}, {50.1, 1e-8}})[0].amplitude;
+  CHECK(both(AnalyticWaveform(WaveformSettings{.threshold = 0.999 * least}), {{50, 1e-8}, {50.1, 1e-8}}).first.size() == 1);
+  CHECK(both(AnalyticWaveform(WaveformSettings{.threshold = 1.001 * least}), {{50, 1e-8}, {50.1, 1e-8}}).first.empty());
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const double range = any.log_uniform(1, 1e4), further = range + 2 * metres_per_tau * (1 - any.log_uniform(1e-15, 1e-9)), power = 1e-8;
+    const auto [found, expected] = both(AnalyticWaveform(all_peaks), {{range, power}, {further, power * std::exp(-2)}});
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].amplitude == support::relative(expected[0].amplitude, 1e-6));
+  }
 }
 
 TEST_CASE("hits on the same spot are one, thousands of them too, and add up") {

@@ -89,7 +89,8 @@ TEST_CASE("a receiver's gate holds its ends") {
 TEST_CASE("a receiver refuses what cannot be") {
   CHECK_NOTHROW(Receiver{}.validate());
   CHECK_NOTHROW(Receiver{.visibility = infinity}.validate());
-  for (const double bad : {0.0, -1.0, nan_value, infinity}) CHECK_THROWS_AS(Receiver{.diameter = bad}.validate(), SettingError);
+  for (const double bad : {0.0, 9e-5, 1001.0, -1.0, nan_value, infinity})
+    CHECK_THROWS_AS(Receiver{.diameter = bad}.validate(), SettingError);
   for (const double bad : {-0.1, 1.1, nan_value}) CHECK_THROWS_AS(Receiver{.efficiency = bad}.validate(), SettingError);
   for (const double bad : {0.0, -1.0, nan_value}) CHECK_THROWS_AS(Receiver{.visibility = bad}.validate(), SettingError);
   for (const double bad : {-0.1, nan_value, infinity}) CHECK_THROWS_AS(Receiver{.range_min = bad}.validate(), SettingError);

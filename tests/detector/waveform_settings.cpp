@@ -15,6 +15,8 @@ TEST_CASE("settings of a waveform that cannot be are refused") {
     CHECK_THROWS_AS(WaveformSettings{.sample_interval = bad}.validate(), SettingError);
     CHECK_THROWS_AS(WaveformSettings{.shape_divisor = bad}.validate(), SettingError);
   }
+  for (const double bad : {0.99, 10.1}) CHECK_THROWS_AS(WaveformSettings{.shape_divisor = bad}.validate(), SettingError);
+  for (const double good : {1.0, 10.0}) CHECK_NOTHROW(WaveformSettings{.shape_divisor = good}.validate());
   for (const double bad : {-1e-9, nan, infinity}) {
     CHECK_THROWS_AS(WaveformSettings{.threshold = bad}.validate(), SettingError);
     CHECK_THROWS_AS(WaveformSettings{.separation = bad}.validate(), SettingError);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Power: from 1e-300 W to 1e300 W.
+// Power: from 1e-300 W to 1e300 W; and what it is made of besides: the receiver's aperture and the wavelength.
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
 #include "extremes/detectors.hpp"
@@ -60,9 +61,38 @@ TEST_CASE("powers before a wall") {
   }
 }
 
-TEST_CASE("powers that cannot be") {
+TEST_CASE("apertures and wavelengths before a wall") {
+  for (const auto& [name, diameter] : {std::pair{"an aperture of 0.1 mm", 1e-4}, {"an aperture of 1 km", 1e3}})
+    for (const double range : {1.0, 4e7}) {
+      const Receiver receiver{.diameter = diameter, .visibility = validation::vacuum.visibility};
+      receiver.validate();
+      const double radius = diameter / 2, spread = std::fmax(range, radius);  // nearer, the aperture gets no more
+      const std::string wall = name + std::string(range == 1 ? ", wall at 1 m" : ", wall at 40 000 km");
+      // Source: laser radar equation for an extended target, Jelalian 1992
+      row(axis, wall + ": received power, of the right one", 1,
+          LinkBudget(receiver, Laser{}).power(1, 1, range) / (Laser{}.peak_power * (radius / spread) * (radius / spread) * 0.99), 1e-12);
+    }
+  for (const auto& [name, wavelength] : {std::pair{"10 nm", 1e-8}, {"1 cm", 1e-2}}) {
+    const Scanner scanner{.laser = {.wavelength = wavelength}};
+    scanner.validate();
+    for (const double visibility : {1.0, 23e3, 1e9}) {
+      const double lost = extinction(wavelength, visibility);
+      CHECK(lost > 0);
+      CHECK(lost < 10);
+      CHECK(LinkBudget(Receiver{.visibility = visibility}, scanner.laser).power(1, 1, 1) > 0);
+    }
+  }
+}
+
+TEST_CASE("powers, apertures and wavelengths that cannot be") {
   for (const auto& [name, power] : {std::pair{"1e-300 W", 1e-300}, {"1e-21 W", 1e-21}, {"1e21 W", 1e21}, {"1e300 W", 1e300}, {"0 W", 0.0}})
     refused(axis, name, [power = power] { Scanner{.laser = {.peak_power = power}}.validate(); });
+  for (const auto& [name, diameter] :
+       {std::pair{"an aperture of 1e-300 m", 1e-300}, {"an aperture of 0.09 mm", 9e-5}, {"an aperture of 1.1 km", 1.1e3}})
+    refused(axis, name, [diameter = diameter] { Receiver{.diameter = diameter}.validate(); });
+  for (const auto& [name, length] :
+       {std::pair{"a wavelength of 1e-300 m", 1e-300}, {"a wavelength of 9 nm", 9e-9}, {"a wavelength of 1.1 cm", 1.1e-2}})
+    refused(axis, name, [length = length] { Scanner{.laser = {.wavelength = length}}.validate(); });
   refused(axis, "a threshold without bound",
           [] { return FullWaveform{WaveformSettings{.threshold = std::numeric_limits<double>::infinity()}}; });
   refused(axis, "noise of 1e300 W", [] { ReceiverNoise{.deviation = 1e300}.validate(); });

@@ -143,12 +143,7 @@ class FullWaveform {
     const auto [offset, height] = vertex(&y[top]);
     if (height < s_.threshold) return true;
     const double time = (before - 2 + static_cast<double>(top) + offset) * s_.sample_interval;
-    const Reflection& strongest = bunch.strongest((time - bunch.last_edge()) * per_tau);
-    echoes.push_back({.range = s_.timing == EchoTiming::energy ? bunch.mean_range() : 0.5 * speed_of_light * time,
-                      .amplitude = height,
-                      .cos_incidence = strongest.cos_incidence,
-                      .object = strongest.object,
-                      .classification = strongest.classification});
+    echoes.push_back(bunch.echo(time, height, s_.timing));
     return true;
   }
 

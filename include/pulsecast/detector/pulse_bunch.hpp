@@ -12,8 +12,10 @@
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
+#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace pulsecast {
 
@@ -34,7 +36,7 @@ class PulseBunch {
   /// Looks at reflections, and notes their ages and weights in a workspace, which is to be there as long as the bunch is. If they are none
   /// (`!one()`), for being too far apart, too many for the workspace, without power, or of no range, nothing else is to be asked.
   PulseBunch(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval, Workspace& w) noexcept
-      : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()) {
+      : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()), per_tau_(1 / shape.tau) {
     if (reflections.empty() || reflections.size() + lane_count > w.ages.size()) return;
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
     bool useful = true;
@@ -69,12 +71,24 @@ class PulseBunch {
   /// Of the peak of the sum [tau].
   [[nodiscard]] double peak() const noexcept {
     const double mean = first_ / zeroth_, variance = second_ / zeroth_ - mean * mean;
-    return 1 + std::sqrt(1 - variance) - mean;
+    return 1 + (variance < 1 ? std::sqrt(1 - variance) : 0) - mean;  // rounding may bring it to 1
   }
 
   /// The sum at times [tau] from the last edge on [W].
   [[nodiscard]] Lanes power(const Lanes& x) const noexcept {
     return PulseShape::to_unit_peak * exponential(Lanes(-x)) * (second_ + x * (2 * first_ + x * zeroth_));
+  }
+
+  /// Integrals over all of the sum, times counted from the last edge on [tau].
+  [[nodiscard]] WaveformMoments moments() const noexcept {
+    double sum = 0, first = 0, second = 0;
+    for (std::size_t j = 0; j < reflections_.size(); ++j) {
+      const double p = reflections_[j].power, age = ages_[j];
+      sum += p, first += p * age, second += p * age * age;
+    }
+    // those of u^2 e^-u from 0 on are 2, 6 and 24
+    constexpr double c = PulseShape::to_unit_peak;
+    return {c * 2 * sum, c * (6 * sum - 2 * first), c * (24 * sum - 12 * first + 2 * second)};
   }
 
   /// What has the greatest share of the sum at a time from the last edge on [tau]; the first of several.
@@ -92,6 +106,16 @@ class PulseBunch {
     return reflections_[static_cast<std::size_t>(best[first])];
   }
 
+  /// The only echo of the bunch, whose peak is at a time, two-way [s], and of a height [W].
+  [[nodiscard]] Echo echo(double time, double height, EchoTiming timing) const noexcept {
+    const Reflection& most = strongest((time - last_edge_) * per_tau_);
+    return {.range = timing == EchoTiming::energy ? mean_range_ : 0.5 * speed_of_light * time,
+            .amplitude = height,
+            .cos_incidence = most.cos_incidence,
+            .object = most.object,
+            .classification = most.classification};
+  }
+
  private:
   static double sum(const Lanes& lanes) noexcept {
     double all = 0;
@@ -102,7 +126,7 @@ class PulseBunch {
   std::span<const Reflection> reflections_;
   double *ages_, *weights_;
   bool one_ = false;
-  double last_edge_ = 0, mean_range_ = 0;
+  double per_tau_, last_edge_ = 0, mean_range_ = 0;
   double zeroth_ = 0, first_ = 0, second_ = 0;
 };
 

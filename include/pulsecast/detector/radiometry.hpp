@@ -73,7 +73,7 @@ struct RangeErrors {
 
 /// The receiving half of an instrument, and the air before it.
 struct Receiver {
-  double diameter = 0.15;                                      ///< of the aperture [m]
+  double diameter = 0.15;                                      ///< of the aperture, from 0.1 mm to 1 km [m]
   double efficiency = 0.99;                                    ///< of the optics, both ways
   double visibility = 23e3;                                    ///< meteorological; infinite for no atmosphere [m]
   double range_min = 0;                                        ///< nearer than this, nothing is received [m]
@@ -81,7 +81,7 @@ struct Receiver {
   RangeErrors range_errors{};
 
   void validate() const {
-    expect_positive("Receiver::diameter", diameter, "m");
+    expect_within("Receiver::diameter", diameter, 1e-4, 1e3, "m");  // its square is a factor of every received power
     expect_within("Receiver::efficiency", efficiency, 0, 1, "");
     expect_within("Receiver::visibility", visibility, 1, std::numeric_limits<double>::infinity(), "m");
     expect_not_negative("Receiver::range_min", range_min, "m");

@@ -22,9 +22,9 @@ enum class EchoTiming : std::uint8_t {
 /// before it, with which it would be one; it is the highest within the window; it comes after the dead time of the echo before it; it is
 /// among the first `max_returns`.
 ///
-/// The bins are on the front of docs/tradeoff.md: at a sixteenth of a pulse they cost hardly more than wider ones, which lose echoes that
-/// are close to each other, and narrower ones gain little. Widths of echoes cost more than any other setting here, so there are none unless
-/// they are asked for.
+/// Of all bins, these are on the front of docs/tradeoff.md, to within a few percent: at a sixteenth of a pulse they cost hardly more than
+/// wider ones, which lose echoes that are close to each other, and narrower ones gain little. Widths of echoes cost more than any other
+/// setting here, but for moments of `AnalyticWaveform`; so there are none unless they are asked for.
 struct WaveformSettings {
   double sample_interval = 0.25e-9;  ///< of the digitiser: one bin, from 1e-16 to 1; no longer than a pulse, where samples matter [s]
   double threshold = 1e-12;          ///< weaker peaks are no echoes [W]

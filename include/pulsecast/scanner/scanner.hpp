@@ -24,7 +24,7 @@ struct Scanner {
     expect_within("Scanner::pulses (duration)", static_cast<double>(pulses) / pulse_rate, 0, 1e15, "s");
     if (!(delay >= 0 && delay < 1 / pulse_rate))
       throw SettingError("Scanner::delay", delay, "s", "at least 0 and less than " + detail::written(1 / pulse_rate));
-    expect_positive("Laser::wavelength", laser.wavelength, "m");
+    expect_within("Laser::wavelength", laser.wavelength, 1e-8, 1e-2, "m");
     expect_within("Laser::peak_power", laser.peak_power, 1e-20, 1e20, "W");
     expect_within("Laser::pulse_length", laser.pulse_length, 1e-15, 1, "s");
     expect_within("Laser::divergence", laser.divergence.across, 0, 30_deg, "rad");
