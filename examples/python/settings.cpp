@@ -73,7 +73,7 @@ py::object object_of(const T& value) {
     return all;
   } else if constexpr (Struct<T>) {
     py::list members;
-    Described<T>::members(value, [&](const char*, const auto& member, const char*) { members.append(object_of(member)); });
+    Described<T>::members(value, [&](const char*, const auto& member, auto...) { members.append(object_of(member)); });
     return class_of<T>()(*members);
   } else {
     return py::cast(value);
@@ -166,7 +166,7 @@ T value_of(py::handle object, const std::string& where) {
   } else if constexpr (Struct<T>) {
     if (!py::isinstance(object, class_of<T>())) refuse(where, Described<T>::name, object);
     T settings;
-    Described<T>::members(settings, [&](const char* name, auto& member, const char*) {
+    Described<T>::members(settings, [&](const char* name, auto& member, auto...) {
       member = value_of<std::remove_cvref_t<decltype(member)>>(py::object(object.attr(name)), where + "." + name);
     });
     return settings;
@@ -177,41 +177,6 @@ T value_of(py::handle object, const std::string& where) {
 
 // --------------------------------------------------------------------------------------------------------------- classes
 
-/// A type as Python writes it.
-template <class T>
-std::string annotation() {
-  const auto either = []<class... Types>(const std::variant<Types...>*) {
-    std::string all;
-    ((all += (all.empty() ? "" : " | ") + annotation<Types>()), ...);
-    return all;
-  };
-  if constexpr (Enum<T>) {
-    std::string all = "Literal[";
-    for (std::size_t i = 0; i < Described<T>::values.size(); ++i) all += std::string(i > 0 ? ", '" : "'") + Described<T>::values[i] + "'";
-    return all + "]";
-  } else if constexpr (std::same_as<T, bool>) {
-    return "bool";
-  } else if constexpr (std::floating_point<T>) {
-    return "float";
-  } else if constexpr (std::same_as<T, std::string> || std::same_as<T, char>) {
-    return "str";
-  } else if constexpr (std::same_as<T, std::filesystem::path>) {
-    return "str | os.PathLike[str]";
-  } else if constexpr (std::same_as<T, Vec3>) {
-    return "tuple[float, float, float]";
-  } else if constexpr (is_a<T, std::optional>) {
-    return annotation<typename T::value_type>() + " | None";
-  } else if constexpr (is_a<T, std::variant>) {
-    return either(static_cast<const T*>(nullptr));
-  } else if constexpr (is_a<T, std::vector> || is_array<T>) {
-    return "list[" + annotation<typename T::value_type>() + "]";
-  } else if constexpr (Struct<T>) {
-    return Described<T>::name;
-  } else {
-    return "int";
-  }
-}
-
 template <Struct Settings>
 void bind(py::module_& m) {
   const py::module_ dataclasses = py::module_::import("dataclasses"), functools = py::module_::import("functools");
@@ -219,8 +184,7 @@ void bind(py::module_& m) {
   py::list members;
   std::string doc = std::string(Described<Settings>::doc) + "\n\n";
   const Settings defaults{};
-  Described<Settings>::members(defaults, [&](const char* name, const auto& member, const char* what) {
-    const std::string type = annotation<std::remove_cvref_t<decltype(member)>>();
+  Described<Settings>::members(defaults, [&](const char* name, const auto& member, const char* type, const char* what) {
     const py::object first = functools.attr("partial")(deepcopy, object_of(member));
     members.append(py::make_tuple(name, type, dataclasses.attr("field")(py::arg("default_factory") = first)));
     doc += std::string(name) + ": " + type + "\n    " + what + "\n";

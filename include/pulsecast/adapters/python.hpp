@@ -124,20 +124,26 @@ struct Batch {
   RunSummary summary{};                ///< of the whole run; nothing in a batch that a callback is given
 };
 
-/// A sink that keeps all as rows.
+/// A sink that keeps all as rows, or points alone.
 class RowSink {
  public:
+  explicit RowSink(bool keeps_pulses) : keeps_pulses_(keeps_pulses) {}
+
   void operator()(const EchoBatch& batch) {
     sample_interval_ = batch.sample_interval;
+    pulse_count_ += batch.shots.size();
     for (const Shot& s : batch.shots) {
-      pulses_.push_back({static_cast<std::int64_t>(s.index), s.tick.seconds(), s.origin.x, s.origin.y, s.origin.z, s.direction.x,
-                         s.direction.y, s.direction.z, s.scan_angle, s.waveform_start, static_cast<std::int64_t>(samples_.size()),
-                         static_cast<std::int64_t>(points_.size()), s.samples, s.echoes, s.leg, s.channel,
-                         static_cast<std::uint8_t>(s.fate)});
-      for (const float sample : batch.waveform_of(s)) samples_.push_back(sample);
+      const double time = s.tick.seconds();
+      if (keeps_pulses_) {
+        pulses_.push_back({static_cast<std::int64_t>(s.index), time, s.origin.x, s.origin.y, s.origin.z, s.direction.x, s.direction.y,
+                           s.direction.z, s.scan_angle, s.waveform_start, static_cast<std::int64_t>(samples_.size()),
+                           static_cast<std::int64_t>(points_.size()), s.samples, s.echoes, s.leg, s.channel,
+                           static_cast<std::uint8_t>(s.fate)});
+        for (const float sample : batch.waveform_of(s)) samples_.push_back(sample);
+      }
       for (const Echo& e : batch.echoes_of(s)) {
         const Vec3 p = point_of(s, e);
-        points_.push_back({p.x, p.y, p.z, s.tick.seconds(), e.range, static_cast<float>(e.amplitude), static_cast<float>(e.reflectance),
+        points_.push_back({p.x, p.y, p.z, time, e.range, static_cast<float>(e.amplitude), static_cast<float>(e.reflectance),
                            static_cast<float>(e.width), static_cast<float>(e.cos_incidence), static_cast<std::int64_t>(s.index), e.object,
                            e.classification, s.leg, e.number, static_cast<std::uint8_t>(std::min<std::uint32_t>(255, s.echoes)),
                            s.channel});
@@ -145,10 +151,15 @@ class RowSink {
     }
   }
 
-  [[nodiscard]] std::size_t pulses() const noexcept { return pulses_.size(); }
-  [[nodiscard]] Batch take() { return {points_.take(), pulses_.take(), samples_.take(), sample_interval_}; }
+  [[nodiscard]] std::size_t pulses() const noexcept { return pulse_count_; }  ///< that were sent since rows were taken
+  [[nodiscard]] Batch take() {
+    pulse_count_ = 0;
+    return {points_.take(), pulses_.take(), samples_.take(), sample_interval_};
+  }
 
  private:
+  bool keeps_pulses_;
+  std::size_t pulse_count_ = 0;
   Rows<PointRow> points_;
   Rows<PulseRow> pulses_;
   Rows<float> samples_;
@@ -191,6 +202,7 @@ struct RunRequest {
   pybind11::object callback = pybind11::none(), progress = pybind11::none();
   PulseIndex every_pulses = 0;
   double every_seconds = 0;
+  bool pulses = true;  ///< keep them, and their waveforms
 };
 
 /// Runs what `run(options, sink)` does, with Python free meanwhile. Throws what Python threw in a callback.
@@ -201,7 +213,7 @@ template <class Run>
   const bool hands_over = !asked.callback.is_none(), tells = !asked.progress.is_none();
   InterruptWatch watch;
   std::stop_source stopping;
-  RowSink rows;
+  RowSink rows(asked.pulses);
   Batch result;
   auto handed_over = Clock::now(), told = handed_over;
 
@@ -322,11 +334,11 @@ inline void bind_common(pybind11::module_& m) {
           "Energy sent, by what became of the subrays that carried it [J].")
       .def(
           "waveform_of",
-          [](const py::object& self, std::size_t row) {
+          [](const py::object& self, std::size_t row) -> py::array_t<float> {
             const auto& pulses = self.cast<const Batch&>().pulses;
             if (row >= static_cast<std::size_t>(pulses.size())) throw py::index_error();
             const PulseRow& p = pulses.data()[row];
-            return self.attr("waveforms")[py::slice(p.first_sample, p.first_sample + p.samples, 1)];
+            return self.attr("waveforms")[py::slice(p.first_sample, p.first_sample + p.samples, 1)].cast<py::array_t<float>>();
           },
           py::arg("row"), "The samples of the pulse in a row of `pulses`, shape (n,) [W].");
 }
@@ -339,18 +351,19 @@ void bind_run(Class& bound, const Runner& runner) {
   bound.def(
       "run",
       [runner](const Self& self, unsigned threads, PulseIndex first, std::optional<PulseIndex> end, PulseIndex stride, py::object callback,
-               PulseIndex every_pulses, double every_seconds, py::object progress) {
-        Batch result =
-            python::run({threads, first, end, stride, std::move(callback), std::move(progress), every_pulses, every_seconds}, runner(self));
+               PulseIndex every_pulses, double every_seconds, py::object progress, bool pulses) {
+        Batch result = python::run(
+            {threads, first, end, stride, std::move(callback), std::move(progress), every_pulses, every_seconds, pulses}, runner(self));
         if (result.summary.complete) return result;
         raise(Exceptions{}.interrupted, "the survey was stopped", std::pair{"result", py::cast(std::move(result))});
         throw py::error_already_set();
       },
       py::arg("threads") = 0, py::arg("first") = 0, py::arg("end") = py::none(), py::arg("stride") = 1, py::arg("callback") = py::none(),
-      py::arg("every_pulses") = 0, py::arg("every_seconds") = 0.0, py::arg("progress") = py::none(),
+      py::arg("every_pulses") = 0, py::arg("every_seconds") = 0.0, py::arg("progress") = py::none(), py::arg("pulses") = true,
       "Simulates the pulse slots first, first + stride, ... before end, on so many threads (0: all), and returns a Batch. With a callback, "
       "batches go to callback(batch) every so many pulses or seconds, and at the end, and are not kept. progress(done, total, echoes, "
-      "seconds) is called some ten times a second. Raises Interrupted on Ctrl-C; its `result` is whole up to there.");
+      "seconds) is called some ten times a second. Without pulses, there are points alone, which saves their rows and waveforms. Raises "
+      "Interrupted on Ctrl-C; its `result` is whole up to there.");
 }
 
 }  // namespace gnu::visibility("hidden")]]python

@@ -41,6 +41,29 @@ def test_the_cloud_is_that_of_the_program(survey, tmp_path):
     assert (points["object"] == 7).all()
 
 
+def test_the_cloud_is_that_of_cpp_bit_for_bit(tmp_path):
+    survey = pulsecast.read_survey(HERE / "long.xml", assets=[HERE])
+    subprocess.run([os.environ["PULSECAST_ROWS"], HERE / "long.xml", "3", "1", tmp_path / "rows", HERE], check=True, stdout=subprocess.DEVNULL)
+    rows = np.fromfile(tmp_path / "rows", np.dtype([*{
+        "x": "f8", "y": "f8", "z": "f8", "time": "f8", "range": "f8", "intensity": "f4", "cos_incidence": "f4", "pulse": "i8", "object": "u4",
+        "return_number": "u4"}.items()]))
+    points = simulation(survey, seed=3).run(threads=2).points
+    assert len(points) == len(rows) > 10_000
+    for name in rows.dtype.names:
+        assert points[name].astype(rows.dtype[name]).tobytes() == rows[name].tobytes(), name
+    assert points["range"].tobytes() != simulation(survey, seed=4).run().points["range"].tobytes()
+
+
+def test_points_may_come_alone(survey):
+    run = simulation(survey, waveforms=True)
+    both, points = run.run(), run.run(pulses=False)
+    assert points.points.tobytes() == both.points.tobytes() and points.fates == both.fates
+    assert len(both.pulses) > 1000 and len(points.pulses) == len(points.waveforms) == 0
+    batches = []
+    run.run(callback=batches.append, every_pulses=500, pulses=False)
+    assert len(batches) > 1 and (np.concatenate([batch.points for batch in batches]) == both.points).all()
+
+
 def test_threads_do_not_change_a_bit(survey):
     one, two = (simulation(survey, waveforms=True, echo_width=True).run(threads=n) for n in (1, 2))
     assert one.points.tobytes() == two.points.tobytes()
