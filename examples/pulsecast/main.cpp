@@ -16,6 +16,7 @@
 #include <iomanip>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <random>
 #include <set>
 #include <sstream>
@@ -27,7 +28,9 @@
 #include "../summary.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "pages.hpp"
 #include "plan.hpp"
+#include "ranks.hpp"
 #include "run_folder.hpp"
 #include "simulation.hpp"
 #include "survey_files.hpp"
@@ -44,10 +47,11 @@ enum ExitStatus { success = 0, bad_input = 1, bad_usage = 2, interrupted = 3 };
 std::stop_source stopping;
 std::atomic<int> signals = 0;
 std::atomic<bool> simulating = false;
+std::atomic<bool> follows = false;  // another process decides when to stop
 
 /// Results are made whole first; unless there are none, or whoever asks twice is in a hurry.
 extern "C" void on_signal(int) {
-  if (signals.fetch_add(1) > 0 || !simulating) _exit(interrupted);
+  if (!follows && (signals.fetch_add(1) > 0 || !simulating)) _exit(interrupted);
 }
 
 /// Seconds of the GPS week at a moment of UTC, given as seconds since 1970. Source: IS-GPS-200; leap seconds: IERS Bulletin C.
@@ -103,17 +107,21 @@ Simulation::Settings settings_of(const Options& o, const SurveyFile& file, std::
 /// The command `run`.
 class Session {
  public:
-  Session(const Options& options, const SurveyFile& file, std::uint64_t seed)
-      : options_(options), file_(file), survey_(file.survey), log_{.seed = seed} {}
+  Session(const Options& options, const SurveyFile& file, std::uint64_t seed, Ranks& ranks)
+      : options_(options), file_(file), survey_(file.survey), ranks_(ranks), pages_(options, file.survey), log_{.seed = seed} {
+    if (options_.page && options_.resume) note("--page shows the legs that are simulated now, not those that are kept");
+  }
 
   int run() {
     const fs::path parent = options_.output / survey_.name;
     std::optional<fs::path> again;
     if (options_.resume) {
       const RunFolders found = runs_in(parent);
-      again = found.unfinished;
-      if (!again && found.newest) {
-        note("there is nothing to resume: the newest run, " + found.newest->string() + ", is complete");
+      const fs::path unfinished = ranks_.from_first(found.unfinished.value_or(fs::path()).string());
+      if (!unfinished.empty()) again = unfinished;
+      const fs::path newest = ranks_.from_first(found.newest.value_or(fs::path()).string());
+      if (!again && !newest.empty()) {
+        note("there is nothing to resume: the newest run, " + newest.string() + ", is complete");
         return success;
       }
       if (!again) note("there is nothing to resume in " + parent.string() + ": this is a new run");
@@ -122,12 +130,16 @@ class Session {
     if (again)
       go_on_from(*again);
     else
-      log_.start_time = gps_week_seconds(unix_time_of(options_.gps_start_time));
-    Simulation simulation(survey_, settings_of(options_, file_, log_.seed));
+      log_.start_time = gps_week_seconds(std::stoll(ranks_.from_first(std::to_string(unix_time_of(options_.gps_start_time)))));
+    Simulation::Settings settings = settings_of(options_, file_, log_.seed);
+    settings.sharing = &ranks_;
+    settings.store.write = settings.store.write && ranks_.first();
+    Simulation simulation(survey_, settings);
     if (!again && simulation.plan().clock_start) log_.start_time = *simulation.plan().clock_start;
     tell_notes(simulation);
+    if (!pages_.address().empty()) std::cout << "watch this run at " << pages_.address() << std::endl;
     RunSummary all;
-    fs::path folder = again ? *again : new_run_folder(parent, log_);
+    fs::path folder = again ? *again : new_folder(parent);
     for (int r = log_.run; r < simulation.runs() && all.complete; ++r) {
       log_.run = r;
       if (r > 0) simulation.begin(r), tell_notes(simulation);
@@ -135,11 +147,14 @@ class Session {
       const fs::path done = folder;
       if (!all.complete) break;
       log_.run = r + 1, log_.cut.clear(), log_.before = done.filename().string();
-      if (r + 1 < simulation.runs()) folder = new_run_folder(parent, log_);  // so that there is always one that is not finished
-      RunLog::remove(done);
+      if (r + 1 < simulation.runs()) folder = new_folder(parent);  // so that there is always one that is not finished
+      if (ranks_.first()) RunLog::remove(done);
     }
+    pages_.finish(all.complete);
+    const std::string traffic = ranks_.traffic();
     if (!options_.quiet) {
       print(all);
+      if (!traffic.empty()) std::cout << "  messages     " << traffic << '\n';
       const auto fate = [&](const char* name, Fate f) {
         if (all.count(f) > 0)
           std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << all.count(f) << " pulses\n";
@@ -151,6 +166,10 @@ class Session {
   }
 
  private:
+  [[nodiscard]] fs::path new_folder(const fs::path& parent) {
+    return ranks_.from_first(ranks_.first() ? new_run_folder(parent, log_).string() : std::string());
+  }
+
   /// Once.
   void note(const std::string& text) {
     if (!options_.quiet && told_.insert(text).second) std::cerr << "note: " << text << '\n';
@@ -182,7 +201,7 @@ class Session {
     };
     expect_same(log.how, log_.how);
     if (options_.seed) expect_same("--seed " + std::to_string(log.seed), "--seed " + std::to_string(*options_.seed));
-    if (!log.before.empty()) RunLog::remove(folder.parent_path() / log.before);
+    if (!log.before.empty() && ranks_.first()) RunLog::remove(folder.parent_path() / log.before);
     log_ = std::move(log);
   }
 
@@ -201,15 +220,17 @@ class Session {
       if (!plan.legs[k].active) continue;
       const std::string prefix = prefix_of(plan.legs[k]);
       last[prefix] = k;
-      if (!skipped.contains(prefix))
-        skipped[prefix] = options_.resume && std::find(cut.begin(), cut.end(), prefix) == cut.end() &&
-                          LegFiles::complete(folder, prefix, options_, channels);
+      if (options_.resume && !skipped.contains(prefix)) {
+        const bool there = std::find(cut.begin(), cut.end(), prefix) == cut.end() && LegFiles::complete(folder, prefix, options_, channels);
+        skipped[prefix] = ranks_.from_first(there ? "there" : "") == "there";
+      }
     }
     PulseIndex total = 0, before = 0;
     for (const auto& leg : plan.legs)
       if (leg.active && !skipped[prefix_of(leg)]) total += leg.end - leg.first;
 
-    std::map<std::string, LegFiles> open;
+    if (total > 0) pages_.begin(folder, plan);
+    std::map<std::string, std::unique_ptr<LegRun>> open;
     std::set<std::string> done;
     RunSummary all;
     ProgressLine line;
@@ -217,17 +238,21 @@ class Session {
       const SurveyPlan::LegPlan& leg = plan.legs[k];
       const std::string prefix = prefix_of(leg);
       if (!leg.active || skipped[prefix]) continue;
-      const auto at = open.try_emplace(prefix, folder, prefix, options_, start_time, channels).first;
-      LegFiles& files = at->second;
+      const auto at = open.try_emplace(prefix).first;
+      if (!at->second) at->second = ranks_.leg_run(folder, prefix, options_, start_time, channels);
+      LegRun& files = *at->second;
       files.add_trajectory(plan.source.legs()[k], leg.start, leg.trajectory_interval);
+      if (options_.page || options_.live) files.watch = [this](const EchoBatch& batch) { pages_(batch); };
       RunOptions run{.threads = options_.threads, .first = leg.first, .end = leg.end, .stop = stopping.get_token()};
       run.progress = [&](const Progress& p) {
-        if (signals > 0) stopping.request_stop();
-        if (!options_.quiet) line({before + p.done, total, all.echoes + p.echoes, all.seconds + p.seconds});
+        if (signals > 0 || pages_.stop_requested()) stopping.request_stop();
+        const Progress so_far{before + p.done, total, all.echoes + p.echoes, all.seconds + p.seconds};
+        if (!options_.quiet) line(so_far);
+        pages_.tell(so_far);
       };
       simulating = true;
       if (signals > 0) stopping.request_stop();
-      sum_up(all, simulation.run(run, [&](const EchoBatch& batch) { files(batch); }));
+      sum_up(all, files.run(simulation, run));
       before += leg.end - leg.first;
       if (!all.complete) break;
       if (last[prefix] == k) files.close(), open.erase(at), done.insert(prefix);
@@ -236,15 +261,18 @@ class Session {
       for (const auto& [prefix, files] : open) log_.cut.push_back(prefix);
       for (const std::string& prefix : cut)  // that were not come to again
         if (!open.contains(prefix) && !done.contains(prefix)) log_.cut.push_back(prefix);
-      log_.write(folder);
-      for (auto& [prefix, files] : open) files.close();
+      if (ranks_.first()) log_.write(folder);
+      for (auto& [prefix, files] : open) files->close();
     }
+    pages_.end();
     return all;
   }
 
   const Options& options_;
   const SurveyFile& file_;
   const SurveySettings& survey_;
+  Ranks& ranks_;
+  Pages pages_;
   RunLog log_;
   std::vector<std::string> folders_;
   std::set<std::string> told_;
@@ -295,7 +323,8 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed)
     std::cout << "1 pulse in " << stride << " of " << slots << ", " << summary.echoes << " points: " << path.string() << '\n';
 }
 
-int work(const Options& options) {
+int work(const Options& options, Ranks& ranks) {
+  if (options.command != "run" && !ranks.first()) return success;  // which are for one
   for (const std::string& text : options.notes)
     if (!options.quiet) std::cerr << "note: " << text << '\n';
   if (options.command == "catalogue") return print_catalogue(options), success;
@@ -303,7 +332,10 @@ int work(const Options& options) {
   for (const std::string& warning : file.warnings)
     if (!options.quiet) std::cerr << "note: " << warning << '\n';
   std::optional<std::uint64_t> seed = options.seed ? options.seed : file.survey.seed;
-  if (!seed) seed = std::random_device{}();
+  if (!seed && options.command == "run")
+    seed = std::stoull(ranks.from_first(std::to_string(std::random_device{}())));
+  else if (!seed)
+    seed = std::random_device{}();
   if (options.command == "check") {
     check_without_scene(file.survey, file.leg_places);
     if (!options.quiet) std::cout << options.survey.string() << ": nothing is wrong\n";
@@ -316,7 +348,11 @@ int work(const Options& options) {
     return plan(options, file, settings_of(options, file, *seed)) ? success : bad_input;
   } else {
     check_without_scene(file.survey, file.leg_places);  // before anything expensive
-    return Session(options, file, *seed).run();
+    if (ranks.count() == 1 || !(options.page || options.live)) return Session(options, file, *seed, ranks).run();
+    Options without = options;
+    without.page = without.live = false;
+    if (!options.quiet && ranks.first()) std::cerr << "note: --page and --live have no effect under mpirun: one process sees all points\n";
+    return Session(without, file, *seed, ranks).run();
   }
   return success;
 }
@@ -324,15 +360,22 @@ int work(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int status = success;
-  const std::optional<Options> options = read_command_line(argc, argv, status);
-  if (!options) return status;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  std::unique_ptr<Ranks> ranks;
+  std::optional<Options> options;
   try {
-    return work(*options);
+    ranks = join_ranks(argv);
+    int status = success;
+    options = read_command_line(argc, argv, status);
+    if (!options) return status;
+    options->threads = ranks->threads(options->threads);
+    follows = !ranks->first();
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+    return work(*options, *ranks);
   } catch (const std::exception& error) {
-    std::cerr << (simulating && !options->quiet && isatty(STDERR_FILENO) != 0 ? "\n" : "") << "error: " << error.what() << '\n';
+    if (ranks) ranks->complain();
+    std::cerr << (options && simulating && !options->quiet && isatty(STDERR_FILENO) != 0 ? "\n" : "") << "error: " << error.what() << '\n';
+    if (ranks) ranks->abort(bad_input);
     return bad_input;
   }
 }

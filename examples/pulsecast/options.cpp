@@ -140,6 +140,12 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   app.add_flag(both("splitByChannel"), o.split_by_channel, "A file of points for each channel");
   app.add_flag(both("disablePlatformNoise"), no_platform_noise, "The platform knows where it is");
   app.add_flag(both("disableLegNoise"), no_leg_noise, "Legs begin where they should");
+  app.add_flag("--page", o.page, "Leave a page to look at the points in a browser, too: page.html");
+  app.add_flag("--live", o.live, "Show the points in a browser while they come; says where");
+  app.add_option(both("pagePoints"), o.page_points, "Most points of a page; more are thinned")
+      ->type_name("N")
+      ->check(CLI::Range(2, 134'217'728))
+      ->capture_default_str();
   bool rebuild_scene = false, no_scene_writing = false;
   app.add_flag(both("rebuildScene"), rebuild_scene, "Build the scene anew, even if it was kept from an earlier run");
   app.add_flag(both("noSceneWriting"), no_scene_writing, "Do not keep the scene for later runs");

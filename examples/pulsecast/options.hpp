@@ -39,6 +39,8 @@ struct Options {
   double las_scale = 1e-4;  ///< [m]
   bool las_1_0 = false;     ///< LAS of version 1.0
   bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false;
+  bool page = false, live = false;  ///< a page of the points: to be left, and to be watched
+  std::size_t page_points = 1'000'000;
   bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false, verbose = false;
   SceneStore store{};
   PlanOptions plan{};

@@ -24,7 +24,16 @@ namespace {
 
 using PointWriter = std::variant<adapters::XyzWriter, adapters::LasWriter, adapters::LazWriter>;
 
-/// Names of the files of points.
+PointWriter point_writer(const fs::path& path, const Options& o, double start_time) {
+  if (o.format == "laz") return PointWriter(std::in_place_type<adapters::LazWriter>, path, las_settings(o, start_time), o.threads);
+  if (o.format == "las") return PointWriter(std::in_place_type<adapters::LasWriter>, path, las_settings(o, start_time));
+  if (o.format == "xyz.gz")
+    return PointWriter(std::in_place_type<adapters::XyzWriter>, adapters::gzip_file(path), adapters::XyzSettings{.start_time = start_time});
+  return PointWriter(std::in_place_type<adapters::XyzWriter>, path, adapters::XyzSettings{.start_time = start_time});
+}
+
+}  // namespace
+
 std::vector<fs::path> point_files(const fs::path& folder, const std::string& prefix, const Options& o,
                                   const std::vector<std::string>& channels) {
   if (channels.empty()) return {folder / (prefix + "_points." + o.format)};
@@ -33,20 +42,12 @@ std::vector<fs::path> point_files(const fs::path& folder, const std::string& pre
   return all;
 }
 
-PointWriter point_writer(const fs::path& path, const Options& o, double start_time) {
+adapters::LasSettings las_settings(const Options& o, double start_time) {
   adapters::LasSettings settings{.scale = o.las_scale, .gps_time = adapters::GpsTime::week, .start_time = start_time};
-  if (o.format == "laz") return PointWriter(std::in_place_type<adapters::LazWriter>, path, settings, o.threads);
-  if (o.format == "las") {
-    if (o.las_1_0) settings.format = adapters::LasFormat::las_1_0;
-    settings.waveforms = o.write_waveform && !o.las_1_0;
-    return PointWriter(std::in_place_type<adapters::LasWriter>, path, settings);
-  }
-  if (o.format == "xyz.gz")
-    return PointWriter(std::in_place_type<adapters::XyzWriter>, adapters::gzip_file(path), adapters::XyzSettings{.start_time = start_time});
-  return PointWriter(std::in_place_type<adapters::XyzWriter>, path, adapters::XyzSettings{.start_time = start_time});
+  if (o.format == "las" && o.las_1_0) settings.format = adapters::LasFormat::las_1_0;
+  settings.waveforms = o.format == "las" && o.write_waveform && !o.las_1_0;
+  return settings;
 }
-
-}  // namespace
 
 struct LegFiles::Inside {
   std::vector<PointWriter> points;

@@ -7,10 +7,18 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/adapters/las_settings.hpp>
 #include <pulsecast/adapters/survey_builder.hpp>
 #include <pulsecast/echo.hpp>
 
 #include "options.hpp"
+
+/// Names of the files of points of a prefix: one, or one for each channel.
+std::vector<std::filesystem::path> point_files(const std::filesystem::path& folder, const std::string& prefix, const Options& options,
+                                               const std::vector<std::string>& channels);
+
+/// How they are written as LAS or LAZ.
+pulsecast::adapters::LasSettings las_settings(const Options& options, double start_time);
 
 /// The files of one leg, or of all legs of a strip. Each is there when it is whole, and not before.
 class LegFiles {

@@ -8,9 +8,11 @@
 #include <cctype>
 #include <charconv>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <random>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -41,7 +43,8 @@ std::string hex(const Fingerprint& f) { return hex(f.high) + hex(f.low); }
 /// Says which program this is: one that was built anew may make other scenes.
 std::string this_program() {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (program.filename() == "pulsecast-mpi") program.replace_filename("pulsecast");  // made of the same objects
   const auto size = fs::file_size(program, error);
   if (error) return {};
   return std::to_string(size) + ' ' + std::to_string(fs::last_write_time(program, error).time_since_epoch().count());
@@ -134,7 +137,7 @@ BuiltParts stored_parts(const SceneStore& store, const SceneInputs& inputs, cons
       std::error_code ignored;
       for (const fs::path& used : {path, warnings_path}) fs::last_write_time(used, fs::file_time_type::clock::now(), ignored);
       notes.push_back("the scene was built before, and comes from " + path.string());
-      return {{opened.scene->parts().begin(), opened.scene->parts().end()}, *std::move(warnings)};
+      return {{opened.scene->parts().begin(), opened.scene->parts().end()}, *std::move(warnings), path, key};
     }
   }
   BuiltParts built = build();
@@ -157,8 +160,72 @@ BuiltParts stored_parts(const SceneStore& store, const SceneInputs& inputs, cons
     replace(path, [&](const fs::path& own) { adapters::save_scene(own, scene, key); });
     tidy(store.folder, path);
     notes.push_back("the scene is kept for the next run, in " + path.string());
+    built.kept = path, built.key = key;
   } catch (const FileError& error) {
     notes.push_back(std::string("the scene is not kept for the next run: ") + error.what());
+  }
+  return built;
+}
+
+namespace {
+
+/// Puts a scene into a file for a while, in memory if there is room. No file if there is none anywhere.
+void keep_for_now(BuiltParts& built) {
+  const std::uint64_t mark = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
+  std::error_code ignored;
+  for (const fs::path& folder : {fs::path("/dev/shm"), fs::temp_directory_path(ignored)}) try {
+      const SurveyScene scene(built.parts, TimeWindows{.to = 1});
+      std::error_code error;
+      const std::uintmax_t room = fs::space(folder, error).available;
+      if (error || room < scene.memory() + (scene.memory() >> 3)) continue;
+      const fs::path path = folder / ("pulsecast-" + hex(mark) + ".scene");
+      built.key = {mark, ~mark};
+      adapters::save_scene(path, scene, built.key);
+      built.kept = path;
+      return;
+    } catch (const FileError&) {  // there may be room elsewhere
+    }
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(std::move(line));
+  return lines;
+}
+
+}  // namespace
+
+BuiltParts shared_parts(SceneSharing& sharing, const SceneStore& store, const SceneInputs& inputs, const std::function<BuiltParts()>& build,
+                        std::vector<std::string>& notes) {
+  BuiltParts built;
+  if (sharing.builds()) built = stored_parts(store, inputs, build, notes);
+  if (!sharing.shared()) return built;
+  bool for_now = false;
+  if (sharing.builds() && built.kept.empty()) {
+    keep_for_now(built);
+    for_now = !built.kept.empty();
+  }
+  const std::string path = sharing.from_builder(built.kept.string());
+  const std::string key = sharing.from_builder(std::string(reinterpret_cast<const char*>(&built.key), sizeof built.key));
+  std::string warnings;
+  for (const std::string& warning : built.warnings) warnings += warning + '\n';
+  warnings = sharing.from_builder(std::move(warnings));
+
+  std::memcpy(&built.key, key.data(), sizeof built.key);
+  std::string reason = "there is no room for it in a file";
+  if (!path.empty()) {  // whoever has built it lets its own copy go for this one
+    auto opened = adapters::open_scene<SurveyScene>(path, built.key, TimeWindows{.to = 1});
+    reason = opened.reason;
+    if (opened.scene) built.parts.assign(opened.scene->parts().begin(), opened.scene->parts().end());
+  }
+  if (built.parts.empty()) built = build();
+  built.warnings = lines_of(warnings);
+  if (!reason.empty()) notes.push_back("each process has a scene of its own: " + reason);
+  sharing.meet();
+  if (for_now) {
+    std::error_code ignored;
+    fs::remove(path, ignored);
   }
   return built;
 }

@@ -197,8 +197,10 @@ struct Simulation::Inside {
   }
 
   std::vector<adapters::SurveyPart> parts(int run) {
-    const auto build = [&] { return BuiltParts{builder.parts(run), builder.warnings()}; };
-    BuiltParts built = stored_parts(settings.store, inputs_of(survey, settings, run), build, notes);
+    const auto build = [&] { return BuiltParts{builder.parts(run), builder.warnings(), {}, {}}; };
+    const SceneInputs inputs = inputs_of(survey, settings, run);
+    BuiltParts built = settings.sharing ? shared_parts(*settings.sharing, settings.store, inputs, build, notes)
+                                        : stored_parts(settings.store, inputs, build, notes);
     for (std::string& warning : built.warnings)
       if (std::find(scene_warnings.begin(), scene_warnings.end(), warning) == scene_warnings.end())
         scene_warnings.push_back(std::move(warning));
@@ -256,16 +258,18 @@ std::vector<Sample> Simulation::sample(std::span<const SampleBlock> blocks, unsi
   std::vector<Sample> all(blocks.size());
   for_each_index((blocks.size() + at_once - 1) / at_once, threads, [&](std::size_t task) {
     AnySurvey::Workspace workspace = survey.workspace();
+    Collected room;  // used again and again, as those of a run are
     for (std::size_t k = task * at_once; k < std::min((task + 1) * at_once, blocks.size()); ++k) {
       const SampleBlock& block = blocks[k];
-      Collected before;
       Sample& sample = all[k];
-      sample.sample_interval = survey.sample_interval();
-      sample.shots.reserve(block.end - block.from), sample.echoes.reserve(4 * (block.end - block.from));
-      for (PulseIndex i = block.first; i < block.from; ++i) before.append(survey(i, workspace));
+      room.clear();
+      for (PulseIndex i = block.first; i < block.from; ++i) room.append(survey(i, workspace));
+      room.clear();
       const double start = processor_seconds();
-      for (PulseIndex i = block.from; i < block.end; ++i) sample.append(survey(i, workspace));
+      for (PulseIndex i = block.from; i < block.end; ++i) room.append(survey(i, workspace));
       sample.seconds = processor_seconds() - start;
+      sample.sample_interval = survey.sample_interval();
+      static_cast<Collected&>(sample) = room;
     }
   });
   return all;

@@ -17,6 +17,8 @@
 
 #include "options.hpp"
 
+class SceneSharing;
+
 /// What a survey may trade for speed, of all channels. What is not given is as the survey says.
 struct Receiving {
   std::optional<int> rings{};        ///< of subrays: `beamSampleQuality`
@@ -61,6 +63,7 @@ class Simulation {
     std::string scene_text{};               ///< says all settings of the scene
     std::vector<std::string> leg_places{};  ///< where legs stand in their document, for messages
     SceneStore store{};
+    SceneSharing* sharing = nullptr;  ///< if the scene is to be that of other processes, too
     std::vector<Mesh> meshes{};
     unsigned threads = 0;  ///< that build the scene; 0 for all
   };

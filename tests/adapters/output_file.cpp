@@ -268,5 +268,19 @@ TEST_CASE("a program that is killed leaves no file under the final name") {
   CHECK(fs::file_size(folder / "a.las.part") == 5'000'000);
 }
 
+TEST_CASE("a piece of a file goes where its owner wants it, and touches no disk") {
+  const TemporaryFolder folder;
+  std::vector<std::byte> piece{std::byte{'>'}};
+  OutputFile file(folder / "a.txt", piece);
+  file.write(std::string_view("some"));
+  OutputFile moved = std::move(file);
+  moved.write(std::string_view(" text"));
+  CHECK(moved.position() == 9);
+  moved.commit();
+  CHECK(std::string(reinterpret_cast<const char*>(piece.data()), piece.size()) == ">some text");
+  CHECK_THROWS_AS(moved.write(std::string_view("more")), FileError);
+  CHECK(folder.empty());
+}
+
 }  // namespace
 }  // namespace pulsecast::adapters

@@ -37,6 +37,19 @@ class LasPackets {
  public:
   explicit LasPackets(std::filesystem::path path) : file_(std::move(path)) { file_.write(header()); }
 
+  /// A piece of such a file, without its header: offsets count from the beginning of the piece.
+  explicit LasPackets(OutputFile piece) : file_(std::move(piece)) {}
+  void end_piece() { file_.commit(); }
+
+  /// Takes what others have put into the temporary file, up to some byte, with samples so many picoseconds apart.
+  void adopt(std::uint64_t end, std::uint32_t spacing) {
+    file_.continue_at(end);
+    spacing_ = spacing;
+  }
+
+  [[nodiscard]] std::uint64_t position() const noexcept { return file_.position(); }  ///< where the next packet will stand [byte]
+  [[nodiscard]] std::uint32_t spacing() const noexcept { return spacing_; }           ///< of samples, 0 if there are none [ps]
+
   /// Writes a waveform [W], of at least one sample, every so many seconds.
   [[nodiscard]] LasPacket add(std::span<const float> waveform, double interval) {
     expect_interval(interval);

@@ -106,6 +106,9 @@ class LazRecords {
     });
   }
 
+  /// Takes chunks of these sizes [byte] that others have written.
+  void adopt(std::vector<std::size_t> sizes) { sizes_ = std::move(sizes); }
+
   void finish(OutputFile& file) {
     compress(file);
     file.overwrite(table_position_at_, table_position(static_cast<std::int64_t>(file.position())));
@@ -158,7 +161,7 @@ class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
   explicit LazWriter(std::filesystem::path path, LasSettings settings = {}, unsigned threads = 0)
       : LasFileWriter(std::move(path), compressible(std::move(settings)), detail::LazRecords(threads)) {}
 
- private:
+  /// The settings, if they can be met.
   [[nodiscard]] static LasSettings compressible(LasSettings settings) {
     if (settings.format != LasFormat::las_1_4)
       throw SettingError("LasSettings::format", static_cast<double>(settings.format), "", "0, LAS 1.4 with point format 6, for LAZ");

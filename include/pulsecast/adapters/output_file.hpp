@@ -39,7 +39,7 @@ class OutputFile {
       : path_(std::move(path)), encoder_(std::move(encoder)) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path_, ignored)) throw FileError(path_.string(), "", "is a folder; expected the name of a file");
-    const std::filesystem::path temporary = path_.string() + ".part";
+    const std::filesystem::path temporary = temporary_name(path_);
     errno = 0;
     std::FILE* const file = std::fopen(temporary.c_str(), "w+b");
     if (file == nullptr) fail("cannot be created", errno, "an existing folder that may be written to");
@@ -48,7 +48,15 @@ class OutputFile {
     buffer_.reserve(capacity);
   }
 
+  /// A piece of a file that others put together: what is written is appended to `piece`, and `commit()` says that it is all. The file
+  /// itself is not touched; its name is for messages.
+  OutputFile(std::filesystem::path path, std::vector<std::byte>& piece) : path_(std::move(path)), piece_(&piece) {}
+
   void write(std::span<const std::byte> bytes) {
+    if (piece_ != nullptr) {
+      position_ += bytes.size();
+      return void(piece_->insert(piece_->end(), bytes.begin(), bytes.end()));
+    }
     expect_open();
     if (buffer_.size() + bytes.size() > capacity) flush();
     if (bytes.size() < capacity) {
@@ -76,6 +84,18 @@ class OutputFile {
     seek(0, SEEK_END);
   }
 
+  /// Goes on where others have written to, in the temporary file; without an encoder.
+  void continue_at(std::uint64_t position) {
+    PULSECAST_EXPECT(!encoder_);
+    expect_open();
+    flush();
+    position_ = position;
+    seek(static_cast<long>(position), SEEK_SET);
+  }
+
+  /// Where it stands until `commit()`.
+  [[nodiscard]] static std::filesystem::path temporary_name(const std::filesystem::path& path) { return path.string() + ".part"; }
+
   /// How many bytes were written so far, before any encoding: where the next ones will stand.
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
 
@@ -84,6 +104,7 @@ class OutputFile {
 
   /// Makes the file stand under its final name, in place of any that stood there.
   void commit() {
+    if (std::exchange(piece_, nullptr) != nullptr) return;
     expect_open();
     flush(true);
     const std::filesystem::path temporary = file_.get_deleter().temporary;
@@ -101,7 +122,10 @@ class OutputFile {
   }
 
   /// Gives the file up and removes what was written; whoever finds half-way that the rest cannot be written calls this.
-  void discard() noexcept { file_.reset(); }
+  void discard() noexcept {
+    file_.reset();
+    piece_ = nullptr;
+  }
 
  private:
   struct Discard {
@@ -159,6 +183,7 @@ class OutputFile {
   std::filesystem::path path_;
   std::unique_ptr<std::FILE, Discard> file_;
   std::unique_ptr<OutputEncoder> encoder_;
+  std::vector<std::byte>* piece_ = nullptr;
   std::vector<std::byte> buffer_, encoded_;
   std::uint64_t position_ = 0;
 };

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+#include "pages.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <pulsecast/adapters/page.hpp>
+#include <pulsecast/adapters/page_server.hpp>
+
+using namespace pulsecast;
+
+struct Pages::Inside {
+  adapters::PageSettings settings{};
+  bool file = false;
+  adapters::PageSurvey survey{};
+  std::optional<adapters::PageWriter> writer{};
+  std::optional<adapters::PageServer> server{};
+};
+
+Pages::Pages(const Options& options, const adapters::SurveySettings& survey) : inside_(new Inside) {
+  const auto name = [](const std::string& full, const std::string& id) { return full.empty() ? id : full; };
+  inside_->settings.most_points = options.page_points;
+  inside_->file = options.page;
+  inside_->survey = {.name = survey.name,
+                     .scanner = name(survey.scanner.name, survey.scanner.id),
+                     .platform = name(survey.platform.name, survey.platform.id)};
+  if (options.live) inside_->server.emplace(inside_->survey, inside_->settings);
+}
+Pages::~Pages() = default;
+
+std::string Pages::address() const { return inside_->server ? inside_->server->address() : ""; }
+
+void Pages::begin(const std::filesystem::path& folder, const adapters::SurveyPlan& plan) {
+  if (!inside_->file && !inside_->server) return;
+  adapters::PageSurvey survey = inside_->survey;
+  const int moments = std::clamp(static_cast<int>(40'000 / std::max<std::size_t>(plan.legs.size(), 1)), 2, 1000);
+  for (std::size_t k = 0; k < plan.legs.size(); ++k) {
+    const adapters::SurveyPlan::LegPlan& leg = plan.legs[k];
+    const std::string name =
+        leg.strip ? "strip " + *leg.strip + ", leg " + std::to_string(leg.number) : "leg " + std::to_string(leg.number);
+    survey.legs.push_back(adapters::page_leg(name, plan.source.legs()[k].path(), leg.start, leg.duration, moments));
+  }
+  if (inside_->file) inside_->writer.emplace(folder / "page.html", survey, inside_->settings);
+  if (inside_->server) inside_->server->begin(std::move(survey));
+}
+
+void Pages::operator()(const EchoBatch& batch) {
+  if (inside_->writer) (*inside_->writer)(batch);
+  if (inside_->server) (*inside_->server)(batch);
+}
+
+void Pages::tell(const Progress& progress) {
+  if (inside_->server) inside_->server->tell(progress);
+}
+
+bool Pages::stop_requested() const { return inside_->server && inside_->server->stop_requested(); }
+
+void Pages::end() {
+  if (inside_->writer) inside_->writer->close();
+  inside_->writer.reset();
+}
+
+void Pages::finish(bool complete) {
+  if (inside_->server) inside_->server->finish(complete);
+}

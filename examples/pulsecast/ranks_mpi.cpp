@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+#include "ranks.hpp"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include <pulsecast/adapters/gzip.hpp>
+#include <pulsecast/adapters/mpi.hpp>
+#include <pulsecast/adapters/pulse_text.hpp>
+#include <pulsecast/adapters/trajectory_file.hpp>
+#include <pulsecast/adapters/waveform_text.hpp>
+#include <pulsecast/adapters/xyz.hpp>
+
+#include "outputs.hpp"
+
+namespace fs = std::filesystem;
+using namespace pulsecast;
+using adapters::MpiOutput;
+using adapters::MpiTeam;
+
+namespace {
+
+std::unique_ptr<MpiOutput> shared_points(MpiTeam& team, const fs::path& path, const Options& o, double start_time) {
+  if (o.format == "laz") return std::make_unique<adapters::MpiLaz>(team, path, las_settings(o, start_time), o.threads);
+  if (o.format == "las") return std::make_unique<adapters::MpiLas>(team, path, las_settings(o, start_time));
+  const adapters::XyzSettings settings{.start_time = start_time};
+  if (o.format == "xyz") return std::make_unique<adapters::MpiRows<adapters::XyzWriter, adapters::XyzSettings>>(team, path, settings);
+  const auto file = team.first() ? std::make_shared<adapters::OutputFile>(adapters::gzip_file(path)) : nullptr;
+  return std::make_unique<adapters::MpiStream<adapters::XyzWriter>>(
+      team, [settings](adapters::OutputFile piece) { return adapters::XyzWriter(std::move(piece), settings); },
+      [file](const adapters::MpiParcel& bytes) { file->write(bytes.rest()); }, [file] { file->commit(); });
+}
+
+/// `LegFiles`, written by all.
+class SharedLegRun final : public LegRun {
+ public:
+  SharedLegRun(MpiTeam& team, const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
+               const std::vector<std::string>& channels)
+      : team_(team) {
+    if (team.first())
+      trajectory_.emplace(folder / (prefix + "_trajectory.txt"), adapters::TrajectoryFileSettings{.start_time = start_time});
+    const std::vector<fs::path> files = point_files(folder, prefix, o, channels);
+    for (const fs::path& path : files) {
+      MpiOutput* const points = add(shared_points(team, path, o, start_time));
+      if (files.size() > 1) points->channel = static_cast<std::uint8_t>(outputs_.size() - 1);
+    }
+    if (o.write_waveform)
+      add(std::make_unique<adapters::MpiRows<adapters::WaveformTextWriter, adapters::WaveformTextSettings>>(
+          team, folder / (prefix + "_fullwave.txt"), adapters::WaveformTextSettings{start_time}));
+    if (o.write_pulse)
+      add(std::make_unique<adapters::MpiRows<adapters::PulseTextWriter, adapters::PulseTextSettings>>(
+          team, folder / (prefix + "_pulse.txt"), adapters::PulseTextSettings{start_time}));
+  }
+
+  void add_trajectory(const adapters::SurveyLeg& leg, Tick start, double interval) override {
+    if (trajectory_ && interval > 0) trajectory_->add(leg.path(), start, leg.duration(), interval);
+  }
+
+  RunSummary run(const Simulation& simulation, const RunOptions& options) override {
+    std::vector<MpiOutput*> outputs;
+    for (const auto& output : outputs_) outputs.push_back(output.get());
+    const auto simulate = [&](const RunOptions& part, const std::function<void(const EchoBatch&)>& sink) {
+      return simulation.run(part, sink);
+    };
+    return adapters::run_parts(team_, options.end, options, simulate, outputs);
+  }
+
+  /// Points come last: a leg is complete when all its files are there.
+  void close() override {
+    if (trajectory_) trajectory_->close();
+    for (auto output = outputs_.rbegin(); output != outputs_.rend(); ++output) (*output)->close();
+  }
+
+ private:
+  MpiOutput* add(std::unique_ptr<MpiOutput> output) { return outputs_.emplace_back(std::move(output)).get(); }
+
+  MpiTeam& team_;
+  std::optional<adapters::TrajectoryWriter> trajectory_;  // on the first
+  std::vector<std::unique_ptr<MpiOutput>> outputs_;
+};
+
+MPI_Comm of_this_machine(MPI_Comm all) {
+  MPI_Comm communicator = MPI_COMM_NULL;
+  MPI_Comm_split_type(all, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &communicator);
+  return communicator;
+}
+
+class ManyRanks final : public Ranks {
+ public:
+  ManyRanks() : machine_(of_this_machine(MPI_COMM_WORLD)) {
+    if (!first())
+      for (std::ostream* out : {&std::cout, &std::cerr}) out->setstate(std::ios::failbit);
+  }
+
+  [[nodiscard]] bool first() const override { return team_.first(); }
+  [[nodiscard]] int count() const override { return team_.size(); }
+  [[nodiscard]] std::string from_first(std::string text) override { return team_.channel().from_first(std::move(text)); }
+
+  [[nodiscard]] unsigned threads(unsigned asked) override {
+    cpu_set_t own;
+    CPU_ZERO(&own);
+    const int bound = sched_getaffinity(0, sizeof own, &own) == 0 ? CPU_COUNT(&own) : 1;
+    const long share = sysconf(_SC_NPROCESSORS_ONLN) / machine_.size();
+    return asked > 0 ? asked : static_cast<unsigned>(std::max(1L, std::min<long>(bound, share)));
+  }
+
+  [[nodiscard]] std::unique_ptr<LegRun> leg_run(const fs::path& folder, const std::string& prefix, const Options& options,
+                                                double start_time, const std::vector<std::string>& channels) override {
+    return std::make_unique<SharedLegRun>(team_, folder, prefix, options, start_time, channels);
+  }
+
+  [[nodiscard]] std::string traffic() override {
+    adapters::MpiTraffic sum;
+    for (const adapters::MpiTraffic& one : team_.channel().gather(team_.channel().traffic()))
+      sum.messages += one.messages, sum.bytes += one.bytes;
+    std::ostringstream text;
+    text << std::setw(12) << sum.messages << " among " << count() << " processes, " << std::fixed << std::setprecision(2)
+         << static_cast<double>(sum.bytes) / (1 << 20) << " MiB";
+    return text.str();
+  }
+
+  void complain() override {
+    if (!first()) {  // what all find wrong, the first says, and ends all meanwhile
+      std::signal(SIGTERM, SIG_DFL);
+      ::sleep(2);
+    }
+    for (std::ostream* out : {&std::cout, &std::cerr}) out->clear();
+  }
+  void abort(int status) override {
+    std::cerr << std::flush;
+    adapters::MpiSession::abort(status);
+  }
+
+  [[nodiscard]] bool builds() const override { return machine_.first(); }
+  [[nodiscard]] bool shared() const override { return machine_.size() > 1; }
+  [[nodiscard]] std::string from_builder(std::string text) override { return machine_.from_first(std::move(text)); }
+  void meet() override {
+    machine_.meet([] { MpiTeam::pause(); });
+  }
+
+ private:
+  adapters::MpiSession session_;
+  MpiTeam team_;
+  adapters::MpiChannel machine_;  // the processes of this one
+};
+
+}  // namespace
+
+std::unique_ptr<Ranks> join_ranks(char** /*argv*/) { return std::make_unique<ManyRanks>(); }
