@@ -4,8 +4,8 @@
 
 # What many processes bring and cost: a survey by one process of one thread under mpirun, and by two, alternately; time of the run as the
 # program tells it, time of processors, messages and bytes per million pulses. Nothing else should run on a machine of two processors.
-# Usage: ranks.sh SURVEY [ASSETS [BUILD [PAIRS [FORMAT...]]]]; the folder that the survey is in, build/release, 5 pairs and las laz if not
-# told. Each process has a session of its own, so that a system that shares processors among sessions gives each a share.
+# Usage: ranks.sh SURVEY [ASSETS [BUILD [PAIRS [FORMAT...]]]]; the folder the survey is in, build/release, 5 pairs and las laz if not told.
+# Each process has a session of its own, so that a system that shares processors among sessions gives each a share.
 set -euo pipefail
 export LC_ALL=C
 survey=$(realpath "$1") assets=${2:-$(dirname "$1")} pairs=${4:-5}
