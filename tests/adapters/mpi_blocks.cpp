@@ -13,8 +13,6 @@
 namespace pulsecast::adapters {
 namespace {
 
-const auto always = [] { return true; };
-
 TEST_CASE("blocks cover all slots once, and become smaller towards the end") {
   for (const PulseIndex slots : {0U, 1U, 2047U, 2048U, 2049U, 100'000U, 12'345'678U}) {
     INFO(slots, " slots");
