@@ -53,17 +53,17 @@ void change(std::span<std::uint8_t> record, support::Generator& random, double c
 }
 
 /// Times that go on in even steps, in steps of all sizes, back, not at all, and in several series at once.
-void change_time(std::span<std::uint8_t> record, support::Generator& random, std::vector<std::int64_t>& series) {
-  std::int64_t& time = series[random.uniform() < 0.9 ? 0 : random.whole(series.size())];
+void change_time(std::span<std::uint8_t> record, support::Generator& random, std::vector<std::uint64_t>& series) {
+  std::uint64_t& time = series[random.uniform() < 0.9 ? 0 : random.whole(series.size())];
   const double kind = random.uniform();
   if (kind < 0.3)
     time += 1000;
   else if (kind < 0.5)
-    time += 1000 * static_cast<std::int64_t>(random.whole(1200)) - 20'000 + static_cast<std::int64_t>(random.whole(3));
+    time += 1000 * random.whole(1200) - 20'000 + random.whole(3);
   else if (kind < 0.55)
-    time += static_cast<std::int64_t>(random.log_uniform(1, 1e18) * (random.coin() ? 1 : -1));
+    time += static_cast<std::uint64_t>(static_cast<std::int64_t>(random.log_uniform(1, 1e18) * (random.coin() ? 1 : -1)));
   else if (kind < 0.56)
-    time = static_cast<std::int64_t>(random.whole(std::uint64_t{1} << 52) << 12);
+    time = random.whole(std::uint64_t{1} << 52) << 12;
   std::memcpy(record.data() + 22, &time, sizeof time);
 }
 
@@ -85,7 +85,7 @@ void write_random(const fs::path& folder, const std::string& name, std::size_t p
   records.begin(laz_file, record_size, false);
   support::Generator random(points + channels);
   std::vector<std::uint8_t> record(record_size);
-  std::vector<std::int64_t> series(6);
+  std::vector<std::uint64_t> series(6);
   for (std::size_t i = 0; i < points; ++i) {
     change(record, random, i == 0 ? 1 : chance, channels);
     change_time(record, random, series);
