@@ -22,23 +22,23 @@ within() { chroot "$root" env LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive HOME
 step() { printf '\n=== %s\n' "$1"; }
 
 step "installing"
-mkdir -p "$root/root/try"
-cp "$package" "$root/root/try/pulsecast.deb"
-cp "$here/../../examples/embed.cpp" "$here/../../tests/examples/python/typed_survey.py" "$root/root/try/"
-within 'apt-get update -qq && apt-get install --yes -qq --no-install-recommends /root/try/pulsecast.deb'
+mkdir -p "$root/opt/try"
+cp "$package" "$root/opt/try/pulsecast.deb"
+cp "$here/../../examples/embed.cpp" "$here/../../tests/examples/python/typed_survey.py" "$root/opt/try/"
+within 'apt-get update -qq && apt-get install --yes -qq --no-install-recommends /opt/try/pulsecast.deb'
 
 step "program, man page, catalogue"
 within 'pulsecast --version; test -s /usr/share/man/man1/pulsecast.1*; pulsecast catalogue | grep -q riegl_vz400'
 
 step "a survey with the catalogue"
-cat > "$root/root/try/floor.obj" <<'OBJ'
+cat > "$root/opt/try/floor.obj" <<'OBJ'
 v -50 -50 0
 v 50 -50 0
 v 50 50 0
 v -50 50 0
 f 1 2 3 4
 OBJ
-cat > "$root/root/try/survey.xml" <<'XML'
+cat > "$root/opt/try/survey.xml" <<'XML'
 <document>
   <scene id="floor" name="floor"><part id="1"><filter type="objloader"><param type="string" key="filepath" value="floor.obj"/></filter></part></scene>
   <survey name="bare" scene="#floor" platform="data/platforms.xml#tripod" scanner="data/scanners_tls.xml#riegl_vz400" seed="1">
@@ -46,10 +46,10 @@ cat > "$root/root/try/survey.xml" <<'XML'
   </survey>
 </document>
 XML
-within 'cd /root/try && pulsecast survey.xml --format laz --output out --threads 1 --quiet && ls out/bare/*/*.laz'
+within 'cd /opt/try && pulsecast survey.xml --format laz --output out --threads 1 --quiet && ls out/bare/*/*.laz'
 
 step "Python"
-within 'cd /root/try && python3 -c "
+within 'cd /opt/try && python3 -c "
 import pulsecast
 survey = pulsecast.read_survey(\"survey.xml\", assets=pulsecast.asset_folders())
 points = pulsecast.Simulation(survey, assets=[\".\"]).run().points
@@ -58,7 +58,7 @@ assert len(points) > 10_000 and abs(points[\"z\"]).max() < 0.1
 " && python3 typed_survey.py && test -s /usr/lib/python3/dist-packages/pulsecast/_core.pyi'
 
 step "a program of a user's own"
-cat > "$root/root/try/CMakeLists.txt" <<'CMAKE'
+cat > "$root/opt/try/CMakeLists.txt" <<'CMAKE'
 cmake_minimum_required(VERSION 3.25)
 project(user LANGUAGES CXX)
 find_package(pulsecast 0.1 REQUIRED COMPONENTS las)
@@ -66,7 +66,7 @@ add_executable(embed embed.cpp)
 target_link_libraries(embed PRIVATE pulsecast::pulsecast pulsecast::las)
 CMAKE
 within 'apt-get install --yes -qq --no-install-recommends g++ cmake make > /dev/null
-cd /root/try && cmake -B build -DCMAKE_BUILD_TYPE=Release > /dev/null && cmake --build build && build/embed'
+cd /opt/try && cmake -B build -DCMAKE_BUILD_TYPE=Release > /dev/null && cmake --build build && build/embed'
 
 step "removing"
 within 'apt-get purge --yes -qq pulsecast && ! ls /usr/lib/python3/dist-packages/pulsecast /usr/include/pulsecast 2> /dev/null'
