@@ -83,12 +83,6 @@ std::string prefix_of(const SurveyPlan::LegPlan& leg) {
   return "leg" + std::string(3 - std::min<std::size_t>(3, number.size()), '0') + number;
 }
 
-void sum_up(RunSummary& all, const RunSummary& one) {
-  all.slots += one.slots, all.echoes += one.echoes, all.rays += one.rays, all.seconds += one.seconds, all.energy += one.energy;
-  for (std::size_t f = 0; f < fate_count; ++f) all.fates[f] += one.fates[f], all.spent[f] += one.spent[f];
-  all.complete = all.complete && one.complete;
-}
-
 Simulation::Settings settings_of(const Options& o, const SurveyFile& file, std::uint64_t seed) {
   return {.seed = seed,
           .echo_width = o.echo_width,
@@ -143,7 +137,7 @@ class Session {
     for (int r = log_.run; r < simulation.runs() && all.complete; ++r) {
       log_.run = r;
       if (r > 0) simulation.begin(r), tell_notes(simulation);
-      sum_up(all, play(simulation, folder));
+      all.add(play(simulation, folder));
       const fs::path done = folder;
       if (!all.complete) break;
       log_.run = r + 1, log_.cut.clear(), log_.before = done.filename().string();
@@ -252,7 +246,7 @@ class Session {
       };
       simulating = true;
       if (signals > 0) stopping.request_stop();
-      sum_up(all, files.run(simulation, run));
+      all.add(files.run(simulation, run));
       before += leg.end - leg.first;
       if (!all.complete) break;
       if (last[prefix] == k) files.close(), open.erase(at), done.insert(prefix);

@@ -52,6 +52,13 @@ struct RunSummary {
   double seconds = 0;      ///< [s]
   bool complete = true;    ///< false if it was stopped
 
+  /// Takes in what another run came to, or another part of the same.
+  void add(const RunSummary& other) noexcept {
+    slots += other.slots, echoes += other.echoes, rays += other.rays, energy += other.energy, seconds += other.seconds;
+    for (std::size_t f = 0; f < fate_count; ++f) fates[f] += other.fates[f], spent[f] += other.spent[f];
+    complete = complete && other.complete;
+  }
+
   [[nodiscard]] std::uint64_t count(Fate fate) const noexcept { return fates[static_cast<std::size_t>(fate)]; }
   [[nodiscard]] double share(Fate fate) const noexcept { return energy > 0 ? spent[static_cast<std::size_t>(fate)] / energy : 0; }
   [[nodiscard]] PulseIndex pulses() const noexcept { return slots - count(Fate::blocked); }  ///< that were sent
@@ -197,10 +204,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   const auto deliver = [&](const detail::Chunk& chunk) {
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
     (sinks(batch), ...);
-    summary.slots += chunk.counts.slots;
-    summary.echoes += chunk.counts.echoes;
-    summary.energy += chunk.counts.energy;
-    for (std::size_t f = 0; f < fate_count; ++f) summary.fates[f] += chunk.counts.fates[f], summary.spent[f] += chunk.counts.spent[f];
+    summary.add(chunk.counts);
     if (options.progress) options.progress({summary.slots, slots, summary.echoes, elapsed()});
   };
   for_each_index(threads, threads, [&](std::size_t) noexcept {  // each works on as long as there is something to do

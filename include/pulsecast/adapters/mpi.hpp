@@ -164,7 +164,7 @@ class MpiRun {
         (*held.pieces[k])(some);
       }
     });
-    add(summary);
+    own_.add(summary);
     MpiCost cost{summary.slots, summary.echoes, 0, summary.seconds};
     MpiParcel claims;
     for (const auto& piece : held.pieces) {
@@ -174,15 +174,10 @@ class MpiRun {
     send(0, done, std::move(MpiParcel().add(block.number).add(cost).add(claims.rest())));
   }
 
-  void add(const RunSummary& one) noexcept {
-    own_.slots += one.slots, own_.echoes += one.echoes, own_.rays += one.rays, own_.energy += one.energy;
-    for (std::size_t f = 0; f < fate_count; ++f) own_.fates[f] += one.fates[f], own_.spent[f] += one.spent[f];
-  }
-
   /// What all have done together.
   [[nodiscard]] RunSummary sum() {
     const std::vector<RunSummary> all = team_.channel().gather(std::exchange(own_, {}));
-    for (const RunSummary& one : all) add(one);
+    for (const RunSummary& one : all) own_.add(one);
     own_.seconds = elapsed();
     own_.complete = own_.slots == slots_;
     return team_.channel().from_first(own_);
