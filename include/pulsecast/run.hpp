@@ -32,6 +32,13 @@ struct Progress {
   double seconds = 0;  ///< since the start of the run [s]
 };
 
+/// The slots of a survey that a run does.
+struct RunSlots {
+  PulseIndex first, stride, count;
+
+  [[nodiscard]] PulseIndex operator[](PulseIndex n) const noexcept { return first + n * stride; }
+};
+
 struct RunOptions {
   unsigned threads = 0;                                     ///< 0 for as many as the machine runs at once
   PulseIndex first = 0;                                     ///< the first slot to do
@@ -39,6 +46,13 @@ struct RunOptions {
   PulseIndex stride = 1;                                    ///< every so many-th slot only: a preview
   std::function<void(const Progress&)> progress{};          ///< called after every batch, one call at a time, on any thread
   std::stop_token stop{};                                   ///< ends the run early; what was delivered is whole up to there
+
+  /// Which of `size` slots to do. @throws SettingError if the stride is less than 1 or above 1e18
+  [[nodiscard]] RunSlots slots(PulseIndex size) const {
+    expect_within("RunOptions::stride", static_cast<double>(stride), 1, 1e18, "");
+    const PulseIndex to = std::min(end, size), from = std::min(first, to);
+    return {from, stride, (to - from + stride - 1) / stride};
+  }
 };
 
 /// What a run came to.
@@ -189,23 +203,21 @@ class Conveyor {
 /// same batches on any number of threads. Whatever a sink or the progress callback throws ends the run and comes out here.
 template <class Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
-  expect_within("RunOptions::stride", static_cast<double>(options.stride), 1, 1e18, "");
+  const RunSlots slots = options.slots(survey.size());
   const PulseIndex subrays_per_chunk = 65'536;  // where they are recorded, else they take no room
   const PulseIndex slots_per_chunk =
       std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, PulseIndex{2048});
-  const PulseIndex end = std::min(options.end, survey.size()), first = std::min(options.first, end);
-  const PulseIndex slots = (end - first + options.stride - 1) / options.stride;
   const unsigned threads = thread_count(options.threads);
   const auto began = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
 
-  detail::Conveyor conveyor((slots + slots_per_chunk - 1) / slots_per_chunk, threads, options.stop);
+  detail::Conveyor conveyor((slots.count + slots_per_chunk - 1) / slots_per_chunk, threads, options.stop);
   RunSummary summary;
   const auto deliver = [&](const detail::Chunk& chunk) {
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
     (sinks(batch), ...);
     summary.add(chunk.counts);
-    if (options.progress) options.progress({summary.slots, slots, summary.echoes, elapsed()});
+    if (options.progress) options.progress({summary.slots, slots.count, summary.echoes, elapsed()});
   };
   for_each_index(threads, threads, [&](std::size_t) noexcept {  // each works on as long as there is something to do
     try {
@@ -213,8 +225,8 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
       if (!chunk) return;
       auto workspace = survey.workspace();
       for (; chunk; chunk = conveyor.next()) {
-        const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots);
-        for (PulseIndex n = from; n < to; ++n) chunk->append(survey(first + n * options.stride, workspace));
+        const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots.count);
+        for (PulseIndex n = from; n < to; ++n) chunk->append(survey(slots[n], workspace));
         conveyor.finish(*chunk, deliver);
       }
     } catch (...) {
@@ -224,7 +236,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   if (conveyor.failure()) std::rethrow_exception(conveyor.failure());
   summary.rays = summary.pulses() * survey.subrays();
   summary.seconds = elapsed();
-  summary.complete = summary.slots == slots;
+  summary.complete = summary.slots == slots.count;
   return summary;
 }
 

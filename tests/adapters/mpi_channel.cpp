@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/adapters/mpi_channel.hpp>
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,6 +67,16 @@ TEST_CASE("parcels give back what was put into them") {
   same.next(read, 0);
   CHECK(read.empty());
   CHECK(same.rest().empty());
+}
+
+TEST_CASE("what was added last to a parcel can be taken off it") {
+  MpiParcel parcel;
+  parcel.add('x').add(7L).add(std::uint32_t{9});
+  CHECK(parcel.last<std::uint32_t>() == 9);
+  CHECK(parcel.next<char>() == 'x');
+  CHECK(parcel.rest().size() == sizeof(long));
+  CHECK(parcel.last<long>() == 7);
+  CHECK(parcel.rest().empty());
 }
 
 }  // namespace

@@ -44,9 +44,9 @@ namespace detail {
 /// One run, as one process takes part in it.
 class MpiRun {
  public:
-  MpiRun(MpiTeam& team, PulseIndex slots, const RunOptions& options, const MpiSimulate& simulate, std::span<MpiOutput* const> outputs)
-      : team_(team), slots_(slots), options_(options), simulate_(simulate), outputs_(outputs.begin(), outputs.end()) {
-    if (team.first()) ledger_.emplace(slots, static_cast<unsigned>(team.size()));
+  MpiRun(MpiTeam& team, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate, std::span<MpiOutput* const> outputs)
+      : team_(team), slots_(options.slots(size)), options_(options), simulate_(simulate), outputs_(outputs.begin(), outputs.end()) {
+    if (team.first()) ledger_.emplace(slots_.count, static_cast<unsigned>(team.size()));
   }
 
   RunSummary run() {
@@ -102,7 +102,7 @@ class MpiRun {
       parcel.next(claims, outputs_.size());
       ledger_->finish(number, std::move(claims), cost);
       const MpiCost& spent = ledger_->spent();
-      if (options_.progress) options_.progress({spent.slots, slots_, spent.echoes, elapsed()});
+      if (options_.progress) options_.progress({spent.slots, slots_.count, spent.echoes, elapsed()});
     } else {
       const auto number = parcel.next<std::uint64_t>();
       const auto held = std::find_if(held_.begin(), held_.end(), [&](const Held& h) { return h.number == number; });
@@ -147,9 +147,9 @@ class MpiRun {
     Held& held = held_.emplace_back(Held{block.number, {}});
     for (MpiOutput* output : outputs_) held.pieces.push_back(output->take_piece());
     RunOptions part{.threads = options_.threads,
-                    .first = options_.first + block.from * options_.stride,
-                    .end = options_.first + (block.to - 1) * options_.stride + 1,
-                    .stride = options_.stride};
+                    .first = slots_[block.from],
+                    .end = slots_[block.to - 1] + 1,
+                    .stride = slots_.stride};
     part.progress = [this](const Progress&) { serve(); };
     std::vector<Shot> shots;
     const RunSummary summary = simulate_(part, [&](const EchoBatch& batch) {
@@ -179,14 +179,14 @@ class MpiRun {
     const std::vector<RunSummary> all = team_.channel().gather(std::exchange(own_, {}));
     for (const RunSummary& one : all) own_.add(one);
     own_.seconds = elapsed();
-    own_.complete = own_.slots == slots_;
+    own_.complete = own_.slots == slots_.count;
     return team_.channel().from_first(own_);
   }
 
   [[nodiscard]] double elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
 
   MpiTeam& team_;
-  PulseIndex slots_;
+  RunSlots slots_;
   const RunOptions& options_;
   const MpiSimulate& simulate_;
   std::vector<MpiOutput*> outputs_;
@@ -213,11 +213,7 @@ template <class Sink>
 /// are finished, so that what is there is whole up to some slot. `options.threads` is per process.
 inline RunSummary run_parts(MpiTeam& team, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate,
                             std::span<MpiOutput* const> outputs) {
-  expect_within("RunOptions::stride", static_cast<double>(options.stride), 1, 1e18, "");
-  RunOptions settled = options;
-  settled.end = std::min(options.end, size), settled.first = std::min(options.first, settled.end);
-  const PulseIndex slots = (settled.end - settled.first + options.stride - 1) / options.stride;
-  return detail::MpiRun(team, slots, settled, simulate, outputs).run();
+  return detail::MpiRun(team, size, options, simulate, outputs).run();
 }
 
 /// Simulates the pulses of a survey, which all processes have made alike. A sink is an `MpiOutput`, which all write to, or any `EchoSink`:

@@ -197,6 +197,16 @@ class MpiParcel {
     if (count > 0) std::memcpy(values.data(), bytes_.data() + at_, count * sizeof(Value));
     at_ += count * sizeof(Value);
   }
+  /// Takes off what was added last.
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value>
+  [[nodiscard]] Value last() {
+    Value value{};
+    PULSECAST_EXPECT(at_ + sizeof value <= bytes_.size());
+    std::memcpy(&value, bytes_.data() + bytes_.size() - sizeof value, sizeof value);
+    bytes_.resize(bytes_.size() - sizeof value);
+    return value;
+  }
   [[nodiscard]] std::span<const std::byte> rest() const noexcept { return std::span(bytes_).subspan(at_); }
 
  private:

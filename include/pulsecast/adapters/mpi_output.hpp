@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <optional>
@@ -154,13 +153,10 @@ inline bool MpiTeam::serve() {
       if (handler_ == nullptr || (kind - 2) / 8 != parity_) return void(early_.push_back({from, kind, std::move(bytes)}));
       return hand_over(from, kind, std::move(bytes));
     }
-    std::uint32_t output = 0;
-    PULSECAST_EXPECT(bytes.size() >= sizeof output);
-    std::memcpy(&output, bytes.data() + bytes.size() - sizeof output, sizeof output);
-    bytes.resize(bytes.size() - sizeof output);
-    const auto found = outputs_.find(output);
+    MpiParcel parcel(std::move(bytes));
+    const auto found = outputs_.find(parcel.last<std::uint32_t>());
     PULSECAST_EXPECT(found != outputs_.end());
-    found->second->receive(from, MpiParcel(std::move(bytes)));
+    found->second->receive(from, std::move(parcel));
   });
 }
 

@@ -84,19 +84,16 @@ class MpiStream final : public MpiOutput {
   }
 
   void receive(int /*from*/, MpiParcel parcel) override {
-    MpiChannel::Bytes bytes = std::move(parcel).take();
-    std::uint64_t number = 0;
-    std::memcpy(&number, bytes.data() + bytes.size() - sizeof number, sizeof number);
-    bytes.resize(bytes.size() - sizeof number);
-    waiting_.emplace(number, std::move(bytes));
+    const auto number = parcel.last<std::uint64_t>();
+    waiting_.emplace(number, std::move(parcel));
   }
 
   bool work() override {
     const auto next = waiting_.find(taken_);
     if (next == waiting_.end()) return false;
-    MpiChannel::Bytes bytes = std::move(next->second);
+    MpiParcel bytes = std::move(next->second);
     waiting_.erase(next);
-    take_(MpiParcel(std::move(bytes)));
+    take_(std::move(bytes));
     ++taken_;
     return true;
   }
@@ -130,7 +127,7 @@ class MpiStream final : public MpiOutput {
   Take take_;
   std::function<void()> close_;
   std::uint64_t placed_ = 0, taken_ = 0;  // pieces, on the first process
-  std::map<std::uint64_t, MpiChannel::Bytes> waiting_;
+  std::map<std::uint64_t, MpiParcel> waiting_;
 };
 
 }  // namespace pulsecast::adapters
