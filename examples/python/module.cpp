@@ -18,6 +18,7 @@
 #include <pulsecast/adapters/python.hpp>
 #include <pulsecast/adapters/trajectory_file.hpp>
 #include <pulsecast/adapters/xml.hpp>
+#include <pulsecast/version.hpp>
 
 #include "../pulsecast/simulation.hpp"
 #include "settings.hpp"
@@ -51,15 +52,18 @@ void warn(const std::vector<std::string>& warnings) {
 }
 
 /// Triangles of arrays, with one material.
-Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices,
-                         const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>& triangles, ObjectId object,
-                         double reflectance, std::uint16_t classification, bool ground) {
-  const auto expect_rows_of_three = [](const py::array& array, const char* field) {
-    if (array.ndim() != 2 || array.shape(1) != 3)
-      throw SettingError(std::string("Mesh::") + field + " (columns)", array.ndim() == 2 ? static_cast<double>(array.shape(1)) : 0, "",
-                         "3: shape (n, 3)");
+Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices, const py::object& triangles_given,
+                         ObjectId object, double reflectance, std::uint16_t classification, bool ground) {
+  const auto expect_rows_of_three = [](const py::array& array, const std::string& field) {
+    if (array.ndim() != 2) throw SettingError(field + " (dimensions)", static_cast<double>(array.ndim()), "", "2: shape (n, 3)");
+    if (array.shape(1) != 3) throw SettingError(field + " (columns)", static_cast<double>(array.shape(1)), "", "3: shape (n, 3)");
   };
-  expect_rows_of_three(vertices, "vertices"), expect_rows_of_three(triangles, "triangles");
+  const auto numbers = py::array::ensure(triangles_given);
+  if (!numbers) throw py::type_error("Mesh triangles: expected an array, not " + std::string(py::repr(triangles_given)));
+  expect_rows_of_three(vertices, "Mesh::vertices"), expect_rows_of_three(numbers, "Mesh::triangles");
+  if (const char kind = numbers.dtype().kind(); kind != 'i' && kind != 'u')  // else 1.7 would become 1
+    throw py::type_error("Mesh triangles: expected whole numbers, not " + std::string(py::str(numbers.dtype())));
+  const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles(numbers);
   Simulation::Mesh mesh{.material = {.reflectance = reflectance, .classification = classification, .ground = ground}, .object = object};
   mesh.material.validate();
   for (py::ssize_t i = 0; i < vertices.shape(0); ++i)
@@ -137,6 +141,7 @@ py::array legs_of(const Simulation& simulation) {
 }  // namespace
 
 PYBIND11_MODULE(_core, m) {
+  m.attr("__version__") = PULSECAST_VERSION;
   adapters::python::bind_common(m);
   bind_settings(m);
   PYBIND11_NUMPY_DTYPE(PoseRow, time, x, y, z, roll, pitch, yaw, leg);
@@ -170,10 +175,12 @@ PYBIND11_MODULE(_core, m) {
       .def(py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
            "ground"_a = false,
            "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), numbers of vertices from 0; object: what its points are marked "
-           "with; "
-           "reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: whether platforms may stand on it.")
+           "with; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: whether platforms may stand on it.")
       .def_property_readonly(
-          "size", [](const Simulation::Mesh& mesh) { return mesh.data.triangles.size(); }, "Triangles.");
+          "size", [](const Simulation::Mesh& mesh) { return mesh.data.triangles.size(); }, "Triangles.")
+      .def("__repr__", [](const Simulation::Mesh& mesh) {
+        return "<Mesh of " + std::to_string(mesh.data.triangles.size()) + " triangles, object " + std::to_string(mesh.object) + '>';
+      });
 
   py::class_<Simulation> simulation(m, "Simulation", "A survey with its scene loaded and its legs planned, ready to run.");
   simulation
@@ -187,12 +194,19 @@ PYBIND11_MODULE(_core, m) {
            "for all. repetition: which scene, where parts are swapped from run to run. Raises SettingError or FileError.")
       .def(
           "__len__", [](const Simulation& s) { return s.plan().source.size(); }, "Pulse slots.")
+      .def("__repr__",
+           [](const Simulation& s) {
+             return "<Simulation of " + std::to_string(s.plan().legs.size()) + " legs, " + std::to_string(s.plan().source.size()) +
+                    " pulse slots, " + std::to_string(s.scene().triangles) + " triangles>";
+           })
       .def("trajectory", &trajectory_of, "interval"_a,
            "Where the platform is, every `interval` seconds of each leg and at its end: a structured array of time [s], x, y, z [m, "
            "world], roll, "
            "pitch, yaw [rad; yaw clockwise from north] and leg.")
-      .def_property_readonly("legs", &legs_of,
-                             "Structured array: number, active, start [s], duration [s], pulse_rate [Hz], first, end: its slots.")
+      .def_property_readonly(
+          "legs", &legs_of,
+          "Structured array: number, active, start [s], duration [s], pulse_rate [Hz], first, end: its slots, which tell legs "
+          "of one strip apart: their points and pulses all have the number of its first leg.")
       .def_property_readonly("repetitions", &Simulation::runs, "How many scenes there are, where parts are swapped from run to run.")
       .def_property_readonly(
           "bounds",

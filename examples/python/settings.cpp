@@ -4,6 +4,7 @@
 #include "settings.hpp"
 
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include <variant>
 #include <vector>
 
+#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/vector.hpp>
 
 namespace py = pybind11;
@@ -94,6 +96,7 @@ T number_of(py::handle object, const std::string& where) {
   if constexpr (std::floating_point<T>) {
     const double number = PyFloat_AsDouble(object.ptr());
     if (number == -1 && PyErr_Occurred()) PyErr_Clear(), refuse(where, "a number", object);
+    if (std::isnan(number)) throw SettingError(where, number, "", "a number");
     return number;
   } else {
     const py::object whole = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
@@ -127,11 +130,13 @@ T value_of(py::handle object, const std::string& where) {
     }
     refuse(where, names, object);
   } else if constexpr (std::same_as<T, bool>) {
-    if (!py::isinstance<py::bool_>(object)) refuse(where, "True or False", object);
-    return object.cast<bool>();
+    py::detail::make_caster<bool> truth;  // Python's, or NumPy's
+    if (!truth.load(object, false)) refuse(where, "True or False", object);
+    return py::detail::cast_op<bool>(truth);
   } else if constexpr (std::same_as<T, std::string>) {
-    if (!py::isinstance<py::str>(object)) refuse(where, "a text", object);
-    return object.cast<std::string>();
+    py::detail::make_caster<std::string> text;
+    if (!py::isinstance<py::str>(object) || !text.load(object, false)) refuse(where, "a text", object);  // of Unicode: no halves of pairs
+    return py::detail::cast_op<std::string>(std::move(text));
   } else if constexpr (std::same_as<T, char>) {
     const auto text = value_of<std::string>(object, where);
     if (text.size() != 1) refuse(where, "one character", object);

@@ -166,3 +166,45 @@ TEST_CASE("Ctrl-C stops a run, what came is whole, and Python's own handler is b
   CHECK(said(scope, "issubclass(scans.Interrupted, KeyboardInterrupt)") == "True");
   CHECK_THROWS_WITH(py::exec("scans.interrupt()\nfor i in range(1000000): pass", scope), doctest::Contains("KeyboardInterrupt"));
 }
+
+TEST_CASE("Ctrl-C that comes too late to stop a run is told, and another thread's later run is not stopped by it") {
+  py::dict scope = python();
+  py::exec(
+      "import signal, threading\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+      "def stop(*progress): scans.interrupt()\n"
+      "try:\n  scans.WallSurvey(100).run(progress=stop)\nexcept scans.Interrupted as e:\n  result = e.result\n"
+      "slots = []\n"
+      "other = threading.Thread(target=lambda: slots.append(scans.WallSurvey(20000).run().slots))\n"
+      "other.start()\nother.join()",
+      scope);
+  CHECK(said(scope, "result.complete and result.slots == 100 and slots == [20000]") == "True");
+}
+
+TEST_CASE("Ctrl-C that the program handles itself does not stop a run") {
+  py::dict scope = python();
+  py::exec(
+      "import signal\nheard = []\nbefore = signal.signal(signal.SIGINT, lambda *_: heard.append(1))\n"
+      "result = scans.WallSurvey(20000).run(callback=lambda batch: scans.interrupt(), every_pulses=1)\n"
+      "signal.signal(signal.SIGINT, before)",
+      scope);
+  CHECK(said(scope, "result.complete and result.slots == 20000 and len(heard) > 0") == "True");
+}
+
+TEST_CASE("a batch is pickled and copied whole") {
+  py::dict scope = python();
+  py::exec("import copy, pickle\na = scans.WallSurvey(200, 4e-9).run()", scope);
+  for (const char* other : {"pickle.loads(pickle.dumps(a))", "copy.deepcopy(a)"}) {
+    CAPTURE(other);
+    py::exec(std::string("b = ") + other, scope);
+    CHECK(said(scope, "(a.points == b.points).all() and (a.pulses == b.pulses).all() and (a.waveforms == b.waveforms).all()") == "True");
+    CHECK(said(scope, "(a.slots, a.fates, a.energy, a.seconds) == (b.slots, b.fates, b.energy, b.seconds) and repr(a) == repr(b)") ==
+          "True");
+  }
+}
+
+TEST_CASE("what a run is asked is looked at before it begins") {
+  py::dict scope = python();
+  for (const char* asked :
+       {"callback=3", "progress='loud'", "callback=print, every_seconds=-1", "callback=print, every_seconds=float('nan')"})
+    CHECK_THROWS_AS(py::exec(std::string("scans.WallSurvey(10**12).run(") + asked + ")", scope), py::error_already_set);
+}

@@ -14,9 +14,10 @@ Settings are dataclasses; numbers are in SI units and radians.
 from pathlib import Path
 
 from ._core import *  # noqa: F403
+from ._core import __version__
 from . import _core
 
-__all__ = [name for name in vars(_core) if not name.startswith("_")] + ["asset_folders"]
+__all__ = [name for name in vars(_core) if not name.startswith("_")] + ["__version__", "asset_folders"]
 
 
 def asset_folders() -> list[Path]:

@@ -3,5 +3,6 @@
 from pathlib import Path
 
 from ._core import *
+from ._core import __version__ as __version__
 
 def asset_folders() -> list[Path]: ...

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <optional>
@@ -166,13 +167,14 @@ class RowSink {
   double sample_interval_ = 0;
 };
 
-/// Notes Ctrl-C for as long as it lives, where Python would have heard of it only later.
+/// Notes Ctrl-C for as long as it lives, where Python would have heard of it only later: on Python's main thread, which alone gets signals,
+/// and where Ctrl-C is a `KeyboardInterrupt`. A handler of the program's own, or none, stays as it is.
 class InterruptWatch {
  public:
   InterruptWatch() {
-    // Python handles signals on its main thread only, and only if nobody took the handler away
-    const pybind11::object threading = pybind11::module_::import("threading");
-    watching_ = threading.attr("current_thread")().is(threading.attr("main_thread")());
+    const pybind11::module_ threading = pybind11::module_::import("threading"), signal = pybind11::module_::import("signal");
+    watching_ = threading.attr("current_thread")().is(threading.attr("main_thread")()) &&
+                signal.attr("getsignal")(SIGINT).is(signal.attr("default_int_handler"));
     if (!watching_) return;
     seen() = false;
     before_ = PyOS_setsig(SIGINT, [](int) { seen() = true; });
@@ -183,12 +185,14 @@ class InterruptWatch {
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
 
+  [[nodiscard]] bool interrupted() const noexcept { return watching_ && seen(); }
+
+ private:
   [[nodiscard]] static std::atomic<bool>& seen() noexcept {
     static std::atomic<bool> interrupted = false;
     return interrupted;
   }
 
- private:
   bool watching_ = false;
   PyOS_sighandler_t before_ = nullptr;
 };
@@ -203,15 +207,23 @@ struct RunRequest {
   PulseIndex every_pulses = 0;
   double every_seconds = 0;
   bool pulses = true;  ///< keep them, and their waveforms
+
+  void validate() const {
+    expect_not_negative("run every_seconds", every_seconds, "s");
+    for (const auto& [name, function] : {std::pair{"callback", callback}, std::pair{"progress", progress}})
+      if (!function.is_none() && PyCallable_Check(function.ptr()) == 0)
+        throw pybind11::type_error(std::string(name) + ": expected a function, not " + std::string(pybind11::repr(function)));
+  }
 };
 
-/// Runs what `run(options, sink)` does, with Python free meanwhile. Throws what Python threw in a callback.
+/// Runs what `run(options, sink)` does, with Python free meanwhile, until it is done or interrupted. Throws what Python threw in a
+/// callback.
 template <class Run>
-[[nodiscard]] Batch run(const RunRequest& asked, const Run& run) {
+[[nodiscard]] Batch run(const RunRequest& asked, const InterruptWatch& watch, const Run& run) {
+  asked.validate();
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point from) { return std::chrono::duration<double>(Clock::now() - from).count(); };
   const bool hands_over = !asked.callback.is_none(), tells = !asked.progress.is_none();
-  InterruptWatch watch;
   std::stop_source stopping;
   RowSink rows(asked.pulses);
   Batch result;
@@ -220,7 +232,7 @@ template <class Run>
   RunOptions options{.threads = asked.threads, .first = asked.first, .stride = asked.stride, .stop = stopping.get_token()};
   if (asked.end) options.end = *asked.end;
   options.progress = [&](const Progress& p) {
-    if (InterruptWatch::seen()) stopping.request_stop();
+    if (watch.interrupted()) stopping.request_stop();
     if (!tells || (p.done < p.total && seconds_since(told) < 0.1)) return;
     told = Clock::now();
     const pybind11::gil_scoped_acquire gil;
@@ -334,13 +346,32 @@ inline void bind_common(pybind11::module_& m) {
           "Energy sent, by what became of the subrays that carried it [J].")
       .def(
           "waveform_of",
-          [](const py::object& self, std::size_t row) -> py::array_t<float> {
+          [](const py::object& self, py::ssize_t row) -> py::array_t<float> {
             const auto& pulses = self.cast<const Batch&>().pulses;
-            if (row >= static_cast<std::size_t>(pulses.size())) throw py::index_error();
+            if (row < 0 || row >= pulses.size())
+              throw py::index_error("row " + std::to_string(row) + " of " + std::to_string(pulses.size()) + " pulses");
             const PulseRow& p = pulses.data()[row];
             return self.attr("waveforms")[py::slice(p.first_sample, p.first_sample + p.samples, 1)].cast<py::array_t<float>>();
           },
-          py::arg("row"), "The samples of the pulse in a row of `pulses`, shape (n,) [W].");
+          py::arg("row"), "The samples of the pulse in a row of `pulses`, shape (n,) [W].")
+      .def("__repr__",
+           [](const Batch& b) {
+             return "<Batch of " + std::to_string(b.points.size()) + " points, " + std::to_string(b.pulses.size()) + " pulses, " +
+                    std::to_string(b.waveforms.size()) + " samples>";
+           })
+      .def(py::pickle(
+          [](const Batch& b) {
+            return py::make_tuple(b.points, b.pulses, b.waveforms, b.sample_interval,
+                                  py::bytes(reinterpret_cast<const char*>(&b.summary), sizeof b.summary));
+          },
+          [](const py::tuple& state) {
+            const auto summary = state[4].cast<std::string>();
+            Batch b{state[0].cast<py::array_t<PointRow>>(), state[1].cast<py::array_t<PulseRow>>(), state[2].cast<py::array_t<float>>(),
+                    state[3].cast<double>()};
+            if (summary.size() != sizeof b.summary) throw py::value_error("a Batch of another version of pulsecast");
+            std::memcpy(&b.summary, summary.data(), sizeof b.summary);
+            return b;
+          }));
 }
 
 /// Gives a class the method `run`; `runner(self)` is what runs: a callable of options and sink.
@@ -352,9 +383,11 @@ void bind_run(Class& bound, const Runner& runner) {
       "run",
       [runner](const Self& self, unsigned threads, PulseIndex first, std::optional<PulseIndex> end, PulseIndex stride, py::object callback,
                PulseIndex every_pulses, double every_seconds, py::object progress, bool pulses) {
-        Batch result = python::run(
-            {threads, first, end, stride, std::move(callback), std::move(progress), every_pulses, every_seconds, pulses}, runner(self));
-        if (result.summary.complete) return result;
+        const InterruptWatch watch;
+        Batch result =
+            python::run({threads, first, end, stride, std::move(callback), std::move(progress), every_pulses, every_seconds, pulses}, watch,
+                        runner(self));
+        if (result.summary.complete && !watch.interrupted()) return result;  // too late to stop is not too late to tell
         raise(Exceptions{}.interrupted, "the survey was stopped", std::pair{"result", py::cast(std::move(result))});
         throw py::error_already_set();
       },

@@ -3,12 +3,14 @@
 """The Python module, as its users meet it."""
 
 import copy
+import math
 import os
 import pickle
 import resource
 import signal
 import subprocess
 import threading
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -90,11 +92,26 @@ def test_settings_are_plain_objects(survey):
     (lambda s: setattr(s.legs[0].platform, "position", (1, 2)), "position: expected a list of 3"),
     (lambda s: setattr(s, "seed", -1), "seed: expected a whole number that is not negative"),
     (lambda s: s.legs.__setitem__(0, None), r"legs\[0\]: expected LegSettings, not None"),
+    (lambda s: setattr(s, "name", "\udcff"), r"SurveySettings\.name: expected a text, not"),
 ])
 def test_what_cannot_be_is_refused_by_name(survey, spoil, says):
     spoil(survey)
     with pytest.raises(TypeError, match=says):
         simulation(survey)
+
+
+def test_what_is_not_a_number_is_refused_by_name(survey):
+    survey.legs[1].scanner.scan_frequency = math.nan
+    with pytest.raises(pulsecast.SettingError, match=r"SurveySettings\.legs\[1\]\.scanner\.scan_frequency is nan"):
+        simulation(survey)
+
+
+def test_numbers_and_truths_of_numpy_are_taken(survey):
+    survey.legs[0].scanner.active, survey.legs[1].platform.position = np.bool_(False), np.array([5, 0, 0], "f4")
+    survey.seed = np.uint8(5)
+    run = simulation(survey)
+    assert list(run.legs["active"]) == [False, True, True]
+    assert (run.run().points["leg"] > 0).all()
 
 
 def test_a_survey_is_written_and_read_again(survey, tmp_path):
@@ -137,7 +154,8 @@ def test_meshes_stand_beside_the_survey_s_own_parts(survey):
 
 @pytest.mark.parametrize(("vertices", "triangles", "field"), [
     ([[0, 0]], [[0, 0, 0]], "vertices"), (SQUARE[0], [[0, 1]], "triangles"), (SQUARE[0], [[0, 1, 4]], "triangles"),
-    (SQUARE[0], [[0, 1, -1]], "triangles"), ([[0, 0, np.nan]], [[0, 0, 0]], "vertices"), (SQUARE[0], np.zeros((0, 3), int), "triangles"),
+    (SQUARE[0], [[0, 1, -1]], "triangles"), (np.zeros(9), [[0, 1, 2]], "vertices (dimensions)"),
+    ([[0, 0, np.nan]], [[0, 0, 0]], "vertices"), (SQUARE[0], np.zeros((0, 3), int), "triangles"),
 ])
 def test_a_mesh_that_cannot_be_is_refused(vertices, triangles, field):
     with pytest.raises(pulsecast.SettingError) as error:
@@ -145,10 +163,73 @@ def test_a_mesh_that_cannot_be_is_refused(vertices, triangles, field):
     assert field in error.value.field
 
 
+def test_the_corners_of_triangles_are_whole_numbers():
+    with pytest.raises(TypeError, match="whole numbers, not float64"):
+        pulsecast.Mesh(SQUARE[0], [[0, 1.7, 2]])
+    with pytest.raises(TypeError, match="Mesh triangles: expected"):
+        pulsecast.Mesh(SQUARE[0], [[0, 1, 2], [3]])
+    for kind in ("u1", "i4", ">i8"):
+        assert pulsecast.Mesh(np.asfortranarray(SQUARE[0], dtype="f4"), np.array(SQUARE[1] * 2, kind)[::2]).size == 2
+
+
+def test_results_are_copied_and_sent(survey):
+    run = simulation(survey, waveforms=True)
+    batch = run.run()
+    for other in (copy.copy(batch), copy.deepcopy(batch), pickle.loads(pickle.dumps(batch))):
+        for name in ("points", "pulses", "waveforms", "sample_interval", "slots", "rays", "seconds", "complete", "fates", "energy"):
+            assert np.array_equal(getattr(other, name), getattr(batch, name)), name
+        assert np.array_equal(other.waveform_of(60), batch.waveform_of(60))
+    with get_context("fork").Pool(2) as pool:
+        sent = pool.map(run_of, [(survey, seed) for seed in (1, 2)])
+        with pytest.raises(pulsecast.FileError):
+            pool.map(read_none, [1])
+    assert (sent[0].points == simulation(survey, seed=1).run().points).all() and sent[1].slots == len(run)
+
+
+def read_none(_):
+    pulsecast.read_survey("none.xml")
+
+
+def run_of(survey_and_seed):
+    survey, seed = survey_and_seed
+    return simulation(survey, seed=seed).run()
+
+
+def test_objects_say_what_they_are(survey):
+    run = simulation(survey)
+    batch = run.run()
+    assert repr(run) == "<Simulation of 3 legs, 6000 pulse slots, 2 triangles>"
+    assert repr(batch) == f"<Batch of {len(batch.points)} points, 6000 pulses, 0 samples>"
+    assert repr(pulsecast.Mesh(*SQUARE, object=7)) == "<Mesh of 2 triangles, object 7>"
+    assert pulsecast.__version__.count(".") == 2
+
+
+@pytest.mark.parametrize(("asked", "error"), [
+    ({"callback": 3}, TypeError), ({"progress": "loud"}, TypeError), ({"callback": print, "every_seconds": -1}, ValueError),
+    ({"callback": print, "every_seconds": math.nan}, ValueError), ({"stride": 0}, ValueError), ({"threads": -1}, TypeError),
+])
+def test_what_a_run_cannot_be_asked_is_refused_before_it_begins(survey, asked, error):
+    begun = []
+    with pytest.raises(error):
+        simulation(survey).run(**({"progress": lambda *_: begun.append(1)} | asked))
+    assert not begun
+
+
+def test_rows_of_waveforms_end(survey):
+    batch = simulation(survey, waveforms=True).run()
+    for row in (-1, 6000):
+        with pytest.raises(IndexError, match=f"row {row} of 6000"):
+            batch.waveform_of(row)
+
+
 def test_trajectories_and_legs(survey):
     run = simulation(survey)
     poses, legs = run.trajectory(0.25), run.legs
     assert list(legs["number"]) == [0, 1, 2] and legs["end"][-1] == len(run)
+    pulses = run.run().pulses
+    for leg, number in zip(legs, [0, 1, 1], strict=True):  # the last two are a strip
+        of_leg = (pulses["pulse"] >= leg["first"]) & (pulses["pulse"] < leg["end"])
+        assert of_leg.sum() == 2000 and (pulses["leg"][of_leg] == number).all()
     assert (np.diff(poses["time"]) >= 0).all()
     assert [tuple(poses[poses["leg"] == k][0])[1:3] for k in range(3)] == [(0, 0), (5, 0), (5, 5)]
     with pytest.raises(pulsecast.SettingError):
@@ -185,3 +266,34 @@ def test_ctrl_c_stops_and_leaves_what_is_whole():
     pulses = stopped.value.result.pulses
     assert 0 < len(pulses) == stopped.value.result.slots
     assert (pulses["pulse"] == np.arange(len(pulses))).all()
+
+
+def interrupt(*_):
+    signal.raise_signal(signal.SIGINT)
+
+
+def test_ctrl_c_is_told_even_if_it_comes_too_late_to_stop():
+    with pytest.raises(pulsecast.Interrupted) as stopped:
+        own_scanner.RosetteSurvey(100).run(progress=interrupt)
+    assert stopped.value.result.complete and len(stopped.value.result.points) == 100
+
+
+@pytest.mark.parametrize("taken", [False, True])
+def test_a_handler_of_the_program_s_own_stays(taken):
+    heard = []
+    before = signal.signal(signal.SIGINT, (lambda *_: heard.append(1)) if taken else signal.SIG_IGN)
+    try:
+        batch = own_scanner.RosetteSurvey(200_000).run(callback=interrupt, every_pulses=1)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert batch.complete and bool(heard) == taken
+
+
+def test_ctrl_c_on_the_main_thread_stops_no_later_run_of_another():
+    survey, counts = own_scanner.RosetteSurvey(100_000), []
+    with pytest.raises(pulsecast.Interrupted):
+        survey.run(callback=interrupt, every_pulses=1)
+    other = threading.Thread(target=lambda: counts.append(len(survey.run().points)))
+    other.start()
+    other.join()
+    assert counts == [100_000]
