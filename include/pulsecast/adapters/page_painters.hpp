@@ -35,16 +35,12 @@ void main() { colour = vec4(tint, 1.0); }`
 
 const lineVertex = `#version 300 es
 layout(location = 0) in vec3 place;
-layout(location = 1) in float time;
 uniform mat4 camera;
-uniform vec2 now;
-uniform vec3 fresh;
+uniform vec3 line;
 flat out vec3 tint;
 void main() {
   gl_Position = camera * vec4(place, 1.0);
-  gl_PointSize = now.y;
-  tint = fresh;
-  if (time > now.x) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  tint = line;
 }`
 
 const screenVertex = `#version 300 es
@@ -199,12 +195,12 @@ class GlPainter {
     gl.drawArrays(gl.POINTS, first, end - first)
   }
 
-  drawWays(view, { matrix, now, ratio }, colour) {
+  drawWays(view, { matrix, now }, colour) {
     const { gl } = this, { program, places } = this.lineProgram
     if (this.waysAreOld) {
       for (const line of this.lines) line.free()
       this.lines = view.ways.map(way => {
-        const line = this.vertices({ count: way.places.length })
+        const line = this.vertices({ times: way.times })
         const places = way.places.flatMap((place, i) => [...view.relative(place), way.times[i] - view.start])
         gl.bufferData(gl.ARRAY_BUFFER, Float32Array.from(places), gl.STATIC_DRAW)
         return line
@@ -214,11 +210,11 @@ class GlPainter {
     gl.enable(gl.DEPTH_TEST)
     gl.useProgram(program)
     gl.uniformMatrix4fv(places.camera, false, matrix)
-    gl.uniform2f(places.now, Math.min(now, 3e38), 2 * ratio)
-    gl.uniform3fv(places.fresh, colour)
-    for (const { array, count } of this.lines) {
+    gl.uniform3fv(places.line, colour)
+    for (const { array, times } of this.lines) {
+      const later = times.findIndex(time => time > view.start + now)
       gl.bindVertexArray(array)
-      gl.drawArrays(gl.LINE_STRIP, 0, count)
+      gl.drawArrays(gl.LINE_STRIP, 0, later < 0 ? times.length : later)
     }
   }
 

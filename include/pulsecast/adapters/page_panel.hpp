@@ -41,7 +41,7 @@ function showTitle() {
   byId('name').textContent = survey.name || 'Point cloud'
   byId('device').textContent = [survey.scanner, survey.platform].filter(Boolean).join(' · ')
   const all = points.count === survey.echoes
-  byId('amount').textContent = `${whole(points.count)} ${all ? '' : `of ${whole(survey.echoes)} `}points`
+  byId('amount').textContent = `${whole(points.count)} ${all ? '' : `of ${whole(survey.echoes)} `}point${survey.echoes === 1 ? '' : 's'}`
   byId('amount').title = `Positions to ${points.steps.x ?? '–'} m, times to 0.1 µs`
 }
 
@@ -237,8 +237,8 @@ function play(on = !state.playing) {
   state.playing = on
   goTo(on && view.now === Infinity ? 0 : view.now)
   let before = performance.now()
-  const step = time => {
-    if (!state.playing) return
+  const step = state.step = time => {
+    if (!state.playing || state.step !== step) return  // another began since
     const speed = byId('speed').value, length = state.end - view.start
     goTo(view.now + Math.max(0, time - before) / 1000 * (speed === 'real' ? 1 : length / Number(speed)))
     before = time
@@ -296,7 +296,7 @@ function takeHands() {
   canvas.onpointerup = canvas.onpointercancel = event => {
     const was = held.delete(event.pointerId)
     if (was && moved < 4 && event.type === 'pointerup' && event.button === 0)
-      select(points.count && view.origin ? view.pick(event.offsetX * view.ratio, event.offsetY * view.ratio) : -1)
+      select(view.pick(event.offsetX * view.ratio, event.offsetY * view.ratio))
   }
   canvas.oncontextmenu = event => event.preventDefault()
   canvas.ondblclick = event => {
@@ -329,10 +329,10 @@ function takeHands() {
     '[': () => { view.pointSize = Math.max(0.5, view.pointSize / 1.2), view.redraw() },
     ']': () => { view.pointSize = Math.min(6, view.pointSize * 1.2), view.redraw() },
   }
-  Object.keys(attributes).slice(0, 9).forEach((name, k) => { others[k + 1] = () => points.arrays[name] && choose(name) })
+  for (let k = 0; k < 9; ++k) others[k + 1] = () => byId('attributes').children[k]?.click()
   window.onkeydown = event => {
     if (event.target.matches('input, select, button, summary') && event.key !== 'Escape') return
-    if (event.altKey || event.metaKey || (event.ctrlKey && !acts[event.key]) || !view.origin) return
+    if (event.altKey || event.metaKey || event.ctrlKey || !view.origin) return  // those are the browser's
     const act = acts[event.key] ?? others[event.key]
     if (!act) return
     event.preventDefault()
@@ -419,10 +419,10 @@ async function follow() {
     survey.echoes = status.echoes
     survey.legs = status.legs ?? survey.legs
     if (status.legs) takeWays()
-    const block = await readBlock(bytes.subarray(4 + size)), count = points.count
+    const block = await readBlock(bytes.subarray(4 + size))
     points.append(block)
-    points.thin(status.largest_key)
-    if (points.count < count && state.selected >= 0) select(-1)
+    const selected = points.thin(status.largest_key, state.selected)
+    if (selected !== state.selected) select(selected)
     after = status.last
     if (block.count > 0 || status.legs) grown()
     const share = status.total > 0 ? status.done / status.total : 0

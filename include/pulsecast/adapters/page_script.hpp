@@ -100,19 +100,19 @@ class Points {
     this.touch(first)
   }
 
-  /// Keeps those with a key of at most `largest`.
-  thin(largest) {
+  /// Keeps those with a key of at most `largest`. Returns where point `of` is then; -1 if it is gone.
+  thin(largest, of = -1) {
     const { key } = this.arrays
-    if (!key) return
-    let kept = 0
+    if (!key) return of
+    let kept = 0, there = -1
     for (let i = 0; i < this.count; ++i) {
       if (key[i] > largest) continue
+      if (i === of) there = kept
       if (kept !== i) for (const name in this.arrays) this.arrays[name][kept] = this.arrays[name][i]
       ++kept
     }
-    if (kept === this.count) return
-    this.count = kept
-    this.touch(0)
+    if (kept < this.count) this.count = kept, this.touch(0)
+    return there
   }
 
   clear() {
@@ -275,9 +275,10 @@ class View {
   /// Frames all usual points, and what stands near; the first time, they also become what places are relative to.
   fit() {
     const { points, camera } = this
+    if (points.count === 0) return
     const ranges = ['x', 'y', 'z'].map(name => points.usual(name, 0.001)), middle = ranges.map(([least, most]) => (least + most) / 2)
     const [longest, across, least] = ranges.map(([a, b]) => b - a).sort((a, b) => b - a)
-    const area = Math.max(longest * across, longest ** 2 * 1e-4)
+    const area = Math.max(longest * across, (longest || 1) ** 2 * 1e-4)
     this.spacing = Math.sqrt(area / Math.max(points.count, 1)) * (1 + least / Math.max(longest, 1e-9))
     for (const { places } of this.ways)
       for (const place of places)
@@ -399,6 +400,7 @@ class View {
 
   /// The point that is drawn nearest to a pixel, the foremost of those within a few pixels; -1 if there is none.
   pick(x, y, reach = 7 * this.ratio) {
+    if (!this.origin) return -1
     const { camera, points } = this, [r, u, f] = camera.axes(), eye = camera.eye().map((v, k) => v + this.origin[k])
     const { near, scale } = camera, { x: px, y: py, z: pz, time } = points.arrays, until = this.start + this.now
     const right = x - camera.width / 2, up = camera.height / 2 - y

@@ -198,6 +198,23 @@ async function checkFile() {
   await key('Escape')
   expect(await page('pulsecast.state.selected') === -1, 'Escape lets go')
   await key('Home')
+  await page(`document.querySelector('[data-name=returns]').remove()`)  // as where all pulses have as many
+  for (const [k, name] of [[6, 'reflectance'], [1, 'z']]) {
+    await key(String(k), `Digit${k}`)
+    expect(await page('pulsecast.colouring.name') === name, `${k} colours by ${name}, as the ${k}th button does`)
+  }
+  const taken = more => page(`(event => (document.body.dispatchEvent(event), event.defaultPrevented))(
+    new KeyboardEvent('keydown', { key: 'f', cancelable: true, bubbles: true, ...${JSON.stringify(more)} }))`)
+  expect(await taken({}) && !await taken({ ctrlKey: true }) && !await taken({ metaKey: true }), "the browser's keys stay its own")
+
+  // what is thinned while it grows leaves a point that was chosen where it then is
+  const thinned = await page(`(() => {
+    const column = [0, 1, 2, 3, 4], columns = { pulse: column, key: [5, 1, 9, 2, 3] }, cloud = new Points()
+    for (const name of ['x', 'y', 'z', 'from_x', 'from_y', 'from_z', 'time']) columns[name] = column
+    cloud.append({ count: 5, columns, steps: {} })
+    return [cloud.thin(9, 3), cloud.thin(4, 3), cloud.thin(2, 2), cloud.count, [...cloud.arrays.pulse.subarray(0, 2)]]
+  })()`)
+  expect(JSON.stringify(thinned) === '[3,1,-1,2,[1,3]]', `points that are thinned: ${JSON.stringify(thinned)}`)
 
   // small windows and dark ones
   await tell('Emulation.setDeviceMetricsOverride', { width: 380, height: 600, deviceScaleFactor: 2, mobile: false })
@@ -217,6 +234,17 @@ async function checkFile() {
     near((await seen()).share, all.share, 0.15 * all.share + 0.02, 'the share of the picture by WebGL')
   }
   expect(requests.every(url => /^(file|data|blob):/.test(url)), `nobody is asked: ${requests}`)
+}
+
+/// A page without points can be handled like others.
+async function checkEmpty() {
+  execFileSync(program, [folder, '0'])
+  await open(`file://${folder}/page.html`)
+  expect((await page(`document.getElementById('amount').textContent`)) === '0 points', 'there are no points')
+  for (const clickCount of [1, 2]) for (const type of ['mousePressed', 'mouseReleased']) await mouse(type, 300, 300, { clickCount })
+  await key('Home')
+  await page(`['fit', 'top', 'play'].forEach(id => document.getElementById(id).click())`)
+  expect(await page('pulsecast.view.origin') === null, 'points that come may still say where they are')
 }
 
 async function checkLive(shots, stop) {
@@ -280,6 +308,7 @@ try {
     await measureSpeed()
   } else {
     await checkFile()
+    await checkEmpty()
     await checkLive(8000, false)
     await checkLive(1000000, true)
     expect(problems.length === 0, `nothing goes wrong: ${problems}`)

@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
   const std::string folder = argv[1];
   if (argc == 3) {
     const PulseIndex all = std::strtoull(argv[2], nullptr, 10);
-    adapters::PageWriter writer(folder + "/page.html", survey(), {.most_points = 2 * all});
+    adapters::PageWriter writer(folder + "/page.html", survey(), {.most_points = 2 * all + 2});
     for (PulseIndex i = 0; i < all; i += 10'000) writer(Shots(i, std::min(all, i + 10'000), all).batch());
     writer.close();
     return 0;
