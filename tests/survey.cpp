@@ -501,6 +501,28 @@ TEST_CASE("a survey refuses a receiver and a detector that cannot be") {
   CHECK_THROWS_AS((Survey{source, SingleRay{}, plane, Receiver{}, FirstHit{.threshold = -1}}), SettingError);
 }
 
+TEST_CASE("a survey refuses a footprint of one's own that is not a whole beam") {
+  struct Pattern {
+    std::vector<double> shares;
+    Vec2 aside{};
+    std::size_t size() const noexcept { return shares.size(); }
+    Vec2 offset(std::size_t) const noexcept { return aside; }
+    double share(std::size_t j) const noexcept { return shares[j]; }
+  };
+  const Plane plane;
+  const auto survey = [&](const Pattern& pattern) {
+    return Survey{still({}, no_rotation), pattern, plane, Receiver{}, FirstHit{}}.subrays();
+  };
+  CHECK(survey({{0.25, 0, 0.75}}) == 3);
+  CHECK(survey({std::vector<double>(100'000, 1e-5)}) == 100'000);
+  CHECK_THROWS_AS(survey({{}}), SettingError);
+  CHECK_THROWS_AS(survey({{0.5, 0.25}}), SettingError);
+  CHECK_THROWS_AS(survey({{1, 1}}), SettingError);
+  CHECK_THROWS_AS(survey({{1.5, -0.5}}), SettingError);
+  CHECK_THROWS_AS(survey({{std::nan("")}}), SettingError);
+  CHECK_THROWS_AS(survey({{1}, {0, infinity}}), SettingError);
+}
+
 TEST_CASE("ranges err as the receiver is told, each echo on its own, and the same again") {
   const Plane plane{.point = {0, 0, -100}};
   const Receiver noisy{.range_errors = {.bias = 0.5, .deviation = 0.02}};

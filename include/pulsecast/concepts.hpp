@@ -18,7 +18,8 @@
 
 /// The contract: every public concept, on one page. A model is one plain struct; nothing is inherited or registered.
 /// The laws that a compiler cannot check are tested by `tests/support/laws.hpp`.
-// clang-format off: version 14 tears compound requirements apart
+// clang-format off
+// version 14 tears compound requirements apart
 namespace pulsecast {
 
 // ---------------------------------------------------------------------------------------------------------------- motions
@@ -107,7 +108,8 @@ struct Surface {
 
 /// A shape that rays can meet, in its own frame [m]. Shared by any number of parts. `memory()` is in bytes; `material_count()` is how
 /// long a part's material table must be.
-/// May say `static constexpr bool flat = true` if a primitive's surface is the same wherever it is met: it is then asked for once.
+/// `surface(i, rays, j)` is that of primitive i where ray j met it: not told where, a curved one meets the ray again. The shape may say
+/// `static constexpr bool flat = true` if a primitive's surface is the same wherever it is met: it is then asked for once.
 /// Law: pure; random draws come from the bundle's names only; `closest` offers primitives to `nearest` and nothing else.
 template <class G>
 concept Geometry = requires(const G g, const RayBundle& rays, Nearest& nearest, PrimitiveIndex i, std::size_t j) {
@@ -138,7 +140,7 @@ concept Target = BundleTarget<T> || RayTarget<T>;
 // ----------------------------------------------------------------------------------------------------------- the detector
 
 /// How a beam's cross section is sampled by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along the beam.
-/// Law: the shares are not negative and sum to one.
+/// Law: the shares are not negative and sum to one; a survey refuses others.
 /// May say `static constexpr bool recorded = true`, to have all subrays handed on to the sinks, as `Recorded` does.
 template <class F>
 concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
@@ -167,8 +169,8 @@ struct Detection {
 /// needs to write on is its `Workspace`, made once per worker by `workspace(subrays)`.
 /// Law: pure; echoes are sorted by range; their energy is not more than what came in.
 /// Not required: to use all reflections; randomness; `void validate(const Laser&) const`, which refuses lasers before the first pulse. A
-/// detector that draws random numbers also takes a last argument, a `RandomKey` that names seed and pulse, and draws from its own
-/// `purpose`, `subray` and `part` of it.
+/// detector that draws random numbers takes a last argument, `RandomKey key = {}`, that names seed and pulse, and draws from a
+/// `purpose` of its own, as `Purpose{128}`, and any `subray` and `part` of it.
 template <class D>
 concept Detector = std::copyable<D> && requires(const D d, const Laser& laser, std::span<Reflection> reflections, std::size_t subrays,
                                                 decltype(d.workspace(subrays))& workspace) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/concepts.hpp>
@@ -43,6 +44,7 @@ class Survey {
         receiver_(validated(receiver)),
         detector_(validated(std::move(detector))),
         seed_(seed) {
+    expect_whole_beam();
     if constexpr (requires(const Laser& laser) { detector_.validate(laser); }) expect_lasers();
   }
 
@@ -144,6 +146,18 @@ class Survey {
 
  private:
   using Scratch = decltype(Workspace::detector);
+
+  /// Refuses a footprint that keeps energy back, or gives more than there is.
+  void expect_whole_beam() const {
+    double sum = 0;
+    for (std::size_t j = 0; j < footprint_.size(); ++j) {
+      const double share = footprint_.share(j);
+      expect_not_negative("Footprint::share", share, "");
+      expect_finite("Footprint::offset (length)", length(footprint_.offset(j)), "");
+      sum += share;
+    }
+    expect_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // adding up a million rounds less
+  }
 
   /// Refuses a laser that the detector cannot serve, as far as the first slots, of every channel, and some from all over tell.
   void expect_lasers() const {

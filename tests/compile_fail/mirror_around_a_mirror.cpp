@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-// error: BeamSource|Head
+// error: BeamSource|Head|constraints not satisfied for class template .Deflector
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>

@@ -49,23 +49,23 @@ struct AngleConvention {
 
 /// Heading clockwise from north, then pitch, nose up, then roll, right wing down: the body axes forward, right, down in the world of
 /// north, east, down. Source: ISO 1151-1, DIN 9300-1; the usual one of navigation units.
-inline constexpr AngleConvention heading_pitch_roll{};
+inline const AngleConvention heading_pitch_roll{};
 
 /// As `heading_pitch_roll`, but roll comes before pitch. HELIOS++ calls this "ARINC 705".
-inline constexpr AngleConvention helios_arinc_705{
+inline const AngleConvention helios_arinc_705{
     .turns = {{{&RollPitchYaw::yaw, -up}, {&RollPitchYaw::roll, forward}, {&RollPitchYaw::pitch, right}}}};
 
 /// Roll about right, pitch about forward, yaw counter-clockwise from north. HELIOS++ calls this "CANONICAL" and writes it.
-inline constexpr AngleConvention helios_canonical{
+inline const AngleConvention helios_canonical{
     .turns = {{{&RollPitchYaw::roll, right}, {&RollPitchYaw::pitch, forward}, {&RollPitchYaw::yaw, up}}}};
 
 /// Yaw counter-clockwise from east, then pitch, nose up, then roll, right wing down.
-inline constexpr AngleConvention mathematical{
+inline const AngleConvention mathematical{
     .turns = {{{&RollPitchYaw::yaw, up}, {&RollPitchYaw::pitch, right}, {&RollPitchYaw::roll, forward}}}, .zero_heading = pi / 2};
 
 /// Yaw counter-clockwise from east, then pitch, nose down, then roll, right wing down: the body axes forward, left, up in the world of
 /// east, north, up. Source: ROS REP 103.
-inline constexpr AngleConvention ros_roll_pitch_yaw{
+inline const AngleConvention ros_roll_pitch_yaw{
     .turns = {{{&RollPitchYaw::yaw, up}, {&RollPitchYaw::pitch, -right}, {&RollPitchYaw::roll, forward}}}, .zero_heading = pi / 2};
 
 /// The attitude, from the body to the world, of angles in a convention.

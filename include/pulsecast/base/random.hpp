@@ -11,7 +11,7 @@
 namespace pulsecast {
 
 /// What a random number is drawn for; numbers for different purposes are independent. A purpose keeps its number for ever, as results
-/// depend on it: new ones come last.
+/// depend on it: new ones come last. Those from 128 to 255 are left to models of a user's own: `Purpose{128}`.
 enum class Purpose : std::uint32_t {
   range_noise = 0,
   position_noise = 1,

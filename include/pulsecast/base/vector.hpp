@@ -19,11 +19,12 @@
 /// Vectors and rotations. GLM is named in this header only.
 namespace pulsecast {
 
-using Vec2 = glm::dvec2;
-using Vec3 = glm::dvec3;
+// packed, and constexpr only where GLM is: a program may tell GLM to align its own vectors, and to use intrinsics
+using Vec2 = glm::vec<2, double, glm::packed_highp>;
+using Vec3 = glm::vec<3, double, glm::packed_highp>;
 
 /// A rotation as a unit quaternion; `rotation * vector` turns the vector.
-using Rotation = glm::dquat;
+using Rotation = glm::qua<double, glm::packed_highp>;
 
 using glm::conjugate;
 using glm::cross;
@@ -32,9 +33,9 @@ using glm::length;
 using glm::normalize;
 using std::numbers::pi;
 
-inline constexpr Vec3 right{1, 0, 0};    ///< +x of the world (east), a body and an instrument
-inline constexpr Vec3 forward{0, 1, 0};  ///< +y: north, and where a beam leaves
-inline constexpr Vec3 up{0, 0, 1};       ///< +z
+inline GLM_CONSTEXPR const Vec3 right{1, 0, 0};    ///< +x of the world (east), a body and an instrument
+inline GLM_CONSTEXPR const Vec3 forward{0, 1, 0};  ///< +y: north, and where a beam leaves
+inline GLM_CONSTEXPR const Vec3 up{0, 0, 1};       ///< +z
 
 inline const Rotation no_rotation{1, 0, 0, 0};
 
@@ -42,7 +43,7 @@ inline const Rotation no_rotation{1, 0, 0, 0};
 [[nodiscard]] inline Rotation rotation_about(const Vec3& axis, double angle) noexcept { return glm::angleAxis(angle, normalize(axis)); }
 
 /// The columns are where x, y and z are turned to; it costs less than the rotation where more than one vector is to be turned.
-using Matrix3 = glm::dmat3;
+using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
 [[nodiscard]] inline Matrix3 matrix_of(const Rotation& rotation) noexcept { return glm::mat3_cast(rotation); }
 
 [[nodiscard]] inline bool finite(const Vec3& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }

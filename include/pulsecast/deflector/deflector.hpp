@@ -12,8 +12,11 @@ namespace pulsecast {
 
 /// Sends the pulses of a laser through a moving optic, or turns a whole instrument with a head:
 /// `Deflector{RotatingHead{...}, Deflector{PolygonMirror{...}, Scanner{...}}}`.
+// clang-format off
 template <class Moving, class Source>
-requires(Optic<Moving>&& BeamSource<Source>) || (Head<Moving> && InstrumentSource<Source>)class Deflector {
+requires (Optic<Moving> && BeamSource<Source>) || (Head<Moving> && InstrumentSource<Source>)
+class Deflector {
+  // clang-format on
  public:
   Deflector(Moving moving, Source source) : moving_(validated(std::move(moving))), source_(validated(std::move(source))) {}
 
