@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -72,9 +73,12 @@ std::int64_t unix_time_of(const std::string& text) {
   std::istringstream in(text);
   if (text.find_first_not_of("0123456789") == std::string::npos && text.size() < 16) return std::stoll(text);
   in >> std::get_time(&t, "%Y-%m-%d %H:%M:%S");
-  if (!in || in.peek() != std::istringstream::traits_type::eof())
+  const std::tm given = t;
+  const std::int64_t moment = timegm(&t);  // which makes the 2nd of March of the 30th of February
+  const bool is_date = t.tm_mday == given.tm_mday && t.tm_hour == given.tm_hour && t.tm_sec == given.tm_sec && moment >= 0;
+  if (!in || in.peek() != std::istringstream::traits_type::eof() || !is_date)
     throw std::invalid_argument("--gpsStartTime '" + text + "': expected YYYY-MM-DD hh:mm:ss in UTC, or whole seconds since 1970");
-  return timegm(&t);
+  return moment;
 }
 
 std::string prefix_of(const SurveyPlan::LegPlan& leg) {
@@ -145,6 +149,7 @@ class Session {
       if (ranks_.first()) RunLog::remove(done);
     }
     pages_.finish(all.complete);
+    if (all.complete && all.echoes == 0 && all.pulses() > 0) tell_of_nothing(simulation);
     const std::string traffic = ranks_.traffic();
     if (!options_.quiet) {
       print(all);
@@ -174,15 +179,29 @@ class Session {
     for (const std::string& text : simulation.notes()) note(text);
   }
 
+  /// Why there may be no point at all: mostly, scene and legs have coordinates of different origin.
+  void tell_of_nothing(const Simulation& simulation) {
+    const Simulation::Scene scene = simulation.scene();
+    const SurveyPlan& plan = simulation.plan();
+    const auto leg = std::find_if(plan.legs.begin(), plan.legs.end(), [](const SurveyPlan::LegPlan& l) { return l.end > l.first; });
+    if (scene.empty || leg == plan.legs.end()) return note("there is no point, as there is nothing to scan");
+    std::ostringstream text;
+    const auto put = [&](const char* words, const Vec3& v) { text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')'; };
+    text << std::fixed << std::setprecision(1) << "there is no point: leg " << leg->number;
+    put(" begins at ", plan.source.legs()[leg->number].path().at({}).position);
+    put(" m, and the scene is from ", scene.least), put(" to ", scene.most);
+    note(text.str() + " m");
+  }
+
   /// All that decides about the results beside the seed and the time, in one line.
   [[nodiscard]] std::string how() const {
     adapters::Digest survey;
     survey.add(std::string_view(file_.text));
     std::ostringstream out;
     out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec << " format=" << options_.format
-        << " scale=" << options_.las_scale << " las10=" << options_.las_1_0 << " flags=" << options_.write_waveform << options_.write_pulse
-        << options_.echo_width << options_.waveform_noise << options_.fixed_incidence << options_.split_by_channel
-        << options_.platform_noise << options_.leg_noise;
+        << " scale=" << options_.las_scale << " epsg=" << options_.epsg.value_or(0) << " las10=" << options_.las_1_0
+        << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width << options_.waveform_noise
+        << options_.fixed_incidence << options_.split_by_channel << options_.platform_noise << options_.leg_noise;
     return out.str();
   }
 
@@ -342,11 +361,14 @@ int work(const Options& options, Ranks& ranks) {
     return plan(options, file, settings_of(options, file, *seed)) ? success : bad_input;
   } else {
     check_without_scene(file.survey, file.leg_places);  // before anything expensive
-    if (ranks.count() == 1 || !(options.page || options.live)) return Session(options, file, *seed, ranks).run();
-    Options without = options;
-    without.page = without.live = false;
-    if (!options.quiet && ranks.first()) std::cerr << "note: --page and --live have no effect under mpirun: one process sees all points\n";
-    return Session(without, file, *seed, ranks).run();
+    Options settled = options;
+    if (!options.epsg && options.format.starts_with("la")) settled.epsg = reference_system_of(file.survey.scene);
+    if (ranks.count() > 1 && (options.page || options.live)) {
+      settled.page = settled.live = false;
+      if (!options.quiet && ranks.first())
+        std::cerr << "note: --page and --live have no effect under mpirun: one process sees all points\n";
+    }
+    return Session(settled, file, *seed, ranks).run();
   }
   return success;
 }

@@ -109,7 +109,7 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   app.add_option("-o,--output", o.output, "Folder for the results")->type_name("DIR")->capture_default_str();
   app.add_option("--format", o.format, "Of the points: las, laz, xyz or xyz.gz; xyz if not given")
       ->type_name("FORMAT")
-      ->check(CLI::IsMember({"las", "laz", "xyz", "xyz.gz"}));
+      ->transform(CLI::IsMember({"las", "laz", "xyz", "xyz.gz"}, CLI::ignore_case));
   std::string seed;
   app.add_option("--seed", seed, "Of all that is random; the survey's own, or another one each time")
       ->type_name("N")
@@ -131,6 +131,14 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
     const auto step = number_in<double>(text);
     return step && *step >= 1e-9 && *step <= 1e3 ? std::string() : "'" + text + "' is no length from 1e-9 to 1000 m";
   });
+  std::string epsg;
+  app.add_option("--epsg", epsg, "Reference system of the coordinates in LAS, 0 for none; that of the scene's GeoTIFF if not given")
+      ->type_name("CODE")
+      ->check([](const std::string& text) {
+        const auto code = number_in<std::uint16_t>(text);
+        return code && (*code == 0 || (*code >= 1024 && *code <= 32766)) ? std::string()
+                                                                         : "'" + text + "' is no code of EPSG from 1024 to 32766, nor 0";
+      });
   app.add_flag(both("zipOutput"), zip, "Points compressed: --format xyz.gz; with --lasOutput, --format laz");
   app.add_flag(both("writeWaveform"), o.write_waveform, "Leave waveforms, too");
   app.add_flag(both("writePulse"), o.write_pulse, "Leave a table of all pulses, too");
@@ -232,6 +240,7 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
     o.notes.push_back("--format " + o.format + " counts, not " + (las ? "--lasOutput" : "--zipOutput"));
   if (o.las_1_0 && o.format == "laz") return refuse("--las10 and --format laz: only LAS 1.4 is compressed");
   if (o.las_1_0 && zip && o.format == "las") o.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
+  if (!epsg.empty()) o.epsg = number_in<std::uint16_t>(epsg);
   if (!seed.empty() && seed != "AUTO") o.seed = number_in<std::uint64_t>(seed);
   o.platform_noise = !no_platform_noise, o.leg_noise = !no_leg_noise;
   o.store = {scene_folder(), !rebuild_scene, !no_scene_writing};

@@ -36,8 +36,9 @@ struct Options {
   std::optional<std::uint64_t> seed{};
   unsigned threads = 0;  ///< 0 for all
   std::string gps_start_time{};
-  double las_scale = 1e-4;  ///< [m]
-  bool las_1_0 = false;     ///< LAS of version 1.0
+  double las_scale = 1e-4;              ///< [m]
+  std::optional<std::uint16_t> epsg{};  ///< of the coordinates in LAS, 0 for none; that of the scene's rasters unless given
+  bool las_1_0 = false;                 ///< LAS of version 1.0
   bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false;
   bool page = false, live = false;  ///< a page of the points: to be left, and to be watched
   std::size_t page_points = 1'000'000;

@@ -11,8 +11,8 @@
 #include <pulsecast/adapters/gzip.hpp>
 #include <pulsecast/adapters/image.hpp>
 #include <pulsecast/adapters/las.hpp>
-#include <pulsecast/adapters/pulse_text.hpp>
 #include <pulsecast/adapters/laz.hpp>
+#include <pulsecast/adapters/pulse_text.hpp>
 #include <pulsecast/adapters/trajectory_file.hpp>
 #include <pulsecast/adapters/waveform_text.hpp>
 #include <pulsecast/adapters/xyz.hpp>
@@ -44,6 +44,7 @@ std::vector<fs::path> point_files(const fs::path& folder, const std::string& pre
 
 adapters::LasSettings las_settings(const Options& o, double start_time) {
   adapters::LasSettings settings{.scale = o.las_scale, .gps_time = adapters::GpsTime::week, .start_time = start_time};
+  settings.epsg = o.epsg.value_or(0);
   if (o.format == "las" && o.las_1_0) settings.format = adapters::LasFormat::las_1_0;
   settings.waveforms = o.format == "las" && o.write_waveform && !o.las_1_0;
   return settings;

@@ -12,7 +12,9 @@
 #include <set>
 #include <string>
 #include <system_error>
+#include <variant>
 
+#include <pulsecast/adapters/geotiff.hpp>
 #include <pulsecast/adapters/xml.hpp>
 
 namespace fs = std::filesystem;
@@ -23,6 +25,17 @@ SurveyFile read_survey_file(const Options& options) {
   std::string text = adapters::xml_text(document.survey),
               scene_text = adapters::xml_text(adapters::AssetDocument{.scenes = {document.survey.scene}});
   return {std::move(document.survey), std::move(document.warnings), std::move(text), std::move(scene_text), std::move(document.leg_places)};
+}
+
+std::uint16_t reference_system_of(const adapters::SceneSettings& scene) {
+  std::set<std::uint16_t> codes;
+  for (const adapters::PartSettings& part : scene.parts) {
+    const auto* const rasters = std::get_if<adapters::GeoTiffSource>(&part.source);
+    if (rasters == nullptr || part.transform != adapters::TransformSettings{}) continue;
+    for (const fs::path& path : rasters->files) codes.insert(adapters::read_geotiff_epsg(path).value_or(0));
+  }
+  const bool is_one = codes.size() == 1 && *codes.begin() >= 1024 && *codes.begin() <= 32766;  // source: OGC GeoTIFF 1.1, codes of EPSG
+  return is_one ? *codes.begin() : std::uint16_t{0};
 }
 
 namespace {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,10 @@ struct SurveyFile {
   std::vector<std::string> leg_places{};  ///< where each leg stands in it, for messages
 };
 SurveyFile read_survey_file(const Options& options);
+
+/// The code of the reference system that all rasters of the scene have; 0 if there is none, or another one. Rasters that a part moves do
+/// not count.
+std::uint16_t reference_system_of(const pulsecast::adapters::SceneSettings& scene);
 
 /// What `write_survey_file` changes, of all channels.
 struct WaveformChange {

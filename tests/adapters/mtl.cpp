@@ -47,6 +47,13 @@ TEST_CASE("every key of an MTL file that counts is read") {
   CHECK(wall.ground);
 }
 
+TEST_CASE("what is neither true nor false is no ground, with a warning") {
+  const MaterialLibrary library = mtl("newmtl a\nhelios_isGround yes\nnewmtl b\nhelios_isGround 0\nnewmtl c\nhelios_isGround False\n");
+  for (const char* name : {"a", "b", "c"}) CHECK_FALSE(library.materials.at(name).ground);
+  REQUIRE(library.warnings.size() == 1);
+  CHECK(contains(library.warnings[0], "'a' has helios_isGround 'yes', which is neither true nor false"));
+}
+
 TEST_CASE("the colours decide the angular law, material by material") {
   const MaterialLibrary library =
       mtl("newmtl both\nKd 0.3 0.3 0.3\nKs 0.1 0.1 0.1\n"

@@ -80,6 +80,17 @@ TEST_CASE("an id that is no number gives way to the part's place, with a note") 
   CHECK(builder.warnings()[1].find("'house'") != std::string::npos);
 }
 
+TEST_CASE("parts that points do not tell apart are told of") {
+  const Files files;
+  SceneBuilder alike(scene_of({files.part("plane.obj", "3"), files.part("cube.obj", "3")}), {});
+  CHECK(alike.parts().size() == 2);
+  REQUIRE(alike.warnings().size() == 1);
+  CHECK(alike.warnings()[0].find("'3' and '3' carry the same number, 3") != std::string::npos);
+  SceneBuilder unlike(scene_of({files.part("plane.obj", "3"), files.part("cube.obj", "4")}), {});
+  CHECK(unlike.parts().size() == 2);
+  CHECK(unlike.warnings().empty());
+}
+
 TEST_CASE("a part is let down onto the ground") {
   const Files files;
   PartSettings cube = files.part("cube.obj", "1");

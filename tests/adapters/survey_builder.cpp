@@ -93,6 +93,16 @@ TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with 
   CHECK(length(origin(plan, plan.legs[1].first) - Vec3{50, 2, 99}) < 1e-9);
   CHECK(length(plan.source.pulse(0)->direction() - right) < 1e-9);
 
+  SUBCASE("a head that outlasts the way is told of") {
+    s.legs[0].scanner.head_speed = radians(90), s.legs[0].scanner.head_stop = radians(900);
+    const SurveyPlan waits = plan_survey(s, flat);
+    CHECK(waits.legs[0].duration.seconds() == 10);
+    REQUIRE(waits.warnings.size() == 1);
+    CHECK(waits.warnings[0].find("leg 0: the platform is there after 5 s, and stays until the head has turned, 5 s more") == 0);
+    s.legs[0].scanner.head_stop = 0;  // turns all the way
+    CHECK(plan_survey(s, flat).legs[0].duration.seconds() == 5);
+    CHECK(plan_survey(s, flat).warnings.empty());
+  }
   SUBCASE("one leg alone has no end") {
     s.legs.resize(1);
     CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 0: maxDuration_s"), SettingError);

@@ -53,6 +53,20 @@ TEST_CASE("a place may be on the ground, and beside where it should be by chance
   CHECK(a[0].path.at({}).position != exact[0].path.at({}).position);
 }
 
+TEST_CASE("a place is finite, whatever the platform, and may get its height from the ground") {
+  for (const PlatformKind kind :
+       {PlatformKind::stationary, PlatformKind::linear_path, PlatformKind::multicopter, PlatformKind::ground_vehicle})
+    for (const double bad : {std::nan(""), HUGE_VAL}) {
+      CAPTURE(static_cast<int>(kind));
+      CAPTURE(bad);
+      CHECK_THROWS_WITH_AS(SurveyWays(survey_of(kind, {{0, 0, 9}, {bad, 0, 9}}), flat, {}), doctest::Contains("leg 1: position"),
+                           SettingError);
+    }
+  SurveySettings s = survey_of(PlatformKind::stationary, {{0, 0, std::nan("")}});
+  s.legs[0].platform.on_ground = true;
+  CHECK(SurveyWays(s, flat, {})[0].path.at({}).position == Vec3{0, 0, 7});
+}
+
 TEST_CASE("a multicopter that hovers before, between and after ways looks along them, or where it is told to") {
   SurveySettings s = survey_of(PlatformKind::multicopter, {{0, 0, 40}, {0, 0, 40}, {40, 0, 40}, {40, 0, 40}, {40, -40, 40}}, 5);
   const SurveyBuildOptions options;

@@ -17,6 +17,7 @@
 #include <doctest/doctest.h>
 
 #include "support/generators.hpp"
+#include "support/spoilt_text.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace pulsecast::adapters {
@@ -147,6 +148,20 @@ TEST_CASE("comments that say less leave the usual order, and those that contradi
   TrajectoryFormat radian = helios_format();
   radian.angle_unit = AngleUnit::radian;
   CHECK(same(read("0,0.1,0.2,0.3,4,5,6\n", radian).poses[0].rotation, rotation_of({0.1, 0.2, 0.3}, helios_arinc_705)));
+}
+
+TEST_CASE("a first line of names counts without its #, and is no row where columns are agreed") {
+  const TrajectoryTable expected = read("0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n", helios_format());
+  const TrajectoryTable named =
+      read("Time [s];easting;northing;height;roll;pitch;heading\n0;4;5;6;1;2;3\n1;4;5;6;1;2;3\n", helios_format());
+  REQUIRE(named.poses.size() == 2);
+  CHECK(named.poses[1].position == Vec3{4, 5, 6});
+  CHECK(same(named.poses[1].rotation, expected.poses[1].rotation));
+  TrajectoryFormat agreed = helios_format();
+  agreed.names = ColumnNames::nowhere;
+  CHECK(read("when,r,p,y,e,n,h\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n", agreed).poses.size() == 2);
+  CHECK(contains(error("when,x,y,z\n0,1,2,3\n", helios_format()).problem(), "no column holds the time"));
+  CHECK(error("0,1,2,3,4,5,6\nt,roll,pitch,yaw,x,y,z\n", helios_format()).place() == "line 2, column 1");
 }
 
 TEST_CASE("time, position and quaternion of a robot: its x is forward") {
@@ -324,36 +339,13 @@ TEST_CASE("a mutated file gives a trajectory that Waypoints take, or a FileError
       head + "10,1,2,3,0,0,350\n10.5,1.5,-2,1e2,0,20,10\n11,2,3,4,5,6,7\n",
       "#TIME_COLUMN: 0\n#HEADER: \"t\", \"roll\", \"pitch\", \"yaw\", \"x\", \"y\", \"z\"\n0,1,2,3,4,5,6\n0.5,1,2,3,4,5,7\n1,1,2,3,4,5,8\n",
       "# t x y z qx qy qz qw\n1 0 0 0 0 0 0 1\n2 1 1 1 0 0 0.70711 0.70711\n3 1 1 1 0.5 0.5 0.5 0.5\n"};
+  const char* const words[] = {"nan", "-1",     "0", "1e308", ",",  "\n", " ",         "99999999999",    ";",  "\t",   "-",  ".", "#",
+                               "\"",  "1e-320", "e", "1e12",  "\r", "_",  "#HEADER: ", "#TIME_COLUMN: ", "qw", "time", "x_m"};
   int loaded = 0, refused = 0;
   for (std::uint64_t seed = 0; seed < 6000; ++seed) {
     CAPTURE(seed);
     support::Generator random(seed);
-    const auto draw = [&random](std::size_t below) { return static_cast<std::size_t>(random.whole(below)); };
-    std::string text = valid[seed % 3];
-    for (std::size_t k = 1 + draw(2); k > 0 && !text.empty(); --k) {
-      const std::size_t at = draw(text.size());
-      const char* words[] = {"nan", "-1",     "0", "1e308", ",",  "\n", " ",         "99999999999",    ";",  "\t",   "-",  ".", "#",
-                             "\"",  "1e-320", "e", "1e12",  "\r", "_",  "#HEADER: ", "#TIME_COLUMN: ", "qw", "time", "x_m"};
-      switch (draw(6)) {
-        case 0:
-          text[at] = static_cast<char>(draw(256));
-          break;
-        case 1:
-          text.erase(at, 1 + draw(5));
-          break;
-        case 2:
-          text.insert(at, words[draw(std::size(words))]);
-          break;
-        case 3:
-          text.resize(at);
-          break;
-        case 4:
-          text.insert(at, text.substr(draw(text.size()), draw(40)));
-          break;
-        default:
-          text[at] = static_cast<char>('0' + draw(10));
-      }
-    }
+    const std::string text = support::spoilt(valid[seed % 3], 1 + random.whole(2), words, random);
     try {
       const TimeWindow window = seed % 2 == 0 ? TimeWindow{} : TimeWindow{.start = random.uniform(0, 4)};
       const TrajectoryTable table = read(text, formats[seed % 3], window);

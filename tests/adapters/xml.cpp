@@ -307,6 +307,15 @@ TEST_CASE("a leg has the scanner's first rate, and resolutions give rates") {
                  "no scanner is as fast"));
 }
 
+TEST_CASE("bins that pulses fall between are refused before anything is loaded") {
+  const auto faults = [](const char* bin) {
+    return faults_of(survey_text("", R"(<FWFSettings binSize_ns=")" + std::string(bin) + "\"/>" + leg("")));
+  };
+  CHECK(contains(faults("9"), "binSize_ns is 9 ns, and pulses are 5 ns long: expected bins from 0.0005 ns to 5 ns"));
+  CHECK(contains(faults("0.0003"), "expected bins from"));
+  CHECK(faults("5").empty());
+}
+
 TEST_CASE("what has no effect, or is unlike what it seems, is told and does not hinder") {
   const auto warns = [](const std::string& text, const std::string& part) {
     const std::vector<std::string> warnings = read_text(text).warnings;

@@ -75,6 +75,17 @@ TEST_CASE("a platform that moves may stay where it is") {
   CHECK(contains(told(at("") + at(R"(x="9")", stay)), "to stay there for maxDuration_s, expected another <leg> at the same place"));
 }
 
+TEST_CASE("a resolution that the scanner is too slow or too fast for is told as such, with one that it can do") {
+  const auto at = [](const char* resolution) {
+    return faults_of(
+        survey_text("", leg("maxDuration_s=\"1\" pulseFreq_hz=\"20000\" verticalResolution_deg=\"" + std::string(resolution) + "\"")));
+  };
+  CHECK(contains(at("5"), "verticalResolution_deg of 5 takes 416.666667 lines a second at 20000 Hz: expected at most 2.4"));
+  CHECK(contains(at("5"), "for the scanner's scanFreqMax_Hz is 200 Hz"));
+  CHECK(contains(at("0.001"), "expected at least"));
+  CHECK(at("2.4").empty());
+}
+
 TEST_CASE("the last leg of a platform that moves scans nothing, and is not held against the scanner") {
   const std::string airplane = R"(platform="surveys/assets.xml#airplane")";
   const std::string flies = R"(<leg><platformSettings x="9"/><scannerSettings scanFreq_hz="20"/></leg>)";

@@ -33,12 +33,13 @@ TEST_CASE("a cloud that says little has the defaults of the format") {
             .empty());
   CHECK(cloud.files.at(0).filename() == "mesh.obj");
   CHECK(cloud.voxel_size == 1);
-  CHECK(cloud.separator == " ");
+  CHECK(cloud.separator.empty());
   CHECK(cloud.normal_columns[2] == 5);
   XyzSource other;
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/>)", other), "has no param 'voxelSize'"));
   CHECK(contains(filter_told(R"(<param key="defaultNormal" value="0;0;0"/>)", other), "it has no direction"));
   CHECK(contains(filter_told(R"(<param key="normalXIndex" value="1000"/>)", other), "from 0 to 999"));
+  CHECK(contains(filter_told(R"(<param key="colour" value="1"/>)", other), "rgbRIndex, rgbGIndex"));  // each once
   for (const char* name : {"rgbRIndex", "rgbGIndex", "rgbBIndex", "maxColorValue", "sparse"}) {
     const std::string told = filter_told("<param key=\"filepath\" value=\"mesh.obj\"/><param key=\"voxelSize\" value=\"1\"/><param key=\"" +
                                              std::string(name) + "\" value=\"1\"/>",

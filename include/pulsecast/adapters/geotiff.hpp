@@ -59,6 +59,9 @@ struct GeoTiff {
 /// Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); for GDAL_NODATA and tiles that are left out, the GDAL manual, GTiff driver.
 [[nodiscard]] GeoTiff read_geotiff(const std::filesystem::path& path, const GeoTiffSettings& settings = {});
 
+/// The code of the projected reference system that such a file names, if any; reads no heights. Throws as `read_geotiff`.
+[[nodiscard]] std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path);
+
 namespace detail {
 
 /// Tags and keys by number. Source: OGC GeoTIFF 1.1, annex B and 7.1; GDAL manual.
@@ -84,6 +87,11 @@ class GeoTiffReader {
  public:
   GeoTiffReader(const std::filesystem::path& path, const GeoTiffSettings& settings)
       : settings_(validated(settings)), file_(path, "a GeoTIFF"), tiff_(open()) {}
+
+  [[nodiscard]] std::optional<std::uint16_t> epsg() {
+    read_keys();
+    return result_.epsg;
+  }
 
   [[nodiscard]] GeoTiff read() {
     read_layout();
@@ -420,5 +428,7 @@ class GeoTiffReader {
 inline GeoTiff read_geotiff(const std::filesystem::path& path, const GeoTiffSettings& settings) {
   return detail::GeoTiffReader(path, settings).read();
 }
+
+inline std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path) { return detail::GeoTiffReader(path, {}).epsg(); }
 
 }  // namespace pulsecast::adapters

@@ -306,6 +306,8 @@ class MtlReader : private StatementBuffer {
     std::string ground = extra("helios_isGround");
     std::transform(ground.begin(), ground.end(), ground.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
     made.ground = ground == "true" || ground == "1";
+    if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
+      warn("has helios_isGround '" + ground + "', which is neither true nor false: it is taken to be no ground");
     return made;
   }
 

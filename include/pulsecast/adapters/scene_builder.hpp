@@ -86,6 +86,7 @@ class SceneBuilder {
       add(part, *source, *transform, i, all);
       lifted.resize(all.size(), transform->on_ground);
     }
+    tell_shared_objects(all);
     stand_on_ground(all, lifted);
     move(all);
     return all;
@@ -143,7 +144,7 @@ class SceneBuilder {
     s.normals = source.estimate_normals > 0   ? VoxelNormals::fitted
                 : source.snap_neighbor_normal ? VoxelNormals::nearest
                                               : VoxelNormals::mean;
-    s.columns.separators = source.separator.empty() ? " " : source.separator;
+    s.columns.separators = source.separator;
     PointColumns::Columns normal{};
     std::transform(source.normal_columns.begin(), source.normal_columns.end(), normal.begin(),
                    [](int column) { return static_cast<std::size_t>(column); });
@@ -251,6 +252,18 @@ class SceneBuilder {
       all.push_back({loaded.geometry, loaded.materials, placement, object++, part.id, {}});
       settings_of_.resize(all.size());
       settings_of_.back() = &part;
+    }
+  }
+
+  /// Says which parts the points do not tell apart.
+  void tell_shared_objects(const std::vector<SurveyPart>& all) {
+    std::map<ObjectId, const PartSettings*> first;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto [at, is_new] = first.try_emplace(all[i].object, settings_of_[i]);
+      if (is_new) continue;
+      warn({"points of the parts '" + at->second->id + "' and '" + settings_of_[i]->id + "' carry the same number, " +
+            std::to_string(all[i].object) + ": they cannot be told apart"});
+      return;
     }
   }
 

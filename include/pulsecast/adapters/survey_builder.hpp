@@ -50,13 +50,17 @@ class SurveyPlanner {
     if (survey_.scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
     std::vector<Leg<SurveyLeg>> legs;
     std::vector<SurveyPlan::LegPlan> plans;
+    std::vector<std::string> warnings = ways_.warnings();
     PulseIndex first = 0;
     Tick start{};
     double optic_time = 0;
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
       const double rate = rate_of(leg);
-      const double duration = duration_of(k, rate);
+      const double duration = duration_of(k, rate), way = ways_[k].duration;
+      if (way > 0 && duration > 1.1 * way && leg.scanner.active)
+        warnings.push_back(ways_.leg_name(k) + ": the platform is there after " + brief(way) + " s, and stays until the head has turned, " +
+                           brief(duration - way) + " s more; without headRotateStop_deg, the head turns for as long as the way lasts");
       const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
       if (!leg.scanner.active) optic_time = 0;
       std::vector<SurveyChannel> channels;
@@ -73,10 +77,13 @@ class SurveyPlanner {
       plans.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size, start = start + time;
     }
-    return {Legs<SurveyLeg>(std::move(legs)), std::move(plans), ways_.clock_start(), ways_.warnings()};
+    return {Legs<SurveyLeg>(std::move(legs)), std::move(plans), ways_.clock_start(), std::move(warnings)};
   }
 
  private:
+  /// A time for people, to the millisecond.
+  [[nodiscard]] static std::string brief(double seconds) { return pulsecast::detail::written(std::round(seconds * 1e3) / 1e3); }
+
   [[nodiscard]] double rate_of(const LegSettings& leg) const {
     double rate = leg.scanner.pulse_rate;
     if (!(rate > 0) && !survey_.scanner.pulse_rates.empty()) rate = survey_.scanner.pulse_rates.front();

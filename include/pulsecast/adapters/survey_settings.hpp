@@ -254,7 +254,7 @@ struct GeoTiffSource {
 struct XyzSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or those that `efilepath` matches, by name
   MaterialSource material{};
-  std::string separator = " ";                 ///< any of these separates columns; `separator`
+  std::string separator{};                     ///< any of these separates columns; found unless given. `separator`
   double voxel_size = 1;                       ///< edge; `voxelSize` [m]
   std::optional<Vec3> default_normal{};        ///< of any length but zero; `defaultNormal`
   int estimate_normals = 0;                    ///< 0: from the file, else a plane is fitted in each voxel; `estimateNormals`

@@ -17,6 +17,7 @@
 #include <pulsecast/adapters/survey_leg.hpp>
 #include <pulsecast/adapters/survey_settings.hpp>
 #include <pulsecast/adapters/trajectory_table.hpp>
+#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
@@ -81,6 +82,7 @@ class SurveyWays {
                              "where the scene has ground: a material with helios_isGround");
         at.z = *height;
       }
+      expect_finite(leg_name(k) + ": position (length)", length(at), "m");
       if (survey_.leg_offset && options_.leg_noise)
         for (int axis = 0; axis < 3; ++axis)
           at[axis] += survey_.leg_offset->mean + survey_.leg_offset->deviation * normal({.seed = options_.seed + 1,

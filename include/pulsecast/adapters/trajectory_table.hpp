@@ -67,6 +67,8 @@ class TrajectoryReader {
         if (format_.names == ColumnNames::comments && !columns_) comment(table_.text());
       } else if (!columns_ && format_.names == ColumnNames::first_line) {
         take_names();
+      } else if (!columns_ && format_.more_columns && has_names_only()) {
+        if (format_.names == ColumnNames::comments && !named_) named_ = true, take_names();
       } else {
         if (!columns_) settle_names();
         row();
@@ -111,6 +113,14 @@ class TrajectoryReader {
         table_.fail_here(TextTable::quoted(text) + " is no place of a column: expected a whole number from 0");
       time_place_ = static_cast<std::size_t>(*number);
     }
+  }
+
+  /// Whether the line could be a head that is no comment.
+  [[nodiscard]] bool has_names_only() {
+    const std::vector<std::string_view>& cells = table_.cells();
+    return std::none_of(cells.begin(), cells.end(), [](std::string_view cell) {
+      return cell.empty() || cell.find_first_of("0123456789+-.") == 0 || TextTable::number_in(cell);
+    });
   }
 
   void take_names() {

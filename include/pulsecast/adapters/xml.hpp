@@ -224,15 +224,31 @@ class SurveyReader {
           inner.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
       });
     }
+    check_bins(io);
+  }
+
+  /// A pulse would fall between bins that are longer, and `FullWaveform` takes no more than ten thousand in one.
+  void check_bins(const XmlInput& io) {
+    constexpr double most = 1e4;
+    const pugi::xml_node own = io.node().child("FWFSettings");
+    for (const ChannelSettings& channel : survey_.scanner.channels) {
+      const double bin = channel.waveform.bin_size, length = channel.pulse_length;
+      if (bin <= length && length <= most * bin) continue;
+      const auto ns = [](double seconds) { return xml_number(units::nanosecond.number(seconds)) + " ns"; };
+      return report_.fault(own ? document_.document().place(own) : io.place("scanner"), "binSize_ns is " + ns(bin) + ", and pulses are " +
+                                                                                            ns(length) + " long: expected bins from " +
+                                                                                            ns(length / most) + " to " + ns(length));
+    }
   }
 
   void read_legs(XmlInput& io) {
     const XmlDocument& document = document_.document();
     io.know({}, {"leg"});
     std::vector<pugi::xml_node> nodes;
+    std::vector<double> resolutions;  // of each leg, or 0
     for (pugi::xml_node node = io.node().child("leg"); node; node = node.next_sibling("leg")) {
       XmlInput leg(document, node, report_, document_.search());
-      read_leg(leg, survey_.legs.emplace_back());
+      resolutions.push_back(read_leg(leg, survey_.legs.emplace_back()));
       leg.finish();
       nodes.push_back(node);
       leg_places_.push_back(leg.place().text());
@@ -242,14 +258,15 @@ class SurveyReader {
     const LegChecks checks(document_, survey_, report_);
     bool is_active = false;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      checks.check(nodes[i], i);
+      checks.check(nodes[i], i, resolutions[i]);
       if (survey_.platform.kind != PlatformKind::interpolated) survey_.legs[i].platform.trajectory.reset();
       is_active = is_active || survey_.legs[i].scanner.active;
     }
     if (!is_active) report_.warn(io.place(), "no leg is active: there will be no pulses");
   }
 
-  void read_leg(XmlInput& leg, LegSettings& settings) {
+  /// Returns its vertical resolution [rad].
+  double read_leg(XmlInput& leg, LegSettings& settings) {
     std::optional<double> duration_max;
     leg.text("stripId", settings.strip);
     if (settings.strip && settings.strip->find_first_of("/\\") != std::string::npos)
@@ -264,6 +281,7 @@ class SurveyReader {
     if (!duration_max && scanner.duration_max && *scanner.duration_max > 0) duration_max = scanner.duration_max;
     settings.scanner = scanner.settings;
     settings.duration_max = duration_max;
+    return scanner.vertical_resolution;
   }
 
   /// Reads the template of an element, if it has one, and then the element: `read(XmlInput&)`.
@@ -325,8 +343,10 @@ class SurveyReader {
     if (!device || !std::holds_alternative<RotatingOptic>(device->optic)) {
       io.warn("verticalResolution_deg", "resolutions have no effect with these optics");
     } else if (device->scan_angle_max > 0) {
-      s.scan_frequency = s.pulse_rate * scanner.vertical_resolution / (2 * device->scan_angle_max);
-      s.head_speed = scanner.horizontal_resolution * s.scan_frequency;
+      const auto rounded = [](double value, double limit) { return std::fabs(value - limit) < 1e-12 * limit ? limit : value; };
+      s.scan_frequency = rounded(s.pulse_rate * scanner.vertical_resolution / (2 * device->scan_angle_max), device->scan_frequency_max);
+      s.scan_frequency = rounded(s.scan_frequency, device->scan_frequency_min);
+      s.head_speed = rounded(scanner.horizontal_resolution * s.scan_frequency, device->head_speed_max);
       if (!(s.scan_frequency <= 1e6 && s.head_speed <= radians(1e6)))
         io.fault("verticalResolution_deg", "no scanner is as fast as these resolutions need: expected a finer one");
     }

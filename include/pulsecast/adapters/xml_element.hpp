@@ -134,7 +134,7 @@ class XmlInput {
 
   /// What stands in an attribute, if it is given.
   [[nodiscard]] std::optional<std::string> given(const char* name) {
-    known_.emplace_back(name);
+    if (!knows(name)) known_.emplace_back(name);
     if (params_) {
       const pugi::xml_node found = param(name);
       return found ? std::optional<std::string>(found.attribute("value").value()) : std::nullopt;

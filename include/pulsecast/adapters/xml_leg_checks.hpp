@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -25,11 +26,11 @@ class LegChecks {
   LegChecks(const XmlLibraryDocument& document, const SurveySettings& survey, XmlReport& report)
       : document_(document), survey_(survey), report_(report) {}
 
-  /// Checks one leg and where it leads; `leg` is its element.
-  void check(pugi::xml_node leg, std::size_t i) const {
+  /// Checks one leg and where it leads; `leg` is its element, and `resolution` its `verticalResolution_deg` [rad], if it has one.
+  void check(pugi::xml_node leg, std::size_t i, double resolution = 0) const {
     check_platform(leg, i);
     const bool is_end = goes_on() && survey_.legs.size() > 1 && i + 1 == survey_.legs.size();  // says where the way ends, and scans nothing
-    if (!is_end) check_scanner(leg, i);
+    if (!is_end) check_scanner(leg, i, resolution);
   }
 
  private:
@@ -42,6 +43,9 @@ class LegChecks {
   [[nodiscard]] bool stays(std::size_t i) const {
     return survey_.platform.kind == PlatformKind::stationary || (goes_on() && hovers(survey_.legs, i));
   }
+
+  /// A number that was computed, to six decimals.
+  [[nodiscard]] static std::string brief(double value) { return xml_number(std::round(value * 1e6) / 1e6); }
 
   void check_platform(pugi::xml_node leg, std::size_t i) const {
     const LegSettings& settings = survey_.legs[i];
@@ -88,7 +92,7 @@ class LegChecks {
       io.fault("onGround", "nothing in the scene is ground: expected a material with helios_isGround in an MTL file of it");
   }
 
-  void check_scanner(pugi::xml_node leg, std::size_t i) const {
+  void check_scanner(pugi::xml_node leg, std::size_t i, double resolution) const {
     const LegSettings& settings = survey_.legs[i];
     const LegScannerSettings& s = settings.scanner;
     const pugi::xml_node own = leg.child("scannerSettings");
@@ -97,12 +101,20 @@ class LegChecks {
     check_head(io, device, settings, i);
     if (!s.active) return;
     const auto hertz = [](double value) { return xml_number(value) + " Hz"; };
-    if (s.scan_frequency < device.scan_frequency_min)
-      io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected at least the scanner's scanFreqMin_Hz, " +
-                                  hertz(device.scan_frequency_min));
+    const auto limit = [&](const char* expected, const char* name, double frequency) {
+      if (resolution == 0) {
+        io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected " + expected + " the scanner's " + name + ", " +
+                                    hertz(frequency));
+        return;
+      }
+      io.fault("verticalResolution_deg", "verticalResolution_deg of " + brief(degrees(resolution)) + " takes " + brief(s.scan_frequency) +
+                                             " lines a second at " + hertz(s.pulse_rate) + ": expected " + expected + ' ' +
+                                             brief(degrees(resolution) * frequency / s.scan_frequency) + ", for the scanner's " + name +
+                                             " is " + hertz(frequency));
+    };
+    if (s.scan_frequency < device.scan_frequency_min) limit("at least", "scanFreqMin_Hz", device.scan_frequency_min);
     if (device.scan_frequency_max > 0 && s.scan_frequency > device.scan_frequency_max)
-      io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected at most the scanner's scanFreqMax_Hz, " +
-                                  hertz(device.scan_frequency_max));
+      limit("at most", "scanFreqMax_Hz", device.scan_frequency_max);
     if (s.scan_frequency == 0 && std::holds_alternative<OscillatingOptic>(device.optic))
       io.fault("scanFreq_hz", "scanFreq_hz is 0, so the mirror does not swing: expected a frequency");
     if (s.scan_frequency >= s.pulse_rate)

@@ -89,7 +89,6 @@ void fields(Io& io, Of<Io, XyzSource>& source) {
     io.flag("sparse", sparse);
     io.without_effect({"sparse"});
     if (source.voxel_size == 0) source.voxel_size = 1;
-    if (source.separator.empty()) source.separator = " ";
     if (source.default_normal && *source.default_normal == Vec3{}) io.fault("defaultNormal", "defaultNormal is zero: it has no direction");
     io.require({"voxelSize"});
   }
