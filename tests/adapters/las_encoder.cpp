@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/adapters/las_encoder.hpp>
 
+#include <cmath>
 #include <cstring>
 #include <span>
 #include <string>
@@ -27,17 +28,21 @@ TEST_CASE("tallies of parts add up to that of the whole, in any order") {
   const LasTally nothing;
   for (int i = 0; i < 300; ++i) {
     const Vec3 point{random.uniform() * 1000 - 500, random.uniform() * 10, -random.uniform()};
-    const std::vector<Echo> echoes{{.amplitude = random.log_uniform(1e-9, 1e-6), .number = static_cast<std::uint8_t>(1 + i % 4)}};
-    const std::vector<Shot> shots{{.origin = point, .echoes = 4}};
+    std::vector<Echo> echoes;
+    for (int n = 0; n <= i % 4; ++n)
+      echoes.push_back({.amplitude = random.log_uniform(1e-9, 1e-6), .number = static_cast<std::uint8_t>(n + 1)});
+    const Shot shot{.origin = point, .echoes = static_cast<std::uint32_t>(echoes.size())};
     for (LasEncoder* encoder : {&whole, i % 3 == 0 ? &a : i % 3 == 1 ? &b : &c})
-      encoder->encode({.origin = point, .echoes = 1}, {shots, echoes, {}, 0}, nullptr,
+      encoder->encode(shot, {{}, echoes, {}, 0}, nullptr,
                       [&](LasEncoder::Record& record, const Vec3& at) { CHECK(encoder->locate(record.data(), at)); });
   }
   LasTally sum = c.tally();
   sum.add(nothing), sum.add(a.tally()), sum.add(b.tally());
   CHECK(sum.least == whole.tally().least);
   CHECK(sum.most == whole.tally().most);
-  CHECK(sum.points == 300);
+  CHECK(sum.points == 750);
+  CHECK(sum.points_by_return[0] == 300);
+  CHECK(sum.points_by_return[3] == 75);
   CHECK(sum.points_by_return == whole.tally().points_by_return);
   CHECK(sum.most_amplitude == whole.tally().most_amplitude);
 }
@@ -54,8 +59,14 @@ TEST_CASE("points are located against an offset that comes later") {
                  });
   CHECK(!encoder.locate(bytes.data(), place));
   CHECK(encoder.misfit(place).find("x is 1234567 m") == 0);
+  CHECK(encoder.misfit({0, -1234567, 0}).find("y is -1234567 m") == 0);
+  CHECK(encoder.misfit({0, 0, 1234567}).find("z is 1234567 m") == 0);
   encoder.choose_offset({1234549, 0, 0});
   CHECK(encoder.offset() == Vec3{1234500, 0, 0});
+  LasEncoder beside({});
+  beside.choose_offset({-1e-4, 49, -49});
+  CHECK(beside.offset() == Vec3{});
+  for (int axis = 0; axis < 3; ++axis) CHECK(!std::signbit(beside.offset()[axis]));  // readers would show -0
   REQUIRE(encoder.locate(bytes.data(), place));
   CHECK(number<std::int32_t>(bytes.data(), 0) == 670'000);
   CHECK(number<std::int32_t>(bytes.data(), 4) == 100'000);
@@ -64,6 +75,12 @@ TEST_CASE("points are located against an offset that comes later") {
   LasEncoder given({.offset = Vec3{1, 2, 3}});
   given.choose_offset({1e6, 0, 0});
   CHECK(given.offset() == Vec3{1, 2, 3});
+}
+
+TEST_CASE("the level of less than 1e-20 is that of nothing") {
+  CHECK(las_level(1) == 0);
+  CHECK(las_level(100) == 20);
+  for (const double ratio : {1e-20, 1e-25, 0.0, -1.0}) CHECK(las_level(ratio) == -200);
 }
 
 TEST_CASE("packets are moved, and where there is none, nothing is") {

@@ -69,8 +69,10 @@ TEST_CASE("blocks are placed in order, whatever the order in which they come bac
     claim.amounts[0] = out[k].number + 100;
     ledger.finish(out[k].number, {claim}, {.slots = out[k].to - out[k].from});
     out.erase(out.begin() + static_cast<std::ptrdiff_t>(k));
-    may = out.size() != 1;  // not now, but later
-    settle();
+    const std::size_t before = placed.size();
+    may = false, settle();
+    CHECK(placed.size() == before);
+    may = true, settle();
   }
   CHECK(placed.size() == blocks);
   CHECK(ledger.spent().slots == 40'000);

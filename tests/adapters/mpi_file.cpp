@@ -3,10 +3,12 @@
 #include <pulsecast/adapters/mpi_file.hpp>
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include <doctest/doctest.h>
 
+#include "support/size_limit.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace pulsecast::adapters {
@@ -33,6 +35,19 @@ TEST_CASE("several write to a file that one has made") {
   whole.overwrite(0, bytes("HEAD"));
   whole.commit();
   CHECK(content(folder / "a.txt") == "HEAD fourfive end");
+}
+
+TEST_CASE("a write that stops half-way is an error") {
+  const TemporaryFolder folder;
+  const OutputFile whole(folder / "a.txt");
+  MpiFile file(folder / "a.txt");
+  const support::SizeLimit limit(1000);
+  try {
+    file.write(0, bytes(std::string(1500, 'x')));
+    FAIL("nothing was thrown");
+  } catch (const FileError& error) {
+    CHECK(std::string_view(error.what()).find("expected room for 500 more bytes") != std::string_view::npos);
+  }
 }
 
 TEST_CASE("a file that is not there cannot be written to") {

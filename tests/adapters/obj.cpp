@@ -22,6 +22,7 @@
 
 #include <pulsecast/base/random.hpp>
 #include "support/generators.hpp"
+#include "support/spoilt_text.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pulsecast;
@@ -478,37 +479,13 @@ TEST_CASE("a mutated file gives finite geometry in range, or a FileError") {
       "mtllib m.mtl\no x\n" + corners + "v 2.5 1e1 -3\nvt 0 1\nvn 0 0 1\nusemtl a\nf 1 2 3 4\nf 1/1/1 2//1 -1\ng y\nf 1 2 3 4 5\n";
   const std::string mtl =
       "newmtl a\nKd 0.5 0.5 0.5\nKs 0.1 0.1 0.1\nNs 12\nhelios_reflectance 0.4\nhelios_classification 5\nhelios_isGround true\n";
+  const char* const words[] = {"nan", "-1", "0", "1e308", "/", "\n", " ", "99999999999", "\\\n", "f", "v", "-", ".", "#"};
   int loaded = 0, refused = 0;
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
     CAPTURE(seed);
-    auto draw = [seed, n = std::uint64_t{0}](std::size_t below) mutable {
-      return static_cast<std::size_t>(uniform({.seed = seed, .pulse = n++}) * static_cast<double>(below));
-    };
+    support::Generator random(seed);
     const bool in_mtl = seed % 4 == 0;
-    std::string text = in_mtl ? mtl : valid;
-    for (std::size_t k = 1 + draw(4); k > 0 && !text.empty(); --k) {
-      const std::size_t at = draw(text.size());
-      const char* words[] = {"nan", "-1", "0", "1e308", "/", "\n", " ", "99999999999", "\\\n", "f", "v", "-", ".", "#"};
-      switch (draw(6)) {
-        case 0:
-          text[at] = static_cast<char>(draw(256));
-          break;
-        case 1:
-          text.erase(at, 1 + draw(5));
-          break;
-        case 2:
-          text.insert(at, words[draw(std::size(words))]);
-          break;
-        case 3:
-          text.insert(at, text.substr(draw(text.size()), 1 + draw(20)));
-          break;
-        case 4:
-          text.resize(at + 1);
-          break;
-        default:
-          text[at] = "0123456789 -./\n"[draw(15)];
-      }
-    }
+    const std::string text = support::spoilt(in_mtl ? mtl : valid, 1 + random.whole(4), words, random);
     CAPTURE(text);
     if (seed % 4 < 2) folder.write("m.mtl", in_mtl ? text : mtl);
     try {

@@ -11,17 +11,18 @@
 #include <vector>
 
 #include <doctest/doctest.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "support/generators.hpp"
+#include "support/size_limit.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace pulsecast::adapters {
 namespace {
 
 using support::content;
+using support::SizeLimit;
 using support::TemporaryFolder;
 namespace fs = std::filesystem;
 
@@ -39,26 +40,6 @@ std::string problem_of(const fs::path& path, Action action) {
 }
 
 bool says(const std::string& message, const std::string& part) { return message.find(part) != std::string::npos; }
-
-/// While it lives, files may not grow beyond a size: writing stops in the middle as on a full disk.
-class SizeLimit {
- public:
-  explicit SizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  SizeLimit(const SizeLimit&) = delete;
-  SizeLimit& operator=(const SizeLimit&) = delete;
-  ~SizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  void (*handler_)(int);
-  rlimit before_{};
-};
 
 TEST_CASE("a file stands under its final name once it is committed, and not before") {
   const TemporaryFolder folder;
@@ -161,6 +142,21 @@ TEST_CASE("an encoder gets every byte once and in order, is told the end, and wh
   CHECK((content(folder / "a.txt") == "aabb" + std::string(6'000'000, 'x') + "cc."));
   OutputFile(folder / "empty", std::make_unique<Doubler>()).commit();
   CHECK(content(folder / "empty") == ".");
+}
+
+TEST_CASE("a file goes on where others have written to") {
+  const TemporaryFolder folder;
+  OutputFile file(folder / "a.txt");
+  file.write("head ");
+  file.continue_at(5);
+  std::ofstream(OutputFile::temporary_name(folder / "a.txt"), std::ios::app) << "others ";
+  file.continue_at(12);
+  CHECK(file.position() == 12);
+  file.write("tail");
+  CHECK(file.position() == 16);
+  file.overwrite(0, std::as_bytes(std::span("HEAD", 4)));
+  file.commit();
+  CHECK(content(folder / "a.txt") == "HEAD others tail");
 }
 
 TEST_CASE("a file that is moved goes on where it was, and one that is moved over is given up") {

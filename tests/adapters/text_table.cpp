@@ -50,7 +50,7 @@ TEST_CASE("columns are separated by what the first row has") {
   CHECK(rows("a\tb\tc\n1\t2\t3\n") == expected);
   CHECK(rows("a b c\n1 2 3\n") == expected);
   CHECK(rows("  a  b   c \n1\t2 3") == expected);
-  CHECK(rows("\"a\" , \"b\",c\n 1,\t2 , 3 \n") == expected);
+  CHECK(rows("\"a\" , \" b \",c\n 1,\t2 , 3 \n") == expected);
   CHECK(rows("a;b,x\n1;2,5\n") == Rows{{"a", "b,x"}, {"1", "2,5"}});
   CHECK(rows("a;b,x\n1;2,5\n", ',') == Rows{{"a;b", "x"}, {"1;2", "5"}});
   CHECK(rows("a, b\n", ' ') == Rows{{"a,", "b"}});
@@ -64,6 +64,10 @@ TEST_CASE("empty cells count, except among blanks") {
 TEST_CASE("lines end as on any system, and blank ones do not count") {
   CHECK(rows("\xEF\xBB\xBF"
              "a,b\r\n\r\n  \n1,2\r\n") == Rows{{"a", "b"}, {"1", "2"}});
+  CHECK(rows("a\n\xEF\xBB\xBF"
+             "b\n") == Rows{{"a"},
+                            {"\xEF\xBB\xBF"
+                             "b"}});
   const TemporaryFolder folder;
   TextTable table(put(folder, "a\n\n\nb"), "a table");
   CHECK(table.next());
@@ -97,6 +101,12 @@ TEST_CASE("a number is all of its cell, finite, and has a point in every locale"
   std::setlocale(LC_ALL, "C");
 }
 
+TEST_CASE("of a long cell, an error shows the beginning") {
+  CHECK(TextTable::quoted("") == "''");
+  CHECK(TextTable::quoted(std::string(64, 'x')) == "'" + std::string(64, 'x') + "'");
+  CHECK(TextTable::quoted(std::string(65, 'x')) == "'" + std::string(64, 'x') + "...'");
+}
+
 TEST_CASE("what is no text file is refused, and says what was expected") {
   CHECK(error("").problem() == "is empty: expected a table");
   CHECK(error(std::string("a b\n1\0 2\n", 9)).place() == "line 2");
@@ -104,6 +114,7 @@ TEST_CASE("what is no text file is refused, and says what was expected") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH_AS(TextTable(folder / "none", "a table"), doctest::Contains("is not there: expected a table"), FileError);
   CHECK_THROWS_WITH_AS(TextTable(folder.path(), "a table"), doctest::Contains("is a directory"), FileError);
+  CHECK_THROWS_WITH_AS(TextTable("/proc/self/mem", "a table"), doctest::Contains("cannot be read"), FileError);
   TextTable table(put(folder, "a b\n"), "a table");
   (void)table.next();
   CHECK_THROWS_WITH_AS(table.fail_here(1, "is odd"), doctest::Contains("line 1, column 2: is odd"), FileError);

@@ -126,8 +126,8 @@ class LasEncoder {
   /// way, and the offset reads well: with steps of 0.1 mm it is a multiple of 100 m.
   void choose_offset(const Vec3& first) noexcept {
     const double unit = settings_.scale * 1e6;
-    if (!settings_.offset && finite(first))
-      offset_ = {std::nearbyint(first.x / unit) * unit, std::nearbyint(first.y / unit) * unit, std::nearbyint(first.z / unit) * unit};
+    const auto nearest = [unit](double v) { return std::nearbyint(v / unit) * unit + 0.0; };  // not -0
+    if (!settings_.offset && finite(first)) offset_ = {nearest(first.x), nearest(first.y), nearest(first.z)};
   }
 
   /// Whether intensities are 0 until `scale_intensities`.

@@ -25,8 +25,7 @@ struct MpiBlock {
 /// What a block leaves for an output: how much, in one or two counts, and its first point if there is one.
 struct MpiClaim {
   std::uint64_t amounts[2] = {};
-  Vec3 first{};
-  bool any = false;  ///< point
+  Vec3 first{};  ///< point
 };
 
 /// Where that belongs in the output.

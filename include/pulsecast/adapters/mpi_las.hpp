@@ -54,9 +54,7 @@ class MpiLasPiece final : public MpiPiece {
 
   [[nodiscard]] MpiClaim claim() override {
     if (packets_) packets_->end_piece();
-    MpiClaim claim{{points_.size(), packet_bytes_.size()}, {}, !points_.empty()};
-    if (claim.any) claim.first = points_.front();
-    return claim;
+    return {{points_.size(), packet_bytes_.size()}, points_.empty() ? Vec3{} : points_.front()};
   }
   [[nodiscard]] std::size_t memory() const noexcept override {
     return records_.size() + std::span(points_).size_bytes() + packet_bytes_.size();
@@ -136,7 +134,7 @@ class MpiLas final : public MpiOutput {
   }
 
   [[nodiscard]] MpiPlace place(const MpiClaim& claim, int /*owner*/) override {
-    if (points_ == 0 && claim.any) first_ = claim.first;
+    if (points_ == 0) first_ = claim.first;
     const MpiPlace place{{points_, packets_end_}, first_};
     points_ += claim.amounts[0], packets_end_ += claim.amounts[1];
     return place;

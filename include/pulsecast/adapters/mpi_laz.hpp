@@ -60,7 +60,7 @@ class MpiLaz final : public MpiOutput {
   }
 
   [[nodiscard]] MpiPlace place(const MpiClaim& claim, int owner) override {
-    if (points_ == 0 && claim.any) first_ = claim.first;
+    if (points_ == 0) first_ = claim.first;
     const MpiPlace place{{points_, 0}, first_, chunk_owner_};
     const std::uint64_t begun = chunks_of(points_);
     points_ += claim.amounts[0];

@@ -30,8 +30,9 @@ class TextTable {
     if (!std::filesystem::exists(path, ignored)) fail("is not there: expected " + expected_);
     if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected " + expected_);
     file_.open(path, std::ios::binary);
-    if (!file_) fail("cannot be read");
-    if (file_.peek() == std::ifstream::traits_type::eof()) fail("is empty: expected " + expected_);
+    const bool has_some = file_ && file_.peek() != std::ifstream::traits_type::eof();
+    if (!file_.is_open() || file_.bad()) fail("cannot be read");
+    if (!has_some) fail("is empty: expected " + expected_);
   }
 
   /// Goes to the next line that is not blank. False if there is none.
