@@ -4,7 +4,7 @@
 
 # Runs the survey program by mpirun: any number of processes and threads must leave the bytes of one; one that is killed ends them all and
 # leaves nothing that looks whole; what is left is resumed.
-# Usage: pulsecast_mpirun.sh MPIRUN PROGRAM SURVEY FOLDER, where FOLDER is emptied.
+# Usage: pulsecast_mpirun.sh MPIEXEC PROGRAM SURVEY FOLDER, where FOLDER is emptied.
 set -u
 export LC_ALL=C
 mpirun=$1 program=$2 survey=$3 folder=$4
@@ -19,7 +19,7 @@ fail() {
 }
 
 launch=("$mpirun")
-if "$mpirun" --version | grep -q 'Open MPI'; then
+if "$mpirun" --version | grep -qE 'Open MPI|OpenRTE'; then  # as mpirun or as mpiexec
   launch+=(--oversubscribe)
   [ "$(id -u)" = 0 ] && launch+=(--allow-run-as-root)
 fi
