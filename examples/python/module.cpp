@@ -108,7 +108,7 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
 }
 
 py::array trajectory_of(const Simulation& simulation, double interval) {
-  expect_positive("Simulation.trajectory interval", interval, "s");
+  expect_within("Simulation.trajectory interval", interval, 1e-6, 1e9, "s");
   adapters::python::Rows<PoseRow> rows;
   const SurveyPlan& plan = simulation.plan();
   for (std::size_t k = 0; k < plan.legs.size(); ++k) {
@@ -200,9 +200,8 @@ PYBIND11_MODULE(_core, m) {
                     " pulse slots, " + std::to_string(s.scene().triangles) + " triangles>";
            })
       .def("trajectory", &trajectory_of, "interval"_a,
-           "Where the platform is, every `interval` seconds of each leg and at its end: a structured array of time [s], x, y, z [m, "
-           "world], roll, "
-           "pitch, yaw [rad; yaw clockwise from north] and leg.")
+           "Where the platform is, every `interval` seconds (from 1e-6) of each leg and at its end: a structured array of time [s], "
+           "x, y, z [m, world], roll, pitch, yaw [rad; yaw clockwise from north] and leg.")
       .def_property_readonly(
           "legs", &legs_of,
           "Structured array: number, active, start [s], duration [s], pulse_rate [Hz], first, end: its slots, which tell legs "

@@ -232,8 +232,9 @@ def test_trajectories_and_legs(survey):
         assert of_leg.sum() == 2000 and (pulses["leg"][of_leg] == number).all()
     assert (np.diff(poses["time"]) >= 0).all()
     assert [tuple(poses[poses["leg"] == k][0])[1:3] for k in range(3)] == [(0, 0), (5, 0), (5, 5)]
-    with pytest.raises(pulsecast.SettingError):
-        run.trajectory(0)
+    for interval in (0, 1e-300, float("nan")):
+        with pytest.raises(pulsecast.SettingError):
+            run.trajectory(interval)
 
 
 def test_memory_is_given_back(survey):
