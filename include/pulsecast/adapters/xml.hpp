@@ -30,6 +30,7 @@
 #include <pulsecast/adapters/xml_platform.hpp>
 #include <pulsecast/adapters/xml_scanner.hpp>
 #include <pulsecast/adapters/xml_scene.hpp>
+#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace pulsecast::adapters {
 
@@ -227,9 +228,9 @@ class SurveyReader {
     check_bins(io);
   }
 
-  /// A pulse would fall between bins that are longer, and `FullWaveform` takes no more than ten thousand in one.
+  /// A pulse would fall between bins that are longer, and `FullWaveform` takes no more than so many in one.
   void check_bins(const XmlInput& io) {
-    constexpr double most = 1e4;
+    constexpr double most = WaveformSettings::most_samples;
     const pugi::xml_node own = io.node().child("FWFSettings");
     for (const ChannelSettings& channel : survey_.scanner.channels) {
       const double bin = channel.waveform.bin_size, length = channel.pulse_length;

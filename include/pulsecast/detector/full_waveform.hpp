@@ -46,7 +46,7 @@ class FullWaveform {
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
   /// Refuses pulses that the samples do not resolve, or that do not fit into those at hand.
-  void validate(const Laser& laser) const { s_.expect_sampled(laser.pulse_length, 1e4); }
+  void validate(const Laser& laser) const { s_.expect_sampled(laser.pulse_length, WaveformSettings::most_samples); }
 
   /// The width of a laser's outgoing pulse, by the measure of its echoes [s].
   [[nodiscard]] double pulse_width(const Laser& laser) const {

@@ -47,6 +47,8 @@ struct WaveformSettings {
     expect_within("WaveformSettings::shape_divisor", shape_divisor, 1, 10, "");
   }
 
+  static constexpr double most_samples = 1e4;  ///< in the length of a pulse, that `FullWaveform` takes
+
   /// Refuses bins that are longer than a pulse [s], which would fall between two samples, or so short that it has more than so many.
   void expect_sampled(double pulse_length, double most) const {
     if (sample_interval <= pulse_length && pulse_length <= most * sample_interval) return;
