@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/adapters/output_file.hpp>
 
+#include <cerrno>
 #include <csignal>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,12 +13,33 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "support/generators.hpp"
 #include "support/size_limit.hpp"
 #include "support/temporary_folder.hpp"
+
+namespace {
+
+int flock_error = 0;                    // that flock gives instead of a lock; 0: it locks
+std::function<int(int)> at_fsync = {};  // sees each file that is synced, and gives an error or 0
+
+}  // namespace
+
+// In place of those of the system, so that a file system may be one without locks, or a disk one that fails.
+extern "C" int flock(int file, int operation) noexcept {
+  errno = flock_error;
+  return flock_error != 0 ? -1 : static_cast<int>(syscall(SYS_flock, file, operation));
+}
+extern "C" int fsync(int file) {
+  errno = at_fsync ? at_fsync(file) : 0;
+  return errno != 0 ? -1 : 0;
+}
 
 namespace pulsecast::adapters {
 namespace {
@@ -262,6 +285,109 @@ TEST_CASE("a program that is killed leaves no file under the final name") {
   CHECK(WIFSIGNALED(status));
   CHECK_FALSE(fs::exists(folder / "a.las"));
   CHECK(fs::file_size(folder / "a.las.part") == 5'000'000);
+  OutputFile(folder / "a.las").commit();  // at once: its lock has ended with it
+}
+
+TEST_CASE("a second writer of a file is refused, in this program and in another, and the first is unharmed") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.las";
+  OutputFile first(path);
+  first.write(std::string(3'000'000, 'x'));
+  const auto is_refused = [&] { return says(problem_of(path, [&] { OutputFile{path}; }), "is being written already"); };
+  CHECK(is_refused());
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) _exit(is_refused() ? 0 : 1);
+  int status = 0;
+  waitpid(child, &status, 0);
+  CHECK(status == 0);
+  first.write("y");
+  first.commit();
+  CHECK((content(path) == std::string(3'000'000, 'x') + "y"));
+  OutputFile(path).commit();
+  CHECK(content(path).empty());
+}
+
+TEST_CASE("a program that is started meanwhile does not inherit the lock") {
+  const TemporaryFolder folder;
+  OutputFile file(folder / "a.las");
+  int found = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    if (fs::read_symlink(entry.path(), gone) != folder / "a.las.part") continue;
+    ++found;
+    CHECK((fcntl(std::stoi(entry.path().filename()), F_GETFD) & FD_CLOEXEC) != 0);
+  }
+  CHECK(found == 1);
+}
+
+TEST_CASE("what processes of a killed program still write does not come into the file that replaces theirs") {
+  const TemporaryFolder folder;
+  std::ofstream late(folder / "a.las.part");
+  late << "first" << std::flush;
+  OutputFile file(folder / "a.las");
+  file.write("second");
+  late << " and last" << std::flush;
+  file.commit();
+  CHECK(content(folder / "a.las") == "second");
+}
+
+TEST_CASE("on a file system without locks a file is written all the same, and who loses its name to another learns of it") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.las";
+  for (const int error : {ENOLCK, EOPNOTSUPP, ENOSYS}) {
+    flock_error = error;
+    CAPTURE(error);
+    OutputFile first(path);
+    first.write("first");
+    OutputFile second(path);
+    second.write("second");
+    CHECK(says(problem_of(path, [&] { first.commit(); }), "by another program"));
+    CHECK_FALSE(fs::exists(path));
+    second.commit();
+    CHECK(content(path) == "second");
+    fs::remove(path);
+    CHECK(folder.empty());
+  }
+  flock_error = 0;
+}
+
+TEST_CASE("what a file holds is on the disk before it has its name") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.las";
+  std::vector<std::uintmax_t> sizes;
+  at_fsync = [&](int) {
+    CHECK_FALSE(fs::exists(path));
+    sizes.push_back(fs::file_size(folder / "a.las.part"));
+    return 0;
+  };
+  OutputFile file(path);
+  file.write(std::string(3'000'000, 'x'));
+  CHECK(sizes.empty());
+  file.write("y");
+  file.commit();
+  CHECK(sizes == std::vector<std::uintmax_t>{3'000'001});
+  fs::remove(path);
+
+  at_fsync = [](int) { return EIO; };
+  OutputFile lost(path);
+  lost.write("x");
+  CHECK(says(problem_of(path, [&] { lost.commit(); }), "Input/output error"));
+  CHECK(folder.empty());
+
+  at_fsync = [](int) { return EINVAL; };  // what cannot be synced need not be
+  OutputFile special(path);
+  special.write("x");
+  special.commit();
+  CHECK(content(path) == "x");
+  at_fsync = {};
+}
+
+TEST_CASE("a pipe in place of the temporary file is an error and not waited for") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a.las";
+  REQUIRE(mkfifo((folder / "a.las.part").c_str(), 0600) == 0);
+  CHECK(says(problem_of(path, [&] { OutputFile{path}; }), "cannot be created"));
 }
 
 TEST_CASE("a piece of a file goes where its owner wants it, and touches no disk") {

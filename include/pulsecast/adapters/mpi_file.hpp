@@ -40,9 +40,11 @@ class MpiFile {
     }
   }
 
-  /// Everything is with the system, which may tell only now that it is not.
+  /// Everything is on the disk: the system may tell only now that it is not.
   void close() {
-    if (file_ >= 0 && ::close(std::exchange(file_, -1)) != 0) fail(0);
+    if (file_ < 0) return;
+    if (!detail::sync_to_disk(file_)) fail(0);
+    if (::close(std::exchange(file_, -1)) != 0) fail(0);
   }
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }

@@ -15,10 +15,40 @@
 #include <utility>
 #include <vector>
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/expect.hpp>
 
 namespace pulsecast::adapters {
+
+namespace detail {
+
+/// Locks an open file until it is closed, however the program ends; false if it is locked already. True without a lock where the file
+/// system has none.
+[[nodiscard]] inline bool lock_alone(int file) noexcept {
+  while (::flock(file, LOCK_EX | LOCK_NB) != 0)
+    if (errno != EINTR) return errno != EWOULDBLOCK;
+  return true;
+}
+
+/// Whether a name still leads to an open file.
+[[nodiscard]] inline bool stands_at(int file, const std::filesystem::path& path) noexcept {
+  struct stat open {
+  }, named{};
+  return ::fstat(file, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
+/// Writes an open file to its disk; true where there is nothing to write, or no disk.
+[[nodiscard]] inline bool sync_to_disk(int file) noexcept {
+  struct stat status {};
+  return (::fstat(file, &status) == 0 && status.st_size == 0) || ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
+}
+
+}  // namespace detail
 
 /// What turns the bytes of a file into others on their way to it, as a compressor does.
 class OutputEncoder {
@@ -32,7 +62,10 @@ class OutputEncoder {
 /// program is killed, nothing stands under the final name but what stood there before. Destroyed uncommitted, it leaves nothing behind.
 /// Every failure is a `FileError` that names the final path; after one, nothing more can be written or committed.
 /// With an encoder, what is written passes through it, a megabyte at a time, and cannot be read again or overwritten.
-/// Limits: data are handed to the system but not forced onto the disk, so a power cut may lose a file that was just committed.
+/// The temporary file is locked: a second `OutputFile` of the same name, in this program or in another, is refused, and the first is
+/// unharmed. Where the file system has no locks, the second takes the name, and the first finds that out when it commits. The content is on
+/// the disk before the file has its final name: after a power cut, a file of that name is whole. Limits: the name may be lost in a power
+/// cut if the folder was not written to the disk since.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path path, std::unique_ptr<OutputEncoder> encoder = nullptr)
@@ -40,9 +73,14 @@ class OutputFile {
     std::error_code ignored;
     if (std::filesystem::is_directory(path_, ignored)) throw FileError(path_.string(), "", "is a folder; expected the name of a file");
     const std::filesystem::path temporary = temporary_name(path_);
+    const int number = open_alone(temporary);
     errno = 0;
-    std::FILE* const file = std::fopen(temporary.c_str(), "w+b");
-    if (file == nullptr) fail("cannot be created", errno, "an existing folder that may be written to");
+    std::FILE* const file = ::fdopen(number, "w+b");
+    if (file == nullptr) {
+      const int error = errno;
+      ::close(number);
+      fail("cannot be created", error, "memory for it");
+    }
     file_ = {file, Discard{temporary}};
     std::setvbuf(file, nullptr, _IONBF, 0);  // what is buffered is buffered here, so that every error shows where it happens
     buffer_.reserve(capacity);
@@ -107,18 +145,22 @@ class OutputFile {
     if (std::exchange(piece_, nullptr) != nullptr) return;
     expect_open();
     flush(true);
-    const std::filesystem::path temporary = file_.get_deleter().temporary;
+    const std::filesystem::path& temporary = file_.get_deleter().temporary;
+    const int number = ::fileno(file_.get());
+    if (!detail::stands_at(number, temporary)) {
+      discard();
+      throw FileError(path_.string(), "", "was taken from " + temporary.string() + " by another program, and cannot be completed");
+    }
     errno = 0;
     std::error_code error;
-    if (std::fclose(file_.release()) != 0) {
+    if (!detail::sync_to_disk(number)) {
       error = system_error(errno);
     } else {
       std::filesystem::rename(temporary, path_, error);
     }
-    if (!error) return;
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    fail("cannot be completed", error.value(), "room for " + std::to_string(position_) + " bytes and a name that may be replaced");
+    if (error)
+      fail("cannot be completed", error.value(), "room for " + std::to_string(position_) + " bytes and a name that may be replaced");
+    std::fclose(file_.release());  // the lock ends after the renaming; closing has nothing to tell that syncing has not
   }
 
   /// Gives the file up and removes what was written; whoever finds half-way that the rest cannot be written calls this.
@@ -131,15 +173,36 @@ class OutputFile {
   struct Discard {
     std::filesystem::path temporary;
     void operator()(std::FILE* file) const noexcept {
+      if (detail::stands_at(::fileno(file), temporary)) ::unlink(temporary.c_str());
       std::fclose(file);
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
     }
   };
 
   static constexpr std::size_t capacity = std::size_t{1} << 20;  // bytes handed over at a time: large enough that calls cost nothing
 
   [[nodiscard]] static std::error_code system_error(int number) { return {number != 0 ? number : EIO, std::generic_category()}; }
+
+  /// Opens the temporary file for this one alone. What a killed program has left is removed, not emptied: processes of it may still write.
+  [[nodiscard]] int open_alone(const std::filesystem::path& temporary) {
+    for (int tries = 0; tries < 100; ++tries) {
+      int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      const bool is_new = file >= 0;
+      if (!is_new && errno == EEXIST) {
+        file = ::open(temporary.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
+        if (file < 0 && errno == ENOENT) continue;
+      }
+      if (file < 0) fail("cannot be created", errno, "an existing folder that may be written to");
+      const bool is_alone = detail::lock_alone(file);
+      struct stat status {};
+      if (is_alone && detail::stands_at(file, temporary) && ::fstat(file, &status) == 0) {
+        if (is_new || S_ISCHR(status.st_mode)) return file;
+        if (S_ISREG(status.st_mode)) ::unlink(temporary.c_str());
+      }
+      ::close(file);
+      if (!is_alone) throw FileError(path_.string(), "", "is being written already: " + temporary.string() + " is locked");
+    }
+    fail("cannot be created", EEXIST, "to make " + temporary.string());
+  }
 
   [[noreturn]] void fail(std::string_view what, int error, std::string_view expected) {
     discard();
