@@ -368,6 +368,39 @@ TEST_CASE("several faults are reported together, each with its place and what to
   }
 }
 
+TEST_CASE("channels of one id are told with their place, and refused where each is to have a file of its own") {
+  const auto document = [](const std::string& first, const std::string& second) {
+    return written(
+        "channels.xml",
+        "<document>\n  <scanner id=\"s\" optics=\"rotating\" pulseFreqs_Hz=\"3000\" scanAngleEffectiveMax_deg=\"60\">\n    <channels>\n"
+        "      <channel" +
+            first + "/>\n      <channel" + second +
+            "/>\n    </channels>\n  </scanner>\n"
+            "  <survey scanner=\"#s\" platform=\"surveys/assets.xml#tripod\" scene=\"surveys/scenes.xml#yard\">\n"
+            "    <leg maxDuration_s=\"1\"><platformSettings/><scannerSettings scanFreq_hz=\"10\"/></leg>\n  </survey>\n</document>\n");
+  };
+  const XmlOptions with_files{.assets = {data}, .channel_files = true};
+  const auto faults = [&](const std::filesystem::path& path) -> std::string {
+    try {
+      (void)read_survey(path, with_files);
+      return {};
+    } catch (const XmlFaults& found) {
+      return found.what();
+    }
+  };
+  CHECK(faults(document(R"( id="a")", R"( id="b")")).empty());
+  CHECK(faults(document("", "")).empty());
+  CHECK(contains(faults(document(R"( id="a")", R"( id="a")")), "channels.xml:5:16: channel 1 has the id of channel 0, 'a'"));
+  CHECK(contains(faults(document(R"( id="1")", "")), "channels.xml:5:8: channel 1 has the id of channel 0, '1'"));
+  CHECK(contains(faults(document(R"( id="a")", R"( id="../b")")), "channels.xml:5:16: the id of a channel becomes part of the names"));
+  CHECK(contains(faults(document(R"( id="a&#10;")", "")), "channels.xml:4:16: the id of a channel becomes part of the names"));
+
+  CHECK(read_survey(document(R"( id="a")", R"( id="../b")"), options).warnings.empty());
+  const SurveyDocument read = read_survey(document(R"( id="1")", ""), options);
+  CHECK(read.survey.scanner.channels.size() == 2);
+  CHECK(any_contains(read.warnings, "channels.xml:5:8: channel 1 has the id of channel 0, '1'"));
+}
+
 TEST_CASE("templates may have templates, but none that is its own") {
   const std::string two = R"(<scannerSettings id="a" scanFreq_hz="30"/><scannerSettings id="b" template="a" scanAngle_deg="9"/>)";
   const SurveySettings survey =
@@ -433,6 +466,10 @@ TEST_CASE("hostile documents are refused at once") {
   refuses(survey_text(R"(scene="../../../../../../etc/scenes.xml#yard")", leg("")), "leads out of the assets folders");
   refuses(survey_text(R"(name="../../elsewhere")", leg("")), "no slashes");
   refuses(survey_text(R"(name=".")", leg("")), "no slashes");
+  refuses(survey_text(R"(name="a&#27;[2Jb")", leg("")), "no control characters");
+  for (const char* strip : {"a&#10;b", "a&#127;", "../a", "a\\b"})
+    refuses(survey_text("", "<leg stripId=\"" + std::string(strip) + "\"><platformSettings/><scannerSettings/></leg>"),
+            "stripId becomes part");
   refuses(survey_text(R"(name="a" name="b")", leg("")), "is given twice");
   std::string deep;
   for (int i = 0; i < 200'000; ++i) deep += "<a>";

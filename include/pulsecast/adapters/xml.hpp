@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,6 +38,7 @@ namespace pulsecast::adapters {
 /// Where the files are that documents name.
 struct XmlOptions {
   std::vector<std::filesystem::path> assets{};  ///< folders; the first that has a file wins. Then come those of survey and document
+  bool channel_files = false;                   ///< whether each channel will have a file by its id: ids that cannot name files are refused
 };
 
 /// What a document of a survey says.
@@ -77,7 +79,7 @@ namespace detail {
 class SurveyReader {
  public:
   SurveyReader(const std::filesystem::path& path, const XmlOptions& options)
-      : library_(folders(path, options), report_), document_(library_.read(path)) {}
+      : library_(folders(path, options), report_), document_(library_.read(path)), channel_files_(options.channel_files) {}
 
   [[nodiscard]] SurveyDocument read() {
     const XmlDocument& document = document_.document();
@@ -133,8 +135,8 @@ class SurveyReader {
   void read_survey(XmlInput& io, std::string name) {
     io.text("name", survey_.name);
     if (survey_.name.empty()) survey_.name = std::move(name);
-    if (survey_.name.find_first_of("/\\") != std::string::npos || survey_.name == ".." || survey_.name == ".")
-      io.fault("name", "name is that of a folder for results: expected no slashes in it");
+    if (!is_part_of_name(survey_.name) || survey_.name == ".." || survey_.name == ".")
+      io.fault("name", "name is that of a folder for results: expected no slashes and no control characters in it");
     seed(io);
     io.without_effect({"numRuns", "simSpeed"});
     bool is_offset = false;
@@ -145,7 +147,8 @@ class SurveyReader {
     if (is_offset) survey_.leg_offset = offset;
     io.require({"scanner", "platform", "scene"});
     read_platform(io);
-    read_reference(io, "scanner", survey_.scanner);
+    const XmlReference scanner = read_reference(io, "scanner", survey_.scanner);
+    if (survey_.scanner.channels.size() > 1) check_channel_ids(scanner);
     read_reference(io, "scene", survey_.scene);
     xml::noise_fields(io, survey_.platform);
     read_overrides(io);
@@ -184,10 +187,37 @@ class SurveyReader {
   }
 
   template <class Settings>
-  void read_reference(XmlInput& io, const char* name, Settings& settings) {
+  XmlReference read_reference(XmlInput& io, const char* name, Settings& settings) {
     const auto text = io.given(name);
-    if (!text) return;
-    if (const XmlReference found = library_.find(io, document_, name, *text, name)) asset(found, settings);
+    const XmlReference found = text ? library_.find(io, document_, name, *text, name) : XmlReference{};
+    if (found) asset(found, settings);
+    return found;
+  }
+
+  /// Whether a text may stand in the name of a file.
+  [[nodiscard]] static bool is_part_of_name(std::string_view text) {
+    return std::none_of(text.begin(), text.end(), [](unsigned char c) { return c == '/' || c == '\\' || c < ' ' || c == 0x7f; });
+  }
+
+  /// Channels without an id have their number as such.
+  void check_channel_ids(const XmlReference& scanner) {
+    const XmlDocument& document = scanner.document->document();
+    std::map<std::string, std::size_t> numbers;
+    pugi::xml_node node = scanner.node.child("channels").child("channel");
+    for (std::size_t k = 0; k < survey_.scanner.channels.size() && node; ++k, node = node.next_sibling("channel")) {
+      const std::string& id = survey_.scanner.channels[k].id;
+      const auto [other, is_new] = numbers.emplace(id, k);
+      if (channel_files_ && !is_part_of_name(id))
+        report_.fault(document.place(node, "id"),
+                      "the id of a channel becomes part of the names of files: expected no slashes and no control characters in it");
+      if (is_new) continue;
+      const std::string problem =
+          "channel " + std::to_string(k) + " has the id of channel " + std::to_string(other->second) + ", " + xml_quoted(id);
+      if (channel_files_)
+        report_.fault(document.place(node, "id"), problem + ": expected another one, as each is to have a file of its own");
+      else
+        report_.warn(document.place(node, "id"), problem);
+    }
   }
 
   void read_platform(XmlInput& io) {
@@ -270,8 +300,8 @@ class SurveyReader {
   double read_leg(XmlInput& leg, LegSettings& settings) {
     std::optional<double> duration_max;
     leg.text("stripId", settings.strip);
-    if (settings.strip && settings.strip->find_first_of("/\\") != std::string::npos)
-      leg.fault("stripId", "stripId becomes part of the names of files: expected no slashes in it");
+    if (settings.strip && !is_part_of_name(*settings.strip))
+      leg.fault("stripId", "stripId becomes part of the names of files: expected no slashes and no control characters in it");
     leg.number("maxDuration_s", duration_max, units::second, -1, 1e9);
     const bool has_platform = leg.child("platformSettings", [&](XmlInput& inner) { read_leg_platform(inner, settings.platform); });
     if (!has_platform) report_.fault(leg.place(), "<leg> holds no <platformSettings>");
@@ -377,6 +407,7 @@ class SurveyReader {
   XmlReport report_;
   XmlLibrary library_;
   const XmlLibraryDocument& document_;
+  bool channel_files_;
   SurveySettings survey_;
   std::vector<std::string> leg_places_;
 };
