@@ -4,9 +4,7 @@
 #include "scene_store.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -20,6 +18,8 @@
 #include <pulsecast/adapters/output_file.hpp>
 #include <pulsecast/adapters/scene_cache.hpp>
 
+#include "survey_inputs.hpp"
+
 namespace fs = std::filesystem;
 using namespace pulsecast;
 using adapters::Fingerprint;
@@ -30,15 +30,6 @@ namespace {
 constexpr std::uintmax_t worth_keeping = std::uintmax_t{16}
                                          << 20;                 ///< of the scene's files: what is less is built in a second or so [byte]
 constexpr std::uintmax_t most_kept = std::uintmax_t{16} << 30;  ///< of all scenes, but for the newest [byte]
-
-std::string hex(std::uint64_t number) {
-  std::array<char, 16> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number, 16).ptr;
-  const std::string text(digits.data(), end);
-  return std::string(16 - text.size(), '0') + text;
-}
-
-std::string hex(const Fingerprint& f) { return hex(f.high) + hex(f.low); }
 
 /// Says which program this is: one that was built anew may make other scenes.
 std::string this_program() {
@@ -64,6 +55,8 @@ std::string place_of(const SceneInputs& inputs) {
 
 /// What was odd about a scene is kept beside it, below the key of the scene.
 std::optional<std::vector<std::string>> read_warnings(const fs::path& path, const Fingerprint& key) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return std::nullopt;
   std::ifstream in(path);
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(std::move(line));
@@ -126,7 +119,7 @@ BuiltParts stored_parts(const SceneStore& store, const SceneInputs& inputs, cons
   sources.files.insert(sources.files.end(), inputs.more.begin(), inputs.more.end());
   Fingerprint key;
   try {
-    key = adapters::scene_key(sources);
+    key = adapters::scene_key(sources, inputs.content);
   } catch (const FileError&) {  // whoever builds the scene will say so
     return build();
   }

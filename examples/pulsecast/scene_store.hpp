@@ -26,6 +26,8 @@ struct SceneInputs {
   std::vector<std::filesystem::path> more{};   ///< files and folders that count as well, and are not worth a store by themselves
   std::string settings{};                      ///< all else, in words
   std::string name{};                          ///< for people
+  std::function<pulsecast::adapters::Fingerprint(const std::filesystem::path&)> content =
+      pulsecast::adapters::content_fingerprint;  ///< of them
 };
 
 /// The processes of one machine, which have one copy of a scene among them.

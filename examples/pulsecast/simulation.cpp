@@ -15,13 +15,13 @@
 #include <variant>
 
 #include <pulsecast/adapters/scene_builder.hpp>
-#include <pulsecast/adapters/scene_files.hpp>
 #include <pulsecast/adapters/survey_receivers.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 
 #include "scene_store.hpp"
+#include "survey_inputs.hpp"
 
 using namespace pulsecast;
 using adapters::SurveyScene;
@@ -29,12 +29,10 @@ using adapters::SurveySettings;
 
 namespace {
 
-adapters::SpectralLibrary spectra_of(const SurveySettings& survey, const std::vector<std::filesystem::path>& assets) {
+adapters::SpectralLibrary spectra_of(const SurveySettings& survey, const std::vector<std::filesystem::path>& folders) {
   adapters::SpectralLibrary all;
-  for (const std::filesystem::path& folder : assets) {
-    std::error_code error;
-    if (!std::filesystem::is_directory(folder / "spectra", error)) continue;
-    adapters::SpectralLibrary here = adapters::read_spectral_library(folder / "spectra");
+  for (const std::filesystem::path& folder : folders) {
+    adapters::SpectralLibrary here = adapters::read_spectral_library(folder);
     all.spectra.merge(here.spectra);
   }
   for (const auto& channel : survey.scanner.channels) all.wavelengths.push_back(channel.wavelength);
@@ -106,11 +104,8 @@ double processor_seconds() {
 
 /// All that a scene depends on in a run.
 SceneInputs inputs_of(const SurveySettings& survey, const Simulation::Settings& how, int run) {
-  SceneInputs inputs{.files = adapters::scene_files(survey.scene), .name = survey.scene.id};
-  for (const std::filesystem::path& folder : how.assets) {
-    std::error_code error;
-    if (std::filesystem::is_directory(folder / "spectra", error)) inputs.more.push_back(folder / "spectra");
-  }
+  SceneInputs inputs{.files = how.inputs->scene(), .more = how.inputs->spectra(), .name = survey.scene.id};
+  inputs.content = [&all = *how.inputs](const std::filesystem::path& path) { return all.fingerprint(path); };
   bool random = false, moves = false;
   for (const adapters::PartSettings& part : survey.scene.parts) {
     random = random || is_random(part.source), moves = moves || !part.motions.empty();
@@ -140,8 +135,8 @@ struct Simulation::Inside {
 
   Inside(const SurveySettings& s, const Settings& how)
       : survey(s),
-        settings(how),
-        builder(s.scene, {.spectra = spectra_of(s, how.assets),
+        settings(with_inputs(s, how)),
+        builder(s.scene, {.spectra = spectra_of(s, settings.inputs->spectra()),
                           .pulse_rate = first_rate(s),
                           .seed = how.seed,
                           .fixed_incidence = how.fixed_incidence,
@@ -150,6 +145,11 @@ struct Simulation::Inside {
       meshes.push_back({.geometry = std::make_shared<const TriangleMesh<>>(mesh.data, how.threads),
                         .materials = material_table({mesh.material}),
                         .object = mesh.object});
+  }
+
+  [[nodiscard]] static Settings with_inputs(const SurveySettings& survey, Settings how) {
+    if (!how.inputs) how.inputs = std::make_shared<SurveyInputs>(survey, how.assets);
+    return how;
   }
 
   /// Batches hold waveforms of one kind of bins, so all channels are sampled as the finest of them is.

@@ -18,6 +18,7 @@
 #include "options.hpp"
 
 class SceneSharing;
+class SurveyInputs;
 
 /// What a survey may trade for speed, of all channels. What is not given is as the survey says.
 struct Receiving {
@@ -63,7 +64,8 @@ class Simulation {
     std::string scene_text{};               ///< says all settings of the scene
     std::vector<std::string> leg_places{};  ///< where legs stand in their document, for messages
     SceneStore store{};
-    SceneSharing* sharing = nullptr;  ///< if the scene is to be that of other processes, too
+    std::shared_ptr<SurveyInputs> inputs{};  ///< found unless given
+    SceneSharing* sharing = nullptr;         ///< if the scene is to be that of other processes, too
     std::vector<Mesh> meshes{};
     unsigned threads = 0;  ///< that build the scene; 0 for all
   };

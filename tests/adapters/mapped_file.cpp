@@ -8,6 +8,7 @@
 #include <string>
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include "support/temporary_folder.hpp"
 
@@ -53,4 +54,6 @@ TEST_CASE("what cannot be mapped is an error that says why") {
   CHECK_THROWS_WITH_AS((void)MappedFile(folder / "empty"), doctest::Contains("is empty"), FileError);
   CHECK_THROWS_WITH_AS((void)MappedFile(folder.path()), doctest::Contains("is a directory"), FileError);
   CHECK_THROWS_WITH_AS((void)MappedFile("/dev/null"), doctest::Contains("is a directory or device"), FileError);
+  REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);  // is not waited for
+  CHECK_THROWS_WITH_AS((void)MappedFile(folder / "pipe"), doctest::Contains("is a directory or device"), FileError);
 }

@@ -425,6 +425,18 @@ TEST_CASE("the key is that of the contents: it changes with every byte, the orde
   write(folder / "c", "onet"), write(folder / "b", "wo");  // the same bytes in all
   CHECK(of({folder / "c", folder / "b"}) != before);
   CHECK_THROWS_WITH_AS((void)of({folder / "a"}), doctest::Contains("is not there"), FileError);
+  const SceneSources sources{.files = {folder / "a", folder / "c"}};  // of which the caller knows the contents
+  CHECK(scene_key(sources, [](const auto&) {
+          return Fingerprint{1, 2};
+        }) == scene_key(sources, [](const auto&) {
+          return Fingerprint{1, 2};
+        }));
+  CHECK(scene_key(sources, [](const auto&) {
+          return Fingerprint{1, 2};
+        }) != scene_key(sources, [](const auto&) {
+          return Fingerprint{1, 3};
+        }));
+  CHECK(scene_key({.files = {folder / "b", folder / "c"}}, content_fingerprint) == of({folder / "b", folder / "c"}));
 }
 
 TEST_CASE("a scene is built once, and again when a source changes, the cache is damaged or a source is missing") {

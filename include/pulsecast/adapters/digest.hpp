@@ -35,6 +35,7 @@ class Digest {
   /// As if two adjoining runs of bytes were one.
   void add(std::span<const std::byte> bytes) { XXH3_128bits_update(state_.get(), bytes.data(), bytes.size()); }
   void add(std::uint64_t number) { add(std::as_bytes(std::span(&number, 1))); }
+  void add(const Fingerprint& other) { add(other.low), add(other.high); }
   /// With its length, so that it matters where one text ends and the next begins.
   void add(std::string_view text) { add(std::uint64_t{text.size()}), add(std::as_bytes(std::span(text))); }
 
@@ -89,5 +90,12 @@ class Digest {
 
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
 };
+
+/// The fingerprint of what a file or folder holds. Throws a `FileError` if it cannot be read.
+[[nodiscard]] inline Fingerprint content_fingerprint(const std::filesystem::path& path) {
+  Digest digest;
+  digest.add_content(path);
+  return digest.value();
+}
 
 }  // namespace pulsecast::adapters

@@ -19,13 +19,14 @@
 namespace pulsecast::adapters {
 
 /// A file that stands in memory, to be read only, without being read as a whole. It begins at a page of memory. The name may be given to
-/// another file meanwhile; the file itself must not be written to. Throws a `FileError` if it cannot be had.
+/// another file meanwhile; the file itself must not be written to. Throws a `FileError` if it cannot be had;
+/// a pipe is refused, and not waited for.
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path) {
     const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
     const auto system_error = [] { return std::generic_category().message(errno); };
-    const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+    const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
     if (file.number < 0) fail(errno == ENOENT ? "is not there" : "cannot be read: " + system_error());
     struct stat status {};
     if (::fstat(file.number, &status) != 0 || !S_ISREG(status.st_mode)) fail("is a directory or device");

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -66,7 +67,9 @@ struct SceneSources {
 };
 
 /// The key of sources as they are now. Where the files are does not matter, their order does. Throws a `FileError` if one cannot be read.
-[[nodiscard]] Fingerprint scene_key(const SceneSources& sources);
+/// `content` gives the fingerprint of each: whoever has read them already spares reading them again.
+[[nodiscard]] Fingerprint scene_key(const SceneSources& sources,
+                                    const std::function<Fingerprint(const std::filesystem::path&)>& content = content_fingerprint);
 
 /// Writes a cache. Throws a `FileError` if it cannot be written.
 template <CacheableScene S>
@@ -132,8 +135,7 @@ static_assert(sizeof(CacheHeader) == 128 && std::is_trivially_copyable_v<CacheHe
 /// Where the checksum of a cache ends up is not part of it; everything else is.
 [[nodiscard]] inline Fingerprint checksum_of(CacheHeader header, const Digest& rest) {
   Digest digest;
-  const Fingerprint of_rest = rest.value();
-  digest.add(of_rest.low), digest.add(of_rest.high);
+  digest.add(rest.value());
   header.checksum = {};
   digest.add(std::as_bytes(std::span(&header, 1)));
   return digest.value();
@@ -185,10 +187,10 @@ template <class P>
 
 }  // namespace detail
 
-inline Fingerprint scene_key(const SceneSources& sources) {
+inline Fingerprint scene_key(const SceneSources& sources, const std::function<Fingerprint(const std::filesystem::path&)>& content) {
   Digest digest;
   digest.add(std::string_view(sources.settings));
-  for (const std::filesystem::path& path : sources.files) digest.add_content(path);
+  for (const std::filesystem::path& path : sources.files) digest.add(content(path));
   return digest.value();
 }
 
