@@ -3,7 +3,6 @@
 
 // Simulates the survey of an XML document, as users of HELIOS++ have them.
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,6 +21,7 @@
 #include <set>
 #include <sstream>
 #include <stop_token>
+#include <utility>
 
 #include <pulsecast/adapters/digest.hpp>
 #include <pulsecast/version.hpp>
@@ -35,6 +35,7 @@
 #include "run_folder.hpp"
 #include "simulation.hpp"
 #include "survey_files.hpp"
+#include "survey_inputs.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
@@ -114,7 +115,7 @@ class Session {
     const fs::path parent = options_.output / survey_.name;
     std::optional<fs::path> again;
     if (options_.resume) {
-      const RunFolders found = runs_in(parent);
+      const RunFolders found = ranks_.first() ? lock_unfinished(parent, lock_) : RunFolders{};
       const fs::path unfinished = ranks_.from_first(found.unfinished.value_or(fs::path()).string());
       if (!unfinished.empty()) again = unfinished;
       const fs::path newest = ranks_.from_first(found.newest.value_or(fs::path()).string());
@@ -124,16 +125,28 @@ class Session {
       }
       if (!again) note("there is nothing to resume in " + parent.string() + ": this is a new run");
     }
+    const double start_time = gps_week_seconds(std::stoll(ranks_.from_first(std::to_string(unix_time_of(options_.gps_start_time)))));
+    const auto inputs = std::make_shared<SurveyInputs>(survey_, options_.assets);
     log_.how = how();
+    if (ranks_.first())
+      for (const auto& [path, fingerprint] : inputs->fingerprints()) log_.inputs.emplace(written_name(path), fingerprint);
     if (again)
       go_on_from(*again);
     else
-      log_.start_time = gps_week_seconds(std::stoll(ranks_.from_first(std::to_string(unix_time_of(options_.gps_start_time)))));
+      log_.start_time = start_time;
     Simulation::Settings settings = settings_of(options_, file_, log_.seed);
+    settings.inputs = inputs;
     settings.sharing = &ranks_;
     settings.store.write = settings.store.write && ranks_.first();
     Simulation simulation(survey_, settings);
-    if (!again && simulation.plan().clock_start) log_.start_time = *simulation.plan().clock_start;
+    if (again && log_.run >= simulation.runs())
+      throw FileError((*again / RunLog::name).string(), "line 3",
+                      "'run " + std::to_string(log_.run) + "': there are " + std::to_string(simulation.runs()) + ", from 0");
+    const bool has_clock = simulation.plan().clock_start.has_value();
+    if (again && !has_clock && !options_.gps_start_time.empty())
+      expect_same(*again, second_of_week(log_.start_time), second_of_week(start_time));
+    if (!again && has_clock) log_.start_time = *simulation.plan().clock_start;
+    if (again && ranks_.first() && !log_.before.empty()) RunLog::remove(parent / log_.before);
     tell_notes(simulation);
     if (!pages_.address().empty()) std::cout << "watch this run at " << pages_.address() << std::endl;
     RunSummary all;
@@ -141,10 +154,11 @@ class Session {
     for (int r = log_.run; r < simulation.runs() && all.complete; ++r) {
       log_.run = r;
       if (r > 0) simulation.begin(r), tell_notes(simulation);
-      all.add(play(simulation, folder));
+      all.add(play(simulation, folder, std::exchange(again, std::nullopt).has_value()));
       const fs::path done = folder;
       if (!all.complete) break;
-      log_.run = r + 1, log_.cut.clear(), log_.before = done.filename().string();
+      const std::optional<RunLock> lock_of_done = std::exchange(lock_, std::nullopt);  // until its log is gone
+      log_.run = r + 1, log_.files.clear(), log_.before = done.filename().string();
       if (r + 1 < simulation.runs()) folder = new_folder(parent);  // so that there is always one that is not finished
       if (ranks_.first()) RunLog::remove(done);
     }
@@ -166,7 +180,13 @@ class Session {
 
  private:
   [[nodiscard]] fs::path new_folder(const fs::path& parent) {
-    return ranks_.from_first(ranks_.first() ? new_run_folder(parent, log_).string() : std::string());
+    fs::path folder;
+    if (ranks_.first()) {
+      auto made = new_run_folder(parent, log_);
+      folder = std::move(made.first);
+      lock_.emplace(std::move(made.second));
+    }
+    return ranks_.from_first(folder.string());
   }
 
   /// Once.
@@ -205,22 +225,53 @@ class Session {
     return out.str();
   }
 
+  static void expect_same(const fs::path& folder, const std::string& then, const std::string& now) {
+    if (then != now)
+      throw std::invalid_argument(folder.string() + ": was begun with another survey or other options, '" + then + "'; now they are '" +
+                                  now + "'");
+  }
+
+  static std::string second_of_week(double time) {
+    std::ostringstream text;
+    text << "--gpsStartTime of second " << std::setprecision(17) << time << " of the GPS week";
+    return text.str();
+  }
+
+  void expect_same_inputs(const fs::path& folder, const RunLog& then) const {
+    std::string changed;
+    const auto tell = [&](const std::string& path, const char* fate) { changed += (changed.empty() ? "" : ", ") + path + fate; };
+    for (const auto& [path, fingerprint] : log_.inputs) {
+      const auto before = then.inputs.find(path);
+      if (before == then.inputs.end())
+        tell(path, " is new");
+      else if (before->second != fingerprint)
+        tell(path, " has changed");
+    }
+    for (const auto& [path, fingerprint] : then.inputs)
+      if (!log_.inputs.contains(path)) tell(path, " is gone");
+    if (!changed.empty()) throw FileError(folder.string(), "", "cannot be resumed: since it was begun, " + changed);
+  }
+
   void go_on_from(const fs::path& folder) {
-    RunLog log = RunLog::read(folder);
-    const auto expect_same = [&](const std::string& then, const std::string& now) {
-      if (then != now)
-        throw std::invalid_argument(folder.string() + ": was begun with another survey or other options, '" + then + "'; now they are '" +
-                                    now + "'");
-    };
-    expect_same(log.how, log_.how);
-    if (options_.seed) expect_same("--seed " + std::to_string(log.seed), "--seed " + std::to_string(*options_.seed));
-    if (!log.before.empty() && ranks_.first()) RunLog::remove(folder.parent_path() / log.before);
+    const std::string text = ranks_.from_first(ranks_.first() ? RunLog::text_in(folder) : std::string());
+    RunLog log = RunLog::parse(text, (folder / RunLog::name).string());
+    expect_same(folder, log.how, log_.how);
+    if (ranks_.first()) expect_same_inputs(folder, log);
+    if (options_.seed) expect_same(folder, "--seed " + std::to_string(log.seed), "--seed " + std::to_string(*options_.seed));
     log_ = std::move(log);
   }
 
-  RunSummary play(const Simulation& simulation, const fs::path& folder) {
+  /// Whether results are whole; if not, the log forgets them.
+  bool are_whole(const std::vector<fs::path>& results) {
+    const std::vector<fs::path> damaged = log_.damaged(results);
+    for (const fs::path& path : damaged) note(path.string() + " is not as long as when it was whole: its legs are simulated again");
+    if (damaged.empty() && log_.names(results)) return true;
+    for (const fs::path& path : results) log_.files.erase(path.filename().string());
+    return false;
+  }
+
+  RunSummary play(const Simulation& simulation, const fs::path& folder, bool again) {
     folders_.push_back(folder.string());
-    const std::vector<std::string> cut = std::exchange(log_.cut, {});
     const double start_time = log_.start_time + log_.run * simulation.plan().source.duration().seconds();
     const SurveyPlan& plan = simulation.plan();
     std::vector<std::string> channels;
@@ -229,22 +280,21 @@ class Session {
 
     std::map<std::string, std::size_t> last;  // leg of each prefix
     std::map<std::string, bool> skipped;
+    const auto files_of = [&](const std::string& prefix) { return leg_files(folder, prefix, options_, channels); };
     for (std::size_t k = 0; k < plan.legs.size(); ++k) {
       if (!plan.legs[k].active) continue;
       const std::string prefix = prefix_of(plan.legs[k]);
       last[prefix] = k;
-      if (options_.resume && !skipped.contains(prefix)) {
-        const bool there = std::find(cut.begin(), cut.end(), prefix) == cut.end() && LegFiles::complete(folder, prefix, options_, channels);
-        skipped[prefix] = ranks_.from_first(there ? "there" : "") == "there";
-      }
+      if (again && !skipped.contains(prefix))
+        skipped[prefix] = ranks_.from_first(ranks_.first() && are_whole(files_of(prefix)) ? "whole" : "") == "whole";
     }
+    if (again && ranks_.first()) log_.write(folder);  // without what is to be done again
     PulseIndex total = 0, before = 0;
     for (const auto& leg : plan.legs)
       if (leg.active && !skipped[prefix_of(leg)]) total += leg.end - leg.first;
 
     if (total > 0) pages_.begin(folder, plan);
     std::map<std::string, std::unique_ptr<LegRun>> open;
-    std::set<std::string> done;
     RunSummary all;
     ProgressLine line;
     for (std::size_t k = 0; k < plan.legs.size() && all.complete; ++k) {
@@ -268,15 +318,12 @@ class Session {
       all.add(files.run(simulation, run));
       before += leg.end - leg.first;
       if (!all.complete) break;
-      if (last[prefix] == k) files.close(), open.erase(at), done.insert(prefix);
+      if (last[prefix] != k) continue;
+      files.close();
+      open.erase(at);
+      if (ranks_.first()) log_.add_files(folder, files_of(prefix));
     }
-    if (!all.complete) {
-      for (const auto& [prefix, files] : open) log_.cut.push_back(prefix);
-      for (const std::string& prefix : cut)  // that were not come to again
-        if (!open.contains(prefix) && !done.contains(prefix)) log_.cut.push_back(prefix);
-      if (ranks_.first()) log_.write(folder);
-      for (auto& [prefix, files] : open) files->close();
-    }
+    for (auto& [prefix, files] : open) files->close();  // of a run that was interrupted
     pages_.end();
     return all;
   }
@@ -287,6 +334,7 @@ class Session {
   Ranks& ranks_;
   Pages pages_;
   RunLog log_;
+  std::optional<RunLock> lock_;  // of the folder that is written to, on the first process
   std::vector<std::string> folders_;
   std::set<std::string> told_;
 };
@@ -387,6 +435,7 @@ int main(int argc, char** argv) {
     follows = !ranks->first();
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that would exceed the limit is an error then, which is told
     return work(*options, *ranks);
   } catch (const std::exception& error) {
     if (ranks) ranks->complain();

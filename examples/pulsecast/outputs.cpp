@@ -42,6 +42,19 @@ std::vector<fs::path> point_files(const fs::path& folder, const std::string& pre
   return all;
 }
 
+std::vector<fs::path> leg_files(const fs::path& folder, const std::string& prefix, const Options& o,
+                                const std::vector<std::string>& channels) {
+  std::vector<fs::path> all;
+  for (const fs::path& points : point_files(folder, prefix, o, channels)) {
+    all.push_back(points);
+    if (las_settings(o, 0).waveforms) all.push_back(fs::path(points).replace_extension(".wdp"));
+  }
+  all.push_back(folder / (prefix + "_trajectory.txt"));
+  if (o.write_waveform) all.push_back(folder / (prefix + "_fullwave.txt"));
+  if (o.write_pulse) all.push_back(folder / (prefix + "_pulse.txt"));
+  return all;
+}
+
 adapters::LasSettings las_settings(const Options& o, double start_time) {
   adapters::LasSettings settings{.scale = o.las_scale, .gps_time = adapters::GpsTime::week, .start_time = start_time};
   settings.epsg = o.epsg.value_or(0);
@@ -91,18 +104,6 @@ void LegFiles::close() {
   if (inside_->pulses) inside_->pulses->close();
   inside_->trajectory.close();
   for (PointWriter& writer : inside_->points) std::visit([](auto& w) { w.close(); }, writer);
-}
-
-bool LegFiles::complete(const fs::path& folder, const std::string& prefix, const Options& o, const std::vector<std::string>& channels) {
-  std::vector<fs::path> files = point_files(folder, prefix, o, channels);
-  files.push_back(folder / (prefix + "_trajectory.txt"));
-  if (o.write_waveform) files.push_back(folder / (prefix + "_fullwave.txt"));
-  if (o.write_pulse) files.push_back(folder / (prefix + "_pulse.txt"));
-  for (const fs::path& file : files) {
-    std::error_code error;
-    if (!fs::is_regular_file(file, error)) return false;
-  }
-  return true;
 }
 
 struct Picture::Inside {

@@ -17,6 +17,10 @@
 std::vector<std::filesystem::path> point_files(const std::filesystem::path& folder, const std::string& prefix, const Options& options,
                                                const std::vector<std::string>& channels);
 
+/// Names of all files of a prefix.
+std::vector<std::filesystem::path> leg_files(const std::filesystem::path& folder, const std::string& prefix, const Options& options,
+                                             const std::vector<std::string>& channels);
+
 /// How they are written as LAS or LAZ.
 pulsecast::adapters::LasSettings las_settings(const Options& options, double start_time);
 
@@ -33,10 +37,6 @@ class LegFiles {
   void operator()(const pulsecast::EchoBatch& batch);
   void add_trajectory(const pulsecast::adapters::SurveyLeg& leg, pulsecast::Tick start, double interval);
   void close();
-
-  /// Whether all files of a prefix are there.
-  static bool complete(const std::filesystem::path& folder, const std::string& prefix, const Options& options,
-                       const std::vector<std::string>& channels);
 
  private:
   struct Inside;

@@ -3,17 +3,26 @@
 
 #include "run_folder.hpp"
 
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
 #include <charconv>
+#include <chrono>
+#include <cmath>
 #include <ctime>
-#include <fstream>
 #include <iomanip>
+#include <random>
 #include <sstream>
-#include <string_view>
 #include <system_error>
+#include <thread>
 #include <tuple>
 
+#include <pulsecast/adapters/input_file.hpp>
 #include <pulsecast/adapters/output_file.hpp>
 #include <pulsecast/base/error.hpp>
 
@@ -31,72 +40,246 @@ std::string local_time() {
   return out.str();
 }
 
+constexpr std::string_view stamp_form = "0000-00-00_00-00-00";  // 0 for a digit
+
+/// Whether a text is the name of the folder of a run.
+bool is_run_name(std::string_view text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (text.size() < stamp_form.size()) return false;
+  for (std::size_t i = 0; i < stamp_form.size(); ++i)
+    if (stamp_form[i] == '0' ? !is_digit(text[i]) : text[i] != stamp_form[i]) return false;
+  text.remove_prefix(stamp_form.size());
+  return text.empty() || (text.size() > 1 && text.size() < 5 && text.front() == '_' && std::all_of(text.begin() + 1, text.end(), is_digit));
+}
+
+std::string reason_of(int error) { return std::generic_category().message(error); }
+
 /// Runs of one second are numbered, so that the longer name is the later.
 bool is_later(const fs::path& a, const fs::path& b) {
   const auto key = [](const fs::path& path) {
     const std::string name = path.filename().string();
-    return std::tuple(name.substr(0, std::string_view("2026-01-01_00-00-00").size()), name.size(), name);
+    return std::tuple(name.substr(0, stamp_form.size()), name.size(), name);
   };
   return key(a) > key(b);
 }
 
 }  // namespace
 
-void RunLog::write(const fs::path& folder) const {
-  adapters::OutputFile file(folder / name);
-  std::ostringstream text;
-  text << "seed " << seed << "\nstart_time " << std::setprecision(17) << start_time << "\nrun " << run << "\nhow " << how << '\n';
-  if (!before.empty()) text << "before " << before << '\n';
-  for (const std::string& prefix : cut) text << "cut " << prefix << '\n';
-  text << "end\n";
-  file.write(text.str());
-  file.commit();
+std::string written_name(const std::string& name) {
+  constexpr const char* digits = "0123456789abcdef";
+  std::string text;
+  for (const unsigned char c : name) {
+    if (c >= ' ' && c != 0x7f && c != '\\')
+      text += static_cast<char>(c);
+    else
+      text.append("\\x").append({digits[c >> 4], digits[c & 15]});
+  }
+  return text;
 }
 
-RunLog RunLog::read(const fs::path& folder) {
-  const fs::path path = folder / name;
-  std::ifstream in(path, std::ios::binary);
+std::string RunLog::text() const {
+  std::ostringstream text;
+  text << "seed " << seed << "\nstart_time " << std::setprecision(17) << start_time << "\nrun " << run << "\nhow " << how << '\n';
+  for (const auto& [path, fingerprint] : inputs) text << "input " << fingerprint << ' ' << path << '\n';
+  if (!before.empty()) text << "before " << before << '\n';
+  text << "end\n";
+  for (const auto& [file, size] : files) text << "file " << size << ' ' << file << '\n';
+  return text.str();
+}
+
+RunLog RunLog::parse(std::string_view text, const std::string& path) {
+  static constexpr std::array<std::string_view, 6> order{"seed", "start_time", "run", "how", "input", "before"};  // of the keys
   RunLog log;
-  std::size_t number = 0;
+  std::size_t number = 0, next = 0;  // of the line; of the key that may come next
   bool complete = false;
-  for (std::string line; std::getline(in, line) && !in.eof();) {
-    const auto refuse = [&] {
-      throw FileError(path.string(), "line " + std::to_string(number),
-                      "'" + line + "': it is not what a run left; this one cannot be resumed");
-    };
-    const auto read = [&](std::string_view text, auto& value) {
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-      if (error != std::errc{} || end != text.data() + text.size()) refuse();
-    };
+  for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n')) {
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end + 1);
     ++number;
-    const std::size_t blank = line.find(' ');
-    const std::string key = line.substr(0, blank), value = blank == std::string::npos ? "" : line.substr(blank + 1);
-    if (complete) refuse();
-    if (key == "seed" && number == 1) {
-      read(value, log.seed);
-    } else if (key == "start_time" && number == 2) {
-      read(value, log.start_time);
-    } else if (key == "run" && number == 3) {
-      read(value, log.run);
-    } else if (key == "how" && number == 4) {
-      log.how = value;
-    } else if (key == "before" && number == 5) {
-      log.before = value;
-    } else if (key == "cut" && number > 4) {
-      log.cut.push_back(value);
-    } else if (line == "end" && number > 4) {
+    const std::size_t blank = std::min(line.find(' '), line.size());
+    const std::string_view key = line.substr(0, blank), value = line.substr(std::min(blank + 1, line.size()));
+    const auto expect = [&](bool holds) {
+      if (holds) return;
+      const std::string shown = written_name(std::string(line.substr(0, 80))) + (line.size() > 80 ? "..." : "");
+      throw FileError(path, "line " + std::to_string(number), "'" + shown + "': it is not what a run left; this one cannot be resumed");
+    };
+    const auto read = [&](std::string_view digits, auto& to) {
+      const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), to);
+      expect(error == std::errc{} && rest == digits.data() + digits.size());
+    };
+    /// A number or fingerprint, and a name after it.
+    const auto split = [&] {
+      const std::size_t at = std::min(value.find(' '), value.size());
+      const std::string_view name = value.substr(std::min(at + 1, value.size()));
+      expect(at > 0 && !name.empty() && std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }));
+      return std::pair(value.substr(0, at), std::string(name));
+    };
+    if (complete) {
+      const auto [size, file] = split();
+      expect(key == "file" && file.find('/') == file.npos);
+      read(size, log.files[file]);
+      continue;
+    }
+    if (line == "end") {
+      expect(next >= 4);
       complete = true;
-    } else {
-      refuse();
+      continue;
+    }
+    const auto place = static_cast<std::size_t>(std::find(order.begin(), order.end(), key) - order.begin());
+    expect(place < order.size() && (place == next || (next >= 4 && place >= next)));
+    next = place == 4 ? 4 : place + 1;
+    switch (place) {
+      case 0:
+        read(value, log.seed);
+        break;
+      case 1:
+        read(value, log.start_time);
+        expect(std::isfinite(log.start_time));
+        break;
+      case 2:
+        read(value, log.run);
+        expect(log.run >= 0);
+        break;
+      case 3:
+        log.how = value;
+        break;
+      case 4: {
+        const auto [fingerprint, file] = split();
+        expect(fingerprint.size() == 32 && fingerprint.find_first_not_of("0123456789abcdef") == fingerprint.npos);
+        expect(log.inputs.emplace(file, fingerprint).second);
+        break;
+      }
+      default:
+        expect(is_run_name(value));
+        log.before = value;
     }
   }
-  if (!complete) throw FileError(path.string(), "", "is cut short: the run cannot be resumed");
+  if (!complete) throw FileError(path, "", "is cut short: the run cannot be resumed");
   return log;
 }
 
+void RunLog::write(const fs::path& folder) const {
+  adapters::OutputFile file(folder / name);
+  file.write(text());
+  file.commit();
+}
+
+std::string RunLog::text_in(const fs::path& folder) {
+  constexpr std::uint64_t longest = std::uint64_t{1} << 28;  // a million legs [byte]
+  adapters::InputFile file(folder / name, "the log of a run");
+  if (file.size() > longest) file.fail("is longer than " + std::to_string(longest) + " bytes: it is not what a run left");
+  std::string text;
+  for (std::string_view bytes = file.take(file.block_size); !bytes.empty(); bytes = file.take(file.block_size)) text += bytes;
+  return text;
+}
+
+void RunLog::add_files(const fs::path& folder, const std::vector<fs::path>& whole) {
+  std::string lines;
+  for (const fs::path& path : whole) {
+    const std::string file = path.filename().string();
+    files[file] = fs::file_size(path);
+    lines += "file " + std::to_string(files[file]) + ' ' + file + '\n';
+  }
+  const fs::path path = folder / name;
+  const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NONBLOCK);
+  const bool is_written = file >= 0 && ::write(file, lines.data(), lines.size()) == static_cast<ssize_t>(lines.size());
+  const int error = errno;
+  if (file >= 0) ::close(file);
+  if (!is_written) throw FileError(path.string(), "", "cannot be added to: " + reason_of(error));
+}
+
+std::vector<fs::path> RunLog::damaged(const std::vector<fs::path>& results) const {
+  std::vector<fs::path> all;
+  for (const fs::path& path : results) {
+    const auto noted = files.find(path.filename().string());
+    if (noted == files.end()) continue;
+    std::error_code error;
+    const bool is_whole = fs::is_regular_file(path, error) && fs::file_size(path, error) == noted->second;
+    if (!is_whole || error) all.push_back(path);
+  }
+  return all;
+}
+
+bool RunLog::names(const std::vector<fs::path>& results) const {
+  return std::all_of(results.begin(), results.end(), [&](const fs::path& path) { return files.contains(path.filename().string()); });
+}
+
 void RunLog::remove(const fs::path& folder) {
+  if (const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); directory >= 0) {
+    ::fsync(directory);
+    ::close(directory);
+  }
   std::error_code ignored;
   fs::remove(folder / name, ignored);
+}
+
+namespace {
+
+/// A process, as it stands in the file of a lock.
+struct Holder {
+  pid_t process = 0;
+  std::string machine{};
+
+  static Holder self() {
+    std::array<char, 256> machine{};
+    if (::gethostname(machine.data(), machine.size() - 1) != 0) machine.front() = 0;
+    return {::getpid(), machine.data()};
+  }
+
+  [[nodiscard]] std::string text() const { return std::to_string(process) + ' ' + machine + '\n'; }
+
+  /// None if nothing is there yet, or what another has left that is gone.
+  static std::optional<Holder> read(int file) {
+    std::array<char, 300> bytes{};
+    const ssize_t count = ::pread(file, bytes.data(), bytes.size() - 1, 0);
+    std::istringstream in(std::string(bytes.data(), count > 0 ? static_cast<std::size_t>(count) : 0));
+    Holder found;
+    if (!(in >> found.process >> found.machine) || found.process <= 0) return std::nullopt;
+    const bool is_gone = found.machine == self().machine && ::kill(found.process, 0) != 0 && errno == ESRCH;
+    return is_gone ? std::nullopt : std::optional(found);
+  }
+};
+
+[[noreturn]] void refuse(const fs::path& folder, int file) {
+  std::optional<Holder> holder = Holder::read(file);
+  for (int tries = 0; !holder && tries < 50; ++tries) {  // whoever has just locked it is about to say so
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    holder = Holder::read(file);
+  }
+  ::close(file);
+  std::string by = "another process";
+  if (holder) by = "process " + std::to_string(holder->process) + " of " + written_name(holder->machine);
+  throw FileError(folder.string(), "", "is being written by " + by);
+}
+
+}  // namespace
+
+RunLock::RunLock(const fs::path& folder) : path_(folder / name) {
+  const auto fail = [&](int error) {
+    if (file_ >= 0) ::close(file_);
+    throw FileError(folder.string(), "", "cannot be locked: " + reason_of(error) + "; expected a folder that may be written to");
+  };
+  for (;;) {
+    file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    struct stat status {};
+    if (file_ < 0 || ::fstat(file_, &status) != 0) fail(errno);
+    if (!S_ISREG(status.st_mode)) fail(EEXIST);
+    if (!adapters::detail::lock_alone(file_)) refuse(folder, file_);
+    if (adapters::detail::stands_at(file_, path_)) break;
+    ::close(file_);  // whoever had it has removed it meanwhile
+  }
+  const std::string text = Holder::self().text();
+  if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
+    const int error = errno;
+    ::unlink(path_.c_str());
+    fail(error);
+  }
+}
+
+RunLock::~RunLock() {
+  if (file_ < 0) return;
+  if (adapters::detail::stands_at(file_, path_)) ::unlink(path_.c_str());
+  ::close(file_);
 }
 
 RunFolders runs_in(const fs::path& parent) {
@@ -112,20 +295,40 @@ RunFolders runs_in(const fs::path& parent) {
   return found;
 }
 
-fs::path new_run_folder(const fs::path& parent, const RunLog& log) {
+RunFolders lock_unfinished(const fs::path& parent, std::optional<RunLock>& lock) {
+  for (;;) {
+    RunFolders found = runs_in(parent);
+    if (!found.unfinished) return found;
+    lock.emplace(*found.unfinished);
+    const RunFolders now = runs_in(parent);
+    if (now.unfinished == found.unfinished) return now;
+    lock.reset();  // it was completed meanwhile, or has a successor
+  }
+}
+
+std::pair<fs::path, RunLock> new_run_folder(const fs::path& parent, const RunLog& log) {
   const std::string stamp = local_time();
   std::error_code error;
   fs::create_directories(parent, error);
   if (error) throw FileError(parent.string(), "", "the output folder cannot be made (" + error.message() + ")");
-  const fs::path making = parent / ('.' + stamp + '_' + std::to_string(getpid()));
-  fs::create_directory(making, error);
+  fs::path making;
+  do making = parent / ('.' + stamp + '_' + std::to_string(std::random_device{}()));
+  while (!fs::create_directory(making, error) && !error);
   if (error) throw FileError(making.string(), "", "the output folder cannot be made (" + error.message() + ")");
-  log.write(making);
-  for (int n = 1; n < 1000; ++n) {
-    const fs::path folder = parent / (n == 1 ? stamp : stamp + '_' + std::to_string(n));
-    if (fs::exists(folder, error)) continue;
-    fs::rename(making, folder, error);
-    if (!error) return folder;
+  try {
+    RunLock lock(making);
+    log.write(making);
+    for (int n = 1; n < 1000; ++n) {
+      fs::path folder = parent / (n == 1 ? stamp : stamp + '_' + std::to_string(n));
+      if (fs::exists(folder, error)) continue;
+      fs::rename(making, folder, error);
+      if (error) continue;  // another run has taken the name
+      lock.renamed(folder);
+      return {std::move(folder), std::move(lock)};
+    }
+    throw FileError((parent / stamp).string(), "", "the output folder cannot be made");
+  } catch (...) {
+    fs::remove_all(making, error);
+    throw;
   }
-  throw FileError((parent / stamp).string(), "", "the output folder cannot be made");
 }

@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 using namespace pulsecast;
 
 SurveyFile read_survey_file(const Options& options) {
-  adapters::SurveyDocument document = adapters::read_survey(options.survey, {.assets = options.assets});
+  adapters::SurveyDocument document =
+      adapters::read_survey(options.survey, {.assets = options.assets, .channel_files = options.split_by_channel});
   std::string text = adapters::xml_text(document.survey),
               scene_text = adapters::xml_text(adapters::AssetDocument{.scenes = {document.survey.scene}});
   return {std::move(document.survey), std::move(document.warnings), std::move(text), std::move(scene_text), std::move(document.leg_places)};

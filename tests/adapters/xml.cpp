@@ -392,6 +392,7 @@ TEST_CASE("channels of one id are told with their place, and refused where each 
   CHECK(faults(document("", "")).empty());
   CHECK(contains(faults(document(R"( id="a")", R"( id="a")")), "channels.xml:5:16: channel 1 has the id of channel 0, 'a'"));
   CHECK(contains(faults(document(R"( id="1")", "")), "channels.xml:5:8: channel 1 has the id of channel 0, '1'"));
+  CHECK(contains(faults(document(R"( id="1")", R"( id="")")), "channels.xml:5:16: channel 1 has the id of channel 0, '1'"));
   CHECK(contains(faults(document(R"( id="a")", R"( id="../b")")), "channels.xml:5:16: the id of a channel becomes part of the names"));
   CHECK(contains(faults(document(R"( id="a&#10;")", "")), "channels.xml:4:16: the id of a channel becomes part of the names"));
 

@@ -205,7 +205,7 @@ class SurveyReader {
     std::map<std::string, std::size_t> numbers;
     pugi::xml_node node = scanner.node.child("channels").child("channel");
     for (std::size_t k = 0; k < survey_.scanner.channels.size() && node; ++k, node = node.next_sibling("channel")) {
-      const std::string& id = survey_.scanner.channels[k].id;
+      const std::string id = survey_.scanner.channels[k].id.empty() ? std::to_string(k) : survey_.scanner.channels[k].id;
       const auto [other, is_new] = numbers.emplace(id, k);
       if (channel_files_ && !is_part_of_name(id))
         report_.fault(document.place(node, "id"),
