@@ -15,6 +15,7 @@
 #include <variant>
 
 #include <pulsecast/adapters/geotiff.hpp>
+#include <pulsecast/adapters/output_file.hpp>
 #include <pulsecast/adapters/xml.hpp>
 
 namespace fs = std::filesystem;
@@ -72,6 +73,35 @@ void set_attribute(std::string& text, std::size_t tag, const std::string& name, 
   text.insert(name_end, ' ' + name + "=\"" + value + '"');
 }
 
+/// The file that a name leads to through symbolic links.
+fs::path target_of(fs::path path) {
+  constexpr int most_links = 40;  // source: path_resolution(7)
+  std::error_code error;
+  for (int links = 0; links < most_links && fs::is_symlink(path, error); ++links) path = path.parent_path() / fs::read_symlink(path, error);
+  return path;
+}
+
+/// Throws a `FileError` unless a text, read where `path` stands, says the same survey but for the change.
+void expect_same_survey(const Options& options, const SurveyFile& file, const WaveformChange& change, const std::string& text,
+                        const fs::path& path) {
+  struct Trial {
+    fs::path path;
+    ~Trial() {
+      std::error_code ignored;
+      fs::remove(path, ignored);
+    }
+  };
+  const Trial trial{path.string() + ".part"};
+  std::ofstream out(trial.path, std::ios::binary);
+  if (!(out << text).flush()) throw FileError(path.string(), "", "cannot be written");
+  const adapters::SurveySettings written = adapters::read_survey(trial.path, {.assets = options.assets}).survey;
+  adapters::SurveySettings wanted = file.survey;
+  wanted.name = written.name;  // that of the file unless the survey has one
+  for (adapters::ChannelSettings& channel : wanted.scanner.channels)
+    channel.waveform.rings = change.rings, channel.waveform.bin_size = change.bin_size;
+  if (written != wanted) throw FileError(path.string(), "", "would not be the same survey; nothing is written");
+}
+
 }  // namespace
 
 void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change, const fs::path& path) {
@@ -90,22 +120,17 @@ void write_survey_file(const Options& options, const SurveyFile& file, const Wav
   set_attribute(text, tag, "binSize_ns", adapters::xml_number(adapters::units::nanosecond.number(change.bin_size)));
   set_attribute(text, tag, "beamSampleQuality", std::to_string(change.rings));
 
-  const fs::path trial = path.string() + ".part";
-  try {
-    std::ofstream out(trial, std::ios::binary);
-    if (!(out << text).flush()) throw FileError(path.string(), "", "cannot be written");
-    const adapters::SurveySettings written = adapters::read_survey(trial, {.assets = options.assets}).survey;
-    adapters::SurveySettings wanted = file.survey;
-    wanted.name = written.name;  // that of the file unless the survey has one
-    for (adapters::ChannelSettings& channel : wanted.scanner.channels)
-      channel.waveform.rings = change.rings, channel.waveform.bin_size = change.bin_size;
-    if (written != wanted) throw FileError(path.string(), "", "would not be the same survey; nothing is written");
-    fs::rename(trial, path);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(trial, ignored);
-    throw;
-  }
+  expect_same_survey(options, file, change, text, path);
+  const fs::path target = target_of(path);
+  adapters::OutputFile out(target);
+  out.write(text);
+  std::error_code error;
+  if (const fs::file_status before = fs::status(target, error); fs::exists(before))
+    fs::permissions(adapters::OutputFile::temporary_name(target), before.permissions(), error);
+  else
+    error.clear();
+  if (error) throw FileError(path.string(), "", "cannot be given the rights that it had: " + error.message());
+  out.commit();
 }
 
 namespace {

@@ -31,8 +31,9 @@ struct WaveformChange {
   double bin_size = 0;  ///< `binSize_ns` [s]
 };
 
-/// Writes the document of a survey with other settings, and all else as it stands there, comments too. Throws a `FileError` and leaves what
-/// was there if what is written would not say the same.
+/// Writes the document of a survey with other settings, and all else as it stands there, comments too: through
+/// symbolic links, with the mode that the file had. Throws a `FileError` and leaves what was there if what is written would not say the
+/// same.
 void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change, const std::filesystem::path& path);
 
 /// Scanners and platforms in the assets that the program finds.

@@ -129,6 +129,17 @@ file(GLOB run ${FOLDER}/one/test/*)
 file(WRITE ${run}/unfinished.txt "seed 5\nstart_time 259218\nrun 0\nhow other\nend\n")
 expect(1 "other options" ${SURVEY} --output one --resume ${start} --writePulse --writeWaveform --calcEchowidth)
 
+# Channels of one id are refused where their files would have one name, before anything is left.
+string(REGEX REPLACE "(<scanner [^>]*[^/])/?>(.*</scanner>)?" "\\1><channels><channel id=\"a\"/><channel id=\"a\"/></channels></scanner>" doubled "${text}")
+file(WRITE ${FOLDER}/doubled.xml "${doubled}")
+foreach(command check run)
+  expect(1 "doubled.xml:[0-9]+:[0-9]+: channel 1 has the id of channel 0, 'a'" ${command} doubled.xml --assets ${folder} --splitByChannel --output untouched)
+endforeach()
+expect(0 "note: .*doubled.xml:[0-9]+:[0-9]+: channel 1 has the id of channel 0, 'a'.*nothing is wrong" check doubled.xml --assets ${folder})
+if(EXISTS ${FOLDER}/untouched)
+  message(SEND_ERROR "a survey with channels of one id left a folder")
+endif()
+
 # The scene of large files is kept, and used again while nothing that it was made from has changed.
 if(EXISTS ${FOLDER}/cache)
   message(SEND_ERROR "a small scene was kept")
@@ -143,7 +154,7 @@ file(COPY ${folder}/plane.mtl ${folder}/plane.obj ${folder}/survey.xml DESTINATI
 function(expect_scene from points)
   file(REMOVE_RECURSE ${FOLDER}/run)
   execute_process(COMMAND ${PROGRAM} survey.xml --output ../run --seed 5 ${start} ${ARGN} WORKING_DIRECTORY ${FOLDER}/large
-                  RESULT_VARIABLE result OUTPUT_VARIABLE out ERROR_VARIABLE out)
+                  TIMEOUT 100 RESULT_VARIABLE result OUTPUT_VARIABLE out ERROR_VARIABLE out)
   string(REGEX MATCH "is kept|is not kept|comes from" told "${out}")
   sums(run sums)
   if(NOT result STREQUAL 0 OR NOT told STREQUAL from OR NOT sums STREQUAL points)
@@ -168,6 +179,11 @@ file(WRITE ${scene} "damaged")
 expect_scene("is kept" "${points}")
 file(WRITE ${notes} "damaged")
 expect_scene("is kept" "${points}")
+foreach(place ${scene} ${notes})  # a pipe is not waited for
+  file(REMOVE ${place})
+  execute_process(COMMAND mkfifo ${place})
+  expect_scene("is kept" "${points}")
+endforeach()
 foreach(place /dev/null ${scene})
   set(ENV{XDG_CACHE_HOME} ${place})
   expect_scene("is not kept" "${points}")

@@ -123,6 +123,25 @@ file(READ ${FOLDER}/own/new.xml text)
 if(NOT text MATCHES "<FWFSettings binSize_ns=\"[0-9.]+\" *\n  winSize_ns='1' beamSampleQuality\n = '${rings}'/>")
   message(SEND_ERROR "settings were not replaced in their place:\n${text}")
 endif()
+
+# A symbolic link stays one, and what it leads to keeps its mode; its files are found from where the link stands.
+file(MAKE_DIRECTORY ${FOLDER}/elsewhere)
+file(RENAME ${FOLDER}/own/survey.xml ${FOLDER}/elsewhere/real.xml)
+file(CHMOD ${FOLDER}/elsewhere/real.xml PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ)
+file(CREATE_LINK ../elsewhere/real.xml ${FOLDER}/own/survey.xml SYMBOLIC)
+string(REGEX REPLACE "beamSampleQuality=\"[0-9]+\"" "beamSampleQuality=\"100\"" text "${text}")
+file(WRITE ${FOLDER}/elsewhere/real.xml "${text}")
+applied(rings own/survey.xml --range-error 10m --apply)
+file(READ ${FOLDER}/elsewhere/real.xml text)
+execute_process(COMMAND stat -c %A elsewhere/real.xml own/survey.xml WORKING_DIRECTORY ${FOLDER} OUTPUT_VARIABLE modes)
+if(NOT modes MATCHES "^-rw-r-----\nl" OR NOT text MATCHES "beamSampleQuality\n* *= *'${rings}'")
+  message(SEND_ERROR "through a symbolic link, ${rings} was written otherwise: ${modes}${text}")
+endif()
+file(GLOB left RELATIVE ${FOLDER}/own ${FOLDER}/own/* ${FOLDER}/elsewhere/*)
+if(left MATCHES "part")
+  message(SEND_ERROR "a trial is left: ${left}")
+endif()
+
 expect(1 "error" plan own/survey.xml --range-error 10m --apply nowhere/new.xml)  # there is no such folder
 expect(1 "plane.obj" plan own/survey.xml --range-error 10m --apply astray.xml)  # its files would not be found from there
 if(EXISTS ${FOLDER}/astray.xml OR EXISTS ${FOLDER}/astray.xml.part)
