@@ -146,7 +146,10 @@ class Session {
     if (again && !has_clock && !options_.gps_start_time.empty())
       expect_same(*again, second_of_week(log_.start_time), second_of_week(start_time));
     if (!again && has_clock) log_.start_time = *simulation.plan().clock_start;
-    if (again && ranks_.first() && !log_.before.empty()) RunLog::remove(parent / log_.before);
+    if (again && ranks_.first() && !log_.before.empty() && fs::exists(parent / log_.before)) {
+      const RunLock lock(parent / log_.before);  // whose file may have been left
+      RunLog::remove(parent / log_.before);
+    }
     tell_notes(simulation);
     if (!pages_.address().empty()) std::cout << "watch this run at " << pages_.address() << std::endl;
     RunSummary all;

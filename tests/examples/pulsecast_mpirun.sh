@@ -108,8 +108,18 @@ for tries in 1 2 3 4 5 6 7 8; do
 done
 [ -n "$(find stopped -name unfinished.txt)" ] || fail "a run could not be stopped, or tells nothing of it"
 [ -z "$(find stopped -name '*.part')" ] || fail "files are left open by a run that was stopped"
-"${launch[@]}" -n 2 "$program" "$survey" "${start[@]}" --quiet --format las --output stopped --resume ||
-  fail "what was stopped cannot be resumed"
+resume_stopped() { "${launch[@]}" -n 2 "$program" "$survey" "${start[@]}" --quiet --format las --output stopped --resume; }
+lock=$(dirname "$(find stopped -name unfinished.txt)")/.lock
+before=$(sums stopped)
+(
+  flock -n 9 || exit 2
+  echo "$$ $(hostname)" >&9
+  resume_stopped > told 2>&1
+) 9<> "$lock" && fail "what another process writes was resumed"
+[ "$(grep -c "error: stopped/.*: is being written by process $$ of " told)" = 1 ] || fail "a refusal should be told once: $(cat told)"
+[ "$(sums stopped)" = "$before" ] || fail "what another process writes was touched"
+resume_stopped || fail "what was stopped cannot be resumed"
+[ -z "$(find stopped -name .lock)" ] || fail "a lock is left"
 [ "$(sums stopped)" = "$expected" ] || fail "what was stopped and resumed is not as it should be"
 [ -z "$(find /dev/shm -maxdepth 1 -name 'pulsecast-*.scene' -newer told 2> /dev/null)" ] || fail "a scene is left in memory"
 echo "the bytes of one process from 1, 2, 3 and 5; $kills were killed"
