@@ -3,11 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <csignal>
+#include <cstdlib>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "support/aborts.hpp"
 #include "support/archetypes.hpp"
 #include "support/checksum.hpp"
 #include "support/generators.hpp"
@@ -400,6 +403,12 @@ TEST_CASE("a generated cone of rays is padded, unit and within its angle") {
       REQUIRE(dot(rays.direction(j), axis) > 0);
     }
   }
+}
+
+TEST_CASE("a call that aborts is told from one that returns, or ends otherwise") {
+  CHECK(aborts([] { std::abort(); }));
+  CHECK_FALSE(aborts([] {}));
+  CHECK_FALSE(aborts([] { std::raise(SIGKILL); }));
 }
 
 TEST_CASE("relative comparison goes by size, where doctest's own does not") {

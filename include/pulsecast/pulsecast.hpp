@@ -20,6 +20,7 @@
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/rotation_list.hpp>
 #include <pulsecast/base/tick.hpp>
+#include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/cloud.hpp>

@@ -12,6 +12,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/aborts.hpp"
 #include "support/archetypes.hpp"
 #include "support/laws.hpp"
 
@@ -119,6 +120,21 @@ TEST_CASE("deflectors keep the laws of a source and the size and ticks of what t
   CHECK(support::source_laws(outer) == "");
   CHECK(support::wrapped_source_laws(inner, inner.source()) == "");
   CHECK(support::wrapped_source_laws(outer, inner) == "");
+}
+
+TEST_CASE("an optic or a head that gives no rotation is a bug, which debug builds notice") {
+  struct Stretched {
+    double norm = 1;
+    Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return {Rotation{norm, 0, 0, 0}, {}}; }
+  };
+  struct StretchedHead {
+    Pose<frame::Instrument, frame::Instrument> at(Tick) const noexcept { return {no_rotation, {std::nan(""), 0, 0}}; }
+  };
+  const Scanner laser{.pulses = 1};
+  CHECK(support::aborts([&] { (void)Deflector{Stretched{1.17}, laser}.pulse(0); }) == support::has_assertions);
+  CHECK(support::aborts([&] { (void)Deflector{Stretched{std::nan("")}, laser}.pulse(0); }) == support::has_assertions);
+  CHECK(support::aborts([&] { (void)Deflector{StretchedHead{}, Mirrored{PolygonMirror{}, laser}}.pulse(0); }) == support::has_assertions);
+  CHECK_FALSE(support::aborts([&] { (void)Deflector{Stretched{1 + 1e-7}, laser}.pulse(0); }));
 }
 
 TEST_CASE("a deflector refuses settings that cannot be, its own and those inside") {

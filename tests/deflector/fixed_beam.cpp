@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/scanner/scanner.hpp>
 
 #include <doctest/doctest.h>
 
@@ -27,6 +29,11 @@ TEST_CASE("a fixed beam leaves from its origin along its two angles, at any time
 TEST_CASE("a fixed beam keeps the laws of a motion") {
   const std::vector<Tick> ticks{{0, 0}, {0, 0.3}, {77, 0.1}};
   CHECK(support::motion_laws(FixedBeam{aimed_at(1, 0.3, {1, 2, 3})}, ticks) == "");
+}
+
+TEST_CASE("a fixed beam of single precision becomes unit in its deflector") {
+  const Deflector device{FixedBeam{{Rotation{0.6F, 0.8F, 0, 0}, {}}}, Scanner{}};
+  CHECK(std::fabs(length(device.pulse(0)->pose.rotation) - 1) < 1e-15);
 }
 
 TEST_CASE("a fixed beam refuses angles and places that cannot be") {

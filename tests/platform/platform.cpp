@@ -13,6 +13,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/aborts.hpp"
 #include "support/archetypes.hpp"
 #include "support/generators.hpp"
 #include "support/laws.hpp"
@@ -127,6 +128,30 @@ TEST_CASE("a mount refuses what is not a place or not a rotation") {
   CHECK_THROWS_AS((Mount{.lever_arm = {0, nan, 0}}.validate()), SettingError);
   CHECK_THROWS_AS((Mount{.boresight = Rotation{1, 1, 0, 0}}.validate()), SettingError);
   CHECK_THROWS_AS((Mount{.boresight = Rotation{nan, 0, 0, 0}}.validate()), SettingError);
+}
+
+TEST_CASE("a mount of single precision becomes unit on its platform") {
+  const Rotation rounded{0.6F, 0.8F, 0, 0};
+  const Platform platform{Tripod{}, Mount{.boresight = rounded}, support::LeastSource<frame::Instrument>{}};
+  CHECK(length(platform.mount().boresight) == support::relative(1, 1e-15));
+  CHECK(std::fabs(length(rounded) - 1) > 1e-9);
+}
+
+TEST_CASE("a trajectory that gives no place or no rotation is a bug, which debug builds notice") {
+  struct Own {
+    Pose<frame::Body, frame::World> pose{};
+    Pose<frame::Body, frame::World> at(Tick) const noexcept { return pose; }
+  };
+  const auto aborts = [](const Rotation& rotation, const Vec3& position) {
+    return support::aborts([&] {
+      (void)Platform{Own{{rotation, position}}, Mount{}, Deflector{PolygonMirror{}, Scanner{.pulses = 1}}}.pulse(0);
+    });
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(aborts({1.17, 0, 0, 0}, {}) == support::has_assertions);
+  CHECK(aborts({nan, 0, 0, 0}, {}) == support::has_assertions);
+  CHECK(aborts(no_rotation, {0, nan, 0}) == support::has_assertions);
+  CHECK_FALSE(aborts({0.6F, 0.8F, 0, 0}, {}));
 }
 
 TEST_CASE("a platform asks its mount and its trajectory whether they can be") {

@@ -364,6 +364,13 @@ TEST_CASE("the box that is swept is as large as it has to be where that is plain
   CHECK(year.min.x > -radius - 1e-5);
 }
 
+TEST_CASE("timed poses and steps of single precision move rigidly") {
+  const Rotation rounded{0.6F, 0.8F, 0, 0};
+  const PartMotion poses(std::vector<TimedPose>{{0, {}, rounded}, {1, right, rounded}}), step(steady_motion({rounded, right}, 1));
+  for (const PartMotion& motion : {poses, step})
+    for (const double t : {0.0, 0.5, 1.0, 2.0}) CHECK(std::fabs(length(motion.at(Tick::of_seconds(t), {}).rotation) - 1) < 1e-14);
+}
+
 TEST_CASE("a motion refuses what cannot be") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refused = [](const SteadyMotion& m) {

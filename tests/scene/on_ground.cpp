@@ -70,6 +70,12 @@ TEST_CASE("a part is turned and scaled first, then it stands") {
   CHECK(height(on_ground(part, slope)).value() == support::relative(20 + 4, 1e-12));
 }
 
+TEST_CASE("a placement of single precision is unit on the ground and in a scene") {
+  const Part<Mesh> part{.geometry = top(), .placement = {.rotation = Rotation{0.6F, 0, 0, 0.8F}}};
+  CHECK(std::fabs(length(on_ground(part, slope)->placement.rotation) - 1) < 1e-15);
+  CHECK(std::fabs(length(Scene<Mesh>({part}).parts()[0].placement.rotation) - 1) < 1e-15);
+}
+
 TEST_CASE("shapes without triangles stand by the corners of their box") {
   const Part<LeastGeometry> disc{.geometry = std::make_shared<const LeastGeometry>(), .placement = {.translation = {20, 0, 0}}};
   CHECK(on_ground(disc, slope, Standing::touching)->placement.translation.z == support::relative(20.5, 1e-12));

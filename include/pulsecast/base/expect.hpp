@@ -44,10 +44,18 @@ inline void expect_within(std::string_view field, double value, double low, doub
   refuse(field, value, unit, "from " + detail::written(low) + " to " + detail::written(high));
 }
 
+/// Settings with rotations: `normalize()` makes them unit, after `validate()` has let their norms pass.
+template <class Settings>
+concept Normalizable = requires(Settings& settings) {
+  { settings.normalize() }
+  noexcept;
+};
+
 /// Asks a stage's settings whether they can be, if they have a say: `void validate() const` throws a `SettingError`.
 template <class Settings>
 [[nodiscard]] Settings validated(Settings settings) {
   if constexpr (requires { settings.validate(); }) settings.validate();
+  if constexpr (Normalizable<Settings>) settings.normalize();
   return settings;
 }
 

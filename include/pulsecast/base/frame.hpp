@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
+
 #include <pulsecast/base/vector.hpp>
 
 namespace pulsecast {
@@ -31,6 +33,9 @@ struct Pose {
     const Rotation back = conjugate(rotation);
     return {back, -(back * position)};
   }
+
+  /// Whether it is a place and a rotation, in single precision at least: what every motion must give.
+  [[nodiscard]] bool rigid() const noexcept { return finite(position) && std::fabs(length(rotation) - 1) <= 1e-6; }
 };
 
 template <class A, class B, class C>

@@ -30,7 +30,9 @@ class Deflector {
       static_assert(Gated<Moving>, "open(Tick) must be const and noexcept, and give a bool");
       if (!moving_.open(inner->tick)) return std::nullopt;
     }
-    return std::optional<Pulse<frame::Instrument>>(std::in_place, moving_.at(inner->tick), *inner);
+    const auto pose = moving_.at(inner->tick);
+    PULSECAST_EXPECT(pose.rigid());
+    return std::optional<Pulse<frame::Instrument>>(std::in_place, pose, *inner);
   }
 
   [[nodiscard]] const Moving& moving() const noexcept { return moving_; }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
@@ -13,9 +14,10 @@ struct FixedBeam {
   Pose<frame::Beam, frame::Instrument> pose{};
 
   void validate() const {
-    expect_within("FixedBeam::pose (norm of rotation)", length(pose.rotation), 1 - 1e-9, 1 + 1e-9, "");
+    expect_rotation("FixedBeam::pose.rotation", pose.rotation);
     expect_finite("FixedBeam::pose (length of position)", length(pose.position), "m");
   }
+  void normalize() noexcept { pose.rotation = unit(pose.rotation); }
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return pose; }
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -14,12 +15,13 @@ namespace pulsecast {
 /// How an instrument sits on its platform.
 struct Mount {
   Vec3 lever_arm{};                  ///< of the instrument's origin, in the frame of the body [m]
-  Rotation boresight = no_rotation;  ///< from the instrument to the body
+  Rotation boresight = no_rotation;  ///< from the instrument to the body; unit to a thousandth
 
   void validate() const {
     expect_finite("Mount::lever_arm (length)", length(lever_arm), "m");
-    expect_within("Mount::boresight (norm)", length(boresight), 1 - 1e-9, 1 + 1e-9, "");
+    expect_rotation("Mount::boresight", boresight);
   }
+  void normalize() noexcept { boresight = unit(boresight); }
 
   [[nodiscard]] Pose<frame::Instrument, frame::Body> pose() const noexcept { return {boresight, lever_arm}; }
 };
@@ -42,7 +44,9 @@ class Platform {
 
   /// A pulse of the instrument, in the world. It is always there; optional, so that `pulse` hands it on without a copy.
   [[nodiscard]] std::optional<Pulse<frame::World>> placed(const Pulse<frame::Instrument>& inner) const noexcept {
-    std::optional<Pulse<frame::World>> out(std::in_place, path_.at(inner.tick) * mount_.pose(), inner);
+    const Pose<frame::Body, frame::World> world_from_body = path_.at(inner.tick);
+    PULSECAST_EXPECT(world_from_body.rigid());
+    std::optional<Pulse<frame::World>> out(std::in_place, world_from_body * mount_.pose(), inner);
     const Vec3 on_body = mount_.boresight * inner.direction();
     out->scan_angle = std::atan2(on_body.x, -on_body.z);
     return out;

@@ -17,6 +17,7 @@
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/tick.hpp>
+#include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/screw.hpp>
@@ -108,9 +109,9 @@ inline constexpr double wide_turn = 2;
 /// Source: Chasles 1830; the centre of a plane displacement, Bottema & Roth 1979, Theoretical Kinematics, ch. III.
 [[nodiscard]] inline SteadyMotion steady_motion(const Pose<frame::World, frame::World>& step, double seconds) {
   expect_positive("steady_motion (seconds)", seconds, "s");
-  expect_within("steady_motion (rotation, norm)", length(step.rotation), 1 - 1e-9, 1 + 1e-9, "");
+  expect_rotation("steady_motion (rotation)", step.rotation);
   expect_finite("steady_motion (position, length)", length(step.position), "m");
-  const detail::AxisAngle turn(step.rotation);
+  const detail::AxisAngle turn(step.rotation);  // of any norm
   if (turn.angle == 0) return {.velocity = step.position / seconds};
   const Vec3 along = dot(step.position, turn.axis) * turn.axis, across = step.position - along;
   return {.velocity = along / seconds,
@@ -155,7 +156,7 @@ class PartMotion {
         throw SettingError(field + ".time", poses[i].time, "s",
                            "later than that of the pose before, " + detail::written(poses[i - 1].time));
       expect_finite(field + ".position (length)", length(poses[i].position), "m");
-      expect_within(field + ".rotation (norm)", length(poses[i].rotation), 1 - 1e-9, 1 + 1e-9, "");
+      expect_rotation(field + ".rotation", poses[i].rotation);
     }
     const bool again = after == AfterLastPose::start_again;
     if (again) expect_within("PartMotion::poses (time of the last)", poses.back().time, 1e-6, 1e15, "s");

@@ -86,6 +86,7 @@ template <Geometry Shape>
 template <Geometry... Shapes>
 [[nodiscard]] std::optional<Part<Shapes...>> on_ground(Part<Shapes...> part, const Ground auto& ground,
                                                        Standing standing = Standing::lowest_point) {
+  part.placement = validated(part.placement);
   const auto lift_of = [&](const auto& shape) {
     if (!shape) throw SettingError("Part::geometry (number)", 0, "", "1");
     return lift_onto_ground(*shape, part.placement, ground, standing);

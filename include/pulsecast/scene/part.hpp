@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/material.hpp>
 
@@ -35,15 +36,16 @@ namespace detail {
 
 /// Where a part stands in the world: turned, scaled alike in all directions, and moved, in this order.
 struct Similarity {
-  Rotation rotation = no_rotation;  ///< unit quaternion
+  Rotation rotation = no_rotation;  ///< unit quaternion, to a thousandth
   double scale = 1;
   Vec3 translation{};  ///< [m]
 
   void validate() const {
-    expect_within("Similarity::rotation (norm)", length(rotation), 1 - 1e-9, 1 + 1e-9, "");
+    expect_rotation("Similarity::rotation", rotation);
     expect_within("Similarity::scale", scale, 1e-30, 1e30, "");  // squares of lengths stay numbers in the part's own frame
     if (!finite(translation)) throw SettingError("Similarity::translation (length)", length(translation), "m", "finite");
   }
+  void normalize() noexcept { rotation = unit(rotation); }
 
   [[nodiscard]] Vec3 point(const Vec3& p) const noexcept { return rotation * (scale * p) + translation; }
 

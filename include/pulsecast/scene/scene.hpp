@@ -82,16 +82,20 @@ class Scene {
   enum class Motions : std::uint8_t { refused, left_out };
 
   /// Parts that move are refused, or left out of the index.
-  Scene(std::vector<Part> parts, Motions motions) : parts_(std::move(parts)), index_(boxes(parts_, motions), 0, 1) {
+  Scene(std::vector<Part> parts, Motions motions) : parts_(placed(std::move(parts))), index_(boxes(parts_, motions), 0, 1) {
     parts_.shrink_to_fit();
     alone_ = parts_.size() == 1 && !parts_[0].motion;
+  }
+
+  static std::vector<Part> placed(std::vector<Part> parts) {
+    for (Part& part : parts) part.placement = validated(part.placement);
+    return parts;
   }
 
   static std::vector<Box> boxes(const std::vector<Part>& parts, Motions motions) {
     std::vector<Box> boxes;
     boxes.reserve(parts.size());
     for (const Part& part : parts) {
-      part.placement.validate();
       if (part.motion && motions == Motions::refused)
         throw SettingError("Part::motion (number)", 1, "", "0 in a Scene; a MovingScene moves parts");
       boxes.push_back(std::visit(
