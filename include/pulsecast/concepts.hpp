@@ -48,7 +48,7 @@ template <class H>
 concept Head = Motion<H, frame::Instrument, frame::Instrument>;
 
 /// What carries an instrument through the world.
-/// Law: continuous, except where one leg ends and another begins.
+/// Law: continuous, except where its data jump; right-continuous there.
 template <class T>
 concept Trajectory = Motion<T, frame::Body, frame::World>;
 

@@ -145,13 +145,45 @@ TEST_CASE("waypoints keep the laws of a motion") {
     CAPTURE(n);
     for (const auto kind : {Interpolation::linear, Interpolation::cubic}) {
       support::Generator any(n);
-      const auto points = random_points(any, n);
+      auto points = random_points(any, n);
+      for (std::size_t k = 2; k < n; k += 7) points[k].time = points[k - 1].time;
       const Waypoints path(points, kind);
       std::vector<Tick> ticks{{}, path.duration(), path.duration() + Tick{1, 0}};
       for (std::size_t k = 0; k < 300; ++k) ticks.push_back(at(any.uniform(0, points.back().time)));
       for (std::size_t k = 0; k < n; k += n / 10 + 1) ticks.push_back(at(points[k].time));
       CHECK(support::motion_laws(path, ticks) == "");
     }
+  }
+}
+
+TEST_CASE("where a time stands twice, a body jumps: it arrives as the first waypoint says, and is from then on where the last one does") {
+  const std::vector<Waypoint> points{{0, utm, level(1)},
+                                     {2, utm + 4.0 * right, level(1)},
+                                     {2, utm, level(3)},
+                                     {2, utm + 9.0 * up, level(2)},
+                                     {4, utm + 5.0 * up, level(2)},
+                                     {5, utm + 5.0 * up, level(2)}};
+  for (const auto kind : {Interpolation::linear, Interpolation::cubic}) {
+    const Waypoints path(points, kind), before({points[0], points[1]}, kind), after({points[3], points[4], points[5]}, kind);
+    for (double t = 0; t < 2; t += 0.125) CHECK(path.at(at(t)).position == before.at(at(t)).position);
+    for (double t = 2; t < 6; t += 0.125) CHECK(path.at(at(t)).position == after.at(at(t)).position);
+    CHECK(length(path.at(at(2 - 1e-9)).position - points[1].position) < 1e-8);
+    CHECK(heading(path.at(at(2 - 1e-9))) == support::relative(1, 1e-9));
+    CHECK(path.at(at(2)).position == points[3].position);
+    CHECK(heading(path.at(at(2))) == support::relative(2, 1e-14));
+    const Waypoints ends({points[0], points[1], points[3]}, kind), begins({points[1], points[3], points[4]}, kind);
+    CHECK(ends.at(ends.duration()).position == points[3].position);
+    CHECK(begins.at(at(2)).position == points[3].position);
+    CHECK(begins.at(at(1)).position == points[1].position);
+  }
+}
+
+TEST_CASE("a rotation of single precision is made unit") {
+  support::Generator any(3);
+  for (int k = 0; k < 1000; ++k) {
+    const Rotation r = any.rotation();
+    const Rotation rounded{static_cast<float>(r.w), static_cast<float>(r.x), static_cast<float>(r.y), static_cast<float>(r.z)};
+    CHECK(length(Waypoints({{.rotation = rounded}}).at({}).rotation) == support::relative(1, 1e-15));
   }
 }
 
@@ -166,13 +198,15 @@ TEST_CASE("waypoints refuse times that do not ascend and poses that cannot be, a
     return "";
   };
   CHECK(refused({}) == "Waypoints::points (number)");
-  CHECK(refused({{.time = 1}, {.time = 2}, {.time = 2}}) == "Waypoints::points[2].time");
+  CHECK(refused({{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1.5}}) == "Waypoints::points[3].time");
   CHECK(refused({{.time = 1}, {.time = 0.5}, {.time = 2}}) == "Waypoints::points[1].time");
   CHECK(refused({{.time = 1}, {.time = nan}}) == "Waypoints::points[1].time");
   CHECK(refused({{.time = 1}, {.time = 2, .position = {0, nan, 0}}}) == "Waypoints::points[1].position (length)");
   CHECK(refused({{.time = 1, .rotation = Rotation{1, 1, 0, 0}}}) == "Waypoints::points[0].rotation (norm)");
+  CHECK(refused({{.time = 1, .rotation = Rotation{1.0011, 0, 0, 0}}}) == "Waypoints::points[0].rotation (norm)");
   CHECK(refused({{.time = 1}, {.time = 2}}) == "");
-  CHECK_THROWS_AS(Waypoints({{0, {}}, {5e-324, right}, {1, up}}, Interpolation::cubic), SettingError);  // faster than a number can say
+  CHECK_THROWS_WITH_AS(Waypoints({{0, {}}, {5e-324, right}, {1, up}}, Interpolation::cubic),
+                       "Waypoints::points[1] (velocity from the one before) is inf m/s, but must be finite", SettingError);
 }
 
 TEST_CASE("bodies without a heading look along their path") {
@@ -195,6 +229,10 @@ TEST_CASE("bodies without a heading look along their path") {
   CHECK(headings({{0, 0, 0}, {0, 0, 5}}) == Headings{0, 0});
   CHECK(headings({{0, 0, 0}}) == Headings{0});
   CHECK(headings({}).empty());
+
+  const auto of_jump = with_headings({{0, {0, 0, 0}}, {1, {9, 0, 0}}, {1, {0, -9, 0}}, {2, {0, 0, 0}}, {2, {5, 5, 0}}});
+  const int expected[] = {90, 90, 0, 0, 0};
+  for (std::size_t k = 0; k < 5; ++k) CHECK(std::lround(degrees(heading_of(of_jump[k].rotation * forward))) == expected[k]);
 }
 
 TEST_CASE("a path at constant speed reaches each position when its length says") {

@@ -81,8 +81,8 @@ class TrajectoryWriter {
   std::uint64_t records_ = 0;
 };
 
-/// Writes a trajectory so that `read_trajectory` reads it back, with every digit that a double has; yaw is in [0, 2 pi). The times of the
-/// poses must ascend; to them, `start_time` [s] is added.
+/// Writes a trajectory so that `read_trajectory` reads it back, with every digit that a double has; yaw is in [0, 2 pi). The poses come in
+/// order of time, where a jump's stands twice; to the times, `start_time` [s] is added.
 void write_trajectory(const std::filesystem::path& path, std::span<const Waypoint> poses, const TrajectoryFormat& format = csv_format(),
                       double start_time = 0);
 
@@ -131,14 +131,15 @@ inline void write_trajectory(const std::filesystem::path& path, std::span<const 
   file.write(detail::head_of(format, columns));
   TextRow row(format.separator);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Waypoint& pose = poses[i];
+    const Waypoint pose{poses[i].time, poses[i].position, unit(poses[i].rotation)};
     const double time = start_time + pose.time;
     constexpr double largest = detail::largest_in_trajectory;
+    const bool in_order = i == 0 || time > start_time + poses[i - 1].time || pose.time == poses[i - 1].time;
     if (!(std::fabs(time) <= largest) || !finite(pose.position) || !(max_norm(pose.position) <= largest) ||
-        !(std::fabs(length(pose.rotation) - 1) <= 1e-9) || (i > 0 && !(time > start_time + poses[i - 1].time)))
+        !(std::fabs(length(poses[i].rotation) - 1) <= 1e-3) || !in_order)
       throw FileError(path.string(), "",
                       "pose " + std::to_string(i) +
-                          " cannot be written: expected finite numbers within 1e12, a unit rotation and a time after the one before");
+                          " cannot be written: expected finite numbers within 1e12, a unit rotation and a time not before the last one's");
     const QuantityValues values = detail::values_of(pose, format, start_time);
     for (const std::optional<TrajectoryColumn>& column : columns.all())
       if (column) row.add(values[column->quantity] * column->per_si);

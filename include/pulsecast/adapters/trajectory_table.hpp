@@ -21,7 +21,7 @@
 namespace pulsecast::adapters {
 
 /// The part of a trajectory that is wanted, on the clock of its file. Where an end falls between two poses, it is interpolated as
-/// `Waypoints` does.
+/// `Waypoints` does. A window that begins at a jump begins after it, and one that ends there, before it.
 struct TimeWindow {
   std::optional<double> start{};  ///< the first pose, if not given [s]
   std::optional<double> end{};    ///< the last pose, if not given [s]
@@ -37,16 +37,16 @@ struct TimeWindow {
 /// What a trajectory file holds: `Waypoints(table.poses)` moves along it.
 struct TrajectoryTable {
   double start_time = 0;              ///< what the clock of the file shows at the first pose [s]
-  std::vector<Waypoint> poses;        ///< their times ascend from 0
+  std::vector<Waypoint> poses;        ///< in order of time, from 0; where the platform jumps, a time stands twice
   std::vector<std::string> warnings;  ///< what was odd, but could be read
 };
 
 /// Reads a trajectory.
 ///
-/// Poses that are out of order are sorted, with a warning. One that stands twice is left out, with a warning; two different ones at one
-/// time are an error, as nobody knows which holds. Angles that no column gives are 0, with a warning. Quaternions are normalised: with a
-/// warning where that shows, and those that are off by more than 1/1000 are an error, as are numbers beyond 1e12 s, m or rad. Throws a
-/// `FileError` with path, line and column at the first thing that cannot be right.
+/// Poses that are out of order are sorted, with a warning. One that stands twice is left out, with a warning; different ones at one time
+/// are a jump, from the first of them in the file to the last, with a warning if it is within the window. Angles that no column gives are
+/// 0, with a warning. Quaternions are normalised: with a warning where that shows, and those that are off by more than 1/1000 are an error,
+/// as are numbers beyond 1e12 s, m or rad. Throws a `FileError` with path, line and column at the first thing that cannot be right.
 [[nodiscard]] TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format = csv_format(),
                                               const TimeWindow& window = {});
 
@@ -211,11 +211,8 @@ class TrajectoryReader {
       if (earlier(rows_[i], rows_[i - 1])) unsorted_.at(rows_[i].line);
     if (unsorted_.count > 0) std::stable_sort(rows_.begin(), rows_.end(), earlier);
     const auto repeats = [this](const Row& before, const Row& row) {
-      if (row.pose.time != before.pose.time) return false;
-      if (row.pose.position != before.pose.position || row.pose.rotation != before.pose.rotation)
-        throw FileError(table_.path(), TextTable::place(row.line),
-                        "has the time " + seconds(row.pose.time) + " of line " + std::to_string(before.line) +
-                            ", but another pose: expected one pose at a time");
+      const Waypoint &a = before.pose, &b = row.pose;
+      if (a.time != b.time || a.position != b.position || a.rotation != b.rotation) return false;
       repeated_.at(row.line);
       return true;
     };
@@ -244,20 +241,24 @@ class TrajectoryReader {
     if (window.end && *window.end > last)
       result_.warnings.push_back(table_.path() + ": the window ends after the last pose, which stands at " + seconds(last));
     result_.start_time = start;
-    result_.poses.push_back(at(start));
-    for (const Row& row : rows_)
-      if (row.pose.time > start && row.pose.time < end) result_.poses.push_back(row.pose);
-    if (end > start) result_.poses.push_back(at(end));
+    const auto within = std::upper_bound(rows_.begin(), rows_.end(), start, [](double t, const Row& row) { return t < row.pose.time; });
+    const auto behind = std::lower_bound(within, rows_.end(), end, [](const Row& row, double t) { return row.pose.time < t; });
+    result_.poses.push_back((within - 1)->pose.time == start ? (within - 1)->pose : between(within, start));
+    Oddity jumps;
+    for (auto row = within; row != behind; ++row) {
+      if (row != within && row->pose.time == (row - 1)->pose.time) jumps.at(row->line);
+      result_.poses.push_back(row->pose);
+    }
+    if (end > start) result_.poses.push_back(behind->pose.time == end ? behind->pose : between(behind, end));
     for (Waypoint& pose : result_.poses) pose.time -= start;
-    for (std::size_t i = 1; i < result_.poses.size(); ++i)
-      if (!(result_.poses[i].time > result_.poses[i - 1].time))
-        table_.fail("has times that are too close to each other for their size: expected some 16 digits to tell them apart");
+    if (jumps.count > 0)
+      warn(jumps.first, "has the time of the pose before it, but another pose, the first of " + std::to_string(jumps.count) +
+                            ": the platform jumps there");
   }
 
-  [[nodiscard]] Waypoint at(double time) const {
-    const auto found = std::lower_bound(rows_.begin(), rows_.end(), time, [](const Row& row, double t) { return row.pose.time < t; });
-    if (found->pose.time == time) return found->pose;
-    const Waypoint &before = (found - 1)->pose, &after = found->pose;
+  /// At a time between a row and the one before it.
+  [[nodiscard]] static Waypoint between(std::vector<Row>::const_iterator row, double time) {
+    const Waypoint &before = (row - 1)->pose, &after = row->pose;
     const auto pose = Waypoints({{0, before.position, before.rotation}, {after.time - before.time, after.position, after.rotation}})
                           .at(Tick::of_seconds(time - before.time));
     return {time, pose.position, pose.rotation};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
 
@@ -20,7 +21,7 @@ namespace pulsecast {
 struct Waypoint {
   double time = 0;                  ///< since the start of its leg [s]
   Vec3 position{};                  ///< in the world [m]
-  Rotation rotation = no_rotation;  ///< from the body to the world
+  Rotation rotation = no_rotation;  ///< from the body to the world; unit to a thousandth
 };
 
 /// How a position is found between two waypoints.
@@ -31,6 +32,9 @@ enum class Interpolation : std::uint8_t {
 
 /// Moves through timed poses. Attitudes turn at a constant rate about one axis, the shorter way, so headings may cross north. Before the
 /// first waypoint it stands there, and after the last one, too. Planners and trajectory files end in this.
+///
+/// A time may stand twice: the body jumps then. Before it, the first of these waypoints is where it arrives; from it on, the last counts.
+/// Cubic positions are found on either side of a jump alone.
 class Waypoints {
  public:
   explicit Waypoints(std::vector<Waypoint> points, Interpolation positions = Interpolation::linear) : points_(std::move(points)) {
@@ -39,10 +43,11 @@ class Waypoints {
       const std::string field = "Waypoints::points[" + std::to_string(i) + "]";
       Waypoint& p = points_[i];
       expect_within(field + ".time", p.time, -1e15, 1e15, "s");  // as a Tick counts
-      if (i > 0 && !(p.time > points_[i - 1].time))
-        throw SettingError(field + ".time", p.time, "s", "later than that of the waypoint before, " + detail::written(points_[i - 1].time));
+      if (i > 0 && p.time < points_[i - 1].time)
+        throw SettingError(field + ".time", p.time, "s",
+                           "no earlier than that of the waypoint before, " + detail::written(points_[i - 1].time));
       expect_finite(field + ".position (length)", length(p.position), "m");
-      expect_within(field + ".rotation (norm)", length(p.rotation), 1 - 1e-9, 1 + 1e-9, "");
+      expect_rotation(field + ".rotation", p.rotation);
       p.rotation = normalize(p.rotation);
     }
     if (positions == Interpolation::cubic && points_.size() > 1) find_velocities();
@@ -72,23 +77,32 @@ class Waypoints {
   }
 
  private:
-  /// At each waypoint, the velocity of the parabola through it and its neighbours; at the ends, of the parabola through the outer three.
-  /// Source: de Boor 1978, A Practical Guide to Splines, chapter IV, piecewise cubic Bessel interpolation; Catmull & Rom 1974 where the
-  /// times are evenly spaced.
   void find_velocities() {
-    const std::size_t last = points_.size() - 1;
+    velocities_.assign(points_.size(), Vec3{});
+    for (std::size_t first = 0, last = 0; first < points_.size(); first = ++last) {
+      while (last + 1 < points_.size() && points_[last + 1].time > points_[last].time) ++last;
+      if (last > first) find_velocities(first, last);
+    }
+    for (const Vec3& v : velocities_) expect_finite("Waypoints::points (velocity between)", length(v), "m/s");
+  }
+
+  /// From one jump to the next: at each waypoint, the velocity of the parabola through it and its neighbours; at the ends, of the parabola
+  /// through the outer three. Source: de Boor 1978, A Practical Guide to Splines, chapter IV, piecewise cubic Bessel interpolation; Catmull
+  /// & Rom 1974 where the times are evenly spaced.
+  void find_velocities(std::size_t first, std::size_t last) {
     const auto interval = [&](std::size_t i) { return points_[i + 1].time - points_[i].time; };
     const auto mean = [&](std::size_t i) { return (points_[i + 1].position - points_[i].position) / interval(i); };  // velocity
-    velocities_.assign(points_.size(), mean(0));
-    for (std::size_t i = 1; i < last; ++i) {
+    for (std::size_t i = first; i < last; ++i)
+      expect_finite("Waypoints::points[" + std::to_string(i + 1) + "] (velocity from the one before)", length(mean(i)), "m/s");
+    velocities_[first] = velocities_[last] = mean(first);
+    for (std::size_t i = first + 1; i < last; ++i) {
       const double share = interval(i) / (interval(i - 1) + interval(i));
       velocities_[i] = share * mean(i - 1) + (1 - share) * mean(i);
     }
-    if (last > 1) {
-      velocities_[0] = 2.0 * mean(0) - velocities_[1];
+    if (last > first + 1) {
+      velocities_[first] = 2.0 * mean(first) - velocities_[first + 1];
       velocities_[last] = 2.0 * mean(last - 1) - velocities_[last - 1];
     }
-    for (const Vec3& v : velocities_) expect_finite("Waypoints::points (velocity between)", length(v), "m/s");
   }
 
   std::vector<Waypoint> points_;
@@ -98,24 +112,30 @@ class Waypoints {
 static_assert(Trajectory<Waypoints>);
 
 /// Turns bodies so that they are level and look along their path: at a bend, halfway between the ways in and out; at a turn straight back,
-/// the way in. Who rests or moves straight up keeps the last heading, or else takes the next one; who never moves aside looks north.
+/// the way in. Who rests or moves straight up keeps the last heading, or else takes the next one; who never moves aside looks north. Where
+/// a time stands twice, the body jumps: neither side looks along that way.
 [[nodiscard]] inline std::vector<Waypoint> with_headings(std::vector<Waypoint> points) {
   const std::size_t n = points.size();
   std::vector<Vec3> ahead(n, Vec3{});  // of each waypoint: the horizontal direction of the next way out; zero if there is none
-  const auto aside = [](const Vec3& from, const Vec3& to) {
+  const auto jump_to = [&](std::size_t i) { return points[i].time == points[i - 1].time; };
+  const auto way_to = [&](std::size_t i) {
+    const Vec3 &from = points[i - 1].position, &to = points[i].position;
     if (to.x == from.x && to.y == from.y) return Vec3{};
     const double heading = heading_of(to - from);
     return Vec3{std::sin(heading), std::cos(heading), 0};
   };
   for (std::size_t i = n; i-- > 1;) {
-    const Vec3 way = aside(points[i - 1].position, points[i].position);
+    if (jump_to(i)) continue;
+    const Vec3 way = way_to(i);
     ahead[i - 1] = way == Vec3{} ? ahead[i] : way;
   }
-  Vec3 behind{};
+  Vec3 behind{}, came{};  // the last way that led aside, and that since the last jump
   for (std::size_t i = 0; i < n; ++i) {
-    if (i > 0)
-      if (const Vec3 way = aside(points[i - 1].position, points[i].position); way != Vec3{}) behind = way;
-    const Vec3 halfway = behind + ahead[i];
+    if (i > 0 && jump_to(i))
+      came = Vec3{};
+    else if (i > 0)
+      if (const Vec3 way = way_to(i); way != Vec3{}) behind = came = way;
+    const Vec3 halfway = came + ahead[i];
     points[i].rotation = level(heading_of(length(halfway) > 1e-9 ? halfway : behind));
   }
   return points;
