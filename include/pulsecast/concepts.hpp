@@ -78,6 +78,11 @@ concept InstrumentSource = PulseSource<S, frame::Instrument>;  ///< as `Deflecto
 template <class S>
 concept WorldSource = PulseSource<S, frame::World>;  ///< as `Platform<...>`
 
+/// A source that draws random errors, as `Misreported`: `Legs` tells each of its legs its place in the list, so that no two draw the same.
+/// Law: place 0 changes nothing.
+template <class S>
+concept DrawsByLeg = WorldSource<S> && requires(S& s, std::uint32_t leg) { s.draw_for_leg(leg); };
+
 // -------------------------------------------------------------------------------------------------------------- the scene
 
 namespace detail {

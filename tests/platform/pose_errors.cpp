@@ -4,11 +4,14 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/platform/legs.hpp>
+#include <pulsecast/scanner/one_of.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
 #include <doctest/doctest.h>
@@ -142,6 +145,32 @@ TEST_CASE("the seed decides") {
   const Misreported a{airplane(), all}, b{airplane(), all}, c{airplane(), other};
   CHECK(a.pulse(10)->reported->position == b.pulse(10)->reported->position);
   CHECK(a.pulse(10)->reported->position != c.pulse(10)->reported->position);
+}
+
+TEST_CASE("no two legs err alike, whatever they share; a platform alone errs as the first leg does") {
+  using Strip = Misreported<Flight, Deflector<PolygonMirror, Scanner>>;
+  using Any = OneOf<Strip, decltype(airplane())>;
+  static_assert(DrawsByLeg<Strip> && DrawsByLeg<Any> && !DrawsByLeg<decltype(airplane())>);
+  const PoseErrors one_kind[] = {{.position_noise = 1}, {.attitude_noise = 1e-3}, {.position_drift = 1}, {.angular_jitter = 1e-3}};
+  for (const PoseErrors& errors : one_kind) {
+    const Strip strip{airplane(100), errors};
+    const Legs legs{std::vector{strip, strip, strip}};
+    const Legs<Any> any{std::vector<Any>{strip, strip, airplane(100)}};
+    const auto both = [](const auto& p) { return std::pair(p->reported->position, p->direction()); };
+    const auto drawn = [&](const auto& p) { return std::pair(p->reported->position, p->reported->direction(forward) - p->direction()); };
+    for (const PulseIndex i : {PulseIndex{0}, PulseIndex{99}}) {
+      CHECK(both(legs.pulse(i)) == both(strip.pulse(i)));
+      CHECK(drawn(legs.pulse(i)) != drawn(legs.pulse(100 + i)));
+      CHECK(drawn(legs.pulse(100 + i)) != drawn(legs.pulse(200 + i)));
+      CHECK(both(any.pulse(100 + i)) == both(legs.pulse(100 + i)));
+    }
+    CHECK(support::source_laws(legs) == "");
+  }
+}
+
+TEST_CASE("an error of the boresight in single precision is made unit") {
+  const Misreported platform{airplane(), {.boresight_error = Rotation{0.6F, 0.8F, 0, 0}}};
+  CHECK(std::fabs(length(platform.pulse(0)->reported->rotation) - 1) < 1e-14);
 }
 
 TEST_CASE("errors that cannot be are refused") {

@@ -39,6 +39,7 @@ class Legs {
         expect_within("Legs::legs (slots)", static_cast<double>(first) + static_cast<double>(leg.platform.size()), 0, 0x1p60, "");
         first += leg.platform.size();
       }
+      if constexpr (DrawsByLeg<P>) leg.platform.draw_for_leg(static_cast<std::uint32_t>(legs_.size()));
       start = start + leg.platform.duration();
       expect_within("Legs::legs (duration)", start.seconds(), 0, 1e15, "s");
       legs_.push_back(std::move(leg.platform));

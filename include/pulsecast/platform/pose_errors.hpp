@@ -13,6 +13,7 @@
 
 #include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/platform/platform.hpp>
 
 namespace pulsecast {
@@ -28,7 +29,7 @@ struct PoseErrors {
   double angular_jitter = 0;  ///< of each beam, beside where the optic says that it goes; white, right and up [rad]
   Vec3 lever_arm_error{};     ///< reported less true [m]
   Rotation boresight_error = no_rotation;  ///< from the true frame of the instrument to the reported one
-  std::uint64_t seed = 0;                  ///< of all that is random; give each leg its own
+  std::uint64_t seed = 0;                  ///< of all that is random; each of several `Legs` draws numbers of its own
 
   void validate() const {
     expect_not_negative("PoseErrors::position_noise", position_noise, "m");
@@ -38,8 +39,9 @@ struct PoseErrors {
     expect_positive("PoseErrors::drift_time", drift_time, "s");
     expect_not_negative("PoseErrors::angular_jitter", angular_jitter, "rad");
     expect_finite("PoseErrors::lever_arm_error (length)", length(lever_arm_error), "m");
-    expect_within("PoseErrors::boresight_error (norm)", length(boresight_error), 1 - 1e-9, 1 + 1e-9, "");
+    expect_rotation("PoseErrors::boresight_error", boresight_error);
   }
+  void normalize() noexcept { boresight_error = unit(boresight_error); }
 };
 
 /// A platform whose instrument errs: rays are cast from where it is, and points are written where it takes itself to be.
@@ -47,6 +49,12 @@ template <Trajectory Path, InstrumentSource Source>
 class Misreported {
  public:
   Misreported(Platform<Path, Source> truth, PoseErrors errors) : truth_(std::move(truth)), errors_(validated(errors)) { plan_drift(); }
+
+  /// Draws other errors of the same kind for each leg.
+  void draw_for_leg(std::uint32_t leg) {
+    if (leg == std::exchange(leg_, leg)) return;
+    plan_drift();
+  }
 
   [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
@@ -81,21 +89,25 @@ class Misreported {
     return angle > 0 ? rotation_about(angles, angle) : no_rotation;
   }
 
-  static Vec3 normals(std::uint64_t seed, std::uint64_t moment, Purpose purpose, std::uint32_t second = 0) noexcept {
+  double drawn(std::uint64_t moment, std::uint32_t number, Purpose purpose) const noexcept {
+    return normal({errors_.seed, moment, number, purpose, leg_});
+  }
+
+  Vec3 normals(std::uint64_t moment, Purpose purpose, std::uint32_t second = 0) const noexcept {
     const std::uint32_t first = 3 * second;
-    return {normal({seed, moment, first, purpose}), normal({seed, moment, first + 1, purpose}), normal({seed, moment, first + 2, purpose})};
+    return {drawn(moment, first, purpose), drawn(moment, first + 1, purpose), drawn(moment, first + 2, purpose)};
   }
 
   /// Emitters that fire at the same time share it. No two moments within 45 years do.
   Vec3 white(Tick t, Purpose purpose, double deviation) const noexcept {
     if (deviation == 0) return {};
-    return deviation * normals(errors_.seed, std::bit_cast<std::uint64_t>(t.fraction), purpose, static_cast<std::uint32_t>(t.second));
+    return deviation * normals(std::bit_cast<std::uint64_t>(t.fraction), purpose, static_cast<std::uint32_t>(t.second));
   }
 
   Pulse<frame::Instrument> jittered(Pulse<frame::Instrument> p) const noexcept {
     if (errors_.angular_jitter == 0) return p;
-    const double aside = errors_.angular_jitter * normal({errors_.seed, p.index, 0, Purpose::angular_jitter});
-    const double upwards = errors_.angular_jitter * normal({errors_.seed, p.index, 1, Purpose::angular_jitter});
+    const double aside = errors_.angular_jitter * drawn(p.index, 0, Purpose::angular_jitter);
+    const double upwards = errors_.angular_jitter * drawn(p.index, 1, Purpose::angular_jitter);
     p.pose.rotation = p.pose.rotation * rotation_about(up, -aside) * rotation_about(right, upwards);
     return p;
   }
@@ -106,9 +118,10 @@ class Misreported {
     const double kept = std::exp(-1.0 / nodes_per_drift_time), added = std::sqrt(1 - kept * kept);
     const double nodes = std::ceil(truth_.duration().seconds() / errors_.drift_time * nodes_per_drift_time) + 2;
     expect_within("PoseErrors::drift_time (the survey's length by it)", nodes / nodes_per_drift_time, 0, 1e6, "");
+    drift_.clear();
     for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(nodes); ++n) {
-      const Vec3 position = errors_.position_drift * normals(errors_.seed, n, Purpose::position_drift);
-      const Vec3 attitude = errors_.attitude_drift * normals(errors_.seed, n, Purpose::attitude_drift);
+      const Vec3 position = errors_.position_drift * normals(n, Purpose::position_drift);
+      const Vec3 attitude = errors_.attitude_drift * normals(n, Purpose::attitude_drift);
       const Drift before = n == 0 ? Drift{position, attitude} : drift_.back();
       const double fresh = n == 0 ? 0 : added, old = n == 0 ? 1 : kept;
       drift_.push_back({old * before.position + fresh * position, old * before.attitude + fresh * attitude});
@@ -128,6 +141,7 @@ class Misreported {
 
   Platform<Path, Source> truth_;
   PoseErrors errors_;
+  std::uint32_t leg_ = 0;
   std::vector<Drift> drift_;
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <utility>
 #include <variant>
 
@@ -28,6 +29,14 @@ class OneOf {
   }
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const First&>().pulse(i)) {
     return std::visit([i](const auto& s) noexcept { return s.pulse(i); }, source_);
+  }
+  void draw_for_leg(std::uint32_t leg)
+  requires DrawsByLeg<First> || (DrawsByLeg<Others> || ...)
+  {
+    const auto tell = [leg]<class Source>(Source& s) {
+      if constexpr (DrawsByLeg<Source>) s.draw_for_leg(leg);
+    };
+    std::visit(tell, source_);
   }
 
  private:
