@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/adapters/survey_ways.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include <doctest/doctest.h>
 
+#include "support/generators.hpp"
 #include "support/relative.hpp"
 
 namespace pulsecast::adapters {
@@ -80,6 +82,30 @@ TEST_CASE("a multicopter that hovers before, between and after ways looks along 
   CHECK(length(looks(2) - forward) < 1e-9);
   const SurveyWays ways(s, flat, options);
   CHECK(length(ways[1].path.at(Tick::of_seconds(ways[1].duration)).direction(forward) - forward) < 1e-6);
+}
+
+TEST_CASE("a flight of smooth turns goes from place to place, however often its ways cross") {
+  std::vector<Vec3> places;
+  support::Generator any(1);
+  for (int k = 0; k < 40; ++k) places.push_back({any.uniform(-300, 300), any.uniform(-300, 300), any.uniform(30, 60)});
+  SurveySettings s = survey_of(PlatformKind::multicopter, places, 8);
+  for (LegSettings& leg : s.legs) leg.platform.smooth_turn = true;
+  const SurveyBuildOptions options;
+  const SurveyWays ways(s, flat, options);
+  double way = 0, time = 0;
+  for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+    CAPTURE(k);
+    CHECK(ways[k].duration > 1);
+    CHECK(std::fabs(ways[k].path.start.seconds() - time) < 1e-6);
+    way += length(places[k + 1] - places[k]), time += ways[k].duration;
+    double nearest = 1e9;  // to where the leg begins, until it begins
+    const double since = k > 0 ? ways[k - 1].duration : 0;
+    for (double t = -since; t <= 0; t += 0.02)
+      nearest = std::min(nearest, length(ways[k].path.at(Tick::of_seconds(t)).position - places[k]));
+    CHECK(nearest < 0.3);
+  }
+  CHECK(time > way / 8);
+  CHECK(time < way / 8 + 40 * 5);
 }
 
 TEST_CASE("a vehicle parks as it came, or as it will leave, on the ground") {

@@ -219,6 +219,24 @@ TEST_CASE("finite differences of the poses themselves keep the limits, and no at
   }
 }
 
+TEST_CASE("a flight says when it passes each waypoint, also one that stands twice in the list") {
+  const Points points{{{0, 0, 40}}, {{60, 0, 40}}, {{60, 0, 40}}, {{60, 80, 40}, 3}, {{60, 0, 45}}, {{160, 0, 45}}, {{260, 0, 45}}};
+  for (const auto turn : {MulticopterTurn::smooth, MulticopterTurn::stop_and_turn}) {
+    const MulticopterFlight flight = plan_multicopter(points, {.turn = turn});
+    REQUIRE(flight.passes().size() == points.size());
+    CHECK(flight.passes()[1] == flight.passes()[2]);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      CAPTURE(k);
+      const auto miss = [&](double later) {
+        return length(flight.at(Tick::of_seconds(flight.passes()[k].seconds() + later)).position - points[k].position);
+      };
+      CHECK(miss(0) < (turn == MulticopterTurn::smooth && (k == 1 || k == 2 || k == 4) ? 4 : 1e-6));
+      CHECK(miss(0) <= miss(-0.01) + 1e-9);
+      CHECK(miss(0) <= miss(0.01) + 1e-9);
+    }
+  }
+}
+
 TEST_CASE("no list of waypoints is too odd for a flight") {
   MulticopterSettings s;
   for (const auto turn : {MulticopterTurn::smooth, MulticopterTurn::stop_and_turn}) {

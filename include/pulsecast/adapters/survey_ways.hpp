@@ -195,7 +195,7 @@ class SurveyWays {
       double from = 0, most = 0;
       const double whole = flight.duration().seconds();
       for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-        from = nearest_moment(flight, wanted[i].position, from, whole);
+        from = nearest_moment(flight, i, wanted[i].position, from, whole);
         const Vec3 miss = wanted[i].position - flight.at(Tick::of_seconds(from)).position;
         points[i].position += miss, most = std::max(most, length(miss));
       }
@@ -253,46 +253,57 @@ class SurveyWays {
   void split(std::size_t k, std::size_t end, const std::shared_ptr<const Plan>& plan, double whole) {
     double from = 0;
     for (std::size_t i = k; i < end; ++i) {
-      double to = i + 1 == end ? whole : nearest_moment(*plan, places_[i + 1], from, whole);
+      double to = i + 1 == end ? whole : nearest_moment(*plan, i + 1 - k, places_[i + 1], from, whole);
       if constexpr (std::same_as<Plan, MulticopterFlight>)
-        if (i + 1 < end) to = end_of_turn(*plan, to, places_[i + 2], whole);
+        if (i + 1 < end) to = end_of_turn(*plan, to, places_[i + 2], plan->passes()[i + 2 - k].seconds());
       ways_[i] = {{plan, Tick::of_seconds(from)}, to - from};
       from = to;
     }
   }
 
-  /// When a plan first passes a place, after a time: the first of its nearest approaches that is no farther than any other by more than a
-  /// metre.
+  /// When a plan passes its waypoint of a number, at a place, after a time: when it is nearest.
   template <class Plan>
-  [[nodiscard]] static double nearest_moment(const Plan& plan, const Vec3& place, double from, double whole) {
+  [[nodiscard]] static double nearest_moment(const Plan& plan, std::size_t number, const Vec3& place, double from, double whole) {
     const auto distance = [&](double t) {
-      const Vec3 off = plan.at(Tick::of_seconds(t)).position - place;
+      const Tick tick = Tick::of_seconds(t);
+      Vec3 off = -place;
+      if constexpr (std::same_as<Plan, MulticopterFlight>)
+        off += plan.motion().at(tick).position;
+      else
+        off += plan.at(tick).position;
       return std::hypot(off.x, off.y);
     };
     constexpr int steps = 20'000;
     const double step = (whole - from) / steps;
-    double least = distance(from);
-    for (int i = 1; i <= steps; ++i) least = std::min(least, distance(from + i * step));
-    double before = distance(from), best = whole;
-    for (int i = 1; i <= steps; ++i) {
-      const double now = distance(from + i * step);
-      if (now > before && before <= least + 1) {
-        best = from + (i - 1) * step;
-        break;
+    const auto after = [&](int i) { return distance(from + i * step); };
+    int nearest = steps;
+    if constexpr (std::same_as<Plan, MulticopterFlight>) {  // which says about when
+      const double begun = (plan.passes()[number].seconds() - from) / step;
+      nearest = begun > 0 ? static_cast<int>(std::min(begun, static_cast<double>(steps))) : 0;
+      while (nearest > 0 && after(nearest - 1) < after(nearest)) --nearest;
+      while (nearest < steps && after(nearest + 1) <= after(nearest)) ++nearest;
+    } else {  // the first of its nearest approaches that is no farther than any other by more than a metre
+      double least = after(0), before = least;
+      for (int i = 1; i <= steps; ++i) least = std::min(least, after(i));
+      for (int i = 1; i <= steps && nearest == steps; ++i) {
+        const double now = after(i);
+        if (now > before && before <= least + 1) nearest = i - 1;
+        before = now;
       }
-      before = now;
     }
+    const double best = nearest < steps ? from + nearest * step : whole;
     double low = std::max(from, best - step), high = std::min(whole, best + step);  // golden-section search would do no better
     for (int i = 0; i < 60; ++i) {
       const double a = low + (high - low) / 3, b = high - (high - low) / 3;
-      (distance(a) < distance(b) ? high : low) = distance(a) < distance(b) ? b : a;
+      const bool first_is_nearer = distance(a) < distance(b);
+      (first_is_nearer ? high : low) = first_is_nearer ? b : a;
     }
     return 0.5 * (low + high);
   }
 
-  /// When a flight, from a time on, first goes straight at a place, within a degree.
-  [[nodiscard]] static double end_of_turn(const MulticopterFlight& flight, double from, const Vec3& place, double whole) {
-    for (double t = from; t < whole; t += 0.01) {
+  /// When a flight, from a time until another, first goes straight at a place, within a degree.
+  [[nodiscard]] static double end_of_turn(const MulticopterFlight& flight, double from, const Vec3& place, double until) {
+    for (double t = from; t < until; t += 0.01) {
       const auto state = flight.motion().at(Tick::of_seconds(t));
       const Vec3 way = place - state.position;
       if (dot(state.velocity, way) >= std::cos(radians(1)) * length(state.velocity) * length(way)) return t;

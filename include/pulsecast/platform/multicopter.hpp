@@ -62,8 +62,8 @@ struct MulticopterSettings {
 class MulticopterFlight {
  public:
   /// `motion` [m]; `heading` clockwise from north [rad]: see `plan_multicopter`.
-  MulticopterFlight(PiecewiseCubic<Vec3> motion, PiecewiseCubic<double> heading, Tick duration)
-      : motion_(std::move(motion)), heading_(std::move(heading)), duration_(duration) {}
+  MulticopterFlight(PiecewiseCubic<Vec3> motion, PiecewiseCubic<double> heading, Tick duration, std::vector<Tick> passes = {})
+      : motion_(std::move(motion)), heading_(std::move(heading)), duration_(duration), passes_(std::move(passes)) {}
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const CubicPiece<Vec3> state = motion_.at(t);
@@ -73,6 +73,10 @@ class MulticopterFlight {
   }
 
   [[nodiscard]] Tick duration() const noexcept { return duration_; }
+
+  /// For each waypoint of the plan, the middle of its turn, or when it begins to stand there.
+  [[nodiscard]] const std::vector<Tick>& passes() const noexcept { return passes_; }
+
   [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }
   [[nodiscard]] const PiecewiseCubic<double>& heading() const noexcept { return heading_; }
 
@@ -80,6 +84,7 @@ class MulticopterFlight {
   PiecewiseCubic<Vec3> motion_;
   PiecewiseCubic<double> heading_;
   Tick duration_;
+  std::vector<Tick> passes_;
 };
 
 static_assert(Trajectory<MulticopterFlight>);
@@ -140,17 +145,27 @@ class FlightPlan {
     return needed;
   }
 
-  [[nodiscard]] MulticopterFlight flight() && { return {std::move(motion_), std::move(heading_), now_}; }
+  /// Passes the next waypoint after a time [s].
+  void pass(double after) { passes_.push_back(now_ + Tick::of_seconds(after)); }
+
+  /// `numbers` says of each waypoint which of those passed it is.
+  [[nodiscard]] MulticopterFlight flight(const std::vector<std::size_t>& numbers) && {
+    std::vector<Tick> passes;
+    for (const std::size_t k : numbers) passes.push_back(passes_[k]);
+    return {std::move(motion_), std::move(heading_), now_, std::move(passes)};
+  }
 
  private:
   PiecewiseCubic<Vec3> motion_;
   PiecewiseCubic<double> heading_;
   double yaw_rate_;
   Tick now_{};
+  std::vector<Tick> passes_;
 };
 
-/// The waypoints, checked, without those that are less than a nanometre from the one before; whose hover times add up.
-[[nodiscard]] inline std::vector<FlightPoint> checked(std::span<const FlightPoint> waypoints) {
+/// The waypoints, checked, without those that are less than a nanometre from the one before; whose hover times add up. `numbers` receives
+/// which of them each waypoint is.
+[[nodiscard]] inline std::vector<FlightPoint> checked(std::span<const FlightPoint> waypoints, std::vector<std::size_t>& numbers) {
   expect_within("plan_multicopter: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
   std::vector<FlightPoint> points;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
@@ -163,6 +178,7 @@ class FlightPlan {
     const bool again = !points.empty() && length(point.position - points.back().position) < 1e-9;
     if (again) points.back().hover += point.hover;
     if (!again) points.push_back(point);
+    numbers.push_back(points.size() - 1);
   }
   return points;
 }
@@ -175,7 +191,8 @@ class FlightPlan {
 /// Waypoints less than a nanometre apart are one.
 [[nodiscard]] inline MulticopterFlight plan_multicopter(std::span<const FlightPoint> waypoints, const MulticopterSettings& settings = {}) {
   settings.validate();
-  const std::vector<FlightPoint> points = detail::checked(waypoints);
+  std::vector<std::size_t> numbers;
+  const std::vector<FlightPoint> points = detail::checked(waypoints, numbers);
   const std::size_t legs = points.size() - 1;
 
   std::vector<Vec3> directions(legs);
@@ -216,9 +233,11 @@ class FlightPlan {
   for (std::size_t k = 0; k < legs; ++k) {
     const Vec3 at = points[k].position;
     const double begin = turns[k].distance(speeds[k]), end = stretches[k].length - turns[k + 1].distance(speeds[k + 1]);
+    const SpeedChange change = turns[k].change(speeds[k]);
+    plan.pass(0.5 * change.duration());
     if (speeds[k] == 0) {
       plan.stand(at, points[k].hover, headings[k]);
-    } else if (const SpeedChange change = turns[k].change(speeds[k]); change.to > 0) {
+    } else if (change.to > 0) {
       std::vector<CubicPiece<double>> blend;
       change.add_to(blend, 0);
       plan.turn_to(headings[k], change.duration());
@@ -226,9 +245,10 @@ class FlightPlan {
     }
     plan.fly(speed_profile(end - begin, speeds[k], speeds[k + 1], stretches[k].limits), at + begin * directions[k], directions[k]);
   }
+  plan.pass(0);
   const double last_heading = legs > 0 ? headings.back() : settings.departure_heading.value_or(0);
   plan.stand(points.back().position, points.back().hover, settings.arrival_heading.value_or(last_heading));
-  return std::move(plan).flight();
+  return std::move(plan).flight(numbers);
 }
 
 }  // namespace pulsecast
