@@ -239,6 +239,81 @@ TEST_CASE("what one leg says of the columns of a file, and what separates them, 
   CHECK_THROWS_AS((void)plan_survey(s, flat), FileError);
 }
 
+TEST_CASE("legs end before a jump of their file, begin after it, or jump, with a note") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "way.trj") << "0,0,0,0,0,0,9\n2,0,0,0,20,0,9\n2,0,0,0,500,0,9\n4,0,0,0,500,20,9\n";
+  SurveySettings s = survey_of(PlatformKind::interpolated, {{}, {}, {}});
+  for (LegSettings& leg : s.legs) leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
+  for (const bool position_only : {false, true}) {
+    for (LegSettings& leg : s.legs) leg.platform.trajectory->position_only = position_only;
+    s.legs[0].platform.trajectory->end = 2, s.legs[1].platform.trajectory->start = 2;
+    const SurveyPlan plan = plan_survey(s, flat);
+    const auto at = [&](std::size_t k, double t) { return plan.source.legs()[k].path().at(Tick::of_seconds(t)); };
+    CHECK(plan.legs[0].duration.seconds() == 2);
+    CHECK(plan.legs[1].duration.seconds() == 2);
+    CHECK(plan.legs[2].duration.seconds() == 4);
+    CHECK(length(at(0, 2).position - Vec3{20, 0, 9}) < 1e-12);
+    CHECK(length(at(1, 0).position - Vec3{500, 0, 9}) < 1e-12);
+    CHECK(length(at(2, 1.5).position - Vec3{15, 0, 9}) < 1e-12);
+    CHECK(length(at(2, 2.5).position - Vec3{500, 5, 9}) < 1e-12);
+    CHECK(length(origin(plan, plan.legs[1].first) - origin(plan, plan.legs[2].first + 2000)) < 1e-12);
+    const auto notes = [&](const char* what) {
+      return std::count_if(plan.warnings.begin(), plan.warnings.end(),
+                           [&](const std::string& w) { return w.find(what) != std::string::npos; });
+    };
+    CHECK(notes("way.trj, line 3: has the time of the pose before it, but another pose, the first of 1: the platform jumps there") == 1);
+    CHECK(notes("jumps") == 1);
+    if (!position_only) continue;
+    CHECK(length(at(0, 2).direction(forward) - right) < 1e-12);  // it looks where it goes, and not where it jumps
+    CHECK(length(at(1, 0).direction(forward) - forward) < 1e-12);
+  }
+}
+
+TEST_CASE("the optic of a leg that teleports starts anew, as after a leg that is not active") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "way.trj") << "0,0,0,0,0,0,9\n1.015,0,0,0,0,0,9\n";
+  SurveySettings s = survey_of(PlatformKind::interpolated, {{}, {}});
+  s.scanner.channels[0].optic = ConicOptic{};
+  for (LegSettings& leg : s.legs) leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
+  const auto turned = [&] {
+    const SurveyPlan plan = plan_survey(s, flat);
+    return length(plan.source.pulse(plan.legs[1].first)->direction() - plan.source.pulse(0)->direction());
+  };
+  CHECK(turned() > 0.1);
+  s.legs[1].platform.trajectory->teleports = true;
+  CHECK(turned() < 1e-12);
+}
+
+TEST_CASE("a leg has at most 1e9 records of its trajectory, and as many pulses as can be counted") {
+  SurveySettings s = survey_of(PlatformKind::stationary, {{}, {}});
+  for (LegSettings& leg : s.legs) leg.duration_max = 1e6;
+  s.legs[1].scanner.trajectory_interval = 1e-9;
+  const SurveyBuildOptions options{.leg_places = {"a.xml:3:5", "a.xml:4:5"}};
+  CHECK_THROWS_WITH_AS((void)plan_survey(s, flat, options),
+                       doctest::Contains("a.xml:4:5: leg 1: trajectoryTimeInterval_s (records) is 1e+15"), SettingError);
+  s.legs[1].scanner.active = false;
+  CHECK_NOTHROW((void)plan_survey(s, flat, options));
+  s.legs[1].scanner.active = true, s.legs[1].scanner.trajectory_interval = 1e-3;
+  CHECK(plan_survey(s, flat, options).legs[1].trajectory_interval == 1e-3);
+  s.legs[1].duration_max = 1e13;
+  CHECK_THROWS_WITH_AS((void)plan_survey(s, flat, options), doctest::Contains("a.xml:4:5: leg 1 (pulses) is 1e+16"), SettingError);
+}
+
+TEST_CASE("a leg that is too slow to end, or too fast for its platform, is told by its speed") {
+  using enum PlatformKind;
+  for (const auto& [kind, speed] : {std::pair{linear_path, 1e-320},
+                                    {linear_path, 1e-18},
+                                    {multicopter, 1e-320},
+                                    {multicopter, 2e3},
+                                    {ground_vehicle, 1e-320},
+                                    {ground_vehicle, 2e3}})
+    CHECK_THROWS_WITH_AS((void)plan_survey(survey_of(kind, {{}, {20, 0, 0}}, speed), flat), doctest::Contains("leg 0: movePerSec_m is "),
+                         SettingError);
+  SurveySettings s = survey_of(stationary, {{}});
+  s.legs[0].scanner.head_speed = 1e-300, s.legs[0].scanner.head_stop = 2;
+  CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 0 (duration) is "), SettingError);
+}
+
 TEST_CASE("channels fire together, each from its own place") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{}});
   s.legs[0].duration_max = 1;

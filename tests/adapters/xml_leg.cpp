@@ -72,7 +72,8 @@ TEST_CASE("what of a leg does nothing is told, and what is as it says is not") {
   CHECK(contains(told(R"(<p slowdownEnabled="false"/>)"), "warning"));
   CHECK(told(R"(<p slowdownEnabled="true"/>)").empty());
   CHECK(contains(told(R"(<p slowdownEnabled="no"/>)"), "is not known"));
-  CHECK(contains(told(R"(<p trajectory="mesh.obj" teleportToStart="true"/>)"), "warning"));
+  CHECK(told(R"(<p trajectory="mesh.obj" teleportToStart="true"/>)").empty());
+  CHECK(from(R"(<p trajectory="mesh.obj" teleportToStart="true"/>)").trajectory.value().teleports);
   CHECK(contains(told(R"(<p trajectory="mesh.obj" slopeFilterThreshold="0.1"/>)"), "all samples are kept"));
   CHECK(told(R"(<p trajectory="mesh.obj" slopeFilterThreshold="0"/>)").empty());
 }

@@ -57,12 +57,16 @@ class SurveyPlanner {
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
       const double rate = rate_of(leg);
-      const double duration = duration_of(k, rate), way = ways_[k].duration;
+      const double duration = duration_of(k), way = ways_[k].duration;
       if (way > 0 && duration > 1.1 * way && leg.scanner.active)
         warnings.push_back(ways_.leg_name(k) + ": the platform is there after " + brief(way) + " s, and stays until the head has turned, " +
                            brief(duration - way) + " s more; without headRotateStop_deg, the head turns for as long as the way lasts");
+      expect_within(ways_.leg_name(k) + " (duration)", duration, 0, 1e15, "s");
+      expect_within(ways_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");
+      const double interval = leg.scanner.active ? leg.scanner.trajectory_interval : 0;
+      if (interval > 0) expect_within(ways_.leg_name(k) + ": trajectoryTimeInterval_s (records)", duration / interval, 0, most_records, "");
       const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
-      if (!leg.scanner.active) optic_time = 0;
+      if (!leg.scanner.active || teleports(leg)) optic_time = 0;
       std::vector<SurveyChannel> channels;
       for (const ChannelSettings& channel : survey_.scanner.channels)
         channels.emplace_back(slots > 0 ? optic(k, channel, rate, optic_time) : SurveyOptic{},  // where there are none, nobody asks it
@@ -81,6 +85,12 @@ class SurveyPlanner {
   }
 
  private:
+  static constexpr double most_records = 1e9;  ///< of a leg's trajectory: some 70 GB of text
+
+  [[nodiscard]] bool teleports(const LegSettings& leg) const {
+    return survey_.platform.kind == PlatformKind::interpolated && leg.platform.trajectory && leg.platform.trajectory->teleports;
+  }
+
   /// A time for people, to the millisecond.
   [[nodiscard]] static std::string brief(double seconds) { return pulsecast::detail::written(std::round(seconds * 1e3) / 1e3); }
 
@@ -111,7 +121,7 @@ class SurveyPlanner {
   }
 
   /// How long a leg lasts: until the platform is there and the head has turned, but not longer than it may.
-  [[nodiscard]] double duration_of(std::size_t k, double rate) const {
+  [[nodiscard]] double duration_of(std::size_t k) const {
     const LegSettings& leg = survey_.legs[k];
     const LegScannerSettings& s = leg.scanner;
     const double turn = s.head_stop - s.head_start, speed = head_rate(survey_.scanner.channels.front(), s);
@@ -134,7 +144,6 @@ class SurveyPlanner {
     if (stands && duration == 0 && s.active)
       throw SettingError(ways_.leg_name(k) + ": maxDuration_s", 0, "s",
                          "given where neither platform nor head moves, or the leg would never end");
-    expect_within(ways_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");
     return std::max(0.0, duration);
   }
 

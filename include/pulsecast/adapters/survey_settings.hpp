@@ -409,6 +409,7 @@ struct TrajectorySettings {
   bool position_only = false;                  ///< `interpolationDomain="position"`
   bool angles_in_degrees = true;               ///< of the file; `toRadians`
   bool sync_clock = false;                     ///< the clock begins at the time in the file; `syncGPSTime`
+  bool teleports = false;                      ///< a jump comes before, as a leg without pulses: the optic starts anew. `teleportToStart`
   std::optional<double> start{};               ///< by the clock of the file, its first sample unless given; `tStart` [s]
   std::optional<double> end{};                 ///< by the clock of the file, its last sample unless given; `tEnd` [s]
 

@@ -118,8 +118,11 @@ class SurveyWays {
   [[nodiscard]] double speed_of(std::size_t k) const {
     const double speed = survey_.legs[k].platform.speed;
     if (!(speed > 0)) throw SettingError(leg_name(k) + ": movePerSec_m", speed, "m/s", "greater than 0, or the leg would never end");
+    if (survey_.platform.kind != PlatformKind::linear_path) expect_within(leg_name(k) + ": movePerSec_m", speed, 1e-3, 1e3, "m/s");
     return speed;
   }
+
+  static constexpr double longest = 1e15;  ///< as a Tick counts [s]
 
   void fly_straight() {
     double heading = heading_from(0, 0);
@@ -130,6 +133,10 @@ class SurveyWays {
         continue;
       }
       const StraightLine line{places_[k], places_[k + 1], speed_of(k)};
+      const double least = length(way) / longest;
+      if (line.speed < least)
+        throw SettingError(leg_name(k) + ": movePerSec_m", line.speed, "m/s",
+                           "at least " + pulsecast::detail::written(least) + ", for a leg that ends within 1e15 s");
       heading = heading_of(way, heading);
       ways_[k] = {{line, {}}, line.duration().seconds()};
     }

@@ -41,6 +41,7 @@ void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
   io.choice("interpolationDomain", trajectory.position_only, {{"position_and_attitude", false}, {"position", true}});
   io.flag("toRadians", trajectory.angles_in_degrees);
   io.flag("syncGPSTime", trajectory.sync_clock);
+  io.flag("teleportToStart", trajectory.teleports);
   if constexpr (Io::reads) {
     double slope = 0;
     io.number("slopeFilterThreshold", slope, units::one, 0, 1e9);
@@ -48,7 +49,6 @@ void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
   }
   io.number("tStart", trajectory.start, units::second, -1e12, 1e12);
   io.number("tEnd", trajectory.end, units::second, -1e12, 1e12);
-  io.without_effect({"teleportToStart"}, "has no effect: a leg begins where its part of the trajectory does");
   if constexpr (Io::reads)
     if (trajectory.start && trajectory.end && !(*trajectory.start < *trajectory.end)) io.fault("tEnd", "tEnd is not after tStart");
 }
