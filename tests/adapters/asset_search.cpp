@@ -49,14 +49,27 @@ TEST_CASE("the first folder that has a file wins") {
   CHECK(contains(f.search.find("").problem, "is empty"));
 }
 
-TEST_CASE("a relative path stays inside the folders; an absolute one is taken as it is") {
+TEST_CASE("a relative path that leads out of the folders is taken with a warning, after those that do not") {
   const Folders f;
-  CHECK(contains(f.search.find("../secret.obj").problem, "leads out of the assets folders"));
-  CHECK(contains(f.search.find("sub/../../secret.obj").problem, "leads out of the assets folders"));
-  CHECK(f.search.find("../b/y.obj").files == Paths{f.root / "b/y.obj"});
-  CHECK(f.search.find((f.root / "secret.obj").string()).files == Paths{f.root / "secret.obj"});
-  CHECK(contains(AssetSearch({}).find("x.obj").problem, "leads out"));
-  CHECK(contains(AssetSearch({f.root / "b"}).find("../bb/x.obj").problem, "leads out"));  // begins alike
+  for (const char* name : {"../secret.obj", "sub/../../secret.obj"}) {
+    const AssetMatch match = f.search.find(name);
+    CHECK(match.files == Paths{f.root / "secret.obj"});
+    CHECK(match.warning == "leads out of the assets folders, to " + (f.root / "secret.obj").string());
+  }
+  const AssetMatch inside = f.search.find("../b/y.obj");
+  CHECK(inside.files == Paths{f.root / "b/y.obj"});
+  CHECK(inside.warning.empty());
+  std::ofstream(f.root / "x.obj") << "v 0 0 0\n";
+  CHECK(AssetSearch({f.root / "b/sub", f.root / "a"}).find("../x.obj").files == Paths{f.root / "b/x.obj"});
+  CHECK(AssetSearch({f.root / "a", f.root / "b/sub", f.root / "b"}).find("../x.obj").warning.empty());
+  const AssetMatch absolute = f.search.find((f.root / "secret.obj").string());
+  CHECK(absolute.files == Paths{f.root / "secret.obj"});
+  CHECK(absolute.warning.empty());
+  CHECK(contains(AssetSearch({}).find("x.obj").problem, "is not there"));
+  std::filesystem::create_directories(f.root / "bb");
+  std::ofstream(f.root / "bb/x.obj") << "v 0 0 0\n";
+  CHECK(contains(AssetSearch({f.root / "b"}).find("../bb/x.obj").warning, "leads out"));  // begins alike
+  CHECK(contains(f.search.find("../none.obj").problem, "is not there"));
 }
 
 TEST_CASE("a pattern finds the files of all folders, by name") {
@@ -65,14 +78,26 @@ TEST_CASE("a pattern finds the files of all folders, by name") {
   CHECK(f.search.find_all("sub/.*").files == Paths{f.root / "b/sub/z.obj"});
   CHECK(f.search.find_all((f.root / "b/(x|y).obj").string()).files == Paths{f.root / "b/x.obj", f.root / "b/y.obj"});
   CHECK(contains(f.search.find_all("tree").problem, "matches no file"));  // of the whole name
-  CHECK(contains(f.search.find_all("../.*").problem, "leads out"));
+  const AssetMatch outside = f.search.find_all("../.*\\.obj");
+  CHECK(outside.files == Paths{f.root / "secret.obj"});
+  CHECK(contains(outside.warning, "leads out"));
   CHECK(contains(f.search.find_all("[").problem, "no regular expression"));
 }
 
-TEST_CASE("patterns that could take for ever are refused") {
+TEST_CASE("a pattern that backtracking would follow for ever is matched at once, against a long name too") {
   const Folders f;
-  for (const char* pattern : {"(a+)+b", "(.*)*x", "a*a*a*a*a*b", "a?a?a?a?a?a?a?a?a?aaaaaaaaa",
-                              "(x|x)(x|x)(x|x)(x|x)(x|x)(x|x)(x|x)(x|x)(x|x)", "(a)\\1", "(a){9}", "a{9}{9}{9}{9}{9}"}) {
+  std::ofstream(f.root / "a" / std::string(250, 'a')) << "v 0 0 0\n";
+  for (const char* pattern : {"(a+)+b", "(.*)*x", "a*a*a*a*b", "a*a*a*a*a*a*a*a*b", "(a|aa)+b", "(a|a)*(a|a)*b"}) {
+    CAPTURE(pattern);
+    CHECK(contains(f.search.find_all(pattern).problem, "matches no file"));
+  }
+  CHECK(f.search.find_all("(a|aa)+").files == Paths{f.root / "a" / std::string(250, 'a')});
+  CHECK(f.search.find_all("(tree|bush)+\\d{1,3}\\.obj").files == Paths{f.root / "a/tree2.obj", f.root / "b/tree1.obj"});
+}
+
+TEST_CASE("patterns whose states have no bound are refused") {
+  const Folders f;
+  for (const char* pattern : {"(a)\\1", "(a){9}", "a{9}{9}{9}{9}{9}"}) {
     CAPTURE(pattern);
     CHECK(contains(f.search.find_all(pattern).problem, "matched quickly"));
   }
