@@ -237,11 +237,31 @@ TEST_CASE("a polygon that crosses itself becomes a fan, with a warning") {
   CHECK(contains(model.warnings[0], "line 6"));
 }
 
-TEST_CASE("triangles without area are left out, with one warning") {
-  const ObjModel model = Folder().obj(corners + "f 1 2 2\nf 1 1 1\nf 1 2 3\n");
+TEST_CASE("faces without area, or of fewer than three corners, are left out, with one warning") {
+  for (const char* flat : {"f 1 2 2\nf 1 1 1\n", "f 1 2\nf 1 1 1\n", "f 1 2 2\nf\n"}) {
+    const ObjModel model = Folder().obj(corners + flat + "f 1 2 3\n");
+    CHECK(model.mesh.triangles.size() == 1);
+    REQUIRE(model.warnings.size() == 1);
+    CHECK(contains(model.warnings[0], "line 5: a face without area is left out, the first of 2"));
+  }
+}
+
+TEST_CASE("a file without a face that has an area is read, with a warning") {
+  for (const char* faces : {"", "f 1 1 2\n", "f 1\n"}) {
+    const ObjModel model = Folder().obj(corners + faces);
+    CHECK(model.mesh.triangles.empty());
+    CHECK(model.mesh.vertices.size() == 4);
+    CHECK(contains(model.warnings.back(), "a.obj: holds no face with an area"));
+  }
+}
+
+TEST_CASE("a material or library without a name is told, and the faces are there") {
+  const ObjModel model = Folder().obj("mtllib\n" + corners + "usemtl\nf 1 2 3\n");
   CHECK(model.mesh.triangles.size() == 1);
-  REQUIRE(model.warnings.size() == 1);
-  CHECK(contains(model.warnings[0], "line 5"));
+  CHECK(model.materials.at(0).name == "default");
+  REQUIRE(model.warnings.size() == 2);
+  CHECK(contains(model.warnings[0], "line 1: 'mtllib' is not known and left out"));
+  CHECK(contains(model.warnings[1], "line 6: no MTL file describes the material 'default'"));
 }
 
 TEST_CASE("an MTL file gives reflectance, class, ground and angular law") {
@@ -322,15 +342,11 @@ TEST_CASE("a damaged OBJ file gives one error with its line") {
     std::string text, place;
   } cases[] = {
       {"", ""},
-      {" \n \n", ""},
-      {"v 0 0 0\nv 1 0 0\nv 0 1 0\n", ""},       // no face
-      {corners + "f 1 1 1\n", ""},               // no area
       {"v 0 0 0\nv 1 0", "line 2"},              // cut short
       {"v 0 0 0\nv", "line 2"},                  //
       {corners + "f 1 2 3\nf 1 2", "line 6"},    //
       {corners + "f 1/1/1 2/2/2 3/", "line 5"},  //
       {corners + "f", "line 5"},                 //
-      {corners + "f 1\n", "line 5"},             //
       {corners + "f 0 1 2\n", "line 5"},         //
       {corners + "f 1 2 5\n", "line 5"},         //
       {corners + "f 1 2 -5\n", "line 5"},        //
@@ -352,9 +368,7 @@ TEST_CASE("a damaged OBJ file gives one error with its line") {
                    "ELF\x02\x01\0\0\0",
                    9),
        "line 1"},
-      {corners + "f 1 2 \\\n\\\n9\n", "line 5"},       // over three lines
-      {corners + "usemtl\nf 1 2 3\n", "line 5"},       //
-      {"mtllib\n" + corners + "f 1 2 3\n", "line 1"},  //
+      {corners + "f 1 2 \\\n\\\n9\n", "line 5"},  // over three lines
   };
   for (const auto& c : cases) {
     CAPTURE(c.text);
@@ -393,12 +407,19 @@ TEST_CASE("a damaged MTL file is an error with its own path and line") {
   CHECK(error.place() == "line 2");
 }
 
-TEST_CASE("an MTL file that is not there is an error at the line that names it") {
+TEST_CASE("an MTL file that is not there is a warning with the line that names it, and its materials are not described") {
   const Folder folder;
-  const FileError error = folder.error("# x\nmtllib gone.mtl\n" + corners + "f 1 2 3\n");
-  CHECK(error.path() == (folder.path() / "a.obj").string());
-  CHECK(error.place() == "line 2");
-  CHECK(contains(error.problem(), (folder.path() / "gone.mtl").string()));
+  folder.write("m.mtl", "newmtl b\nhelios_reflectance 0.3\n");
+  const ObjModel model = folder.obj("# x\nmtllib gone.mtl m.mtl\n" + corners + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+  REQUIRE(model.warnings.size() == 2);
+  CHECK(model.warnings[0] == (folder.path() / "a.obj").string() + ", line 2: 'mtllib gone.mtl m.mtl': expected an MTL file at " +
+                                 (folder.path() / "gone.mtl").string() + ", but there is none");
+  CHECK(contains(model.warnings[1], "line 7: no MTL file describes the material 'a'"));
+  REQUIRE(model.materials.size() == 2);
+  CHECK(model.materials[0].name == "a");
+  CHECK(model.materials[0].scattering == undescribed("a").scattering);
+  CHECK(model.materials[0].reflectance == undescribed("a").reflectance);
+  CHECK(model.materials[1].reflectance == 0.3);
 }
 
 /// All that comes of reading a file, in words.
@@ -491,7 +512,7 @@ TEST_CASE("a mutated file gives finite geometry in range, or a FileError") {
     try {
       const ObjModel model = folder.obj(in_mtl ? valid : text);
       ++loaded;
-      bool sound = !model.mesh.triangles.empty() && model.mesh.materials.size() == model.mesh.triangles.size();
+      bool sound = model.mesh.materials.size() == model.mesh.triangles.size();
       for (const Vec3& v : model.mesh.vertices) sound = sound && finite(v) && max_norm(v) <= 1e12;
       for (const auto& triangle : model.mesh.triangles)
         for (const std::uint32_t index : triangle) sound = sound && index < model.mesh.vertices.size();

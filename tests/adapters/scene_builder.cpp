@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/adapters/scene_builder.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -207,6 +208,24 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   CHECK_FALSE(below(scene, 5.5, 0.5).met());
   std::get<XyzSource>(cloud.source).estimate_normals = 0;
   CHECK(below(built(scene_of({cloud})), 5.5, 0.5).met());
+  std::ofstream(files.folder / "few.xyz") << "0 0 0\n5 0 0\n";
+  PartSettings few = cloud;
+  few.source = XyzSource{.files = {files.folder / "few.xyz"}, .estimate_normals = 1};
+  SceneBuilder bare(scene_of({few, cloud}), {});
+  CHECK(bare.parts().size() == 1);
+  const std::vector<std::string>& told = bare.warnings();
+  CHECK(std::any_of(told.begin(), told.end(), [](const std::string& text) {
+    return text.find("few.xyz: has no voxel of three points or more, as estimateNormals needs, and is left out") != std::string::npos;
+  }));
+  std::ofstream(files.folder / "none.mtl") << "# nothing\n";
+  PartSettings plain = cloud;
+  std::get<XyzSource>(plain.source).material = {files.folder / "none.mtl"};
+  SceneBuilder undescribed(scene_of({plain}), {.spectra = {.warnings = {"spectra/a.txt, line 3: odd"}}});
+  CHECK(undescribed.parts().at(0).materials->at(0).reflectance == 0.5);
+  CHECK(std::any_of(undescribed.warnings().begin(), undescribed.warnings().end(), [](const std::string& text) {
+    return text.find("none.mtl: holds no material: its reflectance is taken to be 0.5") != std::string::npos;
+  }));
+  CHECK(undescribed.warnings().back() == "spectra/a.txt, line 3: odd");
   std::get<XyzSource>(cloud.source).material.name = "brick";
   CHECK_THROWS_WITH_AS((void)built(scene_of({cloud})), doctest::Contains("holds no material 'brick'; it has ground, wall"), FileError);
 }

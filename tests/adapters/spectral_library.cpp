@@ -81,7 +81,7 @@ TEST_CASE("the titles of the columns tell the units") {
   check(names, 0.5e-6, 1.5e-6, 0.004);
   CHECK(names.scale == ReflectanceScale::percent);
   REQUIRE(names.warnings.size() == 1);
-  CHECK(contains(names.warnings[0], "says percent, but its values reach 0.6 only"));
+  CHECK(contains(names.warnings[0], ", line 2: its header says percent, but its values reach 0.6 only"));
   check(spectrum("Wavelength(\xC2\xB5m)\tReflectance(%)\n0.5\t20\n1.5\t60\n"), 0.5e-6, 1.5e-6, 0.4);
   check(spectrum("wavelength [um] reflectance [%]\n0.5 20\n1.5 60\n"), 0.5e-6, 1.5e-6, 0.4);
 }
@@ -99,17 +99,18 @@ TEST_CASE("what is missing is left out, what is beyond is clipped, and what come
   CHECK(beyond.spectrum->reflectance(0.5e-6) == 0);
   CHECK(beyond.spectrum->reflectance(1.5e-6) == 1);
   REQUIRE(beyond.warnings.size() == 1);
-  CHECK(contains(beyond.warnings[0], "2 reflectances"));
+  CHECK(contains(beyond.warnings[0], ", line 1: a reflectance below 0 or above 1 is clipped, the first of 2"));
   const SpectrumFile twice = spectrum("0.5 0.2\n1.0 0.3\n1.0 0.5\n1.5 0.6\n1.5 0.8\n");
   check(twice, 0.5e-6, 1.5e-6, 0.4);
   CHECK(twice.spectrum->reflectance(1.5e-6) == relative(0.7, 1e-12));
   REQUIRE(twice.warnings.size() == 1);
-  CHECK(contains(twice.warnings[0], "2 wavelengths"));
+  CHECK(contains(twice.warnings[0], ", line 3: a wavelength comes again, the first of 2: the mean is taken"));
   const SpectrumFile denied = spectrum("Y Units: Reflectance (fraction)\n500 20\n1500 60\n");
   check(denied, 0.5e-6, 1.5e-6, 0.4);
   REQUIRE(denied.warnings.size() == 1);
-  CHECK(contains(denied.warnings[0], "says fraction, but its values reach 60"));
-  CHECK(contains(spectrum("X Units: Wavelength (micrometers)\n500 0.2\n1500 0.6\n").warnings.at(0), "are not all those of light"));
+  CHECK(contains(denied.warnings[0], ", line 1: its header says fraction, but its values reach 60"));
+  CHECK(contains(spectrum("X Units: Wavelength (micrometers)\n500 0.2\n1500 0.6\n").warnings.at(0),
+                 ", line 3: its wavelengths, 500 to 1500 micrometres, are not all those of light"));
   CHECK(spectrum("0.5 0.2\n# end of the visible\n1.5 0.6\n").spectrum->samples().size() == 2);
 }
 

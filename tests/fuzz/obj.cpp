@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::may_refuse([&] {
     const ObjModel model = read_obj(path, {.up = UpAxis::y});
     const MeshData& mesh = model.mesh;
-    fuzz::expect(!mesh.triangles.empty() && mesh.materials.size() == mesh.triangles.size());
+    fuzz::expect(mesh.materials.size() == mesh.triangles.size());
     for (const Vec3& vertex : mesh.vertices) fuzz::expect(max_norm(vertex) <= 1e12);
     for (const auto& corners : mesh.triangles)
       for (const std::uint32_t corner : corners) fuzz::expect(corner < mesh.vertices.size());

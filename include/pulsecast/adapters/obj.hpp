@@ -54,11 +54,11 @@ struct ObjModel {
   std::vector<std::string> warnings;  ///< what was odd, but could be read
 };
 
-/// Reads an OBJ file and the MTL files that it names. Polygons are cut into triangles, also concave ones.
-/// Throws a `FileError` with path and line at the first thing that cannot be right.
-/// Up to so many threads read; 0 stands for as many as the machine runs at once. Not more than some megabytes of the file are held.
-/// Limits: faces refer to vertices above them and have at most 4096 corners; coordinates stay within 1e12, where double resolves 0.1 mm,
-/// and are right to some units in the last place.
+/// Reads an OBJ file and the MTL files that it names. Polygons are cut into triangles, also concave ones. There is a warning if no face has
+/// an area, or if an MTL file is not there: what that would have described is `undescribed`. Throws a `FileError` with path and line at the
+/// first thing that cannot be right. Up to so many threads read; 0 stands for as many as the machine runs at once. Not more than some
+/// megabytes of the file are held. Limits: faces refer to vertices above them and have at most 4096 corners; coordinates stay within 1e12,
+/// where double resolves 0.1 mm, and are right to some units in the last place.
 [[nodiscard]] ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings = {}, unsigned threads = 0);
 
 namespace detail {
@@ -221,14 +221,17 @@ class ObjPiece : private StatementBuffer {
     if (keyword() == "v") {
       expect(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
              "three finite numbers, none beyond 1e12");
+    } else if (keyword() == "f" && given.size() < 3 && !line_is_open()) {
+      add_flat(line());
+      return;
     } else if (keyword() == "f") {
       expect(std::all_of(given.begin(), given.end(), is_corner), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
       expect(given.size() >= 3 && given.size() <= largest_polygon, "a face of 3 to 4096 corners");
-    } else if (keyword() == "usemtl") {
-      expect(!given.empty(), "the name of a material");
-    } else {
-      if (keyword() == "mtllib") {  // tinyobjloader would read the first of several only
-        expect(!given.empty(), "the name of an MTL file");
+    } else if (keyword() == "usemtl" && given.empty()) {
+      uses.push_back({"default", line(), std::nullopt});
+      return;
+    } else if (keyword() != "usemtl") {
+      if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader would read the first of several only
         libraries.push_back({line(), quoted(), std::string(rest()), {given.begin(), given.end()}});
       } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
         if (unknown++ == 0) first_unknown = {line(), quoted()};
@@ -237,6 +240,12 @@ class ObjPiece : private StatementBuffer {
     }
     if (line_is_open() && keyword() != "usemtl") open_line = line();
     ready = statement();
+  }
+
+  /// Notes a face without area.
+  void add_flat(std::size_t line) {
+    ++flat;
+    if (!first_flat || line < first_flat->line) first_flat = {line, {}};
   }
 
   static bool is_corner(std::string_view word) {
@@ -286,7 +295,7 @@ class ObjPiece : private StatementBuffer {
   void triangle(const Face& face, std::size_t a, std::size_t b, std::size_t c) {
     const Vec3 area = cross(positions_[b] - positions_[a], positions_[c] - positions_[a]);
     if (area == Vec3{0, 0, 0}) {
-      if (flat++ == 0) first_flat = {face.line, {}};
+      add_flat(face.line);
       return;
     }
     triangles.push_back({numbers_[a], numbers_[b], numbers_[c]});
@@ -311,13 +320,12 @@ class ObjReader {
   [[nodiscard]] ObjModel read() {
     while (read_window()) continue;
     MeshData& mesh = model_.mesh;
-    if (mesh.triangles.empty())
-      file_.fail(flat_ > 0 ? "all its faces are without area: expected at least one that has some"
-                           : "holds no face: expected at least one 'f' statement");
     if (open_line_ > 0) warn(open_line_, "the last line has no end: the file may have been cut short");
     if (unknown_ > 0)
       warn(first_unknown_->line, first_unknown_->text + " is not known and left out, the first of " + std::to_string(unknown_));
-    if (flat_ > 0) warn(first_flat_->line, "a triangle without area is left out, the first of " + std::to_string(flat_));
+    if (flat_ > 0) warn(first_flat_->line, "a face without area is left out, the first of " + std::to_string(flat_));
+    if (mesh.triangles.empty())
+      model_.warnings.push_back(file_.path() + ": holds no face with an area: expected at least one 'f' statement of such a one");
     resolve_materials();
     return std::move(model_);
   }
@@ -397,9 +405,10 @@ class ObjReader {
   void library(const std::string& name, const ObjPiece::Libraries& statement) {
     const std::filesystem::path path = library_path(name);
     std::error_code ignored_error;
-    if (!std::filesystem::is_regular_file(path, ignored_error))
-      throw FileError(file_.path(), "line " + std::to_string(statement.line),
-                      statement.quoted + ": expected an MTL file at " + path.string() + ", but there is none");
+    if (!std::filesystem::is_regular_file(path, ignored_error)) {
+      warn(statement.line, statement.quoted + ": expected an MTL file at " + path.string() + ", but there is none");
+      return;
+    }
     if (!read_.insert(path.string()).second) return;
     MaterialLibrary more = read_mtl(path, settings_.spectra);
     library_.merge(more.materials);  // of one name, the first counts

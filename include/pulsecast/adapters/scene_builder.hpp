@@ -86,6 +86,7 @@ class SceneBuilder {
       add(part, *source, *transform, i, all);
       lifted.resize(all.size(), transform->on_ground);
     }
+    warn(options_.spectra.warnings);
     tell_shared_objects(all);
     stand_on_ground(all, lifted);
     move(all);
@@ -121,7 +122,7 @@ class SceneBuilder {
       ObjModel model = read_obj(file, {.up = up_axis, .spectra = options_.spectra}, options_.threads);
       warn(model.warnings);
       if (model.mesh.triangles.empty()) {
-        warn({file.string() + ": holds no triangle, and is left out"});
+        warn({file.string() + ": is left out"});
         continue;
       }
       all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh), options_.threads), table(std::move(model.materials))});
@@ -156,6 +157,10 @@ class SceneBuilder {
         drop_bare(file, cloud);
       else
         warn(cloud.warnings);
+      if (cloud.voxels.cells.empty()) {
+        warn({file.string() + ": has no voxel of three points or more, as estimateNormals needs, and is left out"});
+        continue;
+      }
       MaterialTable materials = spread(source.material, cloud.voxels);
       all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(cloud.voxels), std::move(materials)});
     }
@@ -172,7 +177,6 @@ class SceneBuilder {
       if (!is_bare(i)) v.cells[kept] = v.cells[i], v.normals[kept++] = v.normals[i];
     if (kept == all) return warn(cloud.warnings);
     if (all > 0) v.cells.resize(kept), v.normals.resize(kept);
-    if (v.cells.empty()) throw FileError(file.string(), "", "has no voxel of three points or more, as estimateNormals needs");
     warn({file.string() + ": " + std::to_string(all - kept) + " of " + std::to_string(all) +
           " voxels have too few points for a normal, and are left out; defaultNormal would keep them"});
   }
@@ -209,7 +213,10 @@ class SceneBuilder {
     if (source.file.empty()) return undescribed("default");
     const MaterialLibrary library = read_mtl(source.file, options_.spectra);
     warn(library.warnings);
-    if (library.materials.empty()) throw FileError(source.file.string(), "", "holds no material");
+    if (library.materials.empty() && !source.name) {
+      warn({source.file.string() + ": holds no material: its reflectance is taken to be 0.5"});
+      return undescribed("default");
+    }
     if (!source.name) return library.materials.begin()->second;
     const auto found = library.materials.find(*source.name);
     if (found != library.materials.end()) return found->second;

@@ -102,13 +102,17 @@ class SpectrumReader {
     SpectrumFile file;
     file.report = table_.path() + ": " + take_wavelengths() + "; " + take_reflectances(file.scale);
     std::stable_sort(samples_.begin(), samples_.end(), [](const auto& a, const auto& b) { return a.wavelength < b.wavelength; });
-    unite_equal();
-    file.spectrum = std::make_shared<const Spectrum>(std::move(samples_));
+    file.spectrum = std::make_shared<const Spectrum>(united());
     file.warnings = std::move(warnings_);
     return file;
   }
 
  private:
+  /// A row of the file.
+  struct Row : SpectralSample {
+    std::size_t line = 0;
+  };
+
   /// A number, or nothing where it is said to be missing; `is_cell` is false if it is neither.
   struct Cell {
     std::optional<double> number;
@@ -139,23 +143,24 @@ class SpectrumReader {
     begun_ = true;
     if (!(*wavelength >= 1e-12 && *wavelength <= 1e12))
       table_.fail_here(TextTable::quoted(text) + ": expected a wavelength greater than 0");
-    if (reflectance.number) samples_.push_back({*wavelength, *reflectance.number});
+    if (reflectance.number) samples_.push_back({{*wavelength, *reflectance.number}, table_.line()});
   }
 
   void header(std::string_view text) {
     const std::string line = lower(text);
-    titles_ = line;
+    titles_ = line, titles_line_ = table_.line();
     const auto is_key = [&](std::string_view key) { return line.starts_with(key); };
     if (is_key("x units:")) unit_ = wavelength_unit_in(line);
     if (!is_key("y units:")) return;
-    scale_ = reflectance_scale_in(line);
+    scale_ = reflectance_scale_in(line), scale_line_ = table_.line();
     if (line.find("reflect") == line.npos) table_.fail_here(TextTable::quoted(text) + ": expected a spectrum of reflectance");
   }
 
   /// Where no key named the units, the line above the numbers may.
   void titles() {
     if (!unit_) unit_ = wavelength_unit_in(titles_);
-    if (!scale_ && titles_.find("reflect") != titles_.npos) scale_ = reflectance_scale_in(titles_);
+    if (scale_ || titles_.find("reflect") == titles_.npos) return;
+    scale_ = reflectance_scale_in(titles_), scale_line_ = titles_line_;
   }
 
   std::string take_wavelengths() {
@@ -166,16 +171,16 @@ class SpectrumReader {
     const bool told = unit_.has_value();
     if (!told) unit_ = shortest >= 100 ? WavelengthUnit::nanometre : shortest < 0.01 ? WavelengthUnit::metre : WavelengthUnit::micrometre;
     const std::string range = pulsecast::detail::written(shortest) + " to " + pulsecast::detail::written(high->wavelength);
-    for (SpectralSample& sample : samples_) {
+    for (Row& sample : samples_) {
       double& w = sample.wavelength;
       w = *unit_ == WavelengthUnit::metre        ? w
           : *unit_ == WavelengthUnit::micrometre ? w * 1e-6
           : *unit_ == WavelengthUnit::nanometre  ? w * 1e-9
                                                  : 0.01 / w;
-      odd_ = odd_ || w < 1e-7 || w > 1e-3;
+      if (odd_ == 0 && (w < 1e-7 || w > 1e-3)) odd_ = sample.line;
     }
     const std::string name = names[static_cast<std::size_t>(*unit_)];
-    if (odd_) warn("its wavelengths, " + range + " " + name + ", are not all those of light");
+    if (odd_ > 0) warn(odd_, "its wavelengths, " + range + " " + name + ", are not all those of light");
     return "wavelengths in " + name + (told ? ", as its header says" : ", as they are " + range);
   }
 
@@ -188,42 +193,47 @@ class SpectrumReader {
     const bool told = scale_.has_value() && !(*scale_ == ReflectanceScale::fraction && many);
     scale = told ? *scale_ : many ? ReflectanceScale::percent : ReflectanceScale::fraction;
     const bool percent = scale == ReflectanceScale::percent;
-    if (scale_ && !told) warn("its header says fraction, but " + reach + ": they are taken as percent");
-    if (percent && largest <= 1) warn("its header says percent, but " + reach + " only");
-    std::size_t clipped = 0;
-    for (SpectralSample& sample : samples_) {
+    if (scale_ && !told) warn(scale_line_, "its header says fraction, but " + reach + ": they are taken as percent");
+    if (percent && largest <= 1) warn(scale_line_, "its header says percent, but " + reach + " only");
+    std::size_t clipped = 0, first = 0;
+    for (Row& sample : samples_) {
       const double fraction = percent ? sample.reflectance / 100 : sample.reflectance;
       sample.reflectance = std::clamp(fraction, 0.0, 1.0);
-      clipped += sample.reflectance != fraction ? 1 : 0;
+      if (sample.reflectance != fraction && clipped++ == 0) first = sample.line;
     }
-    if (clipped > 0) warn(std::to_string(clipped) + " reflectances below 0 or above 1 are clipped");
+    if (clipped > 0) warn(first, "a reflectance below 0 or above 1 is clipped, the first of " + std::to_string(clipped));
     return std::string("reflectance in ") + (percent ? "percent" : "fractions") + (told ? ", as its header says" : ", as " + reach);
   }
 
   /// What stands at one wavelength becomes its mean.
-  void unite_equal() {
-    std::size_t kept = 0, united = 0;
+  [[nodiscard]] std::vector<SpectralSample> united() {
+    std::vector<SpectralSample> all;
+    std::size_t repeated = 0, first = 0;
     for (std::size_t i = 0; i < samples_.size();) {
       std::size_t end = i;
       double sum = 0;
       for (; end < samples_.size() && samples_[end].wavelength == samples_[i].wavelength; ++end) sum += samples_[end].reflectance;
-      samples_[kept++] = {samples_[i].wavelength, std::min(sum / static_cast<double>(end - i), 1.0)};
-      united += end - i > 1 ? 1 : 0;
+      all.push_back({samples_[i].wavelength, std::min(sum / static_cast<double>(end - i), 1.0)});
+      if (end - i > 1 && repeated++ == 0) first = samples_[i + 1].line;
       i = end;
     }
-    samples_.resize(kept);
-    if (united > 0) warn(std::to_string(united) + " wavelengths come more than once: the mean is taken");
+    if (repeated > 0) warn(first, "a wavelength comes again, the first of " + std::to_string(repeated) + ": the mean is taken");
+    return all;
   }
 
-  void warn(const std::string& text) { warnings_.push_back(table_.path() + ": " + text); }
+  void warn(std::size_t line, const std::string& text) {
+    warnings_.push_back(table_.path() + ", line " + std::to_string(line) + ": " + text);
+  }
 
   TextTable table_;
-  std::vector<SpectralSample> samples_;
+  std::vector<Row> samples_;
   std::optional<WavelengthUnit> unit_;
   std::optional<ReflectanceScale> scale_;
   std::string titles_;  // the last line of the header, in small letters
+  std::size_t titles_line_ = 0;
   std::vector<std::string> warnings_;
-  bool begun_ = false, odd_ = false;
+  std::size_t scale_line_ = 0, odd_ = 0;  // lines: of the header's scale, and of the first wavelength that is none of light
+  bool begun_ = false;
 };
 
 }  // namespace detail
