@@ -71,6 +71,11 @@ TEST_CASE("a tripod stands where each leg says, until the head has turned") {
     CHECK(later.legs[1].end == 2000);
     CHECK(later.source.pulse(0)->tick.seconds() == 2);
   }
+  SUBCASE("a leg whose head begins where it stops ends at once") {
+    s.legs[1].scanner.head_stop = s.legs[1].scanner.head_start;
+    const SurveyPlan none = plan_survey(s, flat);
+    CHECK(none.legs[1].end == none.legs[1].first);
+  }
   SUBCASE("a leg that would never end is refused") {
     s.legs[1].scanner.head_speed = 0, s.legs[1].scanner.head_stop = 0;
     CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: maxDuration_s"), SettingError);

@@ -43,9 +43,6 @@ TEST_CASE("a polygon mirror sweeps all its facet, begins in the middle of it, an
       survey_optic(c, {.scan_frequency = 20, .vertical_angle_min = radians(-10), .vertical_angle_max = radians(50)}, rate);
   CHECK(limited.open(Tick::of(200, rate)));
   CHECK_FALSE(limited.open(Tick::of(950, rate)));
-  CHECK_THROWS_AS(
-      (void)survey_optic(c, {.scan_frequency = 20, .vertical_angle_min = radians(-60), .vertical_angle_max = radians(50)}, rate),
-      SettingError);
 }
 
 TEST_CASE("an optic that stands still leaves the beam where it is: sensors whose head spins") {
@@ -102,6 +99,42 @@ TEST_CASE("scan frequencies that the device cannot are refused, but for legs tha
   CHECK_THROWS_AS((void)survey_optic(c, {.scan_frequency = 4}, rate), SettingError);
   CHECK_THROWS_AS((void)survey_optic(c, {.scan_frequency = 101}, rate), SettingError);
   CHECK_NOTHROW((void)survey_optic(c, {.active = false, .scan_frequency = 0}, rate));
+}
+
+TEST_CASE("vertical angles that are wider apart than the device's are limited to as much, about their middle") {
+  ChannelSettings c = channel(RotatingOptic{.effective_angle_max = radians(50)}, 60);
+  const auto gate = [&](double low, double high) {
+    LegScannerSettings leg{.scan_frequency = 10, .vertical_angle_min = radians(low)};
+    if (high < 1000) leg.vertical_angle_max = radians(high);
+    const auto mirror = std::get<PolygonMirror>(survey_optic(c, leg, rate).optic);
+    return std::pair(degrees(mirror.angle_min), degrees(mirror.angle_max));
+  };
+  const auto check = [&](std::pair<double, double> found, double low, double high) {
+    CHECK(found.first == relative(low, 1e-9));
+    CHECK(found.second == relative(high, 1e-9));
+  };
+  check(gate(-40, 60), -40, 60);
+  check(gate(-100, 100), -50, 50);
+  check(gate(-40, 61), -40, 60);  // 61 is beyond what the mirror sweeps
+  check(gate(-59, 55), -52, 48);
+  check(gate(-360, 1000), -55, 45);  // the upper end is the device's
+}
+
+TEST_CASE("formulas of errors that are no number at angles of the leg are refused") {
+  ChannelSettings c = channel(RotatingOptic{}, 60);
+  const LegScannerSettings all{.scan_frequency = 10}, above{.scan_frequency = 10, .vertical_angle_min = radians(1)};
+  for (std::string* formula : {&c.errors.deflection, &c.errors.head, &c.errors.range}) {
+    *formula = "0.001*ln(THETA)";
+    CHECK_THROWS_WITH_AS((void)survey_optic(c, all, rate), doctest::Contains("also for a THETA of -1.0"), SettingError);
+    CHECK_NOTHROW((void)survey_optic(c, above, rate));
+    *formula = "1/THETA";  // but for 0
+    CHECK_NOTHROW((void)survey_optic(c, all, rate));
+    formula->clear();
+  }
+  c.errors.range = "1/0";
+  CHECK_THROWS_WITH_AS((void)survey_optic(c, all, rate), doctest::Contains("rangeError"), SettingError);
+  c.optic = LineOptic{};
+  CHECK_THROWS_AS((void)survey_optic(c, all, rate), SettingError);
 }
 
 TEST_CASE("the beam's origin keeps to the axes of the platform, and turns with the head") {

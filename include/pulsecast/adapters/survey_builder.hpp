@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,7 @@ class SurveyPlanner {
     PulseIndex first = 0;
     Tick start{};
     double optic_time = 0;
+    std::unordered_map<std::string, std::size_t> strips;  // first leg of each
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
       const double rate = rate_of(leg);
@@ -76,7 +78,8 @@ class SurveyPlanner {
       SurveyNoise noise{.seed = options_.seed + 0x9e3779b97f4a7c15U * (k + 1)};
       if (options_.platform_noise) noise.position = survey_.platform.position_noise, noise.attitude = survey_.platform.attitude_noise;
       const Mount mount{.lever_arm = survey_.platform.mount.position, .boresight = survey_.platform.mount.rotation.rotation()};
-      legs.push_back({SurveyLeg(ways_[k].path, mount, std::move(channels), time, std::move(noise)), leg.scanner.active, strip_of(k)});
+      legs.push_back(
+          {SurveyLeg(ways_[k].path, mount, std::move(channels), time, std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
       const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
       plans.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size, start = start + time;
@@ -102,12 +105,8 @@ class SurveyPlanner {
   }
 
   /// The number that the leg's pulses carry: legs of one strip have that of its first.
-  [[nodiscard]] std::uint16_t strip_of(std::size_t k) const {
-    std::size_t first = k;
-    if (survey_.legs[k].strip)
-      for (std::size_t i = k; i-- > 0;)
-        if (survey_.legs[i].strip == survey_.legs[k].strip) first = i;
-    return static_cast<std::uint16_t>(first);
+  [[nodiscard]] static std::uint16_t strip_of(std::size_t k, const LegSettings& leg, std::unordered_map<std::string, std::size_t>& first) {
+    return static_cast<std::uint16_t>(leg.strip ? first.try_emplace(*leg.strip, k).first->second : k);
   }
 
   SurveyOptic optic(std::size_t k, const ChannelSettings& channel, double rate, double active) const {
@@ -141,7 +140,7 @@ class SurveyPlanner {
       return stands && duration == 0 ? most : std::min(duration, most);
     }
     if (ways_.rests(k) && k + 1 < survey_.legs.size()) return duration;
-    if (stands && duration == 0 && s.active)
+    if (stands && duration == 0 && speed == 0 && s.active)
       throw SettingError(ways_.leg_name(k) + ": maxDuration_s", 0, "s",
                          "given where neither platform nor head moves, or the leg would never end");
     return std::max(0.0, duration);

@@ -118,6 +118,26 @@ namespace detail {
   return channel.scan_angle_max > 0 ? std::min(angle, channel.scan_angle_max) : angle;
 }
 
+/// Between which angles pulses of a polygon mirror leave [rad].
+struct MirrorGate {
+  double low = 0, high = 0;
+  bool is_limited = false;  ///< the leg asks for angles that are further apart than the device measures in
+};
+
+/// The gate of a leg. If it is too wide, what the mirror never points at does not count, and then it is as wide as the device, about the
+/// same middle.
+[[nodiscard]] inline MirrorGate mirror_gate(const ChannelSettings& channel, const RotatingOptic& optic, const LegScannerSettings& leg) {
+  const double sweep = channel.scan_angle_max, effective = optic.effective_angle_max.value_or(sweep);
+  const double half = std::min(effective, scan_angle_of(channel, leg));
+  MirrorGate gate{leg.vertical_angle_min.value_or(-half), leg.vertical_angle_max.value_or(half)};
+  gate.is_limited = gate.high - gate.low > 2 * effective + 1e-9;
+  if (!gate.is_limited) return gate;
+  gate.low = std::max(gate.low, -sweep), gate.high = std::min(gate.high, sweep);
+  const double middle = (gate.low + gate.high) / 2;
+  if (gate.high - gate.low > 2 * effective) gate.low = middle - effective, gate.high = middle + effective;
+  return gate;
+}
+
 inline void expect_scan_frequency(const ChannelSettings& channel, const LegScannerSettings& leg) {
   const double f = leg.scan_frequency, most = channel.scan_frequency_max;
   if (f < channel.scan_frequency_min || (most > 0 && f > most))
@@ -150,12 +170,7 @@ struct OpticBuilder {
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RotatingOptic& optic) {
     const double sweep = channel.scan_angle_max, f = leg.scan_frequency;
     if (!(f > 0) || !(sweep > 0)) return FixedBeam{};  // sensors whose head does the scanning
-    const double effective = optic.effective_angle_max.value_or(sweep);
-    const double half = std::min(effective, scan_angle_of(channel, leg));
-    const double low = leg.vertical_angle_min.value_or(-half), high = leg.vertical_angle_max.value_or(half);
-    if (high - low > 2 * effective + 1e-9)
-      throw SettingError("verticalAngleMax_deg less verticalAngleMin_deg", degrees(high - low), "deg",
-                         "at most what the device measures in, " + pulsecast::detail::written(degrees(2 * effective)));
+    const auto [low, high, is_limited] = mirror_gate(channel, optic, leg);
     if (high < low) throw SettingError("verticalAngleMax_deg", degrees(high), "deg", "at least verticalAngleMin_deg");
     ahead = 0.5 / f;  // a leg begins in the middle of a facet
     return PolygonMirror{
@@ -194,6 +209,27 @@ struct OpticBuilder {
 
 }  // namespace detail
 
+namespace detail {
+
+/// By how much an optic turns the beam up at least and at most in a leg; 0 for those that do otherwise [rad].
+[[nodiscard]] inline std::pair<double, double> deflections(const SurveyOptic::AnyOptic& optic) {
+  const auto* const mirror = std::get_if<PolygonMirror>(&optic);
+  return mirror ? std::pair(mirror->angle_min, mirror->angle_max) : std::pair(0.0, 0.0);
+}
+
+/// Refuses an error that is no number over a stretch of the angles that it is of. A pole in between is none that a beam meets.
+inline void expect_finite(const char* field, const Formula& error, const std::pair<double, double>& angles) {
+  constexpr int places = 64;
+  for (int i = 0; i < places; ++i) {
+    const double angle = angles.first + (angles.second - angles.first) * (i + 0.518) / places;
+    const double value = error(angle);
+    if (!std::isfinite(value))
+      throw SettingError(field, value, "", "a formula with a finite value, also for a THETA of " + pulsecast::detail::written(angle));
+  }
+}
+
+}  // namespace detail
+
 /// The rate at which the head turns in a leg [rad/s].
 [[nodiscard]] inline double head_rate(const ChannelSettings& channel, const LegScannerSettings& leg) noexcept {
   return std::clamp(leg.head_speed, -channel.head_speed_max, channel.head_speed_max);
@@ -215,6 +251,10 @@ struct OpticBuilder {
   const auto formula = [](const std::string& text) { return text.empty() ? nullptr : std::make_shared<const Formula>(text, "THETA"); };
   out.deflection_error = formula(channel.errors.deflection), out.head_error = formula(channel.errors.head);
   out.range_error = formula(channel.errors.range), out.head_zero_threshold = channel.errors.head_zero_threshold;
+  const std::pair<double, double> angles = detail::deflections(out.optic);
+  if (out.deflection_error) detail::expect_finite("deflectionError", *out.deflection_error, angles);
+  if (out.head_error) detail::expect_finite("headError", *out.head_error, angles);
+  if (out.range_error) detail::expect_finite("rangeError", *out.range_error, angles);
   return out;
 }
 
