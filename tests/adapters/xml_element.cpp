@@ -45,6 +45,14 @@ struct Reading {
     return "";
   }
 
+  /// What is odd after all was asked for, a line each.
+  std::string warnings() {
+    CHECK(faults().empty());
+    std::string all;
+    for (const std::string& warning : report.warnings()) all += warning + '\n';
+    return all;
+  }
+
   XmlDocument document;
   XmlReport report{};
   AssetSearch search{{folder.path()}};
@@ -181,14 +189,44 @@ TEST_CASE("what is wrong with a field is told, and the field stays") {
   refuses("angle_deg=\"1e9\"", "expected a number from -360 to 360 deg");
   refuses("count=\"1.5\"", "expected a whole number from -5 to 5");
   refuses("count=\"6\"", "expected a whole number from -5 to 5");
-  refuses("on=\"yes\"", "on=\"yes\" is not known; there are: true, false, 1, 0");
+  refuses("on=\"yse\"", "on=\"yse\" is not known; there are: true, false, 1, 0");
   refuses("colour=\"gren\"", "did you mean 'green'?");
   refuses("place=\"1;2\"", "expected three numbers 'x;y;z'");
   refuses("place=\"1;2;3;4\"", "expected three numbers 'x;y;z'");
   refuses("normal=\"0;0;2\"", "of at most 1");
   refuses("file=\"none\"", "is not there");
-  refuses("cuont=\"1\"", "attribute 'cuont' of <a> is not known; did you mean 'count'?");
   refuses("count=\"" + std::string(1000, '9') + "\"", "999...\": expected a whole number");
+}
+
+TEST_CASE("what is odd about a field, but leaves no doubt, is told and read") {
+  const auto takes = [](const std::string& attribute, const std::string& part, const Everything& expected) {
+    for (const bool params : {false, true}) {
+      const std::size_t equals = attribute.find('=');
+      const std::string param = "<filter type=\"x\">\n <param key=\"" + attribute.substr(0, equals) + "\" value" + attribute.substr(equals);
+      Reading reading(params ? param + "/></filter>" : "<a\n " + attribute + "/>", params);
+      Everything s;
+      all_fields(reading.io, s);
+      CAPTURE(attribute);
+      const std::string warnings = reading.warnings();
+      INFO(warnings);
+      CHECK(contains(warnings, "a.xml:2:"));
+      CHECK(contains(warnings, part));
+      CHECK(s == expected);
+    }
+  };
+  takes("on=\"Yes\"", "on=\"Yes\" is taken as true: expected true or false", {.is_on = true});
+  takes("on=\"off\"", "is taken as false", {});
+  for (const char* name : {"length_ns", "angle_deg", "count", "colour", "place", "normal", "file"})
+    takes(name + std::string("=\" \""), "=\" \" is empty: it counts as not given", {});
+  takes("place=\"1,-2, 3\"", "expected semicolons between the numbers", {.place = Vec3(1, -2, 3)});
+  takes("place=\"1  -2 3\"", "expected semicolons between the numbers", {.place = Vec3(1, -2, 3)});
+  takes("cuont=\"1\"", "'cuont' of", {});
+  takes("cuont=\"1\"", "is not known; did you mean 'count'?", {});
+  Reading needed("<a b=\"\"/>");
+  int n = 0;
+  needed.io.require({"b"});
+  needed.io.whole("b", n, 0, 9);
+  CHECK(contains(needed.faults(), "b=\"\" is empty: expected a value"));
 }
 
 TEST_CASE("children are read in order, once where there may be one, and unknown ones are told") {
@@ -198,10 +236,10 @@ TEST_CASE("children are read in order, once where there may be one, and unknown 
   CHECK(numbers == std::vector<int>{1, 2});
   CHECK(reading.io.child("c", [](XmlInput&) {}));
   CHECK_FALSE(reading.io.child("e", [](XmlInput&) { FAIL("is not there"); }));
-  const std::string faults = reading.faults();
-  CHECK(contains(faults, "a second <c> in <a>"));
-  CHECK(contains(faults, "element <d> in <a> is not known"));
-  CHECK(contains(Reading("<a>text</a>").faults(), "holds the text 'text'"));
+  const std::string warnings = reading.warnings();
+  CHECK(contains(warnings, "a second <c> in <a>: the first one counts"));
+  CHECK(contains(warnings, "element <d> in <a> is not known"));
+  CHECK(contains(Reading("<a>text</a>").warnings(), "holds the text 'text'"));
   Reading lacks("<a b=\"\"/>");
   lacks.io.require({"b", "c"});
   lacks.io.know({"b"});
@@ -210,25 +248,32 @@ TEST_CASE("children are read in order, once where there may be one, and unknown 
   idle.io.without_effect({"b"});
   CHECK(idle.faults().empty());
   CHECK(idle.report.warnings().size() == 1);
-  Reading number("<a b=\"1\" c=\"5\"/>");
-  for (const char* name : {"b", "c", "d"}) number.io.idle_number(name, units::metre, 0, 2);
-  CHECK(number.report.warnings().size() == 2);
-  CHECK(contains(number.faults(), "c=\"5\": expected a number from 0 to 2 m"));
 }
 
 TEST_CASE("params are checked as attributes are") {
-  const auto fault = [](const std::string& inside) {
-    Reading reading("<filter type=\"x\">" + inside + "</filter>", true);
+  const auto read = [](Reading& reading) {
     int n = 0;
     reading.io.whole("count", n, 0, 9);
+    return n;
+  };
+  const auto fault = [&](const std::string& inside) {
+    Reading reading("<filter type=\"x\">" + inside + "</filter>", true);
+    (void)read(reading);
     return reading.faults();
   };
-  CHECK(fault(R"(<param type="int" key="count" value="3"/>)").empty());
-  CHECK(contains(fault(R"(<param type="int" key="cuont" value="3"/>)"), "param 'cuont' of filter 'x' is not known; did you mean 'count'?"));
-  CHECK(contains(fault(R"(<param type="itn" key="count" value="3"/>)"), "type=\"itn\" is not known; did you mean 'int'?"));
+  const auto warning = [&](const std::string& inside, int expected) {
+    Reading reading("<filter type=\"x\">" + inside + "</filter>", true);
+    CHECK(read(reading) == expected);
+    return reading.warnings();
+  };
+  CHECK(warning(R"(<param type="int" key="count" value="3"/>)", 3).empty());
+  CHECK(contains(warning(R"(<param type="int" key="cuont" value="3"/>)", 0),
+                 "param 'cuont' of filter 'x' is not known; did you mean 'count'?"));
+  CHECK(contains(warning(R"(<param type="itn" key="count" value="3"/>)", 3), "type=\"itn\" is not known; did you mean 'int'?"));
   CHECK(contains(fault(R"(<param type="int" key="count" value="x"/>)"), "count=\"x\": expected a whole number"));
-  CHECK(contains(fault(R"(<param type="int" key="count" vlaue="3"/>)"), "attribute 'vlaue' of <param> is not known"));
-  CHECK(contains(fault(R"(<param key="count" value="3"/><param key="count" value="4"/>)"), "is given twice"));
-  CHECK(contains(fault(R"(<parm key="count" value="3"/>)"), "did you mean 'param'?"));
-  CHECK(contains(fault(R"(<param key="count" value="3"><rot/></param>)"), "element <rot> in <param>"));
+  CHECK(contains(warning(R"(<param type="int" key="count" vlaue="3"/>)", 0), "attribute 'vlaue' of <param> is not known"));
+  CHECK(contains(fault(R"(<param key="count" value="3"/><param key="count" value="4"/>)"), "is given twice, with another value"));
+  CHECK(contains(warning(R"(<param key="count" value="3"/><param key="count" value="3"/>)", 3), "is given twice"));
+  CHECK(contains(warning(R"(<parm key="count" value="3"/>)", 0), "did you mean 'param'?"));
+  CHECK(contains(warning(R"(<param key="count" value="3"><rot/></param>)", 3), "element <rot> in <param>"));
 }

@@ -53,8 +53,13 @@ TEST_CASE("any index of a column means that all are agreed") {
 TEST_CASE("of a trajectory, what cannot be is told") {
   CHECK(contains(told(R"(<p trajectory="none.trj"/>)"), "is not there"));
   CHECK(contains(told(R"(<p trajectory="mesh.obj" tStart="2" tEnd="2"/>)"), "tEnd is not after tStart"));
-  CHECK(contains(told(R"(<p trajectory="mesh.obj" trajectory_separator=";;"/>)"), "expected a comma, a semicolon, a tab or a blank"));
-  CHECK(contains(told(R"(<p trajectory="mesh.obj" trajectory_separator="|"/>)"), "expected a comma"));
+  for (const char* separator : {";;", "|", ""}) {
+    LegPlatformSettings settings;
+    const std::string odd = told("<p trajectory=\"mesh.obj\" trajectory_separator=\"" + std::string(separator) + "\"/>", settings);
+    CHECK(odd.starts_with("\nwarning "));
+    CHECK(contains(odd, "has no effect: expected a comma, a semicolon, a tab or a blank; it is found"));
+    CHECK_FALSE(settings.trajectory->separator);
+  }
   CHECK(contains(told(R"(<p trajectory="mesh.obj" tIndex="1000"/>)"), "from 0 to 999"));
   CHECK(contains(told(R"(<p trajectory="mesh.obj" interpolationDomain="positions"/>)"), "did you mean 'position'?"));
 }
@@ -71,7 +76,7 @@ TEST_CASE("a multicopter that does not stop to turn turns smoothly") {
 TEST_CASE("what of a leg does nothing is told, and what is as it says is not") {
   CHECK(contains(told(R"(<p slowdownEnabled="false"/>)"), "warning"));
   CHECK(told(R"(<p slowdownEnabled="true"/>)").empty());
-  CHECK(contains(told(R"(<p slowdownEnabled="no"/>)"), "is not known"));
+  CHECK(contains(told(R"(<p slowdownEnabled="no"/>)"), "is taken as false"));
   CHECK(told(R"(<p trajectory="mesh.obj" teleportToStart="true"/>)").empty());
   CHECK(from(R"(<p trajectory="mesh.obj" teleportToStart="true"/>)").trajectory.value().teleports);
   CHECK(contains(told(R"(<p trajectory="mesh.obj" slopeFilterThreshold="0.1"/>)"), "all samples are kept"));

@@ -46,12 +46,20 @@ TEST_CASE("a leg that could never end, and rates beyond the device, are refused"
           .empty());
   refuses(survey_text("", leg(R"(headRotatePerSec_deg="60" headRotateStop_deg="20" scanFreq_hz="201")")), "scanFreqMax_Hz, 200 Hz");
   refuses(survey_text("", leg(R"(headRotatePerSec_deg="60" headRotateStop_deg="20" scanFreq_hz="0.5")")), "scanFreqMin_Hz, 1 Hz");
-  refuses(survey_text("", leg(R"(verticalAngleMin_deg="-60" verticalAngleMax_deg="60")")), "further apart than the scanner's 100 deg");
   refuses(survey_text("", leg(R"(verticalAngleMin_deg="10" verticalAngleMax_deg="10")")), "no pulse could leave");
   refuses(survey_text("", ""), "holds no <leg>");
   refuses(survey_text("", "<leg><scannerSettings/></leg>"), "holds no <platformSettings>");
   refuses(survey_text(R"(platform="interpolated")", leg("")), "'trajectory'");
   CHECK(faults_of(survey_text("", leg(R"(scanFreq_hz="20" headRotatePerSec_deg="20")"))).empty());  // it ends at once
+}
+
+TEST_CASE("vertical angles that are further apart than the scanner's are limited, with a warning") {
+  const auto warnings = [](const char* angles) { return support::read_text(survey_text("", leg(angles))).warnings; };
+  const std::vector<std::string> wide = warnings(R"(verticalAngleMin_deg="-60" verticalAngleMax_deg="60")");
+  REQUIRE(wide.size() == 1);
+  CHECK(contains(wide[0], "survey.xml:4:106: verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's 100 deg"));
+  CHECK(contains(wide[0], "they are limited to -50 and 50 deg"));
+  CHECK(warnings(R"(verticalAngleMin_deg="-40" verticalAngleMax_deg="60")").empty());
 }
 
 TEST_CASE("a platform that moves may stay where it is") {

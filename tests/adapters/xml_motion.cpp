@@ -47,6 +47,15 @@ TEST_CASE("every type of motion is read") {
 TEST_CASE("of a motion, what cannot be is told") {
   CHECK(contains(told(R"(<motion type="translation"/>)"), "has no attribute 'vec'"));
   CHECK(contains(told(R"(<motion type="rotation" axis="0;0;0" angle="1"/>)"), "too short to have a direction"));
+  for (const char* turn :
+       {R"(<motion type="rotation" axis="0;0;0" angle="0"/>)", R"(<motion type="helical" axis="0;0;0" angle="0" glide="3"/>)"}) {
+    MotionSettings still;
+    CHECK(contains(told(turn, still), "warning"));
+    CHECK(contains(told(turn, still), "a.xml:1:25: axis is too short to have a direction, and angle is 0: the motion does nothing") ==
+          contains(turn, "rotation"));
+    CHECK(still == MotionSettings{});
+  }
+  CHECK_FALSE(contains(told(R"(<motion type="rotsym" axis="0;0;0" angle="0"/>)"), "warning"));  // mirrored at no plane
   CHECK(contains(told(R"(<motion type="glideplane" ortho="1;0;0" shift="1;1;0"/>)"), "at right angles"));
   CHECK(contains(told(R"(<motion type="rotation" axis="0;0;1" angle="1" glide="1"/>)"), "'glide' of <motion> is not known"));
   CHECK(contains(told(R"(<motion type="rotasion" axis="0;0;1"/>)"), "did you mean 'rotation'?"));

@@ -51,17 +51,35 @@ TEST_CASE("of a scanner, what cannot be is told") {
   CHECK(contains(fault(""), "has no attribute 'optics'"));
   CHECK(contains(fault("optics=\"line\" rangeMin_m=\"5\" rangeMax_m=\"5\""), "rangeMax_m is not beyond rangeMin_m"));
   CHECK(contains(fault("optics=\"line\" scanFreqMin_Hz=\"5\" scanFreqMax_Hz=\"4\""), "scanFreqMax_Hz is below"));
-  CHECK(contains(fault("optics=\"line\"", "<headError expr=\"0\"/>"), "for rotating optics only"));
-  CHECK(contains(fault("optics=\"line\"", "<rangeError expr=\"\"/>"), "empty formula"));
+  CHECK(contains(fault("optics=\"line\"", "<headError expr=\"0\"/>"), "warning"));
+  CHECK(from(scanner("optics=\"rotating\"", "<headError expr=\"1\"/>")).channels.at(0).errors.head == "1");
+  CHECK(contains(fault("optics=\"line\"", "<rangeError expr=\"\"/>"), "warning"));
+  for (const char* never : {"1/0", "0/0", "ln(-1)", "sqrt(-1-THETA^2)", "1/(THETA-THETA)"}) {
+    const std::string told = fault("optics=\"line\"", "\n<rangeError expr=\"" + std::string(never) + "\"/>");
+    CHECK(contains(told, "a.xml:2:13: expr=\"" + std::string(never) + "\" is "));
+    CHECK(contains(told, " for any THETA: expected a formula with a finite value"));
+  }
+  CHECK(fault("optics=\"line\"", "<rangeError expr=\"1/THETA+ln(THETA)\"/>").empty());  // of some angles
+  CHECK(contains(fault("optics=\"line\" distanceMeasurementError=\"1/0\""), "for any t: expected a formula"));
+  CHECK(contains(fault("optics=\"line\" distanceMeasurementError=\"1/0\""), "a.xml:1:"));
+  const std::string part = fault("optics=\"line\" accuracy_m=\"1\" rangeMax_m=\"100\" distanceMeasurementError=\"sqrt(50-t)\"");
+  CHECK(contains(part, "a.xml:1:"));
+  CHECK(contains(part, "a formula with a finite value from rangeMin_m to rangeMax_m"));
   CHECK(contains(fault("optics=\"line\"", "<rangeError/>"), "has no attribute 'expr'"));
   CHECK(contains(fault("optics=\"line\"", "<rangeError expr=\"2*(THETA\"/>"), "a.xml:1:"));
   CHECK(fault("optics=\"line\"", "<rangeError expr=\"2*(THETA)\"/>").empty());
   CHECK(contains(fault("optics=\"line\" distanceMeasurementError=\"2*THETA\""), "a.xml:1:"));
   CHECK(fault("optics=\"line\" distanceMeasurementError=\"2*t^2\"").empty());
   CHECK(contains(fault("optics=\"rotating\" scanAngleEffectiveMax_deg=\"0\""), "no pulse could leave"));
-  CHECK(contains(fault("optics=\"line\"", "<channels/>"), "holds no <channel>"));
+  CHECK(contains(fault("optics=\"line\"", "<channels/>"), "warning"));
   CHECK(contains(fault("optics=\"line\" scanProduct=\"5\""), "warning "));
-  CHECK(contains(told("<scanner id=\"s\" optics=\"line\" pulseFreqs_Hz=\"1,,2\"/>"), "pulseFreqs_Hz=\"1,,2\": expected numbers"));
+  const auto rates = [](const char* text) { return "<scanner id=\"s\" optics=\"line\" pulseFreqs_Hz=\"" + std::string(text) + "\"/>"; };
+  ScannerSettings read;
+  CHECK(contains(told(rates("1,,2, "), read), "warning"));
+  CHECK(read.pulse_rates == std::vector<double>{1, 2});
+  CHECK(contains(told(rates("1,x")), "pulseFreqs_Hz=\"1,x\": expected numbers"));
+  CHECK(contains(told(rates(",")), "expected numbers"));
+  CHECK(contains(told(rates("")), "is empty: expected a value"));
 }
 
 TEST_CASE("a beam quality of 1 says nothing, and another one holds for all channels that say none") {

@@ -29,7 +29,7 @@ std::string filter_told(const std::string& params, Source& source) {
 
 TEST_CASE("a cloud that says little has the defaults of the format") {
   XyzSource cloud;
-  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="separator" value=""/><param key="voxelSize" value="0"/>)", cloud)
+  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="separator" value=""/><param key="voxelSize" value="1"/>)", cloud)
             .empty());
   CHECK(cloud.files.at(0).filename() == "mesh.obj");
   CHECK(cloud.voxel_size == 1);
@@ -37,7 +37,13 @@ TEST_CASE("a cloud that says little has the defaults of the format") {
   CHECK(cloud.normal_columns[2] == 5);
   XyzSource other;
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/>)", other), "has no param 'voxelSize'"));
-  CHECK(contains(filter_told(R"(<param key="defaultNormal" value="0;0;0"/>)", other), "it has no direction"));
+  const std::string odd =
+      R"(<param key="filepath" value="mesh.obj"/><param key="voxelSize" value="0"/><param key="defaultNormal" value="0;0;0"/>)";
+  CHECK(filter_told(odd, other).starts_with("\nwarning "));
+  CHECK(contains(filter_told(odd, other), "a.xml:1:81: voxelSize of 0 stands for 1 m"));
+  CHECK(contains(filter_told(odd, other), "defaultNormal is zero: it has no direction, and no effect"));
+  CHECK(other.voxel_size == 1);
+  CHECK_FALSE(other.default_normal);
   CHECK(contains(filter_told(R"(<param key="normalXIndex" value="1000"/>)", other), "from 0 to 999"));
   CHECK(contains(filter_told(R"(<param key="colour" value="1"/>)", other), "rgbRIndex, rgbGIndex"));  // each once
   for (const char* name : {"rgbRIndex", "rgbGIndex", "rgbBIndex", "maxColorValue", "sparse"}) {

@@ -46,6 +46,7 @@ struct SurveyDocument {
   SurveySettings survey{};
   std::vector<std::string> warnings{};    ///< what is odd, but could be read, as in `survey.xml:3:10: attribute 'numRuns' has no effect`
   std::vector<std::string> leg_places{};  ///< where each leg stands, as in `survey.xml:12:5`, for `SurveyBuildOptions`
+  std::string place{};                    ///< where the survey stands
 };
 
 /// What a document of assets holds, each in its order.
@@ -94,7 +95,7 @@ class SurveyReader {
       read_unused_templates();
     }
     report_.expect_clean();
-    return {std::move(survey_), report_.warnings(), std::move(leg_places_)};
+    return {std::move(survey_), report_.warnings(), std::move(leg_places_), document.place(node).text()};
   }
 
   [[nodiscard]] AssetDocument read_assets() {
@@ -134,9 +135,12 @@ class SurveyReader {
 
   void read_survey(XmlInput& io, std::string name) {
     io.text("name", survey_.name);
+    fit_for_name(io, "name", survey_.name);
+    if (survey_.name == ".." || survey_.name == ".") {
+      io.warn("name", XmlInput::said("name", survey_.name) + " is no name of a folder for results: that of the file is taken");
+      survey_.name.clear();
+    }
     if (survey_.name.empty()) survey_.name = std::move(name);
-    if (!is_part_of_name(survey_.name) || survey_.name == ".." || survey_.name == ".")
-      io.fault("name", "name is that of a folder for results: expected no slashes and no control characters in it");
     seed(io);
     io.without_effect({"numRuns", "simSpeed"});
     bool is_offset = false;
@@ -155,8 +159,18 @@ class SurveyReader {
     read_legs(io);
   }
 
+  [[nodiscard]] static bool fits_no_name(unsigned char c) { return c == '/' || c == '\\' || c < ' ' || c == 0x7f; }
+
+  /// A text that becomes part of the name of a file or folder.
+  static void fit_for_name(const XmlInput& io, const char* name, std::string& text) {
+    if (std::none_of(text.begin(), text.end(), fits_no_name)) return;
+    const std::string given = XmlInput::said(name, text);
+    std::replace_if(text.begin(), text.end(), fits_no_name, '_');
+    io.warn(name, given + " is taken as " + xml_quoted(text) + ": expected no slashes and no control characters in a part of a file name");
+  }
+
   void seed(XmlInput& io) {
-    const auto text = io.given("seed");
+    const auto text = io.value("seed");
     if (!text || *text == "AUTO" || *text == "auto") return;
     const char* const end = text->data() + text->size();
     std::uint64_t value = 0;
@@ -179,8 +193,11 @@ class SurveyReader {
     const auto number = number_of(*text);
     if (is_time) {
       survey_.seed = time;
-    } else if (number && *number >= 0 && *number < 1e18) {
-      survey_.seed = static_cast<std::uint64_t>(*number);
+    } else if (number && std::abs(*number) < 1e18) {
+      survey_.seed = static_cast<std::uint64_t>(std::abs(*number));
+      if (*number < 0 || *number != std::floor(*number))
+        io.warn("seed",
+                XmlInput::said("seed", *text) + " is taken as " + std::to_string(*survey_.seed) + ": expected a whole number from 0");
     } else {
       io.fault("seed", XmlInput::said("seed", *text) + ": expected a whole number, 'YYYY-MM-DD hh:mm:ss' or AUTO");
     }
@@ -195,10 +212,6 @@ class SurveyReader {
   }
 
   /// Whether a text may stand in the name of a file.
-  [[nodiscard]] static bool is_part_of_name(std::string_view text) {
-    return std::none_of(text.begin(), text.end(), [](unsigned char c) { return c == '/' || c == '\\' || c < ' ' || c == 0x7f; });
-  }
-
   /// Channels without an id have their number as such.
   void check_channel_ids(const XmlReference& scanner) {
     const XmlDocument& document = scanner.document->document();
@@ -207,7 +220,7 @@ class SurveyReader {
     for (std::size_t k = 0; k < survey_.scanner.channels.size() && node; ++k, node = node.next_sibling("channel")) {
       const std::string id = survey_.scanner.channels[k].id.empty() ? std::to_string(k) : survey_.scanner.channels[k].id;
       const auto [other, is_new] = numbers.emplace(id, k);
-      if (channel_files_ && !is_part_of_name(id))
+      if (channel_files_ && std::any_of(id.begin(), id.end(), fits_no_name))
         report_.fault(document.place(node, "id"),
                       "the id of a channel becomes part of the names of files: expected no slashes and no control characters in it");
       if (is_new) continue;
@@ -255,20 +268,21 @@ class SurveyReader {
           inner.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
       });
     }
-    check_bins(io);
+    limit_bins(io);
   }
 
   /// A pulse would fall between bins that are longer, and `FullWaveform` takes no more than so many in one.
-  void check_bins(const XmlInput& io) {
+  void limit_bins(const XmlInput& io) {
     constexpr double most = WaveformSettings::most_samples;
     const pugi::xml_node own = io.node().child("FWFSettings");
-    for (const ChannelSettings& channel : survey_.scanner.channels) {
+    for (ChannelSettings& channel : survey_.scanner.channels) {
       const double bin = channel.waveform.bin_size, length = channel.pulse_length;
       if (bin <= length && length <= most * bin) continue;
       const auto ns = [](double seconds) { return xml_number(units::nanosecond.number(seconds)) + " ns"; };
-      return report_.fault(own ? document_.document().place(own) : io.place("scanner"), "binSize_ns is " + ns(bin) + ", and pulses are " +
-                                                                                            ns(length) + " long: expected bins from " +
-                                                                                            ns(length / most) + " to " + ns(length));
+      channel.waveform.bin_size = bin > length ? length : std::nextafter(length / most, length);
+      report_.warn(own ? document_.document().place(own) : io.place("scanner"),
+                   "binSize_ns is " + ns(bin) + ", and pulses are " + ns(length) + " long: it is limited to " +
+                       ns(channel.waveform.bin_size) + "; expected bins from " + ns(length / most) + " to " + ns(length));
     }
   }
 
@@ -300,8 +314,7 @@ class SurveyReader {
   double read_leg(XmlInput& leg, LegSettings& settings) {
     std::optional<double> duration_max;
     leg.text("stripId", settings.strip);
-    if (settings.strip && !is_part_of_name(*settings.strip))
-      leg.fault("stripId", "stripId becomes part of the names of files: expected no slashes and no control characters in it");
+    if (settings.strip) fit_for_name(leg, "stripId", *settings.strip);
     leg.number("maxDuration_s", duration_max, units::second, -1, 1e9);
     const bool has_platform = leg.child("platformSettings", [&](XmlInput& inner) { read_leg_platform(inner, settings.platform); });
     if (!has_platform) report_.fault(leg.place(), "<leg> holds no <platformSettings>");
@@ -351,6 +364,10 @@ class SurveyReader {
       inner.number("maxDuration_s", scanner.duration_max, units::second, -1, 1e9);
       inner.child("maxDuration_s", [&](XmlInput& text) {
         const std::string content = text.content();
+        if (content.find_first_not_of(" \t\r\n") == std::string::npos) {
+          report_.warn(text.place(), "<maxDuration_s> is empty: it counts as not given");
+          return;
+        }
         const auto seconds = number_of(content);
         if (!seconds || !(*seconds >= -1 && *seconds <= 1e9))
           report_.fault(text.place(), "<maxDuration_s> holds " + xml_quoted(content) + ": expected a number of seconds");
@@ -360,7 +377,7 @@ class SurveyReader {
       inner.number("horizontalResolution_deg", scanner.horizontal_resolution, units::degree, 0, 360);
     });
     LegScannerSettings& s = scanner.settings;
-    if (s.pulse_rate == 0) {
+    if (s.pulse_rate == 0 && usual_rate > 0) {
       s.pulse_rate = usual_rate;
       io.warn("pulseFreq_hz", "pulseFreq_hz of 0 stands for the usual one of the scanner, " + xml_number(usual_rate) + " Hz");
     }
@@ -383,7 +400,7 @@ class SurveyReader {
     }
   }
 
-  /// Templates of the survey's own document that no leg names: what is wrong there is wrong all the same.
+  /// Templates of the survey's own document that no leg names: what is wrong there is odd, as it changes nothing.
   void read_unused_templates() {
     const auto all = [&](const char* element, const auto& read) {
       for (pugi::xml_node node = document_.document().root().child(element); node; node = node.next_sibling(element)) {
@@ -394,13 +411,15 @@ class SurveyReader {
         io.finish();
       }
     };
-    all("platformSettings", [&](XmlInput& io) {
-      LegPlatformSettings ignored;
-      read_leg_platform(io, ignored);
-    });
-    all("scannerSettings", [&](XmlInput& io) {
-      LegScanner ignored{.settings = {.pulse_rate = 1}};
-      read_leg_scanner(io, ignored);
+    report_.leniently([&] {
+      all("platformSettings", [&](XmlInput& io) {
+        LegPlatformSettings ignored;
+        read_leg_platform(io, ignored);
+      });
+      all("scannerSettings", [&](XmlInput& io) {
+        LegScanner ignored{.settings = {.pulse_rate = 1}};
+        read_leg_scanner(io, ignored);
+      });
     });
   }
 

@@ -38,14 +38,16 @@ struct XmlFault {
 };
 
 /// All that is wrong with a document and those that it refers to. `what()` has a line for each, `path:line:column: problem`; as a
-/// `FileError` it is about the first of them.
+/// `FileError` it is about the first of them. What was odd beside that stands in `warnings`.
 class XmlFaults : public FileError {
  public:
   static constexpr std::size_t most = 100;  ///< that are told
 
   /// `faults` must not be empty.
-  explicit XmlFaults(std::vector<XmlFault> faults)
-      : FileError(faults.front().place.path, place_in_words(faults.front().place), faults.front().problem), faults_(std::move(faults)) {
+  explicit XmlFaults(std::vector<XmlFault> faults, std::vector<std::string> warnings = {})
+      : FileError(faults.front().place.path, place_in_words(faults.front().place), faults.front().problem),
+        faults_(std::move(faults)),
+        warnings_(std::move(warnings)) {
     for (std::size_t i = 0; i < std::min(faults_.size(), most); ++i)
       text_ += (i == 0 ? "" : "\n") + faults_[i].place.text() + ": " + faults_[i].problem;
     if (faults_.size() > most) text_ += "\nand " + std::to_string(faults_.size() - most) + " more";
@@ -53,6 +55,7 @@ class XmlFaults : public FileError {
 
   [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
   [[nodiscard]] const std::vector<XmlFault>& faults() const noexcept { return faults_; }  ///< in the order in which they were found
+  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
   static std::string place_in_words(const XmlPlace& place) {
@@ -60,6 +63,7 @@ class XmlFaults : public FileError {
   }
 
   std::vector<XmlFault> faults_;
+  std::vector<std::string> warnings_;
   std::string text_;
 };
 
@@ -69,26 +73,39 @@ class XmlReport {
   static constexpr std::size_t most = 1000;  ///< of either; beyond, they are not kept
 
   void fault(XmlPlace place, std::string problem) {
-    if (faults_.size() == most) return;
+    if (is_full()) return;
     for (const XmlFault& other : faults_)
       if (other.place == place && other.problem == problem) return;
+    if (lenient_) return warn(place, problem);
     faults_.push_back({std::move(place), std::move(problem)});
   }
 
   void warn(const XmlPlace& place, const std::string& problem) {
-    if (warnings_.size() == most) return;
+    if (is_full_of_warnings()) return;
     std::string text = place.text() + ": " + problem;
     if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
+    if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(most) + " are not told";
+  }
+
+  /// Calls `read()`, with the faults of what nobody uses as warnings.
+  template <class Read>
+  void leniently(Read read) {
+    const bool before = std::exchange(lenient_, true);
+    read();
+    lenient_ = before;
   }
 
   /// Whether no more faults are kept: it is not worth looking for them.
   [[nodiscard]] bool is_full() const noexcept { return faults_.size() == most; }
 
+  [[nodiscard]] bool is_full_of_warnings() const noexcept { return warnings_.size() == most; }
+
+  [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< how many there are
   [[nodiscard]] bool is_clean() const noexcept { return faults_.empty(); }
 
   /// Throws if anything is wrong.
   void expect_clean() const {
-    if (!faults_.empty()) throw XmlFaults(faults_);
+    if (!faults_.empty()) throw XmlFaults(faults_, warnings_);
   }
 
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
@@ -96,6 +113,7 @@ class XmlReport {
  private:
   std::vector<XmlFault> faults_;
   std::vector<std::string> warnings_;
+  bool lenient_ = false;
 };
 
 /// A text in quotation marks, cut if it is long.

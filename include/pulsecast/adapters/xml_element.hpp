@@ -126,10 +126,12 @@ class XmlInput {
   [[nodiscard]] bool knows(std::string_view name) const { return is_among(known_, name); }
 
   /// Reports attributes that are not there, but must be.
-  void require(std::initializer_list<const char*> names) const {
-    for (const char* name : names)
+  void require(std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+      required_.emplace_back(name);
       if (!has(name))
         report_.fault(place(), "<" + std::string(node_.name()) + "> has no " + (params_ ? "param " : "attribute ") + xml_quoted(name));
+    }
   }
 
   /// What stands in an attribute, if it is given.
@@ -143,28 +145,46 @@ class XmlInput {
     return found ? std::optional<std::string>(found.value()) : std::nullopt;
   }
 
-  /// A number; `low` and `high` are the least and greatest allowed, in the unit of the document.
-  void number(const char* name, double& value, const XmlUnit& unit, double low, double high) {
-    if (const auto text = given(name))
-      if (const auto found = within(name, *text, unit, low, high)) value = unit.si(*found);
-  }
-  void number(const char* name, std::optional<double>& value, const XmlUnit& unit, double low, double high) {
-    if (const auto text = given(name))
-      if (const auto found = within(name, *text, unit, low, high)) value = unit.si(*found);
+  /// What stands in an attribute that an empty text says nothing in.
+  [[nodiscard]] std::optional<std::string> value(const char* name) {
+    auto text = given(name);
+    if (!text || text->find_first_not_of(" \t\r\n") != std::string::npos) return text;
+    if (is_among(required_, name))
+      fault(name, said(name, *text) + " is empty: expected a value");
+    else
+      warn(name, said(name, *text) + " is empty: it counts as not given");
+    return std::nullopt;
   }
 
-  void whole(const char* name, int& value, int low, int high) {
-    if (const auto text = given(name)) {
+  /// A number; `low` and `high` are the least and greatest allowed, in the unit of the document.
+  void number(const char* name, double& number, const XmlUnit& unit, double low, double high) {
+    if (const auto text = value(name))
+      if (const auto found = within(name, *text, unit, low, high)) number = unit.si(*found);
+  }
+  void number(const char* name, std::optional<double>& number, const XmlUnit& unit, double low, double high) {
+    if (const auto text = value(name))
+      if (const auto found = within(name, *text, unit, low, high)) number = unit.si(*found);
+  }
+
+  void whole(const char* name, int& number, int low, int high) {
+    if (const auto text = value(name)) {
       const auto found = number_of(*text);
       if (found && *found == std::floor(*found) && *found >= low && *found <= high) {
-        value = static_cast<int>(*found);
+        number = static_cast<int>(*found);
       } else {
         fault(name, said(name, *text) + ": expected a whole number from " + std::to_string(low) + " to " + std::to_string(high));
       }
     }
   }
 
-  void flag(const char* name, bool& value) { choice(name, value, {{"true", true}, {"false", false}, {"1", true}, {"0", false}}); }
+  void flag(const char* name, bool& flag) {
+    static constexpr std::array<std::pair<std::string_view, bool>, 4> others{{{"yes", true}, {"no", false}, {"on", true}, {"off", false}}};
+    const std::string text = given(name).value_or("");
+    const auto other = std::find_if(others.begin(), others.end(), [&](const auto& word) { return is_same_word(word.first, text); });
+    if (other == others.end()) return choice(name, flag, {{"true", true}, {"false", false}, {"1", true}, {"0", false}});
+    flag = other->second;
+    warn(name, said(name, text) + " is taken as " + (flag ? "true" : "false") + ": expected true or false");
+  }
 
   void text(const char* name, std::string& value) {
     if (auto text = given(name)) value = *std::move(text);
@@ -175,13 +195,13 @@ class XmlInput {
 
   /// One of several words; capitals are no matter.
   template <class Value>
-  void choice(const char* name, Value& value, XmlWords<Value> words) {
-    const auto text = given(name);
+  void choice(const char* name, Value& chosen, XmlWords<Value> words) {
+    const auto text = value(name);
     if (!text) return;
     std::vector<std::string> known;
     for (const auto& [word, meaning] : words) {
-      if (word.size() == text->size() && edit_distance(word, *text) == 0) {
-        value = meaning;
+      if (is_same_word(word, *text)) {
+        chosen = meaning;
         return;
       }
       known.emplace_back(word);
@@ -190,39 +210,37 @@ class XmlInput {
   }
 
   /// Three numbers with semicolons between them.
-  void vector(const char* name, Vec3& value, double size_max) {
-    const auto text = given(name);
+  void vector(const char* name, Vec3& vector, double size_max) {
+    const auto text = value(name);
     if (!text) return;
-    Vec3 found{};
-    std::string_view rest = *text;
-    for (int i = 0; i < 3; ++i) {
-      const std::size_t end = i < 2 ? rest.find(';') : rest.size();
-      const auto component = end == std::string_view::npos ? std::nullopt : number_of(rest.substr(0, end));
-      if (!component || !(std::abs(*component) <= size_max)) {
-        fault(name, said(name, *text) + ": expected three numbers 'x;y;z' of at most " + xml_number(size_max));
-        return;
-      }
-      found[i] = *component;
-      rest.remove_prefix(std::min(end + 1, rest.size()));
+    for (const char separator : {';', ',', ' '}) {
+      const auto found = vector_of(*text, separator, size_max);
+      if (!found) continue;
+      if (separator != ';') warn(name, said(name, *text) + ": expected semicolons between the numbers, as in 'x;y;z'");
+      vector = *found;
+      return;
     }
-    value = found;
+    fault(name, said(name, *text) + ": expected three numbers 'x;y;z' of at most " + xml_number(size_max));
   }
-  void vector(const char* name, std::optional<Vec3>& value, double size_max) {
+  void vector(const char* name, std::optional<Vec3>& vector, double size_max) {
     Vec3 found(std::numeric_limits<double>::infinity());
-    vector(name, found, size_max);
-    if (finite(found)) value = found;
+    this->vector(name, found, size_max);
+    if (finite(found)) vector = found;
   }
 
   /// A file that must be there.
-  void file(const char* name, std::filesystem::path& value) {
-    if (const auto text = given(name)) {
-      AssetMatch match = search_.find(*text);
-      if (match.problem.empty()) {
-        value = std::move(match.files.front());
-      } else {
-        fault(name, said(name, *text) + " " + match.problem);
-      }
+  void file(const char* name, std::filesystem::path& path) {
+    if (const auto text = value(name)) {
+      const AssetMatch match = search_.find(*text);
+      take(name, *text, match);
+      if (!match.files.empty()) path = match.files.front();
     }
+  }
+
+  /// Reports what is wrong or odd about files that were looked for.
+  void take(const char* name, std::string_view text, const AssetMatch& match) const {
+    if (!match.problem.empty()) fault(name, said(name, text) + " " + match.problem);
+    if (!match.warning.empty()) warn(name, said(name, text) + " " + match.warning);
   }
 
   /// A child element that may be there once: calls `read(XmlInput&)`. Returns whether it is.
@@ -232,7 +250,7 @@ class XmlInput {
     const pugi::xml_node found = node_.child(name);
     if (!found) return false;
     if (const pugi::xml_node second = found.next_sibling(name))
-      report_.fault(document_.place(second), "a second <" + std::string(name) + "> in <" + node_.name() + ">: expected one at most");
+      report_.warn(document_.place(second), "a second <" + std::string(name) + "> in <" + node_.name() + ">: the first one counts");
     XmlInput inner(document_, found, report_, search_);
     read(inner);
     inner.finish();
@@ -256,13 +274,6 @@ class XmlInput {
       if (given(name)) warn(name, (params_ ? "param " : "attribute ") + xml_quoted(name) + " " + why);
   }
 
-  /// One that must be a number all the same.
-  void idle_number(const char* name, const XmlUnit& unit, double low, double high, const char* why = "has no effect") {
-    double ignored = 0;
-    number(name, ignored, unit, low, high);
-    without_effect({name}, why);
-  }
-
   /// Names that are known beside those asked for.
   void know(std::initializer_list<const char*> attributes, std::initializer_list<const char*> children = {}) {
     known_.insert(known_.end(), attributes.begin(), attributes.end());
@@ -278,17 +289,17 @@ class XmlInput {
     for (const pugi::xml_attribute attribute : node_.attributes()) {
       const std::string_view name = attribute.name();
       if (name.starts_with("xmlns") || name.starts_with("xsi:") || name.starts_with("xml:") || is_among(known_, name)) continue;
-      fault(name, "attribute " + xml_quoted(name) + " of <" + node_.name() + "> is not known" + suggestion(name, known_));
+      warn(name, "attribute " + xml_quoted(name) + " of <" + node_.name() + "> is not known" + suggestion(name, known_));
     }
     for (const pugi::xml_node child : node_.children()) {
-      if (report_.is_full()) return;
+      if (report_.is_full_of_warnings()) return;
       const bool is_element = child.type() == pugi::node_element;
       if (is_element && !is_among(known_children_, child.name()))
-        report_.fault(document_.place(child), "element <" + std::string(child.name()).substr(0, 80) + "> in <" + node_.name() +
-                                                  "> is not known" + suggestion(child.name(), known_children_));
+        report_.warn(document_.place(child), "element <" + std::string(child.name()).substr(0, 80) + "> in <" + node_.name() +
+                                                 "> is not known" + suggestion(child.name(), known_children_));
       if (child.type() == pugi::node_pcdata && !takes_text_)
-        report_.fault(place(),
-                      "<" + std::string(node_.name()) + "> holds the text " + xml_quoted(child.value()) + ": expected elements only");
+        report_.warn(place(),
+                     "<" + std::string(node_.name()) + "> holds the text " + xml_quoted(child.value()) + ": expected elements only");
     }
   }
 
@@ -296,8 +307,8 @@ class XmlInput {
   void check_filter() const {
     for (const pugi::xml_attribute attribute : node_.attributes())
       if (std::string_view(attribute.name()) != "type")
-        report_.fault(document_.place(node_, attribute.name()),
-                      "attribute " + xml_quoted(attribute.name()) + " of <filter> is not known; did you mean 'type'?");
+        report_.warn(document_.place(node_, attribute.name()),
+                     "attribute " + xml_quoted(attribute.name()) + " of <filter> is not known; did you mean 'type'?");
   }
 
   /// `name="text"`, for messages.
@@ -329,6 +340,25 @@ class XmlInput {
  private:
   static constexpr std::size_t most_params = 100;
 
+  /// Whether two words are the same, but for capitals.
+  [[nodiscard]] static bool is_same_word(std::string_view a, std::string_view b) {
+    return a.size() == b.size() && edit_distance(a, b) == 0;
+  }
+
+  /// Three numbers with a separator between them; blanks may be several.
+  [[nodiscard]] static std::optional<Vec3> vector_of(std::string_view text, char separator, double size_max) {
+    Vec3 found{};
+    for (int i = 0; i < 3; ++i) {
+      text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+      const std::size_t end = i < 2 ? text.find(separator) : text.size();
+      const auto component = end == std::string_view::npos ? std::nullopt : number_of(text.substr(0, end));
+      if (!component || !(std::abs(*component) <= size_max)) return std::nullopt;
+      found[i] = *component;
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return found;
+  }
+
   [[nodiscard]] static bool is_among(const std::vector<std::string>& known, std::string_view name) {
     return std::find(known.begin(), known.end(), name) != known.end();
   }
@@ -337,23 +367,28 @@ class XmlInput {
     check_filter();
     std::vector<std::string_view> keys;
     for (const pugi::xml_node child : node_.children()) {
-      if (report_.is_full() || keys.size() == most_params) return;
+      if (report_.is_full() || report_.is_full_of_warnings() || keys.size() == most_params) return;
       if (child.type() != pugi::node_element) continue;
       if (std::string_view(child.name()) != "param") {
-        report_.fault(document_.place(child),
-                      "element <" + std::string(child.name()).substr(0, 80) + "> in <filter> is not known; did you mean 'param'?");
+        report_.warn(document_.place(child),
+                     "element <" + std::string(child.name()).substr(0, 80) + "> in <filter> is not known; did you mean 'param'?");
         continue;
       }
       check_param(child);
       const std::string_view key = child.attribute("key").value();
-      if (std::find(keys.begin(), keys.end(), key) != keys.end())
-        report_.fault(document_.place(child, "key"), "param " + xml_quoted(key) + " is given twice");
+      if (std::find(keys.begin(), keys.end(), key) != keys.end()) {
+        const bool is_same = std::string_view(param(key).attribute("value").value()) == child.attribute("value").value();
+        if (is_same)
+          report_.warn(document_.place(child, "key"), "param " + xml_quoted(key) + " is given twice");
+        else
+          report_.fault(document_.place(child, "key"), "param " + xml_quoted(key) + " is given twice, with another value");
+      }
       keys.push_back(key);
       if (keys.size() == most_params) report_.fault(document_.place(child), "one of too many <param> in a filter");
       if (!is_among(known_, key) || key == "type")
-        report_.fault(document_.place(child, "key"), "param " + xml_quoted(key) + " of filter " +
-                                                         xml_quoted(node_.attribute("type").value()) + " is not known" +
-                                                         suggestion(key, std::span(known_).subspan(1)));
+        report_.warn(document_.place(child, "key"), "param " + xml_quoted(key) + " of filter " +
+                                                        xml_quoted(node_.attribute("type").value()) + " is not known" +
+                                                        suggestion(key, std::span(known_).subspan(1)));
     }
   }
 
@@ -362,24 +397,24 @@ class XmlInput {
     static const std::vector<std::string> types{"string", "boolean", "bool", "double", "integer", "int", "vec3", "rotation", ""};
     for (const pugi::xml_attribute attribute : child.attributes())
       if (!is_among(names, attribute.name()))
-        report_.fault(document_.place(child, attribute.name()),
-                      "attribute " + xml_quoted(attribute.name()) + " of <param> is not known" + suggestion(attribute.name(), names));
+        report_.warn(document_.place(child, attribute.name()),
+                     "attribute " + xml_quoted(attribute.name()) + " of <param> is not known" + suggestion(attribute.name(), names));
     const std::string_view type = child.attribute("type").value();
     if (!is_among(types, type))
-      report_.fault(document_.place(child, "type"), said("type", type) + " is not known" + suggestion(type, std::span(types).first(8)));
+      report_.warn(document_.place(child, "type"), said("type", type) + " is not known" + suggestion(type, std::span(types).first(8)));
     if (type == "rotation") return;
-    if (!child.attribute("value")) report_.fault(document_.place(child), "<param> has no attribute 'value'");
+    if (!child.attribute("value")) report_.warn(document_.place(child), "<param> has no attribute 'value'");
     for (const pugi::xml_node inner : child.children())
       if (inner.type() == pugi::node_element)
-        report_.fault(document_.place(inner),
-                      "element <" + std::string(inner.name()).substr(0, 80) + "> in <param>: expected it in one of type rotation");
+        report_.warn(document_.place(inner),
+                     "element <" + std::string(inner.name()).substr(0, 80) + "> in <param>: expected it in one of type rotation");
   }
 
   const XmlDocument& document_;
   pugi::xml_node node_;
   XmlReport& report_;
   const AssetSearch& search_;
-  std::vector<std::string> known_{}, known_children_{};
+  std::vector<std::string> known_{}, known_children_{}, required_{};
   bool params_, takes_text_ = false;
 };
 
@@ -441,7 +476,6 @@ class XmlOutput {
   }
 
   void without_effect(std::initializer_list<const char*> /*names*/, const char* /*why*/ = "") {}
-  void idle_number(const char* /*name*/, const XmlUnit& /*unit*/, double /*low*/, double /*high*/, const char* /*why*/ = "") {}
   void require(std::initializer_list<const char*> /*names*/) {}
 
  private:

@@ -23,7 +23,8 @@ void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
       const auto text = io.given(name);
       const bool is_one = text && text->size() == 1 && std::string_view(",;\t ").find(text->front()) != std::string_view::npos;
       if (is_one) trajectory.separator = text->front();
-      if (text && !is_one) io.fault(name, XmlInput::said(name, *text) + ": expected a comma, a semicolon, a tab or a blank");
+      if (text && !is_one)
+        io.warn(name, XmlInput::said(name, *text) + " has no effect: expected a comma, a semicolon, a tab or a blank; it is found");
     }
     for (const char* name : names)
       if (io.has(name) && !trajectory.columns) trajectory.columns.emplace();

@@ -13,6 +13,7 @@
 #include <pugixml.hpp>
 
 #include <pulsecast/adapters/scene_files.hpp>
+#include <pulsecast/adapters/survey_optics.hpp>
 #include <pulsecast/adapters/survey_settings.hpp>
 #include <pulsecast/adapters/xml_element.hpp>
 #include <pulsecast/adapters/xml_library.hpp>
@@ -135,16 +136,16 @@ class LegChecks {
         io.warn("verticalAngleMin_deg", "verticalAngleMin_deg and verticalAngleMax_deg have no effect with these optics");
       return;
     }
-    const double widest = rotating->effective_angle_max.value_or(device.scan_angle_max);
-    const double half = std::min(widest, s.scan_angle.value_or(widest));
-    const double low = s.vertical_angle_min.value_or(-half), high = s.vertical_angle_max.value_or(half);
+    const auto [low, high, is_limited] = detail::mirror_gate(device, *rotating, s);
+    const auto in_degrees = [](double angle) { return brief(degrees(angle)); };
     if (s.scan_frequency > 0 && !(low < high))
       io.fault("verticalAngleMin_deg", "no pulse could leave between " + xml_number(units::degree.number(low)) + " and " +
                                            xml_number(units::degree.number(high)) +
                                            " deg: expected verticalAngleMin_deg below verticalAngleMax_deg");
-    if (high - low > 2 * widest * (1 + 1e-12))
-      io.fault("verticalAngleMin_deg", "verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's " +
-                                           xml_number(units::degree.number(2 * widest)) + " deg");
+    if (is_limited)
+      io.warn("verticalAngleMin_deg", "verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's " +
+                                          in_degrees(2 * rotating->effective_angle_max.value_or(device.scan_angle_max)) +
+                                          " deg: they are limited to " + in_degrees(low) + " and " + in_degrees(high) + " deg");
   }
 
   void check_head(const XmlInput& io, const ChannelSettings& device, const LegSettings& settings, std::size_t i) const {

@@ -116,10 +116,8 @@ class XmlLibrary {
   const XmlLibraryDocument* other(const XmlInput& io, const XmlLibraryDocument& from, const char* attribute, const std::string& text,
                                   const std::string& path) {
     const AssetMatch match = from.search().find(path);
-    if (!match.problem.empty()) {
-      io.fault(attribute, XmlInput::said(attribute, text) + " " + match.problem);
-      return nullptr;
-    }
+    io.take(attribute, text, match);
+    if (match.files.empty()) return nullptr;
     const auto known = documents_.find(match.files.front().string());
     if (known != documents_.end()) {
       if (!known->second) io.fault(attribute, XmlInput::said(attribute, text) + " cannot be read");

@@ -15,13 +15,19 @@
 /// `<dmotion>` and what it holds.
 namespace pulsecast::adapters::xml {
 
-/// A motion's axis or normal, which must have a length.
+/// Whether a motion's axis or normal has a direction.
+[[nodiscard]] inline bool has_direction(const Vec3& v) { return length(v) > 1e-9; }
+
+/// A motion's axis or normal.
 template <class Io>
 void axis(Io& io, const char* name, Of<Io, Vec3>& v) {
   io.require({name});
   io.vector(name, v, 1e9);
-  if constexpr (Io::reads)
-    if (!(length(v) > 1e-9)) io.fault(name, std::string(name) + " is too short to have a direction");
+}
+
+/// Reports an axis or normal without a direction.
+inline void check_axis(const XmlInput& io, const char* name, const Vec3& v) {
+  if (!has_direction(v)) io.fault(name, std::string(name) + " is too short to have a direction");
 }
 
 template <class Io>
@@ -60,8 +66,17 @@ void fields(Io& io, Of<Io, MotionSettings>& motion) {
       if constexpr (Io::reads) r->glide = 0;
       io.number("glide", *r->glide, units::one, -1e9, 1e9);
     }
+    if constexpr (Io::reads) {
+      if (!has_direction(r->axis) && r->angle == 0) {
+        io.warn("axis", "axis is too short to have a direction, and angle is 0: the motion does nothing");
+        motion.kind = NoMotion{};
+      } else {
+        check_axis(io, "axis", r->axis);
+      }
+    }
   } else if (auto* p = std::get_if<ReflectionMotion>(&motion.kind)) {
     axis(io, "ortho", p->normal);
+    if constexpr (Io::reads) check_axis(io, "ortho", p->normal);
     if (kind == Kind::glide_plane) {
       io.require({"shift"});
       if constexpr (Io::reads) p->shift = Vec3{};
@@ -72,6 +87,7 @@ void fields(Io& io, Of<Io, MotionSettings>& motion) {
     }
   } else if (auto* s = std::get_if<RotoreflectionMotion>(&motion.kind)) {
     axis(io, "axis", s->axis);
+    if constexpr (Io::reads) check_axis(io, "axis", s->axis);
     io.require({"angle"});
     io.number("angle", s->angle, units::degree, -36000, 36000);
     io.vector("center", s->center, farthest);

@@ -76,11 +76,9 @@ void fields(Io& io, Of<Io, PlatformSettings>& platform) {
     fields(io, platform.multicopter);
   else
     io.without_effect({"yaw_speed_deg", "pitch_offset_deg"}, "has no effect with this type of platform");
-  const char* const why = "has no effect: ways are planned by speed and acceleration";
-  for (const char* name : {"drag", "engine_max_force", "speedup_magnitude", "slowdown_magnitude", "slowdown_distance", "pitch_speed_deg",
-                           "roll_speed_deg", "roll_offset_deg"})
-    io.idle_number(name, units::one, 0, 1e6, why);
-  io.idle_number("base_pitch_deg", units::degree, -90, 90, why);
+  io.without_effect({"drag", "engine_max_force", "speedup_magnitude", "slowdown_magnitude", "slowdown_distance", "pitch_speed_deg",
+                     "roll_speed_deg", "roll_offset_deg", "base_pitch_deg"},
+                    "has no effect: ways are planned by speed and acceleration");
 }
 
 }  // namespace pulsecast::adapters::xml

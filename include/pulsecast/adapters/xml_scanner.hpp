@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -12,6 +15,7 @@
 #include <vector>
 
 #include <pulsecast/adapters/formula.hpp>
+#include <pulsecast/adapters/survey_optics.hpp>
 #include <pulsecast/adapters/survey_settings.hpp>
 #include <pulsecast/adapters/xml_element.hpp>
 #include <pulsecast/adapters/xml_fields.hpp>
@@ -84,10 +88,16 @@ void fields(Io& io, Of<Io, OpticSettings>& optic) {
   }
 }
 
-/// Reports a formula that is none.
-inline void check_formula(const XmlInput& io, const char* name, const std::string& text, const char* variable) {
+/// Reports a formula that is none, or is no number between two values of its variable.
+inline void check_formula(const XmlInput& io, const char* name, const std::string& text, const char* variable, double low, double high) {
+  constexpr int places = 256;
   try {
-    if (!text.empty()) (void)Formula(text, variable);
+    if (text.empty()) return;
+    const Formula formula(text, variable);
+    for (int i = 0; i < places; ++i)
+      if (std::isfinite(formula(low + (high - low) * (i + 0.518) / places))) return;
+    io.fault(name, XmlInput::said(name, text) + " is " + pulsecast::detail::written(formula(low)) + " for any " + variable +
+                       ": expected a formula with a finite value");
   } catch (const std::invalid_argument& error) {
     io.fault(name, error.what());
   }
@@ -99,11 +109,12 @@ void formula(Io& io, const char* name, Of<Io, std::string>& text, More more) {
   const auto all = [&](auto& inner) {
     inner.require({"expr"});
     inner.text("expr", text);
-    if constexpr (Io::reads) check_formula(inner, "expr", text, "THETA");
+    if constexpr (Io::reads) check_formula(inner, "expr", text, "THETA", -std::numbers::pi, std::numbers::pi);
     more(inner);
   };
   if constexpr (Io::reads) {
-    if (io.child(name, all) && text.empty()) io.report().fault(io.place(), "<" + std::string(name) + "> has an empty formula");
+    if (io.child(name, all) && text.empty())
+      io.report().warn(io.place(), "<" + std::string(name) + "> has an empty formula, and no effect");
   } else if (!text.empty()) {
     io.child(name, all);
   }
@@ -126,9 +137,19 @@ void detector_fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("rangeMax_m", channel.range_max, units::metre, 0, any);
 }
 
+/// Reads the factor of the noise, once `detector_fields` have been.
 inline void range_noise(XmlInput& io, ChannelSettings& channel) {
-  io.text("distanceMeasurementError", channel.errors.range_noise);
-  check_formula(io, "distanceMeasurementError", channel.errors.range_noise, "t");
+  static constexpr const char* name = "distanceMeasurementError";
+  io.text(name, channel.errors.range_noise);
+  if (channel.errors.range_noise.empty()) return;
+  const std::size_t faults = io.report().faults();
+  check_formula(io, name, channel.errors.range_noise, "t", channel.range_min, std::min(channel.range_max, 1e6));
+  if (io.report().faults() != faults || !(channel.range_min < channel.range_max)) return;
+  try {
+    (void)survey_receiver(channel);
+  } catch (const SettingError& error) {
+    io.fault(name, error.what());
+  }
 }
 
 /// All that may be said of a scanner or of each of its channels.
@@ -165,13 +186,15 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
 }
 
 /// What cannot be, though each figure alone could.
-inline void check(const XmlInput& io, const ChannelSettings& channel) {
+inline void check(const XmlInput& io, ChannelSettings& channel) {
   if (!(channel.range_min < channel.range_max)) io.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
   if (channel.scan_frequency_max > 0 && channel.scan_frequency_max < channel.scan_frequency_min)
     io.fault("scanFreqMax_Hz", "scanFreqMax_Hz is below scanFreqMin_Hz");
   const auto* const rotating = std::get_if<RotatingOptic>(&channel.optic);
-  if (!rotating && (!channel.errors.deflection.empty() || !channel.errors.head.empty()))
-    io.fault("optics", "<deflectionError> and <headError> are for rotating optics only");
+  if (!rotating && (!channel.errors.deflection.empty() || !channel.errors.head.empty())) {
+    io.warn("optics", "<deflectionError> and <headError> have no effect with these optics");
+    channel.errors.deflection.clear(), channel.errors.head.clear();
+  }
   if (rotating && rotating->effective_angle_max.value_or(1) == 0)
     io.fault("scanAngleEffectiveMax_deg", "scanAngleEffectiveMax_deg is 0: no pulse could leave");
   const auto* const risley = std::get_if<RisleyOptic>(&channel.optic);
@@ -183,11 +206,18 @@ inline void check(const XmlInput& io, const ChannelSettings& channel) {
 template <class Io>
 void pulse_rates(Io& io, Of<Io, std::vector<double>>& rates) {
   if constexpr (Io::reads) {
-    const auto text = io.given("pulseFreqs_Hz");
+    const auto text = io.value("pulseFreqs_Hz");
     if (!text) return;
     for (std::string_view rest = *text;;) {
       const std::size_t end = rest.find(',');
-      const auto rate = number_of(rest.substr(0, end));
+      const std::string_view one = rest.substr(0, end);
+      const auto rate = number_of(one);
+      if (one.find_first_not_of(" \t\r\n") == std::string_view::npos && (end != std::string_view::npos || !rates.empty())) {
+        io.warn("pulseFreqs_Hz", XmlInput::said("pulseFreqs_Hz", *text) + ": there is no number between two commas or at the end");
+        if (end == std::string_view::npos) return;
+        rest.remove_prefix(end + 1);
+        continue;
+      }
       if (!rate || !(*rate >= 1e-3 && *rate <= 1e8) || rates.size() == 1000) {
         io.fault("pulseFreqs_Hz",
                  XmlInput::said("pulseFreqs_Hz", *text) + ": expected numbers from 0.001 to 100000000 Hz, with commas between");
@@ -221,9 +251,9 @@ void fields(Io& io, Of<Io, ScannerSettings>& scanner) {
         fields(inner, channel);
         check(inner, channel);
       });
-      if (scanner.channels.empty()) list.report().fault(list.place(), "<channels> holds no <channel>");
+      if (scanner.channels.empty()) list.report().warn(list.place(), "<channels> holds no <channel>: the scanner has one");
     });
-    if (!has_channels) check(io, scanner.channels.emplace_back(std::move(common)));
+    if (!has_channels || scanner.channels.empty()) check(io, scanner.channels.emplace_back(std::move(common)));
   } else if (scanner.channels.size() == 1 && scanner.channels.front().id.empty()) {
     fields(io, scanner.channels.front());
   } else {

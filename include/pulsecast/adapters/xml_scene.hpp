@@ -133,8 +133,7 @@ void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
   io.children("dmotion", part.motions, [](auto& inner, auto& sequence) { fields(inner, sequence); });
   io.children("swap", part.swaps, [](auto& inner, auto& swap) { fields(inner, swap); });
   if constexpr (Io::reads) {
-    for (const char* name : {"kdtDynStep", "kdtDynTimeStep"})
-      io.idle_number(name, units::one, 0, 1e9, "has no effect: a part is met where it is");
+    io.without_effect({"kdtDynStep", "kdtDynTimeStep"}, "has no effect: a part is met where it is");
     pugi::xml_node node = io.node().child("dmotion");
     if (part.motions.size() > 1000) io.report().fault(io.place(), "<part> holds more than 1000 <dmotion>");
     if (io.report().is_full() || part.motions.size() > 1000) return;

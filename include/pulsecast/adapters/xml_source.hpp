@@ -30,8 +30,8 @@ void fields(Io& io, Of<Io, MaterialSource>& material) {
 template <class Io>
 void files(Io& io, Of<Io, std::vector<std::filesystem::path>>& paths) {
   if constexpr (Io::reads) {
-    const auto take = [&](const char* name, const std::string& text, AssetMatch match) {
-      if (!match.problem.empty()) io.fault(name, XmlInput::said(name, text) + " " + match.problem);
+    const auto take = [&](const char* name, const std::string& text, const AssetMatch& match) {
+      io.take(name, text, match);
       paths.insert(paths.end(), match.files.begin(), match.files.end());
     };
     const auto one = io.given("filepath"), by_pattern = io.given("efilepath"), list = io.given("filepaths");
@@ -76,21 +76,24 @@ void fields(Io& io, Of<Io, XyzSource>& source) {
   files(io, source.files);
   fields(io, source.material);
   io.text("separator", source.separator);
+  io.require({"voxelSize"});
   io.number("voxelSize", source.voxel_size, units::metre, 0, 1e6);
   io.vector("defaultNormal", source.default_normal, 1e6);
   io.whole("estimateNormals", source.estimate_normals, 0, 1'000'000);
   io.flag("snapNeighborNormal", source.snap_neighbor_normal);
   static constexpr std::array normals{"normalXIndex", "normalYIndex", "normalZIndex"};
   for (std::size_t i = 0; i < 3; ++i) io.whole(normals[i], source.normal_columns[i], 0, 999);
-  for (const char* name : {"rgbRIndex", "rgbGIndex", "rgbBIndex", "maxColorValue"})
-    io.idle_number(name, units::one, 0, 1e9, "has no effect: voxels have no colour");
+  io.without_effect({"rgbRIndex", "rgbGIndex", "rgbBIndex", "maxColorValue"}, "has no effect: voxels have no colour");
   if constexpr (Io::reads) {
-    bool sparse = true;
-    io.flag("sparse", sparse);
     io.without_effect({"sparse"});
-    if (source.voxel_size == 0) source.voxel_size = 1;
-    if (source.default_normal && *source.default_normal == Vec3{}) io.fault("defaultNormal", "defaultNormal is zero: it has no direction");
-    io.require({"voxelSize"});
+    if (source.voxel_size == 0) {
+      source.voxel_size = 1;
+      io.warn("voxelSize", "voxelSize of 0 stands for 1 m");
+    }
+    if (source.default_normal == Vec3{}) {
+      source.default_normal.reset();
+      io.warn("defaultNormal", "defaultNormal is zero: it has no direction, and no effect");
+    }
   }
 }
 
