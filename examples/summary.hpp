@@ -16,7 +16,7 @@ class ProgressLine {
  public:
   void operator()(const pulsecast::Progress& progress) {
     const bool last = progress.done == progress.total;
-    if (progress.seconds < next_ && !(last && shown_)) return;
+    if (progress.done == 0 || (progress.seconds < next_ && !(last && shown_))) return;
     next_ = progress.seconds + interval_, shown_ = true;
     const double done = static_cast<double>(progress.done), total = static_cast<double>(progress.total), rate = done / progress.seconds;
     std::cerr << (terminal_ ? "\r" : "") << std::fixed << std::setprecision(0) << std::setw(4) << 100 * done / total << " %  "
@@ -47,6 +47,6 @@ inline void print(const pulsecast::RunSummary& run) {
   if (run.count(absorbed) > 0) line("absorbed", run.count(absorbed), "pulses");
   if (run.count(below_threshold) > 0) line("too weak", run.count(below_threshold), "pulses");
   line("time", run.seconds, "s");
-  line("speed", static_cast<double>(run.rays) / run.seconds / 1e6, "million rays/s");
+  if (run.pulses() > 0) line("speed", static_cast<double>(run.rays) / run.seconds / 1e6, "million rays/s");
   line("peak memory", static_cast<double>(usage.ru_maxrss) / 1024, "MiB");  // Linux counts in KiB. Source: getrusage(2)
 }
