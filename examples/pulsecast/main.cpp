@@ -27,6 +27,7 @@
 #include <pulsecast/version.hpp>
 
 #include "../summary.hpp"
+#include "notes.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "pages.hpp"
@@ -99,6 +100,8 @@ Simulation::Settings settings_of(const Options& o, const SurveyFile& file, std::
           .assets = o.assets,
           .scene_text = file.scene_text,
           .leg_places = file.leg_places,
+          .place = file.place,
+          .las_waveforms = o.format == "las" && o.write_waveform && !o.las_1_0,
           .store = o.store,
           .threads = o.threads};
 }
@@ -106,9 +109,15 @@ Simulation::Settings settings_of(const Options& o, const SurveyFile& file, std::
 /// The command `run`.
 class Session {
  public:
-  Session(const Options& options, const SurveyFile& file, std::uint64_t seed, Ranks& ranks)
-      : options_(options), file_(file), survey_(file.survey), ranks_(ranks), pages_(options, file.survey), log_{.seed = seed} {
-    if (options_.page && options_.resume) note("--page shows the legs that are simulated now, not those that are kept");
+  Session(const Options& options, const SurveyFile& file, std::uint64_t seed, Ranks& ranks, Notes& notes)
+      : options_(options),
+        file_(file),
+        survey_(file.survey),
+        ranks_(ranks),
+        pages_(options, file.survey),
+        log_{.seed = seed},
+        notes_(notes) {
+    if (options_.page && options_.resume) notes_.say("--page shows the legs that are simulated now, not those that are kept");
   }
 
   int run() {
@@ -120,10 +129,10 @@ class Session {
       if (!unfinished.empty()) again = unfinished;
       const fs::path newest = ranks_.from_first(found.newest.value_or(fs::path()).string());
       if (!again && !newest.empty()) {
-        note("there is nothing to resume: the newest run, " + newest.string() + ", is complete");
+        notes_.say("there is nothing to resume: the newest run, " + newest.string() + ", is complete");
         return success;
       }
-      if (!again) note("there is nothing to resume in " + parent.string() + ": this is a new run");
+      if (!again) notes_.say("there is nothing to resume in " + parent.string() + ": this is a new run");
     }
     const double start_time = gps_week_seconds(std::stoll(ranks_.from_first(std::to_string(unix_time_of(options_.gps_start_time)))));
     const auto inputs = std::make_shared<SurveyInputs>(survey_, options_.assets);
@@ -178,6 +187,7 @@ class Session {
       fate("with echoes", Fate::returned), fate("blocked", Fate::blocked);
       for (const std::string& written : folders_) std::cout << "  " << written << '\n';
     }
+    notes_.expect_none();
     return all.complete ? success : interrupted;
   }
 
@@ -192,14 +202,10 @@ class Session {
     return ranks_.from_first(folder.string());
   }
 
-  /// Once.
-  void note(const std::string& text) {
-    if (!options_.quiet && told_.insert(text).second) std::cerr << "note: " << text << '\n';
-  }
-
   void tell_notes(const Simulation& simulation) {
-    for (const std::string& warning : simulation.warnings()) note(warning);
-    for (const std::string& text : simulation.notes()) note(text);
+    notes_.odd(simulation.warnings());
+    notes_.say(simulation.notes());
+    notes_.expect_none();
   }
 
   /// Why there may be no point at all: mostly, scene and legs have coordinates of different origin.
@@ -207,13 +213,13 @@ class Session {
     const Simulation::Scene scene = simulation.scene();
     const SurveyPlan& plan = simulation.plan();
     const auto leg = std::find_if(plan.legs.begin(), plan.legs.end(), [](const SurveyPlan::LegPlan& l) { return l.end > l.first; });
-    if (scene.empty || leg == plan.legs.end()) return note("there is no point, as there is nothing to scan");
+    if (scene.empty || leg == plan.legs.end()) return notes_.odd("there is no point, as there is nothing to scan");
     std::ostringstream text;
     const auto put = [&](const char* words, const Vec3& v) { text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')'; };
     text << std::fixed << std::setprecision(1) << "there is no point: leg " << leg->number;
     put(" begins at ", plan.source.legs()[leg->number].path().at({}).position);
     put(" m, and the scene is from ", scene.least), put(" to ", scene.most);
-    note(text.str() + " m");
+    notes_.odd(text.str() + " m");
   }
 
   /// All that decides about the results beside the seed and the time, in one line.
@@ -339,15 +345,15 @@ class Session {
   RunLog log_;
   std::optional<RunLock> lock_;  // of the folder that is written to, on the first process
   std::vector<std::string> folders_;
-  std::set<std::string> told_;
+  Notes& notes_;
 };
 
-void tell(const Options& options, const SurveyFile& file, std::uint64_t seed) {
+void tell(const Options& options, const SurveyFile& file, std::uint64_t seed, Notes& notes) {
   const SurveySettings& survey = file.survey;
   const Simulation simulation(survey, settings_of(options, file, seed));
-  for (const auto& texts : {simulation.warnings(), simulation.notes()})
-    for (const std::string& text : texts)
-      if (!options.quiet) std::cerr << "note: " << text << '\n';
+  notes.odd(simulation.warnings());
+  notes.say(simulation.notes());
+  notes.expect_none();
   const SurveyPlan& plan = simulation.plan();
   const Simulation::Scene scene = simulation.scene();
   std::cout << std::fixed << std::setprecision(3) << "survey   " << survey.name << "\nscanner  " << survey.scanner.id << ", "
@@ -369,8 +375,10 @@ void tell(const Options& options, const SurveyFile& file, std::uint64_t seed) {
             << std::setw(14) << plan.source.size() << '\n';
 }
 
-void preview(const Options& options, const SurveyFile& file, std::uint64_t seed) {
+void preview(const Options& options, const SurveyFile& file, std::uint64_t seed, Notes& notes) {
   const Simulation simulation(file.survey, settings_of(options, file, seed));
+  notes.odd(simulation.warnings());
+  notes.expect_none();
   std::error_code error;
   fs::create_directories(options.output, error);
   if (error) throw FileError(options.output.string(), "", "the output folder cannot be made (" + error.message() + ")");
@@ -389,37 +397,36 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed)
 
 int work(const Options& options, Ranks& ranks) {
   if (options.command != "run" && !ranks.first()) return success;  // which are for one
-  for (const std::string& text : options.notes)
-    if (!options.quiet) std::cerr << "note: " << text << '\n';
+  Notes notes(options);
+  notes.say(options.notes);
   if (options.command == "catalogue") return print_catalogue(options), success;
-  const SurveyFile file = read_survey_file(options);
-  for (const std::string& warning : file.warnings)
-    if (!options.quiet) std::cerr << "note: " << warning << '\n';
+  const SurveyFile file = read_survey_file(options, notes);
+  if (options.command != "check") notes.expect_none();  // which tells all
   std::optional<std::uint64_t> seed = options.seed ? options.seed : file.survey.seed;
   if (!seed && options.command == "run")
     seed = std::stoull(ranks.from_first(std::to_string(std::random_device{}())));
   else if (!seed)
     seed = std::random_device{}();
   if (options.command == "check") {
-    check_without_scene(file.survey, file.leg_places);
+    notes.odd(check_without_scene(file.survey, file.leg_places));
+    notes.expect_none();
     if (!options.quiet) std::cout << options.survey.string() << ": nothing is wrong\n";
   } else if (options.command == "info") {
-    tell(options, file, *seed);
+    tell(options, file, *seed, notes);
   } else if (options.command == "preview") {
-    preview(options, file, *seed);
+    preview(options, file, *seed, notes);
   } else if (options.command == "plan") {
-    check_without_scene(file.survey, file.leg_places);
-    return plan(options, file, settings_of(options, file, *seed)) ? success : bad_input;
+    (void)check_without_scene(file.survey, file.leg_places);
+    return plan(options, file, settings_of(options, file, *seed), notes) ? success : bad_input;
   } else {
-    check_without_scene(file.survey, file.leg_places);  // before anything expensive
+    (void)check_without_scene(file.survey, file.leg_places);  // before anything expensive
     Options settled = options;
     if (!options.epsg && options.format.starts_with("la")) settled.epsg = reference_system_of(file.survey.scene);
     if (ranks.count() > 1 && (options.page || options.live)) {
       settled.page = settled.live = false;
-      if (!options.quiet && ranks.first())
-        std::cerr << "note: --page and --live have no effect under mpirun: one process sees all points\n";
+      if (ranks.first()) notes.say("--page and --live have no effect under mpirun: one process sees all points");
     }
-    return Session(settled, file, *seed, ranks).run();
+    return Session(settled, file, *seed, ranks, notes).run();
   }
   return success;
 }

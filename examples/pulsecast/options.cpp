@@ -158,6 +158,7 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   app.add_flag(both("rebuildScene"), rebuild_scene, "Build the scene anew, even if it was kept from an earlier run");
   app.add_flag(both("noSceneWriting"), no_scene_writing, "Do not keep the scene for later runs");
   app.add_flag("--resume", o.resume, "Go on with the newest run of this survey that was not finished");
+  app.add_flag("--strict", o.strict, "Take notes about the survey and its files as errors");
   app.add_flag("-q,--quiet,--silent", o.quiet, "Say nothing but errors");
   app.add_flag("-v,--verbose", o.verbose, "Say more");
 

@@ -43,6 +43,7 @@ struct Options {
   bool page = false, live = false;  ///< a page of the points: to be left, and to be watched
   std::size_t page_points = 1'000'000;
   bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false, verbose = false;
+  bool strict = false;  ///< notes about the survey and its files are errors
   SceneStore store{};
   PlanOptions plan{};
   std::vector<std::string> notes{};  ///< what was accepted but has no effect

@@ -176,12 +176,12 @@ class Planner {
 
 }  // namespace
 
-bool plan(const Options& options, const SurveyFile& file, const Simulation::Settings& settings) {
+bool plan(const Options& options, const SurveyFile& file, const Simulation::Settings& settings, Notes& notes) {
   const auto start = std::chrono::steady_clock::now();
   Simulation simulation(file.survey, settings);
   const double loading = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  for (const std::string& text : simulation.warnings())
-    if (!options.quiet) std::cerr << "note: " << text << '\n';
+  notes.odd(simulation.warnings());
+  notes.expect_none();
   if (simulation.plan().source.size() == 0) {
     std::cerr << "error: no leg is active: there is nothing to plan\n";
     return false;

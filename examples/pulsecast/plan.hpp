@@ -7,4 +7,4 @@
 #include "survey_files.hpp"
 
 /// The command `plan`: says what a run would come to, and the cheapest settings that meet what is asked. False if none does.
-bool plan(const Options& options, const SurveyFile& file, const Simulation::Settings& settings);
+bool plan(const Options& options, const SurveyFile& file, const Simulation::Settings& settings, Notes& notes);

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <memory>
 #include <optional>
@@ -14,8 +15,10 @@
 #include <utility>
 #include <variant>
 
+#include <pulsecast/adapters/las_packets.hpp>
 #include <pulsecast/adapters/scene_builder.hpp>
 #include <pulsecast/adapters/survey_receivers.hpp>
+#include <pulsecast/adapters/xml_element.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
@@ -32,8 +35,13 @@ namespace {
 adapters::SpectralLibrary spectra_of(const SurveySettings& survey, const std::vector<std::filesystem::path>& folders) {
   adapters::SpectralLibrary all;
   for (const std::filesystem::path& folder : folders) {
-    adapters::SpectralLibrary here = adapters::read_spectral_library(folder);
-    all.spectra.merge(here.spectra);
+    try {
+      adapters::SpectralLibrary here = adapters::read_spectral_library(folder);
+      all.spectra.merge(here.spectra);
+      all.warnings.insert(all.warnings.end(), here.warnings.begin(), here.warnings.end());
+    } catch (const FileError& unreadable) {  // nobody may need it
+      all.warnings.emplace_back(unreadable.what());
+    }
   }
   for (const auto& channel : survey.scanner.channels) all.wavelengths.push_back(channel.wavelength);
   return all;
@@ -153,14 +161,43 @@ struct Simulation::Inside {
   }
 
   /// Batches hold waveforms of one kind of bins, so all channels are sampled as the finest of them is.
-  [[nodiscard]] static adapters::ScannerSettings sampled_alike(adapters::ScannerSettings scanner, std::vector<std::string>& told) {
+  [[nodiscard]] adapters::ScannerSettings sampled_alike(adapters::ScannerSettings scanner, std::vector<std::string>& told) const {
     double finest = scanner.channels.front().waveform.bin_size, coarsest = finest;
     for (const auto& c : scanner.channels)
       finest = std::min(finest, c.waveform.bin_size), coarsest = std::max(coarsest, c.waveform.bin_size);
-    for (auto& c : scanner.channels) c.waveform.bin_size = finest;
     if (coarsest > finest)
       told.push_back("scanner '" + scanner.id + "': its channels have bins of different size; all are sampled by the smallest");
+    if (settings.las_waveforms) finest = las_bins(finest, told);
+    for (auto& c : scanner.channels) c.waveform.bin_size = finest;
     return scanner;
+  }
+
+  [[nodiscard]] std::string survey_name() const { return settings.place.empty() ? "survey '" + survey.name + "'" : settings.place; }
+
+  /// LAS counts the time from sample to sample in picoseconds. Source: LAS 1.4 R15, Waveform Packet Descriptor.
+  [[nodiscard]] double las_bins(double bin, std::vector<std::string>& told) const {
+    constexpr double rounding = 1e-6;  // [ps]
+    const double picoseconds = bin * 1e12, nearest = std::nearbyint(picoseconds);
+    if (std::fabs(picoseconds - nearest) <= rounding) return bin;
+    const double whole = std::max(1.0, std::floor(picoseconds));
+    told.push_back(survey_name() + ": binSize_ns is " + adapters::xml_number(adapters::units::nanosecond.number(bin)) +
+                   ", and samples in LAS are whole picoseconds apart: it is taken as " + adapters::xml_number(whole / 1e3));
+    return whole / 1e12;
+  }
+
+  /// Cuts waveforms that are too long for where they go.
+  void limit_record(WaveformSettings& s) {
+    const double most = settings.las_waveforms ? adapters::detail::LasPackets::most_samples : WaveformSettings::most_kept;
+    const double longest = (most - 0.5) * s.sample_interval;  // half a sample for rounding
+    if (s.record_length <= longest) return;
+    s.record_length = longest;
+    tell(survey_name() + ": waveforms are cut after " + adapters::xml_number(std::round(longest * 1e12) / 1e3) + " ns, " +
+         adapters::xml_number(most) + " samples, which is all that " + (settings.las_waveforms ? "LAS" : "is kept") +
+         (settings.las_waveforms ? " takes" : "") + "; longer bins reach farther");
+  }
+
+  void tell(std::string text) {
+    if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(std::move(text));
   }
 
   [[nodiscard]] adapters::ScannerSettings scanner_of(const Receiving& how) const {
@@ -176,8 +213,7 @@ struct Simulation::Inside {
   void receive(const Receiving& how) {
     std::vector<std::string> told;
     const adapters::ScannerSettings scanner = sampled_alike(scanner_of(how), told);
-    for (std::string& text : told)
-      if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(std::move(text));
+    for (std::string& text : told) tell(std::move(text));
     settings.echo_width && !how.ideal ? make<GaussianFit>(scanner, how.ideal) : make<NoWidth>(scanner, how.ideal);
   }
 
@@ -187,10 +223,12 @@ struct Simulation::Inside {
     const bool waveforms = settings.waveforms && !ideal, noisy = settings.waveform_noise && !ideal;
     const auto receiver = [&](const adapters::ChannelSettings& channel) -> adapters::ChannelReceiver<FullWaveform<Width>> {
       const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
+      WaveformSettings waveform = adapters::survey_waveform(channel, waveforms ? longest : 0);
+      limit_record(waveform);
       ReceiverNoise noise;
       if (noisy) noise.deviation = 0.25 * channel.received_power_min;
       return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings))), adapters::survey_receiver(channel),
-              FullWaveform<Width>(adapters::survey_waveform(channel, waveforms ? longest : 0), {}, noise)};
+              FullWaveform<Width>(waveform, {}, noise)};
     };
     using Pipeline = adapters::SurveyByChannel<SurveyScene, FullWaveform<Width>>;
     pipeline = std::make_unique<SurveyOf<Pipeline>>(adapters::survey_by_channel(scanner, plan->source, *scene, seed, receiver));
@@ -289,12 +327,13 @@ std::vector<SlotCount> Simulation::count(std::span<const PulseIndex> slots, unsi
   return all;
 }
 
-void check_without_scene(const SurveySettings& survey, const std::vector<std::string>& leg_places) {
+std::vector<std::string> check_without_scene(const SurveySettings& survey, const std::vector<std::string>& leg_places) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
-  (void)adapters::plan_survey(survey, ground, {.leg_places = leg_places});
+  std::vector<std::string> warnings = adapters::plan_survey(survey, ground, {.leg_places = leg_places}).warnings;
   for (const auto& channel : survey.scanner.channels) {
     adapters::survey_receiver(channel).validate();
     adapters::survey_waveform(channel).validate();
     (void)RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)));
   }
+  return warnings;
 }

@@ -63,6 +63,8 @@ class Simulation {
     std::vector<std::filesystem::path> assets{};
     std::string scene_text{};               ///< says all settings of the scene
     std::vector<std::string> leg_places{};  ///< where legs stand in their document, for messages
+    std::string place{};                    ///< where the survey does
+    bool las_waveforms = false;             ///< waveforms are to be written as LAS
     SceneStore store{};
     std::shared_ptr<SurveyInputs> inputs{};  ///< found unless given
     SceneSharing* sharing = nullptr;         ///< if the scene is to be that of other processes, too
@@ -104,5 +106,6 @@ class Simulation {
   std::unique_ptr<Inside> inside_;
 };
 
-/// Checks all that can be checked without the scene: legs and scanner. Throws what is wrong.
-void check_without_scene(const pulsecast::adapters::SurveySettings& survey, const std::vector<std::string>& leg_places = {});
+/// Checks all that can be checked without the scene: legs and scanner. Throws what is wrong; what is odd is returned.
+std::vector<std::string> check_without_scene(const pulsecast::adapters::SurveySettings& survey,
+                                             const std::vector<std::string>& leg_places = {});

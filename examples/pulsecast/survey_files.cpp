@@ -21,12 +21,16 @@
 namespace fs = std::filesystem;
 using namespace pulsecast;
 
-SurveyFile read_survey_file(const Options& options) {
+SurveyFile read_survey_file(const Options& options, Notes& notes) try {
   adapters::SurveyDocument document =
       adapters::read_survey(options.survey, {.assets = options.assets, .channel_files = options.split_by_channel});
+  notes.odd(document.warnings);
   std::string text = adapters::xml_text(document.survey),
               scene_text = adapters::xml_text(adapters::AssetDocument{.scenes = {document.survey.scene}});
-  return {std::move(document.survey), std::move(document.warnings), std::move(text), std::move(scene_text), std::move(document.leg_places)};
+  return {std::move(document.survey), std::move(text), std::move(scene_text), std::move(document.leg_places), std::move(document.place)};
+} catch (const adapters::XmlFaults& faults) {
+  notes.odd(faults.warnings());
+  throw;
 }
 
 std::uint16_t reference_system_of(const adapters::SceneSettings& scene) {

@@ -10,16 +10,18 @@
 
 #include <pulsecast/adapters/survey_settings.hpp>
 
+#include "notes.hpp"
 #include "options.hpp"
 
 /// What reads documents, apart from the rest so that it is compiled once.
 struct SurveyFile {
   pulsecast::adapters::SurveySettings survey;
-  std::vector<std::string> warnings;
   std::string text{}, scene_text{};       ///< of all settings, and of those of the scene: the same text, the same settings
   std::vector<std::string> leg_places{};  ///< where each leg stands in it, for messages
+  std::string place{};                    ///< where the survey itself does
 };
-SurveyFile read_survey_file(const Options& options);
+/// Reads the survey of the command line, and tells what is odd about it, also if something is wrong.
+SurveyFile read_survey_file(const Options& options, Notes& notes);
 
 /// The code of the reference system that all rasters of the scene have; 0 if there is none, or another one. Rasters that a part moves do
 /// not count.

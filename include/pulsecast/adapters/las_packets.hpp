@@ -90,6 +90,7 @@ class LasPackets {
     file_.commit();
   }
 
+  static constexpr double most_samples = 32768;  ///< of a waveform
   static constexpr unsigned size_classes = 23, gain_classes = 11, descriptor_count = size_classes * gain_classes;
 
  private:

@@ -43,10 +43,11 @@ struct WaveformSettings {
     expect_not_negative("WaveformSettings::window", window, "s");
     expect_not_negative("WaveformSettings::dead_time", dead_time, "s");
     expect_within("WaveformSettings::max_returns", static_cast<double>(max_returns), 1, 255, "");
-    expect_within("WaveformSettings::record_length", record_length, 0, 1e7 * sample_interval, "s");
+    expect_within("WaveformSettings::record_length", record_length, 0, most_kept * sample_interval, "s");
     expect_within("WaveformSettings::shape_divisor", shape_divisor, 1, 10, "");
   }
 
+  static constexpr double most_kept = 1e7;     ///< samples of a record
   static constexpr double most_samples = 1e4;  ///< in the length of a pulse, that `FullWaveform` takes
 
   /// Refuses bins that are longer than a pulse [s], which would fall between two samples, or so short that it has more than so many.

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <iostream>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "options.hpp"
+
+/// Notes for whoever runs the program, each told once.
+class Notes {
+ public:
+  explicit Notes(const Options& options) : quiet_(options.quiet), strict_(options.strict) {}
+
+  /// Tells what is odd about the survey or its files: an error with `--strict`.
+  void odd(const std::string& text) {
+    if (!strict_) return say(text);
+    if (told_.insert(text).second) std::cerr << "error: " << text << '\n', ++errors_;
+  }
+  void odd(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) odd(text);
+  }
+
+  /// Tells what is odd about something else, or is just good to know.
+  void say(const std::string& text) {
+    if (!quiet_ && told_.insert(text).second) std::cerr << "note: " << text << '\n';
+  }
+  void say(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) say(text);
+  }
+
+  /// Throws if what was told is an error.
+  void expect_none() const {
+    if (errors_ > 0) throw std::invalid_argument("--strict takes notes as errors: there are " + std::to_string(errors_));
+  }
+
+ private:
+  bool quiet_, strict_;
+  std::size_t errors_ = 0;
+  std::set<std::string> told_;
+};
