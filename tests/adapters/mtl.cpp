@@ -51,7 +51,7 @@ TEST_CASE("what is neither true nor false is no ground, with a warning") {
   const MaterialLibrary library = mtl("newmtl a\nhelios_isGround yes\nnewmtl b\nhelios_isGround 0\nnewmtl c\nhelios_isGround False\n");
   for (const char* name : {"a", "b", "c"}) CHECK_FALSE(library.materials.at(name).ground);
   REQUIRE(library.warnings.size() == 1);
-  CHECK(contains(library.warnings[0], "'a' has helios_isGround 'yes', which is neither true nor false"));
+  CHECK(contains(library.warnings[0], ", line 2: material 'a' has helios_isGround 'yes', which is neither true nor false"));
 }
 
 TEST_CASE("the colours decide the angular law, material by material") {
@@ -87,7 +87,7 @@ TEST_CASE("a reflectance above 1 is percent, with a warning; the limits are them
   REQUIRE(library.warnings.size() == 2);
   CHECK(contains(library.warnings[0], "'a'"));
   CHECK(contains(library.warnings[0], "percent"));
-  CHECK(contains(library.warnings[1], "'c'"));
+  CHECK(contains(library.warnings[1], ", line 6: material 'c'"));
 }
 
 TEST_CASE("a spectrum comes from the library, unless a reflectance is given; one that is not there is warned of") {
@@ -105,7 +105,7 @@ TEST_CASE("a spectrum comes from the library, unless a reflectance is given; one
   CHECK(library.materials.at("c").spectrum == nullptr);
   CHECK(library.materials.at("c").reflectance == 0.5);
   REQUIRE(library.warnings.size() == 1);
-  CHECK(contains(library.warnings[0], "'c' names the spectrum 'elm', which no library holds"));
+  CHECK(contains(library.warnings[0], ", line 8: material 'c' names the spectrum 'elm', which no library holds"));
   CHECK(mtl(text).warnings.size() == 2);
 
   spectra.wavelengths = {0.532e-6, 1.55e-6, 0.4e-6};

@@ -247,6 +247,8 @@ class MtlReader : private StatementBuffer {
     // tinyobjloader drops what stands before the first name, and its own exponent is 1.
     static const std::string exponent = "\nNs " + pulsecast::detail::written(Material{}.specular_exponent) + "\n";
     const bool is_first = !std::exchange(begun_, true);
+    if (keyword() == "newmtl") current_ = rest();
+    lines_.try_emplace({current_, std::string(keyword())}, line());
     if (keyword() == "newmtl") {
       expect(!rest().empty(), "the name of a material");
       ready = statement() + exponent;
@@ -272,7 +274,11 @@ class MtlReader : private StatementBuffer {
   }
 
   [[nodiscard]] Material material(const tinyobj::material_t& m, std::vector<std::string>& warnings) const {
-    const auto warn = [&](const std::string& text) { warnings.push_back(path() + ": material '" + m.name + "' " + text); };
+    const auto warn = [&](const char* key, const std::string& text) {
+      const auto known = lines_.find({m.name, key});
+      const std::string place = known == lines_.end() ? "" : ", line " + std::to_string(known->second);
+      warnings.push_back(path() + place + ": material '" + m.name + "' " + text);
+    };
     const auto extra = [&](const char* key) {
       const auto found = m.unknown_parameter.find(key);
       return found == m.unknown_parameter.end() ? std::string() : found->second;
@@ -289,7 +295,7 @@ class MtlReader : private StatementBuffer {
     if (!reflectance.empty()) {
       made.reflectance = *number_in<double>(reflectance);
       if (made.reflectance > 1) {
-        warn("has the reflectance " + reflectance + ", which is taken as percent");
+        warn("helios_reflectance", "has the reflectance " + reflectance + ", which is taken as percent");
         made.reflectance /= 100;
       }
     } else if (const auto found = spectra_.spectra.find(spectrum); found != spectra_.spectra.end()) {
@@ -297,17 +303,17 @@ class MtlReader : private StatementBuffer {
       const double shortest = made.spectrum->shortest(), longest = made.spectrum->longest();
       for (const double wavelength : spectra_.wavelengths)
         if (!(wavelength >= shortest && wavelength <= longest))
-          warn("has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " + nanometres(longest) +
-               " nm: for the laser of " + nanometres(wavelength) + " nm the nearer end is taken");
+          warn("helios_spectra", "has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " + nanometres(longest) +
+                                     " nm: for the laser of " + nanometres(wavelength) + " nm the nearer end is taken");
     } else if (!spectrum.empty()) {
-      warn("names the spectrum '" + spectrum + "', which no library holds: its reflectance is taken to be 0.5");
+      warn("helios_spectra", "names the spectrum '" + spectrum + "', which no library holds: its reflectance is taken to be 0.5");
     }
     made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
     std::string ground = extra("helios_isGround");
     std::transform(ground.begin(), ground.end(), ground.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
     made.ground = ground == "true" || ground == "1";
     if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
-      warn("has helios_isGround '" + ground + "', which is neither true nor false: it is taken to be no ground");
+      warn("helios_isGround", "has helios_isGround '" + ground + "', which is neither true nor false: it is taken to be no ground");
     return made;
   }
 
@@ -315,6 +321,8 @@ class MtlReader : private StatementBuffer {
 
   const SpectralLibrary& spectra_;
   bool begun_ = false;
+  std::string current_ = "default";                                   // material
+  std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // of each material and keyword
 };
 
 }  // namespace detail
