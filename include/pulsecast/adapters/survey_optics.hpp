@@ -223,8 +223,9 @@ inline void expect_finite(const char* field, const Formula& error, const std::pa
   for (int i = 0; i < places; ++i) {
     const double angle = angles.first + (angles.second - angles.first) * (i + 0.518) / places;
     const double value = error(angle);
-    if (!std::isfinite(value))
-      throw SettingError(field, value, "", "a formula with a finite value, also for a THETA of " + pulsecast::detail::written(angle));
+    if (!std::isfinite(value))  // without the sign that some give what is no number
+      throw SettingError(field, std::isnan(value) ? std::fabs(value) : value, "",
+                         "a formula with a finite value, also for a THETA of " + pulsecast::detail::written(angle));
   }
 }
 

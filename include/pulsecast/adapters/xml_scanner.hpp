@@ -96,8 +96,7 @@ inline void check_formula(const XmlInput& io, const char* name, const std::strin
     const Formula formula(text, variable);
     for (int i = 0; i < places; ++i)
       if (std::isfinite(formula(low + (high - low) * (i + 0.518) / places))) return;
-    io.fault(name, XmlInput::said(name, text) + " is " + pulsecast::detail::written(formula(low)) + " for any " + variable +
-                       ": expected a formula with a finite value");
+    io.fault(name, XmlInput::said(name, text) + " is no finite number for any " + variable + ": expected a formula with a finite value");
   } catch (const std::invalid_argument& error) {
     io.fault(name, error.what());
   }
