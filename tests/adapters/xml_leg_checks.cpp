@@ -57,7 +57,7 @@ TEST_CASE("vertical angles that are further apart than the scanner's are limited
   const auto warnings = [](const char* angles) { return support::read_text(survey_text("", leg(angles))).warnings; };
   const std::vector<std::string> wide = warnings(R"(verticalAngleMin_deg="-60" verticalAngleMax_deg="60")");
   REQUIRE(wide.size() == 1);
-  CHECK(contains(wide[0], "survey.xml:4:106: verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's 100 deg"));
+  CHECK(contains(wide[0], "survey.xml:4:109: verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's 100 deg"));
   CHECK(contains(wide[0], "they are limited to -50 and 50 deg"));
   CHECK(warnings(R"(verticalAngleMin_deg="-40" verticalAngleMax_deg="60")").empty());
 }

@@ -40,7 +40,7 @@ TEST_CASE("a cloud that says little has the defaults of the format") {
   const std::string odd =
       R"(<param key="filepath" value="mesh.obj"/><param key="voxelSize" value="0"/><param key="defaultNormal" value="0;0;0"/>)";
   CHECK(filter_told(odd, other).starts_with("\nwarning "));
-  CHECK(contains(filter_told(odd, other), "a.xml:1:81: voxelSize of 0 stands for 1 m"));
+  CHECK(contains(filter_told(odd, other), "a.xml:1:84: voxelSize of 0 stands for 1 m"));
   CHECK(contains(filter_told(odd, other), "defaultNormal is zero: it has no direction, and no effect"));
   CHECK(other.voxel_size == 1);
   CHECK_FALSE(other.default_normal);
