@@ -214,8 +214,8 @@ TEST_CASE("the amplitude of an extended plate met squarely is that of the radar 
       CHECK(o.echoes[0].reflectance == support::relative(0.4, 1e-4));
       return o.echoes[0].amplitude;
     };
-    // P D^2 / (4 R^2) rho eta. Source: Winiwarter et al. 2021
-    const double expected = 4 * 0.15 * 0.15 / (4 * range * range) * 0.4 * 0.99;
+    // P D^2 / (4 R^2 + D^2) rho eta. Source: Winiwarter et al. 2022, and the solid angle of a disc on the axis
+    const double expected = 4 * 0.15 * 0.15 / (4 * range * range + 0.15 * 0.15) * 0.4 * 0.99;
     CHECK(amplitude(SingleRay{}, FirstHit{}) == support::relative(expected, 1e-13));
     CHECK(amplitude(SingleRay{}, FullWaveform{}) == support::relative(expected, 1e-4));
     // all subrays together bring back what a single one does

@@ -32,16 +32,17 @@ TEST_CASE("air that one sees through without end does not weaken") {
 TEST_CASE("received power is that of the laser radar equation, by hand") {
   const Laser laser{.wavelength = 1.064e-6, .peak_power = 4};
   const Receiver receiver{.diameter = 0.15, .efficiency = 0.99, .visibility = 23e3};
-  CHECK(LinkBudget(receiver, laser).power(1, 0.5, 100) == support::relative(1.097806385176805e-06, 1e-13));
-  // without air: 4 W * 0.15^2 / (4 * 100^2) * 0.5 * 0.99
+  // 4 W * 0.15^2 / (4 * 100^2 + 0.15^2) * 0.5 * 0.99 * exp(-2 * 100 * 7.20935317364042e-05)
+  CHECK(LinkBudget(receiver, laser).power(1, 0.5, 100) == support::relative(1.0978057676610609e-06, 1e-13));
   const Receiver vacuum{.diameter = 0.15, .efficiency = 0.99, .visibility = infinity};
-  CHECK(LinkBudget(vacuum, laser).power(1, 0.5, 100) == support::relative(1.11375e-6, 1e-13));
+  CHECK(LinkBudget(vacuum, laser).power(1, 0.5, 100) == support::relative(1.1137493735159774e-06, 1e-13));
 }
 
 TEST_CASE("received power falls with the square of the range, and with what the air takes both ways") {
+  const Receiver narrow{.diameter = 1e-4, .visibility = infinity};  // far from its aperture at all of these ranges
+  CHECK(LinkBudget(narrow, Laser{}).power(1, 1, 10) / LinkBudget(narrow, Laser{}).power(1, 1, 30) == support::relative(9, 1e-10));
   const LinkBudget vacuum(Receiver{.visibility = infinity}, Laser{}), air(Receiver{.visibility = 5e3}, Laser{});
   for (const double range : {1.0, 10.0, 1000.0}) {
-    CHECK(vacuum.power(1, 1, range) / vacuum.power(1, 1, 3 * range) == support::relative(9, 1e-14));
     CHECK(air.power(1, 1, range) / vacuum.power(1, 1, range) ==
           support::relative(std::exp(-2 * extinction(Laser{}.wavelength, 5e3) * range), 1e-14));
   }
@@ -70,11 +71,13 @@ TEST_CASE("several subrays at once bring back what each brings back alone") {
   }
 }
 
-TEST_CASE("nothing brings back more than was sent, however near") {
+TEST_CASE("near by, an aperture holds sin^2 of half the angle that it subtends, of what a Lambertian surface scatters") {
   const Receiver receiver{.diameter = 0.2, .efficiency = 1, .visibility = infinity};
   const LinkBudget budget(receiver, Laser{.peak_power = 4});
-  for (const double range : {0.0, 1e-9, 0.01, 0.0999, 0.1}) CHECK(budget.power(1, 1, range) == support::relative(4, 1e-14));
-  CHECK(budget.power(1, 1, 0.2) == support::relative(1, 1e-14));
+  for (const double range : {0.0, 1e-9, 0.01, 0.1, 0.2, 3.0, 1e4})
+    CHECK(budget.power(1, 1, range) == support::relative(4 * std::pow(std::sin(std::atan2(0.1, range)), 2), 1e-14));
+  CHECK(budget.power(1, 1, 0) == support::relative(4, 1e-14));  // all that was sent, and never more
+  CHECK(budget.power(1, 1, 0.1) == support::relative(2, 1e-14));
 }
 
 TEST_CASE("a receiver's gate holds its ends") {

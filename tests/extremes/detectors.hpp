@@ -61,10 +61,12 @@ struct TwoRays {
   double share(std::size_t) const noexcept { return 0.5; }
 };
 
-/// What a wall across the beam sends back in vacuum [W]. Source: radar equation of an extended Lambertian target.
+/// What a wall across the beam sends back in vacuum [W]. Source: radar equation of an extended Lambertian target, and the solid angle
+/// of a disc on the axis.
 [[nodiscard]] inline double from_wall(const Laser& laser, double range) {
   const Receiver& receiver = validation::vacuum;
-  return laser.peak_power * (receiver.diameter / range) * (receiver.diameter / range) * receiver.efficiency / 4;
+  const double reach = std::hypot(range, receiver.diameter / 2);
+  return laser.peak_power * (receiver.diameter / reach) * (receiver.diameter / reach) * receiver.efficiency / 4;
 }
 
 /// What the echoes of a wall are held against.

@@ -60,7 +60,8 @@ struct Expected {
     for (std::size_t j = 0; j < footprint.size(); ++j) {
       const Real x = 0.5L * divergence.across * footprint.offset(j).x, y = 0.5L * divergence.up * footprint.offset(j).y;
       const Real cosine = std::cos(std::hypot(x, y)), range = distance / cosine;
-      const Real power = footprint.share(j) * cosine / (range * range);  // of a Lambertian surface
+      const Real radius = 0.5L * validation::vacuum.diameter;
+      const Real power = footprint.share(j) * cosine / (range * range + radius * radius);  // of a Lambertian surface
       nearest = std::min(nearest, range), mean += power * range, sum += power;
     }
     mean /= sum;

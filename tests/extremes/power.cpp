@@ -66,9 +66,9 @@ TEST_CASE("apertures and wavelengths before a wall") {
     for (const double range : {1.0, 4e7}) {
       const Receiver receiver{.diameter = diameter, .visibility = validation::vacuum.visibility};
       receiver.validate();
-      const double radius = diameter / 2, spread = std::fmax(range, radius);  // nearer, the aperture gets no more
+      const double radius = diameter / 2, spread = std::hypot(range, radius);
       const std::string wall = name + std::string(range == 1 ? ", wall at 1 m" : ", wall at 40 000 km");
-      // Source: laser radar equation for an extended target, Jelalian 1992
+      // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the axis
       row(axis, wall + ": received power, of the right one", 1,
           LinkBudget(receiver, Laser{}).power(1, 1, range) / (Laser{}.peak_power * (radius / spread) * (radius / spread) * 0.99), 1e-12);
     }

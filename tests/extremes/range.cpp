@@ -137,9 +137,9 @@ TEST_CASE("a pulse's echo from a wall, at any range") {
       const double size = d.range / 4;
       const MeshData plate{{{-size, d.range, -size}, {size, d.range, -size}, {0, d.range, size}}, {{0, 1, 2}}, {}};
       const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(plate)}});
-      // Source: laser radar equation for an extended target, Jelalian 1992; nearer than half its diameter, the aperture gets no more
+      // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the axis
       const Receiver& receiver = validation::vacuum;
-      const double reach = std::max(d.range, receiver.diameter / 2), gain = receiver.diameter * receiver.diameter * receiver.efficiency;
+      const double reach = std::hypot(d.range, receiver.diameter / 2), gain = receiver.diameter * receiver.diameter * receiver.efficiency;
       const Laser laser{.peak_power = 1e9};
       const validation::Result result = validation::one_pulse(scene, SingleRay{}, laser, receiver, instrument);
       REQUIRE(result.echoes.size() == 1);

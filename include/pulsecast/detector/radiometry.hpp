@@ -93,7 +93,9 @@ struct Receiver {
 };
 
 /// From the power of a pulse to the power that a subray brings back.
-/// Source: laser radar equation for an extended target, Jelalian 1992; in the form of Winiwarter et al. 2021.
+/// Source: laser radar equation for an extended target, Jelalian 1992; in the form of Winiwarter et al. 2022. Near by, an aperture on the
+/// axis holds sin^2 of half the angle that it subtends, of what a Lambertian surface scatters: D^2 / (4 R^2 + D^2) in place of D^2 / (4
+/// R^2).
 class LinkBudget {
  public:
   LinkBudget(const Receiver& receiver, const Laser& laser) noexcept
@@ -102,7 +104,7 @@ class LinkBudget {
         both_ways_(-2 * extinction(laser.wavelength, receiver.visibility)) {}
 
   /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in `Hit`) at a range [m].
-  /// Nearer than half its diameter the aperture gets what it gets there: all that comes back, and not more.
+  /// At a range of 0, all that comes back.
   [[nodiscard]] double power(double share, double backscatter, double range) const noexcept { return of(share, backscatter, range); }
 
   /// The same of several subrays.
@@ -113,11 +115,12 @@ class LinkBudget {
  private:
   template <class Number>
   [[nodiscard]] Number of(const Number& share, const Number& backscatter, const Number& range) const noexcept {
-    const Number square = range * range, near = Number{} + near_;
-    return gain_ * share * backscatter / (square > near ? square : near) * exponential(Number(both_ways_ * range));
+    return gain_ * share * backscatter / (range * range + near_) * exponential(Number(both_ways_ * range));
   }
 
-  double gain_, near_, both_ways_;  ///< the last: by which the logarithm of the power grows with the range [1/m]
+  double gain_;       ///< received power at 1 m by the inverse square of the range, of a white surface in vacuum [W m^2]
+  double near_;       ///< square of half the aperture's diameter [m^2]
+  double both_ways_;  ///< by which the logarithm of the power grows with the range [1/m]
 };
 
 }  // namespace pulsecast
