@@ -543,6 +543,47 @@ TEST_CASE("ranges err as the receiver is told, each echo on its own, and the sam
   CHECK(unlike == n);
 }
 
+TEST_CASE("echoes stand in order of the ranges that are reported, each with its own error, whatever the noise") {
+  /// A quarter of the beam each, half a metre apart for two of them and a metre for the others.
+  struct Plates {
+    std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+      const std::size_t k = (ray.direction.x > 0 ? 1 : 0) + (ray.direction.z > 0 ? 2 : 0);
+      const double ranges[]{100, 100.5, 101.5, 102.5};
+      return Hit{ranges[k] / ray.direction.y, 1, 0.2 * static_cast<double>(k + 1), static_cast<ObjectId>(k + 1), 0};
+    }
+  };
+  const Plates plates;
+  const auto survey_with = [&](const RangeErrors& errors) {
+    return Survey{still({}, no_rotation, 1000), SunflowerFootprint{100}, plates, Receiver{.range_errors = errors}, FullWaveform{}, 5};
+  };
+  const RangeErrors noise{.deviation = 0.3};
+  const auto exact = survey_with({}), noisy = survey_with(noise);
+  auto u = exact.workspace(), v = noisy.workspace();
+  int overtaken = 0;
+  for (PulseIndex i = 0; i < noisy.size(); ++i) {
+    CAPTURE(i);
+    const auto echoes = noisy(i, v).echoes, without = exact(i, u).echoes;
+    REQUIRE(echoes.size() == 4);
+    REQUIRE(without.size() == 4);
+    for (std::size_t e = 0; e < 4; ++e) {
+      const Echo &echo = echoes[e], &same = without[echo.object - 1];
+      if (e > 0) CHECK(echoes[e - 1].range <= echo.range);
+      CHECK(echo.number == e + 1);
+      CHECK(same.number == echo.object);
+      CHECK(echo.range == same.range + noise.at(same.range, 1, normal({5, i, same.number, Purpose::range_noise})));
+      CHECK(echo.amplitude == same.amplitude);
+      CHECK(echo.reflectance == same.reflectance);
+    }
+    const auto place = [&](ObjectId object) {
+      return std::find_if(echoes.begin(), echoes.end(), [&](const Echo& echo) { return echo.object == object; });
+    };
+    overtaken += place(2) < place(1) ? 1 : 0;
+  }
+  // the difference of two errors is below -0.5 m with the probability of the normal distribution, 0.119
+  CHECK(overtaken > 80);
+  CHECK(overtaken < 160);
+}
+
 TEST_CASE("the true pose casts the ray, and the reported one writes the point") {
   struct Mistaken {
     [[nodiscard]] PulseIndex size() const noexcept { return 1; }

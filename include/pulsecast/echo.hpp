@@ -35,7 +35,7 @@ struct Echo {
   double cos_incidence = 1;          ///< of the strongest contributor
   ObjectId object = 0;               ///< of the strongest contributor
   std::uint16_t classification = 0;  ///< of the strongest contributor
-  std::uint8_t number = 1;           ///< return number, from 1 in order of range
+  std::uint8_t number = 1;           ///< return number, from 1 in order of `range`
 };
 
 /// What became of a pulse slot. A sink sees all pulses, with or without echoes: slots that were blocked are counted, not handed on.
@@ -75,7 +75,7 @@ struct SubrayHit : Hit {
 /// A run of consecutive pulses and what came back, in pulse order. The spans live as long as the call of the sink.
 struct EchoBatch {
   std::span<const Shot> shots;
-  std::span<const Echo> echoes;          ///< those of one shot stand together, sorted by range
+  std::span<const Echo> echoes;          ///< those of one shot stand together, sorted by the range that is reported
   std::span<const float> samples;        ///< waveforms: received power [W]
   double sample_interval = 0;            ///< between two samples of a waveform [s]
   std::span<const SubrayHit> subrays{};  ///< all of each shot, in the order of the footprint; empty unless it is `Recorded`

@@ -136,6 +136,7 @@ class Survey {
       if (!receiver_.range_errors.none())
         echo.range += receiver_.range_errors.at(echo.range, echo.cos_incidence, normal({seed_, i, echo.number, Purpose::range_noise}));
     }
+    if (detection.echoes.size() > 1 && !receiver_.range_errors.none()) sort_by_range(detection.echoes);
     out.echoes = detection.echoes;
     out.waveform = detection.waveform;
     out.shot.waveform_start = detection.waveform_start;
@@ -174,6 +175,16 @@ class Survey {
       return detector_.detect(laser, reflections, scratch, key);
     else
       return detector_.detect(laser, reflections, scratch);
+  }
+
+  /// Puts echoes in order of the range that is reported, which errors may have upset. An echo that passes another one takes over its
+  /// number.
+  static void sort_by_range(std::span<Echo> echoes) noexcept {
+    for (std::size_t unsorted = 1; unsorted < echoes.size(); ++unsorted)  // by insertion: a pulse has few echoes, most of them in order
+      for (std::size_t e = unsorted; e > 0 && echoes[e].range < echoes[e - 1].range; --e) {
+        std::swap(echoes[e - 1], echoes[e]);
+        std::swap(echoes[e - 1].number, echoes[e].number);
+      }
   }
 
   static constexpr bool recorded = requires { requires bool{Pattern::recorded}; };
