@@ -17,12 +17,12 @@ namespace pulsecast::extremes {
 /// Checks a figure found at an extreme of an axis against the right one, and prints both as a row of the table of extremes in
 /// docs/validation.md. The bound is in the unit of the figures, which `what` names.
 inline void row(const std::string& axis, const std::string& what, double expected, double found, double bound) {
-  validation::row(axis + " | " + what, expected, found, bound);
+  validation::detail::check_and_print(axis + " | " + what, expected, found, bound);
 }
 
 /// Checks that a refusal names the setting, and prints it as a row of the same table.
 inline void refused(const std::string& axis, const std::string& what, const SettingError& error) {
-  std::printf("| %s | %s | refused | %s | |\n", axis.c_str(), what.c_str(), error.what());
+  std::printf("| %s | %s | refused | %s | | |\n", axis.c_str(), what.c_str(), error.what());
   CAPTURE(what);
   CHECK_FALSE(error.field().empty());
   CHECK(std::string(error.what()).starts_with(error.field() + " is "));

@@ -57,8 +57,9 @@ TEST_CASE("Gaussians in noise") {
     position += std::pow((r.gaussian.position - top) / deviation, 2) / cases;
     width += std::pow(r.gaussian.width / deviation - 1, 2) / cases;
   }
-  row("GaussianFit, signal to noise 50: root mean square error of the amplitude [%]", 0, 100 * std::sqrt(amplitude), 1);
-  row("GaussianFit, signal to noise 50: root mean square error of the position [% of the width]", 0, 100 * std::sqrt(position), 1);
-  row("GaussianFit, signal to noise 50: root mean square error of the width [%]", 0, 100 * std::sqrt(width), 1);
-  row("GaussianFit, signal to noise 50: most iterations", 0, iterations, 50);
+  row(Kind::bound, "GaussianFit, signal to noise 50: root mean square error of the amplitude [%]", 0, 100 * std::sqrt(amplitude), 1);
+  row(Kind::bound, "GaussianFit, signal to noise 50: root mean square error of the position [% of the width]", 0, 100 * std::sqrt(position),
+      1);
+  row(Kind::bound, "GaussianFit, signal to noise 50: root mean square error of the width [%]", 0, 100 * std::sqrt(width), 1);
+  row(Kind::bound, "GaussianFit, signal to noise 50: most iterations", 0, iterations, 50);
 }

@@ -32,7 +32,7 @@ TEST_CASE("the peer's pulse in time") {
   const PulseShape shape(4_ns);
   for (const Sample& s :
        {Sample{1, 0.123581163261589}, {3, 0.463646639803008}, {5, 0.536879651903989}, {10, 0.240944910109088}, {15, 0.0608248568271227}})
-    row("peer: pulse of 4 ns, sample " + std::to_string(s.number) + " of 15, by its peak", s.power * PulseShape::to_unit_peak,
+    row(Kind::peer, "pulse of 4 ns, sample " + std::to_string(s.number) + " of 15, by its peak", s.power * PulseShape::to_unit_peak,
         shape(s.number * 0.5_ns - PulseShape::peak * shape.tau), 1e-6);
 }
 
@@ -44,13 +44,14 @@ TEST_CASE("the peer's extinction, with wavelengths in micrometres and an answer 
                         {1550, 23, 5.56530807265444e-6, 1.3},
                         {905, 23, 1.12015278955261e-5, 1.3},
                         {1064, 60, 3.59334739360422e-7, 1.6}})
-    row("peer: extinction at " + std::to_string(static_cast<int>(c.wavelength_nm)) + " nm, visibility " +
+    row(Kind::peer,
+        "extinction at " + std::to_string(static_cast<int>(c.wavelength_nm)) + " nm, visibility " +
             std::to_string(static_cast<int>(c.visibility_km)) + " km, its units put right [1/km]",
         c.extinction * std::pow(1000, c.q), extinction(c.wavelength_nm * 1e-9, c.visibility_km * 1e3) * 1e3, 1e-6);
 }
 
-TEST_CASE("the peer's received power, without its factor of pi and with its extinction") {
-  // its older model, the central of 19 subrays, reflectance 50, 4 W; in nanowatts
+TEST_CASE("the peer's received power, without its factor of pi, with its extinction and the solid angle of a disc") {
+  // its older model, the central of 19 subrays, reflectance 50, 4 W; in nanowatts, and by D^2 / (4 R^2) however near
   struct Case {
     double range, power;
   };
@@ -58,8 +59,9 @@ TEST_CASE("the peer's received power, without its factor of pi and with its exti
   const LinkBudget budget(receiver, Laser{.peak_power = 4});
   for (const Case& c : {Case{30, 204505.49363258}, {100, 18382.1224237085}, {1000, 180.8425584006}}) {
     const double air = std::exp(-2 * 9.07603791289485e-6 * c.range);
-    row("peer: power of the axis at " + std::to_string(static_cast<int>(c.range)) + " m, of ours", 1,
-        c.power * 1e-9 / pi / (budget.power(1.0 / 19, 50, c.range) * air), 1e-6);
+    const double disc = 1 / (1 + std::pow(receiver.diameter / (2 * c.range), 2));
+    row(Kind::peer, "power of the axis at " + std::to_string(static_cast<int>(c.range)) + " m, its solid angle put right, of ours", 1,
+        c.power * disc * 1e-9 / pi / (budget.power(1.0 / 19, 50, c.range) * air), 1e-6);
   }
 }
 
@@ -69,8 +71,8 @@ TEST_CASE("the peer's Phong, as far as its lobe reaches") {
     double angle_deg, factor;
   };
   for (const Case& c : {Case{0, 0.5}, {20, 0.339330744918639}, {45, 0.247487373415292}})
-    row("peer: Phong, reflectance 0.5, share 0.3, exponent 10, " + std::to_string(static_cast<int>(c.angle_deg)) + " degrees", c.factor,
-        phong.backscatter(std::cos(radians(c.angle_deg)), 1064_nm), 1e-6);
+    row(Kind::peer, "Phong, reflectance 0.5, share 0.3, exponent 10, " + std::to_string(static_cast<int>(c.angle_deg)) + " degrees",
+        c.factor, phong.backscatter(std::cos(radians(c.angle_deg)), 1064_nm), 1e-6);
 }
 
 TEST_CASE("the peer's subrays, with the divergence as the full angle that it is") {
@@ -84,7 +86,7 @@ TEST_CASE("the peer's subrays, with the divergence as the full angle that it is"
       {1, {0, 9.99999998333333e-5}}, {2, {8.66025402341063e-5, 4.99999999166667e-5}}, {8, {9.99999993333333e-5, 1.73205080769187e-4}}};
   for (const auto& f : figures) {
     const Vec3 ours = subray_direction(rings.offset(f.subray), 0.3e-3);
-    row("peer: azimuth of subray " + std::to_string(f.subray) + " of 19 [degrees]", std::atan2(f.across.x, f.across.y) * 180 / pi,
+    row(Kind::peer, "azimuth of subray " + std::to_string(f.subray) + " of 19 [degrees]", std::atan2(f.across.x, f.across.y) * 180 / pi,
         std::atan2(ours.x, ours.z) * 180 / pi, 1e-5);
   }
 }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -108,8 +109,11 @@ double mean_power(double range, double radius) {
   return sum / times;
 }
 
-/// What a white surface that fills the footprint brings back [W]. Source: Winiwarter et al. 2021
-double extended(double range) { return laser.peak_power * vacuum.diameter * vacuum.diameter / (4 * range * range) * vacuum.efficiency; }
+/// What a white surface that fills the footprint brings back [W]. Source: a disc on the axis of a Lambertian surface holds sin^2 of half
+/// the angle that it subtends of what is scattered, by the cosine law; far off that is D^2 / (4 R^2), as in Winiwarter et al. 2022.
+double extended(double range) {
+  return laser.peak_power * std::pow(std::sin(std::atan(0.5 * vacuum.diameter / range)), 2) * vacuum.efficiency;
+}
 
 }  // namespace
 
@@ -123,6 +127,16 @@ TEST_CASE("received power against range") {
   row("wire: exponent of power over range, 10 m to 5 km", -3, slope([&](double range) { return mean_power<Wire>(range, radius); }), 0.01);
   row("small sphere: exponent of power over range, 10 m to 5 km", -4, slope([&](double range) { return mean_power<Ball>(range, radius); }),
       0.01);
+}
+
+TEST_CASE("received power near by") {
+  struct Case {
+    const char* text;
+    double range;
+  };
+  for (const Case& c : {Case{"half its diameter", 0.5 * vacuum.diameter}, {"its diameter", vacuum.diameter}, {"0.2 m", 0.2}})
+    row(std::string("meadow before an aperture of 0.15 m, at ") + c.text + ": power, of what was sent",
+        extended(c.range) / laser.peak_power, one_pulse(Meadow{c.range}, SunflowerFootprint(2001), laser).power / laser.peak_power, 1e-6);
 }
 
 TEST_CASE("received power at a range") {

@@ -12,8 +12,10 @@ namespace pulsecast {
 
 /// What of an echo is timed: where on it its range is.
 enum class EchoTiming : std::uint8_t {
-  energy,  ///< the mean of the reflections between its valleys, weighted by power: without bias, however the echo is drawn out
-  peak,    ///< its highest point: on a slope later than the mean, by a tau of `PulseShape` or so, as pulses rise faster than they fall
+  /// The mean of the reflections between its valleys, weighted by power: without bias, however the echo is drawn out. It is taken from the
+  /// true ranges of the subrays, which no instrument knows: an oracle, not a model of one.
+  energy,
+  peak,  ///< its highest point: on a slope later than the mean, by a tau of `PulseShape` or so, as pulses rise faster than they fall
 };
 
 /// Settings of the waveform detectors. All times are two-way.

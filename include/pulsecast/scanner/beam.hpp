@@ -19,7 +19,7 @@ namespace pulsecast {
 }
 
 /// By how much more than the least that physics allows a beam widens, across, for its waist: M^2, 1 for a perfect Gaussian beam.
-/// Source: Siegman 1986; ISO 11146-1:2005, M^2 = pi d0 theta / (4 lambda).
+/// Source: Siegman 1990; ISO 11146-1:2005, M^2 = pi d0 theta / (4 lambda).
 [[nodiscard]] inline double beam_quality(const Laser& laser) noexcept {
   return pi * laser.waist_diameter * laser.divergence.across / (4 * laser.wavelength);
 }
@@ -40,7 +40,7 @@ struct BeamExit {
 
 /// A laser whose divergence and waist are those of the beam that leaves such an exit. A beam that is focused has its waist short of the
 /// focus. Source: Carlsson, Steinvall & Letalick 2001: w^2 = w0^2 ((1 - R/F)^2 + (lambda R / (pi w0^2))^2), with M^2 lambda for lambda as
-/// in Siegman 1986; waist and divergence from completing the square.
+/// in Siegman 1990; waist and divergence from completing the square.
 [[nodiscard]] inline Laser gaussian_beam(const BeamExit& exit, Laser laser) {
   exit.validate();
   expect_positive("Laser::wavelength", laser.wavelength, "m");

@@ -24,7 +24,7 @@ struct SingleRay {
 
 /// Concentric circles about a central ray; circle i holds floor(2 pi i) subrays. Each circle stands for the ring of the beam
 /// between the middles to its neighbours, and its subrays share the energy of that ring. The outermost ring ends at the 1/e^2 radius.
-/// Source: Winiwarter et al. 2021 for the numbers; the radii are our own, so that rings tile the footprint.
+/// Source: Winiwarter et al. 2022 for the numbers; the radii are our own, so that rings tile the footprint.
 /// What XML surveys ask for. As the beam does not end there, more than 19 subrays gain little (docs/tradeoff.md): see `LatticeFootprint`.
 class RingFootprint {
  public:
