@@ -6,13 +6,18 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
+#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <doctest/doctest.h>
+
+#include "support/local_client.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::adapters;
@@ -32,16 +37,9 @@ struct Address {
 
 /// All that a server answers to a request, word by word.
 std::string answer(int port, const std::string& request) {
-  const int s = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in to{};
-  to.sin_family = AF_INET, to.sin_port = htons(static_cast<std::uint16_t>(port)), to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  REQUIRE(connect(s, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0);
-  REQUIRE(write(s, request.data(), request.size()) == static_cast<ssize_t>(request.size()));
-  std::string all;
-  char room[4096];
-  for (ssize_t n = 0; (n = read(s, room, sizeof room)) > 0;) all.append(room, static_cast<std::size_t>(n));
-  close(s);
-  return all;
+  const support::Client client(port);
+  REQUIRE(client.send(request));
+  return client.rest();
 }
 
 std::string ask(const Address& a, const std::string& method, const std::string& path, const std::string& more = "",
@@ -163,4 +161,36 @@ TEST_CASE("a port that is taken is told") {
   PageServer server;
   const Address a(server.address());
   CHECK_THROWS_AS(PageServer({}, {}, a.port), std::runtime_error);
+}
+
+TEST_CASE("without the secret nobody takes descriptors or memory, or keeps the server from its end") {
+  std::vector<support::Client> many;
+  std::atomic<int> sent = 0;
+  std::jthread slow;
+  {
+    PageServer server;
+    const Address a(server.address());
+    slow = std::jthread([&, client = support::Client(a.port)] {  // a byte now and then, for longer than the server lives
+      for (; sent < 200 && client.send("a"); ++sent) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    });
+    const auto descriptors = [] {
+      using Iterator = std::filesystem::directory_iterator;
+      return std::distance(Iterator("/proc/self/fd"), Iterator());
+    };
+    const auto before = descriptors();
+    for (int k = 0; k < 300; ++k) many.emplace_back(a.port);
+    CHECK(status(ask(a, "GET", a.path)) == 200);
+    CHECK(descriptors() < before + 300 + 50);
+
+    const support::Client large(a.port);
+    std::string headers;
+    while (headers.size() < 1 << 20) headers += "a: b\r\n";
+    large.send("GET / HTTP/1.1\r\n");
+    int megabytes = 0;
+    while (megabytes < 64 && large.send(headers)) ++megabytes;
+    CHECK(megabytes < 64);
+    server.finish(true);
+  }
+  slow.join();
+  CHECK(sent < 200);
 }

@@ -45,7 +45,7 @@ found() {
 }
 found 'GLM is named in base/vector.hpp only' '<glm/|glm::' 'base/vector\.hpp'
 found 'threads live in run.hpp and base/parallel.hpp only' \
-      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel|adapters/(page_server|python))\.hpp'
+      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel|adapters/(local_server|page_server|python))\.hpp'
 found 'files are for adapters only' '#include <(fstream|filesystem|cstdio|stdio\.h)>' 'adapters/[^:]*'
 found 'degrees and nanoseconds are for adapters only' '[a-z]_(deg|ns)\>[^(]*[;=]' 'adapters/[^:]*|base/units\.hpp'
 found 'the library never prints and never exits' '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('

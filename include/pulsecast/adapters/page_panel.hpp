@@ -398,14 +398,19 @@ async function follow() {
     byId('stop').disabled = true
     await fetch('stop', { method: 'POST' }).catch(() => {})
   }
-  let after = '', run = ''
+  let after = '', run = '', failures = 0
   for (;;) {
     let bytes
     try {
       const answer = await fetch(`points?run=${run}&after=${after}`, { cache: 'no-store' })
       if (!answer.ok) throw new Error(answer.statusText)
       bytes = new Uint8Array(await answer.arrayBuffer())
+      failures = 0
     } catch {
+      if (++failures < 5) {  // crowded out by other clients, perhaps
+        await pause(200)
+        continue
+      }
       byId('progress').textContent = 'The program has ended'
       break
     }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <sys/random.h>
-#include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
@@ -25,6 +24,7 @@
 
 #include <httplib.h>
 
+#include <pulsecast/adapters/local_server.hpp>
 #include <pulsecast/adapters/page.hpp>
 #include <pulsecast/run.hpp>
 
@@ -33,21 +33,15 @@ namespace pulsecast::adapters {
 /// A sink that shows the cloud while it grows: the page of `PageWriter`, at an address of this machine that nobody else can reach, with
 /// the progress of the run and a button that asks to stop it.
 ///
-/// It listens on 127.0.0.1 only. Every address holds a secret drawn for this object, and is answered only if it was asked for by the name
-/// of this machine and from no other site's page; so other sites that are open in the same browser learn nothing and stop nothing.
-/// Whoever may read this user's screen may look, too. The functions may be called from any thread.
+/// It is a `LocalServer`: at 127.0.0.1 only, and no client takes memory, descriptors or time from the run. Every address holds a secret
+/// drawn for this object, and is answered only if it was asked for by the name of this machine and from no other site's page; so other
+/// sites that are open in the same browser learn nothing and stop nothing. Whoever may read this user's screen may look, too. The functions
+/// may be called from any thread.
 class PageServer {
  public:
   /// Throws a `std::runtime_error` if nothing can be served. `port` is 0 for any that is free.
   explicit PageServer(PageSurvey survey = {}, const PageSettings& settings = {}, int port = 0)
       : settings_(validated(settings)), token_(secret()), survey_(std::move(survey)), sample_(settings.most_points) {
-    server_.new_task_queue = [] { return new httplib::ThreadPool(4); };
-    server_.set_socket_options([](socket_t socket) {  // not those of httplib, by which two servers may share a port
-      const int yes = 1;
-      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    });
-    server_.set_keep_alive_timeout(1);
-    server_.set_payload_max_length(0);
     server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       if (is_ours(request)) return httplib::Server::HandlerResponse::Unhandled;
       response.status = 403;
@@ -69,18 +63,12 @@ class PageServer {
       stop_requested_ = true;
       response.status = 204;
     });
-    port_ = port > 0 ? (server_.bind_to_port("127.0.0.1", port) ? port : -1) : server_.bind_to_any_port("127.0.0.1");
-    if (port_ <= 0)
-      throw std::runtime_error("no page can be served: 127.0.0.1 has no port " + (port > 0 ? std::to_string(port) : "to give"));
-    host_ = ':' + std::to_string(port_);
-    listener_ = std::thread([this] { server_.listen_after_bind(); });
-    for (int k = 0; k < 5000 && !server_.is_running(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  PageServer(const PageServer&) = delete;
-  PageServer& operator=(const PageServer&) = delete;
-  ~PageServer() {
-    server_.stop();
-    listener_.join();
+    try {
+      host_ = ':' + std::to_string(server_.bind(port));
+    } catch (const std::runtime_error& e) {
+      throw std::runtime_error(std::string("no page can be served: ") + e.what());
+    }
+    server_.start();
   }
 
   /// What to type into a browser.
@@ -194,7 +182,6 @@ class PageServer {
 
   PageSettings settings_;
   std::string token_, host_;
-  int port_ = 0;
   std::mutex mutex_;
   PageSurvey survey_;
   PageSample sample_;
@@ -203,8 +190,7 @@ class PageServer {
   std::uint64_t run_ = 1;
   std::optional<Clock::time_point> asked_{};  // when somebody looked last
   std::atomic<bool> stop_requested_ = false;
-  httplib::Server server_;  // neither made nor copied here: a `Request`, whose layout is as httplib was compiled
-  std::thread listener_;
+  LocalServer server_;  // neither made nor copied here: a `Request`, whose layout is as httplib was compiled
 };
 static_assert(EchoSink<PageServer>);
 
