@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -32,6 +34,20 @@
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
+
+namespace {
+
+std::atomic<std::size_t> allocations = 0;
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* const memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace {
 
@@ -254,6 +270,25 @@ TEST_CASE("a run of nothing is complete") {
     CHECK(summary.slots == 0);
     CHECK(sink.batches() == 0);
   }
+}
+
+TEST_CASE("no more threads are started than there are chunks of work") {
+  const auto survey = rain();
+  const auto allocations_of = [&](unsigned threads, PulseIndex pulses) {  // a thread needs one
+    const std::size_t before = allocations;
+    CHECK(run(survey, {.threads = threads, .end = pulses}).slots == pulses);
+    return allocations - before;
+  };
+  for (const PulseIndex pulses : {0, 1, 2048}) {
+    CAPTURE(pulses);
+    CHECK(allocations_of(64, pulses) == allocations_of(1, pulses));
+  }
+  CHECK(allocations_of(most_threads, 2049) < 100);
+}
+
+TEST_CASE("more threads than a machine can have are refused, by name") {
+  CHECK_THROWS_WITH_AS(run(rain(), {.threads = most_threads + 1}), "RunOptions::threads is 1025, but must be from 0 to 1024", SettingError);
+  CHECK(run(rain(1), {.threads = most_threads}).complete);
 }
 
 TEST_CASE("progress ascends, one call at a time, and reaches the total") {

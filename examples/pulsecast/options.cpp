@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 #include <pulsecast/adapters/xml_document.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/version.hpp>
 
 #include "quantity.hpp"
@@ -120,7 +121,9 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
       ->type_name("N")
       ->check([](const std::string& text) {
         const auto threads = number_in<unsigned>(text);
-        return threads && *threads <= 1024 ? std::string() : "'" + text + "' is no whole number from 0 to 1024";
+        return threads && *threads <= pulsecast::most_threads
+                   ? std::string()
+                   : "'" + text + "' is no whole number from 0 to " + std::to_string(pulsecast::most_threads);
       });
   app.add_option(both("gpsStartTime"), o.gps_start_time, "When the survey begins: UTC, or seconds since 1970")
       ->type_name("'YYYY-MM-DD hh:mm:ss'");

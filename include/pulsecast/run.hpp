@@ -40,16 +40,21 @@ struct RunSlots {
 };
 
 struct RunOptions {
-  unsigned threads = 0;                                     ///< 0 for as many as the machine runs at once
+  unsigned threads = 0;                                     ///< at most `most_threads`; 0 for as many as the machine runs at once
   PulseIndex first = 0;                                     ///< the first slot to do
   PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< the slot after the last, at most the survey's size
   PulseIndex stride = 1;                                    ///< every so many-th slot only: a preview
   std::function<void(const Progress&)> progress{};          ///< called after every batch, one call at a time, on any thread
   std::stop_token stop{};                                   ///< ends the run early; what was delivered is whole up to there
 
-  /// Which of `size` slots to do. @throws SettingError if the stride is less than 1 or above 1e18
-  [[nodiscard]] RunSlots slots(PulseIndex size) const {
+  void validate() const {
+    expect_within("RunOptions::threads", threads, 0, most_threads, "");
     expect_within("RunOptions::stride", static_cast<double>(stride), 1, 1e18, "");
+  }
+
+  /// Which of `size` slots to do. @throws SettingError if the options cannot be
+  [[nodiscard]] RunSlots slots(PulseIndex size) const {
+    validate();
     const PulseIndex to = std::min(end, size), from = std::min(first, to);
     return {from, stride, (to - from + stride - 1) / stride};
   }
@@ -207,11 +212,12 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   const PulseIndex subrays_per_chunk = 65'536;  // where they are recorded, else they take no room
   const PulseIndex slots_per_chunk =
       std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, PulseIndex{2048});
-  const unsigned threads = thread_count(options.threads);
+  const std::uint64_t chunks = (slots.count + slots_per_chunk - 1) / slots_per_chunk;
+  const std::size_t workers = std::min<std::uint64_t>(thread_count(options.threads), std::max<std::uint64_t>(chunks, 1));
   const auto began = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
 
-  detail::Conveyor conveyor((slots.count + slots_per_chunk - 1) / slots_per_chunk, threads, options.stop);
+  detail::Conveyor conveyor(chunks, workers, options.stop);
   RunSummary summary;
   const auto deliver = [&](const detail::Chunk& chunk) {
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
@@ -219,7 +225,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
     summary.add(chunk.counts);
     if (options.progress) options.progress({summary.slots, slots.count, summary.echoes, elapsed()});
   };
-  for_each_index(threads, threads, [&](std::size_t) noexcept {  // each works on as long as there is something to do
+  for_each_index(workers, options.threads, [&](std::size_t) noexcept {  // each works on as long as there is something to do
     try {
       detail::Chunk* chunk = conveyor.next();
       if (!chunk) return;

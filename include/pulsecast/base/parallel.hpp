@@ -9,10 +9,16 @@
 #include <thread>
 #include <vector>
 
+#include <pulsecast/base/expect.hpp>
+
 namespace pulsecast {
 
-/// How many threads to use: as many as asked for, or as the machine runs at once where 0 is asked for.
-[[nodiscard]] inline unsigned thread_count(unsigned asked) noexcept {
+inline constexpr unsigned most_threads = 1024;  ///< that a setting may ask for
+
+/// Number of threads to use: as many as asked for, or as the machine runs at once where 0 is asked for.
+/// @throws SettingError if more than `most_threads` are asked for
+[[nodiscard]] inline unsigned thread_count(unsigned asked) {
+  expect_within("threads", asked, 0, most_threads, "");
   return asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
 }
 
@@ -31,10 +37,11 @@ inline void call_for_each_index(std::size_t count, unsigned threads, void (*call
         if (!failed.exchange(true)) failure = std::current_exception();
       }
   };
+  const std::size_t together = std::min<std::size_t>(thread_count(threads), count);
   {
     std::vector<std::jthread> helpers;
     try {
-      for (std::size_t k = 1; k < std::min<std::size_t>(thread_count(threads), count); ++k) helpers.emplace_back(work);
+      for (std::size_t k = 1; k < together; ++k) helpers.emplace_back(work);
     } catch (...) {  // no more threads to be had: those there are do it all
     }
     work();
@@ -49,7 +56,8 @@ inline void call_for_each_index(std::size_t count, unsigned threads, void (*call
 /// begun are then left out.
 template <class Task>
 void for_each_index(std::size_t count, unsigned threads, const Task& task) {
-  detail::call_for_each_index(count, threads, [](const void* t, std::size_t i) { (*static_cast<const Task*>(t))(i); }, &task);
+  detail::call_for_each_index(
+      count, threads, [](const void* t, std::size_t i) { (*static_cast<const Task*>(t))(i); }, &task);
 }
 
 }  // namespace pulsecast
