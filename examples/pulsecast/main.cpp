@@ -395,7 +395,7 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
     std::cout << "1 pulse in " << stride << " of " << slots << ", " << summary.echoes << " points: " << path.string() << '\n';
 }
 
-int work(const Options& options, Ranks& ranks) {
+int work(const Options& options, Ranks& ranks) try {
   if (options.command != "run" && !ranks.first()) return success;  // which are for one
   Notes notes(options);
   notes.say(options.notes);
@@ -429,6 +429,9 @@ int work(const Options& options, Ranks& ranks) {
     return Session(settled, file, *seed, ranks, notes).run();
   }
   return success;
+} catch (const SettingError& error) {  // of the survey: what the options say is checked where they are read
+  if (error.field().starts_with(options.survey.string())) throw;
+  throw error.of(options.survey.string());
 }
 
 }  // namespace

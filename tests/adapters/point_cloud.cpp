@@ -399,6 +399,15 @@ TEST_CASE("as many voxels as there can be along an axis fit, one more does not")
   CHECK(error("0 0 0\n4294967296 0 0\n", {.lattice = VoxelLattice::at_multiples}).problem().starts_with("the cloud extends over"));
 }
 
+TEST_CASE("voxels that are small against the rounding of coordinates are an error of the file") {
+  const std::string far =
+      "\xEF\xBB\xBF"
+      "1;2;-1e12\n";
+  CHECK(
+      error(far, {.voxel_size = 1e-6}).problem().starts_with("the cloud begins 1e+12 m from the origin, where voxels of 1e-06 m"));
+  CHECK(read(far, {.voxel_size = 1e-3}).voxels.cells.size() == 1);
+}
+
 TEST_CASE("settings that cannot be are refused") {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (const PointCloudSettings& settings : {PointCloudSettings{.voxel_size = 0},

@@ -239,6 +239,9 @@ TEST_CASE("rows that cannot be right are refused, with line and column") {
   const FileError far = error("VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1e6\ni j k PadBVTotal\n0 1000000 0 1\n0 1000001 0 1\n");
   CHECK(far.place() == "line 6");
   CHECK(far.problem() == "the voxel 0 1000001 0 stands beyond 1e12 m: expected one within");
+  const FileError fine = error("VOXEL SPACE\n#res: 1e-9\n#min_corner: 0 0 -1e12\ni j k PadBVTotal\n0 0 0 1\n");
+  CHECK(fine.place() == "line 2");
+  CHECK_MESSAGE(fine.problem().starts_with("'res' is 1e-09: expected at least 0.00088"), fine.problem());
   CHECK(error(head + "0 0 0 0 1\n").problem() == "has no voxel that light can meet: expected at least one");
   CHECK(error(head + "0 0 0 1 1\n", opaque).problem() == "has no voxel that light can meet: expected at least one");
 }

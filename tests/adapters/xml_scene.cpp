@@ -64,6 +64,7 @@ TEST_CASE("of a scene, what cannot be is told") {
   CHECK(contains(fault(""), "holds no <part> with a filter that loads"));
   CHECK(contains(fault(loads + "<filter type=\"scale\"/>"), "has no param 'scale'"));
   CHECK(contains(fault(loads + R"(<filter type="scale"><param key="scale" value="-2"/></filter>)"), "scale=\"-2\""));
+  CHECK(contains(fault(loads + R"(<filter type="scale"><param key="scale" value="1e-31"/></filter>)"), "the scale is less than 1e-30"));
   CHECK(contains(fault(loads + R"(<dmotion id="a" loop="1" next="b"/>)"), "next=\"b\": there is no such <dmotion>"));
   CHECK(contains(fault(loads + R"(<swap swapStep="0"/>)"), "swapStep=\"0\": expected a whole number"));
   CHECK(contains(fault(loads + R"(<swap keepCRS="false"/>)"), "keepCRS of false has no effect"));

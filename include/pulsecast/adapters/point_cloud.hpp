@@ -125,6 +125,7 @@ class PointCloudReader {
   PointCloudReader(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings) : settings_(validated(settings)) {
     measure(paths);
     for (int axis = 0; axis < 3; ++axis) lay(axis, paths.front());
+    expect_room(paths.front());
     for (const std::filesystem::path& path : paths)
       with_points(path, settings_, [this](auto& points) {
         while (points.next()) add(points);
@@ -133,7 +134,7 @@ class PointCloudReader {
 
   [[nodiscard]] PointCloud result() && {
     cloud_.voxels.edge = settings_.voxel_size;
-    cloud_.voxels.corner = origin_ + first_ * settings_.voxel_size;
+    cloud_.voxels.corner = corner();
     finish_normals();
     finish_colours();
     cloud_.voxels.cells = std::move(cells_).release();
@@ -180,6 +181,18 @@ class PointCloudReader {
                           ", which is " + pulsecast::detail::written(cells) + " voxels: expected no more than 2^32; voxels are " +
                           pulsecast::detail::written(edge) + " m large");
     last_[axis] = cells - 1;
+  }
+
+  [[nodiscard]] Vec3 corner() const noexcept { return origin_ + first_ * settings_.voxel_size; }
+
+  /// Refuses voxels that are small against the rounding of coordinates where they stand.
+  void expect_room(const std::filesystem::path& path) const {
+    const double edge = settings_.voxel_size, least = VoxelData::least_edge(corner());
+    if (edge >= least) return;
+    throw FileError(path.string(), "",
+                    "the cloud begins " + pulsecast::detail::written(max_norm(corner())) + " m from the origin, where voxels of " +
+                        pulsecast::detail::written(edge) + " m cannot be told apart: expected at least " +
+                        pulsecast::detail::written(least) + " m");
   }
 
   /// Enters a point, in the second pass.

@@ -145,7 +145,7 @@ class VoxelFileReader {
       table_.fail_here("'res' is " + TextTable::quoted(value) + ": expected the edge of a voxel [m], above 0");
     if (given.size() == 3 && (given[1] != given[0] || given[2] != given[0]))
       table_.fail_here("'res' is " + TextTable::quoted(value) + ": expected voxels that are cubes");
-    edge_ = given[0];
+    edge_ = given[0], edge_line_ = table_.line();
   }
 
   [[nodiscard]] Vec3 vector(const std::string& key, std::string_view value) const {
@@ -190,6 +190,10 @@ class VoxelFileReader {
     if (!min_corner_) table_.fail("has no key 'min_corner': expected '#min_corner: x y z' above the rows");
     if (!edge_) table_.fail("has no key 'res': expected '#res: edge' above the rows");
     file_.voxels.corner = *min_corner_, file_.voxels.edge = *edge_;
+    if (const double least = VoxelData::least_edge(*min_corner_); !(*edge_ >= least))
+      throw FileError(table_.path(), TextTable::place(edge_line_),
+                      "'res' is " + pulsecast::detail::written(*edge_) + ": expected at least " + pulsecast::detail::written(least) +
+                          " so far from the origin as 'min_corner' is");
     if (!max_corner_ || !split_) return;
     const Vec3 should = *min_corner_ + *split_ * *edge_;
     if (max_norm(should - *max_corner_) > *edge_ / 2)
@@ -296,6 +300,7 @@ class VoxelFileReader {
   VoxelFile file_;
   std::optional<Vec3> min_corner_, max_corner_, split_;
   std::optional<double> edge_, max_pad_;
+  std::size_t edge_line_ = 0;
   std::array<std::size_t, 3> index_{};  // columns
   std::size_t density_ = 0, columns_ = 0;
   std::optional<std::size_t> transmittance_;

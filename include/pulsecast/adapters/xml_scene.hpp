@@ -84,6 +84,7 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       filter.number("scale", scale, units::one, 0, 1e9);
       if (scale != 0) transform.scale = scale;
       if (scale == 0 && filter.has("scale")) filter.warn("scale", "a scale of 0 has no effect");
+      if (scale > 0 && scale < 1e-30) filter.fault("scale", "the scale is less than 1e-30: expected 0, or from there to 1e9");
     } else if (is("rotate")) {
       filter.require({"rotation"});
       filter.know({"rotation"});

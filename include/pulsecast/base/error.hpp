@@ -29,6 +29,9 @@ class SettingError : public std::invalid_argument {
         allowed_(std::move(allowed)),
         value_(value) {}
 
+  /// The same of a setting of something that has a name, as in `leg 3: Scanner::pulse_rate`.
+  [[nodiscard]] SettingError of(const std::string& name) const { return {name + ": " + field_, value_, unit_, allowed_}; }
+
   [[nodiscard]] const std::string& field() const noexcept { return field_; }      ///< as in `Scanner::pulse_rate`
   [[nodiscard]] double value() const noexcept { return value_; }                  ///< what was given, in `unit()`
   [[nodiscard]] const std::string& unit() const noexcept { return unit_; }        ///< SI symbol; empty if the value is a mere number

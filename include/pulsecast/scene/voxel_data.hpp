@@ -28,16 +28,19 @@ struct VoxelData {
   std::vector<std::array<float, 3>> shifts{};         ///< of that cube's centre from the cell's, in edges of the cell
   std::vector<std::uint16_t> materials{};             ///< index into the part's table
 
+  /// Edge of the smallest cell that a lattice may have at a place [m]: coordinates there round by an eighth of it.
+  [[nodiscard]] static double least_edge(const Vec3& place) noexcept {
+    return 4 * std::numeric_limits<double>::epsilon() * max_norm(place);
+  }
+
   /// Refuses what cannot be, but for cells that are there twice: those show when they are sorted, in the making of a grid.
   void validate() const {
     constexpr double farthest = 1e18;
     for (int k = 0; k < 3; ++k)
       if (!(std::fabs(corner[k]) <= farthest)) throw SettingError("VoxelData::corner", corner[k], "m", "within 1e18 m of the origin");
     expect_positive("VoxelData::edge", edge, "m");
-    // far from the origin, coordinates round: by an eighth of such a cell
-    const double least = 4 * std::numeric_limits<double>::epsilon() * max_norm(corner);
-    if (!(edge >= least))
-      throw SettingError("VoxelData::edge", edge, "m", "at least " + detail::written(least) + " so far from the origin");
+    if (!(edge >= least_edge(corner)))
+      throw SettingError("VoxelData::edge", edge, "m", "at least " + detail::written(least_edge(corner)) + " so far from the origin");
     if (cells.empty()) throw SettingError("VoxelData::cells", 0, "", "at least one in number");
     if (cells.size() > 4294967294) throw SettingError("VoxelData::cells", count(cells), "", "at most 4294967294 in number");
     for (std::size_t i = 0; i < cells.size(); ++i)
