@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -85,6 +86,7 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
                                           std::optional<std::uint64_t> seed, bool echo_width, bool waveforms, bool waveform_noise,
                                           bool fixed_incidence, bool platform_noise, bool leg_noise, unsigned threads, int run) {
   const adapters::SurveySettings settings = survey_of(survey);
+  expect_within("Simulation repetition", run, 0, std::numeric_limits<int>::max(), "");
   for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
     assets.push_back(std::move(folder));
   std::unique_ptr<Simulation> simulation;

@@ -18,6 +18,12 @@ struct Rosette {
   double bend;           ///< by each prism [rad]
   double first, second;  ///< turns of the prisms per second, negative for the other way [Hz]
 
+  void validate() const {
+    expect_within("Rosette::bend", bend, -0.5, 0.5, "rad");
+    expect_finite("Rosette::first", first, "Hz");
+    expect_finite("Rosette::second", second, "Hz");
+  }
+
   Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     const double a = 2 * pi * t.phase(first), b = 2 * pi * t.phase(second);
     const double aside = bend * (std::cos(a) + std::cos(b)), upwards = bend * (std::sin(a) + std::sin(b));

@@ -230,5 +230,26 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   CHECK_THROWS_WITH_AS((void)built(scene_of({cloud})), doctest::Contains("holds no material 'brick'; it has ground, wall"), FileError);
 }
 
+TEST_CASE("what a file comes to, and cannot be, is told with the file; what a part is asked for, with the part") {
+  const Files files;
+  std::ofstream(files.folder / "wide.vox") << "VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1\ni j k PadBVTotal\n0 0 0 1\n3000000 0 0 1\n";
+  PartSettings wide = files.part("plane.obj", "wide");
+  wide.source = VoxelSource{.files = {files.folder / "wide.vox"}};
+  CHECK_THROWS_WITH_AS((void)built(scene_of({wide})), doctest::Contains("wide.vox: VoxelData::cells is 3e+06, but must be within"),
+                       FileError);
+
+  PartSettings cube = files.part("cube.obj", "hut");
+  cube.transform.scale = 1e-31;
+  CHECK_THROWS_WITH_AS((void)built(scene_of({cube})), doctest::Contains("part 'hut': Similarity::scale is 1e-31"), SettingError);
+  cube.transform.scale = 1e19;
+  CHECK_THROWS_WITH_AS((void)built(scene_of({cube})), "part 'hut': place is 2e+19 m, but must be within 1e18 m of the origin",
+                       SettingError);
+  PartSettings cloud = cube;
+  cloud.source = XyzSource{.files = {files.folder / "none.xyz"}, .voxel_size = -1};
+  CHECK_THROWS_AS((void)built(scene_of({cloud})), SettingError);
+  CHECK_THROWS_WITH_AS((void)built(scene_of({}), {.threads = 1025}), doctest::Contains("SceneBuildOptions::threads is 1025"),
+                       SettingError);
+}
+
 }  // namespace
 }  // namespace pulsecast::adapters

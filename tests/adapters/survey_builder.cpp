@@ -76,6 +76,16 @@ TEST_CASE("a tripod stands where each leg says, until the head has turned") {
     const SurveyPlan none = plan_survey(s, flat);
     CHECK(none.legs[1].end == none.legs[1].first);
   }
+  SUBCASE("nor of more pulses than can be counted") {
+    s.legs[1].duration_max = 1e14, s.legs[1].scanner.head_speed = 0, s.legs[1].scanner.head_stop = 0;
+    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1 (pulses) is 1e+17"), SettingError);
+  }
+  SUBCASE("nor faster than a laser can be") {
+    s.legs[1].scanner.pulse_rate = 1e13, s.legs[1].duration_max = 1;
+    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: Scanner::pulse_rate is 1e+13"), SettingError);
+    s.legs[1].scanner.pulse_rate = -1;
+    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: pulseFreq_hz is -1"), SettingError);
+  }
   SUBCASE("a leg that would never end is refused") {
     s.legs[1].scanner.head_speed = 0, s.legs[1].scanner.head_stop = 0;
     CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: maxDuration_s"), SettingError);
@@ -225,6 +235,8 @@ TEST_CASE("an interpolated platform follows its file, with the columns that the 
   CHECK(plan.clock_start == 1);
   CHECK(length(origin(plan, 0) - Vec3{110, 200, 50}) < 1e-9);
   CHECK(length(plan.source.pulse(0)->direction() - right) < 1e-9);
+  s.legs[0].platform.trajectory->columns->roll = 0;
+  CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 0: TrajectoryFormat::columns"), SettingError);
   s.legs[0].platform.trajectory.reset();
   CHECK_THROWS_AS((void)plan_survey(s, flat), SettingError);
 }

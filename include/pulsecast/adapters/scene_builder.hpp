@@ -47,14 +47,17 @@ struct SceneBuildOptions {
   double pulse_rate = 100e3;     ///< of the first leg: motions may be given per pulse [Hz]
   std::uint64_t seed = 0;        ///< of what is random in the scene
   bool fixed_incidence = false;  ///< all surfaces scatter as if they were met squarely
-  unsigned threads = 0;          ///< that read and build; 0 for as many as the machine runs
+  unsigned threads = 0;          ///< that read and build, at most `most_threads`; 0 for as many as the machine runs
+
+  void validate() const { expect_within("SceneBuildOptions::threads", threads, 0, most_threads, ""); }
 };
 
 /// The parts of a scene, and what was odd about its files. Files and grids are kept, so that a further scene of the same files costs
 /// little.
 class SceneBuilder {
  public:
-  SceneBuilder(SceneSettings settings, SceneBuildOptions options) : settings_(std::move(settings)), options_(std::move(options)) {}
+  SceneBuilder(SceneSettings settings, SceneBuildOptions options)
+      : settings_(validated(std::move(settings))), options_(validated(std::move(options))) {}
 
   /// How many runs of the survey the swaps ask for.
   [[nodiscard]] int runs() const {
@@ -115,29 +118,37 @@ class SceneBuilder {
     return loaded_.emplace_back(source, std::move(made)).second;
   }
 
-  std::vector<Loaded> read(const ObjSource& source) {
+  /// Loads one file after the other. A setting that a file comes to, and that cannot be, is told as an error of that file.
+  template <class Load>
+  static std::vector<Loaded> each(const std::vector<std::filesystem::path>& files, const Load& load) {
     std::vector<Loaded> all;
-    for (const std::filesystem::path& file : source.files) {
+    for (const std::filesystem::path& file : files) try {
+        load(file, all);
+      } catch (const SettingError& error) {
+        throw FileError(file.string(), "", error.what());
+      }
+    return all;
+  }
+
+  std::vector<Loaded> read(const ObjSource& source) {
+    return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
       const UpAxis up_axis = source.y_up ? UpAxis::y : UpAxis::z;
       ObjModel model = read_obj(file, {.up = up_axis, .spectra = options_.spectra}, options_.threads);
       warn(model.warnings);
       if (model.mesh.triangles.empty()) {
         warn({file.string() + ": is left out"});
-        continue;
+        return;
       }
       all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh), options_.threads), table(std::move(model.materials))});
-    }
-    return all;
+    });
   }
 
   std::vector<Loaded> read(const GeoTiffSource& source) {
-    std::vector<Loaded> all;
-    for (const std::filesystem::path& file : source.files) {
+    return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
       GeoTiff tiff = read_geotiff(file);
       warn(tiff.warnings);
       all.push_back({std::make_shared<const HeightField>(std::move(tiff.raster), options_.threads), table({material(source.material)})});
-    }
-    return all;
+    });
   }
 
   std::vector<Loaded> read(const XyzSource& source) {
@@ -150,8 +161,8 @@ class SceneBuilder {
     std::transform(source.normal_columns.begin(), source.normal_columns.end(), normal.begin(),
                    [](int column) { return static_cast<std::size_t>(column); });
     s.columns.normal = normal;
-    std::vector<Loaded> all;
-    for (const std::filesystem::path& file : source.files) {
+    s.validate();
+    return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
       PointCloud cloud = read_point_cloud(file, s);
       if (s.normals == VoxelNormals::fitted && !s.default_normal)
         drop_bare(file, cloud);
@@ -159,12 +170,11 @@ class SceneBuilder {
         warn(cloud.warnings);
       if (cloud.voxels.cells.empty()) {
         warn({file.string() + ": has no voxel of three points or more, as estimateNormals needs, and is left out"});
-        continue;
+        return;
       }
       MaterialTable materials = spread(source.material, cloud.voxels);
       all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(cloud.voxels), std::move(materials)});
-    }
-    return all;
+    });
   }
 
   /// Leaves out the voxels in which no plane could be fitted.
@@ -187,14 +197,14 @@ class SceneBuilder {
             : source.mode == VoxelMode::fixed      ? VoxelUse::opaque
                                                    : VoxelUse::scaled;
     if (source.random_shift) s.shift = options_.seed;
+    s.validate();
     const LeafAngles leaves = source.leaf_angles.empty() ? LeafAngles::spherical() : read_leaf_angles(source.leaf_angles);
-    std::vector<Loaded> all;
-    for (const std::filesystem::path& file : source.files) {
+    return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
       VoxelFile voxels = read_voxel_file(file, s);
       warn(voxels.warnings);
       if (voxels.voxels.cells.empty()) {
         warn({file.string() + ": holds no voxel that light could meet, and is left out"});
-        continue;
+        return;
       }
       MaterialTable materials = spread(source.material, voxels.voxels);
       if (!source.leaf_angles.empty())  // of surveys, where a `ladlut` is said to give 2 pi times the extinction of a unit of density
@@ -205,8 +215,7 @@ class SceneBuilder {
         all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(voxels.voxels), materials});
       else
         all.push_back({std::make_shared<const VoxelGrid<ScaledVoxels>>(voxels.voxels), materials});
-    }
-    return all;
+    });
   }
 
   Material material(const MaterialSource& source) {
@@ -249,6 +258,11 @@ class SceneBuilder {
     Similarity placement{.scale = transform.scale, .translation = transform.translation};
     for (const RotationList& turns : transform.rotations) placement.rotation = turns.rotation() * placement.rotation;
     placement.rotation = normalize(placement.rotation);
+    try {
+      placement.validate();
+    } catch (const SettingError& error) {
+      throw error.of("part '" + part.id + "'");
+    }
     ObjectId object = 0;
     const auto [end, error] = std::from_chars(part.id.data(), part.id.data() + part.id.size(), object);
     const bool is_number = error == std::errc{} && end == part.id.data() + part.id.size();
@@ -257,6 +271,9 @@ class SceneBuilder {
       warn({"part '" + part.id + "': its id is not a number; its points are marked with its place in the scene, " + std::to_string(place)});
     for (const Loaded& loaded : load(source)) {
       all.push_back({loaded.geometry, loaded.materials, placement, object++, part.id, {}});
+      const Box box = box_of(all.back());
+      const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
+      if (!(extent <= 1e18)) throw SettingError("part '" + part.id + "': place", extent, "m", "within 1e18 m of the origin");
       settings_of_.resize(all.size());
       settings_of_.back() = &part;
     }

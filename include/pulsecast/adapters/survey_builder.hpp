@@ -49,6 +49,7 @@ class SurveyPlanner {
 
   [[nodiscard]] SurveyPlan plan() const {
     if (survey_.scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
+    survey_.scanner.validate(), survey_.platform.validate();
     std::vector<Leg<SurveyLeg>> legs;
     std::vector<SurveyPlan::LegPlan> plans;
     std::vector<std::string> warnings = ways_.warnings();
@@ -58,7 +59,8 @@ class SurveyPlanner {
     std::unordered_map<std::string, std::size_t> strips;  // first leg of each
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
-      const double rate = rate_of(leg);
+      ways_.of_leg(k, [&] { leg.validate(); });
+      const double rate = ways_.of_leg(k, [&] { return rate_of(leg); });
       const double duration = duration_of(k), way = ways_[k].duration;
       if (way > 0 && duration > 1.1 * way && leg.scanner.active)
         warnings.push_back(ways_.leg_name(k) + ": the platform is there after " + brief(way) + " s, and stays until the head has turned, " +
@@ -71,8 +73,11 @@ class SurveyPlanner {
       if (!leg.scanner.active || teleports(leg)) optic_time = 0;
       std::vector<SurveyChannel> channels;
       for (const ChannelSettings& channel : survey_.scanner.channels)
-        channels.emplace_back(slots > 0 ? optic(k, channel, rate, optic_time) : SurveyOptic{},  // where there are none, nobody asks it
-                              Scanner{.pulse_rate = rate, .pulses = slots, .laser = survey_laser(channel, leg.scanner)});
+        channels.push_back(ways_.of_leg(k, [&] {
+          return SurveyChannel(
+              slots > 0 ? optic(channel, leg.scanner, rate, optic_time) : SurveyOptic{},  // if there are none, nobody asks it
+              Scanner{.pulse_rate = rate, .pulses = slots, .laser = survey_laser(channel, leg.scanner)});
+        }));
       const Tick time = Tick::of(slots, rate);
       if (leg.scanner.active) optic_time += time.seconds();
       SurveyNoise noise{.seed = options_.seed + 0x9e3779b97f4a7c15U * (k + 1)};
@@ -109,14 +114,9 @@ class SurveyPlanner {
     return static_cast<std::uint16_t>(leg.strip ? first.try_emplace(*leg.strip, k).first->second : k);
   }
 
-  SurveyOptic optic(std::size_t k, const ChannelSettings& channel, double rate, double active) const {
-    const LegScannerSettings& leg = survey_.legs[k].scanner;
-    try {
-      if (leg.active) return survey_optic(channel, leg, rate, survey_.platform.mount.rotation.rotation(), {active});
-      return {};  // nobody asks it
-    } catch (const SettingError& error) {
-      throw SettingError(ways_.leg_name(k) + ": " + error.field(), error.value(), error.unit(), error.allowed());
-    }
+  SurveyOptic optic(const ChannelSettings& channel, const LegScannerSettings& leg, double rate, double active) const {
+    if (leg.active) return survey_optic(channel, leg, rate, survey_.platform.mount.rotation.rotation(), {active});
+    return {};  // nobody asks it
   }
 
   /// How long a leg lasts: until the platform is there and the head has turned, but not longer than it may.

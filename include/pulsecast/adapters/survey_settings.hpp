@@ -9,17 +9,28 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
+#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/rotation_list.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
 /// What the documents of a survey say, as plain structs in SI units and radians that a program may change before it builds the survey from
 /// them. Templates, references and inheritance are resolved: each struct says all that counts. After each field stands the attribute
-/// or element that it is in a document.
+/// or element that it is in a document. Where 0 stands for a default or for none, less is no setting: `validate` refuses it.
 namespace pulsecast::adapters {
+
+namespace detail {
+
+/// Refuses a whole number less than `least`.
+inline void expect_at_least(int least, std::string_view field, int value) {
+  expect_within(field, value, least, std::numeric_limits<int>::max(), "");
+}
+
+}  // namespace detail
 
 enum class Axis : std::uint8_t { x, y, z };
 
@@ -110,6 +121,11 @@ struct FullWaveformSettings {
   int rings = 3;                   ///< of subrays, with the centre as the first; `beamSampleQuality`
   double duration_max = 0;         ///< 0 stands for no limit; `maxFullwaveRange_ns` [s]
 
+  void validate() const {
+    detail::expect_at_least(1, "beamSampleQuality", rings);
+    expect_not_negative("maxFullwaveRange_ns", duration_max * 1e9, "ns");
+  }
+
   bool operator==(const FullWaveformSettings&) const = default;
 };
 
@@ -151,6 +167,15 @@ struct ChannelSettings {
   FullWaveformSettings waveform{};                             ///< `<FWFSettings>`
   ErrorFormulas errors{};                                      ///< `<deflectionError>`...
 
+  void validate() const {
+    expect_not_negative("scanAngleMax_deg", degrees(scan_angle_max), "deg");
+    expect_not_negative("scanFreqMin_Hz", scan_frequency_min, "Hz");
+    expect_not_negative("scanFreqMax_Hz", scan_frequency_max, "Hz");
+    expect_not_negative("headRotatePerSecMax_deg", degrees(head_speed_max), "deg/s");
+    detail::expect_at_least(0, "maxNOR", returns_max);
+    waveform.validate();
+  }
+
   bool operator==(const ChannelSettings&) const = default;
 };
 
@@ -160,6 +185,10 @@ struct ScannerSettings {
   std::string name{};                       ///< `name`
   std::vector<double> pulse_rates{};        ///< that it is made for, the usual one first; `pulseFreqs_Hz` [Hz]
   std::vector<ChannelSettings> channels{};  ///< at least one; they fire at the same time, in this order
+
+  void validate() const {
+    for (const ChannelSettings& channel : channels) channel.validate();
+  }
 
   bool operator==(const ScannerSettings&) const = default;
 };
@@ -205,6 +234,8 @@ struct NoiseSettings {
   double clip_high = 1;                                        ///< `clipMax` [m] or [rad]
   int lifespan = 1;                                            ///< for how many pulses each number is used, 0 for all; `fixedLifespan`
 
+  void validate() const { detail::expect_at_least(0, "fixedLifespan", lifespan); }
+
   bool operator==(const NoiseSettings&) const = default;
 };
 
@@ -219,6 +250,12 @@ struct PlatformSettings {
   std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`, Y and Z [m]
   std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`, Y and Z [rad]
 
+  void validate() const {
+    for (const auto* noises : {&position_noise, &attitude_noise})
+      for (const std::optional<NoiseSettings>& noise : *noises)
+        if (noise) noise->validate();
+  }
+
   bool operator==(const PlatformSettings&) const = default;
 };
 
@@ -230,6 +267,11 @@ struct MaterialSource {
   std::optional<std::string> name{};  ///< the first by alphabet unless given; `matname`
   int random = 0;                     ///< how many variants are made; `randomMaterials`
   double random_range = 1;            ///< by which colours of variants differ at most; `randomRange`
+
+  void validate() const {
+    detail::expect_at_least(0, "randomMaterials", random);
+    expect_not_negative("randomRange", random_range, "");
+  }
 
   bool operator==(const MaterialSource&) const = default;
 };
@@ -247,6 +289,8 @@ struct GeoTiffSource {
   std::vector<std::filesystem::path> files{};  ///< `filepath`, or those that `efilepath` matches, by name
   MaterialSource material{};
 
+  void validate() const { material.validate(); }
+
   bool operator==(const GeoTiffSource&) const = default;
 };
 
@@ -260,6 +304,11 @@ struct XyzSource {
   int estimate_normals = 0;                    ///< 0: from the file, else a plane is fitted in each voxel; `estimateNormals`
   bool snap_neighbor_normal = false;           ///< the normal of the point nearest to the centre, not the mean; `snapNeighborNormal`
   std::array<int, 3> normal_columns{3, 4, 5};  ///< from 0; `normalXIndex`, Y and Z
+
+  void validate() const {
+    material.validate();
+    detail::expect_at_least(0, "estimateNormals", estimate_normals);
+  }
 
   bool operator==(const XyzSource&) const = default;
 };
@@ -279,10 +328,20 @@ struct VoxelSource {
   bool random_shift = false;                 ///< if scaled, cubes stand anywhere in their cells; `randomShift`
   std::filesystem::path leaf_angles{};       ///< look-up table; empty: there is none. `ladlut`
 
+  void validate() const { material.validate(); }
+
   bool operator==(const VoxelSource&) const = default;
 };
 
 using PartSource = std::variant<ObjSource, GeoTiffSource, XyzSource, VoxelSource>;
+
+namespace detail {
+
+inline void validate_source(const PartSource& source) {
+  std::visit([](const auto& one) { (void)validated(one); }, source);
+}
+
+}  // namespace detail
 
 /// How geometry is placed: each vertex goes to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`, `translate`.
 struct TransformSettings {
@@ -349,6 +408,8 @@ struct MotionSequenceSettings {
   std::optional<std::string> next{};      ///< the sequence that follows; it stops unless given. `next`
   std::vector<MotionSettings> motions{};  ///< all of them in each step, one after the other
 
+  void validate() const { detail::expect_at_least(0, "loop", loop); }
+
   bool operator==(const MotionSequenceSettings&) const = default;
 };
 
@@ -358,6 +419,11 @@ struct SwapSettings {
   bool removes = false;                ///< nothing stands there; `force_null`
   std::optional<PartSource> source{};  ///< the part's own unless given
   TransformSettings transform{};
+
+  void validate() const {
+    detail::expect_at_least(1, "swapStep", step);
+    if (source) detail::validate_source(*source);
+  }
 
   bool operator==(const SwapSettings&) const = default;
 };
@@ -372,6 +438,14 @@ struct PartSettings {
   std::vector<MotionSequenceSettings> motions{};  ///< the first one begins; none: it stands still
   std::vector<SwapSettings> swaps{};              ///< one after the other
 
+  void validate() const {
+    detail::validate_source(source);
+    detail::expect_at_least(1, "dynStep", dynamic_step);
+    if (dynamic_interval) expect_positive("dynTimeStep", *dynamic_interval, "s");
+    for (const MotionSequenceSettings& sequence : motions) sequence.validate();
+    for (const SwapSettings& swap : swaps) swap.validate();
+  }
+
   bool operator==(const PartSettings&) const = default;
 };
 
@@ -382,6 +456,16 @@ struct SceneSettings {
   int dynamic_step = 1;                      ///< it is updated once in so many pulse slots; `dynStep`
   std::optional<double> dynamic_interval{};  ///< instead, once in this time; `dynTimeStep` [s]
   std::vector<PartSettings> parts{};
+
+  void validate() const {
+    detail::expect_at_least(1, "dynStep", dynamic_step);
+    if (dynamic_interval) expect_positive("dynTimeStep", *dynamic_interval, "s");
+    for (const PartSettings& part : parts) try {
+        part.validate();
+      } catch (const SettingError& error) {
+        throw error.of("part '" + part.id + "'");
+      }
+  }
 
   bool operator==(const SceneSettings&) const = default;
 };
@@ -443,6 +527,14 @@ struct LegScannerSettings {
   double trajectory_interval = 0;              ///< between records of the trajectory; 0: none. `trajectoryTimeInterval_s` [s]
   double warm_up = 0;                          ///< for which head and optic run before the first pulse; `opticsWarmupPhase_s` [s]
 
+  void validate() const {
+    expect_not_negative("pulseFreq_hz", pulse_rate, "Hz");
+    expect_not_negative("scanFreq_hz", scan_frequency, "Hz");
+    if (scan_angle) expect_not_negative("scanAngle_deg", degrees(*scan_angle), "deg");
+    expect_not_negative("trajectoryTimeInterval_s", trajectory_interval, "s");
+    expect_not_negative("opticsWarmupPhase_s", warm_up, "s");
+  }
+
   bool operator==(const LegScannerSettings&) const = default;
 };
 
@@ -452,6 +544,11 @@ struct LegSettings {
   std::optional<double> duration_max{};  ///< after which the leg ends in any case; `maxDuration_s` of leg or scannerSettings [s]
   LegPlatformSettings platform{};
   LegScannerSettings scanner{};
+
+  void validate() const {
+    if (duration_max) expect_not_negative("maxDuration_s", *duration_max, "s");
+    scanner.validate();
+  }
 
   bool operator==(const LegSettings&) const = default;
 };

@@ -62,6 +62,16 @@ class SurveyWays {
     return (k < options_.leg_places.size() ? options_.leg_places[k] + ": leg " : "leg ") + std::to_string(k);
   }
 
+  /// Calls a function; a setting that it refuses is told as one of a leg.
+  template <class Function>
+  auto of_leg(std::size_t k, const Function& function) const {
+    try {
+      return function();
+    } catch (const SettingError& error) {
+      throw error.of(leg_name(k));
+    }
+  }
+
   /// Whether legs go to where the next one begins.
   [[nodiscard]] bool goes_on() const {
     return survey_.platform.kind != PlatformKind::stationary && survey_.platform.kind != PlatformKind::interpolated;
@@ -341,7 +351,7 @@ class SurveyWays {
       if (t->columns) columns_of(*t, format);
       const Key key{t->file.string(), t->start, t->end};
       if (!tables.contains(key)) {
-        TrajectoryTable table = read_trajectory(t->file, format, {t->start, t->end});
+        TrajectoryTable table = of_leg(k, [&] { return read_trajectory(t->file, format, {t->start, t->end}); });
         for (const std::string& warning : table.warnings) warn(warning);
         if (t->position_only) table.poses = with_headings(std::move(table.poses));
         tables.emplace(key, std::move(table));

@@ -106,6 +106,43 @@ def test_what_is_not_a_number_is_refused_by_name(survey):
         simulation(survey)
 
 
+@pytest.mark.parametrize(("spoil", "says"), [
+    (lambda s: setattr(s.legs[1].scanner, "pulse_rate", -5), "leg 1: pulseFreq_hz is -5 Hz"),
+    (lambda s: setattr(s.legs[1].scanner, "scan_frequency", -5), "leg 1: scanFreq_hz is -5 Hz"),
+    (lambda s: setattr(s.legs[1].scanner, "trajectory_interval", -1), "leg 1: trajectoryTimeInterval_s is -1 s"),
+    (lambda s: setattr(s.legs[2], "duration_max", -1), "leg 2: maxDuration_s is -1 s"),
+    (lambda s: setattr(s.scanner.channels[0], "scan_angle_max", -1), "scanAngleMax_deg is -57"),
+    (lambda s: setattr(s.scanner.channels[0], "scan_frequency_max", -1), "scanFreqMax_Hz is -1 Hz"),
+    (lambda s: setattr(s.scanner.channels[0], "returns_max", -1), "maxNOR is -1"),
+    (lambda s: setattr(s.scanner.channels[0].waveform, "rings", 0), "beamSampleQuality is 0"),
+    (lambda s: setattr(s.scanner.channels[0].waveform, "duration_max", -1e-9), "maxFullwaveRange_ns is -1 ns"),
+    (lambda s: setattr(s.platform, "position_noise", [None, pulsecast.NoiseSettings(lifespan=-1), None]), "fixedLifespan is -1"),
+    (lambda s: setattr(s.scene, "dynamic_step", 0), "dynStep is 0"),
+    (lambda s: setattr(s.scene, "dynamic_interval", 0), "dynTimeStep is 0 s"),
+    (lambda s: setattr(s.scene.parts[0], "dynamic_step", 0), "part '7': dynStep is 0"),
+    (lambda s: setattr(s.scene.parts[0], "swaps", [pulsecast.SwapSettings(step=-1)]), "part '7': swapStep is -1"),
+    (lambda s: setattr(s.scene.parts[0], "motions", [pulsecast.MotionSequenceSettings(loop=-1)]), "part '7': loop is -1"),
+    (lambda s: setattr(s.scene.parts[0], "source", pulsecast.XyzSource(estimate_normals=-1)), "part '7': estimateNormals is -1"),
+    (lambda s: setattr(s.scene.parts[0], "source", pulsecast.GeoTiffSource(material=pulsecast.MaterialSource(random=-1))),
+     "part '7': randomMaterials is -1"),
+])
+def test_less_than_the_default_of_zero_is_no_setting(survey, spoil, says):
+    spoil(survey)
+    with pytest.raises(ValueError, match=says):
+        simulation(survey)
+
+
+def test_what_a_simulation_cannot_be_asked_is_refused_by_name(survey):
+    with pytest.raises(ValueError, match="repetition is -1"):
+        simulation(survey, repetition=-1)
+    with pytest.raises(ValueError, match=r"threads is 1e\+06, but must be from 0 to 1024"):
+        simulation(survey, threads=1_000_000)
+    with pytest.raises(ValueError, match=r"threads is 1e\+06, but must be from 0 to 1024"):
+        simulation(survey).run(threads=1_000_000)
+    with pytest.raises(ValueError, match="Rosette::bend is nan"):
+        own_scanner.RosetteSurvey(bend=math.nan)
+
+
 def test_numbers_and_truths_of_numpy_are_taken(survey):
     survey.legs[0].scanner.active, survey.legs[1].platform.position = np.bool_(False), np.array([5, 0, 0], "f4")
     survey.seed = np.uint8(5)
@@ -207,6 +244,7 @@ def test_objects_say_what_they_are(survey):
 @pytest.mark.parametrize(("asked", "error"), [
     ({"callback": 3}, TypeError), ({"progress": "loud"}, TypeError), ({"callback": print, "every_seconds": -1}, ValueError),
     ({"callback": print, "every_seconds": math.nan}, ValueError), ({"stride": 0}, ValueError), ({"threads": -1}, TypeError),
+    ({"threads": 1025}, ValueError),
 ])
 def test_what_a_run_cannot_be_asked_is_refused_before_it_begins(survey, asked, error):
     begun = []
