@@ -3,8 +3,9 @@
 
 // What each setting costs and what it buys: time, memory, and errors against a reference of 2,001 subrays, double precision and the
 // analytic detector, on the same pulses of six scenarios. One knob at a time from the default, and subrays by bins. Rows are named
-// scenario/knob/value. `bench/tradeoff.sh` runs it, draws docs/pictures/tradeoff_*.svg, and puts its tables into docs/tradeoff.md.
-// Files on the command line: where a CSV file of all settings, and one of footprints on edges and wires, are left.
+// scenario/knob/value. Errors have intervals of 95 %, by bootstrap over runs of pulses. `bench/tradeoff.sh` runs it, draws
+// docs/pictures/tradeoff_*.svg, and puts its tables into docs/tradeoff.md. Files on the command line: where a CSV file of all settings, and
+// one of footprints on edges and wires, are left.
 
 #include <algorithm>
 #include <array>
@@ -40,18 +41,16 @@ struct Point {
   double seconds = 0;  ///< of the thread, for a pulse of the survey
   double memory = 0;   ///< of the scene [MiB]
   Errors errors{};
+  Intervals intervals{};           ///< of the errors that are drawn
   std::array<bool, 3> on_front{};  ///< by range, by echoes missed and invented, by intensity
 };
-
-/// The errors that are drawn, and that fronts are made of.
-std::array<double, 3> drawn(const Errors& e) { return {e.range_rms, e.missed + e.invented, e.intensity}; }
 
 /// Marks the points that no other one outdoes in time without being outdone in the error.
 void find_fronts(std::vector<Point>& points) {
   for (std::size_t by = 0; by < 3; ++by)
     for (Point& point : points) {
       const auto outdoes = [&](const Point& other) {
-        const double error = drawn(point.errors)[by], theirs = drawn(other.errors)[by];
+        const double error = point.errors.drawn()[by], theirs = other.errors.drawn()[by];
         return other.setting.comparable && other.seconds <= point.seconds && theirs <= error &&
                (other.seconds < point.seconds || theirs < error);
       };
@@ -59,7 +58,7 @@ void find_fronts(std::vector<Point>& points) {
     }
 }
 
-std::vector<Point> measure(const bench::Report& report, const Scenario& scenario) {
+std::vector<Point> measure(const bench::Report& report, const Scenario& scenario, const Bootstrap& bootstrap) {
   Setting reference{.knob = "reference", .value = "", .footprint = sunflower(2001), .bin = 0, .map = scenario.exact};
   const Results with_moments = results_of(scenario, reference);
   reference.width = Width::fit;
@@ -77,7 +76,8 @@ std::vector<Point> measure(const bench::Report& report, const Scenario& scenario
     Point point{.setting = setting, .memory = static_cast<double>(memory_of(setting.map)) / mebibyte};
     const Results found = results_of(scenario, setting);
     if (setting.stride == 1)
-      point.errors = compare(setting.width == Width::fit ? with_fit : with_moments, found, scenario.gate);
+      point.errors = compare(setting.width == Width::fit ? with_fit : with_moments, found, scenario.gate),
+      point.intervals = bootstrap.of(point.errors.blocks);
     else
       point.errors.echoes = forecast_error(found, setting.stride);
     compare(true_canopy, canopy_of(found, setting.stride), point.errors);
@@ -107,7 +107,12 @@ void write_csv(std::FILE* out, const Scenario& scenario, const std::vector<Point
                            1e12 * e.width_bias, 1e12 * e.width, e.echoes,   e.gap_fraction,        e.height_50,          e.height_95,
                            e.height_99};
     for (const double figure : figures) std::fprintf(out, "%.5g,", figure);
-    std::fprintf(out, "%d,%d,%d\n", p.on_front[0] ? 1 : 0, p.on_front[1] ? 1 : 0, p.on_front[2] ? 1 : 0);
+    std::fprintf(out, "%d,%d,%d", p.on_front[0] ? 1 : 0, p.on_front[1] ? 1 : 0, p.on_front[2] ? 1 : 0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double unit = k == 0 ? 1e3 : 1;
+      std::fprintf(out, ",%.5g,%.5g", unit * p.intervals[k].low, unit * p.intervals[k].high);
+    }
+    std::fprintf(out, "\n");
   }
   std::fflush(out);
 }
@@ -129,6 +134,45 @@ void add_rows(bench::Report& report, const Scenario& scenario, const std::vector
   }
 }
 
+/// Settings by pairs, each with its errors by those of the other. An interval with 1 inside is no ranking.
+void rank(bench::Report& report, const Scenario& scenario, const std::vector<Point>& points, const Bootstrap& bootstrap) {
+  const auto named = [&](const std::string& name) {
+    return std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.setting.knob + " " + p.setting.value == name; });
+  };
+  const std::string standard = "default " + points[0].setting.value;
+  const std::pair<std::string, std::string> pairs[]{{standard, "subrays rings 7"},
+                                                    {standard, "subrays rings 19"},
+                                                    {standard, "subrays rings 279"},
+                                                    {standard, "subrays sunflower 19"},
+                                                    {standard, "subrays lattice 7"},
+                                                    {standard, "subrays lattice 37"},
+                                                    {standard, "bins 0.1 ns"},
+                                                    {standard, "bins 0.5 ns"},
+                                                    {standard, "bins analytic"},
+                                                    {"subrays lattice 7", "subrays rings 7"},
+                                                    {"subrays lattice 4", "subrays rings 7"},
+                                                    {"subrays lattice 9", "subrays rings 19"},
+                                                    {"subrays lattice 18", "subrays rings 37"},
+                                                    {"subrays lattice 31", "subrays rings 62"},
+                                                    {"turned lattice 9", "turned rings 19"},
+                                                    {"turned lattice 13", "turned rings 19"},
+                                                    {"turned lattice 19", "turned rings 37"}};
+  for (const auto& [one, other] : pairs) {
+    const auto a = named(one), b = named(other);
+    if (a == points.end() || b == points.end()) continue;
+    const Intervals ratio = bootstrap.of_ratio(a->errors.blocks, b->errors.blocks);
+    const auto short_name = [&](const Point& p) {
+      return p.setting.knob == "subrays" ? p.setting.value : p.setting.knob + " " + p.setting.value;
+    };
+    report.row(scenario.name + ": " + short_name(*a) + " by " + short_name(*b), {{"range, from", ratio[0].low},
+                                                                                 {"range, to", ratio[0].high},
+                                                                                 {"echoes wrong, from", ratio[1].low},
+                                                                                 {"echoes wrong, to", ratio[1].high},
+                                                                                 {"intensity, from", ratio[2].low},
+                                                                                 {"intensity, to", ratio[2].high}});
+  }
+}
+
 std::FILE* opened(const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "w");
   if (file == nullptr) std::fprintf(stderr, "tradeoff: cannot write %s\n", path.c_str()), std::exit(1);
@@ -145,13 +189,15 @@ int main(int count, char** words) {
                "scenario,knob,value,footprint,subrays,detector,comparable,ns_per_pulse,pulses_per_second,scene_mib,range_bias_mm,"
                "range_spread_mm,range_rms_mm,range_95_mm,missed_percent,invented_percent,echoes_wrong_percent,intensity_bias_percent,"
                "intensity_percent,width_bias_ps,width_ps,echoes_percent,gap_fraction_percent,height_50_m,height_95_m,height_99_m,"
-               "front_range,front_echoes,front_intensity\n");
+               "front_range,front_echoes,front_intensity,range_rms_low_mm,range_rms_high_mm,echoes_wrong_low_percent,"
+               "echoes_wrong_high_percent,intensity_low_percent,intensity_high_percent\n");
   if (files.size() > 1) {
     std::FILE* edges = opened(files[1]);
     write_quadrature(edges);
     std::fclose(edges);
   }
   const double start = bench::wall_seconds();
+  const Bootstrap bootstrap(pulse_count / run_length);
   const std::pair<const char*, Scenario (*)(std::size_t)> scenarios[]{{"terrain", terrain},
                                                                       {"wood_tripod", wood_from_a_tripod},
                                                                       {"wood_drone", wood_from_a_drone},
@@ -163,9 +209,11 @@ int main(int count, char** words) {
     std::fprintf(stderr, "%4.0f s: %s\n", bench::wall_seconds() - start, name);
     const Scenario scenario = make(pulse_count);
     report.heading(scenario.title);
-    const std::vector<Point> points = measure(report, scenario);
+    const std::vector<Point> points = measure(report, scenario, bootstrap);
     add_rows(report, scenario, points);
     write_csv(csv, scenario, points);
+    report.heading("Errors of a setting by those of another, " + scenario.name + ": intervals of 95 %");
+    rank(report, scenario, points, bootstrap);
   }
   std::fprintf(stderr, "%4.0f s: float against double\n", bench::wall_seconds() - start);
   measure_precision(report);

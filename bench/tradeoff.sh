@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: MIT
 
 # Takes the figures of docs/tradeoff.md anew: runs bench_tradeoff of a build, draws docs/pictures/tradeoff_*.svg with gnuplot (Debian package:
-# gnuplot-nox), and puts the tables between the marks of the page. Takes some five minutes; nothing else should run.
+# gnuplot-nox), and puts the tables between the marks of the page. Takes some five minutes; nothing else should run. Errors and their
+# intervals do not depend on the machine; `--rounds 1 --seconds 0` takes them without times worth looking at.
 # Usage: tradeoff.sh [BUILD [OPTION]...]; build/release if not told. Options go to bench_tradeoff, as `--only facade`, to try something out: then
 # the pictures are left in BUILD and the tables printed, and the page stays as it is.
 # Leaves BUILD/tradeoff.csv, BUILD/tradeoff.json and BUILD/tradeoff_edges.csv.
@@ -27,6 +28,7 @@ has() { grep -q "^$1," "$csv"; }
 # The rows of a scenario that the page shows, as a table; figures to three digits.
 table() {
   awk -F, -v scenario="$1" '
+    function interval(x, low, high) { return rounded(x) (rounded(low) == "" ? "" : " [" rounded(low) ", " rounded(high) "]") }
     function rounded(x) {
       if (x == "nan" || x == "-nan") return ""
       size = x < 0 ? -x : x
@@ -40,15 +42,19 @@ table() {
     $2 == "subrays" && $4 == "rings" && $5 !~ /^(1|7|19|37|279)$/ { next }
     $2 == "subrays" && $5 == 1 && $4 != "lattice" { next }
     !headed++ {
-      print "| knob | setting | ns a pulse | MiB | range: bias, mm | spread, mm | 95 % within, mm | echoes missed, % | invented, % | intensity, % |" \
-            " width, ps | echoes, % |" (plants ? " gap fraction, % | height at 95 %, m |" : "")
-      print "|---|---|---|---|---|---|---|---|---|---|---|---|" (plants ? "---|---|" : "")
+      print "| knob | setting | ns a pulse | MiB | range: bias, mm | root mean square, mm | 95 % within, mm | echoes missed, % | invented, % | both, % |" \
+            " intensity, % | width, ps | echoes, % |" (plants ? " gap fraction, % | height at 95 %, m |" : "")
+      print "|---|---|---|---|---|---|---|---|---|---|---|---|---|" (plants ? "---|---|" : "")
     }
     {
       line = "| " ($2 == last ? "" : $2) " | " $3 " |"
       last = $2
-      split("8 10 11 12 14 15 16 19 21 22 23 25", columns, " ")
-      for (i = 1; i <= (plants ? 12 : 10); ++i) line = line " " rounded($columns[i]) " |"
+      split("8 10 11 13 14 15 16 17 19 21 22 23 25", columns, " ")
+      low[13] = 30; low[17] = 32; low[19] = 34  # columns of intervals
+      for (i = 1; i <= (plants ? 13 : 11); ++i) {
+        column = columns[i]
+        line = line " " (column in low ? interval($column, $low[column], $(low[column] + 1)) : rounded($column)) " |"
+      }
       print line
     }' "$csv"
 }
@@ -56,9 +62,12 @@ table() {
 # Rings beside lattices of at most half as many subrays, on edges and wires.
 halves() {
   awk -F, '
-    $1 == "facade" && $2 == "subrays" { range[$3] = $13; within[$3] = $14; wrong[$3] = $17; intensity[$3] = $19; time[$3] = $8 }
+    function with_interval(k) { return sprintf("%.2f [%.2f, %.2f]", $k, $(k == 13 ? 30 : k == 17 ? 32 : 34), $(k == 13 ? 31 : k == 17 ? 33 : 35)) }
+    $1 == "facade" && $2 == "subrays" {
+      range[$3] = with_interval(13); within[$3] = $14; wrong[$3] = with_interval(17); intensity[$3] = with_interval(19); time[$3] = $8
+    }
     function row(name) {
-      printf "| %s | %.0f | %.2f | %.2f | %.2f | %.2f |\n", name, time[name], range[name], within[name], wrong[name], intensity[name]
+      printf "| %s | %.0f | %s | %.2f | %s | %s |\n", name, time[name], range[name], within[name], wrong[name], intensity[name]
     }
     END {
       print "| footprint | ns a pulse | range: root mean square, mm | 95 % within, mm | echoes missed or invented, % | intensity, % |"
@@ -74,6 +83,9 @@ halves() {
     printf '\n### Rings and lattices on the facade\n\n'
     halves
   fi
+  printf '\n### Rankings\n\nErrors of a setting by those of another: intervals of 95 %%. One with 1 inside is no ranking.\n\n'
+  grep -m 1 -A 1 '^| | range, from' "$work/rows" || true
+  grep '^| `[a-z_]*: ' "$work/rows" || true
   awk '/^float against double/ { print "\n### Float against double\n"; inside = 1 } inside' "$work/rows"
   for scenario in terrain wood_tripod wood_drone street facade step; do
     has "$scenario" || continue

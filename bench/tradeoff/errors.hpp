@@ -14,6 +14,7 @@
 
 #include <pulsecast/pulsecast.hpp>
 
+#include "bootstrap.hpp"
 #include "pulses.hpp"
 
 namespace tradeoff {
@@ -64,6 +65,9 @@ struct Errors {
   double width_bias = unknown, width = unknown;                          ///< mean, and root of the mean square [s]
   double gap_fraction = unknown;                                         ///< difference [%]
   double height_50 = unknown, height_95 = unknown, height_99 = unknown;  ///< percentiles of what stands on the ground, difference [m]
+  Blocks blocks{};                                                       ///< what each run of pulses adds to the errors that are drawn
+
+  [[nodiscard]] DrawnErrors drawn() const noexcept { return {range_rms, missed + invented, intensity}; }
 };
 
 /// Echoes of one pulse that are taken for the same: those nearest to each other first, each once, none farther apart than the gate [m].
@@ -145,20 +149,26 @@ inline void compare(const Canopy& reference, const Canopy& found, Errors& errors
 /// Matches echo by echo; `gate` is how far apart the same echo may be in the two [m].
 [[nodiscard]] inline Errors compare(const Results& reference, const Results& found, double gate) {
   Errors errors;
+  if (reference.echoes.empty()) return errors;
+  errors.blocks.resize((reference.pulses() + run_length - 1) / run_length);
   Mean range, intensity, width, level;
   std::vector<double> sizes;
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < reference.pulses(); ++i) {
     match(reference.of(i), found.of(i), gate, pairs);
+    Sums& block = errors.blocks[i / run_length];
+    block.echoes += static_cast<double>(reference.of(i).size());
+    block.wrong += static_cast<double>(reference.of(i).size() + found.of(i).size() - 2 * pairs.size());
     for (const auto& [r, e] : pairs) {
       const Echo &true_one = reference.of(i)[r], &echo = found.of(i)[e];
+      block.range_squares += (echo.range - true_one.range) * (echo.range - true_one.range), block.matched += 1;
+      block.intensity_sizes += std::fabs(echo.reflectance - true_one.reflectance), block.intensities += true_one.reflectance;
       range.add(echo.range - true_one.range), sizes.push_back(std::fabs(echo.range - true_one.range));
       intensity.add(echo.reflectance - true_one.reflectance), level.add(true_one.reflectance);
       if (std::isfinite(echo.width - true_one.width)) width.add(echo.width - true_one.width);
     }
   }
   const auto all = static_cast<double>(reference.echoes.size()), matched = static_cast<double>(range.count);
-  if (reference.echoes.empty()) return errors;
   errors.echoes = 100 * (static_cast<double>(found.echoes.size()) / all - 1);
   errors.missed = 100 * (all - matched) / all;
   errors.invented = 100 * (static_cast<double>(found.echoes.size()) - matched) / all;
