@@ -37,8 +37,8 @@ namespace detail {
 
 /// Whether a name still leads to an open file.
 [[nodiscard]] inline bool stands_at(int file, const std::filesystem::path& path) noexcept {
-  struct stat open {
-  }, named{};
+  struct stat open {};
+  struct stat named {};
   return ::fstat(file, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
@@ -62,10 +62,10 @@ class OutputEncoder {
 /// program is killed, nothing stands under the final name but what stood there before. Destroyed uncommitted, it leaves nothing behind.
 /// Every failure is a `FileError` that names the final path; after one, nothing more can be written or committed.
 /// With an encoder, what is written passes through it, a megabyte at a time, and cannot be read again or overwritten.
-/// The temporary file is locked: a second `OutputFile` of the same name, in this program or in another, is refused, and the first is
-/// unharmed. Where the file system has no locks, the second takes the name, and the first finds that out when it commits. The content is on
-/// the disk before the file has its final name: after a power cut, a file of that name is whole. Limits: the name may be lost in a power
-/// cut if the folder was not written to the disk since.
+/// The temporary file is locked: a second `OutputFile` of the same name, in this program or in another, is refused. Where the file system
+/// has no locks, the second takes the name, and the first finds that out when it commits.
+/// The content is on the disk before the file has its final name, so that a power cut leaves no file that only looks whole.
+/// Limits: the name may be lost in a power cut as long as the folder was not written to the disk.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path path, std::unique_ptr<OutputEncoder> encoder = nullptr)

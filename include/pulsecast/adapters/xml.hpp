@@ -35,10 +35,10 @@
 
 namespace pulsecast::adapters {
 
-/// Where the files are that documents name.
+/// Where the files are that documents name, and what they are read for.
 struct XmlOptions {
   std::vector<std::filesystem::path> assets{};  ///< folders; the first that has a file wins. Then come those of survey and document
-  bool channel_files = false;                   ///< whether each channel will have a file by its id: ids that cannot name files are refused
+  bool channel_files = false;  ///< whether each channel is to have a file by its id: ids that cannot tell files apart are refused
 };
 
 /// What a document of a survey says.
