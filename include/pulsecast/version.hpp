@@ -3,4 +3,4 @@
 #pragma once
 
 /// The version of the library; CMake reads it here.
-#define PULSECAST_VERSION "0.1.0"
+#define PULSECAST_VERSION "0.1.1"
