@@ -273,7 +273,7 @@ class Session {
   /// Whether results are whole; if not, the log forgets them.
   bool are_whole(const std::vector<fs::path>& results) {
     const std::vector<fs::path> damaged = log_.damaged(results);
-    for (const fs::path& path : damaged) note(path.string() + " is not as long as when it was whole: its legs are simulated again");
+    for (const fs::path& path : damaged) notes_.say(path.string() + " is not as long as when it was whole: its legs are simulated again");
     if (damaged.empty() && log_.names(results)) return true;
     for (const fs::path& path : results) log_.files.erase(path.filename().string());
     return false;

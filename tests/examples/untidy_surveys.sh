@@ -42,6 +42,7 @@ printf 'mtllib yard.mtl\nv -20 -20 0\nv 20 -20 0\nv 20 20 0\nv -20 20 0\nusemtl 
 printf 'newmtl lawn\nKd 0.5 0.5 0.5\nhelios_spectra turf\n' > tidy/yard.mtl
 printf '0 5 0.2 0 0 1\n0 6 0.2 0 0 1\n' > tidy/hedge.xyz
 printf '0.5 0.2\n1.5 0.4\n' > tidy/spectra/turf.txt
+printf '0,0,0,0,0,0,5\n0.1,0,0,0,1,0,5\n0.1,0,0,0,8,0,5\n0.2,0,0,0,9,0,5\n' > tidy/jump.trj
 printf '<document><platform id="far" type="static"/></document>\n' > outside/more.xml
 
 failures=0
@@ -110,6 +111,9 @@ untidy "a face of two corners" yard.obj 's/^usemtl.*/&\nf 1 2/' "yard.obj, line 
 untidy "a name with slashes" survey.xml 's|name="untidy"|name="untidy/1"|' 'survey.xml:17:11: name="untidy/1" is taken as '
 untidy "two of what there should be one" survey.xml 's|<platformSettings.*|&<platformSettings x="9"/>|' \
   "survey.xml:19:45: a second <platformSettings> in <leg>: the first one counts"
+untidy "a trajectory that jumps" survey.xml \
+  's|platform="#stand"|platform="interpolated"|; s|<platformSettings .*|<platformSettings trajectory="jump.trj"/>|' \
+  "jump.trj, line 3: has the time of the pose before it, but another pose, the first of 1: the platform jumps there"
 
 # Waveforms that LAS cannot take as they are: as_las NAME BINS NOTE.
 as_las() {
