@@ -415,7 +415,7 @@ TEST_CASE("channels of one id are told with their place, and refused where each 
   const auto document = [](const std::string& first, const std::string& second) {
     return written(
         "channels.xml",
-        "<document>\n  <scanner id=\"s\" optics=\"rotating\" pulseFreqs_Hz=\"3000\" scanAngleEffectiveMax_deg=\"60\">\n    <channels>\n"
+        "<document>\n  <scanner id=\"s\" optics=\"rotating\" pulseFreqs_Hz=\"3000\" scanAngleMax_deg=\"60\">\n    <channels>\n"
         "      <channel" +
             first + "/>\n      <channel" + second +
             "/>\n    </channels>\n  </scanner>\n"
