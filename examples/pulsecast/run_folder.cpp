@@ -68,9 +68,10 @@ bool is_later(const fs::path& a, const fs::path& b) {
 std::string written_name(const std::string& name) {
   constexpr const char* digits = "0123456789abcdef";
   std::string text;
-  for (const unsigned char c : name) {
+  for (const char letter : name) {
+    const auto c = static_cast<unsigned char>(letter);
     if (c >= ' ' && c != 0x7f && c != '\\')
-      text += static_cast<char>(c);
+      text += letter;
     else
       text.append("\\x").append({digits[c >> 4], digits[c & 15]});
   }
