@@ -280,7 +280,7 @@ TEST_CASE("no more threads are started than there are chunks of work") {
     CHECK(run(survey, {.threads = threads, .end = pulses}).slots == pulses);
     return allocations - before;
   };
-  for (const PulseIndex pulses : {0, 1, 2048}) {
+  for (const PulseIndex pulses : {0U, 1U, 2048U}) {
     CAPTURE(pulses);
     CHECK(allocations_of(64, pulses) == allocations_of(1, pulses));
   }
