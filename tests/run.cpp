@@ -41,14 +41,14 @@ std::atomic<std::size_t> allocations = 0;
 
 }  // namespace
 
-// never inlined, else g++ sees `free` meet the memory of `new`
-[[gnu::noinline]] void* operator new(std::size_t size) {
+// never inlined, else g++ sees `free` meet the memory of `new`; weak, as the thread sanitizer has its own, under which nothing is counted
+[[gnu::noinline, gnu::weak]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* const memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline, gnu::weak]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline, gnu::weak]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace {
 
