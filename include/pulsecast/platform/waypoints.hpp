@@ -33,7 +33,8 @@ enum class Interpolation : std::uint8_t {
 /// Moves through timed poses. Attitudes turn at a constant rate about one axis, the shorter way, so headings may cross north. Before the
 /// first waypoint it stands there, and after the last one, too. Planners and trajectory files end in this.
 ///
-/// A time may stand twice or more: the body jumps then. Before it, the first of these waypoints is where it arrives; from it on, the last counts.
+/// A time may stand twice or more: the body jumps then. Before it, the first of these waypoints is where it arrives; from it
+/// on, the last counts.
 /// Cubic positions are found on either side of a jump alone.
 class Waypoints {
  public:
