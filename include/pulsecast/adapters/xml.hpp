@@ -159,6 +159,7 @@ class SurveyReader {
     read_legs(io);
   }
 
+  /// Whether a character may not stand in the name of a file.
   [[nodiscard]] static bool fits_no_name(unsigned char c) { return c == '/' || c == '\\' || c < ' ' || c == 0x7f; }
 
   /// A text that becomes part of the name of a file or folder.
@@ -211,7 +212,6 @@ class SurveyReader {
     return found;
   }
 
-  /// Whether a text may stand in the name of a file.
   /// Channels without an id have their number as such.
   void check_channel_ids(const XmlReference& scanner) {
     const XmlDocument& document = scanner.document->document();
