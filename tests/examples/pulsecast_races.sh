@@ -9,6 +9,7 @@
 set -u
 export LC_ALL=C
 program=$1 survey=$2 folder=$3
+tests=$(cd "$(dirname "$0")" && pwd) || exit 2
 races=${4:-${PULSECAST_RACES:-6}} seed=${5:-$(($(date +%s%N) % 32768))}
 RANDOM=$seed
 rm -rf "$folder"
@@ -21,23 +22,13 @@ fail() {
   exit 1
 }
 
-options=("$survey" --gpsStartTime 1577836800 --threads 2 --quiet)
-run() { "$program" "${options[@]}" --output "$1" --format "$2" "${@:3}"; } # run OUTPUT FORMAT [OPTION...]
-pause() { sleep "0.$(printf '%03d' $(($1 % 1000)))"; }                      # pause MILLISECONDS
+pause() { sleep "0.$(printf '%03d' $(($1 % 1000)))"; } # pause MILLISECONDS
 
 # Names and sums of all files below the two repetitions of a run, or more, hidden ones as well, without the time in their names. A hidden
 # folder is one that was not made yet when its process was killed.
 sums() { (cd "$1" && find . -name '.2*' -prune -o -type f -printf '%f ' -exec md5sum {} ';' | sed 's| \./.*||' | sort); }
 
-declare -A expected
-for format in las xyz; do
-  run whole_$format $format || fail "the run that is let alone failed"
-  expected[$format]=$(sums whole_$format)
-  [ "$(wc -l <<< "${expected[$format]}")" = 16 ] || fail "16 files were expected, not ${expected[$format]}"
-done
-begin=$(date +%s%N)
-run measured las || fail "a run failed"
-duration=$((($(date +%s%N) - begin) / 1000000))
+. "$tests/whole_runs.sh"
 
 # Starts the first process, and waits until it is at work in its folder for a random while. False if it has ended by then.
 start_first() { # start_first [OPTION...]

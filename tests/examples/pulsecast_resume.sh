@@ -7,6 +7,7 @@
 set -u
 export LC_ALL=C
 program=$1 survey=$2 folder=$3
+tests=$(cd "$(dirname "$0")" && pwd) || exit 2
 seed=${4:-$(($(date +%s%N) % 32768))}
 RANDOM=$seed
 rm -rf "$folder"
@@ -17,9 +18,6 @@ fail() {
   echo "seed $seed: $*"
   exit 1
 }
-
-options=("$survey" --gpsStartTime 1577836800 --threads 2 --quiet)
-run() { "$program" "${options[@]}" --output "$1" --format "$2" "${@:3}"; }  # run OUTPUT FORMAT [OPTION...]
 
 # Kills a run after so many milliseconds: killed TIME OUTPUT FORMAT [OPTION...]. Fails if it had come to its end before.
 killed() {
@@ -34,15 +32,7 @@ killed() {
 # Names and sums of all files below the runs of an output, without the time in their names.
 sums() { (cd "$1" && find . -type f ! -path './*/.*' -printf '%f ' -exec md5sum {} ';' | sed 's| \./.*||' | sort); }
 
-declare -A expected
-for format in las xyz; do
-  run whole_$format $format || fail "the run that is let alone failed"
-  expected[$format]=$(sums whole_$format)
-  [ "$(wc -l <<< "${expected[$format]}")" = 16 ] || fail "16 files were expected, not ${expected[$format]}"
-done
-begin=$(date +%s%N)
-run measured las || fail "a run failed"
-duration=$((($(date +%s%N) - begin) / 1000000))
+. "$tests/whole_runs.sh"
 
 # One run after the other, each killed again and again until it is complete.
 kills=0 cut_short=0 n=0
