@@ -194,6 +194,7 @@ class Session {
  private:
   [[nodiscard]] fs::path new_folder(const fs::path& parent) {
     fs::path folder;
+    simulating = true;  // from here on, whoever is interrupted has a folder to leave in order
     if (ranks_.first()) {
       auto made = new_run_folder(parent, log_);
       folder = std::move(made.first);
@@ -287,6 +288,7 @@ class Session {
     if (options_.split_by_channel && survey_.scanner.channels.size() > 1)
       for (const auto& c : survey_.scanner.channels) channels.push_back(c.id.empty() ? std::to_string(channels.size()) : c.id);
 
+    simulating = true;
     std::map<std::string, std::size_t> last;  // leg of each prefix
     std::map<std::string, bool> skipped;
     const auto files_of = [&](const std::string& prefix) { return leg_files(folder, prefix, options_, channels); };
@@ -322,7 +324,6 @@ class Session {
         if (!options_.quiet) line(so_far);
         pages_.tell(so_far);
       };
-      simulating = true;
       if (signals > 0) stopping.request_stop();
       all.add(files.run(simulation, run));
       before += leg.end - leg.first;
