@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/adapters/obj.hpp>
+#include <pulsecast/io/obj.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "report.hpp"
@@ -121,7 +121,7 @@ int main(int count, char** words) {
   measure(report, "hills", hills(866).mesh());
   measure(report, "tree", tree());
   for (const std::string& file : report.files())
-    measure(report, std::filesystem::path(file).stem().string() + ".obj", adapters::read_obj(file).mesh);
+    measure(report, std::filesystem::path(file).stem().string() + ".obj", io::read_obj(file).mesh);
   measure(report, "street", flattened(street::scene(1)));
   const Raster raster = hills(866);
   if (report.wanted("hills/HeightField/1")) {

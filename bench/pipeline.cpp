@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/adapters/las.hpp>
+#include <pulsecast/io/las.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "report.hpp"
@@ -147,7 +147,7 @@ void measure(Report& report, const std::string& name, const Source& source, cons
   std::filesystem::create_directory(folder);
   auto works = stages.works;
   works.emplace_back([&] {
-    adapters::LasWriter las(folder / "points.las");
+    io::LasWriter las(folder / "points.las");
     las(recording.batch());
     las.close();
   });

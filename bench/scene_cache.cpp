@@ -14,14 +14,15 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/adapters/obj.hpp>
-#include <pulsecast/adapters/output_file.hpp>
-#include <pulsecast/adapters/scene_cache.hpp>
-#include <pulsecast/adapters/text_row.hpp>
+#include <pulsecast/io/detail/text/row.hpp>
+#include <pulsecast/io/obj.hpp>
+#include <pulsecast/io/output_file.hpp>
+#include <pulsecast/io/scene_cache.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 using namespace pulsecast;
-using namespace pulsecast::adapters;
+using namespace pulsecast::io;
+using namespace pulsecast::mpi;
 
 namespace {
 

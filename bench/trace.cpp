@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/adapters/obj.hpp>
+#include <pulsecast/io/obj.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "report.hpp"
@@ -214,7 +214,7 @@ int main(int count, char** words) {
   race({"hills", ground.mesh(), from_the_air(), 0.25_mrad, [&] { return std::make_shared<const HeightField>(ground); }});
   beside("tree", tree());
   for (const std::string& file : report.files())
-    beside(std::filesystem::path(file).stem().string() + ".obj", adapters::read_obj(file).mesh);
+    beside(std::filesystem::path(file).stem().string() + ".obj", io::read_obj(file).mesh);
   race({"street", flattened(street::scene(1)), from_a_car(), 0.3_mrad});
   return report.finish();
 }

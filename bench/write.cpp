@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/adapters/gzip.hpp>
-#include <pulsecast/adapters/las.hpp>
-#include <pulsecast/adapters/laz.hpp>
-#include <pulsecast/adapters/waveform_text.hpp>
-#include <pulsecast/adapters/xyz.hpp>
+#include <pulsecast/io/gzip.hpp>
+#include <pulsecast/io/las.hpp>
+#include <pulsecast/io/laz.hpp>
+#include <pulsecast/io/waveform_text.hpp>
+#include <pulsecast/io/xyz.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "report.hpp"
@@ -23,7 +23,8 @@
 #include "surveys.hpp"
 
 using namespace bench;
-using namespace pulsecast::adapters;
+using namespace pulsecast::io;
+using namespace pulsecast::mpi;
 
 int main(int count, char** words) {
   Report report("write", count, words);

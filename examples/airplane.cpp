@@ -10,9 +10,9 @@
 #include <iostream>
 #include <vector>
 
-#include <pulsecast/adapters/image.hpp>
-#include <pulsecast/adapters/las.hpp>
-#include <pulsecast/adapters/trajectory_file.hpp>
+#include <pulsecast/io/las.hpp>
+#include <pulsecast/io/png.hpp>
+#include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"
@@ -56,13 +56,13 @@ int main(int argc, char** argv) {
     }
 
     const Survey survey{Legs{legs}, RingFootprint{2}, scene, Receiver{}, FullWaveform{{.threshold = 20_nW}}, line.seed};
-    adapters::LasWriter las(line.output / "cloud.las");
-    adapters::ImageWriter image(line.output / "cloud.png",
-                                {.azimuth = 15_deg, .elevation = 35_deg, .colour_by = adapters::ColourBy::classification});
+    io::LasWriter las(line.output / "cloud.las");
+    io::ImageWriter image(line.output / "cloud.png",
+                                {.azimuth = 15_deg, .elevation = 35_deg, .colour_by = io::ColourBy::classification});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
     las.close(), image.close();
-    adapters::TrajectoryWriter trajectory(line.output / "trajectory.txt");
+    io::TrajectoryWriter trajectory(line.output / "trajectory.txt");
     for (std::size_t k = 0; k < legs.size(); ++k)
       trajectory.add(legs[k].platform.trajectory(), survey.source().start(k), legs[k].platform.duration(), 0.1);
     trajectory.close();

@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include <pulsecast/adapters/image.hpp>
-#include <pulsecast/adapters/las.hpp>
-#include <pulsecast/adapters/trajectory_file.hpp>
+#include <pulsecast/io/las.hpp>
+#include <pulsecast/io/png.hpp>
+#include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"
@@ -45,13 +45,13 @@ int main(int argc, char** argv) {
     const Channels both{std::vector{scanner(drive, 45_deg, pulse_rate), scanner(drive, -45_deg, pulse_rate)}};
 
     const Survey survey{both, SingleRay{}, scene, Receiver{.range_min = 1.5}, FullWaveform{}, line.seed};
-    adapters::LasWriter las(line.output / "cloud.las");
-    adapters::ImageWriter image(line.output / "cloud.png",
-                                {.azimuth = 65_deg, .elevation = 42_deg, .colour_by = adapters::ColourBy::classification});
+    io::LasWriter las(line.output / "cloud.las");
+    io::ImageWriter image(line.output / "cloud.png",
+                                {.azimuth = 65_deg, .elevation = 42_deg, .colour_by = io::ColourBy::classification});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
     las.close(), image.close();
-    adapters::TrajectoryWriter trajectory(line.output / "trajectory.txt");
+    io::TrajectoryWriter trajectory(line.output / "trajectory.txt");
     trajectory.add(drive, {}, drive.duration(), 0.1);
     trajectory.close();
 

@@ -3,7 +3,7 @@
 
 // An optic of one's own: two spinning prisms draw a rosette. Leaves custom_deflector.png.
 
-#include <pulsecast/adapters/image.hpp>
+#include <pulsecast/io/png.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
     const Platform balloon{Tripod{.position = {0, 0, 80}}, downwards, deflector};
     const Survey survey{balloon, LatticeFootprint{19}, scene, Receiver{}, FullWaveform{}, line.seed};
 
-    adapters::ImageWriter map(line.output / "custom_deflector.png", {.width = 1200, .height = 1200, .azimuth = 0, .elevation = 90_deg});
+    io::ImageWriter map(line.output / "custom_deflector.png", {.width = 1200, .height = 1200, .azimuth = 0, .elevation = 90_deg});
     print(run(survey, {.threads = line.threads, .progress = ProgressLine{}}, map));
     map.close();
   });

@@ -8,9 +8,9 @@
 #include <iostream>
 #include <vector>
 
-#include <pulsecast/adapters/image.hpp>
-#include <pulsecast/adapters/las.hpp>
-#include <pulsecast/adapters/trajectory_file.hpp>
+#include <pulsecast/io/las.hpp>
+#include <pulsecast/io/png.hpp>
+#include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"
@@ -58,13 +58,13 @@ int main(int argc, char** argv) {
                          Deflector{mirror, scanner}};
 
     const Survey survey{drone, RingFootprint{2}, scene, Receiver{}, FullWaveform{}, line.seed};
-    adapters::LasWriter las(line.output / "cloud.las");
-    adapters::ImageWriter image(line.output / "cloud.png",
+    io::LasWriter las(line.output / "cloud.las");
+    io::ImageWriter image(line.output / "cloud.png",
                                 {.azimuth = 20_deg, .elevation = 40_deg, .field_of_view = 20_deg, .point_size = 3});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
     las.close(), image.close();
-    adapters::TrajectoryWriter trajectory(line.output / "trajectory.txt");
+    io::TrajectoryWriter trajectory(line.output / "trajectory.txt");
     trajectory.add(flight, {}, flight.duration(), 0.1);
     trajectory.close();
 

@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/adapters/image.hpp>
-#include <pulsecast/adapters/las.hpp>
-#include <pulsecast/adapters/point_cloud.hpp>
-#include <pulsecast/adapters/xyz.hpp>
+#include <pulsecast/io/las.hpp>
+#include <pulsecast/io/png.hpp>
+#include <pulsecast/io/point_cloud.hpp>
+#include <pulsecast/io/xyz.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"
@@ -79,7 +79,7 @@ void scan_tree(const std::shared_ptr<const Mesh>& tree, const std::filesystem::p
     set_ups.push_back(
         {Tripod{.position = foot, .heading = heading}, Mount{.lever_arm = {0, 0, 8}}, Deflector{head, Deflector{mirror, scanner}}});
   }
-  adapters::XyzWriter xyz(file);
+  io::XyzWriter xyz(file);
   run(Survey{Legs{set_ups}, SingleRay{}, alone, Receiver{}, FirstHit{}}, {.threads = threads}, xyz);
   xyz.close();
 }
@@ -111,8 +111,8 @@ int main(int argc, char** argv) {
   return line.run(argc, argv, [&] {
     const auto tree = std::make_shared<const Mesh>(wood::broadleaf({}, wood::Dice(line.seed, 1)));
     scan_tree(tree, line.output / "tree.xyz", line.threads);
-    adapters::PointCloud cloud =
-        adapters::read_point_cloud(line.output / "tree.xyz", {.voxel_size = voxel_size, .normals = adapters::VoxelNormals::fitted});
+    io::PointCloud cloud =
+        io::read_point_cloud(line.output / "tree.xyz", {.voxel_size = voxel_size, .normals = io::VoxelNormals::fitted});
 
     const auto foliage = std::make_shared<const Foliage>(crown(), TransmissiveVoxels{LeafAngles::plagiophile()});
     const auto solid = std::make_shared<const Solid>(std::move(cloud.voxels));
@@ -143,8 +143,8 @@ int main(int argc, char** argv) {
     for (const StraightLine& strip : strips) legs.push_back(airplane(strip));
 
     const Survey survey{Legs{legs}, LatticeFootprint{19}, forest, Receiver{}, FullWaveform{}, line.seed};
-    adapters::LasWriter las(line.output / "cloud.las");
-    adapters::ImageWriter image(line.output / "cloud.png",
+    io::LasWriter las(line.output / "cloud.las");
+    io::ImageWriter image(line.output / "cloud.png",
                                 {.azimuth = 30_deg, .elevation = 25_deg, .field_of_view = 20_deg, .point_size = 2});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
     las.close(), image.close();

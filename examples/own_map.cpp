@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-#include <pulsecast/adapters/image.hpp>
+#include <pulsecast/io/png.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"
@@ -82,11 +82,11 @@ int main(int argc, char** argv) {
     };
     const Legs stops(std::vector{stop_at(2), stop_at(10), stop_at(18), stop_at(26)});  // the robot drives along an aisle
     const Survey survey{stops, SingleRay{}, map, Receiver{}, FirstHit{}};
-    adapters::ImageWriter image(line.output / "own_map.png", {.azimuth = 0,
+    io::ImageWriter image(line.output / "own_map.png", {.azimuth = 0,
                                                               .elevation = 2_deg,
                                                               .field_of_view = 80_deg,
                                                               .eye = Vec3(2, -3, 1.5),
-                                                              .colour_by = adapters::ColourBy::classification});
+                                                              .colour_by = io::ColourBy::classification});
     print(run(survey, {.threads = line.threads, .progress = ProgressLine{}}, image));
     image.close();
   });

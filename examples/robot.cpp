@@ -15,7 +15,7 @@
 #include <optional>
 #include <vector>
 
-#include <pulsecast/adapters/image.hpp>
+#include <pulsecast/io/png.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"
@@ -73,11 +73,11 @@ int main(int argc, char** argv) {
   return line.run(argc, argv, [&] {
     const auto map = street::scene(line.seed);
     const auto sensor = spinning_sensor(beams, 10, 1024);
-    adapters::ImageWriter image(line.output / "robot.png", {.azimuth = 0,
+    io::ImageWriter image(line.output / "robot.png", {.azimuth = 0,
                                                             .elevation = 8_deg,
                                                             .field_of_view = 70_deg,
                                                             .eye = Vec3(0.5, -70, 8),
-                                                            .colour_by = adapters::ColourBy::classification,
+                                                            .colour_by = io::ColourBy::classification,
                                                             .point_size = 3});
     Scan scan;
     std::size_t points = 0;

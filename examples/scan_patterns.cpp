@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/adapters/image.hpp>
+#include <pulsecast/io/png.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"
@@ -43,7 +43,7 @@ class Picture {
                                                .azimuth = 0,
                                                .elevation = 90_deg,
                                                .field_of_view = 0,
-                                               .colour_by = adapters::ColourBy::classification,
+                                               .colour_by = io::ColourBy::classification,
                                                .point_size = 3,
                                                .background = {250, 250, 247}}) {}
 
@@ -75,7 +75,7 @@ class Picture {
   }
 
   unsigned threads_;
-  adapters::ImageWriter image_;
+  io::ImageWriter image_;
 };
 
 /// A second of 4,000 pulses.

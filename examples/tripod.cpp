@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/adapters/image.hpp>
-#include <pulsecast/adapters/las.hpp>
-#include <pulsecast/adapters/obj.hpp>
-#include <pulsecast/adapters/trajectory_file.hpp>
-#include <pulsecast/adapters/xyz.hpp>
+#include <pulsecast/io/las.hpp>
+#include <pulsecast/io/obj.hpp>
+#include <pulsecast/io/png.hpp>
+#include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/io/xyz.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"
@@ -37,10 +37,10 @@ auto set_up(const Vec3& foot, double step) {
   return Platform{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}}, Deflector{head, Deflector{mirror, scanner}}};
 }
 
-wood::Scene read_scene(const std::vector<std::string>& files, adapters::UpAxis up_axis) {
+wood::Scene read_scene(const std::vector<std::string>& files, io::UpAxis up_axis) {
   std::vector<wood::Scene::Part> parts;
   for (const std::string& file : files) {
-    adapters::ObjModel model = adapters::read_obj(file, {.up = up_axis});
+    io::ObjModel model = io::read_obj(file, {.up = up_axis});
     for (const std::string& warning : model.warnings) std::cerr << "warning: " << warning << '\n';
     parts.push_back({.geometry = std::make_shared<const wood::Mesh>(std::move(model.mesh)),
                      .materials = material_table(std::move(model.materials)),
@@ -60,13 +60,13 @@ std::vector<Vec3> places_around(const Box& box) {
 }
 
 /// Along the path to the hut in the wood.
-adapters::ImageSettings view_of_hut(std::uint64_t seed) {
+io::ImageSettings view_of_hut(std::uint64_t seed) {
   const Vec3 eye = wood::Terrain(seed).on({-12.6, -13.2}) + 3.2 * up, sight = wood::Terrain(seed).on(wood::hut_place) + 2.5 * up - eye;
   return {.azimuth = std::atan2(sight.x - 1, sight.y),
           .elevation = 5_deg,
           .field_of_view = 75_deg,
           .eye = eye,
-          .colour_by = adapters::ColourBy::classification,
+          .colour_by = io::ColourBy::classification,
           .point_size = 3};
 }
 
@@ -85,15 +85,15 @@ int main(int argc, char** argv) {
   line.app.add_flag("--xyz", xyz, "Leave the points as text, too");
 
   return line.run(argc, argv, [&] {
-    const auto scene = files.empty() ? wood::scene(line.seed) : read_scene(files, y_up ? adapters::UpAxis::y : adapters::UpAxis::z);
+    const auto scene = files.empty() ? wood::scene(line.seed) : read_scene(files, y_up ? io::UpAxis::y : io::UpAxis::z);
     if (positions.empty()) positions = files.empty() ? wood::glades(line.seed) : places_around(scene.bounds());
     std::vector<decltype(set_up({}, 1))> set_ups;
     for (const Vec3& place : positions) set_ups.push_back(set_up(place, radians(step_deg)));
 
     const Survey survey{Legs{set_ups}, LatticeFootprint{19}, scene, Receiver{}, FullWaveform{}, line.seed};
-    adapters::LasWriter las(line.output / "cloud.las");
-    adapters::ImageWriter image(line.output / "cloud.png", files.empty() ? view_of_hut(line.seed) : adapters::ImageSettings{});
-    std::optional<adapters::XyzWriter> text;
+    io::LasWriter las(line.output / "cloud.las");
+    io::ImageWriter image(line.output / "cloud.png", files.empty() ? view_of_hut(line.seed) : io::ImageSettings{});
+    std::optional<io::XyzWriter> text;
     if (xyz) text.emplace(line.output / "cloud.xyz");
     const auto write_text = [&](const EchoBatch& batch) {
       if (text) (*text)(batch);
@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
 
     las.close(), image.close();
     if (text) text->close();
-    adapters::TrajectoryWriter trajectory(line.output / "trajectory.txt");
+    io::TrajectoryWriter trajectory(line.output / "trajectory.txt");
     const auto& legs = survey.source();
     for (std::size_t k = 0; k < set_ups.size(); ++k) trajectory.add(set_ups[k].trajectory(), legs.start(k), set_ups[k].duration(), 1);
     trajectory.close();

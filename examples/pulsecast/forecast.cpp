@@ -27,8 +27,8 @@
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
-using adapters::SurveyPlan;
-using adapters::SurveySettings;
+using helios::SurveyPlan;
+using helios::SurveySettings;
 
 namespace {
 
@@ -361,7 +361,7 @@ class Forecaster {
         resident_(resident_now()),
         peak_(resident_at_most()),
         census_(take_census(simulation, seed, threads_, workers_)) {
-    for (const adapters::ChannelSettings& channel : survey_.scanner.channels) {
+    for (const helios::ChannelSettings& channel : survey_.scanner.channels) {
       pulse_length_ = std::min(pulse_length_, channel.pulse_length);
       rings_ = std::max(rings_, channel.waveform.rings);
       bin_size_ = std::min(bin_size_, channel.waveform.bin_size);

@@ -38,5 +38,5 @@ struct Forecasts {
 };
 
 /// Simulates samples of a survey at several settings. The simulation must be as made; `loading` is what that took [s].
-Forecasts forecasts_of(Simulation& simulation, const pulsecast::adapters::SurveySettings& survey, const Options& options,
+Forecasts forecasts_of(Simulation& simulation, const pulsecast::helios::SurveySettings& survey, const Options& options,
                        std::uint64_t seed, double loading);

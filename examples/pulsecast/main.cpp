@@ -23,7 +23,7 @@
 #include <stop_token>
 #include <utility>
 
-#include <pulsecast/adapters/digest.hpp>
+#include <pulsecast/io/digest.hpp>
 #include <pulsecast/version.hpp>
 
 #include "../summary.hpp"
@@ -40,8 +40,8 @@
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
-using adapters::SurveyPlan;
-using adapters::SurveySettings;
+using helios::SurveyPlan;
+using helios::SurveySettings;
 
 namespace {
 
@@ -225,7 +225,7 @@ class Session {
 
   /// All that decides about the results beside the seed and the time, in one line.
   [[nodiscard]] std::string how() const {
-    adapters::Digest survey;
+    io::Digest survey;
     survey.add(std::string_view(file_.text));
     std::ostringstream out;
     out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec << " format=" << options_.format

@@ -10,8 +10,8 @@
 #include <system_error>
 
 #include <CLI/CLI.hpp>
-#include <pulsecast/adapters/xml_document.hpp>
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/version.hpp>
 
 #include "quantity.hpp"
@@ -28,7 +28,7 @@ std::string nearest_option(const CLI::App& app, const std::string& given) {
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   const std::string name = given.substr(0, given.find('='));
-  const std::string text = pulsecast::adapters::suggestion(name, known);
+  const std::string text = pulsecast::helios::suggestion(name, known);
   return text.starts_with("; did") ? text : "";
 }
 
@@ -222,7 +222,7 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
     if (extra.starts_with('-')) return refuse("there is no option " + extra + nearest_option(app, extra));
   const std::vector<std::string> commands(std::begin(all_commands), std::end(all_commands));
   if (!extras.empty() && o.survey.extension() != ".xml")
-    return refuse("there is no command '" + o.survey.string() + "'" + pulsecast::adapters::suggestion(o.survey.string(), commands));
+    return refuse("there is no command '" + o.survey.string() + "'" + pulsecast::helios::suggestion(o.survey.string(), commands));
   if (o.command == "catalogue" && !o.survey.empty()) return refuse("'" + o.survey.string() + "' is too much: catalogue takes no document");
   if (!extras.empty()) return refuse("'" + extras.front() + "' is too much: one document at a time");
   if (o.command != "catalogue" && o.survey.empty()) return refuse("no document is given: expected SURVEY.xml");

@@ -8,28 +8,28 @@
 #include <utility>
 #include <variant>
 
-#include <pulsecast/adapters/gzip.hpp>
-#include <pulsecast/adapters/image.hpp>
-#include <pulsecast/adapters/las.hpp>
-#include <pulsecast/adapters/laz.hpp>
-#include <pulsecast/adapters/pulse_text.hpp>
-#include <pulsecast/adapters/trajectory_file.hpp>
-#include <pulsecast/adapters/waveform_text.hpp>
-#include <pulsecast/adapters/xyz.hpp>
+#include <pulsecast/io/gzip.hpp>
+#include <pulsecast/io/las.hpp>
+#include <pulsecast/io/laz.hpp>
+#include <pulsecast/io/png.hpp>
+#include <pulsecast/io/pulse_text.hpp>
+#include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/io/waveform_text.hpp>
+#include <pulsecast/io/xyz.hpp>
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
 
 namespace {
 
-using PointWriter = std::variant<adapters::XyzWriter, adapters::LasWriter, adapters::LazWriter>;
+using PointWriter = std::variant<io::XyzWriter, io::LasWriter, io::LazWriter>;
 
 PointWriter point_writer(const fs::path& path, const Options& o, double start_time) {
-  if (o.format == "laz") return PointWriter(std::in_place_type<adapters::LazWriter>, path, las_settings(o, start_time), o.threads);
-  if (o.format == "las") return PointWriter(std::in_place_type<adapters::LasWriter>, path, las_settings(o, start_time));
+  if (o.format == "laz") return PointWriter(std::in_place_type<io::LazWriter>, path, las_settings(o, start_time), o.threads);
+  if (o.format == "las") return PointWriter(std::in_place_type<io::LasWriter>, path, las_settings(o, start_time));
   if (o.format == "xyz.gz")
-    return PointWriter(std::in_place_type<adapters::XyzWriter>, adapters::gzip_file(path), adapters::XyzSettings{.start_time = start_time});
-  return PointWriter(std::in_place_type<adapters::XyzWriter>, path, adapters::XyzSettings{.start_time = start_time});
+    return PointWriter(std::in_place_type<io::XyzWriter>, io::gzip_file(path), io::XyzSettings{.start_time = start_time});
+  return PointWriter(std::in_place_type<io::XyzWriter>, path, io::XyzSettings{.start_time = start_time});
 }
 
 }  // namespace
@@ -55,28 +55,28 @@ std::vector<fs::path> leg_files(const fs::path& folder, const std::string& prefi
   return all;
 }
 
-adapters::LasSettings las_settings(const Options& o, double start_time) {
-  adapters::LasSettings settings{.scale = o.las_scale, .gps_time = adapters::GpsTime::week, .start_time = start_time};
+io::LasSettings las_settings(const Options& o, double start_time) {
+  io::LasSettings settings{.scale = o.las_scale, .gps_time = io::GpsTime::week, .start_time = start_time};
   settings.epsg = o.epsg.value_or(0);
-  if (o.format == "las" && o.las_1_0) settings.format = adapters::LasFormat::las_1_0;
+  if (o.format == "las" && o.las_1_0) settings.format = io::LasFormat::las_1_0;
   settings.waveforms = o.format == "las" && o.write_waveform && !o.las_1_0;
   return settings;
 }
 
 struct LegFiles::Inside {
   std::vector<PointWriter> points;
-  adapters::TrajectoryWriter trajectory;
-  std::optional<adapters::WaveformTextWriter> waveforms;
-  std::optional<adapters::PulseTextWriter> pulses;
+  io::TrajectoryWriter trajectory;
+  std::optional<io::WaveformTextWriter> waveforms;
+  std::optional<io::PulseTextWriter> pulses;
   std::vector<Shot> shots;
 };
 
 LegFiles::LegFiles(const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
                    const std::vector<std::string>& channels)
-    : inside_(new Inside{{}, adapters::TrajectoryWriter(folder / (prefix + "_trajectory.txt"), {.start_time = start_time}), {}, {}, {}}) {
+    : inside_(new Inside{{}, io::TrajectoryWriter(folder / (prefix + "_trajectory.txt"), {.start_time = start_time}), {}, {}, {}}) {
   for (const fs::path& path : point_files(folder, prefix, o, channels)) inside_->points.push_back(point_writer(path, o, start_time));
-  if (o.write_waveform) inside_->waveforms.emplace(folder / (prefix + "_fullwave.txt"), adapters::WaveformTextSettings{start_time});
-  if (o.write_pulse) inside_->pulses.emplace(folder / (prefix + "_pulse.txt"), adapters::PulseTextSettings{start_time});
+  if (o.write_waveform) inside_->waveforms.emplace(folder / (prefix + "_fullwave.txt"), io::WaveformTextSettings{start_time});
+  if (o.write_pulse) inside_->pulses.emplace(folder / (prefix + "_pulse.txt"), io::PulseTextSettings{start_time});
 }
 LegFiles::~LegFiles() = default;
 
@@ -95,7 +95,7 @@ void LegFiles::operator()(const EchoBatch& batch) {
   if (inside_->pulses) (*inside_->pulses)(batch);
 }
 
-void LegFiles::add_trajectory(const adapters::SurveyLeg& leg, Tick start, double interval) {
+void LegFiles::add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) {
   if (interval > 0) inside_->trajectory.add(leg.path(), start, leg.duration(), interval);
 }
 
@@ -107,9 +107,9 @@ void LegFiles::close() {
 }
 
 struct Picture::Inside {
-  adapters::ImageWriter writer;
+  io::ImageWriter writer;
 };
-Picture::Picture(const fs::path& path) : inside_(new Inside{adapters::ImageWriter(path)}) {}
+Picture::Picture(const fs::path& path) : inside_(new Inside{io::ImageWriter(path)}) {}
 Picture::~Picture() = default;
 void Picture::operator()(const EchoBatch& batch) { inside_->writer(batch); }
 void Picture::close() { inside_->writer.close(); }

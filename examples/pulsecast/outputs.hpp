@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/adapters/las_settings.hpp>
-#include <pulsecast/adapters/survey_builder.hpp>
 #include <pulsecast/echo.hpp>
+#include <pulsecast/helios/survey.hpp>
+#include <pulsecast/io/las_settings.hpp>
 
 #include "options.hpp"
 
@@ -22,7 +22,7 @@ std::vector<std::filesystem::path> leg_files(const std::filesystem::path& folder
                                              const std::vector<std::string>& channels);
 
 /// How they are written as LAS or LAZ.
-pulsecast::adapters::LasSettings las_settings(const Options& options, double start_time);
+pulsecast::io::LasSettings las_settings(const Options& options, double start_time);
 
 /// The files of one leg, or of all legs of a strip. Each is there when it is whole, and not before.
 class LegFiles {
@@ -35,7 +35,7 @@ class LegFiles {
   LegFiles& operator=(const LegFiles&) = delete;
 
   void operator()(const pulsecast::EchoBatch& batch);
-  void add_trajectory(const pulsecast::adapters::SurveyLeg& leg, pulsecast::Tick start, double interval);
+  void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval);
   void close();
 
  private:

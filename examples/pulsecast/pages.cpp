@@ -6,20 +6,20 @@
 #include <algorithm>
 #include <optional>
 
-#include <pulsecast/adapters/page.hpp>
-#include <pulsecast/adapters/page_server.hpp>
+#include <pulsecast/page/page.hpp>
+#include <pulsecast/page/server.hpp>
 
 using namespace pulsecast;
 
 struct Pages::Inside {
-  adapters::PageSettings settings{};
+  page::PageSettings settings{};
   bool file = false;
-  adapters::PageSurvey survey{};
-  std::optional<adapters::PageWriter> writer{};
-  std::optional<adapters::PageServer> server{};
+  page::PageSurvey survey{};
+  std::optional<page::PageWriter> writer{};
+  std::optional<page::PageServer> server{};
 };
 
-Pages::Pages(const Options& options, const adapters::SurveySettings& survey) : inside_(new Inside) {
+Pages::Pages(const Options& options, const helios::SurveySettings& survey) : inside_(new Inside) {
   const auto name = [](const std::string& full, const std::string& id) { return full.empty() ? id : full; };
   inside_->settings.most_points = options.page_points;
   inside_->file = options.page;
@@ -32,15 +32,15 @@ Pages::~Pages() = default;
 
 std::string Pages::address() const { return inside_->server ? inside_->server->address() : ""; }
 
-void Pages::begin(const std::filesystem::path& folder, const adapters::SurveyPlan& plan) {
+void Pages::begin(const std::filesystem::path& folder, const helios::SurveyPlan& plan) {
   if (!inside_->file && !inside_->server) return;
-  adapters::PageSurvey survey = inside_->survey;
+  page::PageSurvey survey = inside_->survey;
   const int moments = std::clamp(static_cast<int>(40'000 / std::max<std::size_t>(plan.legs.size(), 1)), 2, 1000);
   for (std::size_t k = 0; k < plan.legs.size(); ++k) {
-    const adapters::SurveyPlan::LegPlan& leg = plan.legs[k];
+    const helios::SurveyPlan::LegPlan& leg = plan.legs[k];
     const std::string name =
         leg.strip ? "strip " + *leg.strip + ", leg " + std::to_string(leg.number) : "leg " + std::to_string(leg.number);
-    survey.legs.push_back(adapters::page_leg(name, plan.source.legs()[k].path(), leg.start, leg.duration, moments));
+    survey.legs.push_back(page::page_leg(name, plan.source.legs()[k].path(), leg.start, leg.duration, moments));
   }
   if (inside_->file) inside_->writer.emplace(folder / "page.html", survey, inside_->settings);
   if (inside_->server) inside_->server->begin(std::move(survey));

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include <pulsecast/adapters/survey_builder.hpp>
+#include <pulsecast/helios/survey.hpp>
 #include <pulsecast/run.hpp>
 
 #include "options.hpp"
@@ -14,7 +14,7 @@
 /// The page that a run leaves, and the one that shows it while it goes on, as far as they are asked for.
 class Pages {
  public:
-  Pages(const Options& options, const pulsecast::adapters::SurveySettings& survey);
+  Pages(const Options& options, const pulsecast::helios::SurveySettings& survey);
   ~Pages();
   Pages(const Pages&) = delete;
   Pages& operator=(const Pages&) = delete;
@@ -23,7 +23,7 @@ class Pages {
   [[nodiscard]] std::string address() const;
 
   /// A run begins, whose results are left in a folder.
-  void begin(const std::filesystem::path& folder, const pulsecast::adapters::SurveyPlan& plan);
+  void begin(const std::filesystem::path& folder, const pulsecast::helios::SurveyPlan& plan);
   void operator()(const pulsecast::EchoBatch& batch);
   void tell(const pulsecast::Progress& progress);
   [[nodiscard]] bool stop_requested() const;

@@ -57,7 +57,7 @@ std::string told(const Estimate& e, const Unit& unit) {
 /// Chooses settings, and says why.
 class Planner {
  public:
-  Planner(const Options& options, const pulsecast::adapters::SurveySettings& survey, const Forecasts& found)
+  Planner(const Options& options, const pulsecast::helios::SurveySettings& survey, const Forecasts& found)
       : options_(options), asked_(options.plan), survey_(survey), found_(found) {}
 
   [[nodiscard]] const Forecast* choose() const {
@@ -170,7 +170,7 @@ class Planner {
 
   const Options& options_;
   const PlanOptions& asked_;
-  const pulsecast::adapters::SurveySettings& survey_;
+  const pulsecast::helios::SurveySettings& survey_;
   const Forecasts& found_;
 };
 

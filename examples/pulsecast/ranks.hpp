@@ -19,7 +19,7 @@ class LegRun {
  public:
   virtual ~LegRun() = default;
   std::function<void(const pulsecast::EchoBatch&)> watch{};  ///< sees what is written; only where there is one process
-  virtual void add_trajectory(const pulsecast::adapters::SurveyLeg& leg, pulsecast::Tick start, double interval) = 0;
+  virtual void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval) = 0;
   virtual pulsecast::RunSummary run(const Simulation& simulation, const pulsecast::RunOptions& options) = 0;
   virtual void close() = 0;
 };

@@ -15,31 +15,31 @@
 #include <set>
 #include <sstream>
 
-#include <pulsecast/adapters/gzip.hpp>
-#include <pulsecast/adapters/mpi.hpp>
-#include <pulsecast/adapters/pulse_text.hpp>
-#include <pulsecast/adapters/trajectory_file.hpp>
-#include <pulsecast/adapters/waveform_text.hpp>
-#include <pulsecast/adapters/xyz.hpp>
+#include <pulsecast/io/gzip.hpp>
+#include <pulsecast/io/pulse_text.hpp>
+#include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/io/waveform_text.hpp>
+#include <pulsecast/io/xyz.hpp>
+#include <pulsecast/mpi/run.hpp>
 
 #include "outputs.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
-using adapters::MpiOutput;
-using adapters::MpiTeam;
+using mpi::MpiOutput;
+using mpi::MpiTeam;
 
 namespace {
 
 std::unique_ptr<MpiOutput> shared_points(MpiTeam& team, const fs::path& path, const Options& o, double start_time) {
-  if (o.format == "laz") return std::make_unique<adapters::MpiLaz>(team, path, las_settings(o, start_time), o.threads);
-  if (o.format == "las") return std::make_unique<adapters::MpiLas>(team, path, las_settings(o, start_time));
-  const adapters::XyzSettings settings{.start_time = start_time};
-  if (o.format == "xyz") return std::make_unique<adapters::MpiRows<adapters::XyzWriter, adapters::XyzSettings>>(team, path, settings);
-  const auto file = team.first() ? std::make_shared<adapters::OutputFile>(adapters::gzip_file(path)) : nullptr;
-  return std::make_unique<adapters::MpiStream<adapters::XyzWriter>>(
-      team, [settings](adapters::OutputFile piece) { return adapters::XyzWriter(std::move(piece), settings); },
-      [file](const adapters::MpiParcel& bytes) { file->write(bytes.rest()); }, [file] { file->commit(); });
+  if (o.format == "laz") return std::make_unique<mpi::MpiLaz>(team, path, las_settings(o, start_time), o.threads);
+  if (o.format == "las") return std::make_unique<mpi::MpiLas>(team, path, las_settings(o, start_time));
+  const io::XyzSettings settings{.start_time = start_time};
+  if (o.format == "xyz") return std::make_unique<mpi::MpiRows<io::XyzWriter, io::XyzSettings>>(team, path, settings);
+  const auto file = team.first() ? std::make_shared<io::OutputFile>(io::gzip_file(path)) : nullptr;
+  return std::make_unique<mpi::MpiStream<io::XyzWriter>>(
+      team, [settings](io::OutputFile piece) { return io::XyzWriter(std::move(piece), settings); },
+      [file](const mpi::MpiParcel& bytes) { file->write(bytes.rest()); }, [file] { file->commit(); });
 }
 
 /// `LegFiles`, written by all.
@@ -49,21 +49,21 @@ class SharedLegRun final : public LegRun {
                const std::vector<std::string>& channels)
       : team_(team) {
     if (team.first())
-      trajectory_.emplace(folder / (prefix + "_trajectory.txt"), adapters::TrajectoryFileSettings{.start_time = start_time});
+      trajectory_.emplace(folder / (prefix + "_trajectory.txt"), io::TrajectoryFileSettings{.start_time = start_time});
     const std::vector<fs::path> files = point_files(folder, prefix, o, channels);
     for (const fs::path& path : files) {
       MpiOutput* const points = add(shared_points(team, path, o, start_time));
       if (files.size() > 1) points->channel = static_cast<std::uint8_t>(outputs_.size() - 1);
     }
     if (o.write_waveform)
-      add(std::make_unique<adapters::MpiRows<adapters::WaveformTextWriter, adapters::WaveformTextSettings>>(
-          team, folder / (prefix + "_fullwave.txt"), adapters::WaveformTextSettings{start_time}));
+      add(std::make_unique<mpi::MpiRows<io::WaveformTextWriter, io::WaveformTextSettings>>(
+          team, folder / (prefix + "_fullwave.txt"), io::WaveformTextSettings{start_time}));
     if (o.write_pulse)
-      add(std::make_unique<adapters::MpiRows<adapters::PulseTextWriter, adapters::PulseTextSettings>>(
-          team, folder / (prefix + "_pulse.txt"), adapters::PulseTextSettings{start_time}));
+      add(std::make_unique<mpi::MpiRows<io::PulseTextWriter, io::PulseTextSettings>>(
+          team, folder / (prefix + "_pulse.txt"), io::PulseTextSettings{start_time}));
   }
 
-  void add_trajectory(const adapters::SurveyLeg& leg, Tick start, double interval) override {
+  void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override {
     if (trajectory_ && interval > 0) trajectory_->add(leg.path(), start, leg.duration(), interval);
   }
 
@@ -73,7 +73,7 @@ class SharedLegRun final : public LegRun {
     const auto simulate = [&](const RunOptions& part, const std::function<void(const EchoBatch&)>& sink) {
       return simulation.run(part, sink);
     };
-    return adapters::run_parts(team_, options.end, options, simulate, outputs);
+    return mpi::run_parts(team_, options.end, options, simulate, outputs);
   }
 
   /// Points come last: a leg is complete when all its files are there.
@@ -86,7 +86,7 @@ class SharedLegRun final : public LegRun {
   MpiOutput* add(std::unique_ptr<MpiOutput> output) { return outputs_.emplace_back(std::move(output)).get(); }
 
   MpiTeam& team_;
-  std::optional<adapters::TrajectoryWriter> trajectory_;  // on the first
+  std::optional<io::TrajectoryWriter> trajectory_;  // on the first
   std::vector<std::unique_ptr<MpiOutput>> outputs_;
 };
 
@@ -121,8 +121,8 @@ class ManyRanks final : public Ranks {
   }
 
   [[nodiscard]] std::string traffic() override {
-    adapters::MpiTraffic sum;
-    for (const adapters::MpiTraffic& one : team_.channel().gather(team_.channel().traffic()))
+    mpi::MpiTraffic sum;
+    for (const mpi::MpiTraffic& one : team_.channel().gather(team_.channel().traffic()))
       sum.messages += one.messages, sum.bytes += one.bytes;
     std::ostringstream text;
     text << std::setw(12) << sum.messages << " among " << count() << " processes, " << std::fixed << std::setprecision(2)
@@ -139,7 +139,7 @@ class ManyRanks final : public Ranks {
   }
   void abort(int status) override {
     std::cerr << std::flush;
-    adapters::MpiSession::abort(status);
+    mpi::MpiSession::abort(status);
   }
 
   [[nodiscard]] bool builds() const override { return machine_.first(); }
@@ -150,9 +150,9 @@ class ManyRanks final : public Ranks {
   }
 
  private:
-  adapters::MpiSession session_;
+  mpi::MpiSession session_;
   MpiTeam team_;
-  adapters::MpiChannel machine_;  // the processes of this one
+  mpi::MpiChannel machine_;  // the processes of this one
 };
 
 }  // namespace

@@ -21,7 +21,7 @@ class OneLegRun final : public LegRun {
   OneLegRun(const fs::path& folder, const std::string& prefix, const Options& options, double start_time,
             const std::vector<std::string>& channels)
       : files_(folder, prefix, options, start_time, channels) {}
-  void add_trajectory(const adapters::SurveyLeg& leg, Tick start, double interval) override { files_.add_trajectory(leg, start, interval); }
+  void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override { files_.add_trajectory(leg, start, interval); }
   RunSummary run(const Simulation& simulation, const RunOptions& options) override {
     return simulation.run(options, [this](const EchoBatch& batch) {
       files_(batch);

@@ -22,9 +22,9 @@
 #include <thread>
 #include <tuple>
 
-#include <pulsecast/adapters/input_file.hpp>
-#include <pulsecast/adapters/output_file.hpp>
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/output_file.hpp>
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
@@ -160,14 +160,14 @@ RunLog RunLog::parse(std::string_view text, const std::string& path) {
 }
 
 void RunLog::write(const fs::path& folder) const {
-  adapters::OutputFile file(folder / name);
+  io::OutputFile file(folder / name);
   file.write(text());
   file.commit();
 }
 
 std::string RunLog::text_in(const fs::path& folder) {
   constexpr std::uint64_t longest = std::uint64_t{1} << 28;  // a million legs [byte]
-  adapters::InputFile file(folder / name, "the log of a run");
+  io::InputFile file(folder / name, "the log of a run");
   if (file.size() > longest) file.fail("is longer than " + std::to_string(longest) + " bytes: it is not what a run left");
   std::string text;
   for (std::string_view bytes = file.take(file.block_size); !bytes.empty(); bytes = file.take(file.block_size)) text += bytes;
@@ -265,8 +265,8 @@ RunLock::RunLock(const fs::path& folder) : path_(folder / name) {
     struct stat status {};
     if (file_ < 0 || ::fstat(file_, &status) != 0) fail(errno);
     if (!S_ISREG(status.st_mode)) fail(EEXIST);
-    if (!adapters::detail::lock_alone(file_)) refuse(folder, file_);
-    if (adapters::detail::stands_at(file_, path_)) break;
+    if (!io::detail::lock_alone(file_)) refuse(folder, file_);
+    if (io::detail::stands_at(file_, path_)) break;
     ::close(file_);  // whoever had it has removed it meanwhile
   }
   const std::string text = Holder::self().text();
@@ -279,7 +279,7 @@ RunLock::RunLock(const fs::path& folder) : path_(folder / name) {
 
 RunLock::~RunLock() {
   if (file_ < 0) return;
-  if (adapters::detail::stands_at(file_, path_)) ::unlink(path_.c_str());
+  if (io::detail::stands_at(file_, path_)) ::unlink(path_.c_str());
   ::close(file_);
 }
 

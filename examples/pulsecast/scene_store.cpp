@@ -14,16 +14,16 @@
 #include <system_error>
 #include <utility>
 
-#include <pulsecast/adapters/digest.hpp>
-#include <pulsecast/adapters/output_file.hpp>
-#include <pulsecast/adapters/scene_cache.hpp>
+#include <pulsecast/io/digest.hpp>
+#include <pulsecast/io/output_file.hpp>
+#include <pulsecast/io/scene_cache.hpp>
 
 #include "survey_inputs.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
-using adapters::Fingerprint;
-using adapters::SurveyScene;
+using io::Fingerprint;
+using helios::SurveyScene;
 
 namespace {
 
@@ -43,7 +43,7 @@ std::string this_program() {
 
 /// One place for one scene: if its files change, what is kept of it is replaced.
 std::string place_of(const SceneInputs& inputs) {
-  adapters::Digest digest;
+  io::Digest digest;
   digest.add(std::string_view(inputs.settings));
   std::error_code error;
   for (const fs::path& file : inputs.files) digest.add(std::string_view(fs::absolute(file, error).string()));
@@ -115,17 +115,17 @@ BuiltParts stored_parts(const SceneStore& store, const SceneInputs& inputs, cons
   if (store.folder.empty() || (!store.read && !store.write) || size < worth_keeping) return build();
 
   const fs::path path = store.folder / (place_of(inputs) + ".scene"), warnings_path = fs::path(path).replace_extension(".notes");
-  adapters::SceneSources sources{inputs.files, inputs.settings + this_program()};
+  io::SceneSources sources{inputs.files, inputs.settings + this_program()};
   sources.files.insert(sources.files.end(), inputs.more.begin(), inputs.more.end());
   Fingerprint key;
   try {
-    key = adapters::scene_key(sources, inputs.content);
+    key = io::scene_key(sources, inputs.content);
   } catch (const FileError&) {  // whoever builds the scene will say so
     return build();
   }
   if (store.read) {
     auto warnings = read_warnings(warnings_path, key);
-    auto opened = warnings ? adapters::open_scene<SurveyScene>(path, key, TimeWindows{.to = 1}) : adapters::OpenedScene<SurveyScene>{};
+    auto opened = warnings ? io::open_scene<SurveyScene>(path, key, TimeWindows{.to = 1}) : io::OpenedScene<SurveyScene>{};
     if (opened.scene) {
       std::error_code ignored;
       for (const fs::path& used : {path, warnings_path}) fs::last_write_time(used, fs::file_time_type::clock::now(), ignored);
@@ -144,13 +144,13 @@ BuiltParts stored_parts(const SceneStore& store, const SceneInputs& inputs, cons
     if (scene.memory() > (error ? most_kept : std::min(most_kept, room)) / 2)
       throw FileError(store.folder.string(), "", "it is too large for there");
     replace(warnings_path, [&](const fs::path& own) {
-      adapters::OutputFile file(own);
+      io::OutputFile file(own);
       file.write(hex(key) + '\n');
       for (const std::string& warning : built.warnings) file.write(warning + '\n');
       file.write(std::string_view("end\n"));
       file.commit();
     });
-    replace(path, [&](const fs::path& own) { adapters::save_scene(own, scene, key); });
+    replace(path, [&](const fs::path& own) { io::save_scene(own, scene, key); });
     tidy(store.folder, path);
     notes.push_back("the scene is kept for the next run, in " + path.string());
     built.kept = path, built.key = key;
@@ -173,7 +173,7 @@ void keep_for_now(BuiltParts& built) {
       if (error || room < scene.memory() + (scene.memory() >> 3)) continue;
       const fs::path path = folder / ("pulsecast-" + hex(mark) + ".scene");
       built.key = {mark, ~mark};
-      adapters::save_scene(path, scene, built.key);
+      io::save_scene(path, scene, built.key);
       built.kept = path;
       return;
     } catch (const FileError&) {  // there may be room elsewhere
@@ -208,7 +208,7 @@ BuiltParts shared_parts(SceneSharing& sharing, const SceneStore& store, const Sc
   std::memcpy(&built.key, key.data(), sizeof built.key);
   std::string reason = "there is no room for it in a file";
   if (!path.empty()) {  // whoever has built it lets its own copy go for this one
-    auto opened = adapters::open_scene<SurveyScene>(path, built.key, TimeWindows{.to = 1});
+    auto opened = io::open_scene<SurveyScene>(path, built.key, TimeWindows{.to = 1});
     reason = opened.reason;
     if (opened.scene) built.parts.assign(opened.scene->parts().begin(), opened.scene->parts().end());
   }

@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/adapters/digest.hpp>
-#include <pulsecast/adapters/scene_builder.hpp>
+#include <pulsecast/helios/scene.hpp>
+#include <pulsecast/io/digest.hpp>
 
 #include "options.hpp"
 
 /// The parts of a scene, and what was odd about them.
 struct BuiltParts {
-  std::vector<pulsecast::adapters::SurveyPart> parts;
+  std::vector<pulsecast::helios::SurveyPart> parts;
   std::vector<std::string> warnings;
   std::filesystem::path kept{};            ///< the file that they stand in as well, if there is one
-  pulsecast::adapters::Fingerprint key{};  ///< of that file
+  pulsecast::io::Fingerprint key{};  ///< of that file
 };
 
 /// What a scene depends on.
@@ -26,8 +26,8 @@ struct SceneInputs {
   std::vector<std::filesystem::path> more{};   ///< files and folders that count as well, and are not worth a store by themselves
   std::string settings{};                      ///< all else, in words
   std::string name{};                          ///< for people
-  std::function<pulsecast::adapters::Fingerprint(const std::filesystem::path&)> content =
-      pulsecast::adapters::content_fingerprint;  ///< of them
+  std::function<pulsecast::io::Fingerprint(const std::filesystem::path&)> content =
+      pulsecast::io::content_fingerprint;  ///< of them
 };
 
 /// The processes of one machine, which have one copy of a scene among them.

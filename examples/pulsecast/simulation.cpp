@@ -15,28 +15,28 @@
 #include <utility>
 #include <variant>
 
-#include <pulsecast/adapters/las_packets.hpp>
-#include <pulsecast/adapters/scene_builder.hpp>
-#include <pulsecast/adapters/survey_receivers.hpp>
-#include <pulsecast/adapters/xml_element.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
+#include <pulsecast/helios/detail/receivers.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
+#include <pulsecast/helios/scene.hpp>
+#include <pulsecast/io/detail/las/packets.hpp>
 
 #include "scene_store.hpp"
 #include "survey_inputs.hpp"
 
 using namespace pulsecast;
-using adapters::SurveyScene;
-using adapters::SurveySettings;
+using helios::SurveyScene;
+using helios::SurveySettings;
 
 namespace {
 
-adapters::SpectralLibrary spectra_of(const SurveySettings& survey, const std::vector<std::filesystem::path>& folders) {
-  adapters::SpectralLibrary all;
+io::SpectralLibrary spectra_of(const SurveySettings& survey, const std::vector<std::filesystem::path>& folders) {
+  io::SpectralLibrary all;
   for (const std::filesystem::path& folder : folders) {
     try {
-      adapters::SpectralLibrary here = adapters::read_spectral_library(folder);
+      io::SpectralLibrary here = io::read_spectral_library(folder);
       all.spectra.merge(here.spectra);
       all.warnings.insert(all.warnings.end(), here.warnings.begin(), here.warnings.end());
     } catch (const FileError& unreadable) {  // nobody may need it
@@ -53,7 +53,7 @@ double first_rate(const SurveySettings& survey) {
   return survey.scanner.pulse_rates.empty() ? 100e3 : survey.scanner.pulse_rates.front();
 }
 
-bool is_random(const adapters::PartSource& source) {
+bool is_random(const helios::PartSource& source) {
   return std::visit(
       [](const auto& s) {
         bool random = false;
@@ -115,9 +115,9 @@ SceneInputs inputs_of(const SurveySettings& survey, const Simulation::Settings& 
   SceneInputs inputs{.files = how.inputs->scene(), .more = how.inputs->spectra(), .name = survey.scene.id};
   inputs.content = [&all = *how.inputs](const std::filesystem::path& path) { return all.fingerprint(path); };
   bool random = false, moves = false;
-  for (const adapters::PartSettings& part : survey.scene.parts) {
+  for (const helios::PartSettings& part : survey.scene.parts) {
     random = random || is_random(part.source), moves = moves || !part.motions.empty();
-    for (const adapters::SwapSettings& swap : part.swaps) random = random || (swap.source && is_random(*swap.source));
+    for (const helios::SwapSettings& swap : part.swaps) random = random || (swap.source && is_random(*swap.source));
   }
   std::ostringstream all;
   all << std::setprecision(17) << how.scene_text << "\nrun " << run << " fixed_incidence " << how.fixed_incidence;
@@ -133,11 +133,11 @@ SceneInputs inputs_of(const SurveySettings& survey, const Simulation::Settings& 
 struct Simulation::Inside {
   SurveySettings survey;
   Settings settings;
-  adapters::SceneBuilder builder;
-  std::optional<adapters::SurveyPlan> plan;
+  helios::SceneBuilder builder;
+  std::optional<helios::SurveyPlan> plan;
   std::optional<SurveyScene> scene;
   std::unique_ptr<const AnySurvey> pipeline;
-  std::vector<adapters::SurveyPart> meshes;  // beside the survey's own parts
+  std::vector<helios::SurveyPart> meshes;  // beside the survey's own parts
   std::uint64_t seed = 0;                    // of this repetition
   std::vector<std::string> scene_warnings, warnings, notes;
 
@@ -161,7 +161,7 @@ struct Simulation::Inside {
   }
 
   /// Batches hold waveforms of one kind of bins, so all channels are sampled as the finest of them is.
-  [[nodiscard]] adapters::ScannerSettings sampled_alike(adapters::ScannerSettings scanner, std::vector<std::string>& told) const {
+  [[nodiscard]] helios::ScannerSettings sampled_alike(helios::ScannerSettings scanner, std::vector<std::string>& told) const {
     double finest = scanner.channels.front().waveform.bin_size, coarsest = finest;
     for (const auto& c : scanner.channels)
       finest = std::min(finest, c.waveform.bin_size), coarsest = std::max(coarsest, c.waveform.bin_size);
@@ -180,19 +180,19 @@ struct Simulation::Inside {
     const double picoseconds = bin * 1e12, nearest = std::nearbyint(picoseconds);
     if (std::fabs(picoseconds - nearest) <= rounding) return bin;
     const double whole = std::max(1.0, std::floor(picoseconds));
-    told.push_back(survey_name() + ": binSize_ns is " + adapters::xml_number(adapters::units::nanosecond.number(bin)) +
-                   ", and samples in LAS are whole picoseconds apart: it is taken as " + adapters::xml_number(whole / 1e3));
+    told.push_back(survey_name() + ": binSize_ns is " + helios::xml_number(helios::units::nanosecond.number(bin)) +
+                   ", and samples in LAS are whole picoseconds apart: it is taken as " + helios::xml_number(whole / 1e3));
     return whole / 1e12;
   }
 
   /// Cuts waveforms that are too long for where they go.
   void limit_record(WaveformSettings& s) {
-    const double most = settings.las_waveforms ? adapters::detail::LasPackets::most_samples : WaveformSettings::most_kept;
+    const double most = settings.las_waveforms ? io::detail::LasPackets::most_samples : WaveformSettings::most_kept;
     const double longest = (most - 0.5) * s.sample_interval;  // half a sample for rounding
     if (s.record_length <= longest) return;
     s.record_length = longest;
-    tell(survey_name() + ": waveforms are cut after " + adapters::xml_number(std::round(longest * 1e12) / 1e3) + " ns, " +
-         adapters::xml_number(most) + " samples, which is all that " + (settings.las_waveforms ? "LAS" : "is kept") +
+    tell(survey_name() + ": waveforms are cut after " + helios::xml_number(std::round(longest * 1e12) / 1e3) + " ns, " +
+         helios::xml_number(most) + " samples, which is all that " + (settings.las_waveforms ? "LAS" : "is kept") +
          (settings.las_waveforms ? " takes" : "") + "; longer bins reach farther");
   }
 
@@ -200,9 +200,9 @@ struct Simulation::Inside {
     if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(std::move(text));
   }
 
-  [[nodiscard]] adapters::ScannerSettings scanner_of(const Receiving& how) const {
-    adapters::ScannerSettings scanner = survey.scanner;
-    for (adapters::ChannelSettings& channel : scanner.channels) {
+  [[nodiscard]] helios::ScannerSettings scanner_of(const Receiving& how) const {
+    helios::ScannerSettings scanner = survey.scanner;
+    for (helios::ChannelSettings& channel : scanner.channels) {
       channel.waveform.rings = how.rings.value_or(channel.waveform.rings);
       channel.waveform.bin_size = how.bin_size.value_or(channel.waveform.bin_size);
       if (how.ideal) channel.accuracy = 0, channel.errors.range_noise.clear();
@@ -212,29 +212,29 @@ struct Simulation::Inside {
 
   void receive(const Receiving& how) {
     std::vector<std::string> told;
-    const adapters::ScannerSettings scanner = sampled_alike(scanner_of(how), told);
+    const helios::ScannerSettings scanner = sampled_alike(scanner_of(how), told);
     for (std::string& text : told) tell(std::move(text));
     settings.echo_width && !how.ideal ? make<GaussianFit>(scanner, how.ideal) : make<NoWidth>(scanner, how.ideal);
   }
 
   template <class Width>
-  void make(const adapters::ScannerSettings& scanner, bool ideal) {
+  void make(const helios::ScannerSettings& scanner, bool ideal) {
     const Vec3 size = scene->bounds().empty() ? Vec3{} : scene->bounds().size();
     const bool waveforms = settings.waveforms && !ideal, noisy = settings.waveform_noise && !ideal;
-    const auto receiver = [&](const adapters::ChannelSettings& channel) -> adapters::ChannelReceiver<FullWaveform<Width>> {
+    const auto receiver = [&](const helios::ChannelSettings& channel) -> helios::ChannelReceiver<FullWaveform<Width>> {
       const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
-      WaveformSettings waveform = adapters::survey_waveform(channel, waveforms ? longest : 0);
+      WaveformSettings waveform = helios::survey_waveform(channel, waveforms ? longest : 0);
       limit_record(waveform);
       ReceiverNoise noise;
       if (noisy) noise.deviation = 0.25 * channel.received_power_min;
-      return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings))), adapters::survey_receiver(channel),
+      return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings))), helios::survey_receiver(channel),
               FullWaveform<Width>(waveform, {}, noise)};
     };
-    using Pipeline = adapters::SurveyByChannel<SurveyScene, FullWaveform<Width>>;
-    pipeline = std::make_unique<SurveyOf<Pipeline>>(adapters::survey_by_channel(scanner, plan->source, *scene, seed, receiver));
+    using Pipeline = helios::SurveyByChannel<SurveyScene, FullWaveform<Width>>;
+    pipeline = std::make_unique<SurveyOf<Pipeline>>(helios::survey_by_channel(scanner, plan->source, *scene, seed, receiver));
   }
 
-  std::vector<adapters::SurveyPart> parts(int run) {
+  std::vector<helios::SurveyPart> parts(int run) {
     const auto build = [&] { return BuiltParts{builder.parts(run), builder.warnings(), {}, {}}; };
     const SceneInputs inputs = inputs_of(survey, settings, run);
     BuiltParts built = settings.sharing ? shared_parts(*settings.sharing, settings.store, inputs, build, notes)
@@ -246,12 +246,12 @@ struct Simulation::Inside {
   }
 
   void begin(int run) {
-    std::vector<adapters::SurveyPart> all = parts(run);
+    std::vector<helios::SurveyPart> all = parts(run);
     all.insert(all.end(), meshes.begin(), meshes.end());
     scene.emplace(all, TimeWindows{.to = 1});
     const auto ground = [&](const Vec2& at) { return scene->ground_height(at); };
-    const adapters::SurveyBuildOptions options{settings.seed, settings.platform_noise, settings.leg_noise, settings.leg_places};
-    plan.emplace(adapters::plan_survey(survey, ground, options));
+    const helios::SurveyBuildOptions options{settings.seed, settings.platform_noise, settings.leg_noise, settings.leg_places};
+    plan.emplace(helios::plan_survey(survey, ground, options));
     const double duration = plan->source.duration().seconds();
     const bool moves = std::any_of(all.begin(), all.end(), [](const auto& p) { return p.motion != nullptr; });
     if (moves) scene.emplace(all, TimeWindows{.to = std::max(1e-3, duration)});
@@ -270,7 +270,7 @@ Simulation::~Simulation() = default;
 
 int Simulation::runs() const { return inside_->builder.runs(); }
 void Simulation::begin(int run) { inside_->begin(run); }
-const adapters::SurveyPlan& Simulation::plan() const { return *inside_->plan; }
+const helios::SurveyPlan& Simulation::plan() const { return *inside_->plan; }
 const std::vector<std::string>& Simulation::warnings() const { return inside_->warnings; }
 const std::vector<std::string>& Simulation::notes() const { return inside_->notes; }
 
@@ -329,10 +329,10 @@ std::vector<SlotCount> Simulation::count(std::span<const PulseIndex> slots, unsi
 
 std::vector<std::string> check_without_scene(const SurveySettings& survey, const std::vector<std::string>& leg_places) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
-  std::vector<std::string> warnings = adapters::plan_survey(survey, ground, {.leg_places = leg_places}).warnings;
+  std::vector<std::string> warnings = helios::plan_survey(survey, ground, {.leg_places = leg_places}).warnings;
   for (const auto& channel : survey.scanner.channels) {
-    adapters::survey_receiver(channel).validate();
-    adapters::survey_waveform(channel).validate();
+    helios::survey_receiver(channel).validate();
+    helios::survey_waveform(channel).validate();
     (void)RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)));
   }
   return warnings;

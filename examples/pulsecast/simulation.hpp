@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/adapters/survey_builder.hpp>
+#include <pulsecast/helios/survey.hpp>
 #include <pulsecast/run.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
@@ -77,7 +77,7 @@ class Simulation {
     bool empty = true;
   };
 
-  Simulation(const pulsecast::adapters::SurveySettings& survey, const Settings& settings);
+  Simulation(const pulsecast::helios::SurveySettings& survey, const Settings& settings);
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -87,7 +87,7 @@ class Simulation {
   /// Goes to a repetition.
   void begin(int run);
 
-  [[nodiscard]] const pulsecast::adapters::SurveyPlan& plan() const;
+  [[nodiscard]] const pulsecast::helios::SurveyPlan& plan() const;
   [[nodiscard]] Scene scene() const;
   [[nodiscard]] const std::vector<std::string>& warnings() const;
   [[nodiscard]] const std::vector<std::string>& notes() const;  ///< for those who want to know more
@@ -107,5 +107,5 @@ class Simulation {
 };
 
 /// Checks all that can be checked without the scene: legs and scanner. Throws what is wrong; what is odd is returned.
-std::vector<std::string> check_without_scene(const pulsecast::adapters::SurveySettings& survey,
+std::vector<std::string> check_without_scene(const pulsecast::helios::SurveySettings& survey,
                                              const std::vector<std::string>& leg_places = {});

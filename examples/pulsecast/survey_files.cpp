@@ -14,31 +14,31 @@
 #include <system_error>
 #include <variant>
 
-#include <pulsecast/adapters/geotiff.hpp>
-#include <pulsecast/adapters/output_file.hpp>
-#include <pulsecast/adapters/xml.hpp>
+#include <pulsecast/helios/document.hpp>
+#include <pulsecast/io/geotiff.hpp>
+#include <pulsecast/io/output_file.hpp>
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
 
 SurveyFile read_survey_file(const Options& options, Notes& notes) try {
-  adapters::SurveyDocument document =
-      adapters::read_survey(options.survey, {.assets = options.assets, .channel_files = options.split_by_channel});
+  helios::SurveyDocument document =
+      helios::read_survey(options.survey, {.assets = options.assets, .channel_files = options.split_by_channel});
   notes.odd(document.warnings);
-  std::string text = adapters::xml_text(document.survey),
-              scene_text = adapters::xml_text(adapters::AssetDocument{.scenes = {document.survey.scene}});
+  std::string text = helios::xml_text(document.survey),
+              scene_text = helios::xml_text(helios::AssetDocument{.scenes = {document.survey.scene}});
   return {std::move(document.survey), std::move(text), std::move(scene_text), std::move(document.leg_places), std::move(document.place)};
-} catch (const adapters::XmlFaults& faults) {
+} catch (const helios::XmlFaults& faults) {
   notes.odd(faults.warnings());
   throw;
 }
 
-std::uint16_t reference_system_of(const adapters::SceneSettings& scene) {
+std::uint16_t reference_system_of(const helios::SceneSettings& scene) {
   std::set<std::uint16_t> codes;
-  for (const adapters::PartSettings& part : scene.parts) {
-    const auto* const rasters = std::get_if<adapters::GeoTiffSource>(&part.source);
-    if (rasters == nullptr || part.transform != adapters::TransformSettings{}) continue;
-    for (const fs::path& path : rasters->files) codes.insert(adapters::read_geotiff_epsg(path).value_or(0));
+  for (const helios::PartSettings& part : scene.parts) {
+    const auto* const rasters = std::get_if<helios::GeoTiffSource>(&part.source);
+    if (rasters == nullptr || part.transform != helios::TransformSettings{}) continue;
+    for (const fs::path& path : rasters->files) codes.insert(io::read_geotiff_epsg(path).value_or(0));
   }
   const bool is_one = codes.size() == 1 && *codes.begin() >= 1024 && *codes.begin() <= 32766;  // source: OGC GeoTIFF 1.1, codes of EPSG
   return is_one ? *codes.begin() : std::uint16_t{0};
@@ -98,10 +98,10 @@ void expect_same_survey(const Options& options, const SurveyFile& file, const Wa
   const Trial trial{path.string() + ".part"};
   std::ofstream out(trial.path, std::ios::binary);
   if (!(out << text).flush()) throw FileError(path.string(), "", "cannot be written");
-  const adapters::SurveySettings written = adapters::read_survey(trial.path, {.assets = options.assets}).survey;
-  adapters::SurveySettings wanted = file.survey;
+  const helios::SurveySettings written = helios::read_survey(trial.path, {.assets = options.assets}).survey;
+  helios::SurveySettings wanted = file.survey;
   wanted.name = written.name;  // that of the file unless the survey has one
-  for (adapters::ChannelSettings& channel : wanted.scanner.channels)
+  for (helios::ChannelSettings& channel : wanted.scanner.channels)
     channel.waveform.rings = change.rings, channel.waveform.bin_size = change.bin_size;
   if (written != wanted) throw FileError(path.string(), "", "would not be the same survey; nothing is written");
 }
@@ -121,16 +121,16 @@ void write_survey_file(const Options& options, const SurveyFile& file, const Wav
     text.insert(end, before + "FWFSettings/>");
     tag = end + before.size();
   }
-  set_attribute(text, tag, "binSize_ns", adapters::xml_number(adapters::units::nanosecond.number(change.bin_size)));
+  set_attribute(text, tag, "binSize_ns", helios::xml_number(helios::units::nanosecond.number(change.bin_size)));
   set_attribute(text, tag, "beamSampleQuality", std::to_string(change.rings));
 
   expect_same_survey(options, file, change, text, path);
   const fs::path target = target_of(path);
-  adapters::OutputFile out(target);
+  io::OutputFile out(target);
   out.write(text);
   std::error_code error;
   if (const fs::file_status before = fs::status(target, error); fs::exists(before))
-    fs::permissions(adapters::OutputFile::temporary_name(target), before.permissions(), error);
+    fs::permissions(io::OutputFile::temporary_name(target), before.permissions(), error);
   else
     error.clear();
   if (error) throw FileError(path.string(), "", "cannot be given the rights that it had: " + error.message());
@@ -139,12 +139,12 @@ void write_survey_file(const Options& options, const SurveyFile& file, const Wav
 
 namespace {
 
-const char* optic_name(const adapters::OpticSettings& optic) {
+const char* optic_name(const helios::OpticSettings& optic) {
   static constexpr const char* names[] = {"oscillating", "rotating", "conic", "line", "risley"};
   return names[optic.index()];
 }
 
-const char* kind_name(adapters::PlatformKind kind) {
+const char* kind_name(helios::PlatformKind kind) {
   static constexpr const char* names[] = {"static", "linearpath", "multicopter", "groundvehicle", "interpolated"};
   return names[static_cast<std::size_t>(kind)];
 }
@@ -172,9 +172,9 @@ std::vector<fs::path> documents_of(const Options& options) {
 
 void print_catalogue(const Options& options) {
   for (const fs::path& file : documents_of(options)) {
-    adapters::AssetDocument assets;
+    helios::AssetDocument assets;
     try {
-      assets = adapters::read_assets(file, {.assets = options.assets});
+      assets = helios::read_assets(file, {.assets = options.assets});
     } catch (const FileError& error) {
       if (options.verbose) std::cerr << "note: " << error.what() << '\n';
       continue;

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/adapters/survey_settings.hpp>
+#include <pulsecast/helios/settings.hpp>
 
 #include "notes.hpp"
 #include "options.hpp"
 
 /// What reads documents, apart from the rest so that it is compiled once.
 struct SurveyFile {
-  pulsecast::adapters::SurveySettings survey;
+  pulsecast::helios::SurveySettings survey;
   std::string text{}, scene_text{};       ///< of all settings, and of those of the scene: the same text, the same settings
   std::vector<std::string> leg_places{};  ///< where each leg stands in it, for messages
   std::string place{};                    ///< where the survey itself does
@@ -25,7 +25,7 @@ SurveyFile read_survey_file(const Options& options, Notes& notes);
 
 /// The code of the reference system that all rasters of the scene have; 0 if there is none, or another one. Rasters that a part moves do
 /// not count.
-std::uint16_t reference_system_of(const pulsecast::adapters::SceneSettings& scene);
+std::uint16_t reference_system_of(const pulsecast::helios::SceneSettings& scene);
 
 /// What `write_survey_file` changes, of all channels.
 struct WaveformChange {

@@ -10,26 +10,26 @@
 #include <cstdint>
 #include <system_error>
 
-#include <pulsecast/adapters/scene_files.hpp>
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/helios/detail/scene_files.hpp>
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
-using adapters::Fingerprint;
+using io::Fingerprint;
 
-SurveyInputs::SurveyInputs(const adapters::SurveySettings& survey, const std::vector<fs::path>& assets)
-    : scene_(adapters::scene_files(survey.scene)) {
+SurveyInputs::SurveyInputs(const helios::SurveySettings& survey, const std::vector<fs::path>& assets)
+    : scene_(helios::scene_files(survey.scene)) {
   for (const fs::path& folder : assets) {
     std::error_code error;
     if (fs::is_directory(folder / "spectra", error)) spectra_.push_back(folder / "spectra");
   }
-  for (const adapters::LegSettings& leg : survey.legs)
+  for (const helios::LegSettings& leg : survey.legs)
     if (leg.platform.trajectory) trajectories_.push_back(leg.platform.trajectory->file);
 }
 
 Fingerprint SurveyInputs::fingerprint(const fs::path& path) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return adapters::content_fingerprint(path);
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return io::content_fingerprint(path);
   Mark mark;
   for (const auto number :
        {static_cast<std::intmax_t>(status.st_dev), static_cast<std::intmax_t>(status.st_ino), static_cast<std::intmax_t>(status.st_size),
@@ -37,7 +37,7 @@ Fingerprint SurveyInputs::fingerprint(const fs::path& path) {
         static_cast<std::intmax_t>(status.st_ctim.tv_sec), static_cast<std::intmax_t>(status.st_ctim.tv_nsec)})
     mark.push_back(static_cast<std::uint64_t>(number));
   auto& [known_mark, known] = known_[path];
-  if (known_mark != mark) known = adapters::content_fingerprint(path), known_mark = std::move(mark);
+  if (known_mark != mark) known = io::content_fingerprint(path), known_mark = std::move(mark);
   return known;
 }
 

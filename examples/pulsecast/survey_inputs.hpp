@@ -9,20 +9,20 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/adapters/digest.hpp>
-#include <pulsecast/adapters/survey_settings.hpp>
+#include <pulsecast/helios/settings.hpp>
+#include <pulsecast/io/digest.hpp>
 
 /// The files that the results of a survey depend on beside its documents: those of the scene, spectra and trajectories.
 class SurveyInputs {
  public:
-  SurveyInputs(const pulsecast::adapters::SurveySettings& survey, const std::vector<std::filesystem::path>& assets);
+  SurveyInputs(const pulsecast::helios::SurveySettings& survey, const std::vector<std::filesystem::path>& assets);
 
   [[nodiscard]] const std::vector<std::filesystem::path>& scene() const noexcept { return scene_; }      ///< files
   [[nodiscard]] const std::vector<std::filesystem::path>& spectra() const noexcept { return spectra_; }  ///< folders
 
   /// What a file or folder holds now. A file is read again only if its size or times have changed. Throws a `FileError` if it cannot be
   /// read.
-  [[nodiscard]] pulsecast::adapters::Fingerprint fingerprint(const std::filesystem::path& path);
+  [[nodiscard]] pulsecast::io::Fingerprint fingerprint(const std::filesystem::path& path);
 
   /// The fingerprint of each file, in hexadecimal digits. What cannot be read is left out: whoever needs it will say so.
   [[nodiscard]] std::map<std::string, std::string> fingerprints();
@@ -32,10 +32,10 @@ class SurveyInputs {
   using Mark = std::vector<std::uint64_t>;
 
   std::vector<std::filesystem::path> scene_, spectra_, trajectories_;
-  std::map<std::filesystem::path, std::pair<Mark, pulsecast::adapters::Fingerprint>> known_;
+  std::map<std::filesystem::path, std::pair<Mark, pulsecast::io::Fingerprint>> known_;
 };
 
 /// 32 digits.
-[[nodiscard]] std::string hex(const pulsecast::adapters::Fingerprint& fingerprint);
+[[nodiscard]] std::string hex(const pulsecast::io::Fingerprint& fingerprint);
 /// 16 digits.
 [[nodiscard]] std::string hex(std::uint64_t number);

@@ -15,10 +15,10 @@
 
 #include <pybind11/stl/filesystem.h>
 
-#include <pulsecast/adapters/attitude.hpp>
-#include <pulsecast/adapters/python.hpp>
-#include <pulsecast/adapters/trajectory_file.hpp>
-#include <pulsecast/adapters/xml.hpp>
+#include <pulsecast/helios/document.hpp>
+#include <pulsecast/io/detail/trajectory/attitude.hpp>
+#include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/python/bind.hpp>
 #include <pulsecast/version.hpp>
 
 #include "../pulsecast/simulation.hpp"
@@ -27,7 +27,7 @@
 namespace py = pybind11;
 using namespace pulsecast;
 using namespace py::literals;
-using adapters::SurveyPlan;
+using helios::SurveyPlan;
 using Paths = std::vector<std::filesystem::path>;
 
 namespace {
@@ -85,7 +85,7 @@ Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::arra
 std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
                                           std::optional<std::uint64_t> seed, bool echo_width, bool waveforms, bool waveform_noise,
                                           bool fixed_incidence, bool platform_noise, bool leg_noise, unsigned threads, int run) {
-  const adapters::SurveySettings settings = survey_of(survey);
+  const helios::SurveySettings settings = survey_of(survey);
   expect_within("Simulation repetition", run, 0, std::numeric_limits<int>::max(), "");
   for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
     assets.push_back(std::move(folder));
@@ -111,13 +111,13 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
 
 py::array trajectory_of(const Simulation& simulation, double interval) {
   expect_within("Simulation.trajectory interval", interval, 1e-6, 1e9, "s");
-  adapters::python::Rows<PoseRow> rows;
+  python::Rows<PoseRow> rows;
   const SurveyPlan& plan = simulation.plan();
   for (std::size_t k = 0; k < plan.legs.size(); ++k) {
     const auto& path = plan.source.legs()[k].path();
-    adapters::for_each_record(plan.legs[k].duration, interval, [&](const Tick& tick) {
+    io::for_each_record(plan.legs[k].duration, interval, [&](const Tick& tick) {
       const Pose<frame::Body, frame::World> pose = path.at(tick);
-      const adapters::RollPitchYaw angles = adapters::roll_pitch_yaw(pose.rotation, {});
+      const io::RollPitchYaw angles = io::roll_pitch_yaw(pose.rotation, {});
       const Vec3& p = pose.position;
       rows.push_back({(plan.legs[k].start + tick).seconds(), p.x, p.y, p.z, angles.roll, angles.pitch, angles.yaw,
                       static_cast<std::int32_t>(plan.legs[k].number)});
@@ -127,7 +127,7 @@ py::array trajectory_of(const Simulation& simulation, double interval) {
 }
 
 py::array legs_of(const Simulation& simulation) {
-  adapters::python::Rows<LegRow> rows;
+  python::Rows<LegRow> rows;
   for (const SurveyPlan::LegPlan& leg : simulation.plan().legs)
     rows.push_back({static_cast<std::int32_t>(leg.number),
                     leg.active,
@@ -144,7 +144,7 @@ py::array legs_of(const Simulation& simulation) {
 
 PYBIND11_MODULE(_core, m) {
   m.attr("__version__") = PULSECAST_VERSION;
-  adapters::python::bind_common(m);
+  python::bind_common(m);
   bind_settings(m);
   PYBIND11_NUMPY_DTYPE(PoseRow, time, x, y, z, roll, pitch, yaw, leg);
   PYBIND11_NUMPY_DTYPE(LegRow, number, active, start, duration, pulse_rate, first, end);
@@ -152,7 +152,7 @@ PYBIND11_MODULE(_core, m) {
   m.def(
       "read_survey",
       [](const std::filesystem::path& path, const Paths& assets) {
-        adapters::SurveyDocument document = adapters::read_survey(path, {.assets = assets});
+        helios::SurveyDocument document = helios::read_survey(path, {.assets = assets});
         warn(document.warnings);
         return to_python(document.survey);
       },
@@ -160,14 +160,14 @@ PYBIND11_MODULE(_core, m) {
       "Reads the XML document of a survey and all that it refers to, and returns its SurveySettings. Files are looked for in the folders "
       "`assets` first, then beside the document. Raises FileError with all that is wrong; what is odd becomes a warning.");
   m.def(
-      "write_survey", [](const std::filesystem::path& path, py::handle survey) { adapters::write_survey(path, survey_of(survey)); },
+      "write_survey", [](const std::filesystem::path& path, py::handle survey) { helios::write_survey(path, survey_of(survey)); },
       "path"_a, "survey"_a, "Writes SurveySettings as one XML document, which `read_survey` and the survey program read.");
   m.def(
-      "xml_text", [](py::handle survey) { return adapters::xml_text(survey_of(survey)); }, "survey"_a, "What `write_survey` would write.");
+      "xml_text", [](py::handle survey) { return helios::xml_text(survey_of(survey)); }, "survey"_a, "What `write_survey` would write.");
   m.def(
       "read_assets",
       [](const std::filesystem::path& path, const Paths& assets) {
-        const adapters::AssetDocument document = adapters::read_assets(path, {.assets = assets});
+        const helios::AssetDocument document = helios::read_assets(path, {.assets = assets});
         warn(document.warnings);
         return to_python(document);
       },
@@ -222,7 +222,7 @@ PYBIND11_MODULE(_core, m) {
           "triangles", [](const Simulation& s) { return s.scene().triangles; }, "In the scene.")
       .def_property_readonly(
           "memory", [](const Simulation& s) { return s.scene().memory; }, "Of the scene [byte].");
-  adapters::python::bind_run(simulation, [](const Simulation& s) {
+  python::bind_run(simulation, [](const Simulation& s) {
     return [&s](const RunOptions& options, const auto& sink) { return s.run(options, [&](const EchoBatch& batch) { sink(batch); }); };
   });
 }

@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include <pulsecast/adapters/python.hpp>
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/python/bind.hpp>
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -49,6 +49,6 @@ auto over_the_floor(PulseIndex pulses, double bend, double first, double second)
 
 PYBIND11_MODULE(own_scanner, m) {
   using namespace pybind11::literals;
-  adapters::bind_survey<decltype(over_the_floor(1, 0, 0, 0))>(m, "RosetteSurvey")
+  python::bind_survey<decltype(over_the_floor(1, 0, 0, 0))>(m, "RosetteSurvey")
       .def(pybind11::init(&over_the_floor), "pulses"_a = 100'000, "bend"_a = 0.2, "first"_a = 41.5, "second"_a = -23.0);
 }

@@ -212,11 +212,11 @@ void bind_all(py::module_& m, const std::tuple<Settings...>*) {
 
 void bind_settings(py::module_& m) { bind_all(m, static_cast<const AllSettings*>(nullptr)); }
 
-py::object to_python(const adapters::SurveySettings& settings) { return object_of(settings); }
+py::object to_python(const helios::SurveySettings& settings) { return object_of(settings); }
 
-adapters::SurveySettings survey_of(py::handle settings) { return value_of<adapters::SurveySettings>(settings, "SurveySettings"); }
+helios::SurveySettings survey_of(py::handle settings) { return value_of<helios::SurveySettings>(settings, "SurveySettings"); }
 
-py::object to_python(const adapters::AssetDocument& assets) {
+py::object to_python(const helios::AssetDocument& assets) {
   py::dict all;
   all["scanners"] = object_of(assets.scanners), all["platforms"] = object_of(assets.platforms), all["scenes"] = object_of(assets.scenes);
   return all;

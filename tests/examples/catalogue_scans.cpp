@@ -13,15 +13,17 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/adapters/survey_builder.hpp>
-#include <pulsecast/adapters/survey_receivers.hpp>
-#include <pulsecast/adapters/xml.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/helios/detail/receivers.hpp>
+#include <pulsecast/helios/document.hpp>
+#include <pulsecast/helios/survey.hpp>
 
 #include <doctest/doctest.h>
 
 using namespace pulsecast;
-using namespace pulsecast::adapters;
+using namespace pulsecast::io;
+using namespace pulsecast::helios;
+using namespace pulsecast::mpi;
 
 namespace {
 

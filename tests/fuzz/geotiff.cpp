@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/adapters/geotiff.hpp>
+#include <pulsecast/io/geotiff.hpp>
 
 #include "fuzz/fuzz.hpp"
 
 using namespace pulsecast;
-using namespace pulsecast::adapters;
+using namespace pulsecast::io;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::filesystem::path path = fuzz::file(data, size, "terrain.tif");

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/adapters/leaf_angle_file.hpp>
+#include <pulsecast/io/leaf_angles.hpp>
 
 #include <cmath>
 
 #include "fuzz/fuzz.hpp"
 
 using namespace pulsecast;
-using namespace pulsecast::adapters;
+using namespace pulsecast::io;
 
 /// The first byte chooses how many rows, evenly spread over all zenith angles, stand behind the input: without them, few would be whole.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/adapters/obj.hpp>
+#include <pulsecast/io/obj.hpp>
 
 #include "fuzz/fuzz.hpp"
 
 using namespace pulsecast;
-using namespace pulsecast::adapters;
+using namespace pulsecast::io;
 
 /// The input is an OBJ file that may name itself, and `a.mtl`, which is the same text again.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,8 +3,8 @@
 
 // The log of an unfinished run, which `--resume` of the survey program believes.
 
-#include <pulsecast/adapters/input_file.hpp>
-#include <pulsecast/adapters/output_file.hpp>
+#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/output_file.hpp>
 
 #include <cmath>
 #include <string>

@@ -22,7 +22,7 @@
 
 #include <pulsecast/accel/kd_tree.hpp>
 #include <pulsecast/accel/linear.hpp>
-#include <pulsecast/adapters/scene_cache.hpp>
+#include <pulsecast/io/scene_cache.hpp>
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
@@ -32,7 +32,7 @@
 #include "support/temporary_folder.hpp"
 
 using namespace pulsecast;
-using namespace pulsecast::adapters;
+using namespace pulsecast::io;
 
 namespace {
 
@@ -60,7 +60,7 @@ std::array<std::string, 2> saved_scenes() {
 
 std::string tampered(const std::uint8_t* data, std::size_t size) {
   static const std::array<std::string, 2> scenes = saved_scenes();
-  const std::size_t header = sizeof(adapters::detail::CacheHeader);
+  const std::size_t header = sizeof(io::detail::CacheHeader);
   if (data[0] >= 128) return scenes[0].substr(0, header) + std::string(reinterpret_cast<const char*>(data + 1), size - 1);
   std::string file = scenes[data[0] % scenes.size()];
   for (std::size_t at = 1; at + 3 < size;) {
@@ -89,9 +89,9 @@ std::shared_ptr<std::byte> mapped(const std::string& file) {
 }
 
 void seal(std::string& file) {
-  adapters::detail::CacheHeader header;
-  header.program = adapters::detail::program_of<Tested::Part>(), header.key = key, header.size = file.size();
-  header.checksum = adapters::detail::checksum_of(header, std::as_bytes(std::span(file)).subspan(sizeof header));
+  io::detail::CacheHeader header;
+  header.program = io::detail::program_of<Tested::Part>(), header.key = key, header.size = file.size();
+  header.checksum = io::detail::checksum_of(header, std::as_bytes(std::span(file)).subspan(sizeof header));
   std::memcpy(file.data(), &header, sizeof header);
 }
 
@@ -111,12 +111,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::shared_ptr<std::byte> memory = mapped(file);
   const std::span<const std::byte> bytes(memory.get(), file.size());
   try {
-    adapters::detail::expect_cache(bytes, adapters::detail::program_of<Tested::Part>(), key);
-  } catch (const adapters::detail::Unusable&) {
+    io::detail::expect_cache(bytes, io::detail::program_of<Tested::Part>(), key);
+  } catch (const io::detail::Unusable&) {
     fuzz::expect(false);  // the header is right
   }
   try {
-    trace(Tested(adapters::detail::parts_in<Tested::Part>(bytes, memory)));
+    trace(Tested(io::detail::parts_in<Tested::Part>(bytes, memory)));
   } catch (const ArchiveError&) {
   } catch (const SettingError&) {
   }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/adapters/trajectory_file.hpp>
+#include <pulsecast/io/trajectory.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -10,7 +10,7 @@
 #include "fuzz/fuzz.hpp"
 
 using namespace pulsecast;
-using namespace pulsecast::adapters;
+using namespace pulsecast::io;
 
 namespace {
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/adapters/voxel_file.hpp>
+#include <pulsecast/io/vox.hpp>
 
 #include <algorithm>
 
 #include "fuzz/fuzz.hpp"
 
 using namespace pulsecast;
-using namespace pulsecast::adapters;
+using namespace pulsecast::io;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::filesystem::path path = fuzz::file(data, size, "grid.vox");

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/adapters/xml.hpp>
+#include <pulsecast/helios/document.hpp>
 
 #include "fuzz/fuzz.hpp"
 
 using namespace pulsecast;
-using namespace pulsecast::adapters;
+using namespace pulsecast::helios;
 
 /// The input is a document of a survey and of assets, which may name itself, and a file `a`. What can be read can be written, and read
 /// again.

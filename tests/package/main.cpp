@@ -6,20 +6,20 @@
 #include <fstream>
 #include <iostream>
 #ifdef WITH_las
-#include <pulsecast/adapters/las.hpp>
+#include <pulsecast/io/las.hpp>
 #endif
 #ifdef WITH_obj
-#include <pulsecast/adapters/obj.hpp>
+#include <pulsecast/io/obj.hpp>
 #endif
 
 #ifdef WITH_scene_builder
-#include <pulsecast/adapters/scene_builder.hpp>
-#include <pulsecast/adapters/survey_builder.hpp>
-#include <pulsecast/adapters/xml.hpp>
+#include <pulsecast/helios/document.hpp>
+#include <pulsecast/helios/scene.hpp>
+#include <pulsecast/helios/survey.hpp>
 
 /// Builds a survey of a document.
 static void build_survey(const std::filesystem::path& folder) {
-  using namespace pulsecast::adapters;
+  using namespace pulsecast::helios;
   std::ofstream(folder / "plane.obj") << "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n";
   std::ofstream(folder / "survey.xml") << R"(<document>
   <scanner id="mirror" optics="rotating" pulseFreqs_Hz="1000" scanAngleMax_deg="60"/>

@@ -12,7 +12,7 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/adapters/mpi.hpp>
+#include <pulsecast/mpi/run.hpp>
 #include <pulsecast/run.hpp>
 
 #include "support/mpi_team.hpp"
@@ -21,7 +21,7 @@
 // Tests that run as they are, in one process, and under mpirun in several, all of which do all of them and must find the same.
 namespace pulsecast::support {
 
-using adapters::MpiOutput;
+using mpi::MpiOutput;
 
 /// Pulses that bring back something by their number alone: nothing for a long time, then up to three echoes, with waveforms.
 struct Showers {

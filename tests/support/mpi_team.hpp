@@ -7,16 +7,16 @@
 #include <string>
 #include <string_view>
 
-#include <pulsecast/adapters/mpi_output.hpp>
+#include <pulsecast/mpi/detail/output.hpp>
 
 #include "support/temporary_folder.hpp"
 
 namespace pulsecast::support {
 
 /// All processes of a test: one, or those that mpirun has started.
-inline adapters::MpiTeam& mpi_team() {
-  static adapters::MpiSession session;
-  static adapters::MpiTeam team;
+inline mpi::MpiTeam& mpi_team() {
+  static mpi::MpiSession session;
+  static mpi::MpiTeam team;
   return team;
 }
 

@@ -14,13 +14,13 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/adapters/obj.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/detector/analytic_waveform.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/io/obj.hpp>
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
@@ -69,7 +69,7 @@ Difference on_planes(EchoTiming timing) {
 }
 
 Scene<TriangleMesh<>> tree() {
-  adapters::ObjModel model = adapters::read_obj(std::filesystem::path(__FILE__).parent_path() / "data/tree.obj");
+  io::ObjModel model = io::read_obj(std::filesystem::path(__FILE__).parent_path() / "data/tree.obj");
   Scene<TriangleMesh<>>::Part part;
   part.geometry = std::make_shared<const TriangleMesh<>>(std::move(model.mesh));
   part.materials = material_table(std::move(model.materials));

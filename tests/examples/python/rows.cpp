@@ -16,8 +16,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include <pulsecast/adapters/xml.hpp>
 #include <pulsecast/cloud.hpp>
+#include <pulsecast/helios/document.hpp>
 
 #include "../../../examples/pulsecast/simulation.hpp"
 
@@ -46,7 +46,7 @@ int main(int count, char** arguments) try {
   const std::vector<std::filesystem::path> assets(arguments + 5, arguments + count);
   const auto threads = static_cast<unsigned>(std::atoi(arguments[3]));
   const auto seed = static_cast<std::uint64_t>(std::atoll(arguments[2]));
-  const adapters::SurveyDocument document = adapters::read_survey(arguments[1], {.assets = assets});
+  const helios::SurveyDocument document = helios::read_survey(arguments[1], {.assets = assets});
   const Simulation simulation(document.survey, {.seed = seed, .assets = assets, .threads = threads});
   Cloud cloud;
   const double start = user_seconds();

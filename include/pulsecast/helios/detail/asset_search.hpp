@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <regex>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace pulsecast::helios {
+
+/// What was found under a name, or why nothing was.
+struct AssetMatch {
+  std::vector<std::filesystem::path> files{};  ///< absolute, by name
+  std::string problem{};                       ///< empty if there are files
+  std::string warning{};                       ///< what is odd about where they are; empty if nothing is
+};
+
+/// Looks for the files that documents name, in folders that a program gives. An absolute path is taken as it is. The first folder that has
+/// a relative one wins; a path that leads out of all folders counts after those that do not, with a warning.
+class AssetSearch {
+ public:
+  explicit AssetSearch(const std::vector<std::filesystem::path>& folders) {
+    for (const std::filesystem::path& folder : folders) {
+      std::filesystem::path whole = normal(folder);
+      if (std::find(folders_.begin(), folders_.end(), whole) == folders_.end()) folders_.push_back(std::move(whole));
+    }
+  }
+
+  [[nodiscard]] const std::vector<std::filesystem::path>& folders() const noexcept { return folders_; }  ///< absolute, in their order
+
+  /// The file of a name. A backslash separates as well.
+  [[nodiscard]] AssetMatch find(std::string name) const {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    const std::vector<std::filesystem::path> places = candidates(name);
+    std::error_code ignored;
+    for (const std::filesystem::path& place : places)
+      if (std::filesystem::is_regular_file(place, ignored)) return {.files = {place}, .warning = warning(name, place)};
+    return {.problem = problem(name, places, "is not there")};
+  }
+
+  /// All files whose names in their folder match a regular expression (ECMAScript, without back-references) as a whole: the last component
+  /// of `pattern`. Those of all folders count. Time is linear in the length of a name.
+  [[nodiscard]] AssetMatch find_all(const std::string& pattern) const {
+    const std::size_t slash = pattern.rfind('/');
+    const std::string folder = slash == std::string::npos ? "." : pattern.substr(0, slash + 1), name = pattern.substr(slash + 1);
+    if (!is_simple(name))
+      return {.problem = "is no regular expression that can be matched quickly: expected at most " + std::to_string(longest_pattern) +
+                         " letters, no back-reference, and four counts in braces, none of them after a group"};
+    AssetMatch match;
+    const std::vector<std::filesystem::path> places = candidates(folder);
+    try {
+      const std::regex expression(name, syntax);
+      for (const std::filesystem::path& place : places) {
+        std::error_code error;
+        std::size_t entries = 0;
+        for (std::filesystem::directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error)) {
+          if (++entries > most_entries) return {.problem = "names a folder with more than " + std::to_string(most_entries) + " files"};
+          std::error_code ignored;
+          if (!std::regex_match(entry->path().filename().string(), expression) || !entry->is_regular_file(ignored)) continue;
+          match.files.push_back(normal(entry->path()));
+          if (match.warning.empty()) match.warning = warning(pattern, match.files.back());
+        }
+      }
+    } catch (const std::regex_error&) {
+      return {.problem = "ends with no regular expression"};
+    }
+    std::sort(match.files.begin(), match.files.end());
+    match.files.erase(std::unique(match.files.begin(), match.files.end()), match.files.end());
+    if (match.files.empty()) match.problem = problem(pattern, places, "matches no file");
+    return match;
+  }
+
+ private:
+  static constexpr std::size_t longest_pattern = 200;
+  static constexpr std::size_t most_entries = 1'000'000;
+#ifdef __GLIBCXX__  // follows all ways through the pattern at once; backtracking takes a power of the name's length
+  static constexpr auto syntax = std::regex_constants::ECMAScript | std::regex_constants::__polynomial;
+#else
+  static constexpr auto syntax = std::regex_constants::ECMAScript;
+#endif
+
+  [[nodiscard]] static std::filesystem::path normal(const std::filesystem::path& path) {
+    std::error_code error;
+    std::filesystem::path whole = std::filesystem::absolute(path, error).lexically_normal();
+    return whole.has_filename() ? whole : whole.parent_path();
+  }
+
+  /// Whether there is a bound to the states of a pattern: counts in braces multiply them.
+  [[nodiscard]] static bool is_simple(std::string_view pattern) {
+    std::size_t counts = 0;
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+      if (pattern[i] == '\\') {
+        if (++i < pattern.size() && pattern[i] >= '1' && pattern[i] <= '9') return false;  // what a group matched, again
+      } else if (pattern[i] == '{') {
+        ++counts;
+        if (i > 0 && pattern[i - 1] == ')') return false;
+      }
+    }
+    return pattern.size() <= longest_pattern && counts <= 4;
+  }
+
+  /// Where a name may be: inside the folders, and then outside.
+  [[nodiscard]] std::vector<std::filesystem::path> candidates(const std::string& name) const {
+    const std::filesystem::path path(name);
+    if (name.empty()) return {};
+    if (path.is_absolute()) return {normal(path)};
+    std::vector<std::filesystem::path> found, outside;
+    for (const std::filesystem::path& folder : folders_) {
+      std::filesystem::path place = normal(folder / path);
+      (is_inside(place) ? found : outside).push_back(std::move(place));
+    }
+    found.insert(found.end(), outside.begin(), outside.end());
+    return found;
+  }
+
+  [[nodiscard]] bool is_inside(const std::filesystem::path& place) const {
+    return std::any_of(folders_.begin(), folders_.end(), [&](const std::filesystem::path& folder) { return holds(folder, place); });
+  }
+
+  /// What is odd about where a file of a name was found.
+  [[nodiscard]] std::string warning(const std::string& name, const std::filesystem::path& place) const {
+    if (std::filesystem::path(name).is_absolute() || is_inside(place)) return "";
+    return "leads out of the assets folders, to " + place.string();
+  }
+
+  [[nodiscard]] static bool holds(const std::filesystem::path& folder, const std::filesystem::path& place) {
+    return std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
+  }
+
+  [[nodiscard]] std::string problem(const std::string& name, const std::vector<std::filesystem::path>& places, const char* missing) const {
+    if (name.empty()) return "is empty: expected a path";
+    return missing + std::string(": looked for ") + listed(places);
+  }
+
+  [[nodiscard]] static std::string listed(const std::vector<std::filesystem::path>& paths) {
+    std::string text;
+    for (const std::filesystem::path& path : paths) text += (text.empty() ? "" : ", ") + path.string();
+    return text.empty() ? "no folder" : text;
+  }
+
+  std::vector<std::filesystem::path> folders_;
+};
+
+}  // namespace pulsecast::helios

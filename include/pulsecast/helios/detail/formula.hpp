@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace pulsecast::helios {
+
+/// A formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, `+ - * / ^` with their usual precedence, all of
+/// them grouped from the left, parentheses, and `exp ln sqrt abs cos sin tan acos asin atan cosh sinh tanh atan2(y, x)`. Angles in radians.
+class Formula {
+ public:
+  /// Throws a `std::invalid_argument` that says what is wrong and where. Limits: 10,000 characters, parentheses 100 deep.
+  Formula(std::string_view text, std::string_view variable) : text_(text), variable_(variable) {
+    if (text.size() > 10'000) fail("is longer than 10000 characters");
+    sum(0);
+    skip();
+    if (at_ != text_.size()) fail("cannot go on like this");
+    text_ = {}, variable_ = {};
+  }
+
+  [[nodiscard]] double operator()(double value) const noexcept {
+    std::array<double, depth> stack{};
+    std::size_t n = 0;
+    for (const Step& s : steps_) {
+      if (s.kind == Kind::number) {
+        stack[n++] = s.number;
+      } else if (s.kind == Kind::variable) {
+        stack[n++] = value;
+      } else if (s.kind == Kind::negative) {
+        stack[n - 1] = -stack[n - 1];
+      } else if (s.kind == Kind::function) {
+        stack[n - 1] = s.function(stack[n - 1]);
+      } else {
+        const double b = stack[--n], a = stack[n - 1];
+        stack[n - 1] = s.kind == Kind::add        ? a + b
+                       : s.kind == Kind::subtract ? a - b
+                       : s.kind == Kind::multiply ? a * b
+                       : s.kind == Kind::divide   ? a / b
+                       : s.kind == Kind::power    ? std::pow(a, b)
+                                                  : std::atan2(a, b);
+      }
+    }
+    return stack[0];
+  }
+
+ private:
+  static constexpr std::size_t depth = 256;  ///< of the stack
+
+  enum class Kind : std::uint8_t { number, variable, negative, add, subtract, multiply, divide, power, atan2, function };
+  struct Step {
+    Kind kind = Kind::number;
+    double number = 0;
+    double (*function)(double) = nullptr;
+  };
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw std::invalid_argument("formula '" + std::string(text_.substr(0, 80)) + "' " + what + " at character " + std::to_string(at_ + 1));
+  }
+
+  void push(Step step) {
+    if (step.kind == Kind::number || step.kind == Kind::variable) {
+      if (++height_ > depth) fail("is too deep");
+    } else if (step.kind != Kind::negative && step.kind != Kind::function) {
+      --height_;
+    }
+    steps_.push_back(step);
+  }
+
+  void skip() {
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
+  }
+
+  bool take(char c) {
+    skip();
+    if (at_ == text_.size() || text_[at_] != c) return false;
+    ++at_;
+    return true;
+  }
+
+  void sum(int deep) {
+    if (deep > 100) fail("is too deep");
+    product(deep);
+    for (;;) {
+      if (take('+'))
+        product(deep), push({Kind::add});
+      else if (take('-'))
+        product(deep), push({Kind::subtract});
+      else
+        return;
+    }
+  }
+
+  void product(int deep) {
+    signed_power(deep);
+    for (;;) {
+      if (take('*'))
+        signed_power(deep), push({Kind::multiply});
+      else if (take('/'))
+        signed_power(deep), push({Kind::divide});
+      else
+        return;
+    }
+  }
+
+  void signed_power(int deep) {
+    bool negative = false;
+    for (skip(); at_ < text_.size() && (text_[at_] == '-' || text_[at_] == '+'); skip()) negative ^= text_[at_++] == '-';
+    value(deep);
+    while (take('^')) {
+      const bool minus = take('-');
+      value(deep);
+      if (minus) push({Kind::negative});
+      push({Kind::power});
+    }
+    if (negative) push({Kind::negative});
+  }
+
+  void value(int deep) {
+    skip();
+    if (take('(')) {
+      sum(deep + 1);
+      if (!take(')')) fail("lacks a closing parenthesis");
+      return;
+    }
+    double number = 0;
+    const char* const begin = text_.data() + at_;
+    const auto is_digit = [&](std::size_t i) { return i < text_.size() && text_[i] >= '0' && text_[i] <= '9'; };
+    if (is_digit(at_) || (at_ < text_.size() && text_[at_] == '.' && is_digit(at_ + 1))) {
+      const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), number, std::chars_format::fixed);
+      if (error != std::errc{}) fail("has a number that cannot be");
+      at_ += static_cast<std::size_t>(end - begin);
+      return push({Kind::number, number});
+    }
+    std::size_t end = at_;
+    while (end < text_.size() &&
+           ((text_[end] >= 'a' && text_[end] <= 'z') || (text_[end] >= 'A' && text_[end] <= 'Z') || (end > at_ && is_digit(end))))
+      ++end;
+    const std::string_view name = text_.substr(at_, end - at_);
+    if (name.empty()) fail("lacks a number, the variable or a function");
+    if (name == variable_) return at_ = end, push({Kind::variable});
+    if (name == "pi") return at_ = end, push({Kind::number, std::numbers::pi});
+    if (name == "e") return at_ = end, push({Kind::number, std::numbers::e});
+    call(name, deep, end);
+  }
+
+  void call(std::string_view name, int deep, std::size_t end) {
+    struct Named {
+      std::string_view name;
+      double (*function)(double);
+    };
+    static constexpr Named functions[] = {{"exp", [](double x) { return std::exp(x); }},   {"ln", [](double x) { return std::log(x); }},
+                                          {"sqrt", [](double x) { return std::sqrt(x); }}, {"abs", [](double x) { return std::fabs(x); }},
+                                          {"cos", [](double x) { return std::cos(x); }},   {"sin", [](double x) { return std::sin(x); }},
+                                          {"tan", [](double x) { return std::tan(x); }},   {"acos", [](double x) { return std::acos(x); }},
+                                          {"asin", [](double x) { return std::asin(x); }}, {"atan", [](double x) { return std::atan(x); }},
+                                          {"cosh", [](double x) { return std::cosh(x); }}, {"sinh", [](double x) { return std::sinh(x); }},
+                                          {"tanh", [](double x) { return std::tanh(x); }}};
+    const bool two = name == "atan2";
+    double (*function)(double) = nullptr;
+    for (const Named& f : functions)
+      if (f.name == name) function = f.function;
+    if (!two && function == nullptr) fail("has the unknown word '" + std::string(name) + "'");
+    at_ = end;
+    if (!take('(')) fail("lacks what the function is of");
+    sum(deep + 1);
+    if (two) {
+      if (!take(',')) fail("lacks the second argument of atan2");
+      sum(deep + 1), push({Kind::atan2});
+    }
+    if (!take(')')) fail("lacks a closing parenthesis");
+    if (!two) push({Kind::function, 0, function});
+  }
+
+  std::string_view text_, variable_;  // while it is read
+  std::size_t at_ = 0, height_ = 0;
+  std::vector<Step> steps_;
+};
+
+}  // namespace pulsecast::helios

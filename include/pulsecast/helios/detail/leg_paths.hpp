@@ -1,0 +1,393 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/helios/detail/leg.hpp>
+#include <pulsecast/helios/settings.hpp>
+#include <pulsecast/io/detail/trajectory/table.hpp>
+#include <pulsecast/platform/ground_vehicle.hpp>
+#include <pulsecast/platform/multicopter.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/straight_line.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/platform/waypoints.hpp>
+
+/// Where the legs of a survey document go.
+namespace pulsecast::helios {
+
+struct SurveyBuildOptions {
+  std::uint64_t seed = 0;                 ///< of leg offsets and noise
+  bool platform_noise = true;             ///< whether there is any
+  bool leg_noise = true;                  ///< whether legs begin elsewhere than they should
+  std::vector<std::string> leg_places{};  ///< of each leg, where its document says it, for messages: `survey.xml:12:5`. May be empty
+};
+
+/// Where a leg begins and how it moves; what remains is its duration.
+struct SurveyWay {
+  SurveyPath path{};
+  double duration = 0;  ///< until it is there [s]
+};
+
+/// The ways of all legs of a survey. `ground` gives the height of the scene's ground. Throws a `SettingError` that names leg and attribute,
+/// or a `FileError` of a trajectory. Settings and options must outlive it.
+class SurveyWays {
+ public:
+  SurveyWays(const SurveySettings& survey, const Ground auto& ground, const SurveyBuildOptions& options)
+      : survey_(survey), options_(options) {
+    if (survey_.legs.empty()) throw SettingError("legs (number)", 0, "", "at least 1");
+    place(ground);
+    ways(ground);
+  }
+
+  [[nodiscard]] const SurveyWay& operator[](std::size_t k) const noexcept { return ways_[k]; }
+  [[nodiscard]] std::optional<double> clock_start() const noexcept { return clock_start_; }  ///< if a trajectory says so [s]
+  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+  /// For messages.
+  [[nodiscard]] std::string leg_name(std::size_t k) const {
+    return (k < options_.leg_places.size() ? options_.leg_places[k] + ": leg " : "leg ") + std::to_string(k);
+  }
+
+  /// Calls a function; a setting that it refuses is told as one of a leg.
+  template <class Function>
+  auto of_leg(std::size_t k, const Function& function) const {
+    try {
+      return function();
+    } catch (const SettingError& error) {
+      throw error.of(leg_name(k));
+    }
+  }
+
+  /// Whether legs go to where the next one begins.
+  [[nodiscard]] bool goes_on() const {
+    return survey_.platform.kind != PlatformKind::stationary && survey_.platform.kind != PlatformKind::interpolated;
+  }
+
+  /// Whether a platform that moves does not in this leg.
+  [[nodiscard]] bool rests(std::size_t k) const { return goes_on() && hovers(survey_.legs, k); }
+
+ private:
+  void place(const Ground auto& ground) {
+    for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
+      const LegPlatformSettings& p = survey_.legs[k].platform;
+      Vec3 at = p.position;
+      if (p.on_ground && survey_.platform.kind != PlatformKind::interpolated) {
+        const std::optional<double> height = ground(Vec2{at.x, at.y});
+        if (!height)
+          throw SettingError(leg_name(k) + ": onGround at x = " + pulsecast::detail::written(at.x) + ", y", at.y, "m",
+                             "where the scene has ground: a material with helios_isGround");
+        at.z = *height;
+      }
+      expect_finite(leg_name(k) + ": position (length)", length(at), "m");
+      if (survey_.leg_offset && options_.leg_noise)
+        for (int axis = 0; axis < 3; ++axis)
+          at[axis] += survey_.leg_offset->mean + survey_.leg_offset->deviation * normal({.seed = options_.seed + 1,
+                                                                                         .pulse = k,
+                                                                                         .subray = static_cast<std::uint32_t>(axis),
+                                                                                         .purpose = Purpose::position_noise});
+      places_.push_back(k > 0 && rests(k - 1) ? places_.back() : at);
+    }
+  }
+
+  void ways(const Ground auto& ground) {
+    const std::size_t n = survey_.legs.size();
+    ways_.resize(n);
+    switch (survey_.platform.kind) {
+      case PlatformKind::stationary:
+        for (std::size_t k = 0; k < n; ++k) ways_[k].path.path = Tripod{places_[k]};
+        break;
+      case PlatformKind::linear_path:
+        fly_straight();
+        break;
+      case PlatformKind::multicopter:
+        fly();
+        break;
+      case PlatformKind::ground_vehicle:
+        drive(ground);
+        break;
+      case PlatformKind::interpolated:
+        follow();
+        break;
+    }
+  }
+
+  [[nodiscard]] double speed_of(std::size_t k) const {
+    const double speed = survey_.legs[k].platform.speed;
+    if (!(speed > 0)) throw SettingError(leg_name(k) + ": movePerSec_m", speed, "m/s", "greater than 0, or the leg would never end");
+    if (survey_.platform.kind != PlatformKind::linear_path) expect_within(leg_name(k) + ": movePerSec_m", speed, 1e-3, 1e3, "m/s");
+    return speed;
+  }
+
+  static constexpr double longest = 1e15;  ///< as a Tick counts [s]
+
+  void fly_straight() {
+    double heading = heading_from(0, 0);
+    for (std::size_t k = 0; k + 1 < places_.size(); ++k) {
+      const Vec3 way = places_[k + 1] - places_[k];
+      if (length(way) == 0) {
+        ways_[k].path.path = Tripod{places_[k], heading};
+        continue;
+      }
+      const StraightLine line{places_[k], places_[k + 1], speed_of(k)};
+      const double least = length(way) / longest;
+      if (line.speed < least)
+        throw SettingError(leg_name(k) + ": movePerSec_m", line.speed, "m/s",
+                           "at least " + pulsecast::detail::written(least) + ", for a leg that ends within 1e15 s");
+      heading = heading_of(way, heading);
+      ways_[k] = {{line, {}}, line.duration().seconds()};
+    }
+    ways_.back().path.path = Tripod{places_.back(), heading};
+  }
+
+  [[nodiscard]] bool stops_after(std::size_t k) const {
+    const LegPlatformSettings &now = survey_.legs[k].platform, &next = survey_.legs[k + 1].platform;
+    return !now.smooth_turn || now.speed != next.speed;
+  }
+
+  /// Of the first way from a leg on.
+  [[nodiscard]] double heading_from(std::size_t k, double otherwise) const {
+    while (k + 1 < places_.size() && places_[k + 1] == places_[k]) ++k;
+    return k + 1 < places_.size() ? heading_of(places_[k + 1] - places_[k], otherwise) : otherwise;
+  }
+
+  /// Where a multicopter looks when a leg begins.
+  [[nodiscard]] double departure_of(std::size_t k, double otherwise) const {
+    const std::optional<double>& yaw = survey_.legs[k].platform.yaw_at_departure;
+    return yaw ? -*yaw : otherwise;
+  }
+
+  /// Legs that the multicopter flies without a stop are one flight.
+  void fly() {
+    const std::size_t last = places_.size() - 1;
+    double heading = departure_of(0, heading_from(0, 0));
+    for (std::size_t k = 0; k < last;) {
+      heading = departure_of(k, heading);
+      if (rests(k)) {
+        ways_[k].path.path = Tripod{places_[k], heading};
+        ++k;
+        continue;
+      }
+      std::size_t end = k + 1;
+      while (end < last && !stops_after(end - 1) && !rests(end)) ++end;
+      std::vector<FlightPoint> points;
+      for (std::size_t i = k; i <= end; ++i) points.push_back({places_[i], 0});
+      const LegPlatformSettings& p = survey_.legs[k].platform;
+      const MulticopterDynamics& d = survey_.platform.multicopter;
+      MulticopterSettings s{.speed = speed_of(k)};
+      s.turn = p.smooth_turn ? MulticopterTurn::smooth : MulticopterTurn::stop_and_turn;
+      s.yaw_rate = std::clamp(d.yaw_speed, 1e-3, 1e3);
+      s.bank_max = std::clamp(d.pitch_offset, 1e-3, 1.5);
+      s.departure_heading = heading;
+      heading = heading_from(end - 1, heading);
+      s.arrival_heading = heading_from(end, heading);
+      if (end < last) s.arrival_heading = departure_of(end, *s.arrival_heading);
+      const auto flight = std::make_shared<const MulticopterFlight>(over(points, s));
+      split(k, end, flight, flight->duration().seconds());
+      heading = *s.arrival_heading;
+      k = end;
+    }
+    ways_.back().path.path = Tripod{places_.back(), heading};
+  }
+
+  /// A flight over its waypoints: as smooth turns cut corners, these are moved outwards until the way passes where it should.
+  [[nodiscard]] static MulticopterFlight over(std::vector<FlightPoint> points, const MulticopterSettings& s) {
+    const std::vector<FlightPoint> wanted = points;
+    MulticopterFlight flight = plan_multicopter(points, s);
+    if (s.turn != MulticopterTurn::smooth) return flight;
+    for (int round = 0; round < 8; ++round) {
+      double from = 0, most = 0;
+      const double whole = flight.duration().seconds();
+      for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+        from = nearest_moment(flight, i, wanted[i].position, from, whole);
+        const Vec3 miss = wanted[i].position - flight.at(Tick::of_seconds(from)).position;
+        points[i].position += miss, most = std::max(most, length(miss));
+      }
+      if (most < 0.01) break;
+      flight = plan_multicopter(points, s);
+    }
+    return flight;
+  }
+
+  void drive(const Ground auto& ground) {
+    const std::size_t last = places_.size() - 1;
+    for (std::size_t k = 0; k < last;) {
+      if (rests(k)) {
+        ++k;
+        continue;
+      }
+      std::size_t end = k + 1;
+      while (end < last && !rests(end) && survey_.legs[end - 1].platform.speed == survey_.legs[end].platform.speed) ++end;
+      if (end == last - 1 && !rests(end)) end = last;  // the last leg only says where the way ends
+      std::vector<Vec2> points;
+      for (std::size_t i = k; i <= end; ++i) points.push_back({places_[i].x, places_[i].y});
+      const auto solid = [&](const Vec2& at) -> std::optional<double> {
+        if (const std::optional<double> height = ground(at)) return height;
+        return places_[k].z;
+      };
+      const auto way = std::make_shared<const GroundVehicleDrive>(plan_ground_vehicle(points, solid, {.speed = speed_of(k)}));
+      split(k, end, way, way->duration().seconds());
+      k = end;
+    }
+    park(ground);
+    if (last == 0) return;
+    const auto& before = ways_[last - 1];
+    ways_.back().path = {before.path.path, before.path.start + Tick::of_seconds(before.duration)};
+  }
+
+  /// A vehicle that rests stands as it came, or as it will leave.
+  void park(const Ground auto& ground) {
+    for (std::size_t k = 0; k < ways_.size(); ++k) {
+      if (!rests(k)) continue;
+      std::size_t next = k;
+      while (next + 1 < ways_.size() && rests(next)) ++next;
+      Vec3 at = places_[k];
+      at.z = ground(Vec2{at.x, at.y}).value_or(at.z);
+      const bool ever_drives = k > 0 || next + 1 < ways_.size();
+      const auto pose = !ever_drives ? Tripod{at}.at({})
+                        : k > 0      ? ways_[k - 1].path.at(Tick::of_seconds(ways_[k - 1].duration))
+                                     : ways_[next].path.at({});
+      ways_[k].path.path = std::make_shared<const Waypoints>(std::vector<Waypoint>{{0, pose.position, pose.rotation}});
+    }
+  }
+
+  /// Divides one plan among the legs from `k` to `end`, each until the way is nearest to where the next begins, and a flight has turned
+  /// to where it goes from there.
+  template <class Plan>
+  void split(std::size_t k, std::size_t end, const std::shared_ptr<const Plan>& plan, double whole) {
+    double from = 0;
+    for (std::size_t i = k; i < end; ++i) {
+      double to = i + 1 == end ? whole : nearest_moment(*plan, i + 1 - k, places_[i + 1], from, whole);
+      if constexpr (std::same_as<Plan, MulticopterFlight>)
+        if (i + 1 < end) to = end_of_turn(*plan, to, places_[i + 2], plan->passes()[i + 2 - k].seconds());
+      ways_[i] = {{plan, Tick::of_seconds(from)}, to - from};
+      from = to;
+    }
+  }
+
+  /// When a plan passes its waypoint of a number, at a place, after a time: when it is nearest.
+  template <class Plan>
+  [[nodiscard]] static double nearest_moment(const Plan& plan, std::size_t number, const Vec3& place, double from, double whole) {
+    const auto distance = [&](double t) {
+      const Tick tick = Tick::of_seconds(t);
+      Vec3 off = -place;
+      if constexpr (std::same_as<Plan, MulticopterFlight>)
+        off += plan.motion().at(tick).position;
+      else
+        off += plan.at(tick).position;
+      return std::hypot(off.x, off.y);
+    };
+    constexpr int steps = 20'000;
+    const double step = (whole - from) / steps;
+    const auto after = [&](int i) { return distance(from + i * step); };
+    int nearest = steps;
+    if constexpr (std::same_as<Plan, MulticopterFlight>) {  // which says about when
+      const double begun = (plan.passes()[number].seconds() - from) / step;
+      nearest = begun > 0 ? static_cast<int>(std::min(begun, static_cast<double>(steps))) : 0;
+      while (nearest > 0 && after(nearest - 1) < after(nearest)) --nearest;
+      while (nearest < steps && after(nearest + 1) <= after(nearest)) ++nearest;
+    } else {  // the first of its nearest approaches that is no farther than any other by more than a metre
+      double least = after(0), before = least;
+      for (int i = 1; i <= steps; ++i) least = std::min(least, after(i));
+      for (int i = 1; i <= steps && nearest == steps; ++i) {
+        const double now = after(i);
+        if (now > before && before <= least + 1) nearest = i - 1;
+        before = now;
+      }
+    }
+    const double best = nearest < steps ? from + nearest * step : whole;
+    double low = std::max(from, best - step), high = std::min(whole, best + step);  // golden-section search would do no better
+    for (int i = 0; i < 60; ++i) {
+      const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+      const bool first_is_nearer = distance(a) < distance(b);
+      (first_is_nearer ? high : low) = first_is_nearer ? b : a;
+    }
+    return 0.5 * (low + high);
+  }
+
+  /// When a flight, from a time until another, first goes straight at a place, within a degree.
+  [[nodiscard]] static double end_of_turn(const MulticopterFlight& flight, double from, const Vec3& place, double until) {
+    for (double t = from; t < until; t += 0.01) {
+      const auto state = flight.motion().at(Tick::of_seconds(t));
+      const Vec3 way = place - state.position;
+      if (dot(state.velocity, way) >= std::cos(radians(1)) * length(state.velocity) * length(way)) return t;
+    }
+    return from;
+  }
+
+  void follow() {
+    struct Key {
+      std::string file;
+      std::optional<double> start, end;
+      auto operator<=>(const Key&) const = default;
+    };
+    std::map<Key, io::TrajectoryTable> tables;
+    std::map<std::string, TrajectorySettings> told;  // of each file: what the first leg that says it says of its columns
+    for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
+      std::optional<TrajectorySettings> t = survey_.legs[k].platform.trajectory;
+      if (!t) throw SettingError(leg_name(k) + ": trajectory (number)", 0, "", "1, for an interpolated platform");
+      TrajectorySettings& of_file = told[t->file.string()];
+      if (!of_file.columns) of_file.columns = t->columns;
+      if (!of_file.separator) of_file.separator = t->separator;
+      t->columns = of_file.columns, t->separator = of_file.separator;
+      io::TrajectoryFormat format = io::helios_format();
+      format.angles = survey_.platform.rotation_spec == RotationSpec::canonical ? io::helios_canonical : io::helios_arinc_705;
+      format.separator = t->separator.value_or(format.separator), format.fixed_separator = t->separator.has_value();
+      format.angle_unit = t->angles_in_degrees ? io::AngleUnit::degree : io::AngleUnit::radian;
+      if (t->position_only) format.columns = {"t", "x", "y", "z"};
+      if (t->columns) columns_of(*t, format);
+      const Key key{t->file.string(), t->start, t->end};
+      if (!tables.contains(key)) {
+        io::TrajectoryTable table = of_leg(k, [&] { return io::read_trajectory(t->file, format, {t->start, t->end}); });
+        for (const std::string& warning : table.warnings) warn(warning);
+        if (t->position_only) table.poses = with_headings(std::move(table.poses));
+        tables.emplace(key, std::move(table));
+      }
+      const io::TrajectoryTable& table = tables.at(key);
+      if (k == 0 && t->sync_clock) clock_start_ = table.start_time;
+      const auto path = std::make_shared<const Waypoints>(table.poses);
+      ways_[k] = {{path, {}}, path->duration().seconds()};
+    }
+  }
+
+  static void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format) {
+    std::vector<std::pair<int, const char*>> columns{{t.columns->time, "t"}, {t.columns->x, "x"}, {t.columns->y, "y"}, {t.columns->z, "z"}};
+    if (!t.position_only) columns.insert(columns.end(), {{t.columns->roll, "roll"}, {t.columns->pitch, "pitch"}, {t.columns->yaw, "yaw"}});
+    int most = 0;
+    for (const auto& [place, name] : columns) most = std::max(most, place);
+    format.names = io::ColumnNames::nowhere;
+    format.columns.clear();
+    for (int i = 0; i <= most; ++i) format.columns.push_back("column " + std::to_string(i));
+    for (std::string& c : format.columns) std::replace(c.begin(), c.end(), ' ', '_');
+    format.left_out = format.columns;
+    for (const auto& [place, name] : columns) format.columns[static_cast<std::size_t>(place)] = name;
+    std::erase_if(format.left_out,
+                  [&](const std::string& c) { return std::find(format.columns.begin(), format.columns.end(), c) == format.columns.end(); });
+  }
+
+  void warn(std::string text) {
+    if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
+  }
+
+  const SurveySettings& survey_;
+  const SurveyBuildOptions& options_;
+  std::vector<Vec3> places_;  // where legs begin
+  std::vector<SurveyWay> ways_;
+  std::optional<double> clock_start_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace pulsecast::helios

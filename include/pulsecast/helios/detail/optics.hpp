@@ -1,0 +1,320 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/deflector/aim.hpp>
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/fiber_array.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
+#include <pulsecast/deflector/oscillating_mirror.hpp>
+#include <pulsecast/deflector/palmer_mirror.hpp>
+#include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/deflector/risley_prisms.hpp>
+#include <pulsecast/deflector/rotating_head.hpp>
+#include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/detector/radiometry.hpp>
+#include <pulsecast/helios/detail/formula.hpp>
+#include <pulsecast/helios/settings.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+
+/// The instrument of a survey document, as stages of the library.
+namespace pulsecast::helios {
+
+/// What sends the beam of one channel on its way: an optic of any kind, which sits somewhere in an instrument that a head turns. One type
+/// for all optics, so that a program that reads its scanner from a file compiles one pipeline.
+struct SurveyOptic {
+  using AnyOptic = std::variant<FixedBeam, OscillatingMirror, PolygonMirror, PalmerMirror, FiberArray, RisleyPrisms>;
+
+  AnyOptic optic{};
+  Tick ahead{};                                          ///< by how much the optic's clock is ahead of the leg's
+  Pose<frame::Instrument, frame::Instrument> emitter{};  ///< of the channel, in an instrument that its head does not turn
+  RotatingHead head{.rate = 0};
+  std::shared_ptr<const Formula> deflection_error{};  ///< added to the deflection, of it; none if empty [rad]
+  std::shared_ptr<const Formula> head_error{};        ///< added to the angle of the head, of the deflection [rad]
+  std::shared_ptr<const Formula> range_error{};       ///< added to what is reported of the range, of the deflection [m]
+  double head_zero_threshold = 0;                     ///< by which the deflection is kept off whole half turns for `head_error` [rad]
+
+  void validate() const {
+    std::visit([](const auto& o) { o.validate(); }, optic);
+    head.validate();
+  }
+
+  [[nodiscard]] bool open(Tick t) const noexcept {
+    return std::visit(
+        [&](const auto& o) noexcept {
+          if constexpr (requires { o.open(t); })
+            return o.open(t + ahead);
+          else
+            return true;
+        },
+        optic);
+  }
+
+  /// Where the beam goes.
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
+    if (!deflection_error && !head_error) return exact(t);
+    const double angle = deflection(t);
+    Pose<frame::Beam, frame::Instrument> pose = exact(t);
+    if (deflection_error) pose.rotation = pose.rotation * aimed_above((*deflection_error)(angle)).rotation;
+    if (!head_error) return pose;
+    const double half_turns = std::round(angle / pi), off = angle - half_turns * pi;
+    const double kept_off = half_turns * pi + std::copysign(std::max(std::fabs(off), head_zero_threshold), off);
+    return Pose<frame::Instrument, frame::Instrument>{rotation_about(head.axis, (*head_error)(kept_off)), {}} * pose;
+  }
+
+  /// Where the instrument takes its beam to go.
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> exact(Tick t) const noexcept {
+    const Pose<frame::Beam, frame::Instrument> pose = emitter * std::visit([&](const auto& o) noexcept { return o.at(t + ahead); }, optic);
+    return head.rate == 0 && head.start == 0 ? pose : head.at(t) * pose;
+  }
+
+  /// By how much the optic turns the beam up; 0 for those that do otherwise [rad].
+  [[nodiscard]] double deflection(Tick t) const noexcept {
+    return std::visit(
+        [&](const auto& o) noexcept -> double {
+          if constexpr (requires { o.angle(t); })
+            return o.angle(t + ahead);
+          else
+            return 0;
+        },
+        optic);
+  }
+
+  [[nodiscard]] bool errs() const noexcept { return deflection_error || head_error || range_error; }
+
+  /// The exact pose, so moved along the beam that ranges seem to err.
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> reported(Tick t) const noexcept {
+    Pose<frame::Beam, frame::Instrument> pose = exact(t);
+    if (range_error) pose.position += (*range_error)(deflection(t)) * pose.direction(forward);
+    return pose;
+  }
+};
+
+static_assert(Optic<SurveyOptic> && Gated<SurveyOptic>);
+
+/// One channel in one leg.
+using SurveyChannel = Deflector<SurveyOptic, Scanner>;
+
+/// What the settings of one leg make of a scanner's optic.
+struct OpticClock {
+  double active = 0;  ///< how long the optic has run since it was last started; those that go on from leg to leg go on from there [s]
+};
+
+namespace detail {
+
+[[nodiscard]] inline double scan_angle_of(const ChannelSettings& channel, const LegScannerSettings& leg) {
+  const double angle = leg.scan_angle.value_or(channel.scan_angle_max);
+  return channel.scan_angle_max > 0 ? std::min(angle, channel.scan_angle_max) : angle;
+}
+
+/// Between which angles pulses of a polygon mirror leave [rad].
+struct MirrorGate {
+  double low = 0, high = 0;
+  bool is_limited = false;  ///< the leg asks for angles that are further apart than the device measures in
+};
+
+/// The gate of a leg. If it is too wide, what the mirror never points at does not count, and then it is as wide as the device, about the
+/// same middle.
+[[nodiscard]] inline MirrorGate mirror_gate(const ChannelSettings& channel, const RotatingOptic& optic, const LegScannerSettings& leg) {
+  const double sweep = channel.scan_angle_max, effective = optic.effective_angle_max.value_or(sweep);
+  const double half = std::min(effective, scan_angle_of(channel, leg));
+  MirrorGate gate{leg.vertical_angle_min.value_or(-half), leg.vertical_angle_max.value_or(half)};
+  gate.is_limited = gate.high - gate.low > 2 * effective + 1e-9;
+  if (!gate.is_limited) return gate;
+  gate.low = std::max(gate.low, -sweep), gate.high = std::min(gate.high, sweep);
+  const double middle = (gate.low + gate.high) / 2;
+  if (gate.high - gate.low > 2 * effective) gate.low = middle - effective, gate.high = middle + effective;
+  return gate;
+}
+
+inline void expect_scan_frequency(const ChannelSettings& channel, const LegScannerSettings& leg) {
+  const double f = leg.scan_frequency, most = channel.scan_frequency_max;
+  if (f < channel.scan_frequency_min || (most > 0 && f > most))
+    throw SettingError("scanFreq_hz", f, "Hz",
+                       "within what the device can: " + pulsecast::detail::written(channel.scan_frequency_min) + " to " +
+                           (most > 0 ? pulsecast::detail::written(most) : "any") + " Hz");
+}
+
+/// Makes the optic of a channel; `tilt` is what it adds to the mount of the channel.
+struct OpticBuilder {
+  const ChannelSettings& channel;
+  const LegScannerSettings& leg;
+  double pulse_rate;
+  double active;     ///< as in `OpticClock`
+  double ahead = 0;  ///< set [s]
+  double tilt = 0;   ///< set [rad]
+
+  [[nodiscard]] SurveyOptic::AnyOptic operator()(const OscillatingOptic& optic) {
+    ahead = active;
+    const double angle = scan_angle_of(channel, leg);
+    double f = leg.scan_frequency;
+    if (!(f > 0)) throw SettingError("scanFreq_hz", f, "Hz", "greater than 0 for an oscillating mirror");
+    if (angle * f > optic.scan_product_max) f = optic.scan_product_max / angle;
+    // a cycle is a whole number of pulses, and the mirror turns round within a hundred of them
+    const double pulses = std::floor(pulse_rate / f);
+    if (pulses >= 2) f = pulse_rate / pulses;
+    return OscillatingMirror{.cycles_per_second = f, .half_angle = angle, .turning_time = std::min(100 / pulse_rate, 0.5 / f)};
+  }
+
+  [[nodiscard]] SurveyOptic::AnyOptic operator()(const RotatingOptic& optic) {
+    const double sweep = channel.scan_angle_max, f = leg.scan_frequency;
+    if (!(f > 0) || !(sweep > 0)) return FixedBeam{};  // sensors whose head does the scanning
+    const auto [low, high, is_limited] = mirror_gate(channel, optic, leg);
+    if (high < low) throw SettingError("verticalAngleMax_deg", degrees(high), "deg", "at least verticalAngleMin_deg");
+    ahead = 0.5 / f;  // a leg begins in the middle of a facet
+    return PolygonMirror{
+        .lines_per_second = f, .sweep = std::min(sweep, pi), .angle_min = std::max(low, -pi), .angle_max = std::min(high, pi)};
+  }
+
+  [[nodiscard]] SurveyOptic::AnyOptic operator()(const ConicOptic&) {
+    ahead = active;
+    const double f = leg.scan_frequency > 0 ? leg.scan_frequency : channel.scan_frequency_max;
+    if (!(f > 0)) throw SettingError("scanFreq_hz", f, "Hz", "greater than 0 for a Palmer mirror");
+    return PalmerMirror{.turns_per_second = f, .half_angle = scan_angle_of(channel, leg)};
+  }
+
+  /// Fibres are evenly spread over the full scan angle, each at the lower end of its share.
+  [[nodiscard]] SurveyOptic::AnyOptic operator()(const LineOptic& optic) {
+    ahead = active;
+    const double angle = scan_angle_of(channel, leg), n = optic.fibers;
+    tilt = optic.fibers > 1 ? -angle / n : 0;
+    return FiberArray{
+        .fibers = static_cast<std::uint32_t>(optic.fibers), .fibers_per_second = pulse_rate, .half_angle = angle * (n - 1) / n};
+  }
+
+  [[nodiscard]] SurveyOptic::AnyOptic operator()(const RisleyOptic& optic) {
+    ahead = active;
+    RisleyPrisms out{.surrounding_index = optic.air_refractive_index, .incident = optic.incident_beam};
+    for (const RisleyPrism& p : optic.prisms)
+      if (std::fabs(p.angle) > radians(1e-6))
+        out.prisms.push_back({.wedge = std::fabs(p.angle),
+                              .turns_per_second = p.rotor_frequency,
+                              .refractive_index = p.refractive_index,
+                              .inclined_exit = p.angle < 0});
+    if (out.prisms.empty()) return FixedBeam{aimed_along(normalize(optic.incident_beam))};
+    return out;
+  }
+};
+
+}  // namespace detail
+
+namespace detail {
+
+/// By how much an optic turns the beam up at least and at most in a leg; 0 for those that do otherwise [rad].
+[[nodiscard]] inline std::pair<double, double> deflections(const SurveyOptic::AnyOptic& optic) {
+  const auto* const mirror = std::get_if<PolygonMirror>(&optic);
+  return mirror ? std::pair(mirror->angle_min, mirror->angle_max) : std::pair(0.0, 0.0);
+}
+
+/// Refuses an error that is no number over a stretch of the angles that it is of. A pole in between is none that a beam meets.
+inline void expect_finite(const char* field, const Formula& error, const std::pair<double, double>& angles) {
+  constexpr int places = 64;
+  for (int i = 0; i < places; ++i) {
+    const double angle = angles.first + (angles.second - angles.first) * (i + 0.518) / places;
+    const double value = error(angle);
+    if (!std::isfinite(value))  // without the sign that some give what is no number
+      throw SettingError(field, std::isnan(value) ? std::fabs(value) : value, "",
+                         "a formula with a finite value, also for a THETA of " + pulsecast::detail::written(angle));
+  }
+}
+
+}  // namespace detail
+
+/// The rate at which the head turns in a leg [rad/s].
+[[nodiscard]] inline double head_rate(const ChannelSettings& channel, const LegScannerSettings& leg) noexcept {
+  return std::clamp(leg.head_speed, -channel.head_speed_max, channel.head_speed_max);
+}
+
+/// The optic of a channel in a leg. Documents give the beam's origin along the axes of the platform, as they do the mount's, so that the
+/// two add up, and `boresight`, which turns the instrument on the body, does not turn it; heading and head do.
+/// Throws a `SettingError` that names the attribute at fault.
+[[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg, double pulse_rate,
+                                              const Rotation& boresight = no_rotation, const OpticClock& clock = {}) {
+  if (leg.active) detail::expect_scan_frequency(channel, leg);
+  detail::OpticBuilder build{channel, leg, pulse_rate, clock.active};
+  SurveyOptic out{.optic = std::visit(build, channel.optic)};
+  out.ahead = Tick::of_seconds(build.ahead + leg.warm_up);
+  out.emitter = {channel.beam_origin.rotation.rotation() * aimed_above(build.tilt).rotation,
+                 conjugate(boresight) * channel.beam_origin.position};
+  const double rate = head_rate(channel, leg);
+  out.head = {.rate = rate, .start = leg.head_start + rate * leg.warm_up, .axis = channel.head_axis};
+  const auto formula = [](const std::string& text) { return text.empty() ? nullptr : std::make_shared<const Formula>(text, "THETA"); };
+  out.deflection_error = formula(channel.errors.deflection), out.head_error = formula(channel.errors.head);
+  out.range_error = formula(channel.errors.range), out.head_zero_threshold = channel.errors.head_zero_threshold;
+  const std::pair<double, double> angles = detail::deflections(out.optic);
+  if (out.deflection_error) detail::expect_finite("deflectionError", *out.deflection_error, angles);
+  if (out.head_error) detail::expect_finite("headError", *out.head_error, angles);
+  if (out.range_error) detail::expect_finite("rangeError", *out.range_error, angles);
+  return out;
+}
+
+/// The laser of a channel in a leg. With a beam quality, its waist is where the beam leaves, as wide as quality and divergence make it.
+[[nodiscard]] inline Laser survey_laser(const ChannelSettings& channel, const LegScannerSettings& leg) {
+  const double divergence = leg.divergence.value_or(channel.divergence);
+  Laser laser{.wavelength = channel.wavelength,
+              .peak_power = channel.average_power,
+              .pulse_length = channel.pulse_length,
+              .divergence = divergence};
+  if (channel.beam_quality)  // Source: ISO 11146-1:2005, M^2 = pi d0 theta / (4 lambda)
+    laser.waist_diameter = 4 * *channel.beam_quality * channel.wavelength / (pi * divergence);
+  return laser;
+}
+
+namespace detail {
+
+/// Noise of the range by a formula: a table so fine that it is off by less than 1e-4 of what a power of the range is. A factor below zero
+/// is as good as one above, as noise is as often positive as negative.
+[[nodiscard]] inline RangeErrors range_noise(const ChannelSettings& channel) {
+  const Formula times(channel.errors.range_noise, "t");
+  const double first = std::max(channel.range_min, 0.01), last = std::isfinite(channel.range_max) ? channel.range_max : 1e6;
+  constexpr int rows = 2000;
+  std::vector<DeviationAtRange> table;
+  for (int i = 0; i <= rows && (i == 0 || first < last); ++i) {
+    const double range = first * std::pow(last / first, i / static_cast<double>(rows)),
+                 deviation = channel.accuracy * std::fabs(times(range));
+    if (!std::isfinite(deviation))
+      throw SettingError("distanceMeasurementError at t", range, "m", "a formula with a finite value from rangeMin_m to rangeMax_m");
+    table.push_back({range, deviation});
+  }
+  return {.deviations = std::move(table)};
+}
+
+}  // namespace detail
+
+/// The receiver of a channel. Throws a `SettingError` or a `std::invalid_argument` if there is no noise as its formula says.
+[[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel) {
+  const bool by_formula = !channel.errors.range_noise.empty();
+  const RangeErrors errors = by_formula ? detail::range_noise(channel) : RangeErrors{.deviation = channel.accuracy};
+  return {.diameter = channel.receiver_diameter,
+          .efficiency = channel.efficiency,
+          .visibility = channel.visibility,
+          .range_min = channel.range_min,
+          .range_max = channel.range_max,
+          .range_errors = errors};
+}
+
+/// How the receiver of a channel makes echoes of a waveform, of which it keeps `record_length` [s]. The times of `winSize_ns` and
+/// `maxFullwaveRange_ns` are those of light on its way there only, and count twice here; `binSize_ns` is that of a digitiser, both ways.
+[[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0) {
+  const FullWaveformSettings& s = channel.waveform;
+  WaveformSettings out;
+  out.sample_interval = s.bin_size;
+  out.threshold = channel.received_power_min;
+  out.window = 2 * s.window.value_or(channel.pulse_length / 4);
+  out.max_returns = channel.returns_max > 0 ? static_cast<std::size_t>(std::min(channel.returns_max, 255)) : 255;
+  out.record_length = s.duration_max > 0 ? std::min(record_length, 2 * s.duration_max) : record_length;
+  return out;
+}
+
+}  // namespace pulsecast::helios

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/helios/settings.hpp>
+#include <pulsecast/io/mapped_file.hpp>
+
+namespace pulsecast::helios {
+
+/// All files that a scene is built from, in any run, each once: those that its settings name, and the materials that OBJ files name. Files
+/// that are not there are left out; whoever builds the scene will say so.
+[[nodiscard]] std::vector<std::filesystem::path> scene_files(const SceneSettings& scene);
+
+/// Whether any material is ground, in any run, as far as the MTL files say: a scene without cannot answer for `onGround`.
+[[nodiscard]] bool has_ground(const SceneSettings& scene);
+
+namespace detail {
+
+class SceneFiles {
+ public:
+  void add(const PartSource& source) {
+    std::visit(
+        [this](const auto& s) {
+          for (const std::filesystem::path& file : s.files)
+            if (add(file) && std::is_same_v<decltype(s), const ObjSource&>) add_materials(file);
+          if constexpr (requires { s.material; }) add_material(s.material.file);
+          if constexpr (requires { s.leaf_angles; }) add(s.leaf_angles);
+        },
+        source);
+  }
+
+  [[nodiscard]] std::vector<std::filesystem::path> take() { return std::move(files_); }
+  [[nodiscard]] const std::vector<std::filesystem::path>& materials() const noexcept { return materials_; }  ///< the MTL files among them
+
+ private:
+  /// Whether it is there and was not before.
+  bool add(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored) || !seen_.insert(file).second) return false;
+    files_.push_back(file);
+    return true;
+  }
+
+  void add_material(const std::filesystem::path& file) {
+    if (add(file)) materials_.push_back(file);
+  }
+
+  /// What `mtllib` in an OBJ file may name.
+  void add_materials(const std::filesystem::path& obj) {
+    try {
+      const io::MappedFile file(obj);
+      const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()), keyword = "mtllib";
+      for (std::size_t at = text.find(keyword); at != text.npos; at = text.find(keyword, at)) {
+        at += keyword.size();
+        std::size_t end = std::min(text.find('\n', at), text.size());
+        while (end < text.size() && text.substr(at, end - at).find_last_of('\\') != text.npos &&
+               text.substr(at, end - at).find_last_not_of(" \t\r") == text.substr(at, end - at).find_last_of('\\'))
+          end = std::min(text.find('\n', end + 1), text.size());  // the statement goes on
+        add_named(obj.parent_path(), std::string(text.substr(at, end - at)));
+      }
+    } catch (const FileError&) {  // cannot be read
+    }
+  }
+
+  /// Names one after the other, or one that has blanks.
+  void add_named(const std::filesystem::path& folder, std::string names) {
+    constexpr const char* blanks = " \t\r\n";
+    std::replace(names.begin(), names.end(), '\\', '/');
+    const std::size_t first = names.find_first_not_of(blanks);
+    if (first == names.npos) return;
+    add_material(folder / names.substr(first, names.find_last_not_of(blanks) + 1 - first));
+    for (std::size_t word = first; word != names.npos;) {
+      const std::size_t end = std::min(names.find_first_of(blanks, word), names.size());
+      add_material(folder / names.substr(word, end - word));
+      word = names.find_first_not_of(blanks, end);
+    }
+  }
+
+  std::vector<std::filesystem::path> files_, materials_;
+  std::set<std::filesystem::path> seen_;
+};
+
+inline SceneFiles files_of(const SceneSettings& scene) {
+  SceneFiles files;
+  for (const PartSettings& part : scene.parts) {
+    files.add(part.source);
+    for (const SwapSettings& swap : part.swaps)
+      if (swap.source) files.add(*swap.source);
+  }
+  return files;
+}
+
+/// Whether a line of an MTL file is `helios_isGround true` or `1`.
+inline bool says_ground(const std::string& line) {
+  std::istringstream words(line);
+  std::string key, value;
+  if (!(words >> key >> value) || key != "helios_isGround") return false;
+  std::transform(value.begin(), value.end(), value.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return value == "true" || value == "1";
+}
+
+}  // namespace detail
+
+inline std::vector<std::filesystem::path> scene_files(const SceneSettings& scene) { return detail::files_of(scene).take(); }
+
+inline bool has_ground(const SceneSettings& scene) {
+  const detail::SceneFiles files = detail::files_of(scene);
+  for (const std::filesystem::path& file : files.materials()) {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);)
+      if (detail::says_ground(line)) return true;
+  }
+  return false;
+}
+
+}  // namespace pulsecast::helios

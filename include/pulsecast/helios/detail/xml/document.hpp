@@ -1,0 +1,298 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/io/input_file.hpp>
+
+namespace pulsecast::helios {
+
+/// Where something stands in an XML file; line 0 stands for the file as a whole.
+struct XmlPlace {
+  std::string path{};
+  std::size_t line = 0, column = 0;  ///< from 1; columns count bytes
+
+  /// `path:line:column`, as editors understand it.
+  [[nodiscard]] std::string text() const { return line == 0 ? path : path + ":" + std::to_string(line) + ":" + std::to_string(column); }
+
+  bool operator==(const XmlPlace&) const = default;
+};
+
+/// One thing to mend.
+struct XmlFault {
+  XmlPlace place{};
+  std::string problem{};  ///< what is wrong and what was expected
+};
+
+/// All that is wrong with a document and those that it refers to. `what()` has a line for each, `path:line:column: problem`; as a
+/// `FileError` it is about the first of them. What was odd beside that stands in `warnings`.
+class XmlFaults : public FileError {
+ public:
+  static constexpr std::size_t most = 100;  ///< that are told
+
+  /// `faults` must not be empty.
+  explicit XmlFaults(std::vector<XmlFault> faults, std::vector<std::string> warnings = {})
+      : FileError(faults.front().place.path, place_in_words(faults.front().place), faults.front().problem),
+        faults_(std::move(faults)),
+        warnings_(std::move(warnings)) {
+    for (std::size_t i = 0; i < std::min(faults_.size(), most); ++i)
+      text_ += (i == 0 ? "" : "\n") + faults_[i].place.text() + ": " + faults_[i].problem;
+    if (faults_.size() > most) text_ += "\nand " + std::to_string(faults_.size() - most) + " more";
+  }
+
+  [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
+  [[nodiscard]] const std::vector<XmlFault>& faults() const noexcept { return faults_; }  ///< in the order in which they were found
+  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+ private:
+  static std::string place_in_words(const XmlPlace& place) {
+    return place.line == 0 ? "" : "line " + std::to_string(place.line) + ", column " + std::to_string(place.column);
+  }
+
+  std::vector<XmlFault> faults_;
+  std::vector<std::string> warnings_;
+  std::string text_;
+};
+
+/// Gathers what is wrong and what is odd, each once.
+class XmlReport {
+ public:
+  static constexpr std::size_t most = 1000;  ///< of either; beyond, they are not kept
+
+  void fault(XmlPlace place, std::string problem) {
+    if (is_full()) return;
+    for (const XmlFault& other : faults_)
+      if (other.place == place && other.problem == problem) return;
+    if (lenient_) return warn(place, problem);
+    faults_.push_back({std::move(place), std::move(problem)});
+  }
+
+  void warn(const XmlPlace& place, const std::string& problem) {
+    if (is_full_of_warnings()) return;
+    std::string text = place.text() + ": " + problem;
+    if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
+    if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(most) + " are not told";
+  }
+
+  /// Calls `read()`, with the faults of what nobody uses as warnings.
+  template <class Read>
+  void leniently(Read read) {
+    const bool before = std::exchange(lenient_, true);
+    read();
+    lenient_ = before;
+  }
+
+  /// Whether no more faults are kept: it is not worth looking for them.
+  [[nodiscard]] bool is_full() const noexcept { return faults_.size() == most; }
+
+  [[nodiscard]] bool is_full_of_warnings() const noexcept { return warnings_.size() == most; }
+
+  [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< how many there are
+  [[nodiscard]] bool is_clean() const noexcept { return faults_.empty(); }
+
+  /// Throws if anything is wrong.
+  void expect_clean() const {
+    if (!faults_.empty()) throw XmlFaults(faults_, warnings_);
+  }
+
+  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+ private:
+  std::vector<XmlFault> faults_;
+  std::vector<std::string> warnings_;
+  bool lenient_ = false;
+};
+
+/// A text in quotation marks, cut if it is long.
+[[nodiscard]] inline std::string xml_quoted(std::string_view text) {
+  constexpr std::size_t longest = 80;
+  std::string quoted = "'";
+  for (const char c : text.substr(0, longest)) quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  return quoted + (text.size() > longest ? "...'" : "'");
+}
+
+/// How many letters must be put in, left out, changed or swapped with their neighbour to make one word of the other; capitals are no
+/// matter. Source: optimal string alignment distance, Damerau 1964.
+[[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const auto is_same = [](char x, char y) {
+    const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+    return small(x) == small(y);
+  };
+  std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  std::iota(last.begin(), last.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (is_same(a[i - 1], b[j - 1]) ? 0 : 1)});
+      if (i > 1 && j > 1 && is_same(a[i - 1], b[j - 2]) && is_same(a[i - 2], b[j - 1])) row[j] = std::min(row[j], before_last[j - 2] + 1);
+    }
+    std::swap(before_last, last);
+    std::swap(last, row);
+  }
+  return last[b.size()];
+}
+
+/// "; did you mean 'pulseFreq_hz'?", with the one of the known names that is nearest; all of them if none is near.
+[[nodiscard]] inline std::string suggestion(std::string_view unknown, std::span<const std::string> known) {
+  if (known.empty()) return "";
+  const std::string_view word = unknown.substr(0, 100);
+  const std::string* nearest = nullptr;
+  std::size_t least = std::max<std::size_t>(word.size() / 2, 2);
+  for (const std::string& name : known)
+    if (const std::size_t distance = edit_distance(word, name.substr(0, 100)); distance < least || (distance == least && !nearest))
+      nearest = &name, least = distance;
+  if (nearest) return "; did you mean '" + *nearest + "'?";
+  std::string list;
+  for (std::size_t i = 0; i < std::min<std::size_t>(known.size(), 40); ++i) list += (list.empty() ? "" : ", ") + known[i];
+  return "; there are: " + list + (known.size() > 40 ? ", ..." : "");
+}
+
+/// An XML file in memory, in which every element and attribute has a place. External entities and those that a document declares itself
+/// are not known: a document that declares any is refused.
+class XmlDocument {
+ public:
+  static constexpr std::size_t longest_file = std::size_t{64} << 20;      ///< [byte]
+  static constexpr std::size_t longest_attribute = std::size_t{1} << 16;  ///< [byte]
+  static constexpr std::size_t most_attributes = 100;                     ///< of one element
+
+  /// Throws `XmlFaults` if it is not XML.
+  explicit XmlDocument(const std::filesystem::path& path) : path_(path.string()) {
+    io::InputFile file(path, "an XML document");
+    if (file.size() > longest_file) file.fail("is longer than " + std::to_string(longest_file) + " bytes: expected an XML document");
+    while (file.position() < file.size()) {
+      const std::string_view bytes = file.take(io::InputFile::block_size);
+      if (bytes.empty()) break;
+      text_ += bytes;
+    }
+    if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);  // the mark that some editors put before UTF-8
+    for (std::size_t i = 0; i < text_.size(); ++i)
+      if (text_[i] == '\n') line_ends_.push_back(i);
+    if (const std::size_t zero = text_.find('\0'); zero != std::string::npos) fail_at(zero, "holds binary data: expected an XML document");
+    const auto status = document_.load_buffer(text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
+    if (!status)
+      fail_at(static_cast<std::size_t>(status.offset),
+              std::string("is not well-formed XML: ") + status.description() + hint(status.status));
+    for (const pugi::xml_node node : document_.children())
+      if (node.type() == pugi::node_doctype && std::string_view(node.value()).find('[') != std::string_view::npos)
+        fail_at(std::min(text_.find("<!DOCTYPE"), text_.size()), "declares entities: expected a document without a DOCTYPE of its own");
+    root_ = document_.document_element();
+    for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling())
+      if (node.type() == pugi::node_element) fail_at(offset(node), "a second root element: expected the end of the file");
+    check_attributes();
+  }
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] pugi::xml_node root() const noexcept { return root_; }
+
+  /// Of the file as a whole.
+  [[nodiscard]] XmlPlace place() const { return {.path = path_, .line = 1, .column = 1}; }
+
+  /// Where an element begins.
+  [[nodiscard]] XmlPlace place(pugi::xml_node node) const { return place_of(offset(node)); }
+
+  /// Where an attribute begins.
+  [[nodiscard]] XmlPlace place(pugi::xml_node node, std::string_view attribute) const {
+    std::size_t found = offset(node);
+    each_attribute(found, [&](std::size_t at, std::string_view name, std::string_view) {
+      if (name == attribute) found = at;
+      return name != attribute;
+    });
+    return place_of(found);
+  }
+
+ private:
+  [[nodiscard]] static const char* hint(pugi::xml_parse_status status) {
+    switch (status) {
+      case pugi::status_end_element_mismatch:
+        return " (this end tag is not of the element that was begun last)";
+      case pugi::status_no_document_element:
+        return " (there is no element)";
+      default:
+        return "";
+    }
+  }
+
+  /// Of a byte after the `<` of the element.
+  [[nodiscard]] std::size_t offset(pugi::xml_node node) const {
+    const std::ptrdiff_t at = node.offset_debug();
+    return at < 0 ? 0 : std::min(static_cast<std::size_t>(at), text_.size());
+  }
+
+  [[nodiscard]] XmlPlace place_of(std::size_t byte) const {
+    const auto end = std::lower_bound(line_ends_.begin(), line_ends_.end(), byte);
+    const std::size_t begin = end == line_ends_.begin() ? 0 : *(end - 1) + 1;
+    return {.path = path_, .line = static_cast<std::size_t>(end - line_ends_.begin()) + 1, .column = byte - begin + 1};
+  }
+
+  [[noreturn]] void fail_at(std::size_t byte, std::string problem) const {
+    throw XmlFaults({{place_of(std::min(byte, text_.size())), std::move(problem)}});
+  }
+
+  /// Calls visit(byte, name, value) for each attribute in the text of a start tag, until it returns false; `at` is the element's offset.
+  template <class Visit>
+  void each_attribute(std::size_t at, Visit visit) const {
+    const auto skip = [&](std::string_view set) { at = std::min(text_.find_first_not_of(set, at), text_.size()); };
+    const auto seek = [&](std::string_view set) { at = std::min(text_.find_first_of(set, at), text_.size()); };
+    seek(" \t\r\n/>");
+    while (true) {
+      skip(" \t\r\n");
+      if (at == text_.size() || text_[at] == '>' || text_[at] == '/') return;
+      const std::size_t begin = at;
+      seek("= \t\r\n>");
+      const std::string_view name = std::string_view(text_).substr(begin, at - begin);
+      seek("\"'");
+      if (at == text_.size()) return;
+      const char quote = text_[at++];
+      const std::size_t end = std::min(text_.find(quote, at), text_.size());
+      if (!visit(begin, name, std::string_view(text_).substr(at, end - at))) return;
+      at = std::min(end + 1, text_.size());
+    }
+  }
+
+  /// No attribute twice, and none that is too long: what pugixml takes without a word.
+  void check_attributes() const {
+    for (pugi::xml_node node = root_; node; node = next(node)) {
+      std::vector<std::string_view> names;
+      each_attribute(offset(node), [&](std::size_t at, std::string_view name, std::string_view value) {
+        if (name.size() + value.size() > longest_attribute)
+          fail_at(at, "an attribute is longer than " + std::to_string(longest_attribute) + " bytes: " + xml_quoted(name));
+        if (std::find(names.begin(), names.end(), name) != names.end() || names.size() == most_attributes)
+          fail_at(at, "attribute " + xml_quoted(name) + (names.size() == most_attributes ? " is one of too many" : " is given twice"));
+        names.push_back(name);
+        return true;
+      });
+    }
+  }
+
+  /// The element that begins next after one, in the order of the text.
+  [[nodiscard]] pugi::xml_node next(pugi::xml_node node) const {
+    const auto element = [](pugi::xml_node found) {
+      while (found && found.type() != pugi::node_element) found = found.next_sibling();
+      return found;
+    };
+    if (const pugi::xml_node child = element(node.first_child())) return child;
+    for (; node && node != root_; node = node.parent())
+      if (const pugi::xml_node sibling = element(node.next_sibling())) return sibling;
+    return {};
+  }
+
+  std::string path_, text_;
+  std::vector<std::size_t> line_ends_;
+  pugi::xml_document document_;
+  pugi::xml_node root_;
+};
+
+}  // namespace pulsecast::helios

@@ -1,0 +1,497 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/asset_search.hpp>
+#include <pulsecast/helios/detail/xml/document.hpp>
+
+/// An element is described once, by a function `fields(io, settings)` that names its attributes and children in turn. With an `XmlInput`
+/// it reads them, with an `XmlOutput` it writes them. What a document does not say stays as it was: to inherit is to read twice.
+namespace pulsecast::helios {
+
+/// A unit that documents speak: so much times its number is SI, divided by so much.
+struct XmlUnit {
+  const char* symbol = "";  ///< for messages
+  double factor = 1;
+  double divisor = 1;  ///< so that 0.25 ns is the number nearest to 0.25e-9 s
+
+  [[nodiscard]] double si(double number) const noexcept { return number * factor / divisor; }
+
+  /// The number, as short as it can be so that `si` of it is the value again; the nearest if there is none.
+  [[nodiscard]] double number(double value) const noexcept {
+    const double about = value * divisor / factor;
+    if (factor == 1 && divisor == 1) return value;
+    for (const int digits : {15, 16, 17}) {
+      std::array<char, 40> text;
+      const char* const end = std::to_chars(text.data(), text.data() + text.size(), about, std::chars_format::general, digits).ptr;
+      double rounded = 0;
+      std::from_chars(text.data(), end, rounded);
+      if (si(rounded) == value) return rounded;
+    }
+    double below = about, above = about;
+    for (int step = 0; step < 4; ++step) {
+      below = std::nextafter(below, -std::numeric_limits<double>::infinity());
+      above = std::nextafter(above, std::numeric_limits<double>::infinity());
+      if (si(below) == value) return below;
+      if (si(above) == value) return above;
+    }
+    return about;
+  }
+};
+
+namespace units {
+inline constexpr XmlUnit one{}, metre{"m"}, second{"s"}, hertz{"Hz"}, radian{"rad"}, watt{"W"}, metre_per_second{"m/s"};
+inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 1e3}, nanosecond{"ns", 1, 1e9}, nanometre{"nm", 1, 1e9},
+    nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", std::numbers::pi / 180};
+}  // namespace units
+
+/// A number as a text; without an exponent where that is legible.
+[[nodiscard]] inline std::string xml_number(double value) {
+  if (value == 0) return "0";
+  const double size = std::abs(value);
+  if (!(size >= 1e-6 && size < 1e15)) return pulsecast::detail::written(value);
+  std::array<char, 64> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};
+}
+
+/// The number that a text is, all of it, but for blanks around it.
+[[nodiscard]] inline std::optional<double> number_of(std::string_view text) noexcept {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || std::isnan(value)) return std::nullopt;
+  return value;
+}
+
+/// Words and what they stand for.
+template <class Value>
+using XmlWords = std::initializer_list<std::pair<std::string_view, Value>>;
+
+/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. Everything that was asked for is known; `finish`
+/// reports the rest.
+class XmlInput {
+ public:
+  static constexpr bool reads = true;
+
+  XmlInput(const XmlDocument& document, pugi::xml_node node, XmlReport& report, const AssetSearch& search, bool params = false)
+      : document_(document), node_(node), report_(report), search_(search), params_(params) {
+    if (params) known_ = {"type"};
+  }
+  XmlInput(const XmlInput&) = delete;
+  XmlInput& operator=(const XmlInput&) = delete;
+
+  [[nodiscard]] pugi::xml_node node() const noexcept { return node_; }
+  [[nodiscard]] const XmlDocument& document() const noexcept { return document_; }
+  [[nodiscard]] XmlReport& report() const noexcept { return report_; }
+  [[nodiscard]] const AssetSearch& search() const noexcept { return search_; }
+  [[nodiscard]] XmlPlace place() const { return document_.place(node_); }
+
+  /// Where an attribute stands; the element if it is not given.
+  [[nodiscard]] XmlPlace place(std::string_view name) const {
+    if (!params_) return document_.place(node_, name);
+    const pugi::xml_node given = param(name);
+    return given ? document_.place(given, "value") : place();
+  }
+
+  void fault(std::string_view name, std::string problem) const { report_.fault(place(name), std::move(problem)); }
+  void warn(std::string_view name, const std::string& problem) const { report_.warn(place(name), problem); }
+
+  [[nodiscard]] bool has(const char* name) const { return params_ ? !param(name).empty() : !node_.attribute(name).empty(); }
+
+  /// Whether a name was asked for before.
+  [[nodiscard]] bool knows(std::string_view name) const { return is_among(known_, name); }
+
+  /// Reports attributes that are not there, but must be.
+  void require(std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+      required_.emplace_back(name);
+      if (!has(name))
+        report_.fault(place(), "<" + std::string(node_.name()) + "> has no " + (params_ ? "param " : "attribute ") + xml_quoted(name));
+    }
+  }
+
+  /// What stands in an attribute, if it is given.
+  [[nodiscard]] std::optional<std::string> given(const char* name) {
+    if (!knows(name)) known_.emplace_back(name);
+    if (params_) {
+      const pugi::xml_node found = param(name);
+      return found ? std::optional<std::string>(found.attribute("value").value()) : std::nullopt;
+    }
+    const pugi::xml_attribute found = node_.attribute(name);
+    return found ? std::optional<std::string>(found.value()) : std::nullopt;
+  }
+
+  /// What stands in an attribute that an empty text says nothing in.
+  [[nodiscard]] std::optional<std::string> value(const char* name) {
+    auto text = given(name);
+    if (!text || text->find_first_not_of(" \t\r\n") != std::string::npos) return text;
+    if (is_among(required_, name))
+      fault(name, said(name, *text) + " is empty: expected a value");
+    else
+      warn(name, said(name, *text) + " is empty: it counts as not given");
+    return std::nullopt;
+  }
+
+  /// A number; `low` and `high` are the least and greatest allowed, in the unit of the document.
+  void number(const char* name, double& number, const XmlUnit& unit, double low, double high) {
+    if (const auto text = value(name))
+      if (const auto found = within(name, *text, unit, low, high)) number = unit.si(*found);
+  }
+  void number(const char* name, std::optional<double>& number, const XmlUnit& unit, double low, double high) {
+    if (const auto text = value(name))
+      if (const auto found = within(name, *text, unit, low, high)) number = unit.si(*found);
+  }
+
+  void whole(const char* name, int& number, int low, int high) {
+    if (const auto text = value(name)) {
+      const auto found = number_of(*text);
+      if (found && *found == std::floor(*found) && *found >= low && *found <= high) {
+        number = static_cast<int>(*found);
+      } else {
+        fault(name, said(name, *text) + ": expected a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+      }
+    }
+  }
+
+  void flag(const char* name, bool& flag) {
+    static constexpr std::array<std::pair<std::string_view, bool>, 4> others{{{"yes", true}, {"no", false}, {"on", true}, {"off", false}}};
+    const std::string text = given(name).value_or("");
+    const auto other = std::find_if(others.begin(), others.end(), [&](const auto& word) { return is_same_word(word.first, text); });
+    if (other == others.end()) return choice(name, flag, {{"true", true}, {"false", false}, {"1", true}, {"0", false}});
+    flag = other->second;
+    warn(name, said(name, text) + " is taken as " + (flag ? "true" : "false") + ": expected true or false");
+  }
+
+  void text(const char* name, std::string& value) {
+    if (auto text = given(name)) value = *std::move(text);
+  }
+  void text(const char* name, std::optional<std::string>& value) {
+    if (auto text = given(name)) value = std::move(text);
+  }
+
+  /// One of several words; capitals are no matter.
+  template <class Value>
+  void choice(const char* name, Value& chosen, XmlWords<Value> words) {
+    const auto text = value(name);
+    if (!text) return;
+    std::vector<std::string> known;
+    for (const auto& [word, meaning] : words) {
+      if (is_same_word(word, *text)) {
+        chosen = meaning;
+        return;
+      }
+      known.emplace_back(word);
+    }
+    fault(name, said(name, *text) + " is not known" + suggestion(*text, known));
+  }
+
+  /// Three numbers with semicolons between them.
+  void vector(const char* name, Vec3& vector, double size_max) {
+    const auto text = value(name);
+    if (!text) return;
+    for (const char separator : {';', ',', ' '}) {
+      const auto found = vector_of(*text, separator, size_max);
+      if (!found) continue;
+      if (separator != ';') warn(name, said(name, *text) + ": expected semicolons between the numbers, as in 'x;y;z'");
+      vector = *found;
+      return;
+    }
+    fault(name, said(name, *text) + ": expected three numbers 'x;y;z' of at most " + xml_number(size_max));
+  }
+  void vector(const char* name, std::optional<Vec3>& vector, double size_max) {
+    Vec3 found(std::numeric_limits<double>::infinity());
+    this->vector(name, found, size_max);
+    if (finite(found)) vector = found;
+  }
+
+  /// A file that must be there.
+  void file(const char* name, std::filesystem::path& path) {
+    if (const auto text = value(name)) {
+      const AssetMatch match = search_.find(*text);
+      take(name, *text, match);
+      if (!match.files.empty()) path = match.files.front();
+    }
+  }
+
+  /// Reports what is wrong or odd about files that were looked for.
+  void take(const char* name, std::string_view text, const AssetMatch& match) const {
+    if (!match.problem.empty()) fault(name, said(name, text) + " " + match.problem);
+    if (!match.warning.empty()) warn(name, said(name, text) + " " + match.warning);
+  }
+
+  /// A child element that may be there once: calls `read(XmlInput&)`. Returns whether it is.
+  template <class Read>
+  bool child(const char* name, Read read) {
+    known_children_.emplace_back(name);
+    const pugi::xml_node found = node_.child(name);
+    if (!found) return false;
+    if (const pugi::xml_node second = found.next_sibling(name))
+      report_.warn(document_.place(second), "a second <" + std::string(name) + "> in <" + node_.name() + ">: the first one counts");
+    XmlInput inner(document_, found, report_, search_);
+    read(inner);
+    inner.finish();
+    return true;
+  }
+
+  /// All children of a name, in their order.
+  template <class Value, class Fields>
+  void children(const char* name, std::vector<Value>& values, Fields fields) {
+    known_children_.emplace_back(name);
+    for (pugi::xml_node node = node_.child(name); node; node = node.next_sibling(name)) {
+      XmlInput inner(document_, node, report_, search_);
+      fields(inner, values.emplace_back());
+      inner.finish();
+    }
+  }
+
+  /// Attributes that may be there, but do nothing, with a warning.
+  void without_effect(std::initializer_list<const char*> names, const char* why = "has no effect") {
+    for (const char* name : names)
+      if (given(name)) warn(name, (params_ ? "param " : "attribute ") + xml_quoted(name) + " " + why);
+  }
+
+  /// Names that are known beside those asked for.
+  void know(std::initializer_list<const char*> attributes, std::initializer_list<const char*> children = {}) {
+    known_.insert(known_.end(), attributes.begin(), attributes.end());
+    known_children_.insert(known_children_.end(), children.begin(), children.end());
+  }
+
+  /// Reports attributes and children that nobody asked for.
+  void finish() {
+    if (params_) {
+      finish_params();
+      return;
+    }
+    for (const pugi::xml_attribute attribute : node_.attributes()) {
+      const std::string_view name = attribute.name();
+      if (name.starts_with("xmlns") || name.starts_with("xsi:") || name.starts_with("xml:") || is_among(known_, name)) continue;
+      warn(name, "attribute " + xml_quoted(name) + " of <" + node_.name() + "> is not known" + suggestion(name, known_));
+    }
+    for (const pugi::xml_node child : node_.children()) {
+      if (report_.is_full_of_warnings()) return;
+      const bool is_element = child.type() == pugi::node_element;
+      if (is_element && !is_among(known_children_, child.name()))
+        report_.warn(document_.place(child), "element <" + std::string(child.name()).substr(0, 80) + "> in <" + node_.name() +
+                                                 "> is not known" + suggestion(child.name(), known_children_));
+      if (child.type() == pugi::node_pcdata && !takes_text_)
+        report_.warn(place(),
+                     "<" + std::string(node_.name()) + "> holds the text " + xml_quoted(child.value()) + ": expected elements only");
+    }
+  }
+
+  /// Reports attributes of a filter other than its type.
+  void check_filter() const {
+    for (const pugi::xml_attribute attribute : node_.attributes())
+      if (std::string_view(attribute.name()) != "type")
+        report_.warn(document_.place(node_, attribute.name()),
+                     "attribute " + xml_quoted(attribute.name()) + " of <filter> is not known; did you mean 'type'?");
+  }
+
+  /// `name="text"`, for messages.
+  [[nodiscard]] static std::string said(std::string_view name, std::string_view text) {
+    return std::string(name) + "=\"" + std::string(text.substr(0, 80)) + (text.size() > 80 ? "...\"" : "\"");
+  }
+
+  /// What stands between the tags.
+  [[nodiscard]] std::string content() {
+    takes_text_ = true;
+    return node_.text().get();
+  }
+
+  [[nodiscard]] pugi::xml_node param(std::string_view key) const {
+    for (pugi::xml_node node = node_.child("param"); node; node = node.next_sibling("param"))
+      if (node.attribute("key").value() == key) return node;
+    return {};
+  }
+
+  [[nodiscard]] std::optional<double> within(const char* name, std::string_view text, const XmlUnit& unit, double low, double high) const {
+    const auto found = number_of(text);
+    if (found && *found >= low && *found <= high) return found;
+    std::string allowed = low == -std::numeric_limits<double>::infinity() ? "" : " from " + xml_number(low);
+    if (high < std::numeric_limits<double>::max()) allowed += " to " + xml_number(high);
+    fault(name, said(name, text) + ": expected a number" + allowed + (*unit.symbol == 0 ? "" : " ") + unit.symbol);
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr std::size_t most_params = 100;
+
+  /// Whether two words are the same, but for capitals.
+  [[nodiscard]] static bool is_same_word(std::string_view a, std::string_view b) {
+    return a.size() == b.size() && edit_distance(a, b) == 0;
+  }
+
+  /// Three numbers with a separator between them; blanks may be several.
+  [[nodiscard]] static std::optional<Vec3> vector_of(std::string_view text, char separator, double size_max) {
+    Vec3 found{};
+    for (int i = 0; i < 3; ++i) {
+      text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+      const std::size_t end = i < 2 ? text.find(separator) : text.size();
+      const auto component = end == std::string_view::npos ? std::nullopt : number_of(text.substr(0, end));
+      if (!component || !(std::abs(*component) <= size_max)) return std::nullopt;
+      found[i] = *component;
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return found;
+  }
+
+  [[nodiscard]] static bool is_among(const std::vector<std::string>& known, std::string_view name) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+  }
+
+  void finish_params() {
+    check_filter();
+    std::vector<std::string_view> keys;
+    for (const pugi::xml_node child : node_.children()) {
+      if (report_.is_full() || report_.is_full_of_warnings() || keys.size() == most_params) return;
+      if (child.type() != pugi::node_element) continue;
+      if (std::string_view(child.name()) != "param") {
+        report_.warn(document_.place(child),
+                     "element <" + std::string(child.name()).substr(0, 80) + "> in <filter> is not known; did you mean 'param'?");
+        continue;
+      }
+      check_param(child);
+      const std::string_view key = child.attribute("key").value();
+      if (std::find(keys.begin(), keys.end(), key) != keys.end()) {
+        const bool is_same = std::string_view(param(key).attribute("value").value()) == child.attribute("value").value();
+        if (is_same)
+          report_.warn(document_.place(child, "key"), "param " + xml_quoted(key) + " is given twice");
+        else
+          report_.fault(document_.place(child, "key"), "param " + xml_quoted(key) + " is given twice, with another value");
+      }
+      keys.push_back(key);
+      if (keys.size() == most_params) report_.fault(document_.place(child), "one of too many <param> in a filter");
+      if (!is_among(known_, key) || key == "type")
+        report_.warn(document_.place(child, "key"), "param " + xml_quoted(key) + " of filter " +
+                                                        xml_quoted(node_.attribute("type").value()) + " is not known" +
+                                                        suggestion(key, std::span(known_).subspan(1)));
+    }
+  }
+
+  void check_param(pugi::xml_node child) const {
+    static const std::vector<std::string> names{"type", "key", "value", "rotations"};
+    static const std::vector<std::string> types{"string", "boolean", "bool", "double", "integer", "int", "vec3", "rotation", ""};
+    for (const pugi::xml_attribute attribute : child.attributes())
+      if (!is_among(names, attribute.name()))
+        report_.warn(document_.place(child, attribute.name()),
+                     "attribute " + xml_quoted(attribute.name()) + " of <param> is not known" + suggestion(attribute.name(), names));
+    const std::string_view type = child.attribute("type").value();
+    if (!is_among(types, type))
+      report_.warn(document_.place(child, "type"), said("type", type) + " is not known" + suggestion(type, std::span(types).first(8)));
+    if (type == "rotation") return;
+    if (!child.attribute("value")) report_.warn(document_.place(child), "<param> has no attribute 'value'");
+    for (const pugi::xml_node inner : child.children())
+      if (inner.type() == pugi::node_element)
+        report_.warn(document_.place(inner),
+                     "element <" + std::string(inner.name()).substr(0, 80) + "> in <param>: expected it in one of type rotation");
+  }
+
+  const XmlDocument& document_;
+  pugi::xml_node node_;
+  XmlReport& report_;
+  const AssetSearch& search_;
+  std::vector<std::string> known_{}, known_children_{}, required_{};
+  bool params_, takes_text_ = false;
+};
+
+/// Writes an element: the same calls as `XmlInput`, the other way around.
+class XmlOutput {
+ public:
+  static constexpr bool reads = false;
+
+  explicit XmlOutput(pugi::xml_node node, bool params = false) : node_(node), params_(params) {}
+
+  [[nodiscard]] pugi::xml_node node() const noexcept { return node_; }
+
+  /// Infinity is not written: it stands for no limit, which is what a document says by silence.
+  void number(const char* name, const double& value, const XmlUnit& unit, double /*low*/, double /*high*/) {
+    if (std::isfinite(value)) put(name, "double", xml_number(unit.number(value)));
+  }
+  void number(const char* name, const std::optional<double>& value, const XmlUnit& unit, double low, double high) {
+    if (value) number(name, *value, unit, low, high);
+  }
+  void whole(const char* name, const int& value, int /*low*/, int /*high*/) { put(name, "integer", std::to_string(value)); }
+  void flag(const char* name, const bool& value) { put(name, "boolean", value ? "true" : "false"); }
+  void text(const char* name, const std::string& value) { put(name, "string", value); }
+  void text(const char* name, const std::optional<std::string>& value) {
+    if (value) put(name, "string", *value);
+  }
+
+  template <class Value>
+  void choice(const char* name, const Value& value, XmlWords<Value> words) {
+    for (const auto& [word, meaning] : words) {
+      if (meaning != value) continue;
+      put(name, "string", std::string(word));
+      return;
+    }
+  }
+
+  void vector(const char* name, const Vec3& value, double /*size_max*/) {
+    put(name, "vec3", xml_number(value.x) + ";" + xml_number(value.y) + ";" + xml_number(value.z));
+  }
+  void vector(const char* name, const std::optional<Vec3>& value, double size_max) {
+    if (value) vector(name, *value, size_max);
+  }
+
+  void file(const char* name, const std::filesystem::path& value) {
+    if (!value.empty()) put(name, "string", std::filesystem::absolute(value).string());
+  }
+
+  template <class Write>
+  void child(const char* name, Write write) {
+    XmlOutput inner(node_.append_child(name));
+    write(inner);
+  }
+
+  template <class Value, class Fields>
+  void children(const char* name, const std::vector<Value>& values, Fields fields) {
+    for (const Value& value : values) {
+      XmlOutput inner(node_.append_child(name));
+      fields(inner, value);
+    }
+  }
+
+  void without_effect(std::initializer_list<const char*> /*names*/, const char* /*why*/ = "") {}
+  void require(std::initializer_list<const char*> /*names*/) {}
+
+ private:
+  void put(const char* name, const char* type, const std::string& value) {
+    if (!params_) {
+      node_.append_attribute(name).set_value(value.c_str());
+      return;
+    }
+    pugi::xml_node param = node_.append_child("param");
+    param.append_attribute("type").set_value(type);
+    param.append_attribute("key").set_value(name);
+    param.append_attribute("value").set_value(value.c_str());
+  }
+
+  pugi::xml_node node_;
+  bool params_;
+};
+
+}  // namespace pulsecast::helios

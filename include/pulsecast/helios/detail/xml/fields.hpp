@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
+#include <pulsecast/helios/settings.hpp>
+
+/// Every element of the documents is described here and in the headers that include this one: its attributes, their units and limits, and
+/// its children. The format is that of HELIOS++.
+namespace pulsecast::helios::xml {
+
+/// Settings that are read into or written from.
+template <class Io, class Settings>
+using Of = std::conditional_t<Io::reads, Settings, const Settings>;
+
+inline constexpr double any = std::numeric_limits<double>::infinity();
+inline constexpr double farthest = 1e9;  ///< coordinate that makes sense [m]
+
+/// Attributes `x`, `y` and `z`.
+template <class Io>
+void components(Io& io, Of<Io, Vec3>& v, double largest = farthest) {
+  io.number("x", v.x, units::metre, -largest, largest);
+  io.number("y", v.y, units::metre, -largest, largest);
+  io.number("z", v.z, units::metre, -largest, largest);
+}
+
+/// A child with the components of a direction.
+template <class Io>
+void direction(Io& io, const char* name, Of<Io, Vec3>& v) {
+  io.child(name, [&](auto& inner) {
+    if constexpr (Io::reads) {
+      Vec3 found{};
+      components(inner, found);
+      if (length(found) > 0.1) {
+        v = found;
+      } else {
+        inner.report().warn(inner.place(), "<" + std::string(name) + "> is shorter than 0.1 and has no effect");
+      }
+    } else {
+      components(inner, v);
+    }
+  });
+}
+
+template <class Io>
+void fields(Io& io, Of<Io, AxisTurn>& turn) {
+  io.require({"axis", "angle_deg"});
+  io.choice("axis", turn.axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}});
+  io.number("angle_deg", turn.angle, units::degree, -36000, 36000);
+}
+
+/// `rotations` and the `<rot>` children.
+template <class Io>
+void fields(Io& io, Of<Io, RotationList>& list) {
+  io.choice("rotations", list.local, {{"global", false}, {"local", true}});
+  io.children("rot", list.turns, [](auto& inner, auto& turn) { fields(inner, turn); });
+}
+
+template <class Io>
+void fields(Io& io, Of<Io, MountSettings>& mount) {
+  if constexpr (Io::reads) mount = {};
+  components(io, mount.position);
+  fields(io, mount.rotation);
+}
+
+}  // namespace pulsecast::helios::xml

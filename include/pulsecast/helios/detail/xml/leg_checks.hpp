@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/helios/detail/scene_files.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
+#include <pulsecast/helios/detail/xml/library.hpp>
+#include <pulsecast/helios/settings.hpp>
+
+namespace pulsecast::helios {
+
+/// Holds the legs of a survey against its scanner and platform: what could never end, give a pulse, or be done by the device is a fault.
+class LegChecks {
+ public:
+  /// `survey` must have a scanner with a channel.
+  LegChecks(const XmlLibraryDocument& document, const SurveySettings& survey, XmlReport& report)
+      : document_(document), survey_(survey), report_(report) {}
+
+  /// Checks one leg and where it leads; `leg` is its element, and `resolution` its `verticalResolution_deg` [rad], if it has one.
+  void check(pugi::xml_node leg, std::size_t i, double resolution = 0) const {
+    check_platform(leg, i);
+    const bool is_end = goes_on() && survey_.legs.size() > 1 && i + 1 == survey_.legs.size();  // says where the way ends, and scans nothing
+    if (!is_end) check_scanner(leg, i, resolution);
+  }
+
+ private:
+  /// Whether legs go to where the next one begins.
+  [[nodiscard]] bool goes_on() const {
+    return survey_.platform.kind != PlatformKind::stationary && survey_.platform.kind != PlatformKind::interpolated;
+  }
+
+  /// Whether the platform stays where it is for as long as a leg lasts.
+  [[nodiscard]] bool stays(std::size_t i) const {
+    return survey_.platform.kind == PlatformKind::stationary || (goes_on() && hovers(survey_.legs, i));
+  }
+
+  /// A number that was computed, to six decimals.
+  [[nodiscard]] static std::string brief(double value) { return xml_number(std::round(value * 1e6) / 1e6); }
+
+  void check_platform(pugi::xml_node leg, std::size_t i) const {
+    const LegSettings& settings = survey_.legs[i];
+    const LegPlatformSettings& platform = settings.platform;
+    const XmlInput io(document_.document(), leg.child("platformSettings"), report_, document_.search());
+    const bool follows = survey_.platform.kind == PlatformKind::interpolated;
+    if (follows) {
+      if (!platform.trajectory || platform.trajectory->file.empty())
+        io.fault("trajectory", "<platformSettings> has no attribute 'trajectory', which platform=\"interpolated\" follows");
+      return;
+    }
+    if (platform.trajectory) io.warn("trajectory", "trajectory attributes have no effect unless platform=\"interpolated\"");
+    check_ground(io, platform);
+    if (survey_.platform.kind != PlatformKind::multicopter) {
+      const char* const why = " has no effect with this type of platform";
+      if (platform.smooth_turn) io.warn("smoothTurn", std::string("a smooth turn") + why);
+      if (platform.yaw_at_departure) io.warn("yawAtDeparture_deg", std::string("yawAtDeparture_deg") + why);
+    }
+    if (!goes_on()) return;
+    const std::size_t legs = survey_.legs.size();
+    const bool turns = settings.scanner.head_stop != settings.scanner.head_start;
+    if (legs == 1 && !settings.duration_max && !turns)
+      io.report().fault(io.place(),
+                        "a single leg of a platform that moves: expected another <leg> that says where it goes, or maxDuration_s "
+                        "for which it stays here");
+    if (legs > 1 && i + 1 == legs && settings.duration_max && settings.scanner.active)
+      io.report().warn(io.place(),
+                       "the last leg of a platform that moves says where the way ends, and has no pulses: to stay there for "
+                       "maxDuration_s, expected another <leg> at the same place");
+    if (i + 1 == legs) return;
+    if (hovers(survey_.legs, i)) {
+      if (!settings.duration_max && !turns)
+        io.warn("x",
+                "the leg begins where the next one does, and ends at once: expected maxDuration_s for which it stays here, if it should");
+    } else if (platform.speed == 0) {
+      io.fault("movePerSec_m", "the leg could never end: movePerSec_m is 0; expected a speed");
+    }
+  }
+
+  void check_ground(const XmlInput& io, const LegPlatformSettings& platform) const {
+    if (!platform.on_ground) return;
+    if (!has_ground_) has_ground_ = has_ground(survey_.scene);
+    if (!*has_ground_)
+      io.fault("onGround", "nothing in the scene is ground: expected a material with helios_isGround in an MTL file of it");
+  }
+
+  void check_scanner(pugi::xml_node leg, std::size_t i, double resolution) const {
+    const LegSettings& settings = survey_.legs[i];
+    const LegScannerSettings& s = settings.scanner;
+    const pugi::xml_node own = leg.child("scannerSettings");
+    const XmlInput io(document_.document(), own ? own : leg, report_, document_.search());
+    const ChannelSettings& device = survey_.scanner.channels.front();
+    check_head(io, device, settings, i);
+    if (!s.active) return;
+    const auto hertz = [](double value) { return xml_number(value) + " Hz"; };
+    const auto limit = [&](const char* expected, const char* name, double frequency) {
+      if (resolution == 0) {
+        io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected " + expected + " the scanner's " + name + ", " +
+                                    hertz(frequency));
+        return;
+      }
+      io.fault("verticalResolution_deg", "verticalResolution_deg of " + brief(degrees(resolution)) + " takes " + brief(s.scan_frequency) +
+                                             " lines a second at " + hertz(s.pulse_rate) + ": expected " + expected + ' ' +
+                                             brief(degrees(resolution) * frequency / s.scan_frequency) + ", for the scanner's " + name +
+                                             " is " + hertz(frequency));
+    };
+    if (s.scan_frequency < device.scan_frequency_min) limit("at least", "scanFreqMin_Hz", device.scan_frequency_min);
+    if (device.scan_frequency_max > 0 && s.scan_frequency > device.scan_frequency_max)
+      limit("at most", "scanFreqMax_Hz", device.scan_frequency_max);
+    if (s.scan_frequency == 0 && std::holds_alternative<OscillatingOptic>(device.optic))
+      io.fault("scanFreq_hz", "scanFreq_hz is 0, so the mirror does not swing: expected a frequency");
+    if (s.scan_frequency >= s.pulse_rate)
+      io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected less than pulseFreq_hz, " + hertz(s.pulse_rate));
+    const std::vector<double>& rates = survey_.scanner.pulse_rates;
+    if (std::find(rates.begin(), rates.end(), s.pulse_rate) == rates.end())
+      io.warn("pulseFreq_hz", "pulseFreq_hz of " + hertz(s.pulse_rate) + " is none that the scanner is made for");
+    if (s.scan_angle && device.scan_angle_max > 0 && *s.scan_angle > device.scan_angle_max)
+      io.warn("scanAngle_deg",
+              "scanAngle_deg is more than the scanner can: it is limited to " + xml_number(units::degree.number(device.scan_angle_max)));
+    check_gate(io, device, s);
+  }
+
+  void check_gate(const XmlInput& io, const ChannelSettings& device, const LegScannerSettings& s) const {
+    const auto* const rotating = std::get_if<RotatingOptic>(&device.optic);
+    if (!rotating) {
+      if (s.vertical_angle_min || s.vertical_angle_max)
+        io.warn("verticalAngleMin_deg", "verticalAngleMin_deg and verticalAngleMax_deg have no effect with these optics");
+      return;
+    }
+    const auto [low, high, is_limited] = detail::mirror_gate(device, *rotating, s);
+    const auto in_degrees = [](double angle) { return brief(degrees(angle)); };
+    if (s.scan_frequency > 0 && !(low < high))
+      io.fault("verticalAngleMin_deg", "no pulse could leave between " + xml_number(units::degree.number(low)) + " and " +
+                                           xml_number(units::degree.number(high)) +
+                                           " deg: expected verticalAngleMin_deg below verticalAngleMax_deg");
+    if (is_limited)
+      io.warn("verticalAngleMin_deg", "verticalAngleMin_deg and verticalAngleMax_deg are further apart than the scanner's " +
+                                          in_degrees(2 * rotating->effective_angle_max.value_or(device.scan_angle_max)) +
+                                          " deg: they are limited to " + in_degrees(low) + " and " + in_degrees(high) + " deg");
+  }
+
+  void check_head(const XmlInput& io, const ChannelSettings& device, const LegSettings& settings, std::size_t i) const {
+    const LegScannerSettings& s = settings.scanner;
+    const double speed = std::clamp(s.head_speed, -device.head_speed_max, device.head_speed_max);
+    if (s.head_speed != speed)
+      io.warn("headRotatePerSec_deg", device.head_speed_max == 0
+                                          ? "headRotatePerSec_deg has no effect: the scanner's headRotatePerSecMax_deg is 0"
+                                          : "headRotatePerSec_deg is more than the scanner can: it is limited to " +
+                                                xml_number(units::degree.number(device.head_speed_max)));
+    if ((s.head_speed > 0 && s.head_stop < s.head_start) || (s.head_speed < 0 && s.head_stop > s.head_start))
+      io.fault("headRotateStop_deg", "the head turns away from headRotateStop_deg: expected headRotatePerSec_deg of the other sign");
+    if (settings.duration_max) return;
+    if (speed == 0 && s.head_stop != s.head_start)
+      io.fault("headRotateStop_deg", "the leg could never end: the head does not turn" +
+                                         std::string(device.head_speed_max == 0 ? ", as the scanner's headRotatePerSecMax_deg is 0" : "") +
+                                         "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
+                                         "maxDuration_s");
+    if (!stays(i) || s.head_stop != s.head_start) return;
+    if (speed == 0 && goes_on()) return;  // has been told of already
+    if (speed == 0)
+      io.report().fault(io.place(), "the leg could never end: neither platform nor head moves; expected maxDuration_s" +
+                                        std::string(i == 0 ? "" : " for each leg"));
+    else
+      io.warn("headRotateStop_deg", "the head begins where it stops: the leg ends at once");
+  }
+
+  const XmlLibraryDocument& document_;
+  const SurveySettings& survey_;
+  XmlReport& report_;
+  mutable std::optional<bool> has_ground_{};
+};
+
+}  // namespace pulsecast::helios

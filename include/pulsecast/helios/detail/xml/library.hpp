@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/helios/detail/asset_search.hpp>
+#include <pulsecast/helios/detail/xml/document.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
+
+namespace pulsecast::helios {
+
+/// A document of a survey or of assets, with its elements by id. What it names is looked for in the assets folders, in the folder of the
+/// survey, and in its own.
+class XmlLibraryDocument {
+ public:
+  XmlLibraryDocument(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders, XmlReport& report)
+      : document_(path), search_(with_own(folders, path)) {
+    if (std::string_view(document_.root().name()) != "document")
+      report.fault(document_.place(document_.root()),
+                   "the root element is <" + std::string(document_.root().name()).substr(0, 80) + ">: expected <document>");
+    XmlInput root(document_, document_.root(), report, search_);
+    root.know({}, {"platform", "scanner", "scene", "platformSettings", "scannerSettings", "survey"});
+    root.finish();
+    for (const pugi::xml_node node : document_.root().children()) {
+      if (node.type() != pugi::node_element || std::string_view(node.name()) == "survey") continue;
+      const auto [other, is_new] = by_id_.emplace(key(node.name(), node.attribute("id").value()), node);
+      if (!is_new)
+        report.warn(document_.place(node), "a second <" + std::string(node.name()) + "> with the id " +
+                                               xml_quoted(node.attribute("id").value()) + ": the first one counts");
+    }
+  }
+
+  [[nodiscard]] const XmlDocument& document() const noexcept { return document_; }
+  [[nodiscard]] const AssetSearch& search() const noexcept { return search_; }
+
+  /// The element of a name and id; empty if there is none.
+  [[nodiscard]] pugi::xml_node find(std::string_view element, std::string_view id) const {
+    const auto found = by_id_.find(key(element, id));
+    return found == by_id_.end() ? pugi::xml_node() : found->second;
+  }
+
+  /// All ids of elements of a name.
+  [[nodiscard]] std::vector<std::string> ids(const char* element) const {
+    std::vector<std::string> all;
+    for (pugi::xml_node node = document_.root().child(element); node; node = node.next_sibling(element))
+      all.emplace_back(node.attribute("id").value());
+    return all;
+  }
+
+ private:
+  [[nodiscard]] static std::string key(std::string_view element, std::string_view id) {
+    return std::string(element).append("#").append(id);
+  }
+
+  [[nodiscard]] static AssetSearch with_own(std::vector<std::filesystem::path> folders, const std::filesystem::path& path) {
+    folders.push_back(std::filesystem::absolute(path).parent_path());
+    return AssetSearch(folders);
+  }
+
+  XmlDocument document_;
+  AssetSearch search_;
+  std::unordered_map<std::string, pugi::xml_node> by_id_;
+};
+
+/// An element that was referred to, and the document that it stands in; empty if it could not be found, which is then reported.
+struct XmlReference {
+  const XmlLibraryDocument* document = nullptr;
+  pugi::xml_node node{};
+
+  explicit operator bool() const noexcept { return document != nullptr; }
+};
+
+/// The documents that a survey refers to. Each is read once.
+class XmlLibrary {
+ public:
+  static constexpr std::size_t most_documents = 256;
+
+  XmlLibrary(std::vector<std::filesystem::path> folders, XmlReport& report) : folders_(std::move(folders)), report_(report) {}
+
+  /// The document of a path; throws if it cannot be read. What it holds beside known elements is reported.
+  const XmlLibraryDocument& read(const std::filesystem::path& path) {
+    auto& document = documents_[path.string()];
+    if (!document) document = std::make_unique<XmlLibraryDocument>(path, folders_, report_);
+    return *document;
+  }
+
+  /// What an attribute refers to: `file.xml#id`, or `id` or `#id` for an element of the same document.
+  [[nodiscard]] XmlReference find(const XmlInput& io, const XmlLibraryDocument& from, const char* attribute, const std::string& text,
+                                  const char* element) {
+    const std::size_t sign = text.find('#');
+    const std::string path = sign == std::string::npos ? "" : text.substr(0, sign);
+    const std::string id = sign == std::string::npos ? text : text.substr(sign + 1);
+    const XmlLibraryDocument* const document = path.empty() ? &from : other(io, from, attribute, text, path);
+    if (document == nullptr) return {};
+    if (const pugi::xml_node node = document->find(element, id); node && !id.empty()) return {document, node};
+    const bool is_path = sign == std::string::npos && id.ends_with(".xml");
+    io.fault(attribute, XmlInput::said(attribute, text) + ": there is no <" + element + "> with the id " + xml_quoted(id) + " in " +
+                            document->document().path() + (is_path ? "; expected file.xml#id" : suggestion(id, document->ids(element))));
+    return {};
+  }
+
+ private:
+  const XmlLibraryDocument* other(const XmlInput& io, const XmlLibraryDocument& from, const char* attribute, const std::string& text,
+                                  const std::string& path) {
+    const AssetMatch match = from.search().find(path);
+    io.take(attribute, text, match);
+    if (match.files.empty()) return nullptr;
+    const auto known = documents_.find(match.files.front().string());
+    if (known != documents_.end()) {
+      if (!known->second) io.fault(attribute, XmlInput::said(attribute, text) + " cannot be read");
+      return known->second.get();
+    }
+    if (documents_.size() == most_documents) {
+      io.fault(attribute, XmlInput::said(attribute, text) + " is one of more than " + std::to_string(most_documents) + " documents");
+      return nullptr;
+    }
+    try {
+      return &read(match.files.front());
+    } catch (const XmlFaults& faults) {
+      for (const XmlFault& fault : faults.faults()) report_.fault(fault.place, fault.problem);
+    } catch (const FileError& error) {
+      report_.fault({.path = error.path()}, error.problem());
+    }
+    io.fault(attribute, XmlInput::said(attribute, text) + " cannot be read");
+    return nullptr;
+  }
+
+  std::vector<std::filesystem::path> folders_;
+  XmlReport& report_;
+  std::unordered_map<std::string, std::unique_ptr<XmlLibraryDocument>> documents_;
+};
+
+}  // namespace pulsecast::helios

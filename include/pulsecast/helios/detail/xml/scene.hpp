@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
+#include <pulsecast/helios/detail/xml/fields.hpp>
+#include <pulsecast/helios/detail/xml/motion.hpp>
+#include <pulsecast/helios/detail/xml/source.hpp>
+#include <pulsecast/helios/settings.hpp>
+
+/// `<scene>`, its parts, and the filters that place them.
+namespace pulsecast::helios::xml {
+
+/// Writes the filters of a part or swap.
+inline void filters(XmlOutput& io, const PartSource* source, const TransformSettings& transform) {
+  const auto filter = [&](const char* type) {
+    pugi::xml_node node = io.node().append_child("filter");
+    node.append_attribute("type").set_value(type);
+    return XmlOutput(node, true);
+  };
+  static constexpr std::array loaders{"objloader", "geotiffloader", "xyzloader", "detailedvoxels"};
+  if (source) {
+    XmlOutput loader = filter(loaders[source->index()]);
+    std::visit([&](const auto& of_kind) { fields(loader, of_kind); }, *source);
+  }
+  if (transform.scale != 1) filter("scale").number("scale", transform.scale, units::one, 0, any);
+  for (const RotationList& rotation : transform.rotations) {
+    pugi::xml_node param = filter("rotate").node().append_child("param");
+    param.append_attribute("type").set_value("rotation");
+    param.append_attribute("key").set_value("rotation");
+    XmlOutput list(param);
+    fields(list, rotation);
+  }
+  if (transform.translation == Vec3{} && transform.on_ground == 0) return;
+  XmlOutput translate = filter("translate");
+  translate.vector("offset", transform.translation, farthest);
+  translate.whole("onGround", transform.on_ground, 0, 0);
+}
+
+/// Reads the filters of a part or swap.
+inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSettings& transform) {
+  static const std::vector<std::string> types{"objloader", "geotiffloader", "xyzloader", "detailedvoxels", "scale", "rotate", "translate"};
+  io.know({}, {"filter"});
+  bool is_scaled = false, is_translated = false;
+  const auto once = [&](pugi::xml_node node, bool& before) {
+    if (std::exchange(before, true))
+      io.report().warn(io.document().place(node), "a second filter " + xml_quoted(node.attribute("type").value()) +
+                                                      ": it replaces the one before, and does not add to it");
+  };
+  for (pugi::xml_node node = io.node().child("filter"); node; node = node.next_sibling("filter")) {
+    XmlInput filter(io.document(), node, io.report(), io.search(), true);
+    const std::string_view type = node.attribute("type").value();
+    const auto is = [&](std::string_view name) { return type.size() == name.size() && edit_distance(type, name) == 0; };
+    const auto load = [&](auto kind) {
+      if (source) io.report().fault(io.document().place(node), "a second filter that loads: expected one in each part");
+      fields(filter, source.emplace(std::move(kind)).template emplace<decltype(kind)>());
+    };
+    if (is("objloader")) {
+      load(ObjSource{});
+    } else if (is("geotiffloader")) {
+      load(GeoTiffSource{});
+    } else if (is("xyzloader")) {
+      load(XyzSource{});
+    } else if (is("detailedvoxels")) {
+      load(VoxelSource{});
+    } else if (is("scale")) {
+      once(node, is_scaled);
+      filter.require({"scale"});
+      double scale = 0;
+      filter.number("scale", scale, units::one, 0, 1e9);
+      if (scale != 0) transform.scale = scale;
+      if (scale == 0 && filter.has("scale")) filter.warn("scale", "a scale of 0 has no effect");
+      if (scale > 0 && scale < 1e-30) filter.fault("scale", "the scale is less than 1e-30: expected 0, or from there to 1e9");
+    } else if (is("rotate")) {
+      filter.require({"rotation"});
+      filter.know({"rotation"});
+      if (const pugi::xml_node param = filter.param("rotation")) {
+        XmlInput list(io.document(), param, io.report(), io.search());
+        list.know({"type", "key", "value"});
+        fields(list, transform.rotations.emplace_back());
+        list.finish();
+      }
+    } else if (is("translate")) {
+      once(node, is_translated);
+      filter.require({"offset"});
+      transform.translation = {};
+      transform.on_ground = 0;
+      filter.vector("offset", transform.translation, farthest);
+      filter.whole("onGround", transform.on_ground, -1'000'000, 1'000'000);
+    } else {
+      io.report().fault(io.document().place(node, "type"),
+                        XmlInput::said("type", type) + " of a filter is not known" + suggestion(type, types));
+      filter.check_filter();
+      continue;
+    }
+    filter.finish();
+  }
+}
+
+template <class Io>
+void fields(Io& io, Of<Io, SwapSettings>& swap) {
+  io.whole("swapStep", swap.step, 1, 1'000'000);
+  if constexpr (Io::reads) {
+    bool keeps = true;
+    io.flag("keepCRS", keeps);
+    if (!keeps) io.warn("keepCRS", "keepCRS of false has no effect: coordinates are those of the files in all runs");
+    swap.removes = io.given("force_null").has_value();
+    filters(io, swap.source, swap.transform);
+  } else {
+    if (swap.removes) io.flag("force_null", swap.removes);
+    filters(io, swap.source ? &*swap.source : nullptr, swap.transform);
+  }
+}
+
+/// Of a part, all but its geometry and id.
+template <class Io>
+void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
+  io.whole("dynStep", part.dynamic_step, 1, 1'000'000'000);
+  io.number("dynTimeStep", part.dynamic_interval, units::second, 1e-9, 1e6);
+  io.children("dmotion", part.motions, [](auto& inner, auto& sequence) { fields(inner, sequence); });
+  io.children("swap", part.swaps, [](auto& inner, auto& swap) { fields(inner, swap); });
+  if constexpr (Io::reads) {
+    io.without_effect({"kdtDynStep", "kdtDynTimeStep"}, "has no effect: a part is met where it is");
+    pugi::xml_node node = io.node().child("dmotion");
+    if (part.motions.size() > 1000) io.report().fault(io.place(), "<part> holds more than 1000 <dmotion>");
+    if (io.report().is_full() || part.motions.size() > 1000) return;
+    for (const MotionSequenceSettings& sequence : part.motions) {
+      const auto is_next = [&](const MotionSequenceSettings& other) { return other.id == sequence.next; };
+      if (sequence.next && std::none_of(part.motions.begin(), part.motions.end(), is_next))
+        io.report().fault(io.document().place(node, "next"),
+                          XmlInput::said("next", *sequence.next) + ": there is no such <dmotion> in this part");
+      node = node.next_sibling("dmotion");
+    }
+  }
+}
+
+/// Reads a scene. A part of several files and no id becomes several parts, each with a number.
+inline void fields(XmlInput& io, SceneSettings& scene) {
+  io.require({"id"});
+  io.text("id", scene.id);
+  io.text("name", scene.name);
+  io.whole("dynStep", scene.dynamic_step, 1, 1'000'000'000);
+  io.number("dynTimeStep", scene.dynamic_interval, units::second, 1e-9, 1e6);
+  io.know({}, {"part"});
+  std::size_t number = 0;
+  for (pugi::xml_node node = io.node().child("part"); node; node = node.next_sibling("part")) {
+    XmlInput inner(io.document(), node, io.report(), io.search());
+    PartSettings part;
+    std::optional<PartSource> source;
+    const auto id = inner.given("id");
+    filters(inner, source, part.transform);
+    dynamic_fields(inner, part);
+    inner.finish();
+    if (!source) {
+      io.report().warn(inner.place(), "<part> has no filter that loads: it is left out");
+      ++number;
+      continue;
+    }
+    std::vector<std::filesystem::path> loaded;
+    std::visit([&](auto& of_kind) { loaded = std::move(of_kind.files); }, *source);
+    const bool is_split = !id && loaded.size() > 1;
+    for (std::size_t i = 0; i < (is_split ? loaded.size() : 1); ++i) {
+      PartSettings one = part;
+      one.id = id ? *id : std::to_string(number + i);
+      one.source = *source;
+      std::visit([&](auto& of_kind) { of_kind.files = is_split ? std::vector{loaded[i]} : loaded; }, one.source);
+      scene.parts.push_back(std::move(one));
+    }
+    number += is_split ? loaded.size() : 1;
+  }
+  if (scene.parts.empty()) io.report().fault(io.place(), "<scene> holds no <part> with a filter that loads");
+}
+
+/// Writes a scene.
+inline void fields(XmlOutput& io, const SceneSettings& scene) {
+  io.text("id", scene.id);
+  io.text("name", scene.name);
+  io.whole("dynStep", scene.dynamic_step, 1, 1);
+  io.number("dynTimeStep", scene.dynamic_interval, units::second, 0, any);
+  io.children("part", scene.parts, [](XmlOutput& inner, const PartSettings& part) {
+    inner.text("id", part.id);
+    filters(inner, &part.source, part.transform);
+    dynamic_fields(inner, part);
+  });
+}
+
+}  // namespace pulsecast::helios::xml

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <pulsecast/base/vector.hpp>
+
+namespace pulsecast::io {
+
+/// Red, green and blue in proportion to light, 1 for the most a screen shows: sums and multiples of it are meaningful.
+using Colour = Vec3;
+
+/// Red, green and blue as files and screens number them.
+using Srgb = std::array<std::uint8_t, 3>;
+
+/// Source: IEC 61966-2-1, sRGB.
+[[nodiscard]] inline Colour from_srgb(const Srgb& bytes) noexcept {
+  static const auto light = [] {
+    std::array<double, 256> table{};
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const double v = static_cast<double>(i) / 255;
+      table[i] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    }
+    return table;
+  }();
+  return {light[bytes[0]], light[bytes[1]], light[bytes[2]]};
+}
+
+/// The nearest that a screen can show. Source: IEC 61966-2-1, sRGB.
+[[nodiscard]] inline Srgb to_srgb(const Colour& c) noexcept {
+  Srgb bytes{};
+  for (int k = 0; k < 3; ++k) {
+    const double v = std::clamp(c[k], 0.0, 1.0);
+    const double coded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    bytes[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(std::lround(255 * coded));
+  }
+  return bytes;
+}
+
+/// A colour between those of a scale whose first stands for 0 and whose last for 1; NaN counts as 0.
+[[nodiscard]] inline Colour along(std::span<const Srgb> scale, double t) noexcept {
+  const double place = (t > 0 ? std::min(t, 1.0) : 0.0) * static_cast<double>(scale.size() - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(place), scale.size() - 2);
+  const double part = place - static_cast<double>(i);
+  return from_srgb(scale[i]) * (1 - part) + from_srgb(scale[i + 1]) * part;
+}
+
+/// A scale in which equal steps look equal, from dark violet to yellow. Source: viridis of Smith & van der Walt 2015 (CC0), every 32nd
+/// entry.
+inline constexpr std::array<Srgb, 9> viridis{{{68, 1, 84},
+                                              {71, 44, 122},
+                                              {59, 81, 139},
+                                              {44, 113, 142},
+                                              {33, 144, 141},
+                                              {39, 173, 129},
+                                              {92, 200, 99},
+                                              {170, 220, 50},
+                                              {253, 231, 37}}};
+
+inline constexpr std::array<Srgb, 2> greys{{{24, 24, 24}, {250, 250, 250}}};
+
+/// Colours that people of every colour vision tell apart. Source: Okabe & Ito 2008.
+inline constexpr std::array<Srgb, 7> okabe_ito{
+    {{0, 114, 178}, {230, 159, 0}, {0, 158, 115}, {213, 94, 0}, {86, 180, 233}, {204, 121, 167}, {240, 228, 66}}};
+
+/// A colour of a hue in [0, 1), all of them equally light and strong. Source: Ottosson 2020, Oklab.
+[[nodiscard]] inline Colour of_hue(double hue) noexcept {
+  constexpr double lightness = 0.72, chroma = 0.13;
+  const double a = chroma * std::cos(2 * pi * hue), b = chroma * std::sin(2 * pi * hue);
+  const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
+  const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
+  const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
+  return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+          -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
+}
+
+/// The colour of a class of points, about as maps show it. Source of the numbers: ASPRS LAS 1.4 R15, table 17; those from 64 on are the
+/// user's own.
+[[nodiscard]] inline Srgb of_class(std::uint16_t classification) noexcept {
+  constexpr Srgb ground{158, 124, 88}, low_vegetation{160, 196, 72}, medium_vegetation{104, 168, 62}, high_vegetation{58, 136, 66},
+      building{226, 104, 56}, water{64, 132, 196}, road{120, 124, 132}, other{176, 176, 176};
+  constexpr std::array<Srgb, 12> standard{other, other, ground, low_vegetation, medium_vegetation, high_vegetation, building, other, other,
+                                          water, other, road};
+  constexpr std::array<Srgb, 6> own{{{158, 108, 72}, {216, 196, 156}, {204, 121, 167}, {86, 180, 233}, {230, 159, 0}, {0, 158, 115}}};
+  if (classification >= 64) return own[(classification - 64u) % own.size()];
+  return classification < standard.size() ? standard[classification] : other;
+}
+
+}  // namespace pulsecast::io

@@ -1,0 +1,295 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <typeinfo>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/io/digest.hpp>
+#include <pulsecast/io/output_file.hpp>
+
+/// Objects as a run of bytes, from which their arrays need not be read but are used where they stand. For one program on one machine:
+/// arrays stand as they do in memory.
+namespace pulsecast::io {
+
+/// What was archived is not what is asked for, or does not fit together.
+class ArchiveError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+namespace detail {
+
+/// What any archive is to an object: something to be called with its members.
+struct ArchiveArchetype {
+  template <class... Members>
+  void operator()(Members&...) {}
+};
+
+/// Something that shows its members to an archive.
+template <class T>
+concept Shown = requires(T& object, ArchiveArchetype& archive) {
+  object.archive(archive);
+};
+
+/// Something that is made empty, and then filled by an archive.
+template <class T>
+concept Fillable = std::constructible_from<T, Unfilled> && Shown<T>;
+
+/// Something whose members someone else lists: `list_members(archive, object)`, in the namespace of the archives.
+template <class T, class Archive>
+concept Listed = requires(T& object, Archive& archive) {
+  list_members(archive, object);
+};
+
+/// Plain values: their bytes are all that they are. That a struct has no pointer inside, nobody can see from here.
+template <class T>
+concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !Shown<T>;
+
+/// Where the arrays begin that stay in place, in multiples [byte]: the strictest alignment that an element may have.
+inline constexpr std::size_t array_alignment = 64;
+inline constexpr std::size_t item_alignment = 8;  ///< where everything else begins [byte]
+
+[[nodiscard]] constexpr std::uint64_t aligned(std::uint64_t position, std::uint64_t to) noexcept { return (position + to - 1) / to * to; }
+
+/// Stands before each run of elements, so that they are taken as what they were put.
+struct ItemHead {
+  std::uint64_t type;   ///< of the item and its elements
+  std::uint64_t count;  ///< of elements
+};
+
+template <class Item, class Element>
+[[nodiscard]] std::uint64_t type_mark() {
+  static const std::uint64_t mark = [] {
+    Digest digest;
+    for (const std::type_info* type : {&typeid(Item), &typeid(Element)}) digest.add(std::string_view(type->name()));
+    digest.add(std::uint64_t{sizeof(Element)} << 8 | alignof(Element));
+    return digest.value().low;
+  }();
+  return mark;
+}
+
+/// The number of what is shared, where nothing is.
+inline constexpr std::uint64_t shares_nothing = ~std::uint64_t{0};
+
+}  // namespace detail
+
+/// Writes objects into a file, one after the other, from where it is on; that must be a multiple of 64 bytes. Objects are plain values,
+/// `Frozen` arrays, strings, vectors, variants, shared pointers (what is shared is written once), and what shows its members by
+/// `template <class Archive> void archive(Archive& a) { a(member1_, member2_, ...); }`.
+class ArchiveWriter {
+ public:
+  explicit ArchiveWriter(OutputFile& file) : file_(file) {}
+
+  template <class... Items>
+  void operator()(const Items&... items) {
+    (put(items), ...);
+  }
+
+  /// Of all bytes that were written so far.
+  [[nodiscard]] const Digest& digest() const noexcept { return digest_; }
+
+ private:
+  template <class Item, class Element>
+  void put_elements(std::span<const Element> elements, std::size_t alignment = detail::item_alignment) {
+    const detail::ItemHead head{detail::type_mark<Item, Element>(), elements.size()};
+    put_bytes(std::as_bytes(std::span(&head, 1)), detail::item_alignment);
+    if (!elements.empty()) put_bytes(std::as_bytes(elements), alignment);
+  }
+
+  void put_bytes(std::span<const std::byte> bytes, std::size_t alignment) {
+    static constexpr std::array<std::byte, detail::array_alignment> zeros{};
+    const std::span<const std::byte> gap(zeros.data(), detail::aligned(file_.position(), alignment) - file_.position());
+    for (const std::span<const std::byte> next : {gap, bytes}) digest_.add(next), file_.write(next);
+  }
+
+  template <detail::Plain T>
+  void put(const T& value) {
+    put_elements<T, T>({&value, 1});
+  }
+  template <class T>
+  void put(const Frozen<T>& array) {
+    static_assert(alignof(T) <= detail::array_alignment);
+    put_elements<Frozen<T>, T>({array.data(), array.size()}, detail::array_alignment);
+  }
+  void put(const std::string& text) { put_elements<std::string, char>(text); }
+  template <class T>
+  void put(const std::vector<T>& items) {
+    if constexpr (detail::Plain<T>) {
+      put_elements<std::vector<T>, T>(items);
+    } else {
+      put(std::uint64_t{items.size()});
+      for (const T& item : items) put(item);
+    }
+  }
+  template <class... Options>
+  void put(const std::variant<Options...>& choice) {
+    put(std::uint64_t{choice.index()});
+    std::visit([this](const auto& chosen) { this->put(chosen); }, choice);
+  }
+  template <class T>
+  void put(const std::shared_ptr<const T>& shared) {
+    if (!shared) return put(detail::shares_nothing);
+    const auto [known, is_new] = numbers_.try_emplace({shared.get(), detail::type_mark<T, T>()}, numbers_.size());
+    put(known->second);
+    if (is_new) put(*shared);
+  }
+  // Objects name their members to an archive that fills them and to one that only looks: the latter takes them from a constant.
+  template <detail::Shown T>
+  void put(const T& object) {
+    const_cast<T&>(object).archive(*this);
+  }
+  template <detail::Listed<ArchiveWriter> T>
+  void put(const T& object) {
+    list_members(*this, const_cast<T&>(object));
+  }
+
+  OutputFile& file_;
+  Digest digest_;
+  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t> numbers_;  ///< of what is shared, by address and type
+};
+
+/// Takes objects out of such bytes, in the order in which they were put. Nothing is believed: what does not fit is an `ArchiveError`, and
+/// no memory is asked for but for what is there. What is filled may check itself: by `bool sound() const`, whether every number in its
+/// arrays can be followed without leaving them, and by `void validate() const`.
+class ArchiveReader {
+ public:
+  /// `owner` keeps the bytes where they are, at a multiple of 64.
+  ArchiveReader(std::span<const std::byte> bytes, std::shared_ptr<const void> owner) : bytes_(bytes), owner_(std::move(owner)) {}
+
+  template <class... Items>
+  void operator()(Items&... items) {
+    (take(items), ...);
+  }
+
+  /// To be called at last: nothing may be left.
+  void expect_end() const { expect(position_ == bytes_.size()); }
+
+ private:
+  static void expect(bool fulfilled) {
+    if (!fulfilled) throw ArchiveError("what it holds does not fit together");
+  }
+
+  template <class Item, class Element>
+  [[nodiscard]] std::span<const std::byte> take_elements(std::size_t alignment = detail::item_alignment) {
+    detail::ItemHead head;
+    std::memcpy(&head, take_bytes(1, sizeof head, detail::item_alignment).data(), sizeof head);
+    expect(head.type == (detail::type_mark<Item, Element>()));
+    return head.count == 0 ? std::span<const std::byte>{} : take_bytes(head.count, sizeof(Element), alignment);
+  }
+
+  [[nodiscard]] std::span<const std::byte> take_bytes(std::uint64_t count, std::size_t each, std::size_t alignment) {
+    const std::uint64_t begin = detail::aligned(position_, alignment);
+    expect(begin <= bytes_.size() && count <= (bytes_.size() - begin) / each);
+    position_ = begin + count * each;
+    return bytes_.subspan(begin, count * each);
+  }
+
+  template <detail::Plain T>
+  void take(T& value) {
+    const auto bytes = take_elements<T, T>();
+    expect(bytes.size() == sizeof value);
+    if constexpr (std::same_as<T, bool>) expect(bytes[0] <= std::byte{1});
+    std::memcpy(&value, bytes.data(), sizeof value);
+  }
+  template <class T>
+  void take(Frozen<T>& array) {
+    const auto bytes = take_elements<Frozen<T>, T>(detail::array_alignment);
+    array = Frozen<T>({reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)}, owner_);
+  }
+  void take(std::string& text) {
+    const auto bytes = take_elements<std::string, char>();
+    text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  }
+  template <class T>
+  void take(std::vector<T>& items) {
+    if constexpr (detail::Plain<T>) {
+      const auto bytes = take_elements<std::vector<T>, T>();
+      items.resize(bytes.size() / sizeof(T));
+      if (!bytes.empty()) std::memcpy(items.data(), bytes.data(), bytes.size());
+    } else {
+      std::uint64_t count = 0;
+      take(count);
+      for (items.clear(); count > 0; --count) take(items.emplace_back());  // each takes bytes, so there are no more than these allow
+    }
+  }
+  template <class... Options>
+  void take(std::variant<Options...>& choice) {
+    std::uint64_t index = 0;
+    take(index);
+    expect(index < sizeof...(Options));
+    take_option(choice, index, std::index_sequence_for<Options...>{});
+  }
+  template <class Choice, std::size_t... I>
+  void take_option(Choice& choice, std::uint64_t index, std::index_sequence<I...>) {
+    (void)((index == I && (take(choice.template emplace<I>()), true)) || ...);
+  }
+  template <class T>
+  void take(std::shared_ptr<const T>& shared) {
+    std::uint64_t number = 0;
+    take(number);
+    shared.reset();
+    if (number == detail::shares_nothing) return;
+    expect(number <= shared_.size());
+    if (number == shared_.size()) {
+      shared_.push_back({nullptr, detail::type_mark<T, T>()});
+      const auto object = made<T>();
+      take(*object);
+      shared_[number].object = object;
+    }
+    expect(shared_[number].object && (shared_[number].type == detail::type_mark<T, T>()));
+    shared = std::static_pointer_cast<const T>(shared_[number].object);
+  }
+  template <detail::Shown T>
+  void take(T& object) {
+    object.archive(*this);
+    check(object);
+  }
+  template <detail::Listed<ArchiveReader> T>
+  void take(T& object) {
+    list_members(*this, object);
+    check(object);
+  }
+
+  template <class T>
+  [[nodiscard]] static std::shared_ptr<T> made() {
+    if constexpr (detail::Fillable<T>) {
+      return std::make_shared<T>(Unfilled{});
+    } else {
+      return std::make_shared<T>();
+    }
+  }
+
+  template <class T>
+  static void check(const T& object) {
+    if constexpr (requires { object.sound(); }) expect(object.sound());
+    if constexpr (requires { object.validate(); }) object.validate();
+  }
+
+  struct Shared {
+    std::shared_ptr<const void> object;  ///< none while it is being filled
+    std::uint64_t type;
+  };
+
+  std::span<const std::byte> bytes_;
+  std::shared_ptr<const void> owner_;
+  std::uint64_t position_ = 0;
+  std::vector<Shared> shared_;
+};
+
+}  // namespace pulsecast::io

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pulsecast::io {
+
+/// Numbers the cells of a lattice in the order in which they are first met; 12 bytes a cell, and 8 to 16 more to find it again.
+class CellNumbers {
+ public:
+  using Cell = std::array<std::uint32_t, 3>;
+  static constexpr std::size_t most = 4294967294;  ///< cells, as in a grid of voxels
+
+  [[nodiscard]] std::size_t size() const noexcept { return cells_.size(); }
+
+  /// The number of a cell; one that was not met before gets the next. The caller sees to it that there are fewer than `most` before.
+  [[nodiscard]] std::uint32_t number(const Cell& cell) {
+    if (2 * (cells_.size() + 1) > slots_.size()) grow();
+    std::uint32_t& slot = slots_[slot_of(cell)];
+    if (slot == none) {
+      slot = static_cast<std::uint32_t>(cells_.size());
+      cells_.push_back(cell);
+    }
+    return slot;
+  }
+
+  /// The cells in the order of their numbers, handed over.
+  [[nodiscard]] std::vector<Cell> release() && { return std::move(cells_); }
+
+ private:
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  /// Where the cell stands, or may be put: the first such slot from the one that its hash names.
+  [[nodiscard]] std::size_t slot_of(const Cell& cell) const noexcept {
+    std::size_t slot = hash(cell) & (slots_.size() - 1);
+    while (slots_[slot] != none && cells_[slots_[slot]] != cell) slot = (slot + 1) & (slots_.size() - 1);
+    return slot;
+  }
+
+  /// Source of the mixing: Steele, Lea & Flood 2014, SplitMix64 (variant 13 of Stafford).
+  [[nodiscard]] static std::size_t hash(const Cell& cell) noexcept {
+    std::uint64_t h = (std::uint64_t{cell[0]} << 32 | cell[1]) ^ std::rotl(cell[2] * std::uint64_t{0x9E3779B97F4A7C15}, 29);
+    h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9;
+    h = (h ^ (h >> 27)) * 0x94D049BB133111EB;
+    return static_cast<std::size_t>(h ^ (h >> 31));
+  }
+
+  void grow() {
+    slots_.assign(std::max<std::size_t>(16, 2 * slots_.size()), none);
+    for (std::size_t i = 0; i < cells_.size(); ++i) slots_[slot_of(cells_[i])] = static_cast<std::uint32_t>(i);
+  }
+
+  std::vector<Cell> cells_;
+  std::vector<std::uint32_t> slots_;  // numbers of cells; a power of two of them, at most half of them taken
+};
+
+}  // namespace pulsecast::io

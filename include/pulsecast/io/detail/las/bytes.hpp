@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+/// Pieces of LAS files as bytes. Source of every position: ASPRS LAS Specification 1.4 R15, and 1.0 where it is named.
+namespace pulsecast::io::detail {
+
+static_assert(std::endian::native == std::endian::little, "LAS files are little-endian, and are written as the numbers lie in memory");
+
+/// Bytes that are filled in by their positions.
+template <std::size_t Size>
+struct LasBytes : std::array<std::byte, Size> {
+  template <class Number>
+  void put(std::size_t position, Number value) noexcept {
+    std::memcpy(this->data() + position, &value, sizeof value);
+  }
+  void put_text(std::size_t position, std::string_view text) noexcept { std::memcpy(this->data() + position, text.data(), text.size()); }
+};
+
+/// To the nearest whole number, cut to [low, high]; what is not a number becomes `low`.
+template <class Integer>
+[[nodiscard]] Integer las_rounded(double value, double low, double high) noexcept {
+  return static_cast<Integer>(std::nearbyint(std::fmin(std::fmax(value, low), high)));
+}
+
+inline constexpr std::size_t las_vlr_header_size = 54;  ///< [byte]
+
+/// What stands before the body of a record of so many bytes. Source: LAS 1.4 R15, Variable Length Records.
+[[nodiscard]] inline LasBytes<las_vlr_header_size> las_vlr_header(std::string_view user, std::uint16_t record, std::size_t size,
+                                                                  std::string_view description) noexcept {
+  LasBytes<las_vlr_header_size> h{};
+  h.put_text(2, user);
+  h.put(18, record);
+  h.put(20, static_cast<std::uint16_t>(size));
+  h.put_text(22, description);
+  return h;
+}
+
+}  // namespace pulsecast::io::detail

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include <pulsecast/io/las_settings.hpp>
+
+namespace pulsecast::io::detail {
+
+/// One of the values that stand after the standard ones in each point.
+struct LasExtra {
+  std::string_view name, description;
+  std::uint8_t type, size;  ///< of data, in the words of the Extra Bytes record: 5 uint32, 7 uint64, 9 float, 10 double
+};
+
+inline constexpr std::array las_extras{
+    LasExtra{"Range", "from the instrument [m]", 10, 8},  // a float would err by 0.5 mm at 10 km
+    LasExtra{"Amplitude", "received power at peak [dB]", 9, 4},
+    LasExtra{"Reflectance", "re white Lambertian target [dB]", 9, 4},
+    LasExtra{"EchoWidth", "standard deviation in time [ns]", 9, 4},
+    LasExtra{"PulseIndex", "number of the pulse, from 0", 7, 8},
+    LasExtra{"ObjectId", "number of the object met", 5, 4},
+};
+
+// Sizes in bytes. Source: LAS 1.4 R15, Extra Bytes, Point Data Record Format 4.
+inline constexpr std::size_t las_descriptor_size = 192, las_packet_size = 29;
+inline constexpr std::size_t las_extras_size = [] {
+  std::size_t size = 0;
+  for (const LasExtra& extra : las_extras) size += extra.size;
+  return size;
+}();
+
+/// Where things stand in a file, and how much they hold. Source: LAS 1.4 R15, Public Header Block, Point Data Record Formats 1, 4, 6 and 9;
+/// LAS 1.0, Public Header Block, Point Data Start Signature.
+struct LasLayout {
+  LasLayout(LasFormat file, bool with_waveforms) noexcept
+      : legacy(file != LasFormat::las_1_4),
+        minor(file == LasFormat::las_1_0 ? 0 : 4),
+        format(legacy ? (with_waveforms ? 4 : 1) : (with_waveforms ? 9 : 6)),
+        header(minor == 0 ? 227 : 375),
+        start_signature(minor == 0 ? 2 : 0),
+        packet(legacy ? 28 : 30),
+        extras(packet + (with_waveforms ? las_packet_size : 0)),
+        most_returns(legacy ? 5 : 15),
+        most_class(legacy ? 31 : 255) {}
+
+  [[nodiscard]] std::size_t record() const noexcept { return extras + las_extras_size; }  ///< size of a point [byte]
+
+  bool legacy;                  ///< points as before version 1.4
+  std::uint8_t minor, format;   ///< version 1.minor, point format
+  std::size_t header;           ///< its size [byte]
+  std::size_t start_signature;  ///< between the last record and the first point [byte]
+  std::size_t packet, extras;   ///< in a point: where the wave packet and the extra bytes are, if there are any [byte]
+  std::uint32_t most_returns, most_class;
+};
+
+}  // namespace pulsecast::io::detail

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/io/detail/las/bytes.hpp>
+#include <pulsecast/io/output_file.hpp>
+
+namespace pulsecast::io::detail {
+
+/// Where the waveform of a point is; of a point without, all is 0.
+struct LasPacket {
+  std::uint8_t descriptor = 0;  ///< the record that describes it is this plus 99
+  std::uint64_t offset = 0;     ///< from the beginning of the file of packets [byte]
+  std::uint32_t size = 0;       ///< [byte]
+};
+
+/// Writes waveforms as packets of a `.wdp` file, which stands beside the LAS file that refers to them. Source: LAS 1.4 R15, Waveform
+/// Packet Descriptor, Waveform Data Packets, and Extended Variable Length Records.
+///
+/// A sample is an unsigned 16-bit number: power [W] is `offset + gain * number`, and no light is the number 4096, so that noise may be
+/// negative. Each packet has the smallest gain that its samples fit, of eleven, powers of 16 from 2^-52 W to 2^-12 W: they err by at most a
+/// 7680th of its peak, or 2^-53 W, unless noise is a fifteenth of the peak; samples above 15 W are cut.
+/// A descriptor says how many samples its packets have, so there are 23 sizes, two an octave, from 16 to 32768; what a packet is too long
+/// is filled up with no light. That makes 253 descriptors, all of them in every file: none need be known before the first packet.
+class LasPackets {
+ public:
+  explicit LasPackets(std::filesystem::path path) : file_(std::move(path)) { file_.write(header()); }
+
+  /// A piece of such a file, without its header: offsets count from the beginning of the piece.
+  explicit LasPackets(OutputFile piece) : file_(std::move(piece)) {}
+  void end_piece() { file_.commit(); }
+
+  /// Takes what others have put into the temporary file, up to some byte, with samples so many picoseconds apart.
+  void adopt(std::uint64_t end, std::uint32_t spacing) {
+    file_.continue_at(end);
+    spacing_ = spacing;
+  }
+
+  [[nodiscard]] std::uint64_t position() const noexcept { return file_.position(); }  ///< where the next packet will stand [byte]
+  [[nodiscard]] std::uint32_t spacing() const noexcept { return spacing_; }           ///< of samples, 0 if there are none [ps]
+
+  /// Writes a waveform [W], of at least one sample, every so many seconds.
+  [[nodiscard]] LasPacket add(std::span<const float> waveform, double interval) {
+    expect_interval(interval);
+    const unsigned size_class = size_class_of(waveform.size()), gain_class = gain_class_of(waveform);
+    raw_.assign(samples_of(size_class), no_light);
+    const double per_watt = 1 / gain_of(gain_class);
+    for (std::size_t i = 0; i < waveform.size(); ++i) {
+      const double number = no_light + 0.5 + double{waveform[i]} * per_watt;
+      raw_[i] = static_cast<std::uint16_t>(number > 0 ? (number < 65535 ? number : 65535) : 0);
+    }
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(raw_));
+    const LasPacket packet{index_of(size_class, gain_class), file_.position(), static_cast<std::uint32_t>(bytes.size())};
+    file_.write(bytes);
+    return packet;
+  }
+
+  /// The records that describe the packets, headers and all, for the LAS file. Only their bodies change from packet to packet.
+  [[nodiscard]] std::vector<std::byte> descriptors() const {
+    std::vector<std::byte> bytes;
+    for (unsigned size_class = 0; size_class < size_classes; ++size_class)
+      for (unsigned gain_class = 0; gain_class < gain_classes; ++gain_class) {
+        const auto record = static_cast<std::uint16_t>(99 + index_of(size_class, gain_class));
+        const auto head = las_vlr_header("LASF_Spec", record, descriptor_size, "Waveform Packet Descriptor");
+        LasBytes<descriptor_size> d{};
+        d.put(0, std::uint8_t{16});  // bits per sample; then 0: not compressed
+        d.put(2, static_cast<std::uint32_t>(samples_of(size_class)));
+        d.put(6, spacing_);
+        d.put(10, gain_of(gain_class));
+        d.put(18, -no_light * gain_of(gain_class));
+        bytes.insert(bytes.end(), head.begin(), head.end());
+        bytes.insert(bytes.end(), d.begin(), d.end());
+      }
+    return bytes;
+  }
+
+  void close() {
+    file_.overwrite(0, header());
+    file_.commit();
+  }
+
+  static constexpr double most_samples = 32768;  ///< of a waveform
+  static constexpr unsigned size_classes = 23, gain_classes = 11, descriptor_count = size_classes * gain_classes;
+
+ private:
+  static constexpr std::size_t header_size = 60, descriptor_size = 26;  // [byte]
+  static constexpr std::uint16_t no_light = 4096;
+
+  [[nodiscard]] static constexpr std::size_t samples_of(unsigned size_class) noexcept {
+    return (size_class % 2 == 0 ? std::size_t{16} : std::size_t{24}) << (size_class / 2);
+  }
+  [[nodiscard]] static double gain_of(unsigned gain_class) noexcept { return std::ldexp(1.0, static_cast<int>(4 * gain_class) - 52); }
+  [[nodiscard]] static constexpr std::uint8_t index_of(unsigned size_class, unsigned gain_class) noexcept {
+    return static_cast<std::uint8_t>(1 + size_class * gain_classes + gain_class);
+  }
+
+  [[nodiscard]] unsigned size_class_of(std::size_t samples) {
+    unsigned c = 0;
+    while (c < size_classes && samples_of(c) < samples) ++c;
+    if (c < size_classes) return c;
+    refuse("a waveform has " + std::to_string(samples) + " samples", "at most " + std::to_string(samples_of(size_classes - 1)));
+  }
+
+  [[nodiscard]] static unsigned gain_class_of(std::span<const float> waveform) noexcept {
+    const auto [low, high] = std::minmax_element(waveform.begin(), waveform.end());
+    unsigned c = 0;
+    while (c + 1 < gain_classes && (*high > (65535 - no_light) * gain_of(c) || *low < -no_light * gain_of(c))) ++c;
+    return c;
+  }
+
+  /// The file has one interval, in whole picoseconds; a millionth of one is rounding.
+  void expect_interval(double interval) {
+    const double picoseconds = interval * 1e12, whole = std::nearbyint(picoseconds);
+    const bool can_be = std::fabs(picoseconds - whole) <= 1e-6 && whole >= 1 && whole <= 4294967295.0;
+    if (can_be && spacing_ == 0) spacing_ = static_cast<std::uint32_t>(whole);
+    if (can_be && spacing_ == whole) return;
+    refuse("samples are " + pulsecast::detail::written(picoseconds) + " ps apart",
+           spacing_ == 0 ? "a whole number from 1 to 2^32 - 1" : std::to_string(spacing_) + " ps, as before");
+  }
+
+  [[noreturn]] void refuse(const std::string& problem, const std::string& expected) {
+    file_.discard();
+    throw FileError(file_.path().string(), "byte " + std::to_string(file_.position()), problem + "; expected " + expected);
+  }
+
+  [[nodiscard]] LasBytes<header_size> header() const {
+    LasBytes<header_size> h{};
+    h.put_text(2, "LASF_Spec");
+    h.put(18, std::uint16_t{65535});
+    h.put(20, std::max<std::uint64_t>(file_.position(), header_size) - header_size);
+    h.put_text(28, "Waveform Data Packets");
+    return h;
+  }
+
+  OutputFile file_;
+  std::uint32_t spacing_ = 0;  // of samples; 0 until there is a packet [ps]
+  std::vector<std::uint16_t> raw_;
+};
+
+}  // namespace pulsecast::io::detail

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/io/input_file.hpp>
+
+namespace pulsecast::io {
+
+/// The points of a LAS file one after another, versions 1.0 to 1.4, point formats 0 to 10. Points that the file marks as withheld, which
+/// means deleted, are passed over. What the header says of sizes is held against the file's size; what it says of bounds is not asked for.
+/// Throws a `FileError` with path and byte. Source of every field: ASPRS LAS Specification 1.4 R15, and 1.0 to 1.3 for their headers.
+class LasPoints {
+ public:
+  /// A file that begins as all LAS files do.
+  [[nodiscard]] static bool is_las(InputFile& file) {
+    file.seek(0);
+    const bool is = file.take(4) == "LASF";
+    file.seek(0);
+    return is;
+  }
+
+  explicit LasPoints(InputFile file) : file_(std::move(file)) { read_header(); }
+
+  /// Goes to the next point; false if there is none.
+  [[nodiscard]] bool next() {
+    while (taken_ < count_) {
+      at_ = file_.position();
+      record_ = file_.take(record_size_);
+      if (record_.size() < record_size_) file_.fail_at_byte(at_, "the file ends: it has changed while it was read");
+      ++taken_;
+      if (!withheld()) return true;
+      ++withheld_;
+    }
+    return false;
+  }
+
+  /// Of the point at hand, in the units of the file, which should be metres.
+  [[nodiscard]] Vec3 position() const {
+    Vec3 p{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      p[static_cast<int>(axis)] = number<std::int32_t>(record_, 4 * axis) * scale_[axis] + offset_[axis];
+    if (!(max_norm(p) <= 1e12)) fail_here("holds a point beyond 1e12 m: expected coordinates within");
+    return p;
+  }
+
+  [[nodiscard]] bool has_normals() const noexcept { return false; }
+  [[nodiscard]] Vec3 normal() const noexcept { return {}; }
+  [[nodiscard]] bool has_colours() const noexcept { return colour_at_ != 0; }
+
+  /// Red, green and blue of the point at hand, from 0 to `largest_colour`.
+  [[nodiscard]] Vec3 colour() const noexcept {
+    return {number<std::uint16_t>(record_, colour_at_), number<std::uint16_t>(record_, colour_at_ + 2),
+            number<std::uint16_t>(record_, colour_at_ + 4)};
+  }
+  static constexpr double largest_colour = 65535;
+
+  /// What was odd, but could be read; to be asked for after the last point.
+  [[nodiscard]] std::vector<std::string> warnings() const {
+    if (withheld_ == 0) return {};
+    return {file_.path() + ": " + std::to_string(withheld_) + " of " + std::to_string(count_) +
+            " points are marked as withheld and left out"};
+  }
+
+  [[noreturn]] void fail_here(const std::string& problem) const { file_.fail_at_byte(at_, problem); }
+  [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
+
+ private:
+  static_assert(std::endian::native == std::endian::little, "LAS files are little-endian, and are read as the numbers lie in memory");
+
+  template <class Number>
+  [[nodiscard]] static Number number(std::string_view bytes, std::size_t position) noexcept {
+    Number value;
+    std::memcpy(&value, bytes.data() + position, sizeof value);
+    return value;
+  }
+
+  void read_header() {
+    constexpr std::array<std::size_t, 5> header_sizes{227, 227, 227, 235, 375};  // by the minor version
+    constexpr std::array<std::size_t, 11> sizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+    constexpr std::array<std::size_t, 11> colours{0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
+
+    const std::string bytes(file_.take(header_sizes.back()));
+    if (bytes.size() < header_sizes.front())
+      file_.fail_at_byte(bytes.size(), "the file ends: expected the " + std::to_string(header_sizes.front()) + " bytes of a LAS header");
+    const auto major = number<std::uint8_t>(bytes, 24);
+    minor_ = number<std::uint8_t>(bytes, 25);
+    if (major != 1 || minor_ > 4)
+      file_.fail_at_byte(24, "is LAS " + std::to_string(major) + "." + std::to_string(minor_) + ": expected a version from 1.0 to 1.4");
+    const std::size_t header_size = number<std::uint16_t>(bytes, 94);
+    if (header_size < header_sizes[minor_] || bytes.size() < header_sizes[minor_])
+      file_.fail_at_byte(94, "the header has " + std::to_string(std::min(header_size, bytes.size())) + " bytes: expected at least " +
+                                 std::to_string(header_sizes[minor_]));
+    format_ = number<std::uint8_t>(bytes, 104);
+    if (format_ >= 128)  // so LASzip marks its formats
+      file_.fail_at_byte(104, "the points are compressed (LAZ): expected LAS; laszip or pdal translate turn one into the other");
+    if (format_ >= sizes.size()) file_.fail_at_byte(104, "has the point format " + std::to_string(format_) + ": expected one from 0 to 10");
+    colour_at_ = colours[format_];
+    record_size_ = number<std::uint16_t>(bytes, 105);
+    if (record_size_ < sizes[format_])
+      file_.fail_at_byte(105, "a point has " + std::to_string(record_size_) + " bytes: expected at least the " +
+                                  std::to_string(sizes[format_]) + " of format " + std::to_string(format_));
+
+    const std::uint64_t begin = number<std::uint32_t>(bytes, 96);
+    count_ = minor_ == 4 ? number<std::uint64_t>(bytes, 247) : 0;
+    const std::size_t count_at = count_ > 0 ? 247 : 107;
+    if (count_ == 0) count_ = number<std::uint32_t>(bytes, 107);
+    if (begin < header_size || begin > file_.size())
+      file_.fail_at_byte(96, "the points begin at byte " + std::to_string(begin) + ": expected one from " + std::to_string(header_size) +
+                                 " to the file's size of " + std::to_string(file_.size()));
+    if (count_ == 0) file_.fail_at_byte(107, "holds no point: expected at least one");
+    if (count_ > (file_.size() - begin) / record_size_)
+      file_.fail_at_byte(count_at, "claims " + std::to_string(count_) + " points of " + std::to_string(record_size_) + " bytes from byte " +
+                                       std::to_string(begin) + ": expected no more than fit into the file's " +
+                                       std::to_string(file_.size()) + " bytes");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      scale_[axis] = number<double>(bytes, 131 + 8 * axis);
+      offset_[axis] = number<double>(bytes, 155 + 8 * axis);
+      if (!(scale_[axis] > 0) || !std::isfinite(scale_[axis]))
+        file_.fail_at_byte(131 + 8 * axis, "the scale is " + pulsecast::detail::written(scale_[axis]) + ": expected one above 0");
+      if (!std::isfinite(offset_[axis]))
+        file_.fail_at_byte(155 + 8 * axis, "the offset is " + pulsecast::detail::written(offset_[axis]) + ": expected a finite one");
+    }
+    file_.seek(begin);
+  }
+
+  /// In LAS 1.0 the bit is part of the class.
+  [[nodiscard]] bool withheld() const noexcept {
+    const auto bits = number<std::uint8_t>(record_, 15);
+    return format_ >= 6 ? (bits & 4U) != 0 : minor_ > 0 && (bits & 128U) != 0;
+  }
+
+  InputFile file_;
+  unsigned minor_ = 0, format_ = 0;
+  std::size_t record_size_ = 0, colour_at_ = 0;  // bytes; 0 if there is none
+  std::array<double, 3> scale_{}, offset_{};
+  std::uint64_t count_ = 0, taken_ = 0, withheld_ = 0;
+  std::uint64_t at_ = 0;  // byte at which the point at hand begins
+  std::string_view record_;
+};
+
+}  // namespace pulsecast::io

@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/io/detail/las/bytes.hpp>
+#include <pulsecast/io/detail/las/layout.hpp>
+#include <pulsecast/io/detail/las/packets.hpp>
+#include <pulsecast/io/detail/las/reference.hpp>
+#include <pulsecast/io/las_encoder.hpp>
+#include <pulsecast/io/las_settings.hpp>
+#include <pulsecast/io/output_file.hpp>
+#include <pulsecast/version.hpp>
+
+namespace pulsecast::io::detail {
+
+/// Reads what was written from some byte on, records of so many bytes, again: `task(at, bytes)` gets whole records, some at a time.
+template <class Task>
+void las_in_blocks(OutputFile& file, std::uint64_t begin, std::size_t record, const Task& task) {
+  const std::uint64_t at_once = (std::size_t{1} << 20) / record * record, end = file.position();
+  std::vector<std::byte> bytes;
+  for (std::uint64_t at = begin; at < end; at += at_once) {
+    bytes.resize(static_cast<std::size_t>(std::min(at_once, end - at)));
+    file.read(at, bytes);
+    task(at, std::span(bytes));
+  }
+}
+
+/// Writes points as LAS with extra bytes, in pulse order; `Records` puts their records into the file as it will, and may change them once
+/// when all are known. It offers what `LasRecords` and `LazRecords` do.
+/// Source of every field: ASPRS LAS Specification 1.4 R15. What it leaves open is decided so:
+/// - coordinates are rounded to the nearest step; one that does not fit 32 bits, or is not finite, is a `FileError`;
+/// - intensity is linear in what `LasIntensity` says; the extra bytes Amplitude and Reflectance are levels [dB], -200 for nothing;
+/// - return numbers and their count end at 15, or 5, as the format does: later returns are written as the 15th;
+/// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; scanner channel is the channel's lowest two bits;
+/// - scan angle counts from down, positive to the right of the flight; GPS time is that of the pulse, alike in all its returns;
+/// - a reference system that is known by its code alone, and not one of UTM, is written as GeoTIFF keys and the WKT bit is left out: the
+///   specification wants well-known text with point formats 6 and 9, but a code that readers understand is more than nothing. With legacy
+///   formats, a code is always written as keys;
+/// - flags, scan direction, edge of flight line and user data are 0, for no field of an echo tells them.
+///
+/// Waveforms are written once for all echoes of their pulse, as `LasPackets` says; those of pulses without echoes are not, as no
+/// point could refer to them. The location L of a point's return is the two-way time from the first sample to the echo [ps], and the vector
+/// d points back to the instrument, half the speed of light long [m/ps]. So, as in the specification, `P + L d` is the anchor, where the
+/// first sample is from, and sample i is from `P + (L - i spacing) d`; P is the point.
+/// Only `close()` makes the file: see `OutputFile`. The `.wdp` file is made before the LAS file, so that this is whole when it is there.
+template <class Records>
+class LasFileWriter {
+ public:
+  LasFileWriter(std::filesystem::path path, LasSettings how, Records records)
+      : encoder_(settled(validated(std::move(how)))), records_(std::move(records)), file_(std::move(path)) {
+    if (settings().waveforms) packets_.emplace(packets_path());
+    write_header();
+    write_extra_bytes_record();
+    if (!settings().wkt.empty()) write_wkt_record();
+    if (by_keys()) write_keys_record();
+    descriptors_at_ = file_.position();
+    if (packets_) {
+      file_.write(packets_->descriptors());
+      variable_records_ += LasPackets::descriptor_count;
+    }
+    file_.write(Records::descriptors());
+    variable_records_ += Records::descriptor_count;
+    if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // source: LAS 1.0, Point Data Start Signature
+    points_at_ = file_.position();
+    records_.begin(file_, layout().record(), encoder_.automatic_intensity());
+    records_at_ = file_.position();
+  }
+
+  void operator()(const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots) {
+      if (shot.echoes != 0) write(shot, batch);
+    }
+  }
+
+  /// Where `Records` begin, and the bytes of the file of waveforms so far.
+  [[nodiscard]] std::uint64_t records_at() const noexcept { return records_at_; }
+  [[nodiscard]] std::uint64_t packets_at() const noexcept { return packets_ ? packets_->position() : 0; }
+
+  [[nodiscard]] Records& records() noexcept { return records_; }
+
+  /// Takes what others have put into the temporary files: the points of which `tally` tells, up to `end`, and if there are waveforms, those
+  /// up to `packets_end`, with samples so many picoseconds apart. To be closed is all that is left then.
+  void adopt(const LasTally& tally, const Vec3& first_point, std::uint64_t end, std::uint64_t packets_end = 0, std::uint32_t spacing = 0) {
+    encoder_.tally() = tally;
+    if (tally.points > 0) encoder_.choose_offset(first_point);
+    file_.continue_at(end);
+    if (packets_) packets_->adopt(packets_end, spacing);
+  }
+
+  /// Enters numbers and bounds into the header, gives intensities their scale if it is automatic, and the file its name.
+  void close() {
+    if (layout().minor == 0 && encoder_.tally().points > std::numeric_limits<std::uint32_t>::max())
+      throw FileError(file_.path().string(), "", "has too many points; expected fewer than 2^32, with version 1.0");
+    if (encoder_.automatic_intensity()) records_.change(file_, [this](std::span<std::byte> some) { encoder_.scale_intensities(some); });
+    records_.finish(file_);
+    write_header();
+    if (packets_) {
+      file_.overwrite(descriptors_at_, packets_->descriptors());
+      packets_->close();
+    }
+    file_.commit();
+  }
+
+ private:
+  using Header = LasBytes<375>;  ///< the longest
+
+  [[nodiscard]] const LasSettings& settings() const noexcept { return encoder_.settings(); }
+  [[nodiscard]] const LasLayout& layout() const noexcept { return encoder_.layout(); }
+
+  [[nodiscard]] static LasSettings settled(LasSettings settings) {
+    if (settings.format == LasFormat::las_1_0) settings.wkt.clear();
+    if (settings.wkt.empty() && settings.format == LasFormat::las_1_4) settings.wkt = las_utm(settings.epsg);
+    return settings;
+  }
+
+  void write(const Shot& shot, const EchoBatch& batch) {
+    std::optional<LasPacket> packet;
+    if (packets_ && shot.samples != 0) packet = packets_->add(batch.waveform_of(shot), batch.sample_interval);
+    encoder_.encode(shot, batch, packet ? &*packet : nullptr, [&](LasEncoder::Record& record, const Vec3& point) {
+      if (encoder_.tally().points == 0) encoder_.choose_offset(point);
+      if (!encoder_.locate(record.data(), point)) misfit(point);
+      records_.write(file_, std::span<const std::byte>(record).first(layout().record()));
+    });
+  }
+
+  [[nodiscard]] std::filesystem::path packets_path() const {
+    std::filesystem::path path = file_.path();
+    if (path.replace_extension(".wdp") != file_.path()) return path;
+    throw FileError(path.string(), "", "is where its waveforms go; expected a name that ends otherwise, as in .las");
+  }
+
+  [[noreturn]] void misfit(const Vec3& point) {
+    file_.discard();
+    throw FileError(file_.path().string(), "point " + std::to_string(encoder_.tally().points + 1), encoder_.misfit(point));
+  }
+
+  /// Writes the header as of now. Positions: LAS 1.4 R15, Public Header Block; what is not put is 0, as the legacy numbers must be with
+  /// formats 6 and 9, and the start of waveforms with those in a file of their own. Version 1.0 ends before it, and has no global encoding.
+  void write_header() {
+    const LasTally& tally = encoder_.tally();
+    Header h{};
+    h.put_text(0, "LASF");
+    if (layout().minor != 0) h.put(6, global_encoding());
+    h.put(24, std::uint8_t{1});
+    h.put(25, layout().minor);
+    h.put_text(26, "simulation");
+    h.put_text(58, "pulsecast " PULSECAST_VERSION);
+    if (settings().created) {
+      using std::chrono::sys_days;
+      const std::chrono::year year = settings().created->year();
+      const auto day = sys_days{*settings().created} - sys_days{year / std::chrono::January / 1};
+      h.put(90, static_cast<std::uint16_t>(day.count() + 1));  // 1 January is day 1
+      h.put(92, static_cast<std::uint16_t>(int{year}));
+    }
+    h.put(94, static_cast<std::uint16_t>(layout().header));
+    h.put(96, static_cast<std::uint32_t>(points_at_));
+    h.put(100, variable_records_);
+    h.put(104, static_cast<std::uint8_t>(layout().format | Records::format_bits));
+    h.put(105, static_cast<std::uint16_t>(layout().record()));
+    if (layout().legacy && tally.points <= std::numeric_limits<std::uint32_t>::max()) {
+      h.put(107, static_cast<std::uint32_t>(tally.points));
+      for (std::size_t i = 0; i < 5; ++i) h.put(111 + 4 * i, static_cast<std::uint32_t>(tally.points_by_return[i]));
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double offset = encoder_.offset()[static_cast<int>(axis)];
+      h.put(131 + 8 * axis, settings().scale);
+      h.put(155 + 8 * axis, offset);
+      if (tally.points == 0) continue;
+      h.put(179 + 16 * axis, tally.most[axis] * settings().scale + offset);
+      h.put(187 + 16 * axis, tally.least[axis] * settings().scale + offset);
+    }
+    h.put(247, tally.points);
+    for (std::size_t i = 0; i < tally.points_by_return.size(); ++i) h.put(255 + 8 * i, tally.points_by_return[i]);
+    const std::span<const std::byte> bytes = std::span(h).first(layout().header);
+    if (file_.position() == 0)
+      file_.write(bytes);
+    else
+      file_.overwrite(0, bytes);
+  }
+
+  /// Source: LAS 1.4 R15, Global Encoding: bit 0 is the kind of time, bit 2 says waveforms are in a file of their own, bit 4 must be set
+  /// with well-known text, and with formats 6 and 9.
+  [[nodiscard]] std::uint16_t global_encoding() const noexcept {
+    const bool wkt = layout().legacy ? !settings().wkt.empty() : !by_keys();
+    return static_cast<std::uint16_t>(static_cast<unsigned>(settings().gps_time) | (packets_ ? 1U << 2 : 0U) | (wkt ? 1U << 4 : 0U));
+  }
+
+  void write_record_header(std::string_view user, std::uint16_t record, std::size_t size, std::string_view description) {
+    auto h = las_vlr_header(user, record, size, description);
+    if (layout().minor == 0) h.put(0, std::uint16_t{0xAABB});  // source: LAS 1.0, Variable Length Records, Record Signature
+    file_.write(h);
+    ++variable_records_;
+  }
+
+  /// Source: LAS 1.4 R15, Extra Bytes.
+  void write_extra_bytes_record() {
+    write_record_header("LASF_Spec", 4, las_extras.size() * las_descriptor_size, "Extra Bytes");
+    for (const LasExtra& extra : las_extras) {
+      LasBytes<las_descriptor_size> descriptor{};
+      descriptor.put(2, extra.type);
+      descriptor.put_text(4, extra.name);
+      descriptor.put_text(160, extra.description);
+      file_.write(descriptor);
+    }
+  }
+
+  /// Source: LAS 1.4 R15, OGC Coordinate System WKT.
+  void write_wkt_record() {
+    write_record_header("LASF_Projection", 2112, settings().wkt.size() + 1, "OGC Coordinate System WKT");
+    file_.write(std::string_view(settings().wkt.c_str(), settings().wkt.size() + 1));
+  }
+
+  /// Whether the reference system is known by its code alone.
+  [[nodiscard]] bool by_keys() const noexcept { return settings().wkt.empty() && settings().epsg != 0; }
+
+  /// Source: LAS 1.4 R15, GeoKeyDirectoryTag Record.
+  void write_keys_record() {
+    const auto keys = las_geo_keys(settings().epsg);
+    write_record_header("LASF_Projection", 34735, sizeof keys, "GeoTIFF GeoKeyDirectoryTag");
+    file_.write(std::as_bytes(std::span(keys)));
+  }
+
+  LasEncoder encoder_;
+  Records records_;
+  OutputFile file_;
+  std::optional<LasPackets> packets_;
+  std::uint32_t variable_records_ = 0;                                 // of variable length
+  std::uint64_t descriptors_at_ = 0, points_at_ = 0, records_at_ = 0;  // from the beginning of the file [byte]
+};
+
+}  // namespace pulsecast::io::detail

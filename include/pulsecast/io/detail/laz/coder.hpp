@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+
+/// The arithmetic coder of LAZ. Source of the algorithm: Said 2004, Introduction to Arithmetic Coding - Theory and Practice, 2.2 and 3;
+/// of the constants: Isenburg 2013, LASzip: lossless compression of lidar data, and the LAZ files that LASzip writes.
+namespace pulsecast::io::detail {
+
+/// How often each of some symbols came, learnt while they are coded. Shares are renewed seldom at first, then ever more seldom.
+template <std::size_t Capacity = 256>
+class LazModel {
+ public:
+  static constexpr unsigned share_bits = 15;
+
+  explicit LazModel(std::size_t symbols = Capacity) noexcept : symbols_(static_cast<std::uint32_t>(symbols)), cycle_(symbols_) {
+    PULSECAST_EXPECT(symbols >= 2 && symbols <= Capacity);
+    std::fill_n(count_.begin(), symbols, std::uint16_t{1});
+    renew();
+    until_renewal_ = cycle_ = (symbols_ + 6) / 2;
+  }
+
+  /// The shares of all symbols below this one, and of those up to it, in 2^-15; the last is up to all.
+  [[nodiscard]] std::uint32_t below(std::size_t symbol) const noexcept { return below_[symbol]; }
+  [[nodiscard]] bool last(std::size_t symbol) const noexcept { return symbol + 1 == symbols_; }
+
+  void learn(std::size_t symbol) noexcept {
+    ++count_[symbol];
+    if (--until_renewal_ == 0) renew();
+  }
+
+ private:
+  void renew() noexcept {
+    if ((total_ += cycle_) > 1U << share_bits) {
+      total_ = 0;
+      for (std::size_t i = 0; i < symbols_; ++i) total_ += count_[i] = static_cast<std::uint16_t>((count_[i] + 1) / 2);
+    }
+    const std::uint32_t scale = (1U << 31) / total_;
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < symbols_; ++i) {
+      below_[i] = static_cast<std::uint16_t>(scale * sum >> (31 - share_bits));
+      sum += count_[i];
+    }
+    until_renewal_ = cycle_ = std::min(5 * cycle_ / 4, 8 * (symbols_ + 6));
+  }
+
+  std::uint32_t symbols_, cycle_, total_ = 0, until_renewal_ = 0;
+  std::array<std::uint16_t, Capacity> below_, count_;
+};
+
+/// The same for a bit.
+class LazBitModel {
+ public:
+  static constexpr unsigned share_bits = 13;
+
+  /// The share of 0, in 2^-13.
+  [[nodiscard]] std::uint32_t of_zero() const noexcept { return of_zero_; }
+
+  void learn(bool bit) noexcept {
+    zeros_ += bit ? 0U : 1U;
+    if (--until_renewal_ != 0) return;
+    if ((total_ += cycle_) > 1U << share_bits) {
+      total_ = (total_ + 1) / 2;
+      zeros_ = (zeros_ + 1) / 2;
+      if (zeros_ == total_) ++total_;
+    }
+    of_zero_ = (1U << 31) / total_ * zeros_ >> (31 - share_bits);
+    until_renewal_ = cycle_ = std::min(5 * cycle_ / 4, 64U);
+  }
+
+ private:
+  std::uint32_t zeros_ = 1, total_ = 2, of_zero_ = 1U << (share_bits - 1), cycle_ = 4, until_renewal_ = 4;
+};
+
+/// Codes symbols into bytes: together they are a number in [0, 1), and each symbol narrows the interval where it can be.
+class LazEncoder {
+ public:
+  template <std::size_t Capacity>
+  void encode(LazModel<Capacity>& model, std::size_t symbol) {
+    const std::uint32_t unit = length_ >> LazModel<Capacity>::share_bits, low = unit * model.below(symbol);
+    narrow(low, (model.last(symbol) ? length_ : unit * model.below(symbol + 1)) - low);
+    model.learn(symbol);
+  }
+
+  void encode(LazBitModel& model, bool bit) {
+    const std::uint32_t zero = (length_ >> LazBitModel::share_bits) * model.of_zero();
+    narrow(bit ? zero : 0, bit ? length_ - zero : zero);
+    model.learn(bit);
+  }
+
+  /// The lowest `count` bits of a number, 1 to 32, which nothing is known of; the others must be 0.
+  void encode_bits(std::uint32_t value, unsigned count) {
+    if (count > 19) {  // more do not fit the interval at once
+      encode_bits(value & 0xFFFFU, 16);
+      value >>= 16;
+      count -= 16;
+    }
+    const std::uint32_t unit = length_ >> count;
+    narrow(unit * value, unit);
+  }
+
+  /// The bytes of all that was coded; what stands after them does not matter.
+  [[nodiscard]] std::vector<std::byte> finish() && {
+    const std::uint32_t gap = (0U - base_) & 0xFFFFFFU;  // the interval is at least 2^24 long: it holds a number that ends in 24 zeros
+    base_ += gap;
+    if (base_ < gap) carry();
+    out_.resize(size_);
+    out_.push_back(static_cast<std::byte>(base_ >> 24));
+    out_.resize(size_ + 4);  // decoders look four bytes ahead
+    return std::move(out_);
+  }
+
+ private:
+  void narrow(std::uint32_t low, std::uint32_t length) {
+    const std::uint32_t base = base_ + low;
+    if (base < low) carry();
+    if (size_ + 4 > out_.size()) out_.resize(std::max<std::size_t>(2 * out_.size(), 1024));
+    std::array<std::byte, 4> bytes{};
+    for (unsigned i = 0; i < 4; ++i) bytes[i] = static_cast<std::byte>(base >> (24 - 8 * i));
+    std::memcpy(out_.data() + size_, bytes.data(), bytes.size());
+    const unsigned done = static_cast<unsigned>(std::countl_zero(length)) & 24U;  // bits that no longer change, in whole bytes
+    size_ += done / 8;
+    base_ = base << done;
+    length_ = length << done;
+  }
+
+  void carry() noexcept {
+    std::size_t at = size_ - 1;
+    for (; out_[at] == std::byte{255}; --at) out_[at] = std::byte{0};
+    out_[at] = static_cast<std::byte>(std::to_integer<unsigned>(out_[at]) + 1);
+  }
+
+  std::uint32_t base_ = 0, length_ = 0xFFFFFFFFU;
+  std::vector<std::byte> out_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace pulsecast::io::detail

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace pulsecast::io::detail {
+
+/// The middle one of five numbers, zeros at first. A number that comes drives out the greatest or the least: the greatest until one comes
+/// that is not below the middle, then the least until one comes that is not above it. Source: Isenburg 2013, LASzip, 4.1 (median of five).
+class LazMedian {
+ public:
+  [[nodiscard]] std::int32_t value() const noexcept { return sorted_[2]; }
+
+  void add(std::int32_t number) noexcept {
+    const std::int32_t middle = value();
+    if (drop_greatest_) {
+      sorted_[4] = number;
+      for (std::size_t i = 4; i > 0 && sorted_[i] < sorted_[i - 1]; --i) std::swap(sorted_[i], sorted_[i - 1]);
+      drop_greatest_ = number < middle;
+    } else {
+      sorted_[0] = number;
+      for (std::size_t i = 0; i < 4 && sorted_[i + 1] < sorted_[i]; ++i) std::swap(sorted_[i], sorted_[i + 1]);
+      drop_greatest_ = number <= middle;
+    }
+  }
+
+ private:
+  std::array<std::int32_t, 5> sorted_{};
+  bool drop_greatest_ = true;
+};
+
+}  // namespace pulsecast::io::detail

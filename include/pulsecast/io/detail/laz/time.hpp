@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <pulsecast/io/detail/laz/coder.hpp>
+#include <pulsecast/io/detail/laz/integers.hpp>
+
+namespace pulsecast::io::detail {
+
+/// Codes times, as the whole numbers that their 64 bits are, by how they go on with one of four series: each has its last time, and the
+/// step that is usual in it. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
+class LazTimes {
+ public:
+  explicit LazTimes(std::int64_t first) { last_[0] = first; }
+
+  void encode(LazEncoder& encoder, std::int64_t time) {
+    if (!near(time, series_)) {
+      for (std::size_t k = 1; k < 4; ++k)
+        if (const std::size_t other = (series_ + k) % 4; near(time, other)) {
+          change_series(encoder, k);
+          series_ = other;
+          return go_on(encoder, time);
+        }
+      return begin_series(encoder, time);
+    }
+    go_on(encoder, time);
+  }
+
+ private:
+  /// What a step is: a multiple of the usual one from 0 to 499, or at least 500, or from -9 to -1, or at most -10; or there is none.
+  static constexpr int most = 500, least = -10, new_series = most - least + 1;
+  static constexpr int symbols = new_series + 4;  // and the three other series
+
+  [[nodiscard]] std::int64_t step_to(std::int64_t time, std::size_t series) const noexcept {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(time) - static_cast<std::uint64_t>(last_[series]));
+  }
+  [[nodiscard]] bool near(std::int64_t time, std::size_t series) const noexcept {
+    const std::int64_t step = step_to(time, series);
+    return step == static_cast<std::int32_t>(step);
+  }
+
+  void change_series(LazEncoder& encoder, std::size_t k) {
+    if (usual_[series_] == 0)
+      encoder.encode(first_steps_, 1 + k);
+    else
+      encoder.encode(multiples_, new_series + k);
+  }
+
+  void begin_series(LazEncoder& encoder, std::int64_t time) {
+    change_series(encoder, 0);
+    const auto high = [](std::int64_t bits) { return static_cast<std::int32_t>(bits >> 32); };
+    steps_.encode(encoder, high(last_[series_]), high(time), 8);
+    encoder.encode_bits(static_cast<std::uint32_t>(time), 32);
+    series_ = newest_ = (newest_ + 1) % 4;
+    last_[series_] = time;
+    usual_[series_] = 0;
+    unusual_[series_] = 0;
+  }
+
+  void go_on(LazEncoder& encoder, std::int64_t time) {
+    const auto step = static_cast<std::int32_t>(step_to(time, series_));
+    last_[series_] = time;
+    std::int32_t& usual = usual_[series_];
+    if (usual == 0) {
+      encoder.encode(first_steps_, 0);
+      steps_.encode(encoder, 0, step, 0);
+      usual = step;
+      unusual_[series_] = 0;
+      return;
+    }
+    const double ratio = static_cast<double>(step) / usual;
+    const int multiple = static_cast<int>(std::lround(std::fmin(std::fmax(ratio, least), most)));
+    encoder.encode(multiples_, static_cast<std::size_t>(multiple >= 0 ? multiple : most - multiple));
+    const auto expected = static_cast<std::int32_t>(static_cast<std::uint32_t>(multiple) * static_cast<std::uint32_t>(usual));
+    steps_.encode(encoder, expected, step, context_of(multiple));
+    if (multiple == 1) unusual_[series_] = 0;
+    if (multiple != 0 && multiple != least && multiple != most) return;
+    if (++unusual_[series_] <= 3) return;
+    usual = step;
+    unusual_[series_] = 0;
+  }
+
+  [[nodiscard]] static constexpr std::size_t context_of(int multiple) noexcept {
+    if (multiple == 1) return 1;
+    if (multiple > 0) return multiple < 10 ? 2 : multiple < most ? 3 : 4;
+    if (multiple < 0) return multiple > least ? 5 : 6;
+    return 7;
+  }
+
+  LazModel<5> first_steps_;  // where no step is usual: a step, a new series, one of the others
+  LazModel<symbols> multiples_;
+  LazIntegers steps_{32, 9};
+  std::array<std::int64_t, 4> last_{};
+  std::array<std::int32_t, 4> usual_{};
+  std::array<unsigned, 4> unusual_{};  // how many steps in a row, or nearly, were nothing like it
+  std::size_t series_ = 0, newest_ = 0;
+};
+
+}  // namespace pulsecast::io::detail

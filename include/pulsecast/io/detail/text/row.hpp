@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include <pulsecast/base/error.hpp>
+
+namespace pulsecast::io {
+
+/// A row of a text table: numbers with one separator between them, a blank if not told otherwise, written the same whatever the locale.
+class TextRow {
+ public:
+  explicit TextRow(char separator = ' ') noexcept : separator_(separator) {}
+
+  /// A number as short as it can be so that it reads back the same; a zero has no sign.
+  TextRow& add(double value) { return append(pulsecast::detail::written(value == 0 ? 0 : value)); }
+
+  /// A number in fixed notation, rounded to nearest; neither a zero nor what is not a number has a sign.
+  TextRow& add(double value, int decimals) {
+    if (std::isnan(value)) return append("nan");
+    if (decimals >= 0 && decimals < static_cast<int>(powers_of_ten.size())) {  // five times as fast as what takes any number
+      const double size = std::fabs(value), unit = powers_of_ten[static_cast<std::size_t>(decimals)], units = size * unit;
+      if (units < 0x1p52) return append_units(value < 0, size, unit, units, decimals);
+    }
+    std::array<char, std::numeric_limits<double>::max_exponent10 + 32> digits;  // the longest number, its sign, point and decimals
+    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, decimals);
+    std::string_view text(digits.data(), end);
+    if (text.find_first_not_of("-0.") == std::string_view::npos && text.front() == '-') text.remove_prefix(1);
+    return append(text);
+  }
+
+  template <std::integral Integer>
+  TextRow& add(Integer value) {
+    std::array<char, std::numeric_limits<Integer>::digits10 + 3> digits;
+    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    return append({digits.data(), end});
+  }
+
+  /// A word as it stands, in which the separator does not occur.
+  TextRow& add(std::string_view word) { return append(word); }
+
+  /// The row with its line end; what is added next begins another. Valid until then.
+  [[nodiscard]] std::string_view end() {
+    text_ += '\n';
+    ended_ = true;
+    return text_;
+  }
+
+ private:
+  static constexpr std::array powers_of_ten{1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+
+  /// A number of units of the last decimal. `units` is rounded to a double; what it lost decides where it is half-way, and a half is
+  /// rounded to even, so the digits are those of the exact product.
+  TextRow& append_units(bool negative, double size, double unit, double units, int decimals) {
+    const double below = std::floor(units), over_half = (units - below - 0.5) + std::fma(size, unit, -units);
+    auto whole = static_cast<std::uint64_t>(below);
+    if (over_half > 0 || (over_half == 0 && whole % 2 == 1)) ++whole;
+    std::array<char, 24> digits;
+    char* const end = digits.data() + digits.size();
+    char* at = end;
+    const bool signed_text = negative && whole != 0;
+    for (int i = 0; i < decimals; ++i, whole /= 10) *--at = static_cast<char>('0' + whole % 10);
+    if (decimals > 0) *--at = '.';
+    do {
+      *--at = static_cast<char>('0' + whole % 10);
+      whole /= 10;
+    } while (whole != 0);
+    if (signed_text) *--at = '-';
+    return append({at, end});
+  }
+
+  TextRow& append(std::string_view text) {
+    if (ended_) text_.clear();
+    if (!text_.empty()) text_ += separator_;
+    text_ += text;
+    ended_ = false;
+    return *this;
+  }
+
+  char separator_;
+  std::string text_;
+  bool ended_ = false;
+};
+
+}  // namespace pulsecast::io

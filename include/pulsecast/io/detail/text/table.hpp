@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <pulsecast/base/error.hpp>
+
+namespace pulsecast::io {
+
+/// Reads a table of text row by row, the same whatever the locale, and knows the line and column that an error is about. What separates
+/// the columns is given, or found in the first row asked for: semicolons if there are any, else commas, else tabs, else blanks, of which
+/// many count as one. Quotation marks do not shelter separators. Lines may end as on any system; blank ones do not count.
+class TextTable {
+ public:
+  /// `expected` is what the file should be, as in "a trajectory".
+  TextTable(const std::filesystem::path& path, std::string_view expected, std::optional<char> separator = {})
+      : path_(path.string()), expected_(expected), separator_(separator) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) fail("is not there: expected " + expected_);
+    if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected " + expected_);
+    file_.open(path, std::ios::binary);
+    const bool has_some = file_ && file_.peek() != std::ifstream::traits_type::eof();
+    if (!file_.is_open() || file_.bad()) fail("cannot be read");
+    if (!has_some) fail("is empty: expected " + expected_);
+  }
+
+  /// Goes to the next line that is not blank. False if there is none.
+  bool next() {
+    while (std::getline(file_, buffer_)) {
+      line_is_open_ = file_.eof();
+      if (++line_ == 1 && buffer_.starts_with("\xEF\xBB\xBF")) buffer_.erase(0, 3);  // the mark that some editors put before UTF-8
+      if (buffer_.ends_with('\r')) buffer_.pop_back();
+      if (std::any_of(buffer_.begin(), buffer_.end(), [](unsigned char c) { return c < ' ' && c != '\t'; }))
+        fail_here("holds binary data: expected the text of " + expected_);
+      if (!text().empty()) return true;
+    }
+    if (file_.bad()) fail("cannot be read");
+    return false;
+  }
+
+  /// The line at hand, without blanks around it.
+  [[nodiscard]] std::string_view text() const { return trimmed(buffer_); }
+
+  [[nodiscard]] std::size_t line() const noexcept { return line_; }           ///< from 1
+  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }  ///< the last one, without an end
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }    ///< of the file
+
+  /// The cells of the line at hand, without blanks and quotation marks around them. Valid until the next line.
+  [[nodiscard]] const std::vector<std::string_view>& cells() {
+    if (!separator_) separator_ = separator_in(buffer_);
+    cells_.clear();
+    if (*separator_ == ' ') {
+      for (std::string_view left = text(); !left.empty(); left = trimmed(left)) {
+        const std::size_t end = std::min(left.find_first_of(blanks), left.size());
+        cells_.push_back(unquoted(left.substr(0, end)));
+        left.remove_prefix(end);
+      }
+    } else {
+      for (std::string_view left = buffer_;;) {
+        const std::size_t end = std::min(left.find(*separator_), left.size());
+        cells_.push_back(unquoted(trimmed(left.substr(0, end))));
+        if (end == left.size()) break;
+        left.remove_prefix(end + 1);
+      }
+    }
+    return cells_;
+  }
+
+  /// The number that a cell is, if all of it is one, with a decimal point, and finite.
+  [[nodiscard]] static std::optional<double> number_in(std::string_view cell) {
+    if (cell.starts_with('+') && !cell.starts_with("+-")) cell.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    const bool is_all = error == std::errc{} && end == cell.data() + cell.size();
+    return is_all && std::isfinite(value) ? std::optional(value) : std::nullopt;
+  }
+
+  /// As much of a text as an error should show.
+  [[nodiscard]] static std::string quoted(std::string_view text) {
+    return std::string("'").append(text.substr(0, 64)) + (text.size() > 64 ? "...'" : "'");
+  }
+
+  [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
+  [[noreturn]] void fail_here(const std::string& problem) const { throw FileError(path_, place(line_), problem); }
+
+  /// `column` is counted from 0 here and from 1 for people.
+  [[noreturn]] void fail_here(std::size_t column, const std::string& problem) const {
+    throw FileError(path_, place(line_) + ", column " + std::to_string(column + 1), problem);
+  }
+
+  [[nodiscard]] static std::string place(std::size_t line) { return "line " + std::to_string(line); }
+
+ private:
+  static constexpr std::string_view blanks = " \t";
+
+  [[nodiscard]] static std::string_view trimmed(std::string_view text) {
+    const std::size_t first = std::min(text.find_first_not_of(blanks), text.size());
+    return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
+  }
+
+  [[nodiscard]] static std::string_view unquoted(std::string_view cell) {
+    return cell.size() >= 2 && cell.front() == '"' && cell.back() == '"' ? trimmed(cell.substr(1, cell.size() - 2)) : cell;
+  }
+
+  [[nodiscard]] static char separator_in(std::string_view row) {
+    for (const char separator : {';', ',', '\t'})
+      if (trimmed(row).find(separator) != row.npos) return separator;
+    return ' ';
+  }
+
+  std::string path_, expected_;
+  std::optional<char> separator_;
+  std::ifstream file_;
+  std::string buffer_;
+  std::size_t line_ = 0;
+  bool line_is_open_ = false;
+  std::vector<std::string_view> cells_;
+};
+
+}  // namespace pulsecast::io

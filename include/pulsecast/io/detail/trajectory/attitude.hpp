@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector.hpp>
+
+/// How files speak of attitudes: which angles, about which axes, in which order, and along which axes quaternions and positions count.
+namespace pulsecast::io {
+
+/// The three angles of an attitude. What they mean is for an `AngleConvention` to say.
+struct RollPitchYaw {
+  double roll = 0;   ///< [rad]
+  double pitch = 0;  ///< [rad]
+  double yaw = 0;    ///< or heading [rad]
+};
+
+/// One of the three turns that make an attitude: which angle is about which axis.
+struct AngleAxis {
+  double RollPitchYaw::*angle;  ///< by how much: `&RollPitchYaw::yaw`
+  Vec3 axis;                    ///< of the body, unit; the right-handed sense about it is positive
+};
+
+/// What three angles mean: with all of them 0 the body is level and faces `zero_heading`; then it is turned about its own axes, in the
+/// order of the list. Each axis is perpendicular to the others.
+struct AngleConvention {
+  /// Each about an axis that the turns before it have moved; read from its end, the list is that of turns about axes that stay.
+  std::array<AngleAxis, 3> turns{{{&RollPitchYaw::yaw, -up}, {&RollPitchYaw::pitch, right}, {&RollPitchYaw::roll, forward}}};
+  double zero_heading = 0;  ///< which way the body faces when all angles are 0, clockwise from north [rad]
+
+  void validate() const {
+    expect_finite("AngleConvention::zero_heading", zero_heading, "rad");
+    constexpr double rounding = 1e-9;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t next = (i + 1) % 3;
+      expect_within("AngleConvention::turns axis (length)", length(turns[i].axis), 1 - rounding, 1 + rounding, "");
+      expect_within("AngleConvention::turns axes (cosine between)", dot(turns[i].axis, turns[next].axis), -rounding, rounding, "");
+      if (turns[i].angle == turns[next].angle || turns[i].angle == nullptr)
+        throw SettingError("AngleConvention::turns angle (place)", static_cast<double>(i), "", "roll, pitch and yaw, each once");
+    }
+  }
+};
+
+/// Heading clockwise from north, then pitch, nose up, then roll, right wing down: the body axes forward, right, down in the world of
+/// north, east, down. Source: ISO 1151-1, DIN 9300-1; the usual one of navigation units.
+inline const AngleConvention heading_pitch_roll{};
+
+/// As `heading_pitch_roll`, but roll comes before pitch. HELIOS++ calls this "ARINC 705".
+inline const AngleConvention helios_arinc_705{
+    .turns = {{{&RollPitchYaw::yaw, -up}, {&RollPitchYaw::roll, forward}, {&RollPitchYaw::pitch, right}}}};
+
+/// Roll about right, pitch about forward, yaw counter-clockwise from north. HELIOS++ calls this "CANONICAL" and writes it.
+inline const AngleConvention helios_canonical{
+    .turns = {{{&RollPitchYaw::roll, right}, {&RollPitchYaw::pitch, forward}, {&RollPitchYaw::yaw, up}}}};
+
+/// Yaw counter-clockwise from east, then pitch, nose up, then roll, right wing down.
+inline const AngleConvention mathematical{
+    .turns = {{{&RollPitchYaw::yaw, up}, {&RollPitchYaw::pitch, right}, {&RollPitchYaw::roll, forward}}}, .zero_heading = pi / 2};
+
+/// Yaw counter-clockwise from east, then pitch, nose down, then roll, right wing down: the body axes forward, left, up in the world of
+/// east, north, up. Source: ROS REP 103.
+inline const AngleConvention ros_roll_pitch_yaw{
+    .turns = {{{&RollPitchYaw::yaw, up}, {&RollPitchYaw::pitch, -right}, {&RollPitchYaw::roll, forward}}}, .zero_heading = pi / 2};
+
+/// The attitude, from the body to the world, of angles in a convention.
+[[nodiscard]] inline Rotation rotation_of(const RollPitchYaw& angles, const AngleConvention& convention) noexcept {
+  Rotation rotation = rotation_about(up, -convention.zero_heading);
+  for (const AngleAxis& turn : convention.turns) rotation = rotation * rotation_about(turn.axis, angles.*turn.angle);
+  return normalize(rotation);
+}
+
+/// The angles of an attitude, from the body to the world, in a convention: that of the middle turn in [-pi/2, pi/2], the others in
+/// [-pi, pi]. They make the same attitude again to some 1e-14, wherever it is. Where the middle one is +-pi/2, the others are turns about
+/// one axis: then all of it is yaw, or that of the first turn, if yaw is in the middle.
+/// Source: half-angle sums of the product of three quaternions, as in Bernardes & Viollet 2022, PLoS ONE 17(11), e0276302.
+[[nodiscard]] inline RollPitchYaw roll_pitch_yaw(const Rotation& rotation, const AngleConvention& convention) noexcept {
+  const auto& [first, middle, last] = convention.turns;
+  const Rotation q = rotation_about(up, convention.zero_heading) * rotation;
+  const Vec3 v{q.x, q.y, q.z};
+  const double sense = dot(cross(first.axis, middle.axis), last.axis) < 0 ? -1 : 1;  // of the three axes, as a frame
+  const double a = dot(v, first.axis), b = sense * dot(v, middle.axis), c = dot(v, last.axis);
+  // With the angles A, B, C of the turns, q is, but for its length and sign,
+  //   w + b = (cos B/2 + sin B/2) cos (A+C)/2,  a + c = (cos B/2 + sin B/2) sin (A+C)/2,
+  //   w - b = (cos B/2 - sin B/2) cos (A-C)/2,  a - c = (cos B/2 - sin B/2) sin (A-C)/2.
+  const double plus = std::hypot(q.w + b, a + c), minus = std::hypot(q.w - b, a - c);
+  double half_sum = std::atan2(a + c, q.w + b), half_difference = std::atan2(a - c, q.w - b);
+  constexpr double rounding = 1e-14;  // below it, one of the two is noise
+  if (plus < rounding || minus < rounding) {
+    const bool first_is_zero = last.angle == &RollPitchYaw::yaw;
+    const double sign = first_is_zero ? -1 : 1;
+    if (plus < rounding)
+      half_sum = sign * half_difference;
+    else
+      half_difference = sign * half_sum;
+  }
+  RollPitchYaw angles;
+  angles.*first.angle = std::remainder(half_sum + half_difference, 2 * pi);
+  angles.*middle.angle = sense * (2 * std::atan2(plus, minus) - pi / 2);
+  angles.*last.angle = std::remainder(half_sum - half_difference, 2 * pi);
+  return angles;
+}
+
+/// Which way x, y and z of a body point.
+enum class BodyAxes : std::uint8_t {
+  right_forward_up,    ///< as everywhere here
+  forward_right_down,  ///< aviation. Source: ISO 1151-1
+  forward_left_up,     ///< robots. Source: ROS REP 103
+};
+
+/// Which way x, y and z of the world point.
+enum class WorldAxes : std::uint8_t {
+  east_north_up,    ///< as everywhere here
+  north_east_down,  ///< aviation
+};
+
+/// Which axes the numbers of a position and of a quaternion count along.
+struct Axes {
+  BodyAxes body = BodyAxes::right_forward_up;
+  WorldAxes world = WorldAxes::east_north_up;
+
+  /// From a world of these axes to one of east, north, up; and, as that is the same swap, back.
+  [[nodiscard]] Vec3 swapped(const Vec3& position) const noexcept {
+    return world == WorldAxes::east_north_up ? position : Vec3{position.y, position.x, -position.z};
+  }
+
+  /// From an attitude between these axes to the same between right, forward, up and east, north, up.
+  [[nodiscard]] Rotation from_file(const Rotation& rotation) const noexcept { return of_world() * rotation * conjugate(of_body()); }
+
+  /// The other way.
+  [[nodiscard]] Rotation to_file(const Rotation& rotation) const noexcept { return conjugate(of_world()) * rotation * of_body(); }
+
+ private:
+  static Rotation down_from_up() noexcept { return rotation_about(right + forward, pi); }  // swaps x and y, and negates z
+
+  [[nodiscard]] Rotation of_world() const noexcept { return world == WorldAxes::east_north_up ? no_rotation : down_from_up(); }
+  [[nodiscard]] Rotation of_body() const noexcept {
+    if (body == BodyAxes::right_forward_up) return no_rotation;
+    return body == BodyAxes::forward_right_down ? down_from_up() : rotation_about(up, pi / 2);
+  }
+};
+
+}  // namespace pulsecast::io

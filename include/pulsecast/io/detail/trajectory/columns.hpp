@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/units.hpp>
+
+/// The columns of trajectory files: what they are called, and in which units they are.
+namespace pulsecast::io {
+
+/// What a column of a trajectory file holds.
+enum class Quantity : std::uint8_t { time, x, y, z, east, north, up, down, roll, pitch, yaw, qx, qy, qz, qw };
+
+/// A number for each quantity, in SI units; 0 if not set.
+struct QuantityValues {
+  std::array<double, 15> values{};  ///< [s, m, rad, or a mere number]
+
+  [[nodiscard]] double& operator[](Quantity quantity) noexcept { return values[static_cast<std::size_t>(quantity)]; }
+  [[nodiscard]] double operator[](Quantity quantity) const noexcept { return values[static_cast<std::size_t>(quantity)]; }
+};
+
+/// The unit of angles in columns whose names do not say it.
+enum class AngleUnit : std::uint8_t { degree, radian };
+
+/// A column as its name describes it.
+struct TrajectoryColumn {
+  Quantity quantity{};  ///< what it holds
+  double per_si = 1;    ///< how many of its unit are one second, metre or radian
+};
+
+namespace detail {
+
+/// Names of columns; the first of each quantity is what to call it.
+inline constexpr auto quantity_names = std::to_array<std::pair<std::string_view, Quantity>>({
+    {"time", Quantity::time},      {"t", Quantity::time},       {"gps_time", Quantity::time}, {"gpstime", Quantity::time},
+    {"timestamp", Quantity::time}, {"x", Quantity::x},          {"y", Quantity::y},           {"z", Quantity::z},
+    {"east", Quantity::east},      {"easting", Quantity::east}, {"north", Quantity::north},   {"northing", Quantity::north},
+    {"up", Quantity::up},          {"height", Quantity::up},    {"altitude", Quantity::up},   {"down", Quantity::down},
+    {"roll", Quantity::roll},      {"pitch", Quantity::pitch},  {"yaw", Quantity::yaw},       {"heading", Quantity::yaw},
+    {"qx", Quantity::qx},          {"qy", Quantity::qy},        {"qz", Quantity::qz},         {"qw", Quantity::qw},
+});
+
+enum class Dimension : std::uint8_t { time, length, angle, number };
+
+[[nodiscard]] constexpr Dimension dimension_of(Quantity quantity) noexcept {
+  if (quantity == Quantity::time) return Dimension::time;
+  if (quantity <= Quantity::down) return Dimension::length;
+  return quantity <= Quantity::yaw ? Dimension::angle : Dimension::number;
+}
+
+struct Unit {
+  std::string_view name;
+  Dimension dimension;
+  double per_si;
+};
+
+inline constexpr auto units = std::to_array<Unit>({
+    {"s", Dimension::time, 1},
+    {"ms", Dimension::time, 1e3},
+    {"us", Dimension::time, 1e6},
+    {"ns", Dimension::time, 1e9},
+    {"m", Dimension::length, 1},
+    {"cm", Dimension::length, 1e2},
+    {"mm", Dimension::length, 1e3},
+    {"km", Dimension::length, 1e-3},
+    {"deg", Dimension::angle, degrees(1)},
+    {"rad", Dimension::angle, 1},
+});
+
+/// In small letters, with one underscore for whatever is neither letter nor digit: "Roll [deg]" becomes "roll_deg".
+[[nodiscard]] inline std::string plain(std::string_view name) {
+  std::string result;
+  for (char c : name) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    const bool counts = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (counts)
+      result += c;
+    else if (!result.empty() && result.back() != '_')
+      result += '_';
+  }
+  if (result.ends_with('_')) result.pop_back();
+  return result;
+}
+
+/// How many letters must be put in, taken out or changed to make one word of another. Source: Wagner & Fischer 1974.
+[[nodiscard]] inline std::size_t edits_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace detail
+
+/// The column that goes by a name, if there is one. A unit follows what is called: `time_s`, `x_mm`, `Roll [deg]`; without it, times are
+/// in seconds and lengths in metres. Capitals do not matter.
+[[nodiscard]] inline std::optional<TrajectoryColumn> trajectory_column(std::string_view name, AngleUnit angles) {
+  const std::string whole = detail::plain(name);
+  for (const auto& [known, quantity] : detail::quantity_names) {
+    if (!whole.starts_with(known)) continue;
+    const detail::Dimension dimension = detail::dimension_of(quantity);
+    std::string_view unit = std::string_view(whole).substr(known.size());
+    if (unit.empty())
+      return TrajectoryColumn{quantity, dimension == detail::Dimension::angle && angles == AngleUnit::degree ? degrees(1) : 1};
+    if (!unit.starts_with('_')) continue;
+    unit.remove_prefix(1);
+    for (const detail::Unit& u : detail::units)
+      if (u.dimension == dimension && u.name == unit) return TrajectoryColumn{quantity, u.per_si};
+  }
+  return std::nullopt;
+}
+
+/// The name of a column that is nearest to one that is none.
+[[nodiscard]] inline std::string nearest_trajectory_column(std::string_view name) {
+  const std::string whole = detail::plain(name.substr(0, 64));
+  std::string nearest;
+  std::size_t fewest = 1000;
+  const auto consider = [&](const std::string& known) {
+    const std::size_t edits = detail::edits_between(whole, known);
+    if (edits < fewest) fewest = edits, nearest = known;
+  };
+  for (const auto& [known, quantity] : detail::quantity_names) {
+    consider(std::string(known));
+    for (const detail::Unit& unit : detail::units)
+      if (unit.dimension == detail::dimension_of(quantity)) consider(std::string(known) + '_' + std::string(unit.name));
+  }
+  return nearest;
+}
+
+/// Which column holds what.
+class TrajectoryColumns {
+ public:
+  /// Names in the order of the columns; those in `left_out` are no matter.
+  TrajectoryColumns(const std::vector<std::string>& names, const std::vector<std::string>& left_out, AngleUnit angles) {
+    for (std::size_t i = 0; i < names.size() && problem_.empty(); ++i) {
+      const auto same = [&](const std::string& other) { return detail::plain(other) == detail::plain(names[i]); };
+      columns_.push_back(std::any_of(left_out.begin(), left_out.end(), same) ? std::nullopt : trajectory_column(names[i], angles));
+      if (columns_.back())
+        put(i);
+      else if (std::none_of(left_out.begin(), left_out.end(), same))
+        problem_ = "is no known column: expected perhaps '" + nearest_trajectory_column(names[i]) + "', or that it is to be left out",
+        culprit_ = i;
+    }
+    if (problem_.empty()) expect_whole();
+  }
+
+  /// What is wrong with them; empty if nothing is.
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+
+  /// The column that it is about, from 0; none if it is about all.
+  [[nodiscard]] std::optional<std::size_t> culprit() const noexcept { return culprit_; }
+
+  /// In the order of the file; what is left out is nothing.
+  [[nodiscard]] const std::vector<std::optional<TrajectoryColumn>>& all() const noexcept { return columns_; }
+
+  [[nodiscard]] bool has(Quantity quantity) const noexcept { return places_[static_cast<std::size_t>(quantity)].has_value(); }
+
+ private:
+  void put(std::size_t i) {
+    std::optional<std::size_t>& place = places_[static_cast<std::size_t>(columns_[i]->quantity)];
+    if (place)
+      problem_ = "says the same as column " + std::to_string(*place + 1) + ": expected one of them, or that one is to be left out",
+      culprit_ = i;
+    place = i;
+  }
+
+  /// Times, all of a position, and not two attitudes.
+  void expect_whole() {
+    using enum Quantity;
+    const int xyz = count({x, y, z}), directions = count({east, north}), vertical = count({up, down}), angles = count({roll, pitch, yaw}),
+              quaternion = count({qx, qy, qz, qw});
+    if (!has(time))
+      problem_ = "no column holds the time: expected one called 'time_s'";
+    else if (!(xyz == 3 && directions + vertical == 0) && !(xyz == 0 && directions == 2 && vertical == 1))
+      problem_ = "the columns do not make one position: expected either x, y, z or east, north and up or down";
+    else if (quaternion > 0 && (quaternion < 4 || angles > 0))
+      problem_ = "the columns do not make one attitude: expected either angles or qx, qy, qz and qw, and others to be left out";
+  }
+
+  [[nodiscard]] int count(std::initializer_list<Quantity> quantities) const {
+    return static_cast<int>(std::count_if(quantities.begin(), quantities.end(), [&](Quantity q) { return has(q); }));
+  }
+
+  std::vector<std::optional<TrajectoryColumn>> columns_;
+  std::array<std::optional<std::size_t>, std::tuple_size_v<decltype(QuantityValues::values)>> places_{};
+  std::string problem_;
+  std::optional<std::size_t> culprit_;
+};
+
+}  // namespace pulsecast::io

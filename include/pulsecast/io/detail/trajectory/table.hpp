@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/io/detail/text/table.hpp>
+#include <pulsecast/io/detail/trajectory/attitude.hpp>
+#include <pulsecast/io/detail/trajectory/columns.hpp>
+#include <pulsecast/io/detail/trajectory/format.hpp>
+#include <pulsecast/platform/waypoints.hpp>
+
+namespace pulsecast::io {
+
+/// The part of a trajectory that is wanted, on the clock of its file. Where an end falls between two poses, it is interpolated as
+/// `Waypoints` does. A window that begins at a jump begins after it, and one that ends there, before it.
+struct TimeWindow {
+  std::optional<double> start{};  ///< the first pose, if not given [s]
+  std::optional<double> end{};    ///< the last pose, if not given [s]
+
+  void validate() const {
+    if (start) expect_finite("TimeWindow::start", *start, "s");
+    if (end) expect_finite("TimeWindow::end", *end, "s");
+    if (start && end && *start > *end)
+      throw SettingError("TimeWindow::start", *start, "s", "no later than the end, " + pulsecast::detail::written(*end));
+  }
+};
+
+/// What a trajectory file holds: `Waypoints(table.poses)` moves along it.
+struct TrajectoryTable {
+  double start_time = 0;              ///< what the clock of the file shows at the first pose [s]
+  std::vector<Waypoint> poses;        ///< in order of time, from 0; where the platform jumps, a time stands twice
+  std::vector<std::string> warnings;  ///< what was odd, but could be read
+};
+
+/// Reads a trajectory.
+///
+/// Poses that are out of order are sorted, with a warning. One that stands twice is left out, with a warning; different ones at one time
+/// are a jump, from the first of them in the file to the last, with a warning if it is within the window. Angles that no column gives are
+/// 0, with a warning. Quaternions are normalised: with a warning where that shows, and those that are off by more than 1/1000 are an error,
+/// as are numbers beyond 1e12 s, m or rad. Throws a `FileError` with path, line and column at the first thing that cannot be right.
+[[nodiscard]] TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format = csv_format(),
+                                              const TimeWindow& window = {});
+
+namespace detail {
+
+inline constexpr double largest_in_trajectory = 1e12;  ///< s, m or rad; where double still resolves 0.1 mm
+
+class TrajectoryReader {
+ public:
+  TrajectoryReader(const std::filesystem::path& path, const TrajectoryFormat& format)
+      : format_(validated(format)),
+        names_(format_.columns),
+        table_(path, "a trajectory", format_.fixed_separator ? std::optional(format_.separator) : std::nullopt) {}
+
+  [[nodiscard]] TrajectoryTable read(const TimeWindow& window) {
+    while (table_.next()) {
+      if (table_.text().starts_with('#')) {
+        if (format_.names == ColumnNames::comments && !columns_) comment(table_.text());
+      } else if (!columns_ && format_.names == ColumnNames::first_line) {
+        take_names();
+      } else if (!columns_ && format_.more_columns && has_names_only()) {
+        if (format_.names == ColumnNames::comments && !named_) named_ = true, take_names();
+      } else {
+        if (!columns_) settle_names();
+        row();
+      }
+    }
+    if (rows_.empty()) table_.fail("holds no pose: expected at least one line of numbers");
+    if (table_.line_is_open()) warn(table_.line(), "has no line end: the file may have been cut short");
+    sort();
+    remarks();
+    cut(validated(window));
+    return std::move(result_);
+  }
+
+ private:
+  struct Row {
+    Waypoint pose;
+    std::size_t line = 0;
+  };
+
+  /// The first of lines that are odd in the same way, and their number.
+  struct Oddity {
+    std::size_t first = 0, count = 0;
+    void at(std::size_t line) { first = count++ == 0 ? line : first; }
+  };
+
+  /// `#HEADER: "t", "roll"` names the columns, `#TIME_COLUMN: 0` says which of them is the time.
+  void comment(std::string_view text) {
+    if (text.starts_with("#HEADER:")) {
+      named_ = true;
+      names_.clear();
+      for (text.remove_prefix(8); !text.empty();) {
+        const std::size_t end = std::min(text.find(','), text.size());
+        names_.emplace_back(text.substr(0, end));
+        std::erase_if(names_.back(), [](char c) { return c == '"' || c == ' ' || c == '\t'; });
+        text.remove_prefix(std::min(end + 1, text.size()));
+      }
+    } else if (text.starts_with("#TIME_COLUMN:")) {
+      text.remove_prefix(13);
+      text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+      const std::optional<double> number = TextTable::number_in(text);
+      if (!number || *number < 0 || *number > 1000 || *number != std::floor(*number))
+        table_.fail_here(TextTable::quoted(text) + " is no place of a column: expected a whole number from 0");
+      time_place_ = static_cast<std::size_t>(*number);
+    }
+  }
+
+  /// Whether the line could be a head that is no comment.
+  [[nodiscard]] bool has_names_only() {
+    const std::vector<std::string_view>& cells = table_.cells();
+    return std::none_of(cells.begin(), cells.end(), [](std::string_view cell) {
+      return cell.empty() || cell.find_first_of("0123456789+-.") == 0 || TextTable::number_in(cell);
+    });
+  }
+
+  void take_names() {
+    const std::vector<std::string_view>& cells = table_.cells();
+    if (TextTable::number_in(cells.front()))
+      table_.fail_here("has numbers: expected the names of the columns, as in time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg");
+    names_.assign(cells.begin(), cells.end());
+    understand();
+  }
+
+  /// Before the first row of a file without a line of names.
+  void settle_names() {
+    const auto is_time = [&](const std::string& name) {
+      const std::optional<TrajectoryColumn> column = trajectory_column(name, format_.angle_unit);
+      return column && column->quantity == Quantity::time;
+    };
+    if (time_place_ && !named_) std::erase_if(names_, is_time);
+    if (time_place_ && *time_place_ >= names_.size() + (named_ ? 0 : 1))
+      table_.fail_here("the time is to be column " + std::to_string(*time_place_) + ", from 0, of " + std::to_string(names_.size()) +
+                       ": expected #TIME_COLUMN to be one of them");
+    if (time_place_ && named_ && !is_time(names_[*time_place_])) names_[*time_place_] = "t";
+    if (time_place_ && !named_) names_.insert(names_.begin() + static_cast<std::ptrdiff_t>(*time_place_), "t");
+    understand();
+  }
+
+  void understand() {
+    if (may_have_more()) leave_out_unknown();
+    columns_.emplace(names_, format_.left_out, format_.angle_unit);
+    if (columns_->problem().empty()) return;
+    if (!columns_->culprit()) table_.fail_here(columns_->problem());
+    table_.fail_here(*columns_->culprit(), TextTable::quoted(names_[*columns_->culprit()]) + " " + columns_->problem());
+  }
+
+  /// Whether columns that are not asked for may be there: where the file or the format says which ones are which.
+  [[nodiscard]] bool may_have_more() const noexcept { return format_.more_columns && (named_ || format_.names != ColumnNames::comments); }
+
+  void leave_out_unknown() {
+    std::string unknown;
+    const auto is_left_out = [this](const std::string& name) {
+      return std::find(format_.left_out.begin(), format_.left_out.end(), name) != format_.left_out.end();
+    };
+    for (const std::string& name : names_) {
+      if (trajectory_column(name, format_.angle_unit) || is_left_out(name)) continue;
+      format_.left_out.push_back(name);
+      unknown += (unknown.empty() ? "" : ", ") + TextTable::quoted(name);
+    }
+    if (!unknown.empty())
+      result_.warnings.push_back(table_.path() + ": columns of names that are not known are left out: " + unknown.substr(0, 1000));
+  }
+
+  void row() {
+    const std::vector<std::string_view>& cells = table_.cells();
+    if (cells.size() < names_.size() || (cells.size() > names_.size() && !may_have_more()))
+      table_.fail_here("has " + std::to_string(cells.size()) + " columns: expected " + std::to_string(names_.size()));
+    QuantityValues values;
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const std::optional<TrajectoryColumn>& column = columns_->all()[i];
+      if (!column) continue;
+      const std::optional<double> number = TextTable::number_in(cells[i]);
+      if (!number || std::fabs(*number / column->per_si) > largest_in_trajectory)
+        table_.fail_here(i, TextTable::quoted(cells[i]) + " is no " + names_[i] +
+                                ": expected a finite number, with a decimal point, within 1e12 s, m or rad");
+      values[column->quantity] = *number / column->per_si;
+    }
+    rows_.push_back({{values[Quantity::time], position(values), rotation(values)}, table_.line()});
+  }
+
+  [[nodiscard]] Vec3 position(const QuantityValues& values) const {
+    using enum Quantity;
+    if (columns_->has(x)) return format_.axes.swapped({values[x], values[y], values[z]});
+    return {values[east], values[north], columns_->has(up) ? values[up] : -values[down]};
+  }
+
+  [[nodiscard]] Rotation rotation(const QuantityValues& values) {
+    using enum Quantity;
+    if (!columns_->has(qw)) return rotation_of({values[roll], values[pitch], values[yaw]}, format_.angles);
+    const Rotation given(values[qw], values[qx], values[qy], values[qz]);
+    const double error = std::fabs(length(given) - 1);
+    if (!(error <= 1e-3))
+      table_.fail_here("the quaternion has the length " + pulsecast::detail::written(length(given)) + ": expected 1, within 1e-3");
+    if (error > 2e-6) not_unit_.at(table_.line());  // more than six decimals leave
+    return format_.axes.from_file(normalize(given));
+  }
+
+  void sort() {
+    const auto earlier = [](const Row& a, const Row& b) { return a.pose.time < b.pose.time; };
+    for (std::size_t i = 1; i < rows_.size(); ++i)
+      if (earlier(rows_[i], rows_[i - 1])) unsorted_.at(rows_[i].line);
+    if (unsorted_.count > 0) std::stable_sort(rows_.begin(), rows_.end(), earlier);
+    const auto repeats = [this](const Row& before, const Row& row) {
+      const Waypoint &a = before.pose, &b = row.pose;
+      if (a.time != b.time || a.position != b.position || a.rotation != b.rotation) return false;
+      repeated_.at(row.line);
+      return true;
+    };
+    rows_.erase(std::unique(rows_.begin(), rows_.end(), repeats), rows_.end());
+  }
+
+  void remarks() {
+    const auto of = [](const Oddity& oddity) { return ", the first of " + std::to_string(oddity.count); };
+    if (unsorted_.count > 0) warn(unsorted_.first, "is earlier than the one before it" + of(unsorted_) + ": the poses were sorted by time");
+    if (repeated_.count > 0) warn(repeated_.first, "is a pose that stands twice" + of(repeated_) + ": it is left out");
+    if (not_unit_.count > 0) warn(not_unit_.first, "has a quaternion whose length is not 1" + of(not_unit_) + ": it was made 1");
+    if (columns_->has(Quantity::qw)) return;
+    for (const auto& [quantity, name] : {std::pair{Quantity::roll, "roll"}, {Quantity::pitch, "pitch"}, {Quantity::yaw, "yaw"}})
+      if (!columns_->has(quantity)) result_.warnings.push_back(table_.path() + ": no column holds the " + name + ": it is taken to be 0");
+  }
+
+  /// Takes over what is in the window, and starts its clock.
+  void cut(const TimeWindow& window) {
+    const double first = rows_.front().pose.time, last = rows_.back().pose.time;
+    const double start = std::max(first, window.start.value_or(first)), end = std::min(last, window.end.value_or(last));
+    if (start > end)
+      table_.fail("has poses from " + seconds(first) + " to " + seconds(last) + ": expected some from " +
+                  seconds(window.start.value_or(first)) + " to " + seconds(window.end.value_or(last)));
+    if (window.start && *window.start < first)
+      result_.warnings.push_back(table_.path() + ": the window begins before the first pose, which stands at " + seconds(first));
+    if (window.end && *window.end > last)
+      result_.warnings.push_back(table_.path() + ": the window ends after the last pose, which stands at " + seconds(last));
+    result_.start_time = start;
+    const auto within = std::upper_bound(rows_.begin(), rows_.end(), start, [](double t, const Row& row) { return t < row.pose.time; });
+    const auto behind = std::lower_bound(within, rows_.end(), end, [](const Row& row, double t) { return row.pose.time < t; });
+    result_.poses.push_back((within - 1)->pose.time == start ? (within - 1)->pose : between(within, start));
+    Oddity jumps;
+    for (auto row = within; row != behind; ++row) {
+      if (row != within && row->pose.time == (row - 1)->pose.time) jumps.at(row->line);
+      result_.poses.push_back(row->pose);
+    }
+    if (end > start) result_.poses.push_back(behind->pose.time == end ? behind->pose : between(behind, end));
+    for (Waypoint& pose : result_.poses) pose.time -= start;
+    if (jumps.count > 0)
+      warn(jumps.first, "has the time of the pose before it, but another pose, the first of " + std::to_string(jumps.count) +
+                            ": the platform jumps there");
+  }
+
+  /// At a time between a row and the one before it.
+  [[nodiscard]] static Waypoint between(std::vector<Row>::const_iterator row, double time) {
+    const Waypoint &before = (row - 1)->pose, &after = row->pose;
+    const auto pose = Waypoints({{0, before.position, before.rotation}, {after.time - before.time, after.position, after.rotation}})
+                          .at(Tick::of_seconds(time - before.time));
+    return {time, pose.position, pose.rotation};
+  }
+
+  [[nodiscard]] static std::string seconds(double time) { return pulsecast::detail::written(time) + " s"; }
+
+  void warn(std::size_t line, const std::string& text) {
+    result_.warnings.push_back(table_.path() + ", " + TextTable::place(line) + ": " + text);
+  }
+
+  TrajectoryFormat format_;
+  std::vector<std::string> names_;
+  bool named_ = false;                     // by a #HEADER
+  std::optional<std::size_t> time_place_;  // from 0
+  TextTable table_;
+  std::optional<TrajectoryColumns> columns_;
+  std::vector<Row> rows_;
+  Oddity unsorted_, repeated_, not_unit_;
+  TrajectoryTable result_;
+};
+
+}  // namespace detail
+
+inline TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format, const TimeWindow& window) {
+  return detail::TrajectoryReader(path, format).read(window);
+}
+
+}  // namespace pulsecast::io

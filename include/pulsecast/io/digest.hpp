@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <ios>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <xxhash.h>
+
+#include <pulsecast/base/error.hpp>
+
+namespace pulsecast::io {
+
+/// 128 bits that stand for any number of bytes: others have others, unless someone has looked for them.
+struct Fingerprint {
+  std::uint64_t low = 0, high = 0;
+  friend bool operator==(const Fingerprint&, const Fingerprint&) = default;
+};
+
+/// The fingerprint of all that was added so far, by XXH3.
+class Digest {
+ public:
+  Digest() { XXH3_128bits_reset(state_.get()); }
+
+  /// As if two adjoining runs of bytes were one.
+  void add(std::span<const std::byte> bytes) { XXH3_128bits_update(state_.get(), bytes.data(), bytes.size()); }
+  void add(std::uint64_t number) { add(std::as_bytes(std::span(&number, 1))); }
+  void add(const Fingerprint& other) { add(other.low), add(other.high); }
+  /// With its length, so that it matters where one text ends and the next begins.
+  void add(std::string_view text) { add(std::uint64_t{text.size()}), add(std::as_bytes(std::span(text))); }
+
+  /// What a file holds; of a folder, all files in it and in its folders, and their names. Where it is does not matter.
+  /// Throws a `FileError` if it cannot be read.
+  void add_content(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (std::filesystem::is_directory(status)) {
+      add_folder(path);
+    } else if (std::filesystem::is_regular_file(status)) {
+      add_file(path);
+    } else {
+      throw FileError(path.string(), "", std::filesystem::exists(status) ? "is neither a file nor a folder" : "is not there");
+    }
+  }
+
+  [[nodiscard]] Fingerprint value() const {
+    const XXH128_hash_t all = XXH3_128bits_digest(state_.get());
+    return {all.low64, all.high64};
+  }
+
+ private:
+  struct Free {
+    void operator()(XXH3_state_t* state) const noexcept { XXH3_freeState(state); }
+  };
+
+  void add_folder(const std::filesystem::path& path) {
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    for (std::filesystem::recursive_directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
+      if (std::error_code ignored; entry->is_regular_file(ignored)) files.push_back(entry->path());
+    if (error) throw FileError(path.string(), "", "cannot be read: " + error.message());
+    std::sort(files.begin(), files.end());
+    for (const std::filesystem::path& file : files) add(std::string_view(file.lexically_relative(path).string())), add_file(file);
+    add(std::uint64_t{files.size()});
+  }
+
+  void add_file(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::vector<char> block(std::size_t{1} << 20);
+    std::uint64_t size = 0;
+    while (file) {
+      file.read(block.data(), static_cast<std::streamsize>(block.size()));
+      const auto count = static_cast<std::size_t>(file.gcount());
+      add(std::as_bytes(std::span(block).first(count)));
+      size += count;
+    }
+    if (file.bad() || !file.eof()) throw FileError(path.string(), "", "cannot be read");
+    add(size);
+  }
+
+  std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
+};
+
+/// The fingerprint of what a file or folder holds. Throws a `FileError` if it cannot be read.
+[[nodiscard]] inline Fingerprint content_fingerprint(const std::filesystem::path& path) {
+  Digest digest;
+  digest.add_content(path);
+  return digest.value();
+}
+
+}  // namespace pulsecast::io

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <locale>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/io/detail/las/bytes.hpp>
+#include <pulsecast/io/detail/las/layout.hpp>
+#include <pulsecast/io/detail/las/packets.hpp>
+#include <pulsecast/io/las_settings.hpp>
+
+namespace pulsecast::io::detail {
+
+/// A ratio of powers as a level [dB], at least -200: the level of nothing.
+[[nodiscard]] inline float las_level(double ratio) noexcept { return static_cast<float>(ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0); }
+
+/// What the header of a LAS file says of its points. Those of parts of a file add up to that of the whole, in any order.
+struct LasTally {
+  std::array<std::int32_t, 3> least{}, most{};  ///< of the coordinates as stored
+  std::uint64_t points = 0;
+  std::array<std::uint64_t, 15> points_by_return{};
+  float most_amplitude = -200;  ///< [dB]
+
+  void add(const LasTally& other) noexcept {
+    if (other.points == 0) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      least[axis] = points == 0 ? other.least[axis] : std::min(least[axis], other.least[axis]);
+      most[axis] = points == 0 ? other.most[axis] : std::max(most[axis], other.most[axis]);
+    }
+    points += other.points;
+    for (std::size_t i = 0; i < points_by_return.size(); ++i) points_by_return[i] += other.points_by_return[i];
+    most_amplitude = std::max(most_amplitude, other.most_amplitude);
+  }
+};
+
+/// Turns echoes into the point records of a LAS file, as `LasFileWriter` says, and keeps count of them. Where a point is comes last, so
+/// that all else can be done before the offset of the coordinates is known.
+class LasEncoder {
+ public:
+  using Record = LasBytes<30 + las_packet_size + las_extras_size>;  ///< the longest
+
+  /// Of settings that are valid.
+  explicit LasEncoder(LasSettings settings)
+      : settings_(std::move(settings)), layout_(settings_.format, settings_.waveforms), offset_(settings_.offset.value_or(Vec3{})) {}
+
+  /// Calls put(record, point) for every echo of a shot, in order. `record` lacks the coordinates of `point`, and goes on after
+  /// `layout().record()` bytes; `packet` is where the waveform of the shot is, if it is written.
+  template <class Put>
+  void encode(const Shot& shot, const EchoBatch& batch, const LasPacket* packet, const Put& put) {
+    Record record{};
+    const std::uint32_t returns = std::min(shot.echoes, layout_.most_returns);
+    const auto source = static_cast<std::uint16_t>(std::min(shot.leg + 1U, 65535U));
+    const double time = settings_.start_time + shot.tick.seconds();
+    if (layout_.legacy) {  // positions: LAS 1.4 R15, Point Data Record Format 1
+      record.put(16, las_rounded<std::int8_t>(degrees(shot.scan_angle), -90, 90));
+      record.put(18, source);
+      record.put(20, time);
+    } else {  // Point Data Record Format 6
+      record.put(15, static_cast<std::uint8_t>((shot.channel & 3U) << 4));
+      record.put(18, las_rounded<std::int16_t>(degrees(shot.scan_angle) / 0.006, -30000, 30000));
+      record.put(20, source);
+      record.put(22, time);
+    }
+    if (packet) put_packet(record, shot, *packet);
+    const std::size_t extras = layout_.extras;
+    record.put(extras + pulse_at, shot.index);
+    for (const Echo& echo : batch.echoes_of(shot)) {
+      const std::uint32_t number = std::clamp<std::uint32_t>(echo.number, 1, returns);
+      const float amplitude = las_level(echo.amplitude / settings_.amplitude_reference);
+      tally_.most_amplitude = std::max(tally_.most_amplitude, amplitude);
+      record.put(12, intensity(echo));
+      record.put(14, static_cast<std::uint8_t>(number | returns << (layout_.legacy ? 3 : 4)));
+      record.put(layout_.legacy ? 15 : 16, static_cast<std::uint8_t>(std::min<std::uint32_t>(echo.classification, layout_.most_class)));
+      if (packet) record.put(layout_.packet + 13, static_cast<float>((2 / speed_of_light * echo.range - shot.waveform_start) * 1e12));
+      record.put(extras + range_at, echo.range);
+      record.put(extras + amplitude_at, amplitude);
+      record.put(extras + reflectance_at, las_level(echo.reflectance));
+      record.put(extras + width_at, static_cast<float>(echo.width * 1e9));
+      record.put(extras + object_at, echo.object);
+      ++tally_.points_by_return[number - 1];
+      put(record, point_of(shot, echo));
+    }
+  }
+
+  /// Puts the coordinates of a point into its record and counts it; false if they do not fit.
+  [[nodiscard]] bool locate(std::byte* record, const Vec3& point) noexcept {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double steps = steps_of(point, axis);
+      if (!fits(steps)) return false;
+      const auto stored = static_cast<std::int32_t>(steps);
+      tally_.least[axis] = tally_.points == 0 ? stored : std::min(tally_.least[axis], stored);
+      tally_.most[axis] = tally_.points == 0 ? stored : std::max(tally_.most[axis], stored);
+      std::memcpy(record + 4 * axis, &stored, sizeof stored);
+    }
+    ++tally_.points;
+    return true;
+  }
+
+  /// Why a point cannot be located.
+  [[nodiscard]] std::string misfit(const Vec3& point) const {
+    std::size_t axis = 0;
+    while (axis < 2 && fits(steps_of(point, axis))) ++axis;
+    std::ostringstream problem;
+    problem.imbue(std::locale::classic());
+    problem.precision(12);
+    problem << "xyz"[axis] << " is " << point[static_cast<int>(axis)] << " m, which does not fit 32 bits; expected "
+            << offset_[static_cast<int>(axis)] << " m +- " << settings_.scale * std::numeric_limits<std::int32_t>::max()
+            << " m (offset, and 2^31 steps of " << settings_.scale << " m)";
+    return problem.str();
+  }
+
+  /// Takes the offset that goes with the first point of the file, unless the settings say one. Far from the origin numbers stay small this
+  /// way, and the offset reads well: with steps of 0.1 mm it is a multiple of 100 m.
+  void choose_offset(const Vec3& first) noexcept {
+    const double unit = settings_.scale * 1e6;
+    const auto nearest = [unit](double v) { return std::nearbyint(v / unit) * unit + 0.0; };  // not -0
+    if (!settings_.offset && finite(first)) offset_ = {nearest(first.x), nearest(first.y), nearest(first.z)};
+  }
+
+  /// Whether intensities are 0 until `scale_intensities`.
+  [[nodiscard]] bool automatic_intensity() const noexcept {
+    return settings_.intensity == LasIntensity::amplitude && !settings_.intensity_full_scale;
+  }
+
+  /// Of whole records: the greatest amplitude is known now, and those of the points are in their extra bytes.
+  void scale_intensities(std::span<std::byte> bytes) const noexcept {
+    for (std::size_t at = 0; at < bytes.size(); at += layout_.record()) {
+      float level = 0;
+      std::memcpy(&level, bytes.data() + at + layout_.extras + amplitude_at, sizeof level);
+      const auto scaled = las_rounded<std::uint16_t>(65535 * std::pow(10, (double{level} - tally_.most_amplitude) / 10), 0, 65535);
+      std::memcpy(bytes.data() + at + 12, &scaled, sizeof scaled);
+    }
+  }
+
+  /// Says of whole records that the file of packets goes on so many bytes later than was thought.
+  void move_packets(std::span<std::byte> bytes, std::uint64_t later) const noexcept {
+    for (std::size_t at = 0; at < bytes.size(); at += layout_.record()) {
+      std::byte* const packet = bytes.data() + at + layout_.packet;
+      std::uint64_t offset = 0;
+      std::memcpy(&offset, packet + 1, sizeof offset);
+      offset += packet[0] != std::byte{0} ? later : 0;  // there is one
+      std::memcpy(packet + 1, &offset, sizeof offset);
+    }
+  }
+
+  [[nodiscard]] const LasSettings& settings() const noexcept { return settings_; }
+  [[nodiscard]] const LasLayout& layout() const noexcept { return layout_; }
+  [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }
+  [[nodiscard]] const LasTally& tally() const noexcept { return tally_; }
+  [[nodiscard]] LasTally& tally() noexcept { return tally_; }
+
+ private:
+  static constexpr std::size_t range_at = 0, amplitude_at = 8, reflectance_at = 12, width_at = 16, pulse_at = 20, object_at = 28;
+
+  /// What of a wave packet all returns share. Positions: LAS 1.4 R15, Point Data Record Format 4, from the packet's first byte.
+  void put_packet(Record& record, const Shot& shot, const LasPacket& packet) const noexcept {
+    record.put(layout_.packet, packet.descriptor);
+    record.put(layout_.packet + 1, packet.offset);
+    record.put(layout_.packet + 9, packet.size);
+    const Vec3 back = shot.direction * (-speed_of_light / 2 * 1e-12);
+    for (int axis = 0; axis < 3; ++axis)
+      record.put(layout_.packet + 17 + 4 * static_cast<std::size_t>(axis), static_cast<float>(back[axis]));
+  }
+
+  [[nodiscard]] std::uint16_t intensity(const Echo& echo) const noexcept {
+    if (automatic_intensity()) return 0;
+    const double value = settings_.intensity == LasIntensity::amplitude ? echo.amplitude : echo.reflectance;
+    return las_rounded<std::uint16_t>(value / settings_.intensity_full_scale.value_or(1) * 65535, 0, 65535);
+  }
+
+  [[nodiscard]] double steps_of(const Vec3& point, std::size_t axis) const noexcept {
+    const int k = static_cast<int>(axis);
+    return std::nearbyint((point[k] - offset_[k]) / settings_.scale);
+  }
+  [[nodiscard]] static bool fits(double steps) noexcept {
+    return steps >= std::numeric_limits<std::int32_t>::min() && steps <= std::numeric_limits<std::int32_t>::max();
+  }
+
+  LasSettings settings_;
+  LasLayout layout_;
+  Vec3 offset_;
+  LasTally tally_;
+};
+
+}  // namespace pulsecast::io::detail

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/parallel.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/io/detail/las/bytes.hpp>
+#include <pulsecast/io/detail/las/layout.hpp>
+#include <pulsecast/io/detail/las/writer.hpp>
+#include <pulsecast/io/detail/laz/coder.hpp>
+#include <pulsecast/io/detail/laz/integers.hpp>
+#include <pulsecast/io/las_settings.hpp>
+#include <pulsecast/io/laz_encoder.hpp>
+#include <pulsecast/io/output_file.hpp>
+
+namespace pulsecast::io {
+
+namespace detail {
+
+inline constexpr std::size_t laz_chunk_points = 50000;  ///< what LASzip takes if nobody says otherwise
+
+/// The record of variable length that tells how points are compressed, header and all. Source: the record `laszip encoded` as LASzip and
+/// LAStools document it.
+[[nodiscard]] inline std::vector<std::byte> laz_descriptor() {
+  struct Item {
+    std::uint16_t type, size, version;
+  };
+  constexpr std::array items{Item{10, laz_point_size, 3}, Item{14, las_extras_size, 3}};  // POINT14, BYTE14
+  LasBytes<34 + 6 * items.size()> d{};
+  d.put(0, std::uint16_t{3});  // chunks of layers; then 0: by the arithmetic coder
+  d.put(4, std::uint8_t{3});   // version 3.4, revision 3 of LASzip writes the same
+  d.put(5, std::uint8_t{4});
+  d.put(6, std::uint16_t{3});
+  d.put(12, static_cast<std::uint32_t>(laz_chunk_points));
+  d.put(16, std::int64_t{-1});  // no special extended records, and
+  d.put(24, std::int64_t{-1});  // nowhere
+  d.put(32, static_cast<std::uint16_t>(items.size()));
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    d.put(34 + 6 * i, items[i].type);
+    d.put(36 + 6 * i, items[i].size);
+    d.put(38 + 6 * i, items[i].version);
+  }
+  const auto head = las_vlr_header("laszip encoded", 22204, d.size(), "https://laszip.org");
+  std::vector<std::byte> bytes(head.begin(), head.end());
+  bytes.insert(bytes.end(), d.begin(), d.end());
+  return bytes;
+}
+
+/// Sizes of all chunks [byte], so that a reader finds each at once. Source: Isenburg 2013, LASzip, 3 (chunk table).
+[[nodiscard]] inline std::vector<std::byte> laz_chunk_table(std::span<const std::size_t> sizes) {
+  LasBytes<8> head{};  // its version, 0, and the number of chunks
+  head.put(4, static_cast<std::uint32_t>(sizes.size()));
+  std::vector<std::byte> bytes(head.begin(), head.end());
+  if (sizes.empty()) return bytes;
+  LazEncoder encoder;
+  LazIntegers integers(32, 2);  // the first context is for numbers of points, where they vary
+  std::int32_t last = 0;
+  for (const std::size_t size : sizes) {
+    const auto next = static_cast<std::int32_t>(size);
+    integers.encode(encoder, last, next, 1);
+    last = next;
+  }
+  const std::vector<std::byte> coded = std::move(encoder).finish();
+  bytes.insert(bytes.end(), coded.begin(), coded.end());
+  return bytes;
+}
+
+/// The points of a LAZ file. As many chunks as there are threads, but no more than 16, are gathered, compressed side by side and written in
+/// their order. Records that will be changed stand as they are in a file of their own until then.
+class LazRecords {
+ public:
+  explicit LazRecords(unsigned threads) : threads_(std::min(thread_count(threads), 16U)) {}
+
+  static constexpr std::uint8_t format_bits = 128;
+  static constexpr std::uint32_t descriptor_count = 1;
+  [[nodiscard]] static std::vector<std::byte> descriptors() { return laz_descriptor(); }
+
+  void begin(OutputFile& file, std::size_t record, bool changed) {
+    record_ = record;
+    table_position_at_ = file.position();
+    file.write(table_position(-1));  // until there is a table
+    if (changed) unchanged_.emplace(file.path().string() + ".points");
+  }
+
+  void write(OutputFile& file, std::span<const std::byte> record) {
+    if (unchanged_) return unchanged_->write(record);
+    gather(file, record);
+  }
+
+  template <class Change>
+  void change(OutputFile& file, const Change& change) {
+    las_in_blocks(*unchanged_, 0, record_, [&](std::uint64_t, std::span<std::byte> some) {
+      change(some);
+      for (std::size_t at = 0; at < some.size(); at += record_) gather(file, some.subspan(at, record_));
+    });
+  }
+
+  /// Takes chunks of these sizes [byte] that others have written.
+  void adopt(std::vector<std::size_t> sizes) { sizes_ = std::move(sizes); }
+
+  void finish(OutputFile& file) {
+    compress(file);
+    file.overwrite(table_position_at_, table_position(static_cast<std::int64_t>(file.position())));
+    file.write(laz_chunk_table(sizes_));
+  }
+
+ private:
+  [[nodiscard]] static LasBytes<8> table_position(std::int64_t position) noexcept {
+    LasBytes<8> bytes{};
+    bytes.put(0, position);
+    return bytes;
+  }
+
+  void gather(OutputFile& file, std::span<const std::byte> record) {
+    gathered_.insert(gathered_.end(), record.begin(), record.end());
+    if (gathered_.size() == threads_ * laz_chunk_points * record_) compress(file);
+  }
+
+  /// Of what is gathered, every chunk but the last is full.
+  void compress(OutputFile& file) {
+    const std::size_t full = laz_chunk_points * record_;
+    std::vector<std::vector<std::byte>> chunks((gathered_.size() + full - 1) / full);
+    for_each_index(chunks.size(), threads_, [&](std::size_t i) {
+      const auto records = std::span<const std::byte>(gathered_).subspan(i * full);
+      chunks[i] = LazChunk(records.first(std::min(full, records.size())), record_).compressed();
+    });
+    for (const auto& chunk : chunks) {
+      file.write(chunk);
+      sizes_.push_back(chunk.size());
+    }
+    gathered_.clear();
+  }
+
+  unsigned threads_;
+  std::size_t record_ = 0;               // [byte]
+  std::uint64_t table_position_at_ = 0;  // from the beginning of the file [byte]
+  std::optional<OutputFile> unchanged_;
+  std::vector<std::byte> gathered_;
+  std::vector<std::size_t> sizes_;  // of the chunks written [byte]
+};
+
+}  // namespace detail
+
+/// Writes points as LAZ: what `LasWriter` writes of them in version 1.4 with point format 6, extra bytes included, compressed as LASzip
+/// does it, in chunks of 50,000 points that are compressed on so many threads; 0 for as many as the machine runs at once. The bytes of the
+/// file are the same for any number of them. A `SettingError` says that another format, or waveforms, are asked for. With intensities of
+/// amplitude that are scaled to the greatest, `close()` compresses all: until then, points stand in `NAME.points.part`.
+class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
+ public:
+  explicit LazWriter(std::filesystem::path path, LasSettings settings = {}, unsigned threads = 0)
+      : LasFileWriter(std::move(path), compressible(std::move(settings)), detail::LazRecords(threads)) {}
+
+  /// The settings, if they can be met.
+  [[nodiscard]] static LasSettings compressible(LasSettings settings) {
+    if (settings.format != LasFormat::las_1_4)
+      throw SettingError("LasSettings::format", static_cast<double>(settings.format), "", "0, LAS 1.4 with point format 6, for LAZ");
+    if (settings.waveforms) throw SettingError("LasSettings::waveforms", 1, "", "false for LAZ, which is written without");
+    return settings;
+  }
+};
+static_assert(EchoSink<LazWriter>);
+
+}  // namespace pulsecast::io

@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <pulsecast/io/detail/laz/coder.hpp>
+#include <pulsecast/io/detail/laz/integers.hpp>
+#include <pulsecast/io/detail/laz/median.hpp>
+#include <pulsecast/io/detail/laz/point.hpp>
+#include <pulsecast/io/detail/laz/time.hpp>
+
+namespace pulsecast::io::detail {
+
+/// Compresses points of format 6 with extra bytes that are together in a chunk, as LASzip does from its version 3 on: attribute by
+/// attribute, each a layer of its own. A layer in which nothing changes is left out. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4
+/// (native extension), specification document; and files of it, of the items POINT14 and BYTE14 in version 3, for what these leave open.
+class LazChunk {
+ public:
+  /// Whole records, one after another, at least one.
+  LazChunk(std::span<const std::byte> records, std::size_t record) : records_(records), record_(record) {
+    points_.reserve(records.size() / record);
+    for (std::size_t at = 0; at < records.size(); at += record) points_.emplace_back(records.data() + at);
+  }
+
+  /// The chunk as it stands in the file: the first point as it is, the number of points, sizes of the layers, and the layers.
+  [[nodiscard]] std::vector<std::byte> compressed() {
+    std::vector<std::vector<std::byte>> layers;
+    layers.push_back(positions());
+    layers.push_back(heights());
+    layers.push_back(classes());
+    layers.push_back(flags());
+    layers.push_back(intensities());
+    layers.push_back(angles());
+    layers.push_back(users());
+    layers.push_back(sources());
+    layers.push_back(times());
+    add_extra_bytes(layers);
+
+    std::vector<std::byte> bytes(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(record_));
+    const auto add = [&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
+    const auto add_number = [&](std::size_t number) {
+      const auto n = static_cast<std::uint32_t>(number);
+      add(std::as_bytes(std::span(&n, 1)));
+    };
+    add_number(points_.size());
+    for (const auto& layer : layers) add_number(layer.size());
+    for (const auto& layer : layers) add(layer);
+    return bytes;
+  }
+
+ private:
+  /// What the other layers take from that of the positions. Each scanner channel is predicted by itself.
+  struct Step {
+    const LazPoint* before;  ///< the last point of this channel, or of any if there is none
+    bool new_time;           ///< since `before`
+    std::uint8_t out;        ///< how far the prediction was out in x and y: the mean number of bits
+    std::uint8_t told;  ///< the channel that extra bytes are told: in version 3, that of the point if it is another than the last, or 0
+  };
+
+  /// Models of each channel, made of the point that its first one is compared with.
+  template <class Models>
+  class Channels {
+   public:
+    [[nodiscard]] Models& of(std::uint8_t channel, const LazPoint& before) {
+      if (!models_[channel]) models_[channel] = std::make_unique<Models>(before);
+      return *models_[channel];
+    }
+
+   private:
+    std::array<std::unique_ptr<Models>, 4> models_;
+  };
+
+  /// Where in its pulse a return is, in six kinds: the rows are by the number of returns, the columns by that of the return.
+  [[nodiscard]] static std::size_t kind(const LazPoint& p) noexcept {
+    static constexpr std::array<std::string_view, 16> kinds{"0123453445555555", "1013333333333333", "2124444444433333", "3345444444444444",
+                                                            "4344544444444444", "5344454444444444", "3344445444444444", "4344444544444444",
+                                                            "4344444454444444", "5344444445444444", "5344444444544444", "5334444444455444",
+                                                            "5334444444455544", "5334444444445554", "5334444444444555", "5334444444444455"};
+    return static_cast<std::size_t>(kinds[p.returns][p.number] - '0');
+  }
+
+  /// What is even of a number of bits, up to a greatest; plus 1 for the only return of a pulse.
+  [[nodiscard]] static std::size_t context(unsigned bits, unsigned greatest, const LazPoint& p) noexcept {
+    return (bits < greatest ? bits & ~1U : greatest) + (p.only() ? 1U : 0U);
+  }
+
+  /// What is new, and x and y. Fills `steps_`.
+  [[nodiscard]] std::vector<std::byte> positions() {
+    struct Models {
+      explicit Models(const LazPoint&) {}
+      std::array<LazModel<128>, 8> news;
+      LazModel<3> channel;
+      std::array<LazModel<16>, 16> returns, number;
+      LazModel<13> number_at_same_time;
+      LazIntegers x{32, 2}, y{32, 22};
+      std::array<LazMedian, 12> x_step, y_step;
+    };
+    Channels<Models> channels;
+    std::array<const LazPoint*, 4> last_of_channel{};
+    last_of_channel[points_[0].channel] = points_.data();
+    LazEncoder encoder;
+    steps_.reserve(points_.size());
+    steps_.push_back({points_.data(), false, 0, points_[0].channel});
+    bool new_time = false;  // at the last point
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const LazPoint &p = points_[i], &last = points_[i - 1];
+      const LazPoint& before = last_of_channel[p.channel] != nullptr ? *last_of_channel[p.channel] : last;
+      last_of_channel[p.channel] = &p;
+      const unsigned place = (last.first() ? 1U : 0U) | (last.last() ? 2U : 0U) | (new_time ? 4U : 0U);
+      new_time = p.time != before.time;
+      const unsigned up = (p.number - before.number) & 15U;
+      const unsigned number = up < 2 ? up : up == 15 ? 2U : 3U;  // as before, the next, the previous, another
+      const unsigned news = number | (p.returns != before.returns ? 4U : 0U) | (p.angle != before.angle ? 8U : 0U) | (new_time ? 16U : 0U) |
+                            (p.source != before.source ? 32U : 0U) | (p.channel != last.channel ? 64U : 0U);
+      Models& of_last = channels.of(last.channel, last);
+      encoder.encode(of_last.news[place], news);
+      if (p.channel != last.channel) encoder.encode(of_last.channel, (p.channel - last.channel - 1U) & 3U);
+
+      Models& m = channels.of(p.channel, before);
+      if (p.returns != before.returns) encoder.encode(m.returns[before.returns], p.returns);
+      if (number == 3 && new_time) encoder.encode(m.number[before.number], p.number);
+      if (number == 3 && !new_time) encoder.encode(m.number_at_same_time, up - 2);
+
+      const std::size_t series = 2 * kind(p) + (new_time ? 1 : 0);
+      const auto step = [](std::int32_t from, std::int32_t to) {
+        return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
+      };
+      const std::int32_t dx = step(before.x, p.x), dy = step(before.y, p.y);
+      m.x.encode(encoder, m.x_step[series].value(), dx, p.only() ? 1 : 0);
+      m.x_step[series].add(dx);
+      m.y.encode(encoder, m.y_step[series].value(), dy, context(m.x.last_length(), 20, p));
+      m.y_step[series].add(dy);
+      const auto out = static_cast<std::uint8_t>((m.x.last_length() + m.y.last_length()) / 2);
+      steps_.push_back({&before, new_time, out, p.channel != last.channel ? p.channel : std::uint8_t{0}});
+    }
+    return std::move(encoder).finish();
+  }
+
+  /// A layer of all points but the first: `encode(encoder, models, point, step)` codes one.
+  template <class Models, class Encode>
+  [[nodiscard]] std::vector<std::byte> layer(const Encode& encode) const {
+    Channels<Models> channels;
+    LazEncoder encoder;
+    static_cast<void>(channels.of(points_[0].channel, points_[0]));
+    for (std::size_t i = 1; i < points_.size(); ++i)
+      encode(encoder, channels.of(points_[i].channel, *steps_[i].before), points_[i], steps_[i]);
+    return std::move(encoder).finish();
+  }
+
+  /// The same, but nothing if the value is the same in all points.
+  template <class Models, class Value, class Encode>
+  [[nodiscard]] std::vector<std::byte> layer_of(Value LazPoint::*value, const Encode& encode) const {
+    const auto same = [&](const LazPoint& p) { return p.*value == points_[0].*value; };
+    if (std::all_of(points_.begin(), points_.end(), same)) return {};
+    return layer<Models>(encode);
+  }
+
+  [[nodiscard]] std::vector<std::byte> heights() const {
+    struct Models {
+      explicit Models(const LazPoint& before) { last.fill(before.z); }
+      LazIntegers z{32, 20};
+      std::array<std::int32_t, 8> last;  // by how many returns are to come, or so
+    };
+    return layer<Models>([](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+      std::int32_t& last = m.last[std::min<unsigned>(p.returns > p.number ? p.returns - p.number : p.number - p.returns, 7)];
+      m.z.encode(encoder, last, p.z, context(step.out, 18, p));
+      last = p.z;
+    });
+  }
+
+  /// By a model for each of some kinds of points.
+  template <std::size_t Symbols>
+  struct SymbolModels {
+    explicit SymbolModels(const LazPoint&) {}
+    std::array<LazModel<Symbols>, 64> of;
+  };
+
+  [[nodiscard]] std::vector<std::byte> classes() const {
+    using Models = SymbolModels<256>;
+    return layer_of<Models>(&LazPoint::classification, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+      encoder.encode(m.of[(step.before->classification & 31U) << 1 | (p.first() && p.last() ? 1U : 0U)], p.classification);
+    });
+  }
+
+  [[nodiscard]] std::vector<std::byte> flags() const {
+    using Models = SymbolModels<64>;
+    return layer_of<Models>(&LazPoint::flags, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+      encoder.encode(m.of[step.before->flags], p.flags);
+    });
+  }
+
+  [[nodiscard]] std::vector<std::byte> intensities() const {
+    struct Models {
+      explicit Models(const LazPoint& before) { last.fill(before.intensity); }
+      LazIntegers intensity{16, 4};
+      std::array<std::uint16_t, 8> last;
+    };
+    return layer_of<Models>(&LazPoint::intensity, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+      const unsigned end = (p.first() ? 2U : 0U) | (p.last() ? 1U : 0U);
+      std::uint16_t& last = m.last[end << 1 | (step.new_time ? 1U : 0U)];
+      m.intensity.encode(encoder, last, p.intensity, end);
+      last = p.intensity;
+    });
+  }
+
+  [[nodiscard]] std::vector<std::byte> angles() const {
+    struct Models {
+      explicit Models(const LazPoint&) {}
+      LazIntegers angle{16, 2};
+    };
+    return layer_of<Models>(&LazPoint::angle, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+      if (p.angle != step.before->angle) m.angle.encode(encoder, step.before->angle, p.angle, step.new_time ? 1 : 0);
+    });
+  }
+
+  [[nodiscard]] std::vector<std::byte> users() const {
+    using Models = SymbolModels<256>;
+    return layer_of<Models>(&LazPoint::user, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+      encoder.encode(m.of[step.before->user / 4], p.user);
+    });
+  }
+
+  [[nodiscard]] std::vector<std::byte> sources() const {
+    struct Models {
+      explicit Models(const LazPoint&) {}
+      LazIntegers source{16, 1};
+    };
+    return layer_of<Models>(&LazPoint::source, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+      if (p.source != step.before->source) m.source.encode(encoder, step.before->source, p.source);
+    });
+  }
+
+  [[nodiscard]] std::vector<std::byte> times() const {
+    struct Models {
+      explicit Models(const LazPoint& before) : times(before.time) {}
+      LazTimes times;
+    };
+    return layer_of<Models>(&LazPoint::time, [](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
+      if (step.new_time) m.times.encode(encoder, p.time);
+    });
+  }
+
+  /// Each byte is a layer.
+  void add_extra_bytes(std::vector<std::vector<std::byte>>& layers) const {
+    const std::size_t extras = record_ - laz_point_size, count = points_.size();
+    std::vector<std::uint8_t> columns(extras * count);  // so that each is read from one piece of memory
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < extras; ++k)
+        columns[k * count + i] = std::to_integer<std::uint8_t>(records_[i * record_ + laz_point_size + k]);
+    for (std::size_t k = 0; k < extras; ++k) layers.push_back(extra_byte(std::span(columns).subspan(k * count, count)));
+  }
+
+  /// Codes what is added to the last byte. All files of version 3 have it so: where the channel told is another than before, the last byte
+  /// is still that of the channel before, and is kept as such, unless this channel is new.
+  [[nodiscard]] std::vector<std::byte> extra_byte(std::span<const std::uint8_t> column) const {
+    if (std::all_of(column.begin(), column.end(), [&](std::uint8_t byte) { return byte == column[0]; })) return {};
+    std::array<LazModel<>, 4> models;
+    std::array<std::uint8_t, 4> last{};
+    std::array<bool, 4> known{};
+    last[steps_[0].told] = column[0];
+    known[steps_[0].told] = true;
+    LazEncoder encoder;
+    for (std::size_t i = 1; i < column.size(); ++i) {
+      const std::size_t channel = steps_[i].told;
+      std::size_t kept = steps_[i - 1].told;
+      if (!known[channel]) {
+        known[channel] = true;
+        last[channel] = last[kept];
+        kept = channel;
+      }
+      encoder.encode(models[channel], static_cast<std::uint8_t>(column[i] - last[kept]));
+      last[kept] = column[i];
+    }
+    return std::move(encoder).finish();
+  }
+
+  std::span<const std::byte> records_;
+  std::size_t record_;
+  std::vector<LazPoint> points_;
+  std::vector<Step> steps_;
+};
+
+}  // namespace pulsecast::io::detail

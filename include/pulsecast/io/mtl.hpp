@@ -1,0 +1,334 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <istream>
+#include <map>
+#include <optional>
+#include <streambuf>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <tiny_obj_loader.h>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/io/spectral_library.hpp>
+#include <pulsecast/scene/material.hpp>
+
+namespace pulsecast::io {
+
+/// What MTL files describe.
+struct MaterialLibrary {
+  std::map<std::string, Material, std::less<>> materials;  ///< by name
+  std::vector<std::string> warnings;                       ///< what was odd, but could be read
+};
+
+/// Reads an MTL file. Colours decide the angular law: `Ks` makes it Phong's, `Kd` alone Lambert's. The amount is another matter: it is
+/// what `helios_reflectance` says, a fraction, or else the spectrum of the library that `helios_spectra` names. Beside these, `Ns`,
+/// `helios_isGround` and `helios_classification` count; other keys do not.
+/// Of a name that comes twice, the first counts. What stands before the first name describes the material "default".
+/// Throws a `FileError` with path and line at the first thing that cannot be right.
+[[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra = {});
+
+/// The surface that files say nothing about. It scatters alike in all directions, as in the home of the extra keys, HELIOS++.
+[[nodiscard]] inline Material undescribed(std::string name) {
+  return {.name = std::move(name), .scattering = Scattering::direction_independent};
+}
+
+namespace detail {
+
+static_assert(std::same_as<tinyobj::real_t, double>, "define TINYOBJLOADER_USE_DOUBLE and link libtinyobjloader_double");
+
+inline constexpr double largest_number = 1e12;  ///< allowed in a file, so that no product of a few overflows
+
+[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
+  const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
+  return text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
+/// The number that a word is, if tinyobjloader reads all of it as that number: it would take other words for zeros, or for the number
+/// they begin with, and lose count in very long ones.
+template <class Number>
+[[nodiscard]] std::optional<Number> number_in(std::string_view word) {
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  Number value{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool is_all = error == std::errc{} && end == word.data() + word.size() && word.size() <= 100;
+  return is_all && std::isfinite(static_cast<double>(value)) ? std::optional(value) : std::nullopt;
+}
+
+/// The text of an OBJ or MTL file, a piece at a time.
+class StatementFile {
+ public:
+  explicit StatementFile(const std::filesystem::path& path) : path_(path.string()) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) fail("is not there: expected an OBJ or MTL file");
+    if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected an OBJ or MTL file");
+    file_.open(path, std::ios::binary);
+    if (!file_) fail("cannot be read");
+    if (file_.peek() == std::ifstream::traits_type::eof()) fail("is empty: expected an OBJ or MTL file");
+  }
+
+  /// The next whole statements, about so many bytes of them; nothing at the end of the file.
+  [[nodiscard]] std::string next(std::size_t bytes) {
+    std::string text = std::exchange(rest_, {});
+    while (file_) {
+      const std::size_t had = text.size();
+      text.resize(had + bytes);
+      file_.read(text.data() + had, static_cast<std::streamsize>(bytes));
+      text.resize(had + static_cast<std::size_t>(file_.gcount()));
+      if (file_.bad()) fail("cannot be read");
+      const std::size_t end = file_ ? end_of_statements(text) : 0;
+      if (end == 0) continue;
+      rest_.assign(text, end);
+      text.resize(end);
+      break;
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::string all() {
+    std::string text;
+    for (std::string more = next(piece_bytes); !more.empty(); more = next(piece_bytes)) text += more;
+    return text;
+  }
+
+  static constexpr std::size_t piece_bytes = std::size_t{1} << 18;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
+
+ private:
+  /// After the last line that cannot go on in the next; 0 if there is none.
+  static std::size_t end_of_statements(std::string_view text) {
+    while (!text.empty()) {
+      const std::size_t end = text.rfind('\n') + 1;
+      text = text.substr(0, end == 0 ? 0 : end - 1);
+      const std::size_t last = text.find_last_not_of(" \t\v\f\r");
+      if (end > 0 && (last == text.npos || text[last] != '\\')) return end;
+    }
+    return 0;
+  }
+
+  std::string path_, rest_;
+  std::ifstream file_;
+};
+
+/// Gives tinyobjloader a text a statement at a time, so that every check and error knows the line it is about.
+class StatementBuffer : public std::streambuf {
+ public:
+  /// Whole statements of a file, and how many lines stand before them.
+  StatementBuffer(std::string path, std::string text, std::size_t lines_before)
+      : path_(std::move(path)), text_(std::move(text)), lines_before_(lines_before), lines_(lines_before) {}
+
+ protected:
+  /// Sets what tinyobjloader gets to read for the statement at hand, which is nothing at first; throws if it cannot be right.
+  virtual void check(std::string& ready) = 0;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::size_t line() const { return line_; }                   ///< in which the statement at hand begins, from 1
+  [[nodiscard]] bool line_is_open() const { return open_; }                  ///< the last one, without an end
+  [[nodiscard]] const std::string& statement() const { return statement_; }  ///< with one blank after the keyword
+  [[nodiscard]] std::string_view keyword() const { return std::string_view(statement_).substr(0, statement_.find(' ')); }
+  [[nodiscard]] std::string_view rest() const { return trimmed(std::string_view(statement_).substr(keyword().size())); }
+
+  /// The words after the keyword.
+  [[nodiscard]] const std::vector<std::string_view>& words() {
+    words_.clear();
+    for (std::string_view left = rest(); !left.empty(); left = trimmed(left.substr(words_.back().size())))
+      words_.push_back(left.substr(0, left.find(' ')));
+    return words_;
+  }
+
+  [[nodiscard]] std::string quoted() const { return std::string("'").append(statement_, 0, 64) + (statement_.size() > 64 ? "...'" : "'"); }
+  [[noreturn]] void fail_here(const std::string& problem) const { throw FileError(path_, "line " + std::to_string(line_), problem); }
+  void expect(bool fulfilled, const char* expected) const {
+    if (!fulfilled) fail_here(quoted() + ": expected " + expected);
+  }
+
+  /// Back to the beginning of the text.
+  void rewind() noexcept { at_ = 0, lines_ = lines_before_; }
+
+  /// Goes to the next statement that is not empty; false at the end of the text.
+  bool next_statement() {
+    do {
+      if (!take_statement()) return false;
+    } while (statement_.empty() || statement_.starts_with('#'));
+    if (statement_.find('#') != statement_.npos && !keyword().ends_with("mtl"))  // names may have this sign, as in `usemtl Material #25`
+      statement_.resize(std::min(statement_.find(" #"), statement_.size()));
+    const std::string_view word = keyword(), after = rest();
+    if (statement_.size() != word.size() + (after.empty() ? 0 : 1) + after.size())
+      statement_ = std::string(word) + (after.empty() ? "" : " ") + std::string(after);
+    return true;
+  }
+
+ private:
+  int_type underflow() final {
+    if (!next_statement()) return traits_type::eof();
+    ready_.clear();
+    check(ready_);
+    ready_ += '\n';
+    setg(ready_.data(), ready_.data(), ready_.data() + ready_.size());
+    return traits_type::to_int_type(ready_.front());
+  }
+
+  /// Joins the lines of which each but the last ends with a backslash, which tinyobjloader does not know. False at the end of the text.
+  bool take_statement() {
+    joined_.clear();
+    line_ = lines_ + 1;
+    for (bool goes_on = true; goes_on;) {
+      open_ = at_ == text_.size();
+      if (open_) break;
+      const std::string_view text = take_line();
+      goes_on = text.ends_with('\\') && !(joined_.empty() && text.starts_with('#'));
+      if (joined_.empty() && !goes_on) {
+        statement_ = text;
+        return true;
+      }
+      joined_.append(text.substr(0, text.size() - (goes_on ? 1 : 0))) += ' ';
+    }
+    statement_ = trimmed(joined_);
+    return !joined_.empty();
+  }
+
+  std::string_view take_line() {
+    std::size_t begin = at_;
+    const std::size_t end = text_.find('\n', begin);
+    open_ = end == text_.npos;
+    at_ = open_ ? text_.size() : end + 1;
+    const std::size_t after = open_ ? text_.size() : end;
+    if (++lines_ == 1 && text_.starts_with("\xEF\xBB\xBF")) begin += 3;  // the mark that some editors put before UTF-8
+    for (std::size_t i = begin; i < after; ++i) {
+      char& c = text_[i];
+      if (static_cast<unsigned char>(c) >= ' ') continue;
+      if (c < '\t' || c > '\r') fail_here("holds binary data: expected the text of an OBJ or MTL file");
+      c = ' ';
+    }
+    return trimmed(std::string_view(text_).substr(begin, after - begin));
+  }
+
+  std::string path_, text_;
+  std::string joined_, statement_, ready_;
+  std::vector<std::string_view> words_;
+  std::size_t lines_before_, lines_, line_ = 0, at_ = 0;  // `at_`: where the next line begins in the text
+  bool open_ = false;
+};
+
+class MtlReader : private StatementBuffer {
+ public:
+  MtlReader(StatementFile file, const SpectralLibrary& spectra) : StatementBuffer(file.path(), file.all(), 0), spectra_(spectra) {}
+
+  [[nodiscard]] MaterialLibrary read() {
+    std::istream stream(this);
+    stream.exceptions(std::ios::badbit);  // so that those thrown while it reads pass through
+    std::map<std::string, int> ignored_numbers;
+    std::vector<tinyobj::material_t> found;
+    tinyobj::LoadMtl(&ignored_numbers, &found, &stream, nullptr, nullptr);
+    MaterialLibrary library;
+    for (const tinyobj::material_t& m : found)
+      if (!m.name.empty()) library.materials.emplace(m.name, material(m, library.warnings));
+    return library;
+  }
+
+ private:
+  void check(std::string& ready) override {
+    // tinyobjloader drops what stands before the first name, and its own exponent is 1.
+    static const std::string exponent = "\nNs " + pulsecast::detail::written(Material{}.specular_exponent) + "\n";
+    const bool is_first = !std::exchange(begun_, true);
+    if (keyword() == "newmtl") current_ = rest();
+    lines_.try_emplace({current_, std::string(keyword())}, line());
+    if (keyword() == "newmtl") {
+      expect(!rest().empty(), "the name of a material");
+      ready = statement() + exponent;
+      return;
+    }
+    const std::vector<std::string_view>& given = words();
+    const auto are_within = [&](double high) {
+      return std::all_of(given.begin(), given.end(), [high](std::string_view word) {
+        const double value = number_in<double>(word).value_or(-1);
+        return value >= 0 && value <= high;
+      });
+    };
+    const bool is_one = given.size() == 1, is_colour = keyword() == "Kd" || keyword() == "Ks";
+    if (is_colour) expect((is_one || given.size() == 3) && are_within(largest_number), "one or three numbers that are not negative");
+    if (keyword() == "Ns") expect(is_one && are_within(largest_number), "a number that is not negative");
+    if (keyword() == "helios_reflectance") expect(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
+    if (keyword() == "helios_classification") expect(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
+    if (is_first) ready = "newmtl default" + exponent;
+    // A texture would make tinyobjloader change the colour, in some orders.
+    if (is_colour || keyword() == "Ns" || keyword().starts_with("helios_")) ready += statement();
+    // A single number stands for red, green and blue. Source: MTL specification, Wavefront 1995.
+    if (is_colour && is_one) ready.append(" ").append(given[0]).append(" ").append(given[0]);
+  }
+
+  [[nodiscard]] Material material(const tinyobj::material_t& m, std::vector<std::string>& warnings) const {
+    const auto warn = [&](const char* key, const std::string& text) {
+      const auto known = lines_.find({m.name, key});
+      const std::string place = known == lines_.end() ? "" : ", line " + std::to_string(known->second);
+      warnings.push_back(path() + place + ": material '" + m.name + "' " + text);
+    };
+    const auto extra = [&](const char* key) {
+      const auto found = m.unknown_parameter.find(key);
+      return found == m.unknown_parameter.end() ? std::string() : found->second;
+    };
+    Material made = undescribed(m.name);
+    const double diffuse = m.diffuse[0] + m.diffuse[1] + m.diffuse[2], specular = m.specular[0] + m.specular[1] + m.specular[2];
+    if (specular > 0) {
+      made.scattering = Scattering::phong, made.specular_share = specular / (diffuse + specular);
+    } else if (diffuse > 0) {
+      made.scattering = Scattering::lambert;
+    }
+    made.specular_exponent = m.shininess;
+    const std::string reflectance = extra("helios_reflectance"), spectrum(trimmed(extra("helios_spectra")));
+    if (!reflectance.empty()) {
+      made.reflectance = *number_in<double>(reflectance);
+      if (made.reflectance > 1) {
+        warn("helios_reflectance", "has the reflectance " + reflectance + ", which is taken as percent");
+        made.reflectance /= 100;
+      }
+    } else if (const auto found = spectra_.spectra.find(spectrum); found != spectra_.spectra.end()) {
+      made.spectrum = found->second;
+      const double shortest = made.spectrum->shortest(), longest = made.spectrum->longest();
+      for (const double wavelength : spectra_.wavelengths)
+        if (!(wavelength >= shortest && wavelength <= longest))
+          warn("helios_spectra", "has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " + nanometres(longest) +
+                                     " nm: for the laser of " + nanometres(wavelength) + " nm the nearer end is taken");
+    } else if (!spectrum.empty()) {
+      warn("helios_spectra", "names the spectrum '" + spectrum + "', which no library holds: its reflectance is taken to be 0.5");
+    }
+    made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
+    std::string ground = extra("helios_isGround");
+    std::transform(ground.begin(), ground.end(), ground.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    made.ground = ground == "true" || ground == "1";
+    if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
+      warn("helios_isGround", "has helios_isGround '" + ground + "', which is neither true nor false: it is taken to be no ground");
+    return made;
+  }
+
+  [[nodiscard]] static std::string nanometres(double metres) { return pulsecast::detail::written(std::round(metres * 1e12) / 1e3); }
+
+  const SpectralLibrary& spectra_;
+  bool begun_ = false;
+  std::string current_ = "default";                                   // material
+  std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // of each material and keyword
+};
+
+}  // namespace detail
+
+inline MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra) {
+  return detail::MtlReader(detail::StatementFile(path), spectra).read();
+}
+
+}  // namespace pulsecast::io

@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/expect.hpp>
+
+namespace pulsecast::io {
+
+namespace detail {
+
+/// Locks an open file until it is closed, however the program ends; false if it is locked already. True without a lock where the file
+/// system has none.
+[[nodiscard]] inline bool lock_alone(int file) noexcept {
+  while (::flock(file, LOCK_EX | LOCK_NB) != 0)
+    if (errno != EINTR) return errno != EWOULDBLOCK;
+  return true;
+}
+
+/// Whether a name still leads to an open file.
+[[nodiscard]] inline bool stands_at(int file, const std::filesystem::path& path) noexcept {
+  struct stat open {};
+  struct stat named {};
+  return ::fstat(file, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
+/// Writes an open file to its disk; true where there is nothing to write, or no disk.
+[[nodiscard]] inline bool sync_to_disk(int file) noexcept {
+  struct stat status {};
+  return (::fstat(file, &status) == 0 && status.st_size == 0) || ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
+}
+
+}  // namespace detail
+
+/// What turns the bytes of a file into others on their way to it, as a compressor does.
+class OutputEncoder {
+ public:
+  virtual ~OutputEncoder() = default;
+  /// Appends to `out` what becomes of `bytes`; `last` is said once, with the last of them, which may be none.
+  virtual void encode(std::span<const std::byte> bytes, bool last, std::vector<std::byte>& out) = 0;
+};
+
+/// A file in the making: written beside its final name as `NAME.part`, and renamed by `commit()` when it is whole. Until then, and if the
+/// program is killed, nothing stands under the final name but what stood there before. Destroyed uncommitted, it leaves nothing behind.
+/// Every failure is a `FileError` that names the final path; after one, nothing more can be written or committed.
+/// With an encoder, what is written passes through it, a megabyte at a time, and cannot be read again or overwritten.
+/// The temporary file is locked: a second `OutputFile` of the same name, in this program or in another, is refused. Where the file system
+/// has no locks, the second takes the name, and the first finds that out when it commits.
+/// The content is on the disk before the file has its final name, so that a power cut leaves no file that only looks whole.
+/// Limits: the name may be lost in a power cut as long as the folder was not written to the disk.
+class OutputFile {
+ public:
+  explicit OutputFile(std::filesystem::path path, std::unique_ptr<OutputEncoder> encoder = nullptr)
+      : path_(std::move(path)), encoder_(std::move(encoder)) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path_, ignored)) throw FileError(path_.string(), "", "is a folder; expected the name of a file");
+    const std::filesystem::path temporary = temporary_name(path_);
+    const int number = open_alone(temporary);
+    errno = 0;
+    std::FILE* const file = ::fdopen(number, "w+b");
+    if (file == nullptr) {
+      const int error = errno;
+      ::close(number);
+      fail("cannot be created", error, "memory for it");
+    }
+    file_ = {file, Discard{temporary}};
+    std::setvbuf(file, nullptr, _IONBF, 0);  // what is buffered is buffered here, so that every error shows where it happens
+    buffer_.reserve(capacity);
+  }
+
+  /// A piece of a file that others put together: what is written is appended to `piece`, and `commit()` says that it is all. The file
+  /// itself is not touched; its name is for messages.
+  OutputFile(std::filesystem::path path, std::vector<std::byte>& piece) : path_(std::move(path)), piece_(&piece) {}
+
+  void write(std::span<const std::byte> bytes) {
+    if (piece_ != nullptr) {
+      position_ += bytes.size();
+      return void(piece_->insert(piece_->end(), bytes.begin(), bytes.end()));
+    }
+    expect_open();
+    if (buffer_.size() + bytes.size() > capacity) flush();
+    if (bytes.size() < capacity) {
+      buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+    } else {
+      hand_over(bytes, false);
+    }
+    position_ += bytes.size();
+  }
+
+  void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+
+  /// Puts other bytes in the place of some that were written before; writing then goes on at the end.
+  void overwrite(std::uint64_t position, std::span<const std::byte> bytes) {
+    go_back(position, bytes.size());
+    put(bytes);
+    seek(0, SEEK_END);
+  }
+
+  /// Reads bytes that were written before; writing then goes on at the end.
+  void read(std::uint64_t position, std::span<std::byte> bytes) {
+    go_back(position, bytes.size());
+    errno = 0;
+    if (std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail("cannot be read again", errno, "what was written");
+    seek(0, SEEK_END);
+  }
+
+  /// Goes on where others have written to, in the temporary file; without an encoder.
+  void continue_at(std::uint64_t position) {
+    PULSECAST_EXPECT(!encoder_);
+    expect_open();
+    flush();
+    position_ = position;
+    seek(static_cast<long>(position), SEEK_SET);
+  }
+
+  /// Where it stands until `commit()`.
+  [[nodiscard]] static std::filesystem::path temporary_name(const std::filesystem::path& path) { return path.string() + ".part"; }
+
+  /// How many bytes were written so far, before any encoding: where the next ones will stand.
+  [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
+
+  /// The final name.
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+  /// Makes the file stand under its final name, in place of any that stood there.
+  void commit() {
+    if (std::exchange(piece_, nullptr) != nullptr) return;
+    expect_open();
+    flush(true);
+    const std::filesystem::path& temporary = file_.get_deleter().temporary;
+    const int number = ::fileno(file_.get());
+    if (!detail::stands_at(number, temporary)) {
+      discard();
+      throw FileError(path_.string(), "", "was taken from " + temporary.string() + " by another program, and cannot be completed");
+    }
+    errno = 0;
+    std::error_code error;
+    if (!detail::sync_to_disk(number)) {
+      error = system_error(errno);
+    } else {
+      std::filesystem::rename(temporary, path_, error);
+    }
+    if (error)
+      fail("cannot be completed", error.value(), "room for " + std::to_string(position_) + " bytes and a name that may be replaced");
+    std::fclose(file_.release());  // the lock ends after the renaming; closing has nothing to tell that syncing has not
+  }
+
+  /// Gives the file up and removes what was written; whoever finds half-way that the rest cannot be written calls this.
+  void discard() noexcept {
+    file_.reset();
+    piece_ = nullptr;
+  }
+
+ private:
+  struct Discard {
+    std::filesystem::path temporary;
+    void operator()(std::FILE* file) const noexcept {
+      if (detail::stands_at(::fileno(file), temporary)) ::unlink(temporary.c_str());
+      std::fclose(file);
+    }
+  };
+
+  static constexpr std::size_t capacity = std::size_t{1} << 20;  // bytes handed over at a time: large enough that calls cost nothing
+
+  [[nodiscard]] static std::error_code system_error(int number) { return {number != 0 ? number : EIO, std::generic_category()}; }
+
+  /// Opens the temporary file for this one alone. What a killed program has left is removed, not emptied: processes of it may still write.
+  [[nodiscard]] int open_alone(const std::filesystem::path& temporary) {
+    for (int tries = 0; tries < 100; ++tries) {
+      int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      const bool is_new = file >= 0;
+      if (!is_new && errno == EEXIST) {
+        file = ::open(temporary.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
+        if (file < 0 && errno == ENOENT) continue;
+      }
+      if (file < 0) fail("cannot be created", errno, "an existing folder that may be written to");
+      const bool is_alone = detail::lock_alone(file);
+      struct stat status {};
+      if (is_alone && detail::stands_at(file, temporary) && ::fstat(file, &status) == 0) {
+        if (is_new || S_ISCHR(status.st_mode)) return file;
+        if (S_ISREG(status.st_mode)) ::unlink(temporary.c_str());
+      }
+      ::close(file);
+      if (!is_alone) throw FileError(path_.string(), "", "is being written already: " + temporary.string() + " is locked");
+    }
+    fail("cannot be created", EEXIST, "to make " + temporary.string());
+  }
+
+  [[noreturn]] void fail(std::string_view what, int error, std::string_view expected) {
+    discard();
+    throw FileError(path_.string(), "", std::string(what) + ": " + system_error(error).message() + "; expected " + std::string(expected));
+  }
+
+  void expect_open() const {
+    if (!file_) throw FileError(path_.string(), "", "cannot be written any more: it was committed or given up");
+  }
+
+  void put(std::span<const std::byte> bytes) {
+    errno = 0;
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size()) return;
+    fail("cannot be written", errno, "room for " + std::to_string(bytes.size()) + " more bytes");
+  }
+
+  void hand_over(std::span<const std::byte> bytes, bool last) {
+    if (!encoder_) return put(bytes);
+    encoded_.clear();
+    encoder_->encode(bytes, last, encoded_);
+    put(encoded_);
+  }
+
+  void flush(bool last = false) {
+    hand_over(buffer_, last);
+    buffer_.clear();
+  }
+
+  void go_back(std::uint64_t position, [[maybe_unused]] std::size_t size) {
+    PULSECAST_EXPECT(!encoder_ && position + size <= position_);
+    expect_open();
+    flush();
+    seek(static_cast<long>(position), SEEK_SET);
+  }
+
+  void seek(long offset, int origin) {
+    errno = 0;
+    if (std::fseek(file_.get(), offset, origin) != 0) fail("cannot be written", errno, "a file in which one can go back");
+  }
+
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, Discard> file_;
+  std::unique_ptr<OutputEncoder> encoder_;
+  std::vector<std::byte>* piece_ = nullptr;
+  std::vector<std::byte> buffer_, encoded_;
+  std::uint64_t position_ = 0;
+};
+
+}  // namespace pulsecast::io

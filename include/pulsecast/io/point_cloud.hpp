@@ -1,0 +1,318 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/geometry/box.hpp>
+#include <pulsecast/io/detail/cell_numbers.hpp>
+#include <pulsecast/io/detail/las/points.hpp>
+#include <pulsecast/io/detail/text/points.hpp>
+#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/scene/voxel_data.hpp>
+
+namespace pulsecast::io {
+
+/// Where the normals of voxels come from.
+enum class VoxelNormals : std::uint8_t {
+  none,     ///< voxels have none
+  mean,     ///< the file: mean of the unit normals of the points inside
+  nearest,  ///< the file: that of the point nearest to the voxel's centre, of those that have one
+  fitted,   ///< the plane through the points inside with the least sum of squared distances; points up
+};
+
+/// Where the lattice of voxels stands.
+enum class VoxelLattice : std::uint8_t {
+  at_cloud,      ///< begins at the least coordinates; along an axis along which the cloud has no extent, its voxels are centred on it
+  at_multiples,  ///< faces stand at whole multiples of the voxel's size, so that clouds beside each other share a lattice
+};
+
+struct PointCloudSettings {
+  double voxel_size = 1;                                ///< edge of a voxel [m]
+  VoxelLattice lattice = VoxelLattice::at_cloud;        ///< where it stands
+  VoxelNormals normals = VoxelNormals::none;            ///< where they come from
+  std::optional<Vec3> default_normal = std::nullopt;    ///< for voxels that get none otherwise, of any length but 0
+  bool colours = false;                                 ///< whether voxels get any
+  std::optional<double> largest_colour = std::nullopt;  ///< that a channel may have; if not given, 65535 in LAS and 255 in text
+  PointColumns columns = {};                            ///< of text files
+
+  void validate() const {
+    expect_positive("PointCloudSettings::voxel_size", voxel_size, "m");
+    expect_within("PointCloudSettings::voxel_size", voxel_size, 0, 1e12, "m");
+    if (default_normal && !(max_norm(*default_normal) >= 1e-100 && max_norm(*default_normal) <= 1e100))
+      throw SettingError("PointCloudSettings::default_normal length", length(*default_normal), "", "from 1e-100 to 1e100");
+    if (largest_colour) expect_positive("PointCloudSettings::largest_colour", *largest_colour, "");
+    columns.validate();
+  }
+};
+
+/// The voxels that points of a cloud stand in.
+struct PointCloud {
+  VoxelData voxels;                             ///< with normals, if any were asked for and there were some
+  std::vector<std::array<float, 3>> colours{};  ///< red, green and blue, from 0 to 1, of each voxel: root of the mean square; or none
+  std::uint64_t points = 0;                     ///< that were read
+  std::vector<std::string> warnings{};          ///< what was odd, but could be read
+};
+
+/// Reads point clouds, each of which is text (see `TextPoints`) or LAS (see `LasPoints`) as it begins, and makes one grid of them all.
+/// Every file is read twice, first for the extent and then for the voxels, and never held: memory goes with the voxels, not the points.
+///
+/// A voxel holds the points from its lesser faces on up to, but without, its greater ones; the last of a lattice at the cloud holds those
+/// on its greater faces, too. Planes are fitted where at least three points are not on one line. A voxel without a normal gets the
+/// default; if there is none, zero, with a warning: the voxel stays. Colours beyond the largest are an error.
+/// Throws a `FileError` with path and line or byte at the first thing that cannot be right.
+/// Limits: 2^32 voxels along each axis, 2^32 - 2 occupied.
+[[nodiscard]] PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings = {});
+
+[[nodiscard]] inline PointCloud read_point_cloud(const std::filesystem::path& path, const PointCloudSettings& settings = {}) {
+  return read_point_cloud(std::vector{path}, settings);
+}
+
+namespace detail {
+
+/// Calls a function with the reader that a file needs.
+template <class Function>
+void with_points(const std::filesystem::path& path, const PointCloudSettings& settings, Function function) {
+  InputFile file(path, "a point cloud");
+  if (LasPoints::is_las(file)) {
+    LasPoints points(std::move(file));
+    function(points);
+  } else {
+    PointColumns columns = settings.columns;
+    if (settings.normals != VoxelNormals::mean && settings.normals != VoxelNormals::nearest) columns.normal.reset();
+    if (!settings.colours) columns.colour.reset();
+    TextPoints points(std::move(file), std::move(columns));
+    function(points);
+  }
+}
+
+/// The normal of the plane with the least sum of squared distances to points, which points up; empty if they are fewer than three or on
+/// one line. Given are their number, the sum of their offsets from any place near by, and that of the products xx, xy, xz, yy, yz, zz.
+/// Source: Pearson 1901: the eigenvector of the covariance with the least eigenvalue.
+[[nodiscard]] inline std::optional<Vec3> plane_normal(double count, const Vec3& sum, const std::array<double, 6>& products) {
+  if (count < 3) return std::nullopt;
+  const Eigen::Vector3d offset(sum.x, sum.y, sum.z);
+  Eigen::Matrix3d about;
+  about << products[0], products[1], products[2], products[1], products[3], products[4], products[2], products[4], products[5];
+  const double size = about.trace();
+  if (!(size > 0)) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver((about - offset * offset.transpose() / count) / size);
+  constexpr double rounding = 1e-13;  // some hundred times the spacing of doubles at 1: what is less says nothing
+  if (solver.info() != Eigen::Success || !(solver.eigenvalues()[1] > rounding)) return std::nullopt;
+  const Eigen::Vector3d least = solver.eigenvectors().col(0);
+  const Vec3 normal = normalize(Vec3{least.x(), least.y(), least.z()});
+  const double side = normal.z != 0 ? normal.z : normal.y != 0 ? normal.y : normal.x;
+  return side < 0 ? -normal : normal;
+}
+
+class PointCloudReader {
+ public:
+  PointCloudReader(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings) : settings_(validated(settings)) {
+    measure(paths);
+    for (int axis = 0; axis < 3; ++axis) lay(axis, paths.front());
+    expect_room(paths.front());
+    for (const std::filesystem::path& path : paths)
+      with_points(path, settings_, [this](auto& points) {
+        while (points.next()) add(points);
+      });
+  }
+
+  [[nodiscard]] PointCloud result() && {
+    cloud_.voxels.edge = settings_.voxel_size;
+    cloud_.voxels.corner = corner();
+    finish_normals();
+    finish_colours();
+    cloud_.voxels.cells = std::move(cells_).release();
+    return std::move(cloud_);
+  }
+
+ private:
+  using Cell = CellNumbers::Cell;
+
+  /// The first pass.
+  void measure(const std::vector<std::filesystem::path>& paths) {
+    const bool from_file = settings_.normals == VoxelNormals::mean || settings_.normals == VoxelNormals::nearest;
+    normals_ = settings_.normals != VoxelNormals::none, colours_ = settings_.colours;
+    for (const std::filesystem::path& path : paths)
+      with_points(path, settings_, [&](auto& points) {
+        const std::uint64_t before = cloud_.points;
+        for (; points.next(); ++cloud_.points) bounds_.extend(points.position());
+        if (cloud_.points == before) throw FileError(points.path(), "", "holds no point: expected at least one");
+        if (from_file && !points.has_normals()) {
+          normals_ = false;
+          cloud_.warnings.push_back(points.path() + ": has no normals: no voxel gets one from a file");
+        }
+        if (settings_.colours && !points.has_colours()) {
+          colours_ = false;
+          cloud_.warnings.push_back(points.path() + ": has no colours: no voxel gets one");
+        }
+        for (std::string& warning : points.warnings()) cloud_.warnings.push_back(std::move(warning));
+      });
+  }
+
+  /// Lays the lattice along an axis.
+  void lay(int axis, const std::filesystem::path& path) {
+    const double edge = settings_.voxel_size, extent = bounds_.max[axis] - bounds_.min[axis];
+    double cells = std::max(std::ceil(extent / edge), 1.0);
+    if (settings_.lattice == VoxelLattice::at_multiples) {
+      origin_[axis] = 0, first_[axis] = std::floor(bounds_.min[axis] / edge);
+      cells = std::floor(bounds_.max[axis] / edge) - first_[axis] + 1;
+    } else {
+      origin_[axis] = extent > 0 ? bounds_.min[axis] : bounds_.min[axis] - edge / 2, first_[axis] = 0;
+    }
+    if (!(cells <= 0x1p32))
+      throw FileError(path.string(), "",
+                      std::string("the cloud extends over ") + pulsecast::detail::written(extent) + " m along " + "xyz"[axis] +
+                          ", which is " + pulsecast::detail::written(cells) + " voxels: expected no more than 2^32; voxels are " +
+                          pulsecast::detail::written(edge) + " m large");
+    last_[axis] = cells - 1;
+  }
+
+  [[nodiscard]] Vec3 corner() const noexcept { return origin_ + first_ * settings_.voxel_size; }
+
+  /// Refuses voxels that are small against the rounding of coordinates where they stand.
+  void expect_room(const std::filesystem::path& path) const {
+    const double edge = settings_.voxel_size, least = VoxelData::least_edge(corner());
+    if (edge >= least) return;
+    throw FileError(path.string(), "",
+                    "the cloud begins " + pulsecast::detail::written(max_norm(corner())) + " m from the origin, where voxels of " +
+                        pulsecast::detail::written(edge) + " m cannot be told apart: expected at least " +
+                        pulsecast::detail::written(least) + " m");
+  }
+
+  /// Enters a point, in the second pass.
+  template <class Points>
+  void add(const Points& points) {
+    const Vec3 p = points.position();
+    Cell cell{};
+    Vec3 centre{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = std::min(std::floor((p[axis] - origin_[axis]) / settings_.voxel_size) - first_[axis], last_[axis]);
+      if (!(p[axis] >= bounds_.min[axis] && p[axis] <= bounds_.max[axis])) points.fail_here("the file has changed while it was read");
+      cell[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(place);
+      centre[axis] = origin_[axis] + (first_[axis] + place + 0.5) * settings_.voxel_size;
+    }
+    if (cells_.size() == CellNumbers::most) points.fail_here("needs one voxel more than the 2^32 - 2 that there can be");
+    const std::size_t voxel = cells_.number(cell);
+    if (voxel == counts_.size()) append();
+    ++counts_[voxel];
+    if (normals_) add_normal(points, voxel, p - centre);
+    if (colours_) add_colour(points, voxel);
+  }
+
+  void append() {
+    counts_.push_back(0);
+    if (normals_) sums_.emplace_back(0, 0, 0);
+    if (normals_ && settings_.normals == VoxelNormals::nearest) nearest_.push_back(std::numeric_limits<double>::infinity());
+    if (normals_ && settings_.normals == VoxelNormals::fitted) products_.push_back({});
+    if (colours_) squares_.emplace_back(0, 0, 0);
+  }
+
+  template <class Points>
+  void add_normal(const Points& points, std::size_t voxel, const Vec3& d) {
+    if (settings_.normals == VoxelNormals::fitted) {
+      sums_[voxel] += d;
+      std::array<double, 6>& products = products_[voxel];
+      products[0] += d.x * d.x, products[1] += d.x * d.y, products[2] += d.x * d.z;
+      products[3] += d.y * d.y, products[4] += d.y * d.z, products[5] += d.z * d.z;
+      return;
+    }
+    const Vec3 given = points.normal();
+    if (given == Vec3{0, 0, 0}) return;
+    const Vec3 normal = normalize(given / max_norm(given));
+    if (settings_.normals == VoxelNormals::mean) {
+      sums_[voxel] += normal;
+    } else if (dot(d, d) < nearest_[voxel]) {
+      nearest_[voxel] = dot(d, d), sums_[voxel] = normal;
+    }
+  }
+
+  template <class Points>
+  void add_colour(const Points& points, std::size_t voxel) {
+    const Vec3 colour = points.colour();
+    const double largest = settings_.largest_colour.value_or(Points::largest_colour);
+    for (int k = 0; k < 3; ++k)
+      if (!(colour[k] >= 0 && colour[k] <= largest))
+        points.fail_here("has the colour " + pulsecast::detail::written(colour[k]) + ": expected one from 0 to " +
+                         pulsecast::detail::written(largest));
+    const Vec3 share = colour / largest;
+    if (!settings_.largest_colour && largest > 255) brightest_ = std::max(brightest_, max_norm(colour));
+    squares_[voxel] += share * share;
+  }
+
+  [[nodiscard]] std::optional<Vec3> normal_of(std::size_t voxel) const {
+    if (!normals_) return std::nullopt;
+    if (settings_.normals == VoxelNormals::fitted) return plane_normal(static_cast<double>(counts_[voxel]), sums_[voxel], products_[voxel]);
+    constexpr double rounding = 1e-12;  // of what is left where normals of one voxel oppose each other
+    if (!(length(sums_[voxel]) > rounding * static_cast<double>(counts_[voxel]))) return std::nullopt;
+    return normalize(sums_[voxel]);
+  }
+
+  void finish_normals() {
+    if (settings_.normals == VoxelNormals::none || (!normals_ && !settings_.default_normal)) return;
+    const std::optional<Vec3> otherwise =
+        settings_.default_normal ? std::optional(normalize(*settings_.default_normal / max_norm(*settings_.default_normal))) : std::nullopt;
+    std::uint64_t without = 0;
+    cloud_.voxels.normals.reserve(counts_.size());
+    for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
+      std::optional<Vec3> normal = normal_of(voxel);
+      if (!normal) normal = otherwise;
+      if (!normal) ++without;
+      const Vec3 n = normal.value_or(Vec3{});
+      cloud_.voxels.normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
+    }
+    if (without > 0)
+      cloud_.warnings.push_back(std::to_string(without) + " of " + std::to_string(counts_.size()) + " voxels have no normal: " +
+                                (settings_.normals == VoxelNormals::fitted ? "their points are fewer than three, or on one line"
+                                                                           : "those of their points are zero, or oppose each other"));
+  }
+
+  void finish_colours() {
+    if (!colours_) return;
+    if (brightest_ > 0 && brightest_ <= 255)
+      cloud_.warnings.push_back("no colour in the LAS files is above 255, of 65535: if they are bytes, the largest colour should be 255");
+    cloud_.colours.reserve(counts_.size());
+    for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
+      const auto channel = [&](int k) { return static_cast<float>(std::sqrt(squares_[voxel][k] / static_cast<double>(counts_[voxel]))); };
+      cloud_.colours.push_back({channel(0), channel(1), channel(2)});
+    }
+  }
+
+  PointCloudSettings settings_;
+  PointCloud cloud_;
+  bool normals_ = false, colours_ = false;  // whether the second pass gathers them
+  Box bounds_;                              // of the points
+  Vec3 origin_{}, first_{}, last_{};        // of the lattice [m], and its first and last cells from there
+  double brightest_ = 0;                    // channel in LAS files
+  CellNumbers cells_;
+  // Of each voxel:
+  std::vector<std::uint64_t> counts_;            // points
+  std::vector<Vec3> sums_;                       // of normals, or of the points' offsets from the centre
+  std::vector<double> nearest_;                  // squared distance from the centre to the point whose normal is taken
+  std::vector<std::array<double, 6>> products_;  // of those offsets
+  std::vector<Vec3> squares_;                    // of colours
+};
+
+}  // namespace detail
+
+inline PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings) {
+  if (paths.empty()) throw SettingError("read_point_cloud paths", 0, "", "at least one");
+  return detail::PointCloudReader(paths, settings).result();
+}
+
+}  // namespace pulsecast::io

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/io/detail/text/row.hpp>
+#include <pulsecast/io/detail/trajectory/attitude.hpp>
+#include <pulsecast/io/detail/trajectory/columns.hpp>
+#include <pulsecast/io/detail/trajectory/format.hpp>
+#include <pulsecast/io/detail/trajectory/table.hpp>
+#include <pulsecast/io/output_file.hpp>
+#include <pulsecast/platform/waypoints.hpp>
+
+namespace pulsecast::io {
+
+struct TrajectoryFileSettings {
+  double start_time = 0;  ///< what the clock shows at tick 0 [s]
+
+  void validate() const { expect_finite("TrajectoryFileSettings::start_time", start_time, "s"); }
+};
+
+/// Calls `record` with the times of the records of a leg: 0, `interval` [s, positive], twice that and so on, and the end, `duration`.
+template <class Record>
+void for_each_record(const Tick& duration, double interval, const Record& record) {
+  const double end = duration.seconds();
+  constexpr double least = 0.5e-9;  // records that would show the same time are one [s]
+  for (std::uint64_t i = 0; end - static_cast<double>(i) * interval > least; ++i)
+    record(Tick::of_seconds(static_cast<double>(i) * interval));
+  record(duration);
+}
+
+/// Writes where a platform was and how it was turned as text, one record a line, with these columns and a blank between them:
+///
+///     x y z gpsTime roll pitch yaw
+///
+/// x, y, z [m] and the angles [deg], as `helios_canonical` has them, have 4 decimals, gpsTime [s] has 9; yaw is in [0, 360). There is no
+/// head line. These are the columns of HELIOS++ trajectory files; `helios_output_format` reads them. Only `close()` makes the file: see
+/// `OutputFile`.
+class TrajectoryWriter {
+ public:
+  explicit TrajectoryWriter(std::filesystem::path path, const TrajectoryFileSettings& settings = {})
+      : settings_(validated(settings)), file_(std::move(path)) {}
+
+  /// One record; `tick` is in the survey's time.
+  void add(Tick tick, const Pose<frame::Body, frame::World>& pose) {
+    if (!finite(pose.position) || !std::isfinite(length(pose.rotation))) {
+      file_.discard();
+      throw FileError(file_.path().string(), "line " + std::to_string(records_ + 1), "cannot be written: expected a finite pose");
+    }
+    const RollPitchYaw angles = roll_pitch_yaw(pose.rotation, helios_canonical);
+    const double yaw_deg = degrees(angles.yaw < 0 ? angles.yaw + 2 * pi : angles.yaw);
+    row_.add(pose.position.x, 4).add(pose.position.y, 4).add(pose.position.z, 4).add(settings_.start_time + tick.seconds(), 9);
+    row_.add(degrees(angles.roll), 4).add(degrees(angles.pitch), 4).add(yaw_deg < 359.99995 ? yaw_deg : 0, 4);  // not 360.0000
+    file_.write(row_.end());
+    ++records_;
+  }
+
+  /// A leg that begins at `start` in the survey's time. The trajectory is asked in its own time: at 0, `interval` [s], twice the interval
+  /// and so on, and at the end, `duration`.
+  void add(const Trajectory auto& trajectory, Tick start, Tick duration, double interval) {
+    expect_positive("TrajectoryWriter::add interval", interval, "s");
+    for_each_record(duration, interval, [&](const Tick& tick) { add(start + tick, trajectory.at(tick)); });
+  }
+
+  void close() { file_.commit(); }
+
+ private:
+  TrajectoryFileSettings settings_;
+  OutputFile file_;
+  TextRow row_;
+  std::uint64_t records_ = 0;
+};
+
+/// Writes a trajectory so that `read_trajectory` reads it back, with every digit that a double has; yaw is in [0, 2 pi). The poses come in
+/// order of time, where a jump's stands twice; to the times, `start_time` [s] is added.
+void write_trajectory(const std::filesystem::path& path, std::span<const Waypoint> poses, const TrajectoryFormat& format = csv_format(),
+                      double start_time = 0);
+
+namespace detail {
+
+/// The lines that name the columns.
+[[nodiscard]] inline std::string head_of(const TrajectoryFormat& format, const TrajectoryColumns& columns) {
+  if (format.names == ColumnNames::nowhere) return {};
+  const bool in_comments = format.names == ColumnNames::comments;
+  std::string time, names;
+  for (std::size_t i = 0, place = 0; i < format.columns.size(); ++i) {
+    const std::optional<TrajectoryColumn>& column = columns.all()[i];
+    if (!column) continue;
+    if (column->quantity == Quantity::time) time = std::to_string(place);
+    if (place++ > 0) names += in_comments ? std::string(", ") : std::string(1, format.separator);
+    names += in_comments ? '"' + format.columns[i] + '"' : format.columns[i];
+  }
+  return in_comments ? "#TIME_COLUMN: " + time + "\n#HEADER: " + names + '\n' : names + '\n';
+}
+
+/// A pose as a format tells it.
+[[nodiscard]] inline QuantityValues values_of(const Waypoint& pose, const TrajectoryFormat& format, double start_time) {
+  const Vec3 p = pose.position, in_file = format.axes.swapped(p);
+  const Rotation q = format.axes.to_file(pose.rotation);
+  const RollPitchYaw angles = roll_pitch_yaw(pose.rotation, format.angles);
+  const double turn = angles.yaw < 0 ? angles.yaw + 2 * pi : angles.yaw;
+  QuantityValues values;
+  using enum Quantity;
+  values[time] = start_time + pose.time;
+  values[x] = in_file.x, values[y] = in_file.y, values[z] = in_file.z;
+  values[east] = p.x, values[north] = p.y, values[up] = p.z, values[down] = -p.z;
+  values[roll] = angles.roll, values[pitch] = angles.pitch, values[yaw] = turn < 2 * pi ? turn : 0;
+  values[qx] = q.x, values[qy] = q.y, values[qz] = q.z, values[qw] = q.w;
+  return values;
+}
+
+}  // namespace detail
+
+inline void write_trajectory(const std::filesystem::path& path, std::span<const Waypoint> poses, const TrajectoryFormat& format,
+                             double start_time) {
+  format.validate();
+  expect_finite("write_trajectory start_time", start_time, "s");
+  const TrajectoryColumns columns(format.columns, format.left_out, format.angle_unit);
+  if (poses.empty()) throw FileError(path.string(), "", "cannot be written: expected at least one pose");
+  OutputFile file(path);
+  file.write(detail::head_of(format, columns));
+  TextRow row(format.separator);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Waypoint pose{poses[i].time, poses[i].position, unit(poses[i].rotation)};
+    const double time = start_time + pose.time;
+    constexpr double largest = detail::largest_in_trajectory;
+    const bool in_order = i == 0 || time > start_time + poses[i - 1].time || pose.time == poses[i - 1].time;
+    if (!(std::fabs(time) <= largest) || !finite(pose.position) || !(max_norm(pose.position) <= largest) ||
+        !(std::fabs(length(poses[i].rotation) - 1) <= 1e-3) || !in_order)
+      throw FileError(path.string(), "",
+                      "pose " + std::to_string(i) +
+                          " cannot be written: expected finite numbers within 1e12, a unit rotation and a time not before the last one's");
+    const QuantityValues values = detail::values_of(pose, format, start_time);
+    for (const std::optional<TrajectoryColumn>& column : columns.all())
+      if (column) row.add(values[column->quantity] * column->per_si);
+    file.write(row.end());
+  }
+  file.commit();
+}
+
+}  // namespace pulsecast::io

@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <exception>
+#include <limits>
+#include <list>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#define OMPI_SKIP_MPICXX 1  // the bindings for C++ that MPI 3.0 took back, of Open MPI and of MPICH
+#define MPICH_SKIP_MPICXX 1
+#include <mpi.h>
+
+#include <pulsecast/base/expect.hpp>
+
+namespace pulsecast::mpi {
+
+/// MPI, as long as this lives: the first thing that a program makes, and the last that it lets go. Where an exception unwinds it, all
+/// processes are ended, as those others would wait for ever: whoever has something to say of it says so before.
+class MpiSession {
+ public:
+  MpiSession() {
+    int provided = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
+    if (provided < MPI_THREAD_SERIALIZED) throw SettingError("MPI thread level", provided, "", "MPI_THREAD_SERIALIZED at least");
+  }
+  MpiSession(const MpiSession&) = delete;
+  MpiSession& operator=(const MpiSession&) = delete;
+  ~MpiSession() {
+    if (std::uncaught_exceptions() > exceptions_) abort(1);
+    MPI_Finalize();
+  }
+
+  /// Ends all processes at once.
+  static void abort(int status) noexcept { MPI_Abort(MPI_COMM_WORLD, status); }
+
+ private:
+  int exceptions_ = std::uncaught_exceptions();
+};
+
+/// What was sent, to other processes than the sender itself.
+struct MpiTraffic {
+  std::uint64_t messages = 0, bytes = 0;
+};
+
+/// Messages among the processes of a communicator. What one process sends to another arrives in the order of sending; nobody waits for the
+/// other. Calls may come from several threads, but one at a time. Failures of MPI itself end the program, as it does by default.
+class MpiChannel {
+ public:
+  using Bytes = std::vector<std::byte>;
+
+  /// Of all processes of `communicator` together.
+  explicit MpiChannel(MPI_Comm communicator) {
+    MPI_Comm_dup(communicator, &communicator_);
+    MPI_Comm_rank(communicator_, &rank_);
+    MPI_Comm_size(communicator_, &size_);
+  }
+  MpiChannel(const MpiChannel&) = delete;
+  MpiChannel& operator=(const MpiChannel&) = delete;
+  ~MpiChannel() {
+    if (std::uncaught_exceptions() > exceptions_) return;  // nobody may be there to take the rest
+    for (Sent& sent : sent_) MPI_Wait(&sent.request, MPI_STATUS_IGNORE);
+    MPI_Comm_free(&communicator_);
+  }
+
+  [[nodiscard]] int rank() const noexcept { return rank_; }
+  [[nodiscard]] int size() const noexcept { return size_; }
+  [[nodiscard]] bool first() const noexcept { return rank_ == 0; }
+  [[nodiscard]] const MpiTraffic& traffic() const noexcept { return traffic_; }
+
+  /// At most 2 GiB.
+  void send(int to, int kind, Bytes bytes) {
+    expect_within("MPI message size", static_cast<double>(bytes.size()), 0, std::numeric_limits<int>::max(), "bytes");
+    if (to == rank_) return void(to_itself_.push_back({rank_, kind, std::move(bytes)}));
+    ++traffic_.messages, traffic_.bytes += bytes.size();
+    Sent& sent = sent_.emplace_back(Sent{std::move(bytes), MPI_REQUEST_NULL});
+    MPI_Isend(sent.bytes.data(), static_cast<int>(sent.bytes.size()), MPI_BYTE, to, kind, communicator_, &sent.request);
+  }
+
+  /// Calls handle(from, kind, bytes) for every message that is there, and says whether there was one.
+  template <class Handle>
+  bool poll(const Handle& handle) {
+    std::erase_if(sent_, [](Sent& sent) {
+      int done = 0;
+      MPI_Test(&sent.request, &done, MPI_STATUS_IGNORE);
+      return done != 0;
+    });
+    bool any = false;
+    for (; !to_itself_.empty(); any = true) {
+      Arrived message = std::move(to_itself_.front());
+      to_itself_.pop_front();
+      handle(message.from, message.kind, std::move(message.bytes));
+    }
+    for (;; any = true) {
+      int there = 0, size = 0;
+      MPI_Status status;
+      MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, communicator_, &there, &status);
+      if (there == 0) return any;
+      MPI_Get_count(&status, MPI_BYTE, &size);
+      Bytes bytes(static_cast<std::size_t>(size));
+      MPI_Recv(bytes.data(), size, MPI_BYTE, status.MPI_SOURCE, status.MPI_TAG, communicator_, MPI_STATUS_IGNORE);
+      handle(status.MPI_SOURCE, status.MPI_TAG, std::move(bytes));
+    }
+  }
+
+  /// Calls `meanwhile` again and again, until all processes have come here.
+  template <class Meanwhile>
+  void meet(const Meanwhile& meanwhile) {
+    MPI_Request request;
+    MPI_Ibarrier(communicator_, &request);
+    for (int done = 0; done == 0;) {
+      meanwhile();
+      MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    }
+  }
+
+  /// What each process has to say, in the order of their ranks, on the first; nothing on the others.
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value>
+  [[nodiscard]] std::vector<Value> gather(const Value& own) const {
+    std::vector<Value> all(first() ? static_cast<std::size_t>(size_) : 0);
+    constexpr int size = sizeof(Value);
+    MPI_Gather(&own, size, MPI_BYTE, all.data(), size, MPI_BYTE, 0, communicator_);
+    return all;
+  }
+
+  /// What the first process has to say, on all.
+  [[nodiscard]] std::string from_first(std::string text) const {
+    std::uint64_t size = text.size();
+    MPI_Bcast(&size, sizeof size, MPI_BYTE, 0, communicator_);
+    text.resize(size);
+    MPI_Bcast(text.data(), static_cast<int>(size), MPI_BYTE, 0, communicator_);
+    return text;
+  }
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value>
+  [[nodiscard]] Value from_first(Value value) const {
+    MPI_Bcast(&value, sizeof value, MPI_BYTE, 0, communicator_);
+    return value;
+  }
+
+ private:
+  struct Sent {
+    Bytes bytes;
+    MPI_Request request;
+  };
+  struct Arrived {
+    int from, kind;
+    Bytes bytes;
+  };
+
+  MPI_Comm communicator_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1, exceptions_ = std::uncaught_exceptions();
+  std::list<Sent> sent_;  // not received yet
+  std::deque<Arrived> to_itself_;
+  MpiTraffic traffic_;
+};
+
+/// Puts values and bytes after one another into a message, and takes them out again in the same order.
+class MpiParcel {
+ public:
+  MpiParcel() = default;
+  explicit MpiParcel(MpiChannel::Bytes bytes) : bytes_(std::move(bytes)) {}
+
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value> MpiParcel& add(const Value& value) { return add(std::span(&value, 1)); }
+  template <class Value, std::size_t Extent>
+  requires std::is_trivially_copyable_v<Value> MpiParcel& add(std::span<Value, Extent> values) {
+    const auto added = std::as_bytes(values);
+    bytes_.insert(bytes_.end(), added.begin(), added.end());
+    return *this;
+  }
+  [[nodiscard]] MpiChannel::Bytes take() && { return std::move(bytes_); }
+
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value>
+  [[nodiscard]] Value next() {
+    Value value{};
+    PULSECAST_EXPECT(at_ + sizeof value <= bytes_.size());
+    std::memcpy(&value, bytes_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value>
+  void next(std::vector<Value>& values, std::size_t count) {
+    values.resize(count);
+    PULSECAST_EXPECT(at_ + count * sizeof(Value) <= bytes_.size());
+    if (count > 0) std::memcpy(values.data(), bytes_.data() + at_, count * sizeof(Value));
+    at_ += count * sizeof(Value);
+  }
+  /// Takes off what was added last.
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value>
+  [[nodiscard]] Value last() {
+    Value value{};
+    PULSECAST_EXPECT(at_ + sizeof value <= bytes_.size());
+    std::memcpy(&value, bytes_.data() + bytes_.size() - sizeof value, sizeof value);
+    bytes_.resize(bytes_.size() - sizeof value);
+    return value;
+  }
+  [[nodiscard]] std::span<const std::byte> rest() const noexcept { return std::span(bytes_).subspan(at_); }
+
+ private:
+  MpiChannel::Bytes bytes_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace pulsecast::mpi

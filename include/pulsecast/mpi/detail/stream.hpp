@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/echo.hpp>
+#include <pulsecast/io/output_file.hpp>
+#include <pulsecast/mpi/detail/output.hpp>
+
+namespace pulsecast::mpi {
+
+/// Writes batches as they stand in memory, for a process of the same program to read again by `for_each_batch`.
+class MpiBatchWriter {
+ public:
+  explicit MpiBatchWriter(io::OutputFile file) : file_(std::move(file)) {}
+
+  void operator()(const EchoBatch& batch) {
+    const Head head{batch.shots.size(), batch.echoes.size(), batch.samples.size(), batch.subrays.size(), batch.sample_interval};
+    file_.write(std::as_bytes(std::span(&head, 1)));
+    file_.write(std::as_bytes(batch.shots));
+    file_.write(std::as_bytes(batch.echoes));
+    file_.write(std::as_bytes(batch.samples));
+    file_.write(std::as_bytes(batch.subrays));
+  }
+  void close() { file_.commit(); }
+
+  struct Head {
+    std::uint64_t shots, echoes, samples, subrays;
+    double sample_interval;
+  };
+
+ private:
+  io::OutputFile file_;
+};
+
+template <class Sink>
+void for_each_batch(MpiParcel bytes, Sink&& sink) {
+  std::vector<Shot> shots;
+  std::vector<Echo> echoes;
+  std::vector<float> samples;
+  std::vector<SubrayHit> subrays;
+  while (!bytes.rest().empty()) {
+    const auto head = bytes.next<MpiBatchWriter::Head>();
+    bytes.next(shots, head.shots), bytes.next(echoes, head.echoes), bytes.next(samples, head.samples), bytes.next(subrays, head.subrays);
+    sink(EchoBatch{shots, echoes, samples, head.sample_interval, subrays});
+  }
+}
+
+/// What `Writer` writes of all blocks goes to the first process, which takes it in order, some of it at a time. So it is with what only one
+/// can make, as a compressed stream; what all do is simulate, and write text.
+template <class Writer>
+class MpiStream final : public MpiOutput {
+ public:
+  using Make = std::function<Writer(io::OutputFile piece)>;
+  using Take = std::function<void(MpiParcel bytes)>;
+
+  MpiStream(MpiTeam& team, Make make, Take take, std::function<void()> close)
+      : MpiOutput(team), make_(std::move(make)), take_(std::move(take)), close_(std::move(close)) {}
+
+  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(make_); }
+
+  void put(MpiPiece& piece, const MpiPlace& place) override {
+    MpiParcel parcel(std::move(static_cast<Piece&>(piece).bytes));
+    send(0, std::move(parcel.add(place.starts[0])));
+  }
+
+  [[nodiscard]] MpiPlace place(const MpiClaim& /*claim*/, int /*owner*/) override {
+    MpiPlace place;
+    place.starts[0] = placed_++;
+    return place;
+  }
+  [[nodiscard]] bool may_place() const noexcept override {
+    return placed_ - taken_ < std::min(16U, 2U * static_cast<unsigned>(team().size()) + 2);
+  }
+
+  void receive(int /*from*/, MpiParcel parcel) override {
+    const auto number = parcel.last<std::uint64_t>();
+    waiting_.emplace(number, std::move(parcel));
+  }
+
+  bool work() override {
+    const auto next = waiting_.find(taken_);
+    if (next == waiting_.end()) return false;
+    MpiParcel bytes = std::move(next->second);
+    waiting_.erase(next);
+    take_(std::move(bytes));
+    ++taken_;
+    return true;
+  }
+
+  void close() override {
+    if (!team().first()) return;
+    work_until([&] { return taken_ == placed_; });
+    close_();
+  }
+
+ private:
+  struct Piece final : MpiPiece {
+    explicit Piece(const Make& how) : make(how) { clear(); }
+    void clear() override {
+      bytes.clear();
+      writer.emplace(make(io::OutputFile("piece", bytes)));
+    }
+    void operator()(const EchoBatch& batch) override { (*writer)(batch); }
+    [[nodiscard]] MpiClaim claim() override {
+      writer->close();
+      return {};
+    }
+    [[nodiscard]] std::size_t memory() const noexcept override { return bytes.size(); }
+
+    const Make& make;
+    std::vector<std::byte> bytes;
+    std::optional<Writer> writer;
+  };
+
+  Make make_;
+  Take take_;
+  std::function<void()> close_;
+  std::uint64_t placed_ = 0, taken_ = 0;  // pieces, on the first process
+  std::map<std::uint64_t, MpiParcel> waiting_;
+};
+
+}  // namespace pulsecast::mpi

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/io/detail/las/packets.hpp>
+#include <pulsecast/io/las.hpp>
+#include <pulsecast/io/las_encoder.hpp>
+#include <pulsecast/io/las_settings.hpp>
+#include <pulsecast/io/output_file.hpp>
+#include <pulsecast/mpi/detail/file.hpp>
+#include <pulsecast/mpi/detail/output.hpp>
+
+namespace pulsecast::mpi {
+
+namespace detail {
+
+/// The points of a block: their records, without coordinates until the offset of the file is known, and their waveforms.
+class MpiLasPiece final : public MpiPiece {
+ public:
+  MpiLasPiece(const std::filesystem::path& path, const io::LasSettings& settings) : path_(path), encoder_(settings) {
+    if (settings.waveforms) packets_.emplace(io::OutputFile(path_, packet_bytes_));
+  }
+
+  void clear() override {
+    records_.clear(), points_.clear(), packet_bytes_.clear();
+    encoder_.tally() = {};
+    if (packets_) packets_.emplace(io::OutputFile(path_, packet_bytes_));
+  }
+
+  void operator()(const EchoBatch& batch) override {
+    const std::size_t size = encoder_.layout().record();
+    for (const Shot& shot : batch.shots) {
+      if (shot.echoes == 0) continue;
+      std::optional<LasPacket> packet;
+      if (packets_ && shot.samples != 0) packet = packets_->add(batch.waveform_of(shot), batch.sample_interval);
+      encoder_.encode(shot, batch, packet ? &*packet : nullptr, [&](const LasEncoder::Record& record, const Vec3& point) {
+        records_.insert(records_.end(), record.begin(), record.begin() + static_cast<std::ptrdiff_t>(size));
+        points_.push_back(point);
+      });
+    }
+  }
+
+  [[nodiscard]] MpiClaim claim() override {
+    if (packets_) packets_->end_piece();
+    return {{points_.size(), packet_bytes_.size()}, points_.empty() ? Vec3{} : points_.front()};
+  }
+  [[nodiscard]] std::size_t memory() const noexcept override {
+    return records_.size() + std::span(points_).size_bytes() + packet_bytes_.size();
+  }
+
+  /// The records as they are to be written, if `number` points come before them.
+  [[nodiscard]] std::span<const std::byte> located(const Vec3& first, std::uint64_t number, std::uint64_t packets_at) {
+    const std::size_t size = encoder_.layout().record();
+    encoder_.choose_offset(first);
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (!encoder_.locate(records_.data() + i * size, points_[i]))
+        throw FileError(path_.string(), "point " + std::to_string(number + i + 1), encoder_.misfit(points_[i]));
+    if (packets_) encoder_.move_packets(records_, packets_at);
+    return records_;
+  }
+
+  [[nodiscard]] std::span<const std::byte> packet_bytes() const noexcept { return packet_bytes_; }
+  [[nodiscard]] std::uint32_t spacing() const noexcept { return packets_ ? packets_->spacing() : 0; }
+  [[nodiscard]] const LasEncoder& encoder() const noexcept { return encoder_; }
+
+ private:
+  std::filesystem::path path_;
+  LasEncoder encoder_;
+  std::vector<std::byte> records_, packet_bytes_;
+  std::vector<Vec3> points_;
+  std::optional<LasPackets> packets_;
+};
+
+/// What processes can write together: an intensity that depends on all points, none can.
+[[nodiscard]] inline io::LasSettings mpi_las_settings(io::LasSettings settings) {
+  if (settings.intensity == io::LasIntensity::amplitude && !settings.intensity_full_scale)
+    throw SettingError("LasSettings::intensity_full_scale", 0, "W", "given, with amplitudes and many processes");
+  return validated(std::move(settings));
+}
+
+/// What a process has written.
+struct MpiLasShare {
+  LasTally tally{};
+  std::uint32_t spacing = 0;  ///< of samples [ps]
+
+  void add(const MpiLasShare& other) noexcept { tally.add(other.tally), spacing = std::max(spacing, other.spacing); }
+};
+
+[[nodiscard]] inline MpiLasShare sum_of_shares(MpiTeam& team, const MpiLasShare& own) {
+  MpiLasShare sum;
+  for (const MpiLasShare& one : team.channel().gather(own)) sum.add(one);
+  return sum;
+}
+
+}  // namespace detail
+
+/// A LAS file that all processes write, waveforms included: the bytes are those of `LasWriter`. A `SettingError` refuses intensities that
+/// are scaled to the greatest amplitude.
+class MpiLas final : public MpiOutput {
+ public:
+  MpiLas(MpiTeam& team, const std::filesystem::path& path, io::LasSettings settings)
+      : MpiOutput(team),
+        settings_(detail::mpi_las_settings(std::move(settings))),
+        record_(io::detail::LasLayout(settings_.format, settings_.waveforms).record()),
+        points_file_(path),
+        packets_file_(std::filesystem::path(path).replace_extension(".wdp")) {
+    if (team.first()) {
+      whole_.emplace(path, settings_);
+      packets_end_ = whole_->packets_at();
+    }
+    begin_ = team.channel().from_first(whole_ ? whole_->records_at() : 0);
+  }
+
+  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<detail::MpiLasPiece>(points_file_.path(), settings_); }
+
+  void put(MpiPiece& piece, const MpiPlace& place) override {
+    auto& own = static_cast<detail::MpiLasPiece&>(piece);
+    const auto [number, packets_at] = place.starts;
+    points_file_.write(begin_ + number * record_, own.located(place.first, number, packets_at));
+    packets_file_.write(packets_at, own.packet_bytes());
+    share_.add({own.encoder().tally(), own.spacing()});
+  }
+
+  [[nodiscard]] MpiPlace place(const MpiClaim& claim, int /*owner*/) override {
+    if (points_ == 0) first_ = claim.first;
+    const MpiPlace place{{points_, packets_end_}, first_};
+    points_ += claim.amounts[0], packets_end_ += claim.amounts[1];
+    return place;
+  }
+
+  void close() override {
+    points_file_.close(), packets_file_.close();
+    const detail::MpiLasShare all = detail::sum_of_shares(team(), share_);
+    if (!whole_) return;
+    whole_->adopt(all.tally, first_, begin_ + points_ * record_, packets_end_, all.spacing);
+    whole_->close();
+  }
+
+ private:
+  io::LasSettings settings_;
+  std::size_t record_;  // [byte]
+  MpiFile points_file_, packets_file_;
+  detail::MpiLasShare share_;
+  std::uint64_t begin_ = 0;                     // of the points [byte]
+  std::optional<io::LasWriter> whole_;              // on the first process, as what follows
+  std::uint64_t points_ = 0, packets_end_ = 0;  // that have their place; [byte]
+  Vec3 first_{};
+};
+
+}  // namespace pulsecast::mpi

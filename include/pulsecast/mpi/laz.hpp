@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/parallel.hpp>
+#include <pulsecast/io/las_settings.hpp>
+#include <pulsecast/io/laz.hpp>
+#include <pulsecast/io/laz_encoder.hpp>
+#include <pulsecast/mpi/detail/file.hpp>
+#include <pulsecast/mpi/detail/output.hpp>
+#include <pulsecast/mpi/las.hpp>
+
+namespace pulsecast::mpi {
+
+/// A LAZ file that all processes write: the bytes are those of `LazWriter`. The process that has the first point of a chunk compresses it,
+/// on so many threads as are said; others send it what they have of that chunk. The first process adds up the sizes of chunks.
+class MpiLaz final : public MpiOutput {
+ public:
+  MpiLaz(MpiTeam& team, const std::filesystem::path& path, io::LasSettings settings, unsigned threads = 0)
+      : MpiOutput(team),
+        settings_(io::LazWriter::compressible(detail::mpi_las_settings(std::move(settings)))),
+        record_(io::detail::LasLayout(settings_.format, false).record()),
+        threads_(thread_count(threads)),
+        file_(path) {
+    if (team.first()) {
+      whole_.emplace(path, settings_, threads);
+      end_ = whole_->records_at();
+    }
+  }
+
+  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<detail::MpiLasPiece>(file_.path(), settings_); }
+
+  /// Chunks that lie in the piece as a whole are compressed here, and the one that begins in it and goes on behind it.
+  void put(MpiPiece& piece, const MpiPlace& place) override {
+    auto& own = static_cast<detail::MpiLasPiece&>(piece);
+    std::uint64_t at = place.starts[0];
+    std::span<const std::byte> records = own.located(place.first, at, 0);
+    share_.add({own.encoder().tally(), 0});
+    while (!records.empty()) {
+      const std::uint64_t before = at % chunk_points;
+      const auto some = records.first(std::min(records.size(), (chunk_points - before) * record_));
+      if (before == 0 || place.chunk_owner == team().rank())
+        add(at, some);
+      else
+        send(place.chunk_owner, std::move(MpiParcel().add(Message::part).add(at).add(some)));
+      records = records.subspan(some.size()), at += some.size() / record_;
+    }
+  }
+
+  [[nodiscard]] MpiPlace place(const MpiClaim& claim, int owner) override {
+    if (points_ == 0) first_ = claim.first;
+    const MpiPlace place{{points_, 0}, first_, chunk_owner_};
+    const std::uint64_t begun = chunks_of(points_);
+    points_ += claim.amounts[0];
+    if (chunks_of(points_) > begun) chunk_owner_ = owner;
+    return place;
+  }
+
+  void receive(int from, MpiParcel parcel) override {
+    switch (parcel.next<Message>()) {
+      case Message::part: {
+        const auto at = parcel.next<std::uint64_t>();
+        return add(at, parcel.rest());
+      }
+      case Message::sizes:
+        while (!parcel.rest().empty()) {
+          const auto [number, size] = parcel.next<Size>();
+          sizes_.emplace(number, std::pair(size, from));
+        }
+        return place_chunks();
+      case Message::position: {
+        const auto [number, position] = parcel.next<Size>();
+        const auto chunk = compressed_.find(number);
+        file_.write(position, chunk->second);
+        compressed_.erase(chunk);
+        return;
+      }
+      case Message::all_points:
+        all_points_ = parcel.next<std::uint64_t>();
+        if (const auto last = gathered_.find(*all_points_ / chunk_points); last != gathered_.end()) finish(last);
+        return;
+      case Message::all_placed:
+        all_placed_ = true;
+        return;
+    }
+  }
+
+  /// Compresses as many chunks as there are threads.
+  bool work() override {
+    std::vector<Chunk> some;
+    for (; !ready_.empty() && some.size() < threads_; ready_.pop_front()) some.push_back(std::move(ready_.front()));
+    if (some.empty()) return false;
+    for_each_index(some.size(), threads_, [&](std::size_t i) { some[i].bytes = io::detail::LazChunk(some[i].bytes, record_).compressed(); });
+    MpiParcel sizes;
+    sizes.add(Message::sizes);
+    for (Chunk& chunk : some) {
+      sizes.add(Size{chunk.number, chunk.bytes.size()});
+      compressed_.emplace(chunk.number, std::move(chunk.bytes));
+    }
+    send(0, std::move(sizes));
+    return true;
+  }
+
+  [[nodiscard]] bool full() const noexcept override { return compressed_.size() + ready_.size() > most_waiting; }
+
+  void close() override {
+    if (team().first())
+      for (int rank = 0; rank < team().size(); ++rank) send(rank, std::move(MpiParcel().add(Message::all_points).add(points_)));
+    work_until([&] {
+      if (team().first() && !all_told_ && sizes_of_placed_.size() == chunks_of(points_)) {
+        all_told_ = true;
+        for (int rank = 0; rank < team().size(); ++rank) send(rank, std::move(MpiParcel().add(Message::all_placed)));
+      }
+      return all_placed_ && compressed_.empty();
+    });
+    file_.close();
+    const detail::MpiLasShare all = detail::sum_of_shares(team(), share_);
+    if (!whole_) return;
+    whole_->adopt(all.tally, first_, end_);
+    whole_->records().adopt(std::move(sizes_of_placed_));
+    whole_->close();
+  }
+
+ private:
+  enum class Message : std::uint8_t { part, sizes, position, all_points, all_placed };
+  struct Size {
+    std::uint64_t number, bytes;
+  };
+  struct Chunk {
+    std::uint64_t number = 0;
+    std::vector<std::byte> bytes;
+    std::uint64_t points = 0;  // of it that are there
+  };
+  using Chunks = std::map<std::uint64_t, Chunk>;
+  static constexpr std::uint64_t chunk_points = io::detail::laz_chunk_points;
+  static constexpr std::size_t most_waiting = 64;  // chunks
+
+  [[nodiscard]] static std::uint64_t chunks_of(std::uint64_t points) noexcept { return (points + chunk_points - 1) / chunk_points; }
+
+  /// Puts records of one chunk where they belong in it, which comes in any order.
+  void add(std::uint64_t at, std::span<const std::byte> records) {
+    const std::uint64_t number = at / chunk_points;
+    const auto chunk = gathered_.try_emplace(number, Chunk{number, {}, 0}).first;
+    chunk->second.bytes.resize(std::max<std::size_t>(chunk->second.bytes.size(), (at % chunk_points) * record_ + records.size()));
+    std::copy(records.begin(), records.end(), chunk->second.bytes.begin() + static_cast<std::ptrdiff_t>((at % chunk_points) * record_));
+    chunk->second.points += records.size() / record_;
+    finish(chunk);
+  }
+
+  /// A chunk goes on to be compressed when all of it is there.
+  void finish(Chunks::iterator chunk) {
+    const std::uint64_t points = chunk->second.points;
+    if (points < chunk_points && chunk->first * chunk_points + points != all_points_) return;
+    ready_.push_back(std::move(chunk->second));
+    gathered_.erase(chunk);
+  }
+
+  /// On the first process: says where chunks belong, before which all are known.
+  void place_chunks() {
+    for (auto next = sizes_.find(sizes_of_placed_.size()); next != sizes_.end(); next = sizes_.find(sizes_of_placed_.size())) {
+      const auto [size, owner] = next->second;
+      send(owner, std::move(MpiParcel().add(Message::position).add(Size{next->first, end_})));
+      end_ += size;
+      sizes_of_placed_.push_back(size);
+      sizes_.erase(next);
+    }
+  }
+
+  io::LasSettings settings_;
+  std::size_t record_;  // [byte]
+  unsigned threads_;
+  MpiFile file_;
+  detail::MpiLasShare share_;
+  Chunks gathered_;                                             // by number, from several processes
+  std::deque<Chunk> ready_;                                     // to be compressed
+  std::map<std::uint64_t, std::vector<std::byte>> compressed_;  // by number, until their place is known
+  std::optional<std::uint64_t> all_points_;                     // of the file, at the end
+  bool all_placed_ = false;
+
+  // on the first process
+  std::optional<io::LazWriter> whole_;
+  std::uint64_t points_ = 0, end_ = 0;  // that have their place; of the chunks that have theirs [byte]
+  Vec3 first_{};
+  int chunk_owner_ = 0;                                         // of the chunk begun last
+  std::map<std::uint64_t, std::pair<std::size_t, int>> sizes_;  // and owners, by number of the chunk, without a place
+  std::vector<std::size_t> sizes_of_placed_;                    // [byte]
+  bool all_told_ = false;
+};
+
+}  // namespace pulsecast::mpi

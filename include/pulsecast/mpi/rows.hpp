@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/io/output_file.hpp>
+#include <pulsecast/mpi/detail/file.hpp>
+#include <pulsecast/mpi/detail/output.hpp>
+
+namespace pulsecast::mpi {
+
+/// A file that all processes write, of rows of text: what `Writer` makes of one batch after another is what it makes of all of them, as
+/// with `XyzWriter`, `PulseTextWriter` and `WaveformTextWriter`.
+template <class Writer, class Settings>
+class MpiRows final : public MpiOutput {
+ public:
+  MpiRows(MpiTeam& team, std::filesystem::path path, Settings settings)
+      : MpiOutput(team), settings_(std::move(settings)), file_(std::move(path)) {
+    if (team.first()) whole_.emplace(file_.path());
+  }
+
+  [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(file_.path(), settings_); }
+  void put(MpiPiece& piece, const MpiPlace& place) override { file_.write(place.starts[0], static_cast<Piece&>(piece).bytes); }
+
+  [[nodiscard]] MpiPlace place(const MpiClaim& claim, int /*owner*/) override {
+    MpiPlace place;
+    place.starts[0] = std::exchange(size_, size_ + claim.amounts[0]);
+    return place;
+  }
+
+  void close() override {
+    file_.close();
+    (void)team().channel().gather(0);  // all have written
+    if (!whole_) return;
+    whole_->continue_at(size_);
+    whole_->commit();
+  }
+
+ private:
+  struct Piece final : MpiPiece {
+    Piece(const std::filesystem::path& file, const Settings& how) : path(file), settings(how) { clear(); }
+    void clear() override {
+      bytes.clear();
+      writer.emplace(io::OutputFile(path, bytes), settings);
+    }
+    void operator()(const EchoBatch& batch) override { (*writer)(batch); }
+    [[nodiscard]] MpiClaim claim() override {
+      writer->close();
+      MpiClaim claim;
+      claim.amounts[0] = bytes.size();
+      return claim;
+    }
+    [[nodiscard]] std::size_t memory() const noexcept override { return bytes.size(); }
+
+    const std::filesystem::path& path;
+    const Settings& settings;
+    std::vector<std::byte> bytes;
+    std::optional<Writer> writer;
+  };
+
+  Settings settings_;
+  MpiFile file_;
+  std::optional<io::OutputFile> whole_;  // on the first process
+  std::uint64_t size_ = 0;           // of what has its place, there [byte]
+};
+
+}  // namespace pulsecast::mpi

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/mpi/detail/blocks.hpp>
+#include <pulsecast/mpi/detail/channel.hpp>
+#include <pulsecast/mpi/detail/output.hpp>
+#include <pulsecast/mpi/detail/stream.hpp>
+#include <pulsecast/mpi/las.hpp>
+#include <pulsecast/mpi/laz.hpp>
+#include <pulsecast/mpi/rows.hpp>
+#include <pulsecast/run.hpp>
+
+/// Runs a survey on the processes of an MPI communicator, one or several a machine, each with threads of its own.
+///
+///     MpiSession mpi;
+///     MpiTeam team;                                   // of MPI_COMM_WORLD
+///     MpiLas points(team, "points.las", {});          // all processes write it
+///     run(team, survey, {.threads = 8}, points);      // all processes make the same survey
+///     points.close();
+///
+/// The first process hands out blocks of pulses as others ask, and works as they do. The results are those of one process, byte for byte.
+/// All functions are called by all processes. What one of them throws must end them all: see `MpiSession`.
+namespace pulsecast::mpi {
+
+/// Simulates part of a survey: what `run(survey, options, sink)` does.
+using MpiSimulate = std::function<RunSummary(const RunOptions& options, const std::function<void(const EchoBatch&)>& sink)>;
+
+namespace detail {
+
+/// One run, as one process takes part in it.
+class MpiRun {
+ public:
+  MpiRun(MpiTeam& team, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate, std::span<MpiOutput* const> outputs)
+      : team_(team), slots_(options.slots(size)), options_(options), simulate_(simulate), outputs_(outputs.begin(), outputs.end()) {
+    if (team.first()) ledger_.emplace(slots_.count, static_cast<unsigned>(team.size()));
+  }
+
+  RunSummary run() {
+    team_.begin(this, [](void* self, int from, int kind, MpiParcel parcel) { static_cast<MpiRun*>(self)->receive(from, kind, parcel); });
+    send(0, ask, {});
+    while (!(no_more_ && held_.empty())) {
+      const bool served = serve(), worked = work();
+      if (work_ && held_.size() < most_held && !full())
+        simulate(*std::exchange(work_, std::nullopt));
+      else if (!served && !worked)
+        MpiTeam::pause();
+    }
+    team_.channel().meet([this] {
+      if (!serve() && !work()) MpiTeam::pause();
+    });
+    team_.end();
+    return sum();
+  }
+
+ private:
+  enum Kind { ask, give, done, belongs };
+
+  struct Held {
+    std::uint64_t number;
+    std::vector<std::unique_ptr<MpiPiece>> pieces;
+    std::optional<std::vector<MpiPlace>> places{};
+  };
+  static constexpr std::size_t most_held = 3;
+
+  void send(int to, Kind kind, MpiParcel parcel) { team_.send(to, kind, std::move(parcel)); }
+
+  bool serve() {
+    const bool served = team_.serve();
+    place();
+    return served;
+  }
+
+  void receive(int from, int kind, MpiParcel& parcel) {
+    if (kind == ask) {
+      if (options_.stop.stop_requested()) ledger_->stop();
+      const std::optional<MpiBlock> block = ledger_->next(from);
+      send(from, give, std::move(MpiParcel().add(block.value_or(MpiBlock{}))));
+    } else if (kind == give) {
+      const auto block = parcel.next<MpiBlock>();
+      if (block.from < block.to)
+        work_ = block;
+      else
+        no_more_ = true;
+    } else if (kind == done) {
+      const auto number = parcel.next<std::uint64_t>();
+      const auto cost = parcel.next<MpiCost>();
+      std::vector<MpiClaim> claims;
+      parcel.next(claims, outputs_.size());
+      ledger_->finish(number, std::move(claims), cost);
+      const MpiCost& spent = ledger_->spent();
+      if (options_.progress) options_.progress({spent.slots, slots_.count, spent.echoes, elapsed()});
+    } else {
+      const auto number = parcel.next<std::uint64_t>();
+      const auto held = std::find_if(held_.begin(), held_.end(), [&](const Held& h) { return h.number == number; });
+      parcel.next(held->places.emplace(), outputs_.size());
+    }
+  }
+
+  /// On the first process: says where the pieces of blocks belong, as soon as that is known.
+  void place() {
+    if (!ledger_) return;
+    const auto may = [this] { return std::all_of(outputs_.begin(), outputs_.end(), [](const MpiOutput* o) { return o->may_place(); }); };
+    ledger_->settle(may, [this](std::uint64_t number, int owner, const std::vector<MpiClaim>& claims) {
+      MpiParcel parcel;
+      parcel.add(number);
+      for (std::size_t k = 0; k < outputs_.size(); ++k) parcel.add(outputs_[k]->place(claims[k], owner));
+      send(owner, belongs, std::move(parcel));
+    });
+  }
+
+  /// Puts a piece where it belongs, or does something else that can be done now.
+  bool work() {
+    bool any = false;
+    if (!held_.empty() && held_.front().places) {  // blocks of one process are placed in their order
+      Held due = std::move(held_.front());
+      held_.pop_front();
+      for (std::size_t k = 0; k < outputs_.size(); ++k) {
+        outputs_[k]->put(*due.pieces[k], (*due.places)[k]);
+        outputs_[k]->give_back(std::move(due.pieces[k]));
+      }
+      any = true;
+    }
+    for (MpiOutput* output : outputs_) any = output->work() || any;
+    return any;
+  }
+
+  [[nodiscard]] bool full() const {
+    return std::any_of(outputs_.begin(), outputs_.end(), [](const MpiOutput* o) { return o->full(); });
+  }
+
+  void simulate(const MpiBlock& block) {
+    send(0, ask, {});  // so that the next is here when this is done
+    Held& held = held_.emplace_back(Held{block.number, {}});
+    for (MpiOutput* output : outputs_) held.pieces.push_back(output->take_piece());
+    RunOptions part{.threads = options_.threads,
+                    .first = slots_[block.from],
+                    .end = slots_[block.to - 1] + 1,
+                    .stride = slots_.stride};
+    part.progress = [this](const Progress&) { serve(); };
+    std::vector<Shot> shots;
+    const RunSummary summary = simulate_(part, [&](const EchoBatch& batch) {
+      for (std::size_t k = 0; k < outputs_.size(); ++k) {
+        EchoBatch some = batch;
+        if (const auto channel = outputs_[k]->channel) {
+          shots.clear();
+          std::copy_if(batch.shots.begin(), batch.shots.end(), std::back_inserter(shots),
+                       [&](const Shot& s) { return s.channel == *channel; });
+          some.shots = shots;
+        }
+        (*held.pieces[k])(some);
+      }
+    });
+    own_.add(summary);
+    MpiCost cost{summary.slots, summary.echoes, 0, summary.seconds};
+    MpiParcel claims;
+    for (const auto& piece : held.pieces) {
+      claims.add(piece->claim());
+      cost.bytes += piece->memory();
+    }
+    send(0, done, std::move(MpiParcel().add(block.number).add(cost).add(claims.rest())));
+  }
+
+  /// What all have done together.
+  [[nodiscard]] RunSummary sum() {
+    const std::vector<RunSummary> all = team_.channel().gather(std::exchange(own_, {}));
+    for (const RunSummary& one : all) own_.add(one);
+    own_.seconds = elapsed();
+    own_.complete = own_.slots == slots_.count;
+    return team_.channel().from_first(own_);
+  }
+
+  [[nodiscard]] double elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+
+  MpiTeam& team_;
+  RunSlots slots_;
+  const RunOptions& options_;
+  const MpiSimulate& simulate_;
+  std::vector<MpiOutput*> outputs_;
+  std::optional<MpiLedger> ledger_;  // on the first process
+  std::optional<MpiBlock> work_;     // to be done next
+  bool no_more_ = false;
+  std::deque<Held> held_;  // what is done, and the block at hand
+  RunSummary own_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
+
+/// A sink of the first process, fed with what all simulate.
+template <class Sink>
+[[nodiscard]] std::unique_ptr<MpiOutput> mpi_output(MpiTeam& team, Sink& sink) {
+  return std::make_unique<MpiStream<MpiBatchWriter>>(
+      team, [](io::OutputFile piece) { return MpiBatchWriter(std::move(piece)); },
+      [&sink](MpiParcel bytes) { for_each_batch(std::move(bytes), sink); }, [] {});
+}
+
+}  // namespace detail
+
+/// Runs a survey of so many slots, of which every process can simulate any part. Outputs may be written to in several runs; they are closed
+/// by whoever made them. `options.progress` and `options.stop` are asked on the first process only: when stopped, blocks that were begun
+/// are finished, so that what is there is whole up to some slot. `options.threads` is per process.
+inline RunSummary run_parts(MpiTeam& team, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate,
+                            std::span<MpiOutput* const> outputs) {
+  return detail::MpiRun(team, size, options, simulate, outputs).run();
+}
+
+/// Simulates the pulses of a survey, which all processes have made alike. A sink is an `MpiOutput`, which all write to, or any `EchoSink`:
+/// of these, only the first process's are called, with the batches in pulse order. All processes get the summary of all.
+template <class Survey, class... Sinks>
+RunSummary run(MpiTeam& team, const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
+  std::vector<MpiOutput*> outputs;
+  std::vector<std::unique_ptr<MpiOutput>> own;
+  const auto take = [&]<class Sink>(Sink& sink) {
+    if constexpr (std::is_base_of_v<MpiOutput, Sink>) {
+      outputs.push_back(&sink);
+    } else {
+      static_assert(EchoSink<Sink>);
+      outputs.push_back(own.emplace_back(detail::mpi_output(team, sink)).get());
+    }
+  };
+  (take(sinks), ...);
+  const MpiSimulate simulate = [&](const RunOptions& part, const std::function<void(const EchoBatch&)>& sink) {
+    return pulsecast::run(survey, part, sink);
+  };
+  const RunSummary summary = run_parts(team, survey.size(), options, simulate, outputs);
+  for (const auto& output : own) output->close();
+  return summary;
+}
+
+}  // namespace pulsecast::mpi

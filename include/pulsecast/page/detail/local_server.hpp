@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <httplib.h>
+
+namespace pulsecast::page {
+
+/// Limits of a `LocalServer`, so that no client takes memory, descriptors or time from the program.
+struct LocalServerLimits {
+  std::size_t connections = 32;                     ///< open at once; one more closes the oldest
+  std::size_t request_bytes = 65'536;               ///< a request line with its headers
+  std::chrono::milliseconds request_time{2'000};    ///< from the connection to the end of the headers
+  std::chrono::milliseconds response_time{10'000};  ///< from there to the last byte taken
+};
+
+namespace detail {
+
+/// One request in memory, and the response to it, as httplib reads and writes them.
+class BufferedExchange final : public httplib::Stream {
+ public:
+  explicit BufferedExchange(std::string request) : request_(std::move(request)) {}
+
+  [[nodiscard]] bool is_readable() const override { return read_ < request_.size(); }
+  [[nodiscard]] bool is_writable() const override { return true; }
+  ssize_t read(char* to, std::size_t size) override {
+    const std::size_t count = request_.copy(to, size, read_);
+    read_ += count;
+    return static_cast<ssize_t>(count);
+  }
+  ssize_t write(const char* from, std::size_t size) override {
+    response.append(from, size);
+    return static_cast<ssize_t>(size);
+  }
+  void get_remote_ip_and_port(std::string& ip, int& port) const override { ip = "127.0.0.1", port = 0; }
+  void get_local_ip_and_port(std::string& ip, int& port) const override { ip = "127.0.0.1", port = 0; }
+  [[nodiscard]] socket_t socket() const override { return INVALID_SOCKET; }
+
+  std::string response{};
+
+ private:
+  std::string request_;
+  std::size_t read_ = 0;
+};
+
+}  // namespace detail
+
+/// A server at 127.0.0.1 whose clients, slow, many or large, are held to `LocalServerLimits`. It takes the routes of `httplib::Server`, and
+/// its parser. One thread waits for all connections, so that a client that does nothing costs nothing; a connection is one request, without
+/// a body.
+class LocalServer final : public httplib::Server {
+ public:
+  explicit LocalServer(const LocalServerLimits& limits = {}) : limits_(limits) {
+    set_payload_max_length(0);
+    set_socket_options([](socket_t socket) {  // not those of httplib, by which two servers may share a port
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+      fcntl(socket, F_SETFL, O_NONBLOCK);
+      fcntl(socket, F_SETFD, FD_CLOEXEC);
+    });
+  }
+  LocalServer(const LocalServer&) = delete;
+  LocalServer& operator=(const LocalServer&) = delete;
+  ~LocalServer() override { end(); }
+
+  /// Takes a port, 0 for any that is free, and returns it. Throws a `std::runtime_error` if it cannot be had.
+  int bind(int port) {
+    const int bound = port > 0 ? (bind_to_port("127.0.0.1", port) ? port : -1) : bind_to_any_port("127.0.0.1");
+    if (bound <= 0) throw std::runtime_error("127.0.0.1 has no port " + (port > 0 ? std::to_string(port) : "to give"));
+    ::listen(svr_sock_, SOMAXCONN);
+    return bound;
+  }
+
+  /// Begins to answer; no route may be added afterwards.
+  void start() {
+    thread_ = std::thread([this] { serve(); });
+  }
+
+  /// Closes all connections at once, whatever they are waiting for.
+  void end() {
+    ending_ = true;
+    if (svr_sock_ != INVALID_SOCKET) shutdown(svr_sock_, SHUT_RDWR);  // wakes poll()
+    if (thread_.joinable()) thread_.join();
+    if (const socket_t socket = svr_sock_.exchange(INVALID_SOCKET); socket != INVALID_SOCKET) close(socket);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  struct Connection {
+    socket_t socket;
+    Clock::time_point deadline;
+    std::string bytes{};    // the request as far as it came, then the response
+    std::size_t sent = 0;   // of the response
+    bool answered = false;  // bytes are the response
+    bool over = false;
+  };
+
+  void serve() {
+    constexpr int tick = 100;  // deadlines are looked at so often [ms]
+    bool may_accept = true;    // false for a tick after the system had no descriptor
+    std::vector<pollfd> ready;
+    while (!ending_) {
+      ready.assign(1, {may_accept ? svr_sock_.load() : -1, POLLIN, 0});
+      for (const Connection& c : open_) ready.push_back({c.socket, static_cast<short>(c.answered ? POLLOUT : POLLIN), 0});
+      poll(ready.data(), ready.size(), may_accept && open_.empty() ? -1 : tick);
+      const auto now = Clock::now();  // once a round: what one request takes to be answered is not held against the others
+      for (std::size_t k = 0; k < open_.size(); ++k) {
+        if (ready[k + 1].revents != 0) proceed(open_[k]);
+        if (now > open_[k].deadline) open_[k].over = true;
+      }
+      close_if([](const Connection& c) { return c.over; });
+      may_accept = ready[0].revents == 0 || accept_one();
+    }
+    close_if([](const Connection&) { return true; });
+  }
+
+  /// Takes one connection only, so that all get their turn before the next. Returns false if the system has no descriptor left.
+  bool accept_one() {
+    const socket_t socket = accept4(svr_sock_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (socket == INVALID_SOCKET) return errno != EMFILE && errno != ENFILE && errno != ENOBUFS && errno != ENOMEM;
+    if (open_.size() >= limits_.connections) {
+      const auto waiting = std::find_if(open_.begin(), open_.end(), [](const Connection& c) { return !c.answered; });
+      const auto oldest = waiting != open_.end() ? waiting : open_.begin();
+      close(oldest->socket);
+      open_.erase(oldest);
+    }
+    open_.push_back({socket, Clock::now() + limits_.request_time});
+    return true;
+  }
+
+  void proceed(Connection& c) {
+    if (!c.answered && !receive(c)) return;
+    const ssize_t sent = send(c.socket, c.bytes.data() + c.sent, c.bytes.size() - c.sent, MSG_NOSIGNAL);
+    if (sent > 0)
+      c.sent += static_cast<std::size_t>(sent);
+    else if (errno != EAGAIN && errno != EINTR)
+      c.over = true;
+    if (c.sent == c.bytes.size()) c.over = true;
+  }
+
+  /// Returns true once `bytes` are a response.
+  bool receive(Connection& c) {
+    char room[4096];
+    const ssize_t count = recv(c.socket, room, std::min(sizeof room, limits_.request_bytes - c.bytes.size()), 0);
+    if (count <= 0) {
+      c.over = count == 0 || (errno != EAGAIN && errno != EINTR);
+      return false;
+    }
+    const std::size_t from = c.bytes.size() < 3 ? 0 : c.bytes.size() - 3;
+    c.bytes.append(room, static_cast<std::size_t>(count));
+    const bool whole = c.bytes.find("\r\n\r\n", from) != std::string::npos;
+    if (!whole && c.bytes.size() < limits_.request_bytes) return false;
+    detail::BufferedExchange exchange(std::move(c.bytes));
+    bool closed = true;
+    try {
+      process_request(exchange, true, closed, nullptr);
+    } catch (...) {  // memory: this client has none, the next may
+      exchange.response.clear();
+    }
+    c.bytes = std::move(exchange.response);
+    c.answered = true;
+    c.deadline = Clock::now() + limits_.response_time;
+    return true;
+  }
+
+  template <class Condition>
+  void close_if(const Condition& condition) {
+    for (const Connection& c : open_)
+      if (condition(c)) close(c.socket);
+    std::erase_if(open_, condition);
+  }
+
+  LocalServerLimits limits_;
+  std::vector<Connection> open_{};  // the oldest first
+  std::atomic<bool> ending_ = false;
+  std::thread thread_{};
+};
+
+}  // namespace pulsecast::page

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <pulsecast/base/expect.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/echo.hpp>
+
+namespace pulsecast::page {
+
+/// A point of a page: an echo, and what its shot was.
+struct PagePoint {
+  Vec3 position{};                       ///< in the world [m]
+  double time = 0;                       ///< since the survey's start [s]
+  PulseIndex pulse = 0;                  ///< number of the pulse
+  std::array<float, 3> to_instrument{};  ///< from the point to where its pulse left [m]
+  float amplitude = 0, reflectance = 0;  ///< as in `Echo`, the amplitude in watts
+  float width = 0;                       ///< as in `Echo` [s]
+  float incidence = 0, scan_angle = 0;   ///< [rad]
+  ObjectId object = 0;                   ///< as in `Echo`
+  std::uint32_t key = 0;                 ///< by which a cloud is thinned: see `page_key`
+  std::uint16_t classification = 0;      ///< as in `Echo`
+  std::uint16_t leg = 0;                 ///< as in `Shot`
+  std::uint8_t number = 1, returns = 1;  ///< of the echo, and how many its pulse has
+  std::uint8_t channel = 0;              ///< as in `Shot`
+};
+
+/// A number that looks random, but is that of an echo, whatever else is in the cloud. Source: Appleby 2011, MurmurHash3, fmix64.
+[[nodiscard]] constexpr std::uint32_t page_key(PulseIndex pulse, std::uint8_t number) noexcept {
+  std::uint64_t h = pulse * 256 + number;
+  h = (h ^ h >> 33) * 0xff51afd7ed558ccd;
+  h = (h ^ h >> 33) * 0xc4ceb9fe1a85ec53;
+  return static_cast<std::uint32_t>((h ^ h >> 33) >> 32);
+}
+
+/// A sink that keeps at most so many points, those of the least keys, in pulse order: an even sample of the echoes that depends on them
+/// alone. Points that are not finite are passed over. Memory: a little more than a hundred bytes a point kept.
+class PageSample {
+ public:
+  /// `most` is from 2 to 2^27.
+  explicit PageSample(std::size_t most) : most_(most) { expect_within("PageSample::most", static_cast<double>(most), 2, 134'217'728, ""); }
+
+  void operator()(const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots)
+      for (const Echo& echo : batch.echoes_of(shot)) {
+        ++seen_;
+        const std::uint32_t key = page_key(shot.index, echo.number);
+        if (thinned_ && key >= largest_key_) continue;
+        const Vec3 position = point_of(shot, echo), back = shot.direction * -echo.range;
+        if (!finite(position) || !finite(back)) continue;
+        points_.push_back({.position = position,
+                           .time = shot.tick.seconds(),
+                           .pulse = shot.index,
+                           .to_instrument = {static_cast<float>(back.x), static_cast<float>(back.y), static_cast<float>(back.z)},
+                           .amplitude = static_cast<float>(echo.amplitude),
+                           .reflectance = static_cast<float>(echo.reflectance),
+                           .width = static_cast<float>(echo.width),
+                           .incidence = static_cast<float>(std::acos(std::clamp(echo.cos_incidence, -1.0, 1.0))),
+                           .scan_angle = static_cast<float>(shot.scan_angle),
+                           .object = echo.object,
+                           .key = key,
+                           .classification = echo.classification,
+                           .leg = shot.leg,
+                           .number = echo.number,
+                           .returns = static_cast<std::uint8_t>(std::min<std::uint32_t>(shot.echoes, 255)),
+                           .channel = shot.channel});
+        if (points_.size() >= most_ + most_ / 4 + 1) thin();
+      }
+  }
+
+  /// Those kept, in pulse order; valid until the next batch.
+  [[nodiscard]] std::span<const PagePoint> points() {
+    if (points_.size() > most_) thin();
+    return points_;
+  }
+
+  [[nodiscard]] std::uint64_t seen() const noexcept { return seen_; }  ///< echoes so far
+  /// No point kept has a larger key.
+  [[nodiscard]] std::uint32_t largest_key() const noexcept { return largest_key_; }
+
+ private:
+  /// Leaves the points of the least keys; of equal keys, those that came first.
+  void thin() {
+    keys_.clear();
+    for (const PagePoint& point : points_) keys_.push_back(point.key);
+    const auto last = keys_.begin() + static_cast<std::ptrdiff_t>(most_ - 1);
+    std::nth_element(keys_.begin(), last, keys_.end());
+    largest_key_ = *last, thinned_ = true;
+    auto equal = 1 + std::count(keys_.begin(), last, largest_key_);  // that may stay
+    std::erase_if(points_, [&](const PagePoint& p) { return p.key > largest_key_ || (p.key == largest_key_ && equal-- <= 0); });
+  }
+
+  std::size_t most_;
+  std::vector<PagePoint> points_;
+  std::vector<std::uint32_t> keys_;
+  std::uint64_t seen_ = 0;
+  std::uint32_t largest_key_ = std::numeric_limits<std::uint32_t>::max();
+  bool thinned_ = false;
+};
+static_assert(EchoSink<PageSample>);
+
+}  // namespace pulsecast::page

@@ -1,0 +1,429 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string_view>
+
+namespace pulsecast::page {
+
+/// What a page is made to run first: the points as `page_columns` writes them, in memory; and how they are drawn, by WebGL 2.
+inline constexpr std::string_view page_points_script = R"js(
+'use strict'
+
+// ---------------------------------------------------------------------------------------------------------- the points
+
+const byId = id => document.getElementById(id)
+
+function bytesOfBase64(text) {
+  const chars = atob(text), bytes = new Uint8Array(chars.length)
+  for (let i = 0; i < chars.length; ++i) bytes[i] = chars.charCodeAt(i)
+  return bytes
+}
+
+async function inflated(bytes) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'))
+  return new Uint8Array(await new Response(stream).arrayBuffer())
+}
+
+/// The values of every column of a block, as arrays by name; NaN where there is none.
+async function readBlock(bytes) {
+  const size = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true)
+  const head = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + size)))
+  const planes = await inflated(bytes.subarray(4 + size))
+  const block = { count: head.count, columns: {}, steps: {} }
+  let at = 0
+  for (const column of head.columns) {
+    const codes = new Float64Array(head.count)
+    for (let k = 0, weight = 1; k < column.planes; ++k, weight *= 256, at += head.count)
+      for (let i = 0; i < head.count; ++i) codes[i] += planes[at + i] * weight
+    if (column.differences)
+      for (let i = 0, before = 0; i < head.count; ++i) {
+        before += codes[i] % 2 ? -(codes[i] + 1) / 2 : codes[i] / 2
+        codes[i] = before
+      }
+    const { offset, step, values } = column
+    const value = column.kind === 'listed' ? c => values[c - 1]
+      : column.kind === 'logarithmic' ? c => offset * Math.exp((c - 1) * step) : c => offset + (c - 1) * step
+    const each = column.per_pulse ?? 0, { pulse } = block.columns
+    for (let i = 0; i < head.count; ++i) codes[i] = codes[i] > 0 ? value(codes[i]) + (each && each * pulse[i]) : NaN
+    block.columns[column.name] = codes
+    block.steps[column.name] = step
+  }
+  return block
+}
+
+/// All points, in pulse order, an array for each attribute. They are drawn in chunks, each in an order like a shuffled pack of cards, so
+/// that the first part of each chunk is a fair sample of all.
+class Points {
+  static chunkSize = 65536
+  static exact = ['x', 'y', 'z', 'time', 'pulse']  // what float does not hold
+
+  constructor() {
+    this.count = 0
+    this.room = 0
+    this.arrays = {}
+    this.steps = {}
+    this.chunks = []
+    const pack = Uint32Array.from({ length: Points.chunkSize }, (_, i) => i)
+    for (let i = pack.length - 1, seed = 1; i > 0; --i) {
+      seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0  // source: Press et al. 2007, Numerical Recipes, ch. 7.1
+      const k = Math.floor(seed / 4294967296 * (i + 1)), card = pack[i]
+      pack[i] = pack[k], pack[k] = card
+    }
+    this.pack = pack
+  }
+
+  array(name) {
+    const type = Points.exact.includes(name) ? Float64Array : name === 'object' || name === 'key' ? Uint32Array : Float32Array
+    if (!this.arrays[name] || this.arrays[name].length < this.room) {
+      const grown = new type(this.room)
+      if (this.arrays[name]) grown.set(this.arrays[name])
+      this.arrays[name] = grown
+    }
+    return this.arrays[name]
+  }
+
+  append({ count, columns, steps }) {
+    if (count === 0) return
+    const first = this.count
+    this.count += count
+    if (this.count > this.room) this.room = first === 0 ? count : Math.max(this.count, 2 * this.room)
+    Object.assign(this.steps, steps)
+    for (const name of ['x', 'y', 'z']) {
+      const away = this.array('to_' + name), here = columns[name], from = columns['from_' + name]
+      for (let i = 0; i < count; ++i) away[first + i] = from[i] - here[i]
+    }
+    const range = this.array('range'), { to_x, to_y, to_z } = this.arrays
+    for (let i = first; i < this.count; ++i) range[i] = Math.hypot(to_x[i], to_y[i], to_z[i])
+    this.steps.range = this.steps.x
+    for (const name in columns) if (!name.startsWith('from_')) this.array(name).set(columns[name], first)
+    this.touch(first)
+  }
+
+  /// Keeps those with a key of at most `largest`. Returns where point `of` is then; -1 if it is gone.
+  thin(largest, of = -1) {
+    const { key } = this.arrays
+    if (!key) return of
+    let kept = 0, there = -1
+    for (let i = 0; i < this.count; ++i) {
+      if (key[i] > largest) continue
+      if (i === of) there = kept
+      if (kept !== i) for (const name in this.arrays) this.arrays[name][kept] = this.arrays[name][i]
+      ++kept
+    }
+    if (kept < this.count) this.count = kept, this.touch(0)
+    return there
+  }
+
+  clear() {
+    this.count = 0
+    this.touch(0)
+  }
+
+  /// Has the chunks from a point on made anew.
+  touch(first) {
+    const size = Points.chunkSize, chunks = Math.ceil(this.count / size)
+    for (const chunk of this.chunks.splice(chunks)) chunk.free?.()
+    for (let k = Math.min(Math.floor(first / size), this.chunks.length); k < chunks; ++k) {
+      const chunk = this.chunks[k] ??= { first: k * size }
+      chunk.count = Math.min(size, this.count - chunk.first)
+      const { x, y, z, time } = this.arrays
+      const least = [Infinity, Infinity, Infinity], most = [-Infinity, -Infinity, -Infinity]
+      for (let i = chunk.first, end = i + chunk.count; i < end; ++i) {
+        if (x[i] < least[0]) least[0] = x[i]
+        if (x[i] > most[0]) most[0] = x[i]
+        if (y[i] < least[1]) least[1] = y[i]
+        if (y[i] > most[1]) most[1] = y[i]
+        if (z[i] < least[2]) least[2] = z[i]
+        if (z[i] > most[2]) most[2] = z[i]
+      }
+      Object.assign(chunk, { least, most, begin: time[chunk.first], placesAreOld: true, coloursAreOld: true })
+    }
+  }
+
+  /// The points of a chunk, numbered within it, in the order in which they are drawn.
+  order(chunk) {
+    return chunk.count === Points.chunkSize ? this.pack : this.pack.filter(i => i < chunk.count)
+  }
+
+  /// The least and the most of what all but a share of a half percent at either end are.
+  usual(name, share = 0.005) {
+    const values = this.arrays[name], sample = []
+    const stride = Math.max(1, Math.floor(this.count / 50000))
+    for (let i = 0; i < this.count; i += stride) if (Number.isFinite(values[i])) sample.push(values[i])
+    if (sample.length === 0) return [0, 1]
+    const sorted = Float64Array.from(sample).sort(), last = sorted.length - 1
+    return [sorted[Math.floor(share * last)], sorted[Math.ceil((1 - share) * last)]]
+  }
+}
+)js";
+
+/// The view: a camera, what is drawn and how much of it.
+inline constexpr std::string_view page_view_script = R"js(
+// ------------------------------------------------------------------------------------------------------------ the view
+
+const vectorDot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+/// Looks at a target from a distance. Azimuth 0 looks north, elevation 0 along the ground. [m, rad]
+class Camera {
+  constructor() {
+    Object.assign(this, { target: [0, 0, 0], azimuth: 0.5, elevation: 0.6, distance: 100, extent: 100, field: 0.7, width: 1, height: 1 })
+  }
+
+  /// Right, up and forward of the view.
+  axes() {
+    const [s, c] = [Math.sin(this.azimuth), Math.cos(this.azimuth)], [e, f] = [Math.sin(this.elevation), Math.cos(this.elevation)]
+    return [[c, -s, 0], [s * e, c * e, f], [s * f, c * f, -e]]
+  }
+
+  eye() {
+    const forward = this.axes()[2]
+    return this.target.map((t, k) => t - this.distance * forward[k])
+  }
+
+  get near() { return Math.max(this.distance / 200, this.extent * 1e-5) }
+  get far() { return this.distance + 4 * this.extent }
+
+  /// Pixels that a metre at a depth of a metre takes.
+  get scale() { return this.height / 2 / Math.tan(this.field / 2) }
+
+  /// From places to clip space, by columns.
+  matrix() {
+    const [r, u, f] = this.axes(), eye = this.eye(), { near, far } = this
+    const y = 1 / Math.tan(this.field / 2), x = y * this.height / this.width
+    const a = (far + near) / (far - near), b = -2 * far * near / (far - near)
+    const er = -vectorDot(r, eye), eu = -vectorDot(u, eye), ef = -vectorDot(f, eye)
+    return new Float32Array([x * r[0], y * u[0], a * f[0], f[0], x * r[1], y * u[1], a * f[1], f[1],
+                             x * r[2], y * u[2], a * f[2], f[2], x * er, y * eu, a * ef + b, ef])
+  }
+
+  /// Where a place is on the screen [px], and how far along the view [m].
+  project(p) {
+    const [r, u, f] = this.axes(), eye = this.eye(), d = [p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]]
+    const depth = vectorDot(f, d), s = this.scale / depth
+    return [this.width / 2 + s * vectorDot(r, d), this.height / 2 - s * vectorDot(u, d), depth]
+  }
+
+  turn(right, up) {
+    this.azimuth -= right
+    this.elevation = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.elevation + up))
+  }
+
+  /// Moves along the screen, by pixels at the target's depth.
+  pan(right, up) {
+    const [r, u] = this.axes(), metre = this.distance / this.scale
+    this.target = this.target.map((t, k) => t - (right * r[k] + up * u[k]) * metre)
+  }
+
+  /// Comes nearer by a factor, to what is at a pixel.
+  zoom(factor, x = this.width / 2, y = this.height / 2) {
+    const before = this.distance
+    this.distance = Math.min(20 * this.extent, Math.max(this.extent * 1e-4, before / factor))
+    const moved = 1 - this.distance / before
+    this.pan((this.width / 2 - x) * before / this.distance * moved, (y - this.height / 2) * before / this.distance * moved)
+  }
+
+  fit(least, most) {
+    this.target = least.map((l, k) => (l + most[k]) / 2)
+    const radius = Math.max(0.5 * Math.hypot(...least.map((l, k) => most[k] - l)), 1e-3)
+    this.extent = 2 * radius
+    this.distance = 0.92 * radius / Math.sin(this.field / 2) * Math.max(1, 0.8 * this.height / this.width)
+  }
+}
+
+/// Draws the points and the ways. While the view moves, it draws as many points as keep `rate` frames a second; when it rests, it goes on
+/// with the others until all are there.
+class View {
+  constructor(canvas, points) {
+    this.points = points
+    this.camera = new Camera()
+    this.now = Infinity
+    this.trail = 0
+    this.pointSize = 1
+    this.spacing = 0.1  // of points [m]
+    this.shading = true
+    this.adaptive = true
+    this.rate = 30
+    this.budget = 500000  // points a frame
+    this.done = 0         // share of the points that is drawn
+    this.drawn = 0        // points
+    this.start = 0        // [s]
+    this.origin = null    // of what is drawn [m]
+    this.ways = []
+    this.afterFrame = () => {}
+    this.colourOf = (chunk, order, out) => out.fill(255)
+    this.lastFrame = 0
+    this.movedAt = -Infinity
+    this.waiting = false
+    this.painter = GlPainter.on(canvas) ?? new PlainPainter(canvas)
+    this.canvas = this.painter.canvas
+    new ResizeObserver(() => this.resize()).observe(this.canvas)
+    this.resize()
+  }
+
+  resize() {
+    const { canvas, camera } = this, ratio = Math.min(window.devicePixelRatio || 1, 2)
+    const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio))
+    if (camera.width === width && camera.height === height) return
+    canvas.width = camera.width = width
+    canvas.height = camera.height = height
+    this.ratio = ratio
+    this.painter.resize(width, height)
+    this.redraw()
+  }
+
+  /// Frames all usual points, and what stands near; the first time, they also become what places are relative to.
+  fit() {
+    const { points, camera } = this
+    if (points.count === 0) return
+    const ranges = ['x', 'y', 'z'].map(name => points.usual(name, 0.001)), middle = ranges.map(([least, most]) => (least + most) / 2)
+    const [longest, across, least] = ranges.map(([a, b]) => b - a).sort((a, b) => b - a)
+    const area = Math.max(longest * across, (longest || 1) ** 2 * 1e-4)
+    this.spacing = Math.sqrt(area / Math.max(points.count, 1)) * (1 + least / Math.max(longest, 1e-9))
+    for (const { places } of this.ways)
+      for (const place of places)
+        if (place.every((v, k) => Math.abs(v - middle[k]) < Math.max(longest, 1)))
+          ranges.forEach((r, k) => { r[0] = Math.min(r[0], place[k]), r[1] = Math.max(r[1], place[k]) })
+    this.origin ??= middle
+    camera.fit(ranges.map((r, k) => r[0] - this.origin[k]), ranges.map((r, k) => r[1] - this.origin[k]))
+    this.redraw()
+  }
+
+  relative(place) { return place.map((v, k) => v - this.origin[k]) }
+
+  /// The ways of the legs: [{ name, places, times }].
+  setWays(ways) {
+    this.ways = ways
+    this.painter.waysAreOld = true
+  }
+
+  recolour() {
+    for (const chunk of this.points.chunks) chunk.coloursAreOld = true
+    this.redraw()
+  }
+
+  /// Something is seen otherwise; `moves` if it goes on, so that frames are wanted rather than points.
+  redraw(moves = false) {
+    this.done = 0
+    if (moves) this.movedAt = performance.now()
+    this.wake()
+  }
+
+  wake() {
+    if (this.waiting) return
+    this.waiting = true
+    requestAnimationFrame(time => {
+      this.waiting = false
+      if (this.painter.busy()) this.wake()
+      else this.drawFrame(time)
+    })
+  }
+
+  inSight(chunk, matrix) {
+    const outside = [0, 0, 0, 0, 0, 0]
+    for (let corner = 0; corner < 8; ++corner) {
+      const p = [0, 1, 2].map(k => (corner >> k & 1 ? chunk.most : chunk.least)[k] - this.origin[k])
+      const [x, y, z, w] = [0, 1, 2, 3].map(k => matrix[k] * p[0] + matrix[4 + k] * p[1] + matrix[8 + k] * p[2] + matrix[12 + k])
+      for (const [side, out] of [x < -w, x > w, y < -w, y > w, z < -w, z > w].entries()) if (out) ++outside[side]
+    }
+    return !outside.includes(8)
+  }
+
+  /// Places and colours of a chunk as painters take them.
+  prepare(chunk) {
+    const { points, painter } = this
+    if (!chunk.placesAreOld && !chunk.coloursAreOld) return
+    const order = points.order(chunk)
+    if (chunk.placesAreOld) {
+      const { x, y, z, time } = points.arrays, [ox, oy, oz] = this.origin, places = new Float32Array(4 * chunk.count)
+      for (let i = 0; i < chunk.count; ++i) {
+        const p = chunk.first + order[i]
+        places[4 * i] = x[p] - ox, places[4 * i + 1] = y[p] - oy, places[4 * i + 2] = z[p] - oz, places[4 * i + 3] = time[p] - this.start
+      }
+      painter.takePlaces(chunk, places)
+      chunk.placesAreOld = false
+    }
+    if (chunk.coloursAreOld) {
+      const colours = new Uint8Array(4 * chunk.count)
+      this.colourOf(chunk, order, colours)
+      painter.takeColours(chunk, colours)
+      chunk.coloursAreOld = false
+    }
+  }
+
+  /// Fewer points or more, so that the next frame takes as long as it should.
+  keepPace(interval) {
+    const wanted = 1000 / this.rate
+    if (interval > 1.15 * wanted) this.budget = Math.max(20000, this.budget * Math.max(0.5, wanted / interval))
+    else if (interval < 0.95 * wanted && this.done < 1) this.budget = Math.min(2e7, this.budget * Math.min(1.2, wanted / interval))
+  }
+
+  drawFrame(time) {
+    const { camera, points, painter } = this, slow = 1.5 * (time - this.lastFrame)
+    const moving = time - this.movedAt < Math.min(1000, Math.max(150, slow))
+    if (moving && this.wasMoving && this.adaptive && this.lastDone === 0) this.keepPace(time - this.lastFrame)
+    if (!moving && this.coarse) this.done = 0, this.coarse = false
+    this.wasMoving = moving
+    this.lastFrame = time
+    this.lastDone = this.done
+    if (this.done === 0) {
+      painter.clear()
+      this.drawn = 0
+    }
+    if (this.origin && points.count > 0 && this.done < 1) {
+      const matrix = camera.matrix()
+      const look = { matrix, near: camera.near, now: this.now, trail: this.now < Infinity ? this.trail : 0, ratio: this.ratio,
+                     fresh: this.freshColour ?? [1, 1, 1] }
+      if (this.done === 0) painter.drawWays(this, look, this.wayColour ?? [1, 1, 1])
+      const seen = points.chunks.filter(c => c.begin - this.start <= this.now && this.inSight(c, matrix))
+      const total = seen.reduce((sum, c) => sum + c.count, 0)
+      const wanted = moving ? this.budget : Math.max(this.budget, 250000)
+      const next = !this.adaptive || total === 0 ? 1 : Math.min(1, this.done + wanted / total)
+      const sparse = moving ? Math.min(1.6, 1 / Math.sqrt(next)) : 1  // fewer points, larger ones
+      this.coarse ||= sparse > 1
+      look.size = 1.1 * sparse * this.pointSize * this.spacing * camera.scale  // at a depth of a metre
+      look.least = 1.3 * sparse * this.ratio * this.pointSize
+      look.most = 10 * this.ratio * this.pointSize
+      for (const chunk of seen) {
+        const first = Math.floor(chunk.count * this.done), end = Math.floor(chunk.count * next)
+        if (end <= first) continue
+        this.prepare(chunk)
+        painter.draw(chunk, first, end, look)
+        this.drawn += end - first
+      }
+      this.done = next
+    }
+    painter.show({ near: camera.near, far: camera.far, shading: this.shading, sky: this.sky ?? [[0, 0, 0], [0, 0, 0]], ratio: this.ratio })
+    this.afterFrame(time)
+    if (moving || (this.done < 1 && points.count > 0 && this.origin)) this.wake()
+  }
+
+  /// The point that is drawn nearest to a pixel, the foremost of those within a few pixels; -1 if there is none.
+  pick(x, y, reach = 7 * this.ratio) {
+    if (!this.origin) return -1
+    const { camera, points } = this, [r, u, f] = camera.axes(), eye = camera.eye().map((v, k) => v + this.origin[k])
+    const { near, scale } = camera, { x: px, y: py, z: pz, time } = points.arrays, until = this.start + this.now
+    const right = x - camera.width / 2, up = camera.height / 2 - y
+    let best = -1, cost = Infinity
+    const matrix = camera.matrix()
+    for (const chunk of points.chunks) {
+      if (!this.inSight(chunk, matrix)) continue
+      for (let i = chunk.first, end = i + chunk.count; i < end; ++i) {
+        const dx = px[i] - eye[0], dy = py[i] - eye[1], dz = pz[i] - eye[2]
+        const depth = f[0] * dx + f[1] * dy + f[2] * dz
+        if (!(depth > near)) continue
+        const sx = (r[0] * dx + r[1] * dy) * scale / depth - right  // the view's right is level
+        if (sx > reach || sx < -reach) continue
+        const sy = (u[0] * dx + u[1] * dy + u[2] * dz) * scale / depth - up
+        const away = Math.hypot(sx, sy)
+        if (away > reach || time[i] > until || this.hides?.(i)) continue
+        const c = depth * (1 + 0.004 * (away / this.ratio) ** 2)  // what is in front, unless it is further off
+        if (c < cost) cost = c, best = i
+      }
+    }
+    return best
+  }
+}
+)js";
+
+}  // namespace pulsecast::page

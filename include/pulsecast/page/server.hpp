@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <httplib.h>
+
+#include <pulsecast/page/detail/local_server.hpp>
+#include <pulsecast/page/page.hpp>
+#include <pulsecast/run.hpp>
+
+namespace pulsecast::page {
+
+/// A sink that shows the cloud while it grows: the page of `PageWriter`, at an address of this machine that nobody else can reach, with
+/// the progress of the run and a button that asks to stop it.
+///
+/// It is a `LocalServer`: at 127.0.0.1 only, and no client takes memory, descriptors or time from the run. Every address holds a secret
+/// drawn for this object, and is answered only if it was asked for by the name of this machine and from no other site's page; so other
+/// sites that are open in the same browser learn nothing and stop nothing. Whoever may read this user's screen may look, too. The functions
+/// may be called from any thread.
+class PageServer {
+ public:
+  /// Throws a `std::runtime_error` if nothing can be served. `port` is 0 for any that is free.
+  explicit PageServer(PageSurvey survey = {}, const PageSettings& settings = {}, int port = 0)
+      : settings_(validated(settings)), token_(secret()), survey_(std::move(survey)), sample_(settings.most_points) {
+    server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      if (is_ours(request)) return httplib::Server::HandlerResponse::Unhandled;
+      response.status = 403;
+      response.set_content("This address is for the page of this machine only.\n", "text/plain");
+      return httplib::Server::HandlerResponse::Handled;
+    });
+    server_.set_default_headers({{"Cache-Control", "no-store"},
+                                 {"Cross-Origin-Resource-Policy", "same-origin"},
+                                 {"Referrer-Policy", "no-referrer"},
+                                 {"X-Content-Type-Options", "nosniff"},
+                                 {"X-Frame-Options", "DENY"}});
+    server_.Get('/' + token_ + '/',
+                [this](const httplib::Request&, httplib::Response& response) { response.set_content(page(), "text/html; charset=utf-8"); });
+    server_.Get('/' + token_ + "/points", [this](const httplib::Request& request, httplib::Response& response) {
+      response.set_content(news(number_in(request.get_param_value("run")), number_in(request.get_param_value("after"))),
+                           "application/octet-stream");
+    });
+    server_.Post('/' + token_ + "/stop", [this](const httplib::Request&, httplib::Response& response) {
+      stop_requested_ = true;
+      response.status = 204;
+    });
+    try {
+      host_ = ':' + std::to_string(server_.bind(port));
+    } catch (const std::runtime_error& e) {
+      throw std::runtime_error(std::string("no page can be served: ") + e.what());
+    }
+    server_.start();
+  }
+
+  /// What to type into a browser.
+  [[nodiscard]] std::string address() const { return "http://127.0.0.1" + host_ + '/' + token_ + '/'; }
+
+  /// Forgets all points, for another run.
+  void begin(PageSurvey survey) {
+    const std::lock_guard lock(mutex_);
+    survey_ = std::move(survey);
+    sample_ = PageSample(settings_.most_points);
+    progress_ = {};
+    state_ = "running";
+    ++run_;
+  }
+
+  void operator()(const EchoBatch& batch) {
+    const std::lock_guard lock(mutex_);
+    sample_(batch);
+  }
+
+  void tell(const Progress& progress) {
+    const std::lock_guard lock(mutex_);
+    progress_ = progress;
+  }
+
+  /// Whether somebody pressed the button.
+  [[nodiscard]] bool stop_requested() const noexcept { return stop_requested_; }
+
+  /// Says that the run is over, and waits until whoever looks has all of it: not at all if nobody does, and never longer than `patience`.
+  void finish(bool complete, std::chrono::milliseconds patience = std::chrono::seconds(20)) {
+    {
+      const std::lock_guard lock(mutex_);
+      state_ = complete ? "complete" : "stopped";
+    }
+    const auto began = Clock::now();
+    constexpr auto quiet = std::chrono::milliseconds(1500);  // pages in the background ask once a second
+    while (Clock::now() - began < patience) {
+      {
+        const std::lock_guard lock(mutex_);
+        if (!asked_ || Clock::now() - *asked_ > quiet) return;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::size_t most_at_once = 65'536;  // points
+
+  /// 128 random bits as text.
+  [[nodiscard]] static std::string secret() {
+    std::array<unsigned char, 16> bytes{};
+    if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+      throw std::runtime_error("no page can be served: the system has no random numbers");
+    std::string out;
+    for (const unsigned char byte : bytes) out += "0123456789abcdef"[byte / 16], out += "0123456789abcdef"[byte % 16];
+    return out;
+  }
+
+  [[nodiscard]] static std::optional<std::uint64_t> number_in(const std::string& text) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return value;
+  }
+
+  /// Whether this was asked for by the right name and, if by a page, by our own. Other names may be made to lead to this machine
+  /// ("DNS rebinding"), and other pages may ask without seeing the answer.
+  [[nodiscard]] bool is_ours(const httplib::Request& request) const {
+    const std::string host = request.get_header_value("Host");
+    if (host != "127.0.0.1" + host_ && host != "localhost" + host_) return false;
+    if (request.has_header("Origin") && request.get_header_value("Origin") != "http://" + host) return false;
+    return request.path.starts_with('/' + token_ + '/');
+  }
+
+  [[nodiscard]] std::string page() {
+    const std::lock_guard lock(mutex_);
+    asked_ = Clock::now();
+    return page_html(survey_, sample_.seen(), "", true);
+  }
+
+  /// How far the run is, and points of later pulses than those the page has: four bytes that say how long the JSON text is which
+  /// follows, and columns.
+  [[nodiscard]] std::string news(std::optional<std::uint64_t> run, std::optional<std::uint64_t> after) {
+    std::string text;
+    std::vector<PagePoint> fresh;
+    {
+      const std::lock_guard lock(mutex_);
+      asked_ = Clock::now();
+      const bool other = run != run_;
+      const std::span<const PagePoint> all = sample_.points();
+      const auto later = [](std::uint64_t pulse, const PagePoint& p) { return pulse < p.pulse; };
+      const auto first = other || !after ? all.begin() : std::upper_bound(all.begin(), all.end(), *after, later);
+      auto end = first + static_cast<std::ptrdiff_t>(std::min(most_at_once, static_cast<std::size_t>(all.end() - first)));
+      if (end != first) end = std::upper_bound(end, all.end(), std::prev(end)->pulse, later);
+      fresh.assign(first, end);
+      const std::string last = !fresh.empty() ? std::to_string(fresh.back().pulse) : other || !after ? "" : std::to_string(*after);
+      text = "{\"run\":" + std::to_string(run_) + ",\"state\":" + json_text(state_) + ",\"done\":" + std::to_string(progress_.done) +
+             ",\"total\":" + std::to_string(progress_.total) + ",\"echoes\":" + std::to_string(sample_.seen()) +
+             ",\"seconds\":" + json_number(progress_.seconds) + ",\"largest_key\":" + std::to_string(sample_.largest_key()) +
+             ",\"more\":" + (end != all.end() ? "true" : "false") + ",\"last\":" + json_text(last);
+      if (other) text += ",\"legs\":" + detail::json_legs(survey_.legs);
+      text += '}';
+    }
+    std::string out;
+    for (int k = 0; k < 4; ++k) out += static_cast<char>(static_cast<std::uint32_t>(text.size()) >> 8 * k);
+    constexpr double step = 1e-3;  // that suits any extent: nothing is stored [m]
+    return out + text +
+           page_columns(fresh, {.position_step = settings_.position_step > 0 ? settings_.position_step : step, .keys = true, .effort = 1});
+  }
+
+  PageSettings settings_;
+  std::string token_, host_;
+  std::mutex mutex_;
+  PageSurvey survey_;
+  PageSample sample_;
+  Progress progress_{};
+  std::string state_ = "running";
+  std::uint64_t run_ = 1;
+  std::optional<Clock::time_point> asked_{};  // when somebody looked last
+  std::atomic<bool> stop_requested_ = false;
+  LocalServer server_;  // neither made nor copied here: a `Request`, whose layout is as httplib was compiled
+};
+static_assert(EchoSink<PageServer>);
+
+}  // namespace pulsecast::page

@@ -1,0 +1,418 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include <pulsecast/run.hpp>
+
+/// Surveys for Python: any compile-time pipeline, an optic of one's own included, becomes a class whose runs give NumPy arrays.
+///
+///     PYBIND11_MODULE(own_scanner, m) {
+///       pulsecast::python::bind_survey<OwnSurvey>(m, "OwnSurvey").def(pybind11::init(&make_own_survey));
+///     }
+///
+/// While a survey runs, Python is free to do other things; Ctrl-C ends the run, and what came until then is whole.
+namespace pulsecast::python {
+
+/// One echo as a row of a NumPy array, by the names that users of point clouds know. Numbers that people calculate with are signed, as
+/// NumPy makes fractions of unsigned ones.
+struct PointRow {
+  double x, y, z;                  ///< in the world [m]
+  double time;                     ///< when its pulse left, since the survey's start [s]
+  double range;                    ///< along the pulse's axis [m]
+  float intensity;                 ///< received power at the echo's peak [W]
+  float reflectance;               ///< as in `Echo`
+  float echo_width;                ///< standard deviation in time; 0 if not asked for, NaN if none was found [s]
+  float cos_incidence;             ///< of the strongest contributor
+  std::int64_t pulse;              ///< number of the pulse slot
+  std::uint32_t object;            ///< of the strongest contributor
+  std::uint16_t classification;    ///< of the strongest contributor
+  std::uint16_t leg;               ///< from 0
+  std::uint8_t return_number;      ///< from 1 in order of range
+  std::uint8_t number_of_returns;  ///< of its pulse, 255 if more
+  std::uint8_t channel;            ///< from 0
+  std::uint8_t spare[5]{};         ///< not in the array: zeros, so that the same rows are the same bytes
+};
+
+/// One pulse that was sent as a row of a NumPy array.
+struct PulseRow {
+  std::int64_t pulse;                            ///< number of the slot
+  double time;                                   ///< when it left, since the survey's start [s]
+  double x, y, z;                                ///< where it left, in the world [m]
+  double direction_x, direction_y, direction_z;  ///< unit, in the world
+  double scan_angle;                             ///< [rad]
+  double waveform_start;                         ///< two-way travel time of the first sample [s]
+  std::int64_t first_sample, first_point;        ///< of those in the arrays beside
+  std::uint32_t samples, points;                 ///< how many
+  std::uint16_t leg;                             ///< from 0
+  std::uint8_t channel;                          ///< from 0
+  std::uint8_t fate;                             ///< as in `Fate`
+  std::uint8_t spare[4]{};                       ///< not in the array: zeros
+};
+
+// Hidden, as pybind11's own names are, so that modules of different builds of it can live side by side.
+namespace [[gnu::visibility("hidden")]] python {
+
+inline constexpr std::array<const char*, fate_count> fate_names{"returned",     "blocked",         "missed",
+                                                                "out_of_range", "below_threshold", "absorbed"};
+
+/// Rows that become a NumPy array where they are. It grows without being copied, as far as the C library can, so that a large one never
+/// takes its memory twice.
+template <class Row>
+requires std::is_trivially_copyable_v<Row>
+class Rows {
+ public:
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+
+  void push_back(const Row& row) {
+    if (size_ == capacity_) resize(std::max<std::size_t>(1024, 2 * capacity_));
+    rows_.get()[size_++] = row;
+  }
+
+  /// The array, which owns the rows; there are none here after it.
+  [[nodiscard]] pybind11::array_t<Row> take() {
+    resize(std::max<std::size_t>(1, size_));
+    Row* const rows = rows_.get();
+    const pybind11::capsule owner(rows, [](void* p) { std::free(p); });
+    (void)rows_.release();
+    capacity_ = 0;
+    return pybind11::array_t<Row>(static_cast<pybind11::ssize_t>(std::exchange(size_, 0)), rows, owner);
+  }
+
+ private:
+  struct Free {
+    void operator()(Row* rows) const noexcept { std::free(rows); }
+  };
+
+  void resize(std::size_t capacity) {
+    auto* const moved = static_cast<Row*>(std::realloc(rows_.get(), capacity * sizeof(Row)));
+    if (!moved) throw std::bad_alloc();
+    (void)rows_.release();
+    rows_.reset(moved);
+    capacity_ = capacity;
+  }
+
+  std::unique_ptr<Row, Free> rows_;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+/// What a run brought back, for Python.
+struct Batch {
+  pybind11::array_t<PointRow> points;
+  pybind11::array_t<PulseRow> pulses;
+  pybind11::array_t<float> waveforms;  ///< the samples of all pulses, one after another [W]
+  double sample_interval = 0;          ///< [s]
+  RunSummary summary{};                ///< of the whole run; nothing in a batch that a callback is given
+};
+
+/// A sink that keeps all as rows, or points alone.
+class RowSink {
+ public:
+  explicit RowSink(bool keeps_pulses) : keeps_pulses_(keeps_pulses) {}
+
+  void operator()(const EchoBatch& batch) {
+    sample_interval_ = batch.sample_interval;
+    pulse_count_ += batch.shots.size();
+    for (const Shot& s : batch.shots) {
+      const double time = s.tick.seconds();
+      if (keeps_pulses_) {
+        pulses_.push_back({static_cast<std::int64_t>(s.index), time, s.origin.x, s.origin.y, s.origin.z, s.direction.x, s.direction.y,
+                           s.direction.z, s.scan_angle, s.waveform_start, static_cast<std::int64_t>(samples_.size()),
+                           static_cast<std::int64_t>(points_.size()), s.samples, s.echoes, s.leg, s.channel,
+                           static_cast<std::uint8_t>(s.fate)});
+        for (const float sample : batch.waveform_of(s)) samples_.push_back(sample);
+      }
+      for (const Echo& e : batch.echoes_of(s)) {
+        const Vec3 p = point_of(s, e);
+        points_.push_back({p.x, p.y, p.z, time, e.range, static_cast<float>(e.amplitude), static_cast<float>(e.reflectance),
+                           static_cast<float>(e.width), static_cast<float>(e.cos_incidence), static_cast<std::int64_t>(s.index), e.object,
+                           e.classification, s.leg, e.number, static_cast<std::uint8_t>(std::min<std::uint32_t>(255, s.echoes)),
+                           s.channel});
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t pulses() const noexcept { return pulse_count_; }  ///< that were sent since rows were taken
+  [[nodiscard]] Batch take() {
+    pulse_count_ = 0;
+    return {points_.take(), pulses_.take(), samples_.take(), sample_interval_};
+  }
+
+ private:
+  bool keeps_pulses_;
+  std::size_t pulse_count_ = 0;
+  Rows<PointRow> points_;
+  Rows<PulseRow> pulses_;
+  Rows<float> samples_;
+  double sample_interval_ = 0;
+};
+
+/// Notes Ctrl-C for as long as it lives, where Python would have heard of it only later: on Python's main thread, which alone gets signals,
+/// and where Ctrl-C is a `KeyboardInterrupt`. A handler of the program's own, or none, stays as it is.
+class InterruptWatch {
+ public:
+  InterruptWatch() {
+    const pybind11::module_ threading = pybind11::module_::import("threading"), signal = pybind11::module_::import("signal");
+    watching_ = threading.attr("current_thread")().is(threading.attr("main_thread")()) &&
+                signal.attr("getsignal")(SIGINT).is(signal.attr("default_int_handler"));
+    if (!watching_) return;
+    seen() = false;
+    before_ = PyOS_setsig(SIGINT, [](int) { seen() = true; });
+  }
+  ~InterruptWatch() {
+    if (watching_) PyOS_setsig(SIGINT, before_);
+  }
+  InterruptWatch(const InterruptWatch&) = delete;
+  InterruptWatch& operator=(const InterruptWatch&) = delete;
+
+  [[nodiscard]] bool interrupted() const noexcept { return watching_ && seen(); }
+
+ private:
+  [[nodiscard]] static std::atomic<bool>& seen() noexcept {
+    static std::atomic<bool> interrupted = false;
+    return interrupted;
+  }
+
+  bool watching_ = false;
+  PyOS_sighandler_t before_ = nullptr;
+};
+
+/// What `run` of a survey is asked.
+struct RunRequest {
+  unsigned threads = 0;
+  PulseIndex first = 0;
+  std::optional<PulseIndex> end{};
+  PulseIndex stride = 1;
+  pybind11::object callback = pybind11::none(), progress = pybind11::none();
+  PulseIndex every_pulses = 0;
+  double every_seconds = 0;
+  bool pulses = true;  ///< keep them, and their waveforms
+
+  void validate() const {
+    expect_not_negative("run every_seconds", every_seconds, "s");
+    for (const auto& [name, function] : {std::pair{"callback", callback}, std::pair{"progress", progress}})
+      if (!function.is_none() && PyCallable_Check(function.ptr()) == 0)
+        throw pybind11::type_error(std::string(name) + ": expected a function, not " + std::string(pybind11::repr(function)));
+  }
+};
+
+/// Runs what `run(options, sink)` does, with Python free meanwhile, until it is done or interrupted. Throws what Python threw in a
+/// callback.
+template <class Run>
+[[nodiscard]] Batch run(const RunRequest& asked, const InterruptWatch& watch, const Run& run) {
+  asked.validate();
+  using Clock = std::chrono::steady_clock;
+  const auto seconds_since = [](Clock::time_point from) { return std::chrono::duration<double>(Clock::now() - from).count(); };
+  const bool hands_over = !asked.callback.is_none(), tells = !asked.progress.is_none();
+  std::stop_source stopping;
+  RowSink rows(asked.pulses);
+  Batch result;
+  auto handed_over = Clock::now(), told = handed_over;
+
+  RunOptions options{.threads = asked.threads, .first = asked.first, .stride = asked.stride, .stop = stopping.get_token()};
+  if (asked.end) options.end = *asked.end;
+  options.progress = [&](const Progress& p) {
+    if (watch.interrupted()) stopping.request_stop();
+    if (!tells || (p.done < p.total && seconds_since(told) < 0.1)) return;
+    told = Clock::now();
+    const pybind11::gil_scoped_acquire gil;
+    asked.progress(p.done, p.total, p.echoes, p.seconds);
+  };
+  const auto hand_over = [&] {
+    const pybind11::gil_scoped_acquire gil;
+    asked.callback(rows.take());
+    handed_over = Clock::now();
+  };
+  const auto sink = [&](const EchoBatch& batch) {
+    rows(batch);
+    const bool is_due = (asked.every_pulses > 0 && rows.pulses() >= asked.every_pulses) ||
+                        (asked.every_seconds > 0 && seconds_since(handed_over) >= asked.every_seconds);
+    if (hands_over && is_due) hand_over();
+  };
+  {
+    const pybind11::gil_scoped_release free;
+    result.summary = run(options, sink);
+  }
+  if (hands_over && rows.pulses() > 0) hand_over();
+  const RunSummary summary = result.summary;
+  result = rows.take();
+  result.summary = summary;
+  return result;
+}
+
+/// The class of an exception that all modules share, made by the first that asks.
+[[nodiscard]] inline pybind11::handle shared_exception(const char* name, PyObject* base, const char* doc) {
+  const std::string key = std::string("pulsecast.") + name;
+  if (void* const known = pybind11::get_shared_data(key)) return static_cast<PyObject*>(known);
+  PyObject* const made = PyErr_NewExceptionWithDoc(key.c_str(), doc, base, nullptr);
+  if (!made) throw pybind11::error_already_set();
+  pybind11::set_shared_data(key, made);
+  return made;
+}
+
+/// Raises an exception with attributes.
+template <class... Values>
+void raise(pybind11::handle type, const std::string& message, std::pair<const char*, Values>... attributes) {
+  const pybind11::object exception = type(message);
+  ((exception.attr(attributes.first) = attributes.second), ...);
+  PyErr_SetObject(type.ptr(), exception.ptr());
+}
+
+struct Exceptions {
+  pybind11::handle setting =
+      shared_exception("SettingError", PyExc_ValueError, "A setting that cannot be. Attributes: field, value, unit, allowed.");
+  pybind11::handle file = shared_exception("FileError", PyExc_OSError,
+                                           "A file that is missing, malformed or cannot be written. Attributes: path, place, problem.");
+  pybind11::handle interrupted = shared_exception(
+      "Interrupted", PyExc_KeyboardInterrupt, "Ctrl-C while a survey ran. Attribute: result, all that came until then, which is whole.");
+};
+
+/// Gives a module the exceptions, and what runs return. Once is enough; more does no harm.
+inline void bind_common(pybind11::module_& m) {
+  namespace py = pybind11;
+  if (py::hasattr(m, "Batch")) return;
+  if (!py::detail::get_numpy_internals().get_type_info<PointRow>(false)) {  // all modules share one register
+    PYBIND11_NUMPY_DTYPE(PointRow, x, y, z, time, range, intensity, reflectance, echo_width, cos_incidence, pulse, object, classification,
+                         leg, return_number, number_of_returns, channel);
+    PYBIND11_NUMPY_DTYPE(PulseRow, pulse, time, x, y, z, direction_x, direction_y, direction_z, scan_angle, waveform_start, first_sample,
+                         first_point, samples, points, leg, channel, fate);
+  }
+  const Exceptions exceptions;
+  m.attr("SettingError") = exceptions.setting;
+  m.attr("FileError") = exceptions.file;
+  m.attr("Interrupted") = exceptions.interrupted;
+  py::register_local_exception_translator([](std::exception_ptr raised) {
+    const Exceptions types;
+    try {
+      if (raised) std::rethrow_exception(raised);
+    } catch (const SettingError& e) {
+      raise(types.setting, e.what(), std::pair{"field", e.field()}, std::pair{"value", e.value()}, std::pair{"unit", e.unit()},
+            std::pair{"allowed", e.allowed()});
+    } catch (const FileError& e) {
+      raise(types.file, e.what(), std::pair{"path", e.path()}, std::pair{"place", e.place()}, std::pair{"problem", e.problem()});
+    }
+  });
+  m.attr("FATES") = py::tuple(py::cast(fate_names));
+
+  const auto by_fate = [](const auto& of) {
+    py::dict all;
+    for (std::size_t f = 0; f < fate_count; ++f) all[fate_names[f]] = of(static_cast<Fate>(f));
+    return all;
+  };
+  py::class_<Batch>(m, "Batch", py::module_local(), "What a run brought back, or, in a callback, what came since the last.")
+      .def_readonly(
+          "points", &Batch::points,
+          "Structured array, one row an echo: x, y, z [m, world]; time [s]; range [m]; intensity [W]; reflectance; echo_width [s]; "
+          "cos_incidence; pulse; object; classification; leg; return_number; number_of_returns; channel.")
+      .def_readonly("pulses", &Batch::pulses,
+                    "Structured array, one row a pulse that was sent: pulse; time [s]; x, y, z [m, world]; direction_x, direction_y, "
+                    "direction_z; scan_angle [rad]; waveform_start [s]; first_sample, samples; first_point, points; leg; channel; fate, "
+                    "which is a place in FATES.")
+      .def_readonly("waveforms", &Batch::waveforms, "The samples of all pulses, one after another, shape (n,) [W].")
+      .def_readonly("sample_interval", &Batch::sample_interval, "Between two samples of a waveform [s]; 0 if there are none.")
+      .def_property_readonly(
+          "slots", [](const Batch& b) { return b.summary.slots; }, "Pulse slots done.")
+      .def_property_readonly(
+          "rays", [](const Batch& b) { return b.summary.rays; }, "Subrays traced.")
+      .def_property_readonly(
+          "seconds", [](const Batch& b) { return b.summary.seconds; }, "The run took, by the clock on the wall [s].")
+      .def_property_readonly(
+          "complete", [](const Batch& b) { return b.summary.complete; }, "False if the run was stopped.")
+      .def_property_readonly(
+          "fates", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.count(f); }); },
+          "Pulse slots by what became of them.")
+      .def_property_readonly(
+          "energy", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.spent[static_cast<std::size_t>(f)]; }); },
+          "Energy sent, by what became of the subrays that carried it [J].")
+      .def(
+          "waveform_of",
+          [](const py::object& self, py::ssize_t row) -> py::array_t<float> {
+            const auto& pulses = self.cast<const Batch&>().pulses;
+            if (row < 0 || row >= pulses.size())
+              throw py::index_error("row " + std::to_string(row) + " of " + std::to_string(pulses.size()) + " pulses");
+            const PulseRow& p = pulses.data()[row];
+            return self.attr("waveforms")[py::slice(p.first_sample, p.first_sample + p.samples, 1)].cast<py::array_t<float>>();
+          },
+          py::arg("row"), "The samples of the pulse in a row of `pulses`, shape (n,) [W].")
+      .def("__repr__",
+           [](const Batch& b) {
+             return "<Batch of " + std::to_string(b.points.size()) + " points, " + std::to_string(b.pulses.size()) + " pulses, " +
+                    std::to_string(b.waveforms.size()) + " samples>";
+           })
+      .def(py::pickle(
+          [](const Batch& b) {
+            return py::make_tuple(b.points, b.pulses, b.waveforms, b.sample_interval,
+                                  py::bytes(reinterpret_cast<const char*>(&b.summary), sizeof b.summary));
+          },
+          [](const py::tuple& state) {
+            const auto summary = state[4].cast<std::string>();
+            Batch b{state[0].cast<py::array_t<PointRow>>(), state[1].cast<py::array_t<PulseRow>>(), state[2].cast<py::array_t<float>>(),
+                    state[3].cast<double>()};
+            if (summary.size() != sizeof b.summary) throw py::value_error("a Batch of another version of pulsecast");
+            std::memcpy(&b.summary, summary.data(), sizeof b.summary);
+            return b;
+          }));
+}
+
+/// Gives a class the method `run`; `runner(self)` is what runs: a callable of options and sink.
+template <class Class, class Runner>
+void bind_run(Class& bound, const Runner& runner) {
+  namespace py = pybind11;
+  using Self = typename Class::type;
+  bound.def(
+      "run",
+      [runner](const Self& self, unsigned threads, PulseIndex first, std::optional<PulseIndex> end, PulseIndex stride, py::object callback,
+               PulseIndex every_pulses, double every_seconds, py::object progress, bool pulses) {
+        const InterruptWatch watch;
+        Batch result =
+            python::run({threads, first, end, stride, std::move(callback), std::move(progress), every_pulses, every_seconds, pulses}, watch,
+                        runner(self));
+        if (result.summary.complete && !watch.interrupted()) return result;  // too late to stop is not too late to tell
+        raise(Exceptions{}.interrupted, "the survey was stopped", std::pair{"result", py::cast(std::move(result))});
+        throw py::error_already_set();
+      },
+      py::arg("threads") = 0, py::arg("first") = 0, py::arg("end") = py::none(), py::arg("stride") = 1, py::arg("callback") = py::none(),
+      py::arg("every_pulses") = 0, py::arg("every_seconds") = 0.0, py::arg("progress") = py::none(), py::arg("pulses") = true,
+      "Simulates the pulse slots first, first + stride, ... before end, on so many threads (0: all, at most 1024), and returns a Batch. With a callback, "
+      "batches go to callback(batch) every so many pulses or seconds, and at the end, and are not kept. progress(done, total, echoes, "
+      "seconds) is called some ten times a second. Without pulses, there are points alone, which saves their rows and waveforms. Raises "
+      "Interrupted on Ctrl-C; its `result` is whole up to there.");
+}
+
+}  // namespace gnu::visibility("hidden")]]python
+
+/// Makes a class of surveys in a module, and what it needs. Add constructors by `.def(pybind11::init(...))`; where a survey refers to a
+/// scene that Python holds, add `pybind11::keep_alive`.
+template <class Survey>
+pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name) {
+  python::bind_common(m);
+  pybind11::class_<Survey, std::shared_ptr<Survey>> bound(m, name, "A survey: a pure function from the number of a pulse to its echoes.");
+  bound.def("__len__", &Survey::size, "Pulse slots.");
+  bound.def_property_readonly("subrays", &Survey::subrays, "Of a pulse.");
+  python::bind_run(bound, [](const Survey& survey) {
+    return [&survey](const RunOptions& options, const auto& sink) { return pulsecast::run(survey, options, sink); };
+  });
+  return bound;
+}
+
+}  // namespace pulsecast::python

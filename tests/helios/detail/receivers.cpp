@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/helios/detail/receivers.hpp>
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/helios/survey.hpp>
+#include <pulsecast/run.hpp>
+
+#include "support/relative.hpp"
+
+namespace pulsecast::helios {
+namespace {
+
+using support::relative;
+
+/// A wall across y = 100 m, and to the right of x = 0 another before it, at 60 m.
+struct Wall {
+  std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+    const double range = (ray.direction.x > 0 ? 60 : 100) / ray.direction.y;
+    if (!(ray.direction.y > 0)) return std::nullopt;
+    return Hit{.range = range, .cos_incidence = ray.direction.y, .backscatter = 0.5 * ray.direction.y};
+  }
+};
+
+constexpr auto no_ground = [](const Vec2&) -> std::optional<double> { return std::nullopt; };
+
+/// Beams straight ahead, a second at 1 kHz.
+SurveySettings survey_of(const std::vector<ChannelSettings>& channels) {
+  SurveySettings survey;
+  survey.scanner = {.id = "s", .pulse_rates = {1000}, .channels = channels};
+  survey.legs.push_back({.duration_max = 1});
+  survey.legs.push_back({.duration_max = 0.5});
+  return survey;
+}
+
+ChannelReceiver<FullWaveform<>> receiver_of(const ChannelSettings& channel) {
+  return {RingFootprint(static_cast<std::size_t>(channel.waveform.rings)), survey_receiver(channel),
+          FullWaveform(survey_waveform(channel))};
+}
+
+auto build(const SurveySettings& survey, const Wall& wall) {
+  return survey_by_channel(survey.scanner, plan_survey(survey, no_ground).source, wall, 3, receiver_of);
+}
+
+ChannelSettings ahead() {
+  ChannelSettings channel;
+  channel.optic = RotatingOptic{};
+  channel.divergence = 5e-3, channel.visibility = 1e6;
+  return channel;
+}
+
+TEST_CASE("each channel has its own aperture, efficiency, range gate, threshold, noise, number of returns and subrays") {
+  const ChannelSettings usual = ahead();
+  std::vector<ChannelSettings> channels(8, usual);
+  channels[1].receiver_diameter = 2 * usual.receiver_diameter;
+  channels[2].efficiency = 0.5 * usual.efficiency;
+  channels[3].range_max = 80;
+  channels[4].received_power_min = 1;
+  channels[5].accuracy = 0.5;
+  channels[6].returns_max = 1;
+  channels[7].waveform.rings = 1;
+  const SurveySettings survey = survey_of(channels);
+  const Wall wall;
+  const auto run = build(survey, wall);
+  CHECK(run.size() == 8 * 1500);
+  auto w = run.workspace();
+  const auto shot = [&](PulseIndex slot, std::size_t channel) {
+    const Outcome out = run(8 * slot + channel, w);
+    CHECK(out.shot.channel == channel);
+    return out;
+  };
+  for (const PulseIndex slot : {PulseIndex{0}, PulseIndex{700}, PulseIndex{1000}, PulseIndex{1499}}) {  // in both legs
+    CAPTURE(slot);
+    REQUIRE(shot(slot, 0).echoes.size() == 2);
+    const double near = shot(slot, 0).echoes[0].amplitude, far = shot(slot, 0).echoes[1].amplitude;
+    CHECK(shot(slot, 0).echoes[1].range == relative(100, 1e-4));
+    const double square = 0.25 * usual.receiver_diameter * usual.receiver_diameter, disc = (60 * 60 + square) / (60 * 60 + 4 * square);
+    CHECK(shot(slot, 1).echoes[0].amplitude == relative(4 * disc * near, 1e-9));
+    CHECK(shot(slot, 2).echoes[1].amplitude == relative(0.5 * far, 1e-9));
+    REQUIRE(shot(slot, 3).echoes.size() == 1);
+    CHECK(shot(slot, 3).echoes[0].range == relative(60, 1e-4));
+    CHECK(shot(slot, 4).shot.fate == Fate::below_threshold);
+    CHECK(shot(slot, 5).echoes[1].range != relative(100, 1e-4));
+    CHECK(shot(slot, 6).echoes.size() == 1);
+    CHECK(shot(slot, 7).echoes.size() == 1);
+    CHECK(shot(slot, 7).hits == 1);
+  }
+  CHECK(run.subrays() == (7 * RingFootprint(3).size() + 1) / 8);
+}
+
+TEST_CASE("channels that receive alike share a receiver, whatever they send, and give what a plain survey gives") {
+  std::vector<ChannelSettings> channels(3, ahead());
+  channels[1].average_power = 10, channels[2].wavelength = 532e-9, channels[2].beam_origin.position = {0, 5, 0};
+  const SurveySettings survey = survey_of(channels);
+  const Wall wall;
+  int made = 0;
+  const auto run = survey_by_channel(survey.scanner, plan_survey(survey, no_ground).source, wall, 3, [&](const ChannelSettings& c) {
+    ++made;
+    return receiver_of(c);
+  });
+  CHECK(made == 1);
+  const Survey plain(plan_survey(survey, no_ground).source, RingFootprint(3), wall, survey_receiver(channels[0]),
+                     FullWaveform(survey_waveform(channels[0])), 3);
+  const auto collect = [](const auto& any) {
+    std::vector<double> all;
+    pulsecast::run(any, {.threads = 2}, [&](const EchoBatch& batch) {
+      for (const Echo& echo : batch.echoes) all.insert(all.end(), {echo.range, echo.amplitude});
+    });
+    return all;
+  };
+  CHECK(collect(run).size() > 3 * 1500);
+  CHECK(collect(run) == collect(plain));
+  channels[2].waveform.duration_max = 1e-6;
+  CHECK_FALSE(same_receiver(channels[0], channels[2]));
+  CHECK(same_receiver(channels[0], channels[1]));
+}
+
+TEST_CASE("channels that do not fit together are refused") {
+  std::vector<ChannelSettings> channels(2, ahead());
+  channels[1].waveform.bin_size *= 2;
+  const SurveySettings survey = survey_of(channels);
+  const Wall wall;
+  CHECK_THROWS_AS((void)build(survey, wall), SettingError);
+  const auto legs = plan_survey(survey, no_ground).source;
+  CHECK_THROWS_AS((SurveyByChannel<Wall, FullWaveform<>>(legs, {receiver_of(channels[0])}, {0, 1}, wall, 0)), SettingError);
+  CHECK_THROWS_AS((SurveyByChannel<Wall, FullWaveform<>>(legs, {receiver_of(channels[0])}, {}, wall, 0)), SettingError);
+}
+
+}  // namespace
+}  // namespace pulsecast::helios

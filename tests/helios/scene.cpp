@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/helios/scene.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "support/relative.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace pulsecast::helios {
+namespace {
+
+using support::relative;
+using support::TemporaryFolder;
+
+/// A square of ground about the origin, and a cube of edge 2 whose bottom is at height 0.
+struct Files {
+  TemporaryFolder folder;
+  Files() {
+    std::ofstream(folder / "m.mtl") << "newmtl ground\nKd 1 1 1\nhelios_reflectance 0.4\nhelios_isGround true\nhelios_classification 2\n"
+                                       "newmtl wall\nKd 1 1 1\nhelios_reflectance 0.8\nhelios_classification 6\n";
+    std::ofstream(folder / "plane.obj") << "mtllib m.mtl\nusemtl ground\nv -50 -50 0\nv 50 -50 0\nv 50 50 0\nv -50 50 0\nf 1 2 3 4\n";
+    std::ofstream(folder / "cube.obj")
+        << "mtllib m.mtl\nusemtl wall\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\n"
+           "v -1 1 2\nf 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  }
+  [[nodiscard]] PartSettings part(const char* file, std::string id = {}) const {
+    return {std::move(id), ObjSource{{folder / file}}, {}, 1, {}, {}, {}};
+  }
+};
+
+SceneSettings scene_of(std::vector<PartSettings> parts) {
+  SceneSettings s;
+  s.parts = std::move(parts);
+  return s;
+}
+
+/// What a ray straight down from a height of 100 m meets.
+Hit below(const SurveyScene& scene, double x, double y, double time = 0) {
+  RayBundle rays = bundle_of({.origin = {x, y, 100}, .direction = -up});
+  rays.tick = Tick::of_seconds(time);
+  std::vector<Hit> hits(RayBundle::capacity);
+  scene.closest(rays, hits);
+  return hits[0];
+}
+
+SurveyScene built(SceneSettings settings, SceneBuildOptions options = {}, int run = 0) {
+  return SurveyScene(SceneBuilder(std::move(settings), std::move(options)).parts(run), {.to = 10});
+}
+
+TEST_CASE("parts are turned, scaled and moved, and keep their ids and materials") {
+  const Files files;
+  PartSettings cube = files.part("cube.obj", "17");
+  cube.transform.scale = 2, cube.transform.translation = {10, 5, 0};
+  cube.transform.rotations = {{.turns = {{Axis::z, pi / 4}}}};
+  const SurveyScene scene = built(scene_of({files.part("plane.obj", "0"), cube}));
+  const Hit top = below(scene, 10, 5), ground = below(scene, 0, 0), corner = below(scene, 10 + 2.7, 5),
+            beside = below(scene, 10 + 1.9, 5 + 1.9);
+  CHECK(top.range == relative(96, 1e-12));
+  CHECK(top.object == 17);
+  CHECK(top.classification == 6);
+  CHECK(top.backscatter == relative(0.8, 1e-12));
+  CHECK(corner.object == 17);
+  CHECK(beside.object == 0);
+  CHECK(ground.range == relative(100, 1e-12));
+  CHECK(ground.classification == 2);
+  CHECK(scene.ground_height({10, 5}) == 0);
+}
+
+TEST_CASE("an id that is no number gives way to the part's place, with a note") {
+  const Files files;
+  SceneBuilder builder(scene_of({files.part("plane.obj", "floor"), files.part("cube.obj", "house")}), {});
+  CHECK(builder.parts()[1].object == 1);
+  REQUIRE(builder.warnings().size() == 2);
+  CHECK(builder.warnings()[1].find("'house'") != std::string::npos);
+}
+
+TEST_CASE("parts that points do not tell apart are told of") {
+  const Files files;
+  SceneBuilder alike(scene_of({files.part("plane.obj", "3"), files.part("cube.obj", "3")}), {});
+  CHECK(alike.parts().size() == 2);
+  REQUIRE(alike.warnings().size() == 1);
+  CHECK(alike.warnings()[0].find("'3' and '3' carry the same number, 3") != std::string::npos);
+  SceneBuilder unlike(scene_of({files.part("plane.obj", "3"), files.part("cube.obj", "4")}), {});
+  CHECK(unlike.parts().size() == 2);
+  CHECK(unlike.warnings().empty());
+}
+
+TEST_CASE("a part is let down onto the ground") {
+  const Files files;
+  PartSettings cube = files.part("cube.obj", "1");
+  cube.transform.translation = {3, 3, 8}, cube.transform.on_ground = 1;
+  CHECK(below(built(scene_of({cube, files.part("plane.obj", "0")})), 3, 3).range == relative(98, 1e-9));
+  cube.transform.translation = {300, 3, 8};
+  SceneBuilder nowhere(scene_of({cube, files.part("plane.obj", "0")}), {});
+  CHECK(nowhere.parts()[0].placement.translation.z == 8);
+  CHECK(nowhere.warnings().size() == 1);
+}
+
+TEST_CASE("without incidence, surfaces send back the same from everywhere") {
+  const Files files;
+  const SurveyScene scene = built(scene_of({files.part("plane.obj", "0")}), {.fixed_incidence = true});
+  RayBundle slanting = bundle_of({.origin = {0, 0, 1}, .direction = normalize(Vec3{5, 0, -1})});
+  std::vector<Hit> hits(RayBundle::capacity);
+  scene.closest(slanting, hits);
+  CHECK(hits[0].backscatter == relative(0.4, 1e-12));
+}
+
+MotionSequenceSettings sequence(std::string id, int loop, MotionSettings motion) { return {std::move(id), loop, {}, {motion}}; }
+
+TEST_CASE("motions go on from step to step, at the pulse rate") {
+  const Files files;
+  PartSettings cube = files.part("cube.obj", "1");
+  SceneBuildOptions options;
+  options.pulse_rate = 1000;
+  SUBCASE("a translation, for ever") {
+    cube.motions = {sequence("go", 0, {TranslationMotion{{0.01, 0, 0}}})};
+    const SurveyScene scene = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(scene, 0, 0, 0).object == 1);
+    CHECK(below(scene, 0, 0, 1).object == 0);
+    CHECK(below(scene, 20.9, 0, 2).object == 1);
+    CHECK(below(scene, 21.1, 0, 2).object == 0);
+  }
+  SUBCASE("every other step only, for a second, and then back for ever") {
+    cube.dynamic_step = 2;
+    cube.motions = {sequence("go", 500, {TranslationMotion{{0.01, 0, 0}}}), sequence("back", 0, {TranslationMotion{{0, 0.01, 0}}})};
+    cube.motions[0].next = "back";
+    const SurveyScene scene = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(scene, 5.9, 0, 1).object == 1);
+    CHECK(below(scene, 5.9, 4.5, 2).object == 1);
+    CHECK(below(scene, 6.1, 4.5, 2).object == 0);
+  }
+  SUBCASE("a turn about itself stays where it is; one about a place does not") {
+    cube.transform.translation = {10, 0, 0};
+    const double angle = pi / 4 / 1000;
+    cube.motions = {sequence("turn", 0, {RotationMotion{.axis = up, .angle = angle}, true})};
+    const SurveyScene own = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(own, 11.3, 0, 1).object == 1);
+    CHECK(below(own, 11.3, 0, 0).object == 0);
+    cube.motions = {sequence("turn", 0, {RotationMotion{.axis = up, .angle = 2 * angle}, false, 0})};
+    const SurveyScene orbit = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(orbit, 0, 10, 1).object == 1);
+    CHECK(below(orbit, 10, 0, 1).object == 0);
+  }
+  SUBCASE("one mirror is refused; two parallel ones are a way, two that meet are a turn") {
+    cube.motions = {sequence("mirror", 0, {ReflectionMotion{}})};
+    CHECK_THROWS_AS((void)built(scene_of({cube}), options), SettingError);
+    cube.motions = {sequence("mirror", 0, {RotoreflectionMotion{.axis = up, .angle = 0.1}})};
+    CHECK_THROWS_AS((void)built(scene_of({cube}), options), SettingError);
+
+    cube.motions = {sequence("glide", 0, {ReflectionMotion{.normal = {3, 4, 0}, .shift = Vec3{0, 0, -0.0005}}})};
+    cube.motions[0].motions.push_back(cube.motions[0].motions[0]);
+    const SurveyScene sinks = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(sinks, 0, 0, 0).range == relative(98, 1e-12));
+    CHECK(below(sinks, 0.9, -0.9, 1.5).range == relative(99.5, 1e-9));
+
+    cube.transform.translation = {10, 0, 0};
+    const double half = pi / 4 / 1000;  // twice the angle between the mirrors is that of the turn
+    cube.motions = {sequence("turn", 0, {ReflectionMotion{.normal = right}})};
+    cube.motions[0].motions.push_back({ReflectionMotion{.normal = {std::cos(half), std::sin(half), 0}}});
+    const SurveyScene orbit = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(orbit, 0, 10, 1).object == 1);
+    CHECK(below(orbit, 10, 0, 1).object == 0);
+    cube.motions = {sequence("turn", 0, {RotoreflectionMotion{.axis = up, .angle = half, .center = Vec3{0, 0, 1}}})};
+    cube.motions[0].motions.push_back(cube.motions[0].motions[0]);
+    const SurveyScene same = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(same, 0, 10, 1).object == 1);
+    CHECK(below(same, 0, 10, 1).range == relative(98, 1e-9));
+  }
+}
+
+TEST_CASE("swaps take a part's place in later runs") {
+  const Files files;
+  PartSettings cube = files.part("cube.obj", "1");
+  SwapSettings larger, gone;
+  larger.step = 2, larger.transform.scale = 3;
+  gone.removes = true;
+  cube.swaps = {larger, gone};
+  SceneBuilder builder(scene_of({files.part("plane.obj", "0"), cube}), {});
+  CHECK(builder.runs() == 4);
+  const std::vector<double> tops{98, 94, 94, 100};
+  for (int run = 0; run < 4; ++run) {
+    CAPTURE(run);
+    CHECK(below(SurveyScene(builder.parts(run), {.to = 1}), 0, 0).range == relative(tops[static_cast<std::size_t>(run)], 1e-12));
+  }
+}
+
+TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if normals are to be estimated") {
+  const Files files;
+  std::ofstream out(files.folder / "cloud.xyz");
+  for (int i = 0; i < 100; ++i) out << 0.1 * (i % 10) + 0.05 << ' ' << 0.1 * (i / 10) + 0.05 << " 0.5\n";
+  out << "5.5 0.5 0.5\n";
+  out.close();
+  PartSettings cloud{
+      "3", XyzSource{.files = {files.folder / "cloud.xyz"}, .material = {files.folder / "m.mtl", "wall"}, .estimate_normals = 1},
+      {},  1,
+      {},  {},
+      {}};
+  const SurveyScene scene = built(scene_of({cloud}));
+  CHECK(below(scene, 0.5, 0.5).object == 3);
+  CHECK(below(scene, 0.5, 0.5).classification == 6);
+  CHECK_FALSE(below(scene, 5.5, 0.5).met());
+  std::get<XyzSource>(cloud.source).estimate_normals = 0;
+  CHECK(below(built(scene_of({cloud})), 5.5, 0.5).met());
+  std::ofstream(files.folder / "few.xyz") << "0 0 0\n5 0 0\n";
+  PartSettings few = cloud;
+  few.source = XyzSource{.files = {files.folder / "few.xyz"}, .estimate_normals = 1};
+  SceneBuilder bare(scene_of({few, cloud}), {});
+  CHECK(bare.parts().size() == 1);
+  const std::vector<std::string>& told = bare.warnings();
+  CHECK(std::any_of(told.begin(), told.end(), [](const std::string& text) {
+    return text.find("few.xyz: has no voxel of three points or more, as estimateNormals needs, and is left out") != std::string::npos;
+  }));
+  std::ofstream(files.folder / "none.mtl") << "# nothing\n";
+  PartSettings plain = cloud;
+  std::get<XyzSource>(plain.source).material = {files.folder / "none.mtl"};
+  SceneBuilder io::undescribed(scene_of({plain}), {.spectra = {.warnings = {"spectra/a.txt, line 3: odd"}}});
+  CHECK(io::undescribed.parts().at(0).materials->at(0).reflectance == 0.5);
+  CHECK(std::any_of(io::undescribed.warnings().begin(), io::undescribed.warnings().end(), [](const std::string& text) {
+    return text.find("none.mtl: holds no material: its reflectance is taken to be 0.5") != std::string::npos;
+  }));
+  CHECK(io::undescribed.warnings().back() == "spectra/a.txt, line 3: odd");
+  std::get<XyzSource>(cloud.source).material.name = "brick";
+  CHECK_THROWS_WITH_AS((void)built(scene_of({cloud})), doctest::Contains("holds no material 'brick'; it has ground, wall"), FileError);
+}
+
+TEST_CASE("what a file comes to, and cannot be, is told with the file; what a part is asked for, with the part") {
+  const Files files;
+  std::ofstream(files.folder / "wide.vox") << "VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1\ni j k PadBVTotal\n0 0 0 1\n3000000 0 0 1\n";
+  PartSettings wide = files.part("plane.obj", "wide");
+  wide.source = VoxelSource{.files = {files.folder / "wide.vox"}};
+  CHECK_THROWS_WITH_AS((void)built(scene_of({wide})), doctest::Contains("wide.vox: VoxelData::cells is 3e+06, but must be within"),
+                       FileError);
+
+  PartSettings cube = files.part("cube.obj", "hut");
+  cube.transform.scale = 1e-31;
+  CHECK_THROWS_WITH_AS((void)built(scene_of({cube})), doctest::Contains("part 'hut': Similarity::scale is 1e-31"), SettingError);
+  cube.transform.scale = 1e19;
+  CHECK_THROWS_WITH_AS((void)built(scene_of({cube})), "part 'hut': place is 2e+19 m, but must be within 1e18 m of the origin",
+                       SettingError);
+  PartSettings cloud = cube;
+  cloud.source = XyzSource{.files = {files.folder / "none.xyz"}, .voxel_size = -1};
+  CHECK_THROWS_AS((void)built(scene_of({cloud})), SettingError);
+  CHECK_THROWS_WITH_AS((void)built(scene_of({}), {.threads = 1025}), doctest::Contains("SceneBuildOptions::threads is 1025"),
+                       SettingError);
+}
+
+}  // namespace
+}  // namespace pulsecast::helios

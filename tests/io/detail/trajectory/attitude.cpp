@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/io/detail/trajectory/attitude.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "support/generators.hpp"
+
+namespace pulsecast::io {
+namespace {
+
+constexpr Vec3 north = forward, east = right, west = -right, south = -forward, down = -up;
+constexpr double tight = 1e-14;
+
+/// Where the body's forward, right and up point in the world.
+std::array<Vec3, 3> faces(const Rotation& rotation) { return {rotation * forward, rotation * right, rotation * up}; }
+
+bool same(const Vec3& a, const Vec3& b, double allowed = tight) { return max_norm(a - b) < allowed; }
+
+/// The angle between two attitudes [rad].
+double apart(const Rotation& a, const Rotation& b) {
+  const Rotation turn = conjugate(a) * b;
+  return 2 * std::asin(std::min(1.0, length(Vec3{turn.x, turn.y, turn.z})));
+}
+
+Rotation of(double roll_deg, double pitch_deg, double yaw_deg, const AngleConvention& convention) {
+  return rotation_of({radians(roll_deg), radians(pitch_deg), radians(yaw_deg)}, convention);
+}
+
+/// Every order of the three angles, each about its axis in either sense, and level at some heading.
+std::vector<AngleConvention> every_convention() {
+  std::vector<AngleConvention> all{heading_pitch_roll, helios_arinc_705, helios_canonical, mathematical, ros_roll_pitch_yaw};
+  std::array<int, 3> order{0, 1, 2};
+  const std::array<Vec3, 3> axes{right, forward, up};
+  const std::array<double RollPitchYaw::*, 3> angles{&RollPitchYaw::roll, &RollPitchYaw::pitch, &RollPitchYaw::yaw};
+  do {
+    for (std::size_t first = 0; first < 3; ++first)
+      for (unsigned signs = 0; signs < 8; ++signs) {
+        AngleConvention c{.zero_heading = 0.25 * static_cast<double>(signs)};
+        for (std::size_t i = 0; i < 3; ++i) {
+          const auto k = static_cast<std::size_t>(order[i]);
+          c.turns[i] = {angles[(k + first) % 3], axes[k] * (signs >> i & 1 ? -1.0 : 1.0)};
+        }
+        all.push_back(c);
+      }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return all;
+}
+
+TEST_CASE("a heading counts clockwise from north") {
+  for (const AngleConvention& c : {heading_pitch_roll, helios_arinc_705}) {
+    CHECK(same(of(0, 0, 0, c) * forward, north));
+    CHECK(same(of(0, 0, 90, c) * forward, east));
+    CHECK(same(of(0, 0, 90, c) * right, south));
+    CHECK(same(of(0, 0, 180, c) * forward, south));
+    CHECK(same(of(0, 0, 270, c) * forward, west));
+  }
+}
+
+TEST_CASE("a mathematical yaw counts counter-clockwise from east, and HELIOS++'s from north") {
+  for (const AngleConvention& c : {mathematical, ros_roll_pitch_yaw}) {
+    CHECK(same(of(0, 0, 0, c) * forward, east));
+    CHECK(same(of(0, 0, 90, c) * forward, north));
+    CHECK(same(of(0, 0, 180, c) * forward, west));
+    CHECK(same(of(0, 0, 90, c) * up, up));
+  }
+  CHECK(same(of(0, 0, 0, helios_canonical) * forward, north));
+  CHECK(same(of(0, 0, 90, helios_canonical) * forward, west));
+}
+
+TEST_CASE("a positive pitch lifts the nose, and a robot's lowers it") {
+  const double lift = std::sin(radians(10));
+  for (const AngleConvention& c : {heading_pitch_roll, helios_arinc_705, mathematical}) {
+    CHECK((of(0, 10, 123, c) * forward).z == doctest::Approx(lift));
+    CHECK((of(0, 10, 123, c) * right).z == doctest::Approx(0));
+  }
+  CHECK((of(0, 10, 123, ros_roll_pitch_yaw) * forward).z == doctest::Approx(-lift));
+  CHECK((of(10, 0, 0, helios_canonical) * forward).z == doctest::Approx(lift));  // its roll is about right
+}
+
+TEST_CASE("a positive roll lowers the right wing") {
+  const double lift = std::sin(radians(10));
+  for (const AngleConvention& c : {heading_pitch_roll, helios_arinc_705, mathematical, ros_roll_pitch_yaw}) {
+    CHECK((of(10, 0, 123, c) * right).z == doctest::Approx(-lift));
+    CHECK((of(10, 0, 123, c) * forward).z == doctest::Approx(0));
+  }
+  CHECK((of(0, 10, 0, helios_canonical) * right).z == doctest::Approx(-lift));  // its pitch is about forward
+}
+
+TEST_CASE("turns are about axes that the turns before have moved") {
+  // heading east, then nose up until it points at the zenith, then a quarter roll: the right wing, which was south, points east
+  const auto [nose, wing, top] = faces(of(90, 90, 90, heading_pitch_roll));
+  CHECK(same(nose, up));
+  CHECK(same(wing, east));
+  CHECK(same(top, south));
+  // roll before pitch: on its side, heading east, pitch turns about the right wing, which points down
+  CHECK(same(of(90, 90, 90, helios_arinc_705) * right, down));
+  CHECK(same(of(90, 90, 90, helios_arinc_705) * forward, south));
+}
+
+TEST_CASE("aviation's convention is the one of forward, right, down in north, east, down") {
+  const Axes aviation{BodyAxes::forward_right_down, WorldAxes::north_east_down};
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    CAPTURE(seed);
+    support::Generator random(seed);
+    const double roll = random.uniform(-pi, pi), pitch = random.uniform(-1.5, 1.5), yaw = random.uniform(-pi, pi);
+    const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    const Rotation ned_from_frd = rotation_about(z, yaw) * rotation_about(y, pitch) * rotation_about(x, roll);
+    CHECK(apart(aviation.from_file(ned_from_frd), rotation_of({roll, pitch, yaw}, heading_pitch_roll)) < tight);
+    const Axes robot{BodyAxes::forward_left_up, WorldAxes::east_north_up};
+    CHECK(apart(robot.from_file(ned_from_frd), rotation_of({roll, pitch, yaw}, ros_roll_pitch_yaw)) < tight);
+  }
+}
+
+TEST_CASE("axes are what they are called") {
+  const auto agree = [](const Axes& axes, const std::array<Vec3, 3>& body, const std::array<Vec3, 3>& world) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      CAPTURE(seed);
+      support::Generator random(seed);
+      const Rotation in_file = random.rotation();
+      const Rotation rotation = axes.from_file(in_file);
+      CHECK(apart(axes.to_file(rotation), in_file) < tight);
+      const Vec3 p = random.point(1);  // in the file's axes
+      const Vec3 turned = in_file * p;
+      CHECK(same(rotation * (body[0] * p.x + body[1] * p.y + body[2] * p.z),
+                 world[0] * turned.x + world[1] * turned.y + world[2] * turned.z));
+      CHECK(axes.swapped(p) == world[0] * p.x + world[1] * p.y + world[2] * p.z);
+      CHECK(axes.swapped(axes.swapped(p)) == p);
+    }
+  };
+  for (const auto& [world, directions] : {std::pair{WorldAxes::east_north_up, std::array<Vec3, 3>{east, north, up}},
+                                          {WorldAxes::north_east_down, std::array<Vec3, 3>{north, east, down}}}) {
+    agree({BodyAxes::right_forward_up, world}, {right, forward, up}, directions);
+    agree({BodyAxes::forward_right_down, world}, {forward, right, down}, directions);
+    agree({BodyAxes::forward_left_up, world}, {forward, -right, up}, directions);
+  }
+}
+
+TEST_CASE("angles come back from the attitude that they made") {
+  for (const AngleConvention& c : every_convention()) {
+    CHECK_NOTHROW(c.validate());
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      CAPTURE(seed);
+      support::Generator random(seed);
+      RollPitchYaw angles{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)};
+      angles.*c.turns[1].angle = random.uniform(-1.5, 1.5);
+      const RollPitchYaw again = roll_pitch_yaw(rotation_of(angles, c), c);
+      CHECK(again.roll == doctest::Approx(angles.roll).epsilon(1e-13));
+      CHECK(again.pitch == doctest::Approx(angles.pitch).epsilon(1e-13));
+      CHECK(again.yaw == doctest::Approx(angles.yaw).epsilon(1e-13));
+    }
+  }
+}
+
+TEST_CASE("the angles of every attitude make that attitude again, at the poles and however near to them") {
+  double worst = 0;
+  std::uint64_t seed = 0;
+  for (const AngleConvention& c : every_convention())
+    for (int i = 0; i < 60; ++i, ++seed) {
+      CAPTURE(seed);
+      support::Generator random(seed);
+      Rotation rotation = random.rotation();
+      if (i % 2 == 1) {
+        RollPitchYaw angles{random.uniform(-pi, pi), random.uniform(-pi, pi), random.uniform(-pi, pi)};
+        const double off = i % 4 == 1 ? 0 : random.log_uniform(1e-17, 1);
+        angles.*c.turns[1].angle = (random.coin() ? 1 : -1) * (pi / 2 - off);
+        rotation = rotation_of(angles, c);
+      }
+      const RollPitchYaw angles = roll_pitch_yaw(rotation, c);
+      CHECK(std::fabs(angles.*c.turns[0].angle) <= pi);
+      CHECK(std::fabs(angles.*c.turns[1].angle) <= pi / 2);
+      CHECK(std::fabs(angles.*c.turns[2].angle) <= pi);
+      worst = std::max(worst, apart(rotation_of(angles, c), rotation));
+      CHECK(worst < 1e-13);
+      CHECK(apart(rotation_of(roll_pitch_yaw(-rotation, c), c), rotation) < 1e-13);  // the same attitude
+    }
+  MESSAGE("furthest apart [rad]: ", worst);
+}
+
+TEST_CASE("where two of the angles are one turn, all of it is yaw") {
+  for (const double pitch_deg : {90.0, -90.0}) {
+    const RollPitchYaw angles = roll_pitch_yaw(of(40, pitch_deg, 100, heading_pitch_roll), heading_pitch_roll);
+    CHECK(angles.roll == 0);
+    CHECK(angles.pitch == doctest::Approx(radians(pitch_deg)).epsilon(1e-14));
+    CHECK(degrees(angles.yaw) == doctest::Approx(pitch_deg > 0 ? 60 : 140).epsilon(1e-13));
+  }
+  const RollPitchYaw canonical = roll_pitch_yaw(of(40, 90, 100, helios_canonical), helios_canonical);
+  CHECK(canonical.roll == 0);
+  CHECK(degrees(canonical.yaw) == doctest::Approx(140).epsilon(1e-13));
+  const RollPitchYaw arinc = roll_pitch_yaw(of(90, 40, 100, helios_arinc_705), helios_arinc_705);
+  CHECK(arinc.pitch == 0);
+  CHECK(degrees(arinc.roll) == doctest::Approx(90).epsilon(1e-14));
+  CHECK(degrees(arinc.yaw) == doctest::Approx(140).epsilon(1e-13));
+}
+
+TEST_CASE("conventions that say nothing definite are refused") {
+  AngleConvention c;
+  c.zero_heading = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(c.validate(), SettingError);
+  c = {};
+  c.turns[2].axis = right;  // as the pitch's
+  CHECK_THROWS_AS(c.validate(), SettingError);
+  c.turns[2].axis = {0, 2, 0};
+  CHECK_THROWS_AS(c.validate(), SettingError);
+  c = {};
+  c.turns[2].angle = &RollPitchYaw::yaw;  // twice
+  CHECK_THROWS_AS(c.validate(), SettingError);
+  c.turns[2].angle = nullptr;
+  CHECK_THROWS_AS(c.validate(), SettingError);
+}
+
+}  // namespace
+}  // namespace pulsecast::io

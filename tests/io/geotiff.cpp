@@ -1,0 +1,544 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/io/geotiff.hpp>
+
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "support/generators.hpp"
+#include "support/relative.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::io;
+using support::TemporaryFolder;
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+using Codes = std::vector<std::uint16_t>;
+constexpr std::uint32_t columns = 37, rows = 23;  // neither a multiple of the tiles nor of the strips
+
+/// How a raster is laid down in its file.
+struct Form {
+  std::uint16_t format = SAMPLEFORMAT_IEEEFP, bits = 32, compression = COMPRESSION_NONE, predictor = 1, samples = 1,
+                planes = PLANARCONFIG_CONTIG, photometric = PHOTOMETRIC_MINISBLACK;
+  bool tiled = false;
+  const char* mode = "w";
+  std::set<std::uint32_t> left_out{};  ///< tiles
+};
+
+/// What a file says of where its pixels are.
+struct Place {
+  std::vector<double> scale{2, 3, 0}, ties{0, 0, 0, 1000, 2000, 0}, matrix{};
+  std::vector<std::uint16_t> keys{1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32633};
+  std::string nodata{};
+};
+
+/// Fits every kind of sample, and has all its values different from those of its neighbours.
+double height(std::uint32_t column, std::uint32_t row, std::uint16_t) { return 60.0 + column - row; }
+
+/// A whole number of at most 11 bits, or what is not finite, as binary16.
+std::uint16_t to_half(double value) {
+  if (value == 0) return 0;
+  if (std::isnan(value)) return 0x7E00;
+  const std::uint16_t sign = value < 0 ? 0x8000 : 0;
+  if (std::isinf(value)) return sign | 0x7C00;
+  int exponent = 0;
+  const double fraction = std::frexp(std::fabs(value), &exponent);  // in [0.5, 1)
+  return static_cast<std::uint16_t>(sign | (exponent + 14) << 10 | static_cast<int>((2 * fraction - 1) * 1024));
+}
+
+template <class Number>
+void put(std::vector<unsigned char>& bytes, Number value) {
+  bytes.resize(bytes.size() + sizeof value);
+  std::memcpy(bytes.data() + bytes.size() - sizeof value, &value, sizeof value);
+}
+
+void put_sample(std::vector<unsigned char>& bytes, const Form& form, double value) {
+  if (form.format == SAMPLEFORMAT_IEEEFP) {
+    if (form.bits == 16) return put(bytes, to_half(value));
+    return form.bits == 32 ? put(bytes, static_cast<float>(value)) : put(bytes, value);
+  }
+  const auto whole = static_cast<std::int64_t>(value);
+  if (form.bits == 8) return put(bytes, static_cast<std::int8_t>(whole));
+  if (form.bits == 16) return put(bytes, static_cast<std::int16_t>(whole));
+  return form.bits == 32 ? put(bytes, static_cast<std::int32_t>(whole)) : put(bytes, whole);
+}
+
+using Heights = std::function<double(std::uint32_t, std::uint32_t, std::uint16_t)>;
+
+void write(const std::filesystem::path& path, const Form& form = {}, const Place& place = {}, const Heights& heights = height) {
+  TIFF* tiff = TIFFOpen(path.c_str(), form.mode);
+  REQUIRE(tiff != nullptr);
+  TIFFSetWarningHandler(nullptr);  // it warns of the older number for deflate
+  static const std::vector<TIFFFieldInfo> fields{{33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("scale")},
+                                                 {33922, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("ties")},
+                                                 {34264, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("matrix")},
+                                                 {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("keys")},
+                                                 {42113, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("nodata")}};
+  TIFFMergeFieldInfo(tiff, fields.data(), static_cast<std::uint32_t>(fields.size()));
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, columns), TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, rows);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, form.samples), TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, form.planes);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, form.bits), TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, form.format);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, form.photometric), TIFFSetField(tiff, TIFFTAG_COMPRESSION, form.compression);
+  if (form.predictor != 1) TIFFSetField(tiff, TIFFTAG_PREDICTOR, form.predictor);
+  if (!place.scale.empty()) TIFFSetField(tiff, 33550, static_cast<int>(place.scale.size()), place.scale.data());
+  if (!place.ties.empty()) TIFFSetField(tiff, 33922, static_cast<int>(place.ties.size()), place.ties.data());
+  if (!place.matrix.empty()) TIFFSetField(tiff, 34264, static_cast<int>(place.matrix.size()), place.matrix.data());
+  if (!place.keys.empty()) TIFFSetField(tiff, 34735, static_cast<int>(place.keys.size()), place.keys.data());
+  if (!place.nodata.empty()) TIFFSetField(tiff, 42113, place.nodata.c_str());
+  const std::uint32_t wide = form.tiled ? 16 : columns, high = form.tiled ? 16 : 5;
+  if (form.tiled)
+    TIFFSetField(tiff, TIFFTAG_TILEWIDTH, wide), TIFFSetField(tiff, TIFFTAG_TILELENGTH, high);
+  else
+    TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, high);
+  const bool apart = form.planes == PLANARCONFIG_SEPARATE;
+  for (std::uint16_t plane = 0; plane < (apart ? form.samples : 1); ++plane)
+    for (std::uint32_t north = 0; north < rows; north += high)
+      for (std::uint32_t west = 0; west < columns; west += wide) {
+        std::vector<unsigned char> bytes;
+        for (std::uint32_t r = north; r < (form.tiled ? north + high : std::min(north + high, rows)); ++r)
+          for (std::uint32_t c = west; c < west + wide; ++c)
+            for (std::uint16_t s = 0; s < (apart ? 1 : form.samples); ++s)
+              put_sample(bytes, form, heights(std::min(c, columns - 1), std::min(r, rows - 1), apart ? plane : s));
+        if (form.predictor == PREDICTOR_FLOATINGPOINT && std::string_view(form.mode).ends_with('b'))  // libtiff 4.5 writes these wrongly:
+          for (auto at = bytes.begin(); at != bytes.end(); at += form.bits / 8)
+            std::reverse(at, at + form.bits / 8);  // turned once too often
+        const auto size = static_cast<tmsize_t>(bytes.size());
+        const std::uint32_t chunk = form.tiled ? TIFFComputeTile(tiff, west, north, 0, plane) : TIFFComputeStrip(tiff, north, plane);
+        if (form.left_out.count(chunk) != 0) continue;
+        REQUIRE((form.tiled ? TIFFWriteEncodedTile(tiff, chunk, bytes.data(), size)
+                            : TIFFWriteEncodedStrip(tiff, chunk, bytes.data(), size)) == size);
+      }
+  TIFFClose(tiff);
+}
+
+struct File {
+  TemporaryFolder folder;
+  std::filesystem::path path = folder / "terrain.tif";
+
+  [[nodiscard]] GeoTiff read(const Form& form = {}, const Place& place = {}, const Heights& heights = height,
+                             const GeoTiffSettings& settings = {}) const {
+    write(path, form, place, heights);
+    return read_geotiff(path, settings);
+  }
+
+  /// What the refusal says; empty if the file is read.
+  [[nodiscard]] std::string refusal(const Form& form = {}, const Place& place = {}, const GeoTiffSettings& settings = {}) const {
+    write(path, form, place);
+    return refusal_of(settings);
+  }
+
+  [[nodiscard]] std::string refusal_of(const GeoTiffSettings& settings = {}) const {
+    try {
+      (void)read_geotiff(path, settings);
+      return {};
+    } catch (const FileError& error) {
+      CHECK(error.path() == path.string());
+      return error.problem();
+    }
+  }
+};
+
+/// The pixels that are not as they should be.
+std::size_t wrong(const Raster& raster, const Heights& heights, std::uint16_t sample = 0) {
+  std::size_t count = 0;
+  for (std::uint32_t r = 0; r < rows; ++r)
+    for (std::uint32_t c = 0; c < columns; ++c) {
+      const auto expected = static_cast<float>(heights(c, r, sample));
+      const float found = raster.heights[std::size_t{r} * columns + c];
+      count += found == expected || (std::isnan(found) && std::isnan(expected)) ? 0 : 1;
+    }
+  return count;
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+
+/// A little-endian TIFF file by its entries: (tag, type, count, value), the value as it stands in the entry.
+std::string bare(const std::vector<std::array<std::uint32_t, 4>>& entries, const std::string& rest = {}) {
+  std::vector<unsigned char> bytes{'I', 'I', 42, 0, 8, 0, 0, 0};
+  put(bytes, static_cast<std::uint16_t>(entries.size()));
+  for (const auto& [tag, type, count, value] : entries)
+    put(bytes, static_cast<std::uint16_t>(tag)), put(bytes, static_cast<std::uint16_t>(type)), put(bytes, count), put(bytes, value);
+  put(bytes, std::uint32_t{0});
+  return std::string(bytes.begin(), bytes.end()) + rest;
+}
+
+void keep(const std::filesystem::path& path, const std::string& bytes) {
+  std::filesystem::remove(path);
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+}  // namespace
+
+TEST_CASE("a raster is read as it was written, whatever its samples, layout, compression and byte order") {
+  const File file;
+  std::size_t forms = 0;
+  for (const std::uint16_t format : Codes{SAMPLEFORMAT_IEEEFP, SAMPLEFORMAT_INT, SAMPLEFORMAT_UINT})
+    for (const std::uint16_t bits : Codes{8, 16, 32, 64})
+      for (const std::uint16_t compression : Codes{COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_PACKBITS, COMPRESSION_ADOBE_DEFLATE,
+                                                   COMPRESSION_DEFLATE, COMPRESSION_ZSTD, COMPRESSION_LZMA, COMPRESSION_LERC})
+        for (const std::uint16_t predictor : Codes{PREDICTOR_NONE, PREDICTOR_HORIZONTAL, PREDICTOR_FLOATINGPOINT})
+          for (const bool tiled : {false, true})
+            for (const char* mode : {"wl", "wb", "w8l", "w8b"}) {
+              const bool real = format == SAMPLEFORMAT_IEEEFP;
+              if (real && bits == 8) continue;
+              if (predictor == PREDICTOR_FLOATINGPOINT && !real) continue;
+              if (predictor != PREDICTOR_NONE &&
+                  (compression == COMPRESSION_NONE || compression == COMPRESSION_PACKBITS || compression == COMPRESSION_LERC))
+                continue;
+              if (compression == COMPRESSION_LERC && (bits == 64 || bits == 16) && (!real || bits == 16)) continue;  // not known to it
+              if (TIFFIsCODECConfigured(compression) == 0) continue;
+              CAPTURE(format);
+              CAPTURE(bits);
+              CAPTURE(compression);
+              CAPTURE(predictor);
+              CAPTURE(tiled);
+              CAPTURE(std::string(mode));
+              const GeoTiff found = file.read(
+                  {.format = format, .bits = bits, .compression = compression, .predictor = predictor, .tiled = tiled, .mode = mode});
+              CHECK(wrong(found.raster, height) == 0);
+              CHECK(found.warnings.empty());
+              ++forms;
+            }
+  CHECK(forms > 500);
+}
+
+TEST_CASE("heights pass through lossy JPEG with little change") {
+  if (TIFFIsCODECConfigured(COMPRESSION_JPEG) == 0) return;
+  const File file;
+  const GeoTiff found = file.read({.format = SAMPLEFORMAT_UINT, .bits = 8, .compression = COMPRESSION_JPEG, .tiled = true});
+  for (std::uint32_t i = 0; i < columns * rows; ++i)
+    CHECK(std::fabs(static_cast<double>(found.raster.heights[i]) - height(i % columns, i / columns, 0)) < 8);
+}
+
+TEST_CASE("one band is chosen of several, side by side or one after the other") {
+  const File file;
+  const Heights heights = [](std::uint32_t c, std::uint32_t r, std::uint16_t s) { return 10.0 * s + c % 7 + r % 3; };
+  for (const std::uint16_t planes : Codes{PLANARCONFIG_CONTIG, PLANARCONFIG_SEPARATE})
+    for (const bool tiled : {false, true})
+      for (const std::uint16_t bits : Codes{16, 32})
+        for (const std::uint16_t band : Codes{1, 2, 3}) {
+          const Form form{.bits = bits, .compression = COMPRESSION_LZW, .samples = 3, .planes = planes, .tiled = tiled};
+          CHECK(wrong(file.read(form, {}, heights, {.band = band}).raster, heights, static_cast<std::uint16_t>(band - 1)) == 0);
+        }
+  CHECK(contains(file.refusal({.samples = 3}, {}, {.band = 4}), "has 3 bands: expected 4"));
+}
+
+TEST_CASE("halves are read to the last bit") {
+  for (std::uint32_t half = 0; half < 65536; ++half) {
+    const float value = io::detail::from_half(static_cast<std::uint16_t>(half));
+    const int exponent = static_cast<int>(half >> 10 & 31U);
+    const double fraction = (half & 1023U) / 1024.0, sign = half < 32768 ? 1 : -1;
+    CAPTURE(half);
+    if (exponent == 31)
+      CHECK((fraction == 0 ? std::isinf(value) && std::signbit(value) == (sign < 0) : std::isnan(value)));
+    else
+      CHECK(static_cast<double>(value) == sign * (exponent == 0 ? std::ldexp(fraction, -14) : std::ldexp(1 + fraction, exponent - 15)));
+  }
+}
+
+TEST_CASE("the sample file is where and what it should be") {
+  const GeoTiff found = read_geotiff(std::filesystem::path(__FILE__).parent_path() / "data" / "terrain.tif");
+  const Raster& raster = found.raster;
+  CHECK((raster.columns == 101 && raster.rows == 81));
+  CHECK(raster.first == Vec2{476005, 5474805});
+  CHECK(raster.pixel == Vec2{10, 10});
+  CHECK(found.epsg == 32632);
+  CHECK(read_geotiff_epsg(std::filesystem::path(__FILE__).parent_path() / "data" / "terrain.tif") == 32632);
+  CHECK(found.warnings.empty());
+  CHECK(static_cast<double>(raster.heights[0]) == support::relative(118.55, 1e-5));
+  const HeightField field(raster);
+  CHECK(field.bounds().max.y == 5474805);
+}
+
+TEST_CASE("pixels are areas or points, tied anywhere") {
+  const File file;
+  Place place;
+  CHECK(file.read({}, place).raster.first == Vec2{1001, 1998.5});
+  CHECK(file.read({}, place).raster.pixel == Vec2{2, 3});
+  place.keys[11] = 2;  // PixelIsPoint
+  CHECK(file.read({}, place).raster.first == Vec2{1000, 2000});
+  place.ties = {10, 20, 0, 1000, 2000, 0};
+  CHECK(file.read({}, place).raster.first == Vec2{980, 2060});
+  place.keys.clear();  // an area unless told otherwise
+  CHECK(file.read({}, place).raster.first == Vec2{981, 2058.5});
+  CHECK_FALSE(file.read({}, place).epsg);
+}
+
+TEST_CASE("a transformation places the raster; rows and columns that go the other way are turned about") {
+  const File file;
+  const auto matrix = [](double a, double e, double turn = 0) {
+    return Place{.scale = {}, .ties = {}, .matrix = {a, turn, 0, 1000, turn, e, 0, 2000, 0, 0, 0, 0, 0, 0, 0, 1}};
+  };
+  const auto west = [](std::uint32_t c, std::uint32_t r, std::uint16_t s) { return height(columns - 1 - c, r, s); };
+  const auto north = [](std::uint32_t c, std::uint32_t r, std::uint16_t s) { return height(c, rows - 1 - r, s); };
+  for (const bool tiled : {false, true}) {
+    Raster raster = file.read({.tiled = tiled}, matrix(2, -3)).raster;
+    CHECK(raster.first == Vec2{1001, 1998.5});
+    CHECK(wrong(raster, height) == 0);
+    raster = file.read({.tiled = tiled}, matrix(-2, -3)).raster;
+    CHECK(raster.first == Vec2{1000 - 36.5 * 2, 1998.5});
+    CHECK(raster.pixel == Vec2{2, 3});
+    CHECK(wrong(raster, west) == 0);
+    raster = file.read({.tiled = tiled}, matrix(2, 3)).raster;
+    CHECK(raster.first == Vec2{1001, 2000 + 22.5 * 3});
+    CHECK(wrong(raster, north) == 0);
+  }
+  CHECK(contains(file.refusal({}, matrix(2, -3, 0.1)), "is turned or sheared"));
+  CHECK(contains(file.refusal({}, matrix(0, 0, 2)), "is turned or sheared"));
+  CHECK(contains(file.refusal({}, matrix(none, -3)), "is turned or sheared"));
+  CHECK(contains(file.refusal({}, matrix(2, -1e9)), "out of bounds"));
+  CHECK(file.refusal({}, matrix(2, -3, 1e-9)).empty());
+}
+
+TEST_CASE("a raster without a place of its own is refused") {
+  const File file;
+  CHECK(contains(file.refusal({}, {.scale = {}, .ties = {}}), "has no georeference"));
+  CHECK(contains(file.refusal({}, {.ties = {}}), "has no georeference"));
+  CHECK(contains(file.refusal({}, {.scale = {}}), "has no georeference"));
+  CHECK(contains(file.refusal({}, {.scale = {}, .ties = std::vector<double>(18)}), "control points"));
+  CHECK(contains(file.refusal({}, {.scale = {-2, 3, 0}}), "negative width"));
+  CHECK(contains(file.refusal({}, {.scale = {0, 3, 0}}), "out of bounds"));
+  CHECK(contains(file.refusal({}, {.scale = {2, infinite, 0}}), "out of bounds"));
+  CHECK(contains(file.refusal({}, {.ties = {0, 0, 0, none, 0, 0}}), "out of bounds"));
+  const GeoTiff south = file.read({}, {.scale = {2, -3, 0}});  // as GDAL takes it
+  CHECK(south.raster.first == Vec2{1001, 1998.5});
+  CHECK(south.warnings.size() == 1);
+  CHECK(file.read({}, {.scale = {2, 3, 10}}).warnings.size() == 1);
+}
+
+TEST_CASE("keys tell the reference system; one that is not in metres is refused") {
+  const File file;
+  const auto with = [](std::uint16_t model, std::vector<std::uint16_t> more) {
+    Place place{.keys = {1, 1, 0, static_cast<std::uint16_t>(1 + more.size() / 4), 1024, 0, 1, model}};
+    place.keys.insert(place.keys.end(), more.begin(), more.end());
+    return place;
+  };
+  CHECK(file.read({}, with(1, {3072, 0, 1, 25832})).epsg == 25832);
+  CHECK_FALSE(file.read({}, with(1, {3072, 0, 1, 32767})).epsg);  // user-defined
+  CHECK_FALSE(file.read({}, with(1, {3072, 34736, 1, 25832})).epsg);
+  CHECK(contains(file.refusal({}, with(2, {2048, 0, 1, 4326})), "is in degrees"));
+  CHECK(contains(file.refusal({}, with(3, {})), "geocentric"));
+  CHECK(contains(file.refusal({}, with(1, {3076, 0, 1, 9003})), "in feet"));
+  CHECK(file.read({}, with(1, {3076, 0, 1, 9036})).warnings.size() == 1);
+  Place broken = with(1, {3072, 0, 1});  // cut off
+  CHECK_FALSE(file.read({}, broken).epsg);
+
+  const auto heights_of = [&](std::uint16_t unit, const GeoTiffSettings& settings = {}) {
+    return static_cast<double>(file.read({}, with(1, {4099, 0, 1, unit}), height, settings).raster.heights[0]);
+  };
+  CHECK(heights_of(9001) == 60);
+  CHECK(heights_of(9002) == support::relative(60 * 0.3048, 1e-7));
+  CHECK(heights_of(9003) == support::relative(60 * 1200.0 / 3937, 1e-7));
+  CHECK(heights_of(9003, {.vertical_scale = 0.5}) == 30);
+  CHECK(file.read({}, with(1, {4099, 0, 1, 9003})).warnings.size() == 1);
+  CHECK(file.read({}, with(1, {4099, 0, 1, 9036})).warnings.size() == 1);
+}
+
+TEST_CASE("what is missing is NaN: by GDAL_NODATA, by the setting, by being none") {
+  const File file;
+  const auto with = [](double missing) {
+    return [missing](std::uint32_t c, std::uint32_t r, std::uint16_t) { return (c + r) % 5 == 0 ? missing : height(c, r, 0); };
+  };
+  struct Case {
+    double missing;
+    std::string nodata;
+    Form form{};
+    std::optional<double> setting{};
+  };
+  for (const bool tiled : {false, true})
+    for (Case c : std::vector<Case>{
+             {-9999, "-9999"},
+             {-9999, " -9999.0 "},
+             {-9999, "+100", {}, -9999},
+             {none, "nan"},
+             {none, ""},
+             {none, "-9999"},
+             {static_cast<double>(-3.4028234663852886e38F), "-3.4028234663852886e+38"},
+             {static_cast<double>(-3.4028234663852886e38F), "-3.40282346639e+38"},
+             {static_cast<double>(0.1F), "0.1"},
+             {-9999, "-9999", {.format = SAMPLEFORMAT_INT, .bits = 16}},
+             {-32768, "-32768", {.format = SAMPLEFORMAT_INT, .bits = 32}},
+             {255, "255", {.format = SAMPLEFORMAT_UINT, .bits = 8}},
+             {-1e300, "-1e300", {.bits = 64}},
+             {none, "nan", {.bits = 16}},
+         }) {
+      CAPTURE(c.nodata);
+      c.form.tiled = tiled;
+      const GeoTiff found = file.read(c.form, {.nodata = c.nodata}, with(c.missing), {.missing = c.setting});
+      CHECK(wrong(found.raster, with(none)) == 0);
+      CHECK(found.warnings.empty());
+    }
+  CHECK(wrong(file.read({}, {.nodata = "-9999"}, with(-9999), {.missing = 1}).raster, with(-9999)) == 0);
+
+  const GeoTiff strange = file.read({}, {}, with(-infinite));
+  CHECK(wrong(strange.raster, with(none)) == 0);
+  REQUIRE(strange.warnings.size() == 1);
+  CHECK(contains(strange.warnings[0], "values beyond 1e15 m, or infinite, are taken for missing"));
+  CHECK(file.read({}, {.nodata = "nothing"}).warnings.size() == 1);
+
+  write(file.path, {}, {.nodata = "1"}, [](std::uint32_t, std::uint32_t, std::uint16_t) { return 1.0; });
+  CHECK(contains(file.refusal_of(), "has no height"));
+}
+
+TEST_CASE("tiles that are left out are missing") {
+  const File file;
+  const GeoTiff found = file.read({.tiled = true, .left_out = {1, 3}});
+  const auto expected = [](std::uint32_t c, std::uint32_t r, std::uint16_t) {
+    const std::uint32_t tile = r / 16 * 3 + c / 16;
+    return tile == 1 || tile == 3 ? none : height(c, r, 0);
+  };
+  CHECK(wrong(found.raster, expected) == 0);
+}
+
+TEST_CASE("samples that can be no heights are refused") {
+  const File file;
+  CHECK(contains(file.refusal({.format = SAMPLEFORMAT_COMPLEXIEEEFP, .bits = 64}), "samples of 64 bits, format 6"));
+  // width, height, bits, compression, photometric, offset, samples, rows a strip, bytes
+  const auto picture = [&](std::uint32_t bits, std::uint32_t compression, std::uint32_t photometric) {
+    keep(file.path, bare({{256, 3, 1, 8},
+                          {257, 3, 1, 8},
+                          {258, 3, 1, bits},
+                          {259, 3, 1, compression},
+                          {262, 3, 1, photometric},
+                          {273, 4, 1, 8},
+                          {277, 3, 1, 1},
+                          {278, 3, 1, 8},
+                          {279, 4, 1, 64}}));
+    return file.refusal_of();
+  };
+  CHECK(contains(picture(1, 1, 1), "samples of 1 bits"));
+  CHECK(contains(picture(12, 1, 1), "samples of 12 bits"));
+  CHECK(contains(picture(16, 1, PHOTOMETRIC_LOGL), "holds a picture"));
+  CHECK(contains(picture(8, 12345, 1), "is compressed by scheme 12345"));
+  CHECK(contains(picture(8, 1, 1), "has no georeference"));
+}
+
+TEST_CASE("a header that claims more than the file can hold is refused, and nothing is made of it") {
+  struct Claim {
+    std::uint32_t wide, high, tile, strip_rows;
+  };
+  const File file;
+  for (const Claim& claim : std::vector<Claim>{{1000000, 1000000, 0, 1},
+                                               {1000000, 1000000, 0, 1000000},
+                                               {1000000, 1000000, 256, 0},
+                                               {1000000, 1000000, 1 << 20, 0},
+                                               {4294967295, 4294967295, 0, 4294967295},
+                                               {4294967295, 4294967295, 4294967280, 0},
+                                               {2, 4294967295, 0, 1},
+                                               {4294967295, 2, 0, 1},
+                                               {100, 100, 4294967280, 0}}) {
+    CAPTURE(claim.wide);
+    CAPTURE(claim.tile);
+    CAPTURE(claim.strip_rows);
+    std::vector<std::array<std::uint32_t, 4>> entries{{256, 4, 1, claim.wide}, {257, 4, 1, claim.high}, {258, 3, 1, 32},
+                                                      {259, 3, 1, 1},          {262, 3, 1, 1},          {277, 3, 1, 1}};
+    if (claim.tile != 0)
+      entries.insert(entries.end(), {{322, 4, 1, claim.tile}, {323, 4, 1, claim.tile}, {324, 4, 1, 8}, {325, 4, 1, 64}});
+    else
+      entries.insert(entries.end(), {{273, 4, 1, 8}, {278, 4, 1, claim.strip_rows}, {279, 4, 1, 64}});
+    std::sort(entries.begin(), entries.end());
+    keep(file.path, bare(entries, std::string(200, 'x')));
+    CHECK_FALSE(file.refusal_of().empty());
+  }
+}
+
+TEST_CASE("a file that is cut anywhere is refused") {
+  const File file;
+  for (const Form& form : {Form{}, Form{.compression = COMPRESSION_LZW, .tiled = true}, Form{.mode = "w8b"}}) {
+    write(file.path, form);
+    const std::string whole = support::content(file.path);
+    std::size_t refused = 0;
+    for (std::size_t size = 0; size < whole.size(); size += 1 + size / 50) {
+      keep(file.path, whole.substr(0, size));
+      const std::string problem = file.refusal_of();
+      refused += problem.empty() ? 0 : 1;
+      if (problem.empty()) CHECK(size + 64 > whole.size());  // some of the last bytes may not count
+    }
+    CHECK(refused > 100);
+  }
+  keep(file.path, "");
+  CHECK(contains(file.refusal_of(), "is empty"));
+  keep(file.path, "x y z\n1 2 3\n");
+  CHECK(contains(file.refusal_of(), "is not a TIFF file"));
+  std::filesystem::remove(file.path);
+  CHECK(contains(file.refusal_of(), "is not there"));
+  std::filesystem::create_directory(file.path);
+  CHECK(contains(file.refusal_of(), "is a directory"));
+}
+
+TEST_CASE("where a strip is not whole, the error says so, and where it begins") {
+  const File file;
+  write(file.path, {.compression = COMPRESSION_ADOBE_DEFLATE});
+  TIFF* tiff = TIFFOpen(file.path.c_str(), "r");
+  const std::uint64_t begin = TIFFGetStrileOffset(tiff, 2);
+  TIFFClose(tiff);
+  std::string bytes = support::content(file.path);
+  for (std::size_t i = 0; i < 8; ++i) bytes[begin + i] = '\xFF';
+  keep(file.path, bytes);
+  try {
+    (void)read_geotiff(file.path);
+    FAIL("was read");
+  } catch (const FileError& error) {
+    CHECK(error.place() == "byte " + std::to_string(begin));
+    CHECK(contains(error.problem(), "strip 2 cannot be read"));
+  }
+}
+
+TEST_CASE("a mutated file gives a sound raster, or a FileError, and libtiff prints nothing") {
+  static int printed = 0;
+  const auto count = [](const char*, const char*, std::va_list) { ++printed; };
+  const TIFFErrorHandler errors = TIFFSetErrorHandler(count), warnings = TIFFSetWarningHandler(count);
+  const File file, source;
+  int read = 0, refused = 0;
+  std::vector<std::string> whole;
+  for (const Form& form : {Form{}, Form{.compression = COMPRESSION_LZW, .predictor = 2, .tiled = true},
+                           Form{.format = SAMPLEFORMAT_INT, .bits = 16, .compression = COMPRESSION_ADOBE_DEFLATE, .mode = "w8b"}}) {
+    write(source.path, form, {.nodata = "-9999"});
+    whole.push_back(support::content(source.path));
+  }
+  printed = 0;
+  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+    CAPTURE(seed);
+    support::Generator random(seed);
+    std::string bytes = whole[seed % 3];
+    const bool in_directory = random.coin();  // it stands at the end
+    for (std::uint64_t n = 1 + random.whole(4); n > 0; --n) {
+      const std::size_t tail = std::min<std::size_t>(bytes.size(), 600);
+      const std::size_t at = in_directory ? bytes.size() - 1 - random.whole(tail) : random.whole(bytes.size());
+      bytes[at] = random.coin() ? static_cast<char>(random.whole(256)) : static_cast<char>(bytes[at] ^ 1 << random.whole(8));
+    }
+    keep(file.path, bytes);
+    try {
+      const GeoTiff found = read_geotiff(file.path);
+      CHECK_NOTHROW(found.raster.validate());
+      ++read;
+    } catch (const FileError&) {
+      ++refused;
+    }
+  }
+  TIFFSetErrorHandler(errors), TIFFSetWarningHandler(warnings);
+  CHECK(printed == 0);
+  CHECK(read > 200);  // the mutations are neither harmless nor hopeless
+  CHECK(refused > 200);
+}
+
+TEST_CASE("settings that cannot be are refused") {
+  const File file;
+  write(file.path);
+  CHECK_THROWS_AS((void)read_geotiff(file.path, {.band = 0}), SettingError);
+  for (const double scale : {0.0, -1.0, none, infinite})
+    CHECK_THROWS_AS((void)read_geotiff(file.path, {.vertical_scale = scale}), SettingError);
+}

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/io/mtl.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "support/temporary_folder.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::io;
+
+namespace {
+
+const support::TemporaryFolder folder;
+const std::filesystem::path path = folder.path() / "file";
+
+/// Reads a file with this text.
+MaterialLibrary mtl(const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+  return read_mtl(path);
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("every key of an MTL file that counts is read") {
+  const MaterialLibrary library =
+      mtl("# comment\r\nnewmtl wall\r\n\tKd 0.7 0.7 0.7\r\n  Ks 0.1 0.1 0.1\r\nNs 20\r\nKa 1 1 1\r\nillum 2\r\n"
+          "helios_reflectance 0.3\r\nhelios_isGround TRUE\r\nhelios_classification 6\r\nhelios_useVertexColors 1\r\n");
+  REQUIRE(library.materials.size() == 1);
+  CHECK(library.warnings.empty());
+  const Material& wall = library.materials.at("wall");
+  CHECK(wall.name == "wall");
+  CHECK(wall.reflectance == 0.3);
+  CHECK(wall.scattering == Scattering::phong);
+  CHECK(wall.specular_share == doctest::Approx(0.125));
+  CHECK(wall.specular_exponent == 20);
+  CHECK(wall.classification == 6);
+  CHECK(wall.ground);
+}
+
+TEST_CASE("what is neither true nor false is no ground, with a warning") {
+  const MaterialLibrary library = mtl("newmtl a\nhelios_isGround yes\nnewmtl b\nhelios_isGround 0\nnewmtl c\nhelios_isGround False\n");
+  for (const char* name : {"a", "b", "c"}) CHECK_FALSE(library.materials.at(name).ground);
+  REQUIRE(library.warnings.size() == 1);
+  CHECK(contains(library.warnings[0], ", line 2: material 'a' has helios_isGround 'yes', which is neither true nor false"));
+}
+
+TEST_CASE("the colours decide the angular law, material by material") {
+  const MaterialLibrary library =
+      mtl("newmtl both\nKd 0.3 0.3 0.3\nKs 0.1 0.1 0.1\n"
+          "newmtl diffuse\nKd 0.2\n"
+          "newmtl neither\nhelios_reflectance 0.1\n"
+          "newmtl specular\nKs 0 0 0.5\n"
+          "newmtl black with blanks\nKd 0 0 0\nKs 0 0 0\nKa 1 1 1\nmap_Kd x.png\n");
+  const auto& m = library.materials;
+  CHECK(m.at("both").scattering == Scattering::phong);
+  CHECK(m.at("both").specular_share == doctest::Approx(0.25));
+  CHECK(m.at("diffuse").scattering == Scattering::lambert);
+  CHECK(m.at("diffuse").specular_share == 0);
+  CHECK(m.at("neither").scattering == Scattering::direction_independent);
+  CHECK(m.at("specular").scattering == Scattering::phong);
+  CHECK(m.at("specular").specular_share == 1);
+  CHECK(m.at("black with blanks").scattering == Scattering::direction_independent);
+  CHECK(m.at("diffuse").reflectance == 0.5);
+  CHECK(m.at("specular").specular_exponent == 10);
+  CHECK_FALSE(m.at("diffuse").ground);
+  for (const auto& [name, material] : m) CHECK_NOTHROW(material.validate());
+}
+
+TEST_CASE("a reflectance above 1 is percent, with a warning; the limits are themselves allowed") {
+  const MaterialLibrary library =
+      mtl("newmtl a\nhelios_reflectance 35 # percent\nnewmtl b\nhelios_reflectance 1\nnewmtl c\nhelios_reflectance 100\nnewmtl "
+          "d\nhelios_reflectance 0\n");
+  CHECK(library.materials.at("a").reflectance == doctest::Approx(0.35));
+  CHECK(library.materials.at("b").reflectance == 1);
+  CHECK(library.materials.at("c").reflectance == 1);
+  CHECK(library.materials.at("d").reflectance == 0);
+  REQUIRE(library.warnings.size() == 2);
+  CHECK(contains(library.warnings[0], "'a'"));
+  CHECK(contains(library.warnings[0], "percent"));
+  CHECK(contains(library.warnings[1], ", line 6: material 'c'"));
+}
+
+TEST_CASE("a spectrum comes from the library, unless a reflectance is given; one that is not there is warned of") {
+  const auto birch = std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.4e-6, 0.1}, {1.5e-6, 0.6}});
+  SpectralLibrary spectra{.spectra = {{"birch", birch}, {"oak", birch}}};
+  const std::string text =
+      "newmtl a\nKd 1 1 1\nhelios_spectra birch\nnewmtl b\nhelios_spectra oak\nhelios_reflectance 0.2\nnewmtl c\nhelios_spectra elm\n";
+  std::ofstream(path, std::ios::binary) << text;
+  const MaterialLibrary library = read_mtl(path, spectra);
+  CHECK(library.materials.at("a").spectrum == birch);
+  CHECK(library.materials.at("a").scattering == Scattering::lambert);
+  CHECK(library.materials.at("a").reflectance_at(1.5e-6) == 0.6);
+  CHECK(library.materials.at("b").spectrum == nullptr);
+  CHECK(library.materials.at("b").reflectance_at(1.5e-6) == 0.2);
+  CHECK(library.materials.at("c").spectrum == nullptr);
+  CHECK(library.materials.at("c").reflectance == 0.5);
+  REQUIRE(library.warnings.size() == 1);
+  CHECK(contains(library.warnings[0], ", line 8: material 'c' names the spectrum 'elm', which no library holds"));
+  CHECK(mtl(text).warnings.size() == 2);
+
+  spectra.wavelengths = {0.532e-6, 1.55e-6, 0.4e-6};
+  const MaterialLibrary warned = read_mtl(path, spectra);
+  REQUIRE(warned.warnings.size() == 2);
+  CHECK(contains(warned.warnings[0], "spans 400 to 1500 nm: for the laser of 1550 nm"));
+}
+
+TEST_CASE("of a name that comes twice the first counts, and what has no name is the default") {
+  const MaterialLibrary library = mtl("helios_reflectance 0.1\nnewmtl a\nhelios_reflectance 0.2\nnewmtl a\nhelios_reflectance 0.3\n");
+  REQUIRE(library.materials.size() == 2);
+  CHECK(library.materials.at("default").reflectance == 0.1);
+  CHECK(library.materials.at("a").reflectance == 0.2);
+}
+
+TEST_CASE("a colour of one number is grey, and a texture is no colour") {
+  const MaterialLibrary library = mtl("newmtl a\nKd 0.3\nKs 0.1 0.1 0.1\nnewmtl b\nmap_Kd x.png\n");
+  CHECK(library.materials.at("a").specular_share == doctest::Approx(0.25));
+  CHECK(library.materials.at("b").scattering == Scattering::direction_independent);
+  CHECK(mtl("newmtl a\nmap_Kd x.png\n").materials.at("a").scattering == Scattering::direction_independent);
+}
+
+TEST_CASE("names may have blanks and signs of comments") {
+  const MaterialLibrary library = mtl("newmtl Material #25\nhelios_reflectance 0.1\nnewmtl Material #26\nhelios_isGround 1 # yes\n");
+  REQUIRE(library.materials.size() == 2);
+  CHECK(library.materials.at("Material #25").reflectance == 0.1);
+  CHECK(library.materials.at("Material #26").ground);
+}
+
+TEST_CASE("an MTL file may describe nothing, but not be empty") {
+  CHECK(mtl("# Material Count: 0\n").materials.empty());
+  CHECK_THROWS_WITH_AS((void)mtl(""), doctest::Contains("is empty"), FileError);
+}
+
+TEST_CASE("a damaged MTL file gives one error with its line") {
+  for (const char* statement :
+       {"helios_reflectance", "helios_reflectance abc", "helios_reflectance nan", "helios_reflectance -0.1", "helios_reflectance 100.5",
+        "helios_reflectance 0.5 0.5", "helios_reflectance inf", "helios_classification 2.5", "helios_classification -1",
+        "helios_classification 65536", "Kd", "Kd 0.1 0.2", "Kd 0.1 x 0.3", "Ks nan 0 0", "Kd -1 0 0", "Ns -2", "Ns many", "newmtl"}) {
+    CAPTURE(statement);
+    std::optional<FileError> error;
+    try {
+      (void)mtl("newmtl a\n" + std::string(statement) + "\nKd 1 1 1\n");
+    } catch (const FileError& e) {
+      error = e;
+    }
+    REQUIRE(error);
+    CAPTURE(error->what());
+    CHECK(error->path() == path.string());
+    CHECK(error->place() == "line 2");
+    CHECK(contains(error->problem(), "expected"));
+  }
+}

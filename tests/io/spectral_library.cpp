@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/io/spectral_library.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "support/generators.hpp"
+#include "support/relative.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::io;
+using namespace pulsecast::support;
+
+namespace {
+
+const TemporaryFolder folder;
+const std::filesystem::path path = folder / "oak.txt";
+
+/// Reads a file with this text.
+SpectrumFile spectrum(const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+  return read_spectrum(path);
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// Whether a file spans these wavelengths [m], and has this reflectance at 1 micrometre.
+void check(const SpectrumFile& file, double shortest, double longest, double reflectance) {
+  CHECK(file.spectrum->shortest() == relative(shortest, 1e-12));
+  CHECK(file.spectrum->longest() == relative(longest, 1e-12));
+  CHECK(file.spectrum->reflectance(1e-6) == relative(reflectance, 1e-12));
+}
+
+}  // namespace
+
+TEST_CASE("a file with the header of the ECOSTRESS and ASTER libraries is read in the units that it names") {
+  const std::string header =
+      "Name: Oak leaf\nType: vegetation\nParticle Size: 75-250 um\nSample No.: 26\nWavelength Range: All\n"
+      "Description: A leaf, 5 % wet, of 2 by 3 nm.\nMeasurement: Directional (10 Degree) Hemispherical Reflectance\n"
+      "First Column: X\nSecond Column: Y\n";
+  const std::string end = "First X Value: 1.5\nLast X Value: 0.5\nNumber of X Values: 2\nAdditional Information: none\n\n";
+  const SpectrumFile percent =
+      spectrum(header + "X Units: Wavelength (micrometers)\nY Units: Reflectance (percent)\n" + end + "1.5\t60\r\n0.5\t20\r\n");
+  check(percent, 0.5e-6, 1.5e-6, 0.4);
+  CHECK(percent.scale == ReflectanceScale::percent);
+  CHECK(percent.report == path.string() + ": wavelengths in micrometres, as its header says; reflectance in percent, as its header says");
+  CHECK(percent.warnings.empty());
+
+  const SpectrumFile fraction =
+      spectrum(header + "X Units: Wavelength (nanometers)\nY Units: Reflectance (fraction)\n" + end + "1500 0.6\n500 0.2\n");
+  check(fraction, 0.5e-6, 1.5e-6, 0.4);
+  CHECK(fraction.scale == ReflectanceScale::fraction);
+  CHECK(contains(fraction.report, "nanometres, as its header says; reflectance in fractions, as its header says"));
+
+  const SpectrumFile waves = spectrum("X Units: Wavenumber (cm-1)\nY Units: Reflectance (percentage)\n5000 10\n10000 40\n");
+  check(waves, 1e-6, 2e-6, 0.4);
+}
+
+TEST_CASE("without a header the values tell the units, and both are always reported") {
+  const SpectrumFile percent = spectrum("500 20\n1500 60\n");
+  check(percent, 0.5e-6, 1.5e-6, 0.4);
+  CHECK(percent.scale == ReflectanceScale::percent);
+  CHECK(contains(percent.report, "nanometres, as they are 500 to 1500; reflectance in percent, as its values reach 60"));
+
+  const SpectrumFile fraction = spectrum("0.5,0.2\n1.5,0.6");
+  check(fraction, 0.5e-6, 1.5e-6, 0.4);
+  CHECK(fraction.scale == ReflectanceScale::fraction);
+  CHECK(contains(fraction.report, "micrometres, as they are 0.5 to 1.5; reflectance in fractions, as its values reach 0.6"));
+
+  check(spectrum("5e-7;0.2;9\n1.5e-6;0.6;9\n"), 0.5e-6, 1.5e-6, 0.4);
+}
+
+TEST_CASE("the titles of the columns tell the units") {
+  const SpectrumFile names = spectrum("# from the garden, 2 nm steps\nwavelength_nm,reflectance_percent\n500,0.2\n1500,0.6\n");
+  check(names, 0.5e-6, 1.5e-6, 0.004);
+  CHECK(names.scale == ReflectanceScale::percent);
+  REQUIRE(names.warnings.size() == 1);
+  CHECK(contains(names.warnings[0], ", line 2: its header says percent, but its values reach 0.6 only"));
+  check(spectrum("Wavelength(\xC2\xB5m)\tReflectance(%)\n0.5\t20\n1.5\t60\n"), 0.5e-6, 1.5e-6, 0.4);
+  check(spectrum("wavelength [um] reflectance [%]\n0.5 20\n1.5 60\n"), 0.5e-6, 1.5e-6, 0.4);
+}
+
+TEST_CASE("a file of 26 header lines of any words, as HELIOS++ takes them, is read") {
+  std::string text;
+  for (int line = 1; line <= 26; ++line) text += "header line " + std::to_string(line) + "\n";
+  check(spectrum(text + "0.500\t20.0\n1.500\t60.0\n"), 0.5e-6, 1.5e-6, 0.4);
+}
+
+TEST_CASE("what is missing is left out, what is beyond is clipped, and what comes twice is united") {
+  const SpectrumFile gaps = spectrum("0.3 -1.23e+34\n0.5 0.2\n1.0 nan\n1.5 0.6\n2.0 NA\n");
+  check(gaps, 0.5e-6, 1.5e-6, 0.4);
+  const SpectrumFile beyond = spectrum("500 -2\n1000 40\n1500 101\n");
+  CHECK(beyond.spectrum->reflectance(0.5e-6) == 0);
+  CHECK(beyond.spectrum->reflectance(1.5e-6) == 1);
+  REQUIRE(beyond.warnings.size() == 1);
+  CHECK(contains(beyond.warnings[0], ", line 1: a reflectance below 0 or above 1 is clipped, the first of 2"));
+  const SpectrumFile twice = spectrum("0.5 0.2\n1.0 0.3\n1.0 0.5\n1.5 0.6\n1.5 0.8\n");
+  check(twice, 0.5e-6, 1.5e-6, 0.4);
+  CHECK(twice.spectrum->reflectance(1.5e-6) == relative(0.7, 1e-12));
+  REQUIRE(twice.warnings.size() == 1);
+  CHECK(contains(twice.warnings[0], ", line 3: a wavelength comes again, the first of 2: the mean is taken"));
+  const SpectrumFile denied = spectrum("Y Units: Reflectance (fraction)\n500 20\n1500 60\n");
+  check(denied, 0.5e-6, 1.5e-6, 0.4);
+  REQUIRE(denied.warnings.size() == 1);
+  CHECK(contains(denied.warnings[0], ", line 1: its header says fraction, but its values reach 60"));
+  CHECK(contains(spectrum("X Units: Wavelength (micrometers)\n500 0.2\n1500 0.6\n").warnings.at(0),
+                 ", line 3: its wavelengths, 500 to 1500 micrometres, are not all those of light"));
+  CHECK(spectrum("0.5 0.2\n# end of the visible\n1.5 0.6\n").spectrum->samples().size() == 2);
+}
+
+TEST_CASE("a file that is no spectrum gives one error, with its line") {
+  const auto problem = [](const std::string& text) -> std::string {
+    try {
+      (void)spectrum(text);
+    } catch (const FileError& error) {
+      return error.place() + ": " + error.problem();
+    }
+    return {};
+  };
+  CHECK(contains(problem(""), "is empty"));
+  CHECK(contains(problem("words\nand more\n"), "holds no row of two numbers"));
+  CHECK(contains(problem("0.1\n0.2\n"), "holds no row of two numbers"));
+  CHECK(contains(problem("0.5 -1.23e34\n"), "holds no row"));
+  CHECK(contains(problem("title\n0.5 0.2\n0.6 much\n"), "line 3: '0.6 much': expected wavelength and reflectance"));
+  CHECK(contains(problem("0.5 0.2\n0.6\n"), "line 2"));
+  CHECK(contains(problem("0.5 0.2\n0 0.3\n"), "line 2: '0 0.3': expected a wavelength greater than 0"));
+  CHECK(contains(problem("-0.5 0.2\n"), "line 1"));
+  CHECK(contains(problem("1e-320 0.2\n1 0.1\n"), "line 1"));
+  CHECK(contains(problem("Y Units: Transmittance (percent)\n0.5 0.2\n"), "line 1: 'Y Units: Transmittance (percent)': expected"));
+  CHECK(contains(problem(std::string("0.5 0.2\n\0\0\n", 11)), "binary"));
+  CHECK_THROWS_AS((void)read_spectrum(folder / "none"), FileError);
+}
+
+TEST_CASE("random texts are a spectrum or one error") {
+  const std::string alphabet = "0123456789.eE+-# \t,;\n\nnm%:XYxreflectanceUnits";
+  int spectra = 0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed);
+    std::string text = random.coin() ? "500 20\n" : "X Units: nm\n1 2\n";
+    for (std::uint64_t n = random.whole(60); n > 0; --n) text += alphabet[random.whole(alphabet.size())];
+    try {
+      const SpectrumFile file = spectrum(text);
+      ++spectra;
+      for (const SpectralSample& sample : file.spectrum->samples()) REQUIRE((sample.reflectance >= 0 && sample.reflectance <= 1));
+      REQUIRE_FALSE(file.report.empty());
+    } catch (const FileError& error) {
+      REQUIRE(error.path() == path.string());
+    }
+  }
+  CHECK(spectra > 50);
+}
+
+TEST_CASE("a library is all spectra of a folder, by the names of their files") {
+  const std::filesystem::path many = folder / "library";
+  std::filesystem::create_directory(many);
+  const auto write = [&](const char* name, const char* text) { std::ofstream(many / name, std::ios::binary) << text; };
+  write("oak.v2.txt", "500 20\n1500 60\n"), write("grass.txt", "0.5 0.1\n"), write("grass.csv", "0.5 0.3\n");
+  write("readme.md", "words\n"), write(".hidden", "0.5 0.3\n"), write("empty", "");
+  const SpectralLibrary library = read_spectral_library(many);
+  REQUIRE(library.spectra.size() == 2);
+  CHECK(library.spectra.at("oak.v2")->reflectance(1e-6) == relative(0.4, 1e-12));
+  CHECK(library.spectra.at("grass")->reflectance(1e-6) == 0.3);
+  REQUIRE(library.reports.size() == 2);
+  CHECK(contains(library.reports[0], "grass.csv"));
+  CHECK(contains(library.reports[1], "oak.v2.txt"));
+  CHECK(contains(library.reports[1], "percent"));
+  REQUIRE(library.warnings.size() == 3);
+  CHECK(contains(library.warnings[0], "empty"));
+  CHECK(contains(library.warnings[1], "grass.txt"));
+  CHECK(contains(library.warnings[2], "readme.md"));
+
+  CHECK(read_spectral_library(many / "grass.txt").spectra.count("grass") == 1);
+  CHECK_THROWS_AS((void)read_spectral_library(many / "readme.md"), FileError);
+  CHECK_THROWS_AS((void)read_spectral_library(folder / "none"), FileError);
+  std::filesystem::create_directory(folder / "nothing");
+  CHECK_THROWS_WITH_AS((void)read_spectral_library(folder / "nothing"), doctest::Contains("holds no spectrum"), FileError);
+}

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/mpi/run.hpp>
+
+#include <stop_token>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/cloud.hpp>
+
+#include "support/mpi_showers.hpp"
+
+namespace pulsecast::mpi {
+namespace {
+
+using support::mpi_team;
+using support::Showers;
+
+TEST_CASE("sinks of the first process get all, in pulse order") {
+  const Showers survey{50'000, 3};
+  Cloud expected, cloud;
+  pulsecast::run(survey, {.threads = 1, .first = 100, .stride = 7}, expected);
+  PulseIndex next = 0;
+  std::vector<Progress> told;
+  RunOptions options{.threads = 2, .first = 100, .stride = 7};
+  options.progress = [&](const Progress& p) { told.push_back(p); };
+  const RunSummary summary = run(mpi_team(), survey, options, cloud, [&](const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots) {
+      CHECK(shot.index >= next);
+      next = shot.index + 1;
+    }
+  });
+  const RunSummary alone = pulsecast::run(survey, {.threads = 1, .first = 100, .stride = 7});
+  CHECK(summary.slots == alone.slots);
+  CHECK(summary.echoes == alone.echoes);
+  CHECK(summary.fates == alone.fates);
+  CHECK(summary.rays == alone.rays);
+  CHECK(summary.energy == alone.energy);  // whole numbers
+  CHECK(summary.complete);
+  CHECK(cloud.size() == (mpi_team().first() ? expected.size() : 0));
+  REQUIRE(told.empty() != mpi_team().first());
+  if (!mpi_team().first()) return;
+  CHECK(told.back().done == alone.slots);
+  CHECK(told.back().total == alone.slots);
+}
+
+TEST_CASE("a run that is stopped leaves whole results up to some slot") {
+  const Showers survey{400'000};
+  std::stop_source source;
+  RunOptions options{.threads = 1, .stop = source.get_token()};
+  options.progress = [&](const Progress&) { source.request_stop(); };
+  PulseIndex pulses = 0, last = 0;
+  const RunSummary summary = run(mpi_team(), survey, options, [&](const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots) ++pulses, last = shot.index;
+  });
+  CHECK(!summary.complete);
+  CHECK(summary.slots > 0);
+  if (!mpi_team().first()) return;
+  CHECK(pulses == summary.pulses());
+  CHECK(last < summary.slots);
+  CHECK(last + 2 >= summary.slots);
+}
+
+}  // namespace
+}  // namespace pulsecast::mpi

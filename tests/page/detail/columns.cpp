@@ -1,0 +1,226 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/page/detail/columns.hpp>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <zlib.h>
+
+#include <pulsecast/base/random.hpp>
+
+using namespace pulsecast;
+using namespace pulsecast::page;
+
+namespace {
+
+struct Decoded {
+  std::string text;
+  std::map<std::string, std::vector<double>> columns;
+};
+
+/// What stands behind "KEY": in a piece of JSON, up to a comma or brace.
+std::string field(const std::string& text, const std::string& key) {
+  const auto at = text.find("\"" + key + "\":");
+  if (at == std::string::npos) return "";
+  const auto from = at + key.size() + 3;
+  return text.substr(from, text.find_first_of(text[from] == '[' ? "]" : ",}", from) - from);
+}
+
+/// Reads columns as their description says, by other means than the page's.
+Decoded decoded(const std::string& bytes, std::size_t count) {
+  const auto byte = [&](std::size_t i) { return std::size_t{static_cast<unsigned char>(bytes[i])}; };
+  const std::size_t size = byte(0) | byte(1) << 8 | byte(2) << 16;
+  Decoded out{bytes.substr(4, size), {}};
+  CHECK(field(out.text, "count") == std::to_string(count));
+  std::vector<Bytef> planes(count * 100 + 100);
+  z_stream stream{};
+  REQUIRE(inflateInit2(&stream, -15) == Z_OK);
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + 4 + size));
+  stream.avail_in = static_cast<uInt>(bytes.size() - 4 - size);
+  stream.next_out = planes.data(), stream.avail_out = static_cast<uInt>(planes.size());
+  CHECK(inflate(&stream, Z_FINISH) == Z_STREAM_END);
+  CHECK(stream.avail_in == 0);
+  const std::size_t whole = stream.total_out;
+  inflateEnd(&stream);
+  std::size_t plane = 0;
+  for (auto at = out.text.find("{\"name\""); at != std::string::npos; at = out.text.find("{\"name\"", at + 1)) {
+    const std::string column = out.text.substr(at, out.text.find('}', at) + 1 - at), kind = field(column, "kind");
+    const std::string name = field(column, "name").substr(1, field(column, "name").size() - 2);
+    std::vector<double>& values = out.columns[name];
+    std::int64_t before = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      std::uint64_t code = 0;
+      for (std::size_t k = 0; k < std::stoul(field(column, "planes")); ++k) code |= std::uint64_t{planes[(plane + k) * count + i]} << 8 * k;
+      auto now = static_cast<std::int64_t>(code);
+      if (field(column, "differences") == "true")
+        now = before += code % 2 == 1 ? -static_cast<std::int64_t>(code / 2) - 1 : static_cast<std::int64_t>(code / 2);
+      double value = std::numeric_limits<double>::quiet_NaN();
+      if (now > 0 && kind == "\"linear\"")
+        value = std::stod(field(column, "offset")) + static_cast<double>(now - 1) * std::stod(field(column, "step"));
+      if (now > 0 && kind == "\"logarithmic\"")
+        value = std::stod(field(column, "offset")) * std::exp(static_cast<double>(now - 1) * std::stod(field(column, "step")));
+      if (now > 0 && kind == "\"listed\"") {
+        std::string list = field(column, "values").substr(1) + ',';
+        for (std::int64_t k = 1; k < now; ++k) list = list.substr(list.find(',') + 1);
+        value = std::stod(list);
+      }
+      const std::string each = field(column, "per_pulse");
+      if (!each.empty()) value += std::stod(each) * out.columns["pulse"][i];
+      values.push_back(value);
+    }
+    plane += std::stoul(field(column, "planes"));
+  }
+  CHECK(plane * count == whole);
+  return out;
+}
+
+std::vector<PagePoint> random_points(std::size_t n, std::uint64_t seed) {
+  std::vector<PagePoint> points;
+  PulseIndex pulse = 1'000'000'000'000;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::uint32_t k = 0;
+    const auto draw = [&] { return uniform({.seed = seed, .pulse = i, .subray = k++}); };
+    const auto real = [&](double most) { return static_cast<float>(most * draw()); };
+    pulse += static_cast<PulseIndex>(5 * draw());
+    points.push_back({.position = {477000 + 900 * draw(), 5429000 + 500 * draw(), 100 * draw() - 20},
+                      .time = static_cast<double>(pulse - 1'000'000'000'000) / 300e3 + 1234,
+                      .pulse = pulse,
+                      .to_instrument = {real(30), real(30), real(500)},
+                      .amplitude = std::pow(10.0f, -9 + real(6)),
+                      .reflectance = real(1.2),
+                      .width = real(5e-9),
+                      .incidence = real(1.57),
+                      .scan_angle = real(1) - 0.5f,
+                      .object = static_cast<ObjectId>(4e9 * draw()),
+                      .key = static_cast<std::uint32_t>(4e9 * draw()),
+                      .classification = static_cast<std::uint16_t>(65535 * draw()),
+                      .leg = static_cast<std::uint16_t>(3 * draw()),
+                      .number = static_cast<std::uint8_t>(1 + 4 * draw()),
+                      .returns = static_cast<std::uint8_t>(5 + 200 * draw()),
+                      .channel = static_cast<std::uint8_t>(16 * draw())});
+  }
+  return points;
+}
+
+}  // namespace
+
+TEST_CASE("every attribute is read back, right to half its step") {
+  const auto points = random_points(3000, 1);
+  const Decoded all = decoded(page_columns(points, {.keys = true}), points.size());
+  const double step = 0.01;  // of 900 m, 2^17 steps of 5 mm are too few
+  CHECK(field(all.text, "step") == "0.01");
+  std::size_t wrong = 0;
+  const auto check = [&](const char* name, std::size_t i, double expected, double error) {
+    const double found = all.columns.at(name)[i];
+    if (std::abs(found - expected) <= error) return;
+    if (++wrong < 5) FAIL_CHECK("point " << i << ", " << name << " is " << found << ", not " << expected);
+  };
+  constexpr double rounding = 1e-9;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PagePoint& p = points[i];
+    check("x", i, p.position.x, step / 2 + rounding);
+    check("y", i, p.position.y, step / 2 + rounding);
+    check("z", i, p.position.z, step / 2 + rounding);
+    check("from_x", i, p.position.x + static_cast<double>(p.to_instrument[0]), step / 2 + rounding);
+    check("from_z", i, p.position.z + static_cast<double>(p.to_instrument[2]), step / 2 + rounding);
+    check("time", i, p.time, 0.5e-7 + 1e-9);
+    check("pulse", i, static_cast<double>(p.pulse), 0);
+    check("return_number", i, p.number, 0);
+    check("returns", i, p.returns, 0);
+    check("leg", i, p.leg, 0);
+    check("channel", i, p.channel, 0);
+    check("object", i, p.object, 0);
+    check("class", i, p.classification, 0);
+    check("key", i, p.key, 0);
+    check("reflectance", i, static_cast<double>(p.reflectance), 0.001 + rounding);
+    check("amplitude", i, static_cast<double>(p.amplitude), 0.0101 * static_cast<double>(p.amplitude));
+    check("incidence", i, static_cast<double>(p.incidence) * 180 / pi, 0.25 + rounding);
+    check("scan_angle", i, static_cast<double>(p.scan_angle) * 180 / pi, 0.025 + rounding);
+    check("width", i, static_cast<double>(p.width) * 1e9, 0.0005 + rounding);
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("what has no value is told as such") {
+  auto points = random_points(4, 2);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  points[1].amplitude = 0, points[2].amplitude = nan, points[1].width = nan, points[2].reflectance = std::numeric_limits<float>::infinity();
+  const Decoded all = decoded(page_columns(points), 4);
+  CHECK(std::isnan(all.columns.at("amplitude")[1]));
+  CHECK(std::isnan(all.columns.at("amplitude")[2]));
+  CHECK(std::isnan(all.columns.at("width")[1]));
+  CHECK(std::isnan(all.columns.at("reflectance")[2]));
+  CHECK(std::isfinite(all.columns.at("amplitude")[3]));
+  CHECK(std::isfinite(all.columns.at("width")[3]));
+}
+
+TEST_CASE("widths and keys are left out unless they are wanted") {
+  auto points = random_points(10, 3);
+  for (PagePoint& p : points) p.width = 0;
+  const Decoded all = decoded(page_columns(points), 10);
+  CHECK_FALSE(all.columns.contains("width"));
+  CHECK_FALSE(all.columns.contains("key"));
+}
+
+TEST_CASE("no points, one point, and points far away can be told") {
+  CHECK(decoded(page_columns({}), 0).columns.at("x").empty());
+  auto points = random_points(1, 4);
+  CHECK(decoded(page_columns(points), 1).columns.at("pulse")[0] == 1e12 + static_cast<double>(points[0].pulse - 1'000'000'000'000));
+  points = random_points(3, 5);
+  points[0].position = {1e300, 1e300, -1e300};
+  CHECK(decoded(page_columns(points), 3).columns.at("leg")[1] == points[1].leg);
+}
+
+TEST_CASE("the step of coordinates suits the extent") {
+  CHECK(page_step(0) == 1e-4);
+  CHECK(page_step(13) == 1e-4);
+  CHECK(page_step(100) == 1e-3);
+  CHECK(page_step(131.072) == 1e-3);
+  CHECK(page_step(131.08) == 2e-3);
+  CHECK(page_step(1000) == doctest::Approx(1e-2));
+  CHECK(page_step(1e7) == doctest::Approx(1e2));
+  CHECK_THROWS_AS(static_cast<void>(page_columns({}, {.position_step = -1})), SettingError);
+  CHECK_THROWS_AS(static_cast<void>(page_columns({}, {.effort = 0})), SettingError);
+}
+
+TEST_CASE("a scan line takes few bytes") {
+  std::vector<PagePoint> points;
+  for (std::size_t i = 0; i < 100'000; ++i) {
+    const double t = static_cast<double>(i) / 300e3;
+    const auto noise = [i](std::uint32_t k) { return uniform({.seed = 6, .pulse = i, .subray = k}); };
+    points.push_back({.position = {20 * std::sin(300 * t), 60 * t, 0.02 * noise(0)},
+                      .time = t,
+                      .pulse = i,
+                      .to_instrument = {0, 0, 400},
+                      .amplitude = 1e-6f + 1e-7f * static_cast<float>(noise(1)),
+                      .reflectance = 0.3f + 0.1f * static_cast<float>(noise(2)),
+                      .incidence = 0.1f * static_cast<float>(noise(3))});
+  }
+  const double bytes = static_cast<double>(page_columns(points).size()) / 100'000;
+  MESSAGE(bytes, " bytes a point");
+  CHECK(bytes < 9);  // 12 as base64
+}
+
+TEST_CASE("texts are JSON that may stand in HTML") {
+  CHECK(json_text("a") == "\"a\"");
+  CHECK(json_text("</script><!-- & \"\\\n\x7f") == R"("\u003c/script\u003e\u003c!-- \u0026 \u0022\u005c\u000a\u007f")");
+  CHECK(json_text("\xc3\xa4") == "\"\xc3\xa4\"");
+  CHECK(json_number(0.1) == "0.1");
+  CHECK(json_number(std::numeric_limits<double>::quiet_NaN()) == "null");
+}
+
+TEST_CASE("base64 is that of its standard") {  // source: RFC 4648, section 10
+  CHECK(base64("") == "");
+  CHECK(base64("f") == "Zg==");
+  CHECK(base64("fo") == "Zm8=");
+  CHECK(base64("foo") == "Zm9v");
+  CHECK(base64("foob") == "Zm9vYg==");
+  CHECK(base64("fooba") == "Zm9vYmE=");
+  CHECK(base64("foobar") == "Zm9vYmFy");
+  CHECK(base64("\xfb\xff") == "+/8=");
+}

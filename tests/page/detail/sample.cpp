@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/page/detail/sample.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+using namespace pulsecast;
+using namespace pulsecast::page;
+
+namespace {
+
+/// Gives shots 0 to n - 1 to a sink, so many a batch, of 0, 1 or 2 echoes in turn.
+void give(PageSample& sample, PulseIndex n, PulseIndex a_batch) {
+  for (PulseIndex begin = 0; begin < n; begin += a_batch) {
+    std::vector<Shot> shots;
+    std::vector<Echo> echoes;
+    for (PulseIndex i = begin; i < std::min(n, begin + a_batch); ++i) {
+      const auto number = static_cast<std::uint32_t>(i % 3);
+      shots.push_back({.index = i,
+                       .tick = Tick::of(i, 1000),
+                       .origin = {1, 2, 3},
+                       .direction = {0, 0.6, -0.8},
+                       .first_echo = static_cast<std::uint32_t>(echoes.size()),
+                       .echoes = number});
+      for (std::uint32_t k = 1; k <= number; ++k) echoes.push_back({.range = 10.0 * k, .number = static_cast<std::uint8_t>(k)});
+    }
+    EchoBatch batch;
+    batch.shots = shots, batch.echoes = echoes;
+    sample(batch);
+  }
+}
+
+std::vector<std::pair<PulseIndex, int>> names(PageSample& sample) {
+  std::vector<std::pair<PulseIndex, int>> all;
+  for (const PagePoint& p : sample.points()) all.emplace_back(p.pulse, p.number);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("what fits is kept, in pulse order, with all that its shot and echo were") {
+  PageSample sample(1000);
+  const Shot shot{.index = 7,
+                  .tick = {5, 0.25},
+                  .origin = {1, 2, 3},
+                  .direction = {0, 0.6, -0.8},
+                  .scan_angle = 0.5,
+                  .leg = 3,
+                  .channel = 2,
+                  .echoes = 2};
+  const Echo echoes[] = {
+      {.range = 10, .amplitude = 1e-6, .reflectance = 0.5, .width = 2e-9, .cos_incidence = 0.5, .object = 9, .classification = 5},
+      {.range = 20, .number = 2}};
+  EchoBatch batch;
+  batch.shots = {&shot, 1}, batch.echoes = echoes;
+  sample(batch);
+  REQUIRE(sample.points().size() == 2);
+  const PagePoint& p = sample.points()[0];
+  CHECK(length(p.position - Vec3{1, 8, -5}) < 1e-12);
+  CHECK(p.to_instrument[1] == -6.0f);
+  CHECK(p.to_instrument[2] == 8.0f);
+  CHECK(p.time == 5.25);
+  CHECK(p.pulse == 7);
+  CHECK(p.amplitude == 1e-6f);
+  CHECK(p.reflectance == 0.5f);
+  CHECK(p.width == 2e-9f);
+  CHECK(std::abs(p.incidence - static_cast<float>(pi / 3)) < 1e-6f);
+  CHECK(p.scan_angle == 0.5f);
+  CHECK(p.object == 9);
+  CHECK(p.classification == 5);
+  CHECK(p.leg == 3);
+  CHECK(p.channel == 2);
+  CHECK(p.number == 1);
+  CHECK(p.returns == 2);
+  CHECK(sample.points()[1].number == 2);
+  CHECK(sample.seen() == 2);
+}
+
+TEST_CASE("of too many, those of the least keys are kept, however they came") {
+  constexpr PulseIndex n = 20'000;
+  std::vector<std::pair<std::uint32_t, std::pair<PulseIndex, int>>> all;
+  for (PulseIndex i = 0; i < n; ++i)
+    for (int k = 1; k <= static_cast<int>(i % 3); ++k) all.push_back({page_key(i, static_cast<std::uint8_t>(k)), {i, k}});
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const std::size_t most : {2u, 777u, 15'999u, 19'998u, 30'000u}) {
+    std::vector<std::pair<PulseIndex, int>> expected;
+    for (std::size_t i = 0; i < std::min(most, all.size()); ++i) expected.push_back(all[i].second);
+    std::sort(expected.begin(), expected.end());
+    for (const PulseIndex a_batch : {PulseIndex{13}, PulseIndex{2048}, n}) {
+      CAPTURE(most);
+      CAPTURE(a_batch);
+      PageSample sample(most);
+      give(sample, n, a_batch);
+      CHECK(names(sample) == expected);
+      CHECK(sample.seen() == all.size());
+    }
+  }
+}
+
+TEST_CASE("asking in between changes nothing") {
+  PageSample once(500), often(500);
+  give(once, 9000, 9000);
+  for (int k = 0; k < 3; ++k) static_cast<void>(often.points());
+  give(often, 9000, 100);
+  static_cast<void>(often.points());
+  CHECK(names(once) == names(often));
+}
+
+TEST_CASE("the sample is even in time") {
+  PageSample sample(3000);
+  give(sample, 100'000, 2048);
+  int early = 0;
+  for (const PagePoint& p : sample.points()) early += p.pulse < 50'000;
+  CHECK(std::abs(early - 1500) < 5 * 28);  // five standard deviations
+}
+
+TEST_CASE("keys of neighbours differ in every bit") {
+  std::set<std::uint32_t> keys;
+  int ones[32] = {};
+  for (PulseIndex i = 0; i < 4096; ++i) {
+    const std::uint32_t key = page_key(i, 1);
+    keys.insert(key);
+    for (int k = 0; k < 32; ++k) ones[k] += static_cast<int>(key >> k & 1);
+  }
+  CHECK(keys.size() == 4096);
+  for (const int n : ones) CHECK(std::abs(n - 2048) < 5 * 32);
+}
+
+TEST_CASE("points that are not finite are passed over, and sizes that cannot be are refused") {
+  PageSample sample(10);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Shot shots[] = {{.origin = {infinity, 0, 0}, .direction = forward, .echoes = 1},
+                        {.index = 1, .direction = forward, .first_echo = 1, .echoes = 1}};
+  const Echo echoes[] = {{.range = 1}, {.range = infinity}};
+  EchoBatch batch;
+  batch.shots = shots, batch.echoes = echoes;
+  sample(batch);
+  CHECK(sample.points().empty());
+  CHECK_THROWS_AS(PageSample(1), SettingError);
+  CHECK_THROWS_AS(PageSample(std::size_t{1} << 30), SettingError);
+}

@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/python/bind.hpp>
+
+#include <csignal>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <pybind11/embed.h>
+
+#include <pulsecast/pulsecast.hpp>
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+namespace py = pybind11;
+
+namespace {
+
+/// A wall of 8 m by 5 m, 10 m to the north.
+const Scene<TriangleMesh<>>& wall() {
+  static const MeshData mesh{.vertices = {{-4, 10, 0}, {4, 10, 0}, {4, 10, 5}, {-4, 10, 5}}, .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  static const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(mesh), .object = 42}});
+  return scene;
+}
+
+/// Two lines up and down the wall and beyond it.
+auto survey_of(PulseIndex pulses, double record) {
+  const Scanner scanner{.pulse_rate = 10_kHz, .pulses = pulses};
+  const Platform stand{Tripod{.position = {0, 0, 2}}, Mount{}, Deflector{PolygonMirror{.lines_per_second = 100_Hz}, scanner}};
+  return Survey{stand, SunflowerFootprint{7}, wall(), Receiver{}, FullWaveform{WaveformSettings{.record_length = record}}, 3};
+}
+using WallSurvey = decltype(survey_of(1, 0));
+
+/// Throws what a reader throws.
+void fail_to_read() { throw FileError("scene.obj", "line 3", "expected a number"); }
+
+PYBIND11_EMBEDDED_MODULE(scans, m) {
+  python::bind_survey<WallSurvey>(m, "WallSurvey").def(py::init(&survey_of), py::arg("pulses") = 200, py::arg("record") = 0.0);
+  m.def("fail_to_read", &fail_to_read);
+  m.def("interrupt", [] { std::raise(SIGINT); });
+}
+
+/// Python that has the module at hand; the interpreter lives as long as the tests, as NumPy cannot be loaded twice.
+py::dict python() {
+  static py::scoped_interpreter* const interpreter = new py::scoped_interpreter;
+  (void)interpreter;
+  py::dict scope;
+  scope["__builtins__"] = py::module_::import("builtins");
+  py::exec("import scans, numpy", scope);
+  return scope;
+}
+
+/// What an expression of Python gives, in its own words.
+std::string said(py::dict scope, const std::string& expression) { return py::str(py::eval(expression, scope)); }
+
+}  // namespace
+
+TEST_CASE("points and pulses in Python are those of the same survey in C++, to the last bit") {
+  py::dict scope = python();
+  py::exec("result = scans.WallSurvey(200, 4e-9).run(threads=2)", scope);
+  std::vector<Shot> shots;
+  Cloud cloud;
+  std::vector<float> samples;
+  run(survey_of(200, 4e-9), {.threads = 1}, cloud, [&](const EchoBatch& batch) {
+    shots.assign(batch.shots.begin(), batch.shots.end());
+    samples.assign(batch.samples.begin(), batch.samples.end());
+  });
+  REQUIRE(cloud.size() > 20);
+  const auto points = scope["result"].attr("points").cast<py::array_t<python::PointRow>>();
+  REQUIRE(points.size() == static_cast<py::ssize_t>(cloud.size()));
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    CAPTURE(i);
+    const python::PointRow& row = points.at(static_cast<py::ssize_t>(i));
+    const Echo& echo = cloud.echoes[i];
+    CHECK(Vec3{row.x, row.y, row.z} == cloud.points[i]);
+    CHECK(row.time == cloud.ticks[i].seconds());
+    CHECK(row.range == echo.range);
+    CHECK(row.intensity == static_cast<float>(echo.amplitude));
+    CHECK(row.reflectance == static_cast<float>(echo.reflectance));
+    CHECK(row.cos_incidence == static_cast<float>(echo.cos_incidence));
+    CHECK(row.pulse == static_cast<std::int64_t>(cloud.pulses[i]));
+    CHECK(row.object == 42);
+    CHECK(row.return_number == echo.number);
+    CHECK(row.number_of_returns == 1);
+  }
+  const auto pulses = scope["result"].attr("pulses").cast<py::array_t<python::PulseRow>>();
+  REQUIRE(pulses.size() == static_cast<py::ssize_t>(shots.size()));
+  std::int64_t sample = 0, point = 0;
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    CAPTURE(i);
+    const python::PulseRow& row = pulses.at(static_cast<py::ssize_t>(i));
+    CHECK(row.pulse == static_cast<std::int64_t>(shots[i].index));
+    CHECK(Vec3{row.direction_x, row.direction_y, row.direction_z} == shots[i].direction);
+    CHECK(row.fate == static_cast<std::uint8_t>(shots[i].fate));
+    CHECK(row.waveform_start == shots[i].waveform_start);
+    CHECK(row.first_sample == sample);
+    CHECK(row.first_point == point);
+    sample += row.samples, point += row.points;
+  }
+  const auto waveforms = scope["result"].attr("waveforms").cast<py::array_t<float>>();
+  CHECK(std::vector<float>(waveforms.data(), waveforms.data() + waveforms.size()) == samples);
+  CHECK(said(scope, "result.fates['returned'] == len(result.points) and result.slots == 200 and result.complete") == "True");
+  py::exec("row = int(numpy.flatnonzero(result.pulses['samples'])[1])\nfirst = result.pulses['first_sample'][row]", scope);
+  CHECK(said(scope, "first > 0 and numpy.array_equal(result.waveform_of(row), result.waveforms[first:first + 16])") == "True");
+  CHECK(said(scope, "[scans.FATES[f] for f in sorted(set(result.pulses['fate']))]") == "['returned', 'missed']");
+}
+
+TEST_CASE("an array holds the rows that were collected, not a copy, and outlives the run") {
+  py::dict scope = python();
+  py::exec("points = scans.WallSurvey(200).run().points", scope);
+  CHECK(said(scope, "points.flags.owndata") == "False");
+  CHECK(said(scope, "points.base is not None and points['object'].min() == 42") == "True");
+  CHECK(said(scope, "len(scans.WallSurvey(200).run(first=10, end=10).points)") == "0");
+}
+
+TEST_CASE("a callback gets every pulse once, in order, and the result keeps none") {
+  py::dict scope = python();
+  py::exec(
+      "numbers = []\nsizes = []\n"
+      "def take(batch):\n"
+      "  numbers.extend(batch.pulses['pulse'])\n"
+      "  sizes.append(len(batch.pulses))\n"
+      "survey = scans.WallSurvey(20000)\n"
+      "result = survey.run(threads=2, callback=take, every_pulses=3000)\n",
+      scope);
+  CHECK(said(scope, "numbers == list(range(20000)) and len(sizes) > 3 and min(sizes[:-1]) >= 3000") == "True");
+  CHECK(said(scope, "len(result.points) == 0 and result.slots == 20000") == "True");
+}
+
+TEST_CASE("progress ends with all done") {
+  py::dict scope = python();
+  py::exec("told = []\nscans.WallSurvey(20000).run(progress=lambda *p: told.append(p))", scope);
+  CHECK(said(scope, "told[-1][:2]") == "(20000, 20000)");
+}
+
+TEST_CASE("errors come as Python's own, with their fields") {
+  py::dict scope = python();
+  py::exec("try:\n  scans.WallSurvey(200, -1)\nexcept scans.SettingError as e:\n  error = e", scope);
+  CHECK(said(scope, "isinstance(error, ValueError) and (error.field, error.value, error.unit, error.allowed != '')") ==
+        "('WaveformSettings::record_length', -1.0, 's', True)");
+  py::exec("try:\n  scans.fail_to_read()\nexcept scans.FileError as e:\n  error = e", scope);
+  CHECK(said(scope, "isinstance(error, OSError) and (error.path, error.place, error.problem)") ==
+        "('scene.obj', 'line 3', 'expected a number')");
+}
+
+TEST_CASE("what a callback raises ends the run") {
+  py::dict scope = python();
+  py::exec(
+      "def take(batch): raise KeyError('enough')\n"
+      "try:\n  scans.WallSurvey(20000).run(threads=2, callback=take, every_pulses=1)\nexcept KeyError as e:\n  error = e",
+      scope);
+  CHECK(said(scope, "error") == "'enough'");
+}
+
+TEST_CASE("Ctrl-C stops a run, what came is whole, and Python's own handler is back") {
+  py::dict scope = python();
+  py::exec("import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)", scope);  // the test framework took it
+  py::exec(
+      "def stop(*progress): scans.interrupt()\n"
+      "try:\n  scans.WallSurvey(100_000_000).run(progress=stop)\nexcept scans.Interrupted as e:\n  result = e.result\n",
+      scope);
+  CHECK(said(scope, "0 < result.slots < 100_000_000 and not result.complete") == "True");
+  CHECK(said(scope, "len(result.pulses) == result.slots and list(result.pulses['pulse']) == list(range(result.slots))") == "True");
+  CHECK(said(scope, "issubclass(scans.Interrupted, KeyboardInterrupt)") == "True");
+  CHECK_THROWS_WITH(py::exec("scans.interrupt()\nfor i in range(1000000): pass", scope), doctest::Contains("KeyboardInterrupt"));
+}
+
+TEST_CASE("Ctrl-C that comes too late to stop a run is told, and another thread's later run is not stopped by it") {
+  py::dict scope = python();
+  py::exec(
+      "import signal, threading\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+      "def stop(*progress): scans.interrupt()\n"
+      "try:\n  scans.WallSurvey(100).run(progress=stop)\nexcept scans.Interrupted as e:\n  result = e.result\n"
+      "slots = []\n"
+      "other = threading.Thread(target=lambda: slots.append(scans.WallSurvey(20000).run().slots))\n"
+      "other.start()\nother.join()",
+      scope);
+  CHECK(said(scope, "result.complete and result.slots == 100 and slots == [20000]") == "True");
+}
+
+TEST_CASE("Ctrl-C that the program handles itself does not stop a run") {
+  py::dict scope = python();
+  py::exec(
+      "import signal\nheard = []\nbefore = signal.signal(signal.SIGINT, lambda *_: heard.append(1))\n"
+      "result = scans.WallSurvey(20000).run(callback=lambda batch: scans.interrupt(), every_pulses=1)\n"
+      "signal.signal(signal.SIGINT, before)",
+      scope);
+  CHECK(said(scope, "result.complete and result.slots == 20000 and len(heard) > 0") == "True");
+}
+
+TEST_CASE("a batch is pickled and copied whole") {
+  py::dict scope = python();
+  py::exec("import copy, pickle\na = scans.WallSurvey(200, 4e-9).run()", scope);
+  for (const char* other : {"pickle.loads(pickle.dumps(a))", "copy.deepcopy(a)"}) {
+    CAPTURE(other);
+    py::exec(std::string("b = ") + other, scope);
+    CHECK(said(scope, "(a.points == b.points).all() and (a.pulses == b.pulses).all() and (a.waveforms == b.waveforms).all()") == "True");
+    CHECK(said(scope, "(a.slots, a.fates, a.energy, a.seconds) == (b.slots, b.fates, b.energy, b.seconds) and repr(a) == repr(b)") ==
+          "True");
+  }
+}
+
+TEST_CASE("what a run is asked is looked at before it begins") {
+  py::dict scope = python();
+  for (const char* asked :
+       {"callback=3", "progress='loud'", "callback=print, every_seconds=-1", "callback=print, every_seconds=float('nan')"})
+    CHECK_THROWS_AS(py::exec(std::string("scans.WallSurvey(10**12).run(") + asked + ")", scope), py::error_already_set);
+}
