@@ -265,8 +265,8 @@ RunLock::RunLock(const fs::path& folder) : path_(folder / name) {
     struct stat status {};
     if (file_ < 0 || ::fstat(file_, &status) != 0) fail(errno);
     if (!S_ISREG(status.st_mode)) fail(EEXIST);
-    if (!io::detail::lock_alone(file_)) refuse(folder, file_);
-    if (io::detail::stands_at(file_, path_)) break;
+    if (!io::lock_alone(file_)) refuse(folder, file_);
+    if (io::stands_at(file_, path_)) break;
     ::close(file_);  // whoever had it has removed it meanwhile
   }
   const std::string text = Holder::self().text();
@@ -279,7 +279,7 @@ RunLock::RunLock(const fs::path& folder) : path_(folder / name) {
 
 RunLock::~RunLock() {
   if (file_ < 0) return;
-  if (io::detail::stands_at(file_, path_)) ::unlink(path_.c_str());
+  if (io::stands_at(file_, path_)) ::unlink(path_.c_str());
   ::close(file_);
 }
 

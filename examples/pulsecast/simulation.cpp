@@ -21,7 +21,7 @@
 #include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/scene.hpp>
-#include <pulsecast/io/detail/las/packets.hpp>
+#include <pulsecast/io/las_packets.hpp>
 
 #include "scene_store.hpp"
 #include "survey_inputs.hpp"
@@ -187,7 +187,7 @@ struct Simulation::Inside {
 
   /// Cuts waveforms that are too long for where they go.
   void limit_record(WaveformSettings& s) {
-    const double most = settings.las_waveforms ? io::detail::LasPackets::most_samples : WaveformSettings::most_kept;
+    const double most = settings.las_waveforms ? io::LasPackets::most_samples : WaveformSettings::most_kept;
     const double longest = (most - 0.5) * s.sample_interval;  // half a sample for rounding
     if (s.record_length <= longest) return;
     s.record_length = longest;

@@ -84,7 +84,7 @@ def parse(lines, known):
 def cpp_of(described):
     structs = []
     for kind, name, doc, members in described:
-        yield f"template <>\nstruct Described<adapters::{name}> {{\n  static constexpr const char* name = {quoted(name)};\n"
+        yield f"template <>\nstruct Described<helios::{name}> {{\n  static constexpr const char* name = {quoted(name)};\n"
         if kind == "enum":
             names = ", ".join(quoted(member) for member, _, _ in members)
             yield f"  static constexpr std::array<const char*, {len(members)}> values{{{names}}};\n}};\n\n"
@@ -95,7 +95,7 @@ def cpp_of(described):
         for member, kind_of_member, what in members:
             yield f"    io({quoted(member)}, settings.{member}, {quoted(kind_of_member)}, {quoted(what)});\n"
         yield "  }\n};\n\n"
-    yield "using AllSettings = std::tuple<" + ", ".join("adapters::" + name for name in structs) + ">;\n"
+    yield "using AllSettings = std::tuple<" + ", ".join("helios::" + name for name in structs) + ">;\n"
 
 
 def stubs_of(described):

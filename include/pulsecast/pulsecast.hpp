@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// Everything but the adapters.
+/// The core: all that needs GLM alone.
 
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/accel/kd_tree.hpp>

@@ -35,7 +35,7 @@ version
 xmlns
 END
 code=$work/code
-cat include/pulsecast/adapters/xml_element.hpp include/pulsecast/adapters/xml*.hpp | grep -v '^#include' | sed 's|//.*||' > "$code"
+cat include/pulsecast/helios/document.hpp include/pulsecast/helios/detail/xml/*.hpp | grep -v '^#include' | sed 's|//.*||' > "$code"
 grep -o '"[A-Za-z][A-Za-z0-9_]*"' "$code" | tr -d '"' | sort -u > "$work/literals"
 grep -vxF -f "$work/others" "$work/literals" > "$work/names"
 grep -vxF -f "$work/literals" "$work/others" | sed 's|^|tests/examples/check_surveys_page.sh: this is no literal any more: |' >> "$faults"

@@ -31,7 +31,7 @@ using support::survey_text;
 namespace {
 
 const support::TemporaryFolder folder;
-const std::filesystem::path& data = support::sample_data;
+const std::filesystem::path& data = support::data_folder;
 const XmlOptions options{.assets = {data}};
 constexpr const char* surveys[] = {"tripod", "airplane", "drone", "trajectory", "spinning"};
 

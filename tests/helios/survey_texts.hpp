@@ -9,13 +9,11 @@
 
 #include <pulsecast/helios/document.hpp>
 
+#include "support/data_folder.hpp"
 #include "support/temporary_folder.hpp"
 
 /// Surveys of a few words, on the sample assets.
 namespace pulsecast::support {
-
-/// Where the sample files are.
-inline const std::filesystem::path sample_data = std::filesystem::absolute(__FILE__).lexically_normal().parent_path() / "data";
 
 /// A survey with these attributes of the survey and this inside, on the sample assets.
 inline std::string survey_text(const std::string& attributes, const std::string& inside, const std::string& before = "") {
@@ -32,7 +30,7 @@ inline std::string survey_text(const std::string& attributes, const std::string&
 inline helios::SurveyDocument read_text(const std::string& text) {
   static const TemporaryFolder folder;
   std::ofstream(folder / "survey.xml", std::ios::binary) << text;
-  return helios::read_survey(folder / "survey.xml", {.assets = {sample_data}});
+  return helios::read_survey(folder / "survey.xml", {.assets = {data_folder}});
 }
 
 inline constexpr const char* head_turns = R"(headRotatePerSec_deg="60" headRotateStop_deg="20" scanFreq_hz="20" )";

@@ -15,6 +15,7 @@
 #include <tuple>
 #include <vector>
 
+#include "support/data_folder.hpp"
 #include "support/generators.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
@@ -250,13 +251,13 @@ TEST_CASE("halves are read to the last bit") {
 }
 
 TEST_CASE("the sample file is where and what it should be") {
-  const GeoTiff found = read_geotiff(std::filesystem::path(__FILE__).parent_path() / "data" / "terrain.tif");
+  const GeoTiff found = read_geotiff(support::data_folder / "terrain.tif");
   const Raster& raster = found.raster;
   CHECK((raster.columns == 101 && raster.rows == 81));
   CHECK(raster.first == Vec2{476005, 5474805});
   CHECK(raster.pixel == Vec2{10, 10});
   CHECK(found.epsg == 32632);
-  CHECK(read_geotiff_epsg(std::filesystem::path(__FILE__).parent_path() / "data" / "terrain.tif") == 32632);
+  CHECK(read_geotiff_epsg(support::data_folder / "terrain.tif") == 32632);
   CHECK(found.warnings.empty());
   CHECK(static_cast<double>(raster.heights[0]) == support::relative(118.55, 1e-5));
   const HeightField field(raster);

@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/data_folder.hpp"
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -54,7 +55,7 @@ double g(const LeafAngles& leaves, double zenith_deg, double azimuth = 0) {
 }
 
 TEST_CASE("the table of spherical leaf angles is 1/2 everywhere, as the closed form") {
-  const LeafAngles leaves = read_leaf_angles(std::filesystem::path(__FILE__).parent_path() / "data/spherical.txt");
+  const LeafAngles leaves = read_leaf_angles(support::data_folder / "spherical.txt");
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     CAPTURE(seed);
     const Vec3 direction = support::Generator(seed).unit();

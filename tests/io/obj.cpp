@@ -21,6 +21,7 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/random.hpp>
+#include "support/data_folder.hpp"
 #include "support/generators.hpp"
 #include "support/spoilt_text.hpp"
 #include "support/temporary_folder.hpp"
@@ -265,7 +266,7 @@ TEST_CASE("a material or library without a name is told, and the faces are there
 }
 
 TEST_CASE("an MTL file gives reflectance, class, ground and angular law") {
-  const ObjModel model = read_obj(std::filesystem::path(__FILE__).parent_path() / "data" / "materials.obj");
+  const ObjModel model = read_obj(support::data_folder / "materials.obj");
   CHECK(model.warnings.empty());
   REQUIRE(model.materials.size() == 4);
   const Material &ground = model.materials[0], &wall = model.materials[1], &shiny = model.materials[2], &leaves = model.materials[3];

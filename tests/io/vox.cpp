@@ -15,6 +15,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/data_folder.hpp"
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -159,7 +160,7 @@ TEST_CASE("columns are found by their names, and rows may have more than there a
 }
 
 TEST_CASE("a file of AMAPVox is read as it stands") {
-  const std::filesystem::path path = std::filesystem::path(__FILE__).parent_path() / "data" / "crown.vox";
+  const std::filesystem::path path = support::data_folder / "crown.vox";
   const VoxelFile file = read_voxel_file(path);
   CHECK(file.voxels.corner == Vec3{-2, -2, 2});
   CHECK(file.voxels.edge == 0.25);

@@ -8,7 +8,7 @@ execute_process(COMMAND ${CPACK} --config ${BUILD}/CPackConfig.cmake -B ${FOLDER
 file(GLOB package ${FOLDER}/*.deb)
 execute_process(COMMAND ${DPKG_DEB} --contents ${package} OUTPUT_VARIABLE contents COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${DPKG_DEB} --info ${package} OUTPUT_VARIABLE info COMMAND_ERROR_IS_FATAL ANY)
-set(files include/pulsecast/pulsecast.hpp include/pulsecast/adapters/las.hpp share/cmake/pulsecast/pulsecastConfig.cmake)
+set(files include/pulsecast/pulsecast.hpp include/pulsecast/io/las.hpp share/cmake/pulsecast/pulsecastConfig.cmake)
 if(EXISTS ${BUILD}/examples/pulsecast)
   list(APPEND files bin/pulsecast share/man/man1/pulsecast.1 share/pulsecast/data/)
 endif()

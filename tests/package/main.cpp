@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#ifdef WITH_las
+#ifdef WITH_io
 #include <pulsecast/io/las.hpp>
 #endif
 #ifdef WITH_obj
 #include <pulsecast/io/obj.hpp>
 #endif
 
-#ifdef WITH_scene_builder
+#ifdef WITH_helios
 #include <pulsecast/helios/document.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/survey.hpp>
@@ -39,8 +39,8 @@ static void build_survey(const std::filesystem::path& folder) {
 static void unused() {}
 
 int main([[maybe_unused]] int argc, [[maybe_unused]] char** argv) {
-#ifdef WITH_scene_builder
+#ifdef WITH_helios
   build_survey(std::filesystem::path(argv[0]).parent_path());
 #endif
-  std::cout << "pulsecast " PULSECAST_VERSION " has a consumer with " ADAPTERS "\n";
+  std::cout << "pulsecast " PULSECAST_VERSION " has a consumer with " TARGETS "\n";
 }

@@ -28,7 +28,8 @@ awk '
     may["scene"] = words " concepts accel"
     may["survey"] = may["scene"] " scene scanner deflector platform detector cloud"
     may["run"] = may["survey"] " survey"
-    may["pulsecast"] = may["adapters"] = may["run"] " run version"
+    may["pulsecast"] = may["io"] = may["run"] " run version"
+    may["helios"] = may["mpi"] = may["page"] = may["python"] = may["io"] " io"
     may["version"] = ""
   }
   FNR == 1 { room = FILENAME; sub(/^include\/pulsecast\//, "", room); sub(/[\/.].*/, "", room)
@@ -38,6 +39,15 @@ awk '
     if (other != room && index(" " may[room] " ", " " other " ") == 0) print FILENAME ":" FNR ": " $0
   }' $headers | violates "a header includes only from layers below its own"
 
+# What stands in a detail/ is its own room's.
+# shellcheck disable=SC2086
+awk '
+  FNR == 1 { room = FILENAME; sub(/^include\/pulsecast\//, "", room); sub(/[\/.].*/, "", room) }
+  /^#include <pulsecast\/[a-z_]*\/detail\// {
+    other = $2; sub(/^<pulsecast\//, "", other); sub(/\/.*/, "", other)
+    if (other != room) print FILENAME ":" FNR ": " $0
+  }' $headers | violates "no room includes another's detail/"
+
 # Greps headers: found RULE PATTERN [EXCEPTION], where EXCEPTION is a pattern of headers that may.
 found() {
   # shellcheck disable=SC2086
@@ -45,9 +55,9 @@ found() {
 }
 found 'GLM is named in base/vector.hpp only' '<glm/|glm::' 'base/vector\.hpp'
 found 'threads live in run.hpp and base/parallel.hpp only' \
-      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel|adapters/(local_server|page_server|python))\.hpp'
-found 'files are for adapters only' '#include <(fstream|filesystem|cstdio|stdio\.h)>' 'adapters/[^:]*'
-found 'degrees and nanoseconds are for adapters only' '[a-z]_(deg|ns)\>[^(]*[;=]' 'adapters/[^:]*|base/units\.hpp'
+      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel|page/(server|detail/local_server)|python/bind)\.hpp'
+found 'files are for the rooms beside the core' '#include <(fstream|filesystem|cstdio|stdio\.h)>' '(io|helios|mpi|page|python)/[^:]*'
+found 'degrees and nanoseconds are for the rooms beside the core' '[a-z]_(deg|ns)\>[^(]*[;=]' '(io|helios|mpi|page|python)/[^:]*|base/units\.hpp'
 found 'the library never prints and never exits' '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('
 found 'random numbers come from base/random.hpp only' '#include <random>|\<s?rand *\('
 found 'concepts, never enable_if' 'enable_if'
@@ -71,16 +81,16 @@ absolute='(^|[^A-Za-z0-9_.])/(home|root|work|tmp)/'
   find . \( -path ./.git -o -path ./build \) -prune -o -type f \( -name '*.md' -o -name '*.json' \) -exec grep -HnE "$absolute" {} +
 } | violates 'no absolute paths'
 
-# The umbrella is every header but itself and the adapters.
+# The umbrella is every header of the core but itself.
 umbrella=$(cat include/pulsecast/pulsecast.hpp)
 for header in $headers; do
-  case $header in */adapters/* | */pulsecast.hpp) continue ;; esac
+  case $header in */pulsecast/io/* | */helios/* | */mpi/* | */page/* | */python/* | */pulsecast.hpp) continue ;; esac
   case $umbrella in *"#include <${header#include/}>"*) ;; *) echo "$header" ;; esac
-done | violates 'pulsecast.hpp includes every header but adapters'
+done | violates 'pulsecast.hpp includes every header of the core'
 
 # The other half of a header: change the prefix.
 for header in $headers; do
-  case $header in */pulsecast.hpp | */version.hpp) continue ;; esac
+  case $header in */pulsecast.hpp | */version.hpp | */detail/*) continue ;; esac
   test=${header#include/pulsecast/}
   test=tests/${test%.hpp}.cpp
   if [ ! -f "$test" ]; then
@@ -93,15 +103,31 @@ for header in $headers; do
   case $line in *"<${header#include/}>"*) ;; *) echo "$test does not include it first" ;; esac
 done | violates 'every header has its test'
 
-libraries=$(grep '^set(pulsecast_' CMakeLists.txt)
+# A target with a library of its own brings the headers that include that library.
+claimed=$(sed -n 's/^set(pulsecast_[a-z_]*_headers \(.*\))$/\1/p' CMakeLists.txt)
+with_library=$(sed -n 's/^set(pulsecast_\([a-z_]*\) .*/\1/p' CMakeLists.txt)
 without=
-for header in include/pulsecast/adapters/*.hpp; do
-  name=${header##*/}
-  case $libraries in *"set(pulsecast_${name%.hpp} "*) ;; *) without="$without $header" ;; esac
+for header in $(find include/pulsecast/io include/pulsecast/helios include/pulsecast/mpi include/pulsecast/page include/pulsecast/python -name '*.hpp'); do
+  name=${header#include/pulsecast/}
+  name=${name%.hpp}
+  case " $(echo $claimed) " in *" $name "*) continue ;; esac
+  case " $(echo $with_library) " in *" ${name%%/*} "*) continue ;; esac
+  without="$without $header"
 done
 # shellcheck disable=SC2086
-grep -HnE '^#include (<.*[/.].*>|")' $without | grep -vE '#include <(pulsecast/|(fcntl|unistd|sys/file|sys/mman|sys/stat)\.h>)' |
-  violates 'CMakeLists.txt knows what an adapter needs'
+grep -HnE '^#include (<.*[/.].*>|")' $without | grep -vE '#include <(pulsecast/|(fcntl|unistd|sys/(mman|stat|file))\.h>)' |
+  violates 'CMakeLists.txt knows what a header needs'
+
+# The table of the README is the list of the public headers beside the core.
+if [ -f README.md ]; then
+  for header in include/pulsecast/io/*.hpp include/pulsecast/helios/*.hpp include/pulsecast/mpi/*.hpp include/pulsecast/page/*.hpp include/pulsecast/python/*.hpp; do
+    name=${header#include/pulsecast/}
+    grep -q "^|.*\`${name%.hpp}\`" README.md || echo "$header"
+  done
+  sed -n '/^| target/,/^$/p' README.md | grep -oE '`(io|helios|mpi|page|python)/[a-z_]+`' | tr -d '`' | while read -r name; do
+    [ -f "include/pulsecast/$name.hpp" ] || echo "README.md: there is no $name.hpp"
+  done
+fi | violates "the README's table lists the public headers"
 
 # Every C++ block of the README is a whole example, without its licence lines.
 if [ -f README.md ]; then

@@ -39,23 +39,27 @@ add='sed -i "/^#pragma once/a'
 notices "$below" "$add #include <pulsecast/concepts.hpp>\" include/pulsecast/base/frame.hpp"
 notices "$below" "$add #include <pulsecast/scanner/scanner.hpp>\" include/pulsecast/platform/platform.hpp"
 notices "$below" "$add #include <pulsecast/scene/scene.hpp>\" include/pulsecast/detector/radiometry.hpp"
-notices "$below" "$add #include <pulsecast/adapters/las.hpp>\" include/pulsecast/run.hpp"
+notices "$below" "$add #include <pulsecast/io/las.hpp>\" include/pulsecast/run.hpp"
+notices "$below" "$add #include <pulsecast/page/page.hpp>\" include/pulsecast/mpi/run.hpp"
+notices "no room includes another's detail/" "$add #include <pulsecast/io/detail/las/layout.hpp>\" include/pulsecast/mpi/las.hpp"
+notices "the README's table lists the public headers" 'cp include/pulsecast/io/las.hpp include/pulsecast/io/other.hpp'
+notices "the README's table lists the public headers" 'rm include/pulsecast/io/xyz.hpp'
 notices "$below" "mkdir include/pulsecast/utils && cp include/pulsecast/pulse.hpp include/pulsecast/utils"
 notices 'GLM is named in base/vector.hpp only' "echo 'inline glm::dvec3 v;' >> include/pulsecast/pulse.hpp"
 notices 'threads live in run.hpp and base/parallel.hpp only' "$add #include <mutex>\" include/pulsecast/survey.hpp"
-notices 'files are for adapters only' "$add #include <fstream>\" include/pulsecast/survey.hpp"
-notices 'degrees and nanoseconds are for adapters only' "echo 'inline double angle_deg = 1;' >> include/pulsecast/pulse.hpp"
+notices 'files are for the rooms beside the core' "$add #include <fstream>\" include/pulsecast/survey.hpp"
+notices 'degrees and nanoseconds are for the rooms beside the core' "echo 'inline double angle_deg = 1;' >> include/pulsecast/pulse.hpp"
 notices 'the library never prints and never exits' "echo 'inline void f() { std::exit(1); }' >> include/pulsecast/pulse.hpp"
-notices 'random numbers come from base/random.hpp only' "$add #include <random>\" include/pulsecast/adapters/xyz.hpp"
+notices 'random numbers come from base/random.hpp only' "$add #include <random>\" include/pulsecast/io/xyz.hpp"
 notices 'concepts, never enable_if' "echo 'template <class T, class = std::enable_if_t<true>> struct A;' >> include/pulsecast/echo.hpp"
 notices 'a header begins with #pragma once' 'sed -i "/^#pragma once/d" include/pulsecast/echo.hpp'
 notices 'a file begins with two SPDX lines' 'sed -i 2d tests/base/frame.cpp'
 notices 'no open ends in the tree' 'echo "// TO""DO" >> include/pulsecast/echo.hpp'
 notices 'no absolute paths' 'echo "see /ho""me/me" >> CHANGELOG.md'
-notices 'pulsecast.hpp includes every header but adapters' 'sed -i "/run.hpp/d" include/pulsecast/pulsecast.hpp'
+notices 'pulsecast.hpp includes every header of the core' 'sed -i "/run.hpp/d" include/pulsecast/pulsecast.hpp'
 notices 'every header has its test' 'rm tests/base/frame.cpp'
 notices 'every header has its test' 'sed -i "/^#include <pulsecast.base.frame/d" tests/base/frame.cpp'
-notices 'CMakeLists.txt knows what an adapter needs' "$add #include <pugixml.hpp>\" include/pulsecast/adapters/las.hpp"
+notices 'CMakeLists.txt knows what a header needs' "$add #include <pugixml.hpp>\" include/pulsecast/io/las.hpp"
 notices 'the code in the README is compiled' "printf '\140\140\140cpp\nint x;\n\140\140\140\n' >> README.md"
 notices 'the README shows examples/embed.cpp' 'echo "// more" >> examples/embed.cpp'
 

@@ -46,7 +46,7 @@ class SettingError : public std::invalid_argument {
   double value_;
 };
 
-/// A file that is missing, malformed, truncated or cannot be written. Thrown by adapters only.
+/// A file that is missing, malformed, truncated or cannot be written. Thrown by the rooms beside the core only.
 class FileError : public std::runtime_error {
  public:
   /// `place` is where in the file, as in "line 12" or "byte 375"; empty if it concerns the file as a whole.

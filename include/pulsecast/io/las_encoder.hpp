@@ -19,10 +19,10 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/detail/las/layout.hpp>
-#include <pulsecast/io/detail/las/packets.hpp>
+#include <pulsecast/io/las_packets.hpp>
 #include <pulsecast/io/las_settings.hpp>
 
-namespace pulsecast::io::detail {
+namespace pulsecast::io {
 
 /// A ratio of powers as a level [dB], at least -200: the level of nothing.
 [[nodiscard]] inline float las_level(double ratio) noexcept { return static_cast<float>(ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0); }
@@ -46,15 +46,20 @@ struct LasTally {
   }
 };
 
-/// Turns echoes into the point records of a LAS file, as `LasFileWriter` says, and keeps count of them. Where a point is comes last, so
+/// Turns echoes into the point records of a LAS file, as `detail::LasFileWriter` says, and keeps count of them. Where a point is comes last, so
 /// that all else can be done before the offset of the coordinates is known.
 class LasEncoder {
  public:
-  using Record = LasBytes<30 + las_packet_size + las_extras_size>;  ///< the longest
+  using Record = detail::LasBytes<30 + detail::las_packet_size + detail::las_extras_size>;  ///< the longest
 
   /// Of settings that are valid.
   explicit LasEncoder(LasSettings settings)
       : settings_(std::move(settings)), layout_(settings_.format, settings_.waveforms), offset_(settings_.offset.value_or(Vec3{})) {}
+
+  /// Bytes of a record of points written with these settings.
+  [[nodiscard]] static std::size_t record_size(const LasSettings& settings) {
+    return detail::LasLayout(settings.format, settings.waveforms).record();
+  }
 
   /// Calls put(record, point) for every echo of a shot, in order. `record` lacks the coordinates of `point`, and goes on after
   /// `layout().record()` bytes; `packet` is where the waveform of the shot is, if it is written.
@@ -65,12 +70,12 @@ class LasEncoder {
     const auto source = static_cast<std::uint16_t>(std::min(shot.leg + 1U, 65535U));
     const double time = settings_.start_time + shot.tick.seconds();
     if (layout_.legacy) {  // positions: LAS 1.4 R15, Point Data Record Format 1
-      record.put(16, las_rounded<std::int8_t>(degrees(shot.scan_angle), -90, 90));
+      record.put(16, detail::las_rounded<std::int8_t>(degrees(shot.scan_angle), -90, 90));
       record.put(18, source);
       record.put(20, time);
     } else {  // Point Data Record Format 6
       record.put(15, static_cast<std::uint8_t>((shot.channel & 3U) << 4));
-      record.put(18, las_rounded<std::int16_t>(degrees(shot.scan_angle) / 0.006, -30000, 30000));
+      record.put(18, detail::las_rounded<std::int16_t>(degrees(shot.scan_angle) / 0.006, -30000, 30000));
       record.put(20, source);
       record.put(22, time);
     }
@@ -140,7 +145,7 @@ class LasEncoder {
     for (std::size_t at = 0; at < bytes.size(); at += layout_.record()) {
       float level = 0;
       std::memcpy(&level, bytes.data() + at + layout_.extras + amplitude_at, sizeof level);
-      const auto scaled = las_rounded<std::uint16_t>(65535 * std::pow(10, (double{level} - tally_.most_amplitude) / 10), 0, 65535);
+      const auto scaled = detail::las_rounded<std::uint16_t>(65535 * std::pow(10, (double{level} - tally_.most_amplitude) / 10), 0, 65535);
       std::memcpy(bytes.data() + at + 12, &scaled, sizeof scaled);
     }
   }
@@ -157,7 +162,7 @@ class LasEncoder {
   }
 
   [[nodiscard]] const LasSettings& settings() const noexcept { return settings_; }
-  [[nodiscard]] const LasLayout& layout() const noexcept { return layout_; }
+  [[nodiscard]] const detail::LasLayout& layout() const noexcept { return layout_; }
   [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }
   [[nodiscard]] const LasTally& tally() const noexcept { return tally_; }
   [[nodiscard]] LasTally& tally() noexcept { return tally_; }
@@ -178,7 +183,7 @@ class LasEncoder {
   [[nodiscard]] std::uint16_t intensity(const Echo& echo) const noexcept {
     if (automatic_intensity()) return 0;
     const double value = settings_.intensity == LasIntensity::amplitude ? echo.amplitude : echo.reflectance;
-    return las_rounded<std::uint16_t>(value / settings_.intensity_full_scale.value_or(1) * 65535, 0, 65535);
+    return detail::las_rounded<std::uint16_t>(value / settings_.intensity_full_scale.value_or(1) * 65535, 0, 65535);
   }
 
   [[nodiscard]] double steps_of(const Vec3& point, std::size_t axis) const noexcept {
@@ -190,9 +195,9 @@ class LasEncoder {
   }
 
   LasSettings settings_;
-  LasLayout layout_;
+  detail::LasLayout layout_;
   Vec3 offset_;
   LasTally tally_;
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace pulsecast::io

@@ -21,7 +21,7 @@
 #include <pulsecast/io/detail/laz/coder.hpp>
 #include <pulsecast/io/detail/laz/integers.hpp>
 #include <pulsecast/io/las_settings.hpp>
-#include <pulsecast/io/laz_encoder.hpp>
+#include <pulsecast/io/detail/laz/chunk.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace pulsecast::io {
@@ -167,6 +167,13 @@ class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
       throw SettingError("LasSettings::format", static_cast<double>(settings.format), "", "0, LAS 1.4 with point format 6, for LAZ");
     if (settings.waveforms) throw SettingError("LasSettings::waveforms", 1, "", "false for LAZ, which is written without");
     return settings;
+  }
+
+  static constexpr std::uint64_t chunk_points = detail::laz_chunk_points;  ///< points per chunk, but for the last
+
+  /// Compresses one chunk: whole records of `record_size` bytes, at least one and at most `chunk_points`.
+  [[nodiscard]] static std::vector<std::byte> compressed_chunk(std::span<const std::byte> records, std::size_t record_size) {
+    return detail::LazChunk(records, record_size).compressed();
   }
 };
 static_assert(EchoSink<LazWriter>);

@@ -25,8 +25,6 @@
 
 namespace pulsecast::io {
 
-namespace detail {
-
 /// Locks an open file until it is closed, however the program ends; false if it is locked already. True without a lock where the file
 /// system has none.
 [[nodiscard]] inline bool lock_alone(int file) noexcept {
@@ -47,8 +45,6 @@ namespace detail {
   struct stat status {};
   return (::fstat(file, &status) == 0 && status.st_size == 0) || ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
 }
-
-}  // namespace detail
 
 /// What turns the bytes of a file into others on their way to it, as a compressor does.
 class OutputEncoder {
@@ -147,13 +143,13 @@ class OutputFile {
     flush(true);
     const std::filesystem::path& temporary = file_.get_deleter().temporary;
     const int number = ::fileno(file_.get());
-    if (!detail::stands_at(number, temporary)) {
+    if (!stands_at(number, temporary)) {
       discard();
       throw FileError(path_.string(), "", "was taken from " + temporary.string() + " by another program, and cannot be completed");
     }
     errno = 0;
     std::error_code error;
-    if (!detail::sync_to_disk(number)) {
+    if (!sync_to_disk(number)) {
       error = system_error(errno);
     } else {
       std::filesystem::rename(temporary, path_, error);
@@ -173,7 +169,7 @@ class OutputFile {
   struct Discard {
     std::filesystem::path temporary;
     void operator()(std::FILE* file) const noexcept {
-      if (detail::stands_at(::fileno(file), temporary)) ::unlink(temporary.c_str());
+      if (stands_at(::fileno(file), temporary)) ::unlink(temporary.c_str());
       std::fclose(file);
     }
   };
@@ -192,9 +188,9 @@ class OutputFile {
         if (file < 0 && errno == ENOENT) continue;
       }
       if (file < 0) fail("cannot be created", errno, "an existing folder that may be written to");
-      const bool is_alone = detail::lock_alone(file);
+      const bool is_alone = lock_alone(file);
       struct stat status {};
-      if (is_alone && detail::stands_at(file, temporary) && ::fstat(file, &status) == 0) {
+      if (is_alone && stands_at(file, temporary) && ::fstat(file, &status) == 0) {
         if (is_new || S_ISCHR(status.st_mode)) return file;
         if (S_ISREG(status.st_mode)) ::unlink(temporary.c_str());
       }

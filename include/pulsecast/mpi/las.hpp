@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/io/detail/las/packets.hpp>
+#include <pulsecast/io/las_packets.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/las_encoder.hpp>
 #include <pulsecast/io/las_settings.hpp>
@@ -113,7 +113,7 @@ class MpiLas final : public MpiOutput {
   MpiLas(MpiTeam& team, const std::filesystem::path& path, io::LasSettings settings)
       : MpiOutput(team),
         settings_(detail::mpi_las_settings(std::move(settings))),
-        record_(io::detail::LasLayout(settings_.format, settings_.waveforms).record()),
+        record_(io::LasEncoder::record_size(settings_)),
         points_file_(path),
         packets_file_(std::filesystem::path(path).replace_extension(".wdp")) {
     if (team.first()) {

@@ -17,7 +17,6 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/io/las_settings.hpp>
 #include <pulsecast/io/laz.hpp>
-#include <pulsecast/io/laz_encoder.hpp>
 #include <pulsecast/mpi/detail/file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 #include <pulsecast/mpi/las.hpp>
@@ -31,7 +30,7 @@ class MpiLaz final : public MpiOutput {
   MpiLaz(MpiTeam& team, const std::filesystem::path& path, io::LasSettings settings, unsigned threads = 0)
       : MpiOutput(team),
         settings_(io::LazWriter::compressible(detail::mpi_las_settings(std::move(settings)))),
-        record_(io::detail::LasLayout(settings_.format, false).record()),
+        record_(io::LasEncoder::record_size(settings_)),
         threads_(thread_count(threads)),
         file_(path) {
     if (team.first()) {
@@ -102,7 +101,7 @@ class MpiLaz final : public MpiOutput {
     std::vector<Chunk> some;
     for (; !ready_.empty() && some.size() < threads_; ready_.pop_front()) some.push_back(std::move(ready_.front()));
     if (some.empty()) return false;
-    for_each_index(some.size(), threads_, [&](std::size_t i) { some[i].bytes = io::detail::LazChunk(some[i].bytes, record_).compressed(); });
+    for_each_index(some.size(), threads_, [&](std::size_t i) { some[i].bytes = io::LazWriter::compressed_chunk(some[i].bytes, record_); });
     MpiParcel sizes;
     sizes.add(Message::sizes);
     for (Chunk& chunk : some) {
@@ -144,7 +143,7 @@ class MpiLaz final : public MpiOutput {
     std::uint64_t points = 0;  // of it that are there
   };
   using Chunks = std::map<std::uint64_t, Chunk>;
-  static constexpr std::uint64_t chunk_points = io::detail::laz_chunk_points;
+  static constexpr std::uint64_t chunk_points = io::LazWriter::chunk_points;
   static constexpr std::size_t most_waiting = 64;  // chunks
 
   [[nodiscard]] static std::uint64_t chunks_of(std::uint64_t points) noexcept { return (points + chunk_points - 1) / chunk_points; }

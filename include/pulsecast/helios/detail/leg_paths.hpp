@@ -18,7 +18,7 @@
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/settings.hpp>
-#include <pulsecast/io/detail/trajectory/table.hpp>
+#include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
 #include <pulsecast/platform/platform.hpp>

@@ -43,7 +43,7 @@ class MpiFile {
   /// Everything is on the disk: the system may tell only now that it is not.
   void close() {
     if (file_ < 0) return;
-    if (!io::detail::sync_to_disk(file_)) fail(0);
+    if (!io::sync_to_disk(file_)) fail(0);
     if (::close(std::exchange(file_, -1)) != 0) fail(0);
   }
 

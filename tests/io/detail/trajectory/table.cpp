@@ -16,6 +16,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/data_folder.hpp"
 #include "support/generators.hpp"
 #include "support/spoilt_text.hpp"
 #include "support/temporary_folder.hpp"
@@ -109,7 +110,7 @@ TEST_CASE("a convention of angles and of axes is heeded") {
 }
 
 TEST_CASE("names and the place of the time may stand in comments") {
-  const std::filesystem::path data = std::filesystem::path(__FILE__).parent_path() / "data" / "flight.trj";
+  const std::filesystem::path data = support::data_folder / "flight.trj";
   const TrajectoryTable table = read_trajectory(data, helios_format());
   CHECK(table.warnings.empty());
   CHECK(table.start_time == 0);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/io/laz_encoder.hpp>
+#include <pulsecast/io/detail/laz/chunk.hpp>
 
 #include <cstddef>
 #include <cstdint>

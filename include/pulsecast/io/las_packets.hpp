@@ -16,7 +16,7 @@
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-namespace pulsecast::io::detail {
+namespace pulsecast::io {
 
 /// Where the waveform of a point is; of a point without, all is 0.
 struct LasPacket {
@@ -72,8 +72,8 @@ class LasPackets {
     for (unsigned size_class = 0; size_class < size_classes; ++size_class)
       for (unsigned gain_class = 0; gain_class < gain_classes; ++gain_class) {
         const auto record = static_cast<std::uint16_t>(99 + index_of(size_class, gain_class));
-        const auto head = las_vlr_header("LASF_Spec", record, descriptor_size, "Waveform Packet Descriptor");
-        LasBytes<descriptor_size> d{};
+        const auto head = detail::las_vlr_header("LASF_Spec", record, descriptor_size, "Waveform Packet Descriptor");
+        detail::LasBytes<descriptor_size> d{};
         d.put(0, std::uint8_t{16});  // bits per sample; then 0: not compressed
         d.put(2, static_cast<std::uint32_t>(samples_of(size_class)));
         d.put(6, spacing_);
@@ -134,8 +134,8 @@ class LasPackets {
     throw FileError(file_.path().string(), "byte " + std::to_string(file_.position()), problem + "; expected " + expected);
   }
 
-  [[nodiscard]] LasBytes<header_size> header() const {
-    LasBytes<header_size> h{};
+  [[nodiscard]] detail::LasBytes<header_size> header() const {
+    detail::LasBytes<header_size> h{};
     h.put_text(2, "LASF_Spec");
     h.put(18, std::uint16_t{65535});
     h.put(20, std::max<std::uint64_t>(file_.position(), header_size) - header_size);
@@ -148,4 +148,4 @@ class LasPackets {
   std::vector<std::uint16_t> raw_;
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace pulsecast::io

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/io/detail/las/packets.hpp>
+#include <pulsecast/io/las_packets.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -18,8 +18,8 @@
 namespace pulsecast::io {
 namespace {
 
-using detail::LasPacket;
-using detail::LasPackets;
+using LasPacket;
+using LasPackets;
 using support::content;
 using support::Generator;
 using support::TemporaryFolder;
