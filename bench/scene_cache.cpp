@@ -22,7 +22,6 @@
 
 using namespace pulsecast;
 using namespace pulsecast::io;
-using namespace pulsecast::mpi;
 
 namespace {
 

@@ -24,7 +24,6 @@
 
 using namespace bench;
 using namespace pulsecast::io;
-using namespace pulsecast::mpi;
 
 int main(int count, char** words) {
   Report report("write", count, words);

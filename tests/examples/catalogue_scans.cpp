@@ -21,9 +21,7 @@
 #include <doctest/doctest.h>
 
 using namespace pulsecast;
-using namespace pulsecast::io;
 using namespace pulsecast::helios;
-using namespace pulsecast::mpi;
 
 namespace {
 

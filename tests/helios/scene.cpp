@@ -220,12 +220,12 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   std::ofstream(files.folder / "none.mtl") << "# nothing\n";
   PartSettings plain = cloud;
   std::get<XyzSource>(plain.source).material = {files.folder / "none.mtl"};
-  SceneBuilder io::undescribed(scene_of({plain}), {.spectra = {.warnings = {"spectra/a.txt, line 3: odd"}}});
-  CHECK(io::undescribed.parts().at(0).materials->at(0).reflectance == 0.5);
-  CHECK(std::any_of(io::undescribed.warnings().begin(), io::undescribed.warnings().end(), [](const std::string& text) {
+  SceneBuilder undescribed(scene_of({plain}), {.spectra = {.warnings = {"spectra/a.txt, line 3: odd"}}});
+  CHECK(undescribed.parts().at(0).materials->at(0).reflectance == 0.5);
+  CHECK(std::any_of(undescribed.warnings().begin(), undescribed.warnings().end(), [](const std::string& text) {
     return text.find("none.mtl: holds no material: its reflectance is taken to be 0.5") != std::string::npos;
   }));
-  CHECK(io::undescribed.warnings().back() == "spectra/a.txt, line 3: odd");
+  CHECK(undescribed.warnings().back() == "spectra/a.txt, line 3: odd");
   std::get<XyzSource>(cloud.source).material.name = "brick";
   CHECK_THROWS_WITH_AS((void)built(scene_of({cloud})), doctest::Contains("holds no material 'brick'; it has ground, wall"), FileError);
 }

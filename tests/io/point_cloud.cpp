@@ -309,7 +309,7 @@ TEST_CASE("random clouds give what a cloud in memory gives") {
     }
     const auto expected = by_cell(points, edge, least, most);
     const std::string text = text_of(points, normals, colours);
-    const auto helios::number_of = [&](const PointCloud& cloud) {
+    const auto number_of = [&](const PointCloud& cloud) {
       std::map<Cell, std::size_t> numbers;
       for (std::size_t i = 0; i < cloud.voxels.cells.size(); ++i) numbers[cloud.voxels.cells[i]] = i;
       return numbers;
@@ -319,7 +319,7 @@ TEST_CASE("random clouds give what a cloud in memory gives") {
     const PointCloud nearest = read(text, {.voxel_size = edge, .normals = VoxelNormals::nearest});
     const PointCloud fitted = read(text, {.voxel_size = edge, .normals = VoxelNormals::fitted, .default_normal = Vec3{1, 0, 0}});
     CHECK(mean.voxels.corner == least);
-    const auto numbers = helios::number_of(mean);
+    const auto numbers = number_of(mean);
     REQUIRE(numbers.size() == expected.size());
     REQUIRE(mean.voxels.cells.size() == expected.size());
     REQUIRE(nearest.voxels.cells == mean.voxels.cells);

@@ -40,7 +40,7 @@ void give(PageWriter& writer, std::size_t n, std::size_t a_batch) {
   }
 }
 
-std::string page(const PageSurvey& survey, const PageSettings& settings = {}, std::size_t n = 5000, std::size_t a_batch = 1000) {
+std::string page_of(const PageSurvey& survey, const PageSettings& settings = {}, std::size_t n = 5000, std::size_t a_batch = 1000) {
   PageWriter writer(path, survey, settings);
   give(writer, n, a_batch);
   CHECK_FALSE(std::filesystem::exists(path));
@@ -66,7 +66,7 @@ std::string survey_of(const std::string& html) {
 }  // namespace
 
 TEST_CASE("a page is one whole file of HTML that asks for no other") {
-  const std::string html = page({.name = "Hill"});
+  const std::string html = page_of({.name = "Hill"});
   CHECK(html.starts_with("<!DOCTYPE html>"));
   CHECK(html.ends_with("</html>\n"));
   CHECK(count(html, "default-src 'none'") == 1);
@@ -85,7 +85,7 @@ TEST_CASE("no word of a survey is taken for HTML or script") {
   PageSurvey survey{.name = evil + "name", .scanner = evil + "scanner", .platform = evil + "platform"};
   survey.legs.push_back({evil + "leg", {0}, {{0, 0, 0}}});
   survey.objects[3] = evil + "object";
-  const std::string html = page(survey);
+  const std::string html = page_of(survey);
   CHECK(count(html, "</script>") == 3);
   CHECK(count(html, "onerror=") == 5);
   const std::string texts = survey_of(html);
@@ -95,15 +95,15 @@ TEST_CASE("no word of a survey is taken for HTML or script") {
 
 TEST_CASE("the same echoes give the same bytes, however they come") {
   const PageSettings settings{.most_points = 1000};
-  const std::string html = page({}, settings);
-  CHECK(page({}, settings) == html);
-  CHECK(page({}, settings, 5000, 17) == html);
-  CHECK(page({}, settings, 5000, 5000) == html);
-  CHECK(page({}, {.most_points = 999}) != html);
+  const std::string html = page_of({}, settings);
+  CHECK(page_of({}, settings) == html);
+  CHECK(page_of({}, settings, 5000, 17) == html);
+  CHECK(page_of({}, settings, 5000, 5000) == html);
+  CHECK(page_of({}, {.most_points = 999}) != html);
 }
 
 TEST_CASE("no points give a page as well, and without close there is none") {
-  CHECK(count(page({}, {}, 0), "</html>") == 1);
+  CHECK(count(page_of({}, {}, 0), "</html>") == 1);
   {
     PageWriter writer(path);
     give(writer, 10, 10);
@@ -121,7 +121,7 @@ TEST_CASE("a leg that does not move is a set-up") {
   REQUIRE(flight.places.size() == 11);
   CHECK(flight.times[3] == doctest::Approx(23));
   CHECK(length(flight.places[3] - Vec3{30, 0, 0}) < 1e-9);
-  CHECK(count(page({.legs = {setup, flight}}), R"({"name":"A","times":[10],"places":[[1,2,3]]},{"name":"B","times":[20,21,)") == 1);
+  CHECK(count(page_of({.legs = {setup, flight}}), R"({"name":"A","times":[10],"places":[[1,2,3]]},{"name":"B","times":[20,21,)") == 1);
 }
 
 TEST_CASE("settings that cannot be are refused") {

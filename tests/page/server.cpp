@@ -20,7 +20,6 @@
 #include "support/local_client.hpp"
 
 using namespace pulsecast;
-using namespace pulsecast::mpi;
 using namespace pulsecast::page;
 
 namespace {

@@ -43,7 +43,7 @@ PYBIND11_EMBEDDED_MODULE(scans, m) {
 }
 
 /// Python that has the module at hand; the interpreter lives as long as the tests, as NumPy cannot be loaded twice.
-py::dict python() {
+py::dict names() {
   static py::scoped_interpreter* const interpreter = new py::scoped_interpreter;
   (void)interpreter;
   py::dict scope;
@@ -58,7 +58,7 @@ std::string said(py::dict scope, const std::string& expression) { return py::str
 }  // namespace
 
 TEST_CASE("points and pulses in Python are those of the same survey in C++, to the last bit") {
-  py::dict scope = python();
+  py::dict scope = names();
   py::exec("result = scans.WallSurvey(200, 4e-9).run(threads=2)", scope);
   std::vector<Shot> shots;
   Cloud cloud;
@@ -108,7 +108,7 @@ TEST_CASE("points and pulses in Python are those of the same survey in C++, to t
 }
 
 TEST_CASE("an array holds the rows that were collected, not a copy, and outlives the run") {
-  py::dict scope = python();
+  py::dict scope = names();
   py::exec("points = scans.WallSurvey(200).run().points", scope);
   CHECK(said(scope, "points.flags.owndata") == "False");
   CHECK(said(scope, "points.base is not None and points['object'].min() == 42") == "True");
@@ -116,7 +116,7 @@ TEST_CASE("an array holds the rows that were collected, not a copy, and outlives
 }
 
 TEST_CASE("a callback gets every pulse once, in order, and the result keeps none") {
-  py::dict scope = python();
+  py::dict scope = names();
   py::exec(
       "numbers = []\nsizes = []\n"
       "def take(batch):\n"
@@ -130,13 +130,13 @@ TEST_CASE("a callback gets every pulse once, in order, and the result keeps none
 }
 
 TEST_CASE("progress ends with all done") {
-  py::dict scope = python();
+  py::dict scope = names();
   py::exec("told = []\nscans.WallSurvey(20000).run(progress=lambda *p: told.append(p))", scope);
   CHECK(said(scope, "told[-1][:2]") == "(20000, 20000)");
 }
 
 TEST_CASE("errors come as Python's own, with their fields") {
-  py::dict scope = python();
+  py::dict scope = names();
   py::exec("try:\n  scans.WallSurvey(200, -1)\nexcept scans.SettingError as e:\n  error = e", scope);
   CHECK(said(scope, "isinstance(error, ValueError) and (error.field, error.value, error.unit, error.allowed != '')") ==
         "('WaveformSettings::record_length', -1.0, 's', True)");
@@ -146,7 +146,7 @@ TEST_CASE("errors come as Python's own, with their fields") {
 }
 
 TEST_CASE("what a callback raises ends the run") {
-  py::dict scope = python();
+  py::dict scope = names();
   py::exec(
       "def take(batch): raise KeyError('enough')\n"
       "try:\n  scans.WallSurvey(20000).run(threads=2, callback=take, every_pulses=1)\nexcept KeyError as e:\n  error = e",
@@ -155,7 +155,7 @@ TEST_CASE("what a callback raises ends the run") {
 }
 
 TEST_CASE("Ctrl-C stops a run, what came is whole, and Python's own handler is back") {
-  py::dict scope = python();
+  py::dict scope = names();
   py::exec("import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)", scope);  // the test framework took it
   py::exec(
       "def stop(*progress): scans.interrupt()\n"
@@ -168,7 +168,7 @@ TEST_CASE("Ctrl-C stops a run, what came is whole, and Python's own handler is b
 }
 
 TEST_CASE("Ctrl-C that comes too late to stop a run is told, and another thread's later run is not stopped by it") {
-  py::dict scope = python();
+  py::dict scope = names();
   py::exec(
       "import signal, threading\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
       "def stop(*progress): scans.interrupt()\n"
@@ -181,7 +181,7 @@ TEST_CASE("Ctrl-C that comes too late to stop a run is told, and another thread'
 }
 
 TEST_CASE("Ctrl-C that the program handles itself does not stop a run") {
-  py::dict scope = python();
+  py::dict scope = names();
   py::exec(
       "import signal\nheard = []\nbefore = signal.signal(signal.SIGINT, lambda *_: heard.append(1))\n"
       "result = scans.WallSurvey(20000).run(callback=lambda batch: scans.interrupt(), every_pulses=1)\n"
@@ -191,7 +191,7 @@ TEST_CASE("Ctrl-C that the program handles itself does not stop a run") {
 }
 
 TEST_CASE("a batch is pickled and copied whole") {
-  py::dict scope = python();
+  py::dict scope = names();
   py::exec("import copy, pickle\na = scans.WallSurvey(200, 4e-9).run()", scope);
   for (const char* other : {"pickle.loads(pickle.dumps(a))", "copy.deepcopy(a)"}) {
     CAPTURE(other);
@@ -203,7 +203,7 @@ TEST_CASE("a batch is pickled and copied whole") {
 }
 
 TEST_CASE("what a run is asked is looked at before it begins") {
-  py::dict scope = python();
+  py::dict scope = names();
   for (const char* asked :
        {"callback=3", "progress='loud'", "callback=print, every_seconds=-1", "callback=print, every_seconds=float('nan')"})
     CHECK_THROWS_AS(py::exec(std::string("scans.WallSurvey(10**12).run(") + asked + ")", scope), py::error_already_set);

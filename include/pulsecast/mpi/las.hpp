@@ -43,9 +43,9 @@ class MpiLasPiece final : public MpiPiece {
     const std::size_t size = encoder_.layout().record();
     for (const Shot& shot : batch.shots) {
       if (shot.echoes == 0) continue;
-      std::optional<LasPacket> packet;
+      std::optional<io::LasPacket> packet;
       if (packets_ && shot.samples != 0) packet = packets_->add(batch.waveform_of(shot), batch.sample_interval);
-      encoder_.encode(shot, batch, packet ? &*packet : nullptr, [&](const LasEncoder::Record& record, const Vec3& point) {
+      encoder_.encode(shot, batch, packet ? &*packet : nullptr, [&](const io::LasEncoder::Record& record, const Vec3& point) {
         records_.insert(records_.end(), record.begin(), record.begin() + static_cast<std::ptrdiff_t>(size));
         points_.push_back(point);
       });
@@ -73,14 +73,14 @@ class MpiLasPiece final : public MpiPiece {
 
   [[nodiscard]] std::span<const std::byte> packet_bytes() const noexcept { return packet_bytes_; }
   [[nodiscard]] std::uint32_t spacing() const noexcept { return packets_ ? packets_->spacing() : 0; }
-  [[nodiscard]] const LasEncoder& encoder() const noexcept { return encoder_; }
+  [[nodiscard]] const io::LasEncoder& encoder() const noexcept { return encoder_; }
 
  private:
   std::filesystem::path path_;
-  LasEncoder encoder_;
+  io::LasEncoder encoder_;
   std::vector<std::byte> records_, packet_bytes_;
   std::vector<Vec3> points_;
-  std::optional<LasPackets> packets_;
+  std::optional<io::LasPackets> packets_;
 };
 
 /// What processes can write together: an intensity that depends on all points, none can.
@@ -92,7 +92,7 @@ class MpiLasPiece final : public MpiPiece {
 
 /// What a process has written.
 struct MpiLasShare {
-  LasTally tally{};
+  io::LasTally tally{};
   std::uint32_t spacing = 0;  ///< of samples [ps]
 
   void add(const MpiLasShare& other) noexcept { tally.add(other.tally), spacing = std::max(spacing, other.spacing); }

@@ -70,7 +70,10 @@ struct PulseRow {
   std::uint8_t spare[4]{};                       ///< not in the array: zeros
 };
 
+}  // namespace pulsecast::python
+
 // Hidden, as pybind11's own names are, so that modules of different builds of it can live side by side.
+namespace pulsecast {
 namespace [[gnu::visibility("hidden")]] python {
 
 inline constexpr std::array<const char*, fate_count> fate_names{"returned",     "blocked",         "missed",
@@ -393,13 +396,17 @@ void bind_run(Class& bound, const Runner& runner) {
       },
       py::arg("threads") = 0, py::arg("first") = 0, py::arg("end") = py::none(), py::arg("stride") = 1, py::arg("callback") = py::none(),
       py::arg("every_pulses") = 0, py::arg("every_seconds") = 0.0, py::arg("progress") = py::none(), py::arg("pulses") = true,
-      "Simulates the pulse slots first, first + stride, ... before end, on so many threads (0: all, at most 1024), and returns a Batch. With a callback, "
+      "Simulates the pulse slots first, first + stride, ... before end, on so many threads (0: all, at most 1024), and returns a Batch. "
+      "With a callback, "
       "batches go to callback(batch) every so many pulses or seconds, and at the end, and are not kept. progress(done, total, echoes, "
       "seconds) is called some ten times a second. Without pulses, there are points alone, which saves their rows and waveforms. Raises "
       "Interrupted on Ctrl-C; its `result` is whole up to there.");
 }
 
-}  // namespace gnu::visibility("hidden")]]python
+}  // namespace python
+}  // namespace pulsecast
+
+namespace pulsecast::python {
 
 /// Makes a class of surveys in a module, and what it needs. Add constructors by `.def(pybind11::init(...))`; where a survey refers to a
 /// scene that Python holds, add `pybind11::keep_alive`.

@@ -29,8 +29,6 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 using namespace pulsecast::io;
-using namespace pulsecast::helios;
-using namespace pulsecast::mpi;
 namespace fs = std::filesystem;
 
 namespace {

@@ -18,7 +18,6 @@
 #include "support/temporary_folder.hpp"
 
 using namespace pulsecast;
-using namespace pulsecast::io;
 using namespace pulsecast::helios;
 
 namespace {
