@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* all_commands[] = {"run", "check", "info", "preview", "plan", "catalogue"};
+constexpr const char* all_commands[] = {"run", "check", "info", "preview", "forecast", "catalogue"};
 
 /// "; did you mean '--format'?"
 std::string nearest_option(const CLI::App& app, const std::string& given) {
@@ -95,7 +95,7 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
       "  pulsecast check SURVEY.xml      says what is wrong with it\n"
       "  pulsecast info SURVEY.xml       says what would be simulated\n"
       "  pulsecast preview SURVEY.xml    draws a quick look of its points\n"
-      "  pulsecast plan SURVEY.xml       says what a run takes, and which settings are the cheapest that meet what is asked\n"
+      "  pulsecast forecast SURVEY.xml   says what a run takes, and which settings are the cheapest that meet what is asked\n"
       "  pulsecast catalogue             lists the scanners and platforms that surveys may name\n",
       "pulsecast");
   app.get_formatter()->column_width(46);
@@ -121,9 +121,9 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
       ->type_name("N")
       ->check([](const std::string& text) {
         const auto threads = number_in<unsigned>(text);
-        return threads && *threads <= pulsecast::most_threads
+        return threads && *threads <= pulsecast::max_threads
                    ? std::string()
-                   : "'" + text + "' is no whole number from 0 to " + std::to_string(pulsecast::most_threads);
+                   : "'" + text + "' is no whole number from 0 to " + std::to_string(pulsecast::max_threads);
       });
   app.add_option(both("gpsStartTime"), o.gps_start_time, "When the survey begins: UTC, or seconds since 1970")
       ->type_name("'YYYY-MM-DD hh:mm:ss'");
@@ -165,19 +165,19 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   app.add_flag("-q,--quiet,--silent", o.quiet, "Say nothing but errors");
   app.add_flag("-v,--verbose", o.verbose, "Say more");
 
-  std::vector<CLI::Option*> of_plan;
+  std::vector<CLI::Option*> of_forecast;
   std::string range_error, intensity_error, time, memory, apply_to;
   const auto demand = [&](const std::string& name, std::string& text, const QuantityKind& kind, const char* help, const char* type) {
-    of_plan.push_back(app.add_option(name, text, help)->type_name(type)->check([&kind](const std::string& given) {
+    of_forecast.push_back(app.add_option(name, text, help)->type_name(type)->check([&kind](const std::string& given) {
       return quantity(given, kind) ? std::string() : "'" + given + "': expected " + kind.expected;
     }));
   };
-  demand("--range-error", range_error, a_length, "plan: largest error of ranges, as in 5mm", "LENGTH");
-  demand("--intensity-error", intensity_error, a_share, "plan: largest error of intensities, as in 2%", "SHARE");
-  demand("--time", time, a_duration, "plan: longest run, as in 10min", "DURATION");
-  demand("--memory", memory, a_size, "plan: most memory, as in 4GB", "SIZE");
-  of_plan.push_back(
-      app.add_option("--apply", apply_to, "plan: changes the survey, or writes it to FILE")->type_name("[FILE]")->expected(0, 1));
+  demand("--range-error", range_error, a_length, "forecast: largest error of ranges, as in 5mm", "LENGTH");
+  demand("--intensity-error", intensity_error, a_share, "forecast: largest error of intensities, as in 2%", "SHARE");
+  demand("--time", time, a_duration, "forecast: longest run, as in 10min", "DURATION");
+  demand("--memory", memory, a_size, "forecast: most memory, as in 4GB", "SIZE");
+  of_forecast.push_back(
+      app.add_option("--apply", apply_to, "forecast: changes the survey, or writes it to FILE")->type_name("[FILE]")->expected(0, 1));
 
   // what users of HELIOS++ type, and what makes no sense here
   const std::string unused = "No effect here";
@@ -226,12 +226,12 @@ std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   if (o.command == "catalogue" && !o.survey.empty()) return refuse("'" + o.survey.string() + "' is too much: catalogue takes no document");
   if (!extras.empty()) return refuse("'" + extras.front() + "' is too much: one document at a time");
   if (o.command != "catalogue" && o.survey.empty()) return refuse("no document is given: expected SURVEY.xml");
-  for (const CLI::Option* option : of_plan)
-    if (option->count() > 0 && o.command != "plan") return refuse(option->get_name() + " is for plan only");
-  if (o.command == "plan") {
-    o.plan = {quantity(range_error, a_length), quantity(intensity_error, a_share), quantity(time, a_duration),
-              quantity(memory, a_size),        of_plan.back()->count() > 0,        apply_to};
-    if (o.plan.apply && !o.plan.asks())
+  for (const CLI::Option* option : of_forecast)
+    if (option->count() > 0 && o.command != "forecast") return refuse(option->get_name() + " is for forecast only");
+  if (o.command == "forecast") {
+    o.forecast = {quantity(range_error, a_length), quantity(intensity_error, a_share), quantity(time, a_duration),
+                  quantity(memory, a_size),        of_forecast.back()->count() > 0,    apply_to};
+    if (o.forecast.apply && !o.forecast.asks())
       return refuse("--apply must know what for: expected --range-error, --intensity-error, --time or --memory");
   }
   for (std::size_t i = 0; i < std::size(none); ++i)

@@ -16,7 +16,7 @@
 struct BuiltParts {
   std::vector<pulsecast::helios::SurveyPart> parts;
   std::vector<std::string> warnings;
-  std::filesystem::path kept{};            ///< the file that they stand in as well, if there is one
+  std::filesystem::path kept{};      ///< the file that they stand in as well, if there is one
   pulsecast::io::Fingerprint key{};  ///< of that file
 };
 
@@ -26,8 +26,7 @@ struct SceneInputs {
   std::vector<std::filesystem::path> more{};   ///< files and folders that count as well, and are not worth a store by themselves
   std::string settings{};                      ///< all else, in words
   std::string name{};                          ///< for people
-  std::function<pulsecast::io::Fingerprint(const std::filesystem::path&)> content =
-      pulsecast::io::content_fingerprint;  ///< of them
+  std::function<pulsecast::io::Fingerprint(const std::filesystem::path&)> content = pulsecast::io::content_fingerprint;  ///< of them
 };
 
 /// The processes of one machine, which have one copy of a scene among them.
@@ -39,7 +38,7 @@ class SceneSharing {
   /// What the one that builds says, by all.
   [[nodiscard]] virtual std::string from_builder(std::string text) = 0;
   /// Waits until all have come here.
-  virtual void meet() = 0;
+  virtual void barrier() = 0;
 };
 
 /// What `build` makes, or what it made of the same inputs before, if that is kept: scenes of large files are. Notes, for those who want to

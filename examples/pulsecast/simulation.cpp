@@ -134,11 +134,11 @@ struct Simulation::Inside {
   SurveySettings survey;
   Settings settings;
   helios::SceneBuilder builder;
-  std::optional<helios::SurveyPlan> plan;
+  std::optional<helios::CompiledSurvey> compiled;
   std::optional<SurveyScene> scene;
   std::unique_ptr<const AnySurvey> pipeline;
   std::vector<helios::SurveyPart> meshes;  // beside the survey's own parts
-  std::uint64_t seed = 0;                    // of this repetition
+  std::uint64_t seed = 0;                  // of this repetition
   std::vector<std::string> scene_warnings, warnings, notes;
 
   Inside(const SurveySettings& s, const Settings& how)
@@ -187,7 +187,7 @@ struct Simulation::Inside {
 
   /// Cuts waveforms that are too long for where they go.
   void limit_record(WaveformSettings& s) {
-    const double most = settings.las_waveforms ? io::LasPackets::most_samples : WaveformSettings::most_kept;
+    const double most = settings.las_waveforms ? io::LasPackets::max_samples : WaveformSettings::max_kept;
     const double longest = (most - 0.5) * s.sample_interval;  // half a sample for rounding
     if (s.record_length <= longest) return;
     s.record_length = longest;
@@ -231,7 +231,7 @@ struct Simulation::Inside {
               FullWaveform<Width>(waveform, {}, noise)};
     };
     using Pipeline = helios::SurveyByChannel<SurveyScene, FullWaveform<Width>>;
-    pipeline = std::make_unique<SurveyOf<Pipeline>>(helios::survey_by_channel(scanner, plan->source, *scene, seed, receiver));
+    pipeline = std::make_unique<SurveyOf<Pipeline>>(helios::survey_by_channel(scanner, compiled->source, *scene, seed, receiver));
   }
 
   std::vector<helios::SurveyPart> parts(int run) {
@@ -248,17 +248,17 @@ struct Simulation::Inside {
   void begin(int run) {
     std::vector<helios::SurveyPart> all = parts(run);
     all.insert(all.end(), meshes.begin(), meshes.end());
-    scene.emplace(all, TimeWindows{.to = 1});
+    scene.emplace(all, MovingIndexSettings{.to = 1});
     const auto ground = [&](const Vec2& at) { return scene->ground_height(at); };
     const helios::SurveyBuildOptions options{settings.seed, settings.platform_noise, settings.leg_noise, settings.leg_places};
-    plan.emplace(helios::plan_survey(survey, ground, options));
-    const double duration = plan->source.duration().seconds();
+    compiled.emplace(helios::compile_survey(survey, ground, options));
+    const double duration = compiled->source.duration().seconds();
     const bool moves = std::any_of(all.begin(), all.end(), [](const auto& p) { return p.motion != nullptr; });
-    if (moves) scene.emplace(all, TimeWindows{.to = std::max(1e-3, duration)});
+    if (moves) scene.emplace(all, MovingIndexSettings{.to = std::max(1e-3, duration)});
 
     seed = settings.seed + static_cast<std::uint64_t>(run) * 0x9e3779b97f4a7c15U;
     warnings = scene_warnings;
-    warnings.insert(warnings.end(), plan->warnings.begin(), plan->warnings.end());
+    warnings.insert(warnings.end(), compiled->warnings.begin(), compiled->warnings.end());
     receive({});
   }
 };
@@ -270,7 +270,7 @@ Simulation::~Simulation() = default;
 
 int Simulation::runs() const { return inside_->builder.runs(); }
 void Simulation::begin(int run) { inside_->begin(run); }
-const helios::SurveyPlan& Simulation::plan() const { return *inside_->plan; }
+const helios::CompiledSurvey& Simulation::compiled() const { return *inside_->compiled; }
 const std::vector<std::string>& Simulation::warnings() const { return inside_->warnings; }
 const std::vector<std::string>& Simulation::notes() const { return inside_->notes; }
 
@@ -296,7 +296,7 @@ std::vector<Sample> Simulation::sample(std::span<const SampleBlock> blocks, unsi
   std::vector<Sample> all(blocks.size());
   for_each_index((blocks.size() + at_once - 1) / at_once, threads, [&](std::size_t task) {
     AnySurvey::Workspace workspace = survey.workspace();
-    Collected room;  // used again and again, as those of a run are
+    ResultBuffer room;  // used again and again, as those of a run are
     for (std::size_t k = task * at_once; k < std::min((task + 1) * at_once, blocks.size()); ++k) {
       const SampleBlock& block = blocks[k];
       Sample& sample = all[k];
@@ -307,7 +307,7 @@ std::vector<Sample> Simulation::sample(std::span<const SampleBlock> blocks, unsi
       for (PulseIndex i = block.from; i < block.end; ++i) room.append(survey(i, workspace));
       sample.seconds = processor_seconds() - start;
       sample.sample_interval = survey.sample_interval();
-      static_cast<Collected&>(sample) = room;
+      static_cast<ResultBuffer&>(sample) = room;
     }
   });
   return all;
@@ -329,7 +329,7 @@ std::vector<SlotCount> Simulation::count(std::span<const PulseIndex> slots, unsi
 
 std::vector<std::string> check_without_scene(const SurveySettings& survey, const std::vector<std::string>& leg_places) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
-  std::vector<std::string> warnings = helios::plan_survey(survey, ground, {.leg_places = leg_places}).warnings;
+  std::vector<std::string> warnings = helios::compile_survey(survey, ground, {.leg_places = leg_places}).warnings;
   for (const auto& channel : survey.scanner.channels) {
     helios::survey_receiver(channel).validate();
     helios::survey_waveform(channel).validate();

@@ -35,11 +35,11 @@ struct SampleBlock {
 };
 
 /// What came of the slots of a block that count.
-struct Sample : pulsecast::Collected {
+struct Sample : pulsecast::ResultBuffer {
   double seconds = 0;          ///< of one processor [s]
   double sample_interval = 0;  ///< [s]
 
-  [[nodiscard]] pulsecast::EchoBatch batch() const { return Collected::batch(sample_interval); }
+  [[nodiscard]] pulsecast::EchoBatch batch() const { return ResultBuffer::batch(sample_interval); }
 };
 
 /// What came of a single slot.
@@ -87,7 +87,7 @@ class Simulation {
   /// Goes to a repetition.
   void begin(int run);
 
-  [[nodiscard]] const pulsecast::helios::SurveyPlan& plan() const;
+  [[nodiscard]] const pulsecast::helios::CompiledSurvey& compiled() const;
   [[nodiscard]] Scene scene() const;
   [[nodiscard]] const std::vector<std::string>& warnings() const;
   [[nodiscard]] const std::vector<std::string>& notes() const;  ///< for those who want to know more

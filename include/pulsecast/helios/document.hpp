@@ -94,7 +94,7 @@ class SurveyReader {
       io.finish();
       read_unused_templates();
     }
-    report_.expect_clean();
+    report_.require_clean();
     return {std::move(survey_), report_.warnings(), std::move(leg_places_), document.place(node).text()};
   }
 
@@ -107,7 +107,7 @@ class SurveyReader {
     all("scanner", assets.scanners);
     all("platform", assets.platforms);
     all("scene", assets.scenes);
-    report_.expect_clean();
+    report_.require_clean();
     assets.warnings = report_.warnings();
     return assets;
   }
@@ -273,7 +273,7 @@ class SurveyReader {
 
   /// A pulse would fall between bins that are longer, and `FullWaveform` takes no more than so many in one.
   void limit_bins(const XmlInput& io) {
-    constexpr double most = WaveformSettings::most_samples;
+    constexpr double most = WaveformSettings::max_samples;
     const pugi::xml_node own = io.node().child("FWFSettings");
     for (ChannelSettings& channel : survey_.scanner.channels) {
       const double bin = channel.waveform.bin_size, length = channel.pulse_length;

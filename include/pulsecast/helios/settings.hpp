@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/rotation_list.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
@@ -26,8 +26,8 @@ namespace pulsecast::helios {
 namespace detail {
 
 /// Refuses a whole number less than `least`.
-inline void expect_at_least(int least, std::string_view field, int value) {
-  expect_within(field, value, least, std::numeric_limits<int>::max(), "");
+inline void require_at_least(int least, std::string_view field, int value) {
+  require_within(field, value, least, std::numeric_limits<int>::max(), "");
 }
 
 }  // namespace detail
@@ -49,9 +49,10 @@ struct RotationList {
 
   /// All turns in one.
   [[nodiscard]] Rotation rotation() const {
-    std::vector<Turn> all;
-    for (const AxisTurn& turn : turns) all.push_back({turn.axis == Axis::x ? right : turn.axis == Axis::y ? forward : up, turn.angle});
-    return local ? moving_axes(all) : fixed_axes(all);
+    std::vector<AxisAngle> all;
+    for (const AxisTurn& turn : turns)
+      all.push_back({turn.axis == Axis::x ? axis::right : turn.axis == Axis::y ? axis::forward : axis::up, turn.angle});
+    return local ? intrinsic(all) : extrinsic(all);
   }
 
   bool operator==(const RotationList&) const = default;
@@ -107,7 +108,7 @@ struct RisleyPrism {
 struct RisleyOptic {
   std::array<RisleyPrism, 3> prisms{};  ///< those without an angle are not there
   double air_refractive_index = 1;      ///< `refrIndex_air`
-  Vec3 incident_beam = forward;         ///< of any length but zero; `<incidentBeam>`
+  Vec3 incident_beam = axis::forward;   ///< of any length but zero; `<incidentBeam>`
 
   bool operator==(const RisleyOptic&) const = default;
 };
@@ -122,8 +123,8 @@ struct FullWaveformSettings {
   double duration_max = 0;         ///< 0 stands for no limit; `maxFullwaveRange_ns` [s]
 
   void validate() const {
-    detail::expect_at_least(1, "beamSampleQuality", rings);
-    expect_not_negative("maxFullwaveRange_ns", duration_max * 1e9, "ns");
+    detail::require_at_least(1, "beamSampleQuality", rings);
+    require_not_negative("maxFullwaveRange_ns", duration_max * 1e9, "ns");
   }
 
   bool operator==(const FullWaveformSettings&) const = default;
@@ -149,7 +150,7 @@ struct ChannelSettings {
   double scan_frequency_min = 0;                               ///< `scanFreqMin_Hz` [Hz]
   double scan_frequency_max = 0;                               ///< 0 stands for no limit; `scanFreqMax_Hz` [Hz]
   MountSettings beam_origin{};                                 ///< rotated in the frame of the instrument; `<beamOrigin>`
-  Vec3 head_axis = up;                                         ///< of any length but zero; `<headRotateAxis>`
+  Vec3 head_axis = axis::up;                                   ///< of any length but zero; `<headRotateAxis>`
   double head_speed_max = 0;                                   ///< 0: it cannot turn; `headRotatePerSecMax_deg` [rad/s]
   double divergence = 0.3e-3;                                  ///< full angle at 1/e^2 of the peak; `beamDivergence_rad` [rad]
   double pulse_length = 4e-9;                                  ///< full width at half maximum; `pulseLength_ns` [s]
@@ -168,11 +169,11 @@ struct ChannelSettings {
   ErrorFormulas errors{};                                      ///< `<deflectionError>`...
 
   void validate() const {
-    expect_not_negative("scanAngleMax_deg", degrees(scan_angle_max), "deg");
-    expect_not_negative("scanFreqMin_Hz", scan_frequency_min, "Hz");
-    expect_not_negative("scanFreqMax_Hz", scan_frequency_max, "Hz");
-    expect_not_negative("headRotatePerSecMax_deg", degrees(head_speed_max), "deg/s");
-    detail::expect_at_least(0, "maxNOR", returns_max);
+    require_not_negative("scanAngleMax_deg", degrees(scan_angle_max), "deg");
+    require_not_negative("scanFreqMin_Hz", scan_frequency_min, "Hz");
+    require_not_negative("scanFreqMax_Hz", scan_frequency_max, "Hz");
+    require_not_negative("headRotatePerSecMax_deg", degrees(head_speed_max), "deg/s");
+    detail::require_at_least(0, "maxNOR", returns_max);
     waveform.validate();
   }
 
@@ -234,7 +235,7 @@ struct NoiseSettings {
   double clip_high = 1;                                        ///< `clipMax` [m] or [rad]
   int lifespan = 1;                                            ///< for how many pulses each number is used, 0 for all; `fixedLifespan`
 
-  void validate() const { detail::expect_at_least(0, "fixedLifespan", lifespan); }
+  void validate() const { detail::require_at_least(0, "fixedLifespan", lifespan); }
 
   bool operator==(const NoiseSettings&) const = default;
 };
@@ -269,8 +270,8 @@ struct MaterialSource {
   double random_range = 1;            ///< by which colours of variants differ at most; `randomRange`
 
   void validate() const {
-    detail::expect_at_least(0, "randomMaterials", random);
-    expect_not_negative("randomRange", random_range, "");
+    detail::require_at_least(0, "randomMaterials", random);
+    require_not_negative("randomRange", random_range, "");
   }
 
   bool operator==(const MaterialSource&) const = default;
@@ -307,7 +308,7 @@ struct XyzSource {
 
   void validate() const {
     material.validate();
-    detail::expect_at_least(0, "estimateNormals", estimate_normals);
+    detail::require_at_least(0, "estimateNormals", estimate_normals);
   }
 
   bool operator==(const XyzSource&) const = default;
@@ -367,7 +368,7 @@ struct TranslationMotion {
 
 /// `<motion type="rotation">` and, with `glide`, `<motion type="helical">`
 struct RotationMotion {
-  Vec3 axis = up;                 ///< of any length but zero; `axis`
+  Vec3 axis = axis::up;           ///< of any length but zero; `axis`
   double angle = 0;               ///< right-handed; `angle` in degrees [rad]
   std::optional<Vec3> center{};   ///< through which the axis goes; the origin unless given. `center` [m]
   std::optional<double> glide{};  ///< along the axis, in its lengths: helical only. `glide`
@@ -377,7 +378,7 @@ struct RotationMotion {
 
 /// `<motion type="reflection">` and, with `shift`, `<motion type="glideplane">`
 struct ReflectionMotion {
-  Vec3 normal = up;             ///< of a plane through the origin, of any length but zero; `ortho`
+  Vec3 normal = axis::up;       ///< of a plane through the origin, of any length but zero; `ortho`
   std::optional<Vec3> shift{};  ///< along the plane: glide plane only. `shift` [m]
 
   bool operator==(const ReflectionMotion&) const = default;
@@ -385,7 +386,7 @@ struct ReflectionMotion {
 
 /// `<motion type="rotsym">`: a rotation, and then a reflection at the plane across the axis.
 struct RotoreflectionMotion {
-  Vec3 axis = up;                ///< of any length but zero; `axis`
+  Vec3 axis = axis::up;          ///< of any length but zero; `axis`
   double angle = 0;              ///< right-handed; `angle` in degrees [rad]
   std::optional<Vec3> center{};  ///< `center` [m]
 
@@ -408,7 +409,7 @@ struct MotionSequenceSettings {
   std::optional<std::string> next{};      ///< the sequence that follows; it stops unless given. `next`
   std::vector<MotionSettings> motions{};  ///< all of them in each step, one after the other
 
-  void validate() const { detail::expect_at_least(0, "loop", loop); }
+  void validate() const { detail::require_at_least(0, "loop", loop); }
 
   bool operator==(const MotionSequenceSettings&) const = default;
 };
@@ -421,7 +422,7 @@ struct SwapSettings {
   TransformSettings transform{};
 
   void validate() const {
-    detail::expect_at_least(1, "swapStep", step);
+    detail::require_at_least(1, "swapStep", step);
     if (source) detail::validate_source(*source);
   }
 
@@ -440,8 +441,8 @@ struct PartSettings {
 
   void validate() const {
     detail::validate_source(source);
-    detail::expect_at_least(1, "dynStep", dynamic_step);
-    if (dynamic_interval) expect_positive("dynTimeStep", *dynamic_interval, "s");
+    detail::require_at_least(1, "dynStep", dynamic_step);
+    if (dynamic_interval) require_positive("dynTimeStep", *dynamic_interval, "s");
     for (const MotionSequenceSettings& sequence : motions) sequence.validate();
     for (const SwapSettings& swap : swaps) swap.validate();
   }
@@ -458,8 +459,8 @@ struct SceneSettings {
   std::vector<PartSettings> parts{};
 
   void validate() const {
-    detail::expect_at_least(1, "dynStep", dynamic_step);
-    if (dynamic_interval) expect_positive("dynTimeStep", *dynamic_interval, "s");
+    detail::require_at_least(1, "dynStep", dynamic_step);
+    if (dynamic_interval) require_positive("dynTimeStep", *dynamic_interval, "s");
     for (const PartSettings& part : parts) try {
         part.validate();
       } catch (const SettingError& error) {
@@ -528,11 +529,11 @@ struct LegScannerSettings {
   double warm_up = 0;                          ///< for which head and optic run before the first pulse; `opticsWarmupPhase_s` [s]
 
   void validate() const {
-    expect_not_negative("pulseFreq_hz", pulse_rate, "Hz");
-    expect_not_negative("scanFreq_hz", scan_frequency, "Hz");
-    if (scan_angle) expect_not_negative("scanAngle_deg", degrees(*scan_angle), "deg");
-    expect_not_negative("trajectoryTimeInterval_s", trajectory_interval, "s");
-    expect_not_negative("opticsWarmupPhase_s", warm_up, "s");
+    require_not_negative("pulseFreq_hz", pulse_rate, "Hz");
+    require_not_negative("scanFreq_hz", scan_frequency, "Hz");
+    if (scan_angle) require_not_negative("scanAngle_deg", degrees(*scan_angle), "deg");
+    require_not_negative("trajectoryTimeInterval_s", trajectory_interval, "s");
+    require_not_negative("opticsWarmupPhase_s", warm_up, "s");
   }
 
   bool operator==(const LegScannerSettings&) const = default;
@@ -546,7 +547,7 @@ struct LegSettings {
   LegScannerSettings scanner{};
 
   void validate() const {
-    if (duration_max) expect_not_negative("maxDuration_s", *duration_max, "s");
+    if (duration_max) require_not_negative("maxDuration_s", *duration_max, "s");
     scanner.validate();
   }
 
@@ -554,7 +555,7 @@ struct LegSettings {
 };
 
 /// Whether a leg of a platform that moves stays where it begins: the next one begins there, too, or there is none.
-[[nodiscard]] inline bool hovers(const std::vector<LegSettings>& legs, std::size_t k) {
+[[nodiscard]] inline bool stays_in_place(const std::vector<LegSettings>& legs, std::size_t k) {
   if (k + 1 >= legs.size()) return legs.size() == 1;
   const LegPlatformSettings &here = legs[k].platform, &next = legs[k + 1].platform;
   const bool is_above = here.position.x == next.position.x && here.position.y == next.position.y;

@@ -71,7 +71,7 @@ inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 
 [[nodiscard]] inline std::string xml_number(double value) {
   if (value == 0) return "0";
   const double size = std::abs(value);
-  if (!(size >= 1e-6 && size < 1e15)) return pulsecast::detail::written(value);
+  if (!(size >= 1e-6 && size < 1e15)) return pulsecast::detail::to_text(value);
   std::array<char, 64> digits;
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};
 }
@@ -338,7 +338,7 @@ class XmlInput {
   }
 
  private:
-  static constexpr std::size_t most_params = 100;
+  static constexpr std::size_t max_params = 100;
 
   /// Whether two words are the same, but for capitals.
   [[nodiscard]] static bool is_same_word(std::string_view a, std::string_view b) {
@@ -367,7 +367,7 @@ class XmlInput {
     check_filter();
     std::vector<std::string_view> keys;
     for (const pugi::xml_node child : node_.children()) {
-      if (report_.is_full() || report_.is_full_of_warnings() || keys.size() == most_params) return;
+      if (report_.is_full() || report_.is_full_of_warnings() || keys.size() == max_params) return;
       if (child.type() != pugi::node_element) continue;
       if (std::string_view(child.name()) != "param") {
         report_.warn(document_.place(child),
@@ -384,7 +384,7 @@ class XmlInput {
           report_.fault(document_.place(child, "key"), "param " + xml_quoted(key) + " is given twice, with another value");
       }
       keys.push_back(key);
-      if (keys.size() == most_params) report_.fault(document_.place(child), "one of too many <param> in a filter");
+      if (keys.size() == max_params) report_.fault(document_.place(child), "one of too many <param> in a filter");
       if (!is_among(known_, key) || key == "type")
         report_.warn(document_.place(child, "key"), "param " + xml_quoted(key) + " of filter " +
                                                         xml_quoted(node_.attribute("type").value()) + " is not known" +

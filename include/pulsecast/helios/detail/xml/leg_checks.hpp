@@ -30,19 +30,20 @@ class LegChecks {
   /// Checks one leg and where it leads; `leg` is its element, and `resolution` its `verticalResolution_deg` [rad], if it has one.
   void check(pugi::xml_node leg, std::size_t i, double resolution = 0) const {
     check_platform(leg, i);
-    const bool is_end = goes_on() && survey_.legs.size() > 1 && i + 1 == survey_.legs.size();  // says where the way ends, and scans nothing
+    const bool is_end =
+        legs_connect() && survey_.legs.size() > 1 && i + 1 == survey_.legs.size();  // says where the way ends, and scans nothing
     if (!is_end) check_scanner(leg, i, resolution);
   }
 
  private:
   /// Whether legs go to where the next one begins.
-  [[nodiscard]] bool goes_on() const {
+  [[nodiscard]] bool legs_connect() const {
     return survey_.platform.kind != PlatformKind::stationary && survey_.platform.kind != PlatformKind::interpolated;
   }
 
   /// Whether the platform stays where it is for as long as a leg lasts.
   [[nodiscard]] bool stays(std::size_t i) const {
-    return survey_.platform.kind == PlatformKind::stationary || (goes_on() && hovers(survey_.legs, i));
+    return survey_.platform.kind == PlatformKind::stationary || (legs_connect() && stays_in_place(survey_.legs, i));
   }
 
   /// A number that was computed, to six decimals.
@@ -65,7 +66,7 @@ class LegChecks {
       if (platform.smooth_turn) io.warn("smoothTurn", std::string("a smooth turn") + why);
       if (platform.yaw_at_departure) io.warn("yawAtDeparture_deg", std::string("yawAtDeparture_deg") + why);
     }
-    if (!goes_on()) return;
+    if (!legs_connect()) return;
     const std::size_t legs = survey_.legs.size();
     const bool turns = settings.scanner.head_stop != settings.scanner.head_start;
     if (legs == 1 && !settings.duration_max && !turns)
@@ -77,7 +78,7 @@ class LegChecks {
                        "the last leg of a platform that moves says where the way ends, and has no pulses: to stay there for "
                        "maxDuration_s, expected another <leg> at the same place");
     if (i + 1 == legs) return;
-    if (hovers(survey_.legs, i)) {
+    if (stays_in_place(survey_.legs, i)) {
       if (!settings.duration_max && !turns)
         io.warn("x",
                 "the leg begins where the next one does, and ends at once: expected maxDuration_s for which it stays here, if it should");
@@ -165,7 +166,7 @@ class LegChecks {
                                          "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
                                          "maxDuration_s");
     if (!stays(i) || s.head_stop != s.head_start) return;
-    if (speed == 0 && goes_on()) return;  // has been told of already
+    if (speed == 0 && legs_connect()) return;  // has been told of already
     if (speed == 0)
       io.report().fault(io.place(), "the leg could never end: neither platform nor head moves; expected maxDuration_s" +
                                         std::string(i == 0 ? "" : " for each leg"));

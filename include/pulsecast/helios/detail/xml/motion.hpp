@@ -55,12 +55,12 @@ void fields(Io& io, Of<Io, MotionSettings>& motion) {
   }
   if (auto* m = std::get_if<TranslationMotion>(&motion.kind)) {
     io.require({"vec"});
-    io.vector("vec", m->by, farthest);
+    io.vector("vec", m->by, max_coordinate);
   } else if (auto* r = std::get_if<RotationMotion>(&motion.kind)) {
     axis(io, "axis", r->axis);
     io.require({"angle"});
     io.number("angle", r->angle, units::degree, -36000, 36000);
-    if (kind == Kind::rotation) io.vector("center", r->center, farthest);
+    if (kind == Kind::rotation) io.vector("center", r->center, max_coordinate);
     if (kind == Kind::helical) {
       io.require({"glide"});
       if constexpr (Io::reads) r->glide = 0;
@@ -80,7 +80,7 @@ void fields(Io& io, Of<Io, MotionSettings>& motion) {
     if (kind == Kind::glide_plane) {
       io.require({"shift"});
       if constexpr (Io::reads) p->shift = Vec3{};
-      io.vector("shift", *p->shift, farthest);
+      io.vector("shift", *p->shift, max_coordinate);
       if constexpr (Io::reads)
         if (std::abs(dot(*p->shift, p->normal)) > 1e-6 * length(*p->shift) * length(p->normal))
           io.fault("shift", "shift is not along the plane: expected it at right angles to ortho");
@@ -90,7 +90,7 @@ void fields(Io& io, Of<Io, MotionSettings>& motion) {
     if constexpr (Io::reads) check_axis(io, "axis", s->axis);
     io.require({"angle"});
     io.number("angle", s->angle, units::degree, -36000, 36000);
-    io.vector("center", s->center, farthest);
+    io.vector("center", s->center, max_coordinate);
   }
   io.flag("selfMode", motion.about_itself);
   io.number("autoCRS", motion.shift_factor, units::one, -1e6, 1e6);
