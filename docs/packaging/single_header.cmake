@@ -3,6 +3,7 @@
 
 # Writes a header and all that it includes of the library as one file:
 # cmake -DINCLUDE=include -DHEADER=pulsecast/pulsecast.hpp -DOUT=pulsecast.hpp -P single_header.cmake
+# INCLUDE is a folder, or a list of folders of which the first that has a header gives it.
 cmake_minimum_required(VERSION 3.25)
 set(written)
 set(text)
@@ -13,13 +14,16 @@ function(add header)
     return()
   endif()
   list(APPEND written ${header})
-  file(STRINGS ${INCLUDE}/${header} includes REGEX "^#include <pulsecast/")
+  unset(path)
+  find_file(path ${header} PATHS ${INCLUDE} NO_CACHE REQUIRED NO_DEFAULT_PATH)
+  file(STRINGS ${path} includes REGEX "^#include <pulsecast/")
   foreach(include IN LISTS includes)
     string(REGEX REPLACE "^#include <(.*)>.*" "\\1" include "${include}")
     add(${include})
   endforeach()
-  file(READ ${INCLUDE}/${header} own)
+  file(READ ${path} own)
   string(REGEX REPLACE "^(//[^\n]*\n)+#pragma once\n" "" own "${own}")
+  string(REGEX REPLACE "#if !__has_include\\(<pulsecast/[^\n]*\n#error [^\n]*\n#endif\n" "" own "${own}")
   string(REGEX REPLACE "#include <pulsecast/[^\n]*\n" "" own "${own}")
   set(text "${text}\n// ---- ${header}\n${own}")
   set(text "${text}" PARENT_SCOPE)

@@ -14,7 +14,8 @@ violates() { sed "s|^|$1: |" >> "$violations"; }
 
 headers=$(find include -name '*.hpp' | sort)
 sources=$(find include examples tests bench .ci CMakeLists.txt -type f \
-          \( -name '*.[ch]pp' -o -name '*.cmake' -o -name '*.sh' -o -name CMakeLists.txt -o -name run \) | sort)
+          \( -name '*.[ch]pp' -o -name '*.cmake' -o -name '*.sh' -o -name CMakeLists.txt -o -name run \
+             -o -name '*.js' -o -name '*.mjs' -o -name '*.css' -o -name '*.glsl' -o -name '*.html' \) | sort)
 
 # Which rooms a room may include; its own is understood. Rooms of one layer meet through concepts.hpp.
 # shellcheck disable=SC2086
@@ -68,7 +69,7 @@ grep -L '^#pragma once$' $headers | violates 'a header begins with #pragma once'
 
 # shellcheck disable=SC2086
 awk 'FNR <= 3 && /SPDX-FileCopyrightText: / { holder[FILENAME] = 1 }
-     FNR <= 3 && /SPDX-License-Identifier: MIT$/ { licence[FILENAME] = 1 }
+     FNR <= 3 && /SPDX-License-Identifier: MIT( \*\/| -->)?$/ { licence[FILENAME] = 1 }
      END { for (i = 1; i < ARGC; ++i) if (!(ARGV[i] in holder && ARGV[i] in licence)) print ARGV[i] }' $sources |
   violates 'a file begins with two SPDX lines'
 

@@ -54,6 +54,7 @@ notices 'random numbers come from base/random.hpp only' "$add #include <random>\
 notices 'concepts, never enable_if' "echo 'template <class T, class = std::enable_if_t<true>> struct A;' >> include/pulsecast/echo.hpp"
 notices 'a header begins with #pragma once' 'sed -i "/^#pragma once/d" include/pulsecast/echo.hpp'
 notices 'a file begins with two SPDX lines' 'sed -i 2d tests/base/frame.cpp'
+notices 'a file begins with two SPDX lines' 'sed -i 2d include/pulsecast/page/web/page.css'
 notices 'no open ends in the tree' 'echo "// TO""DO" >> include/pulsecast/echo.hpp'
 notices 'no absolute paths' 'echo "see /ho""me/me" >> CHANGELOG.md'
 notices 'pulsecast.hpp includes every header of the core' 'sed -i "/run.hpp/d" include/pulsecast/pulsecast.hpp'

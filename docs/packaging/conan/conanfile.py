@@ -17,7 +17,7 @@ class Pulsecast(ConanFile):
     description = "Virtual laser scanning: a header-only C++20 library"
     package_type = "header-library"
     settings = "os", "compiler", "build_type", "arch"
-    options = {"files": [True, False]}  # adapters that read OBJ, GeoTIFF, XML and compressed text, and write PNG
+    options = {"files": [True, False]}  # targets that read OBJ, GeoTIFF, XML and compressed text, and write PNG
     default_options = {"files": False}
     generators = "CMakeDeps", "CMakeToolchain"
 

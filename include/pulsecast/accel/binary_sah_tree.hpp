@@ -47,7 +47,7 @@ class BinarySahTree {
     const std::size_t grain = threads == 1 ? primitives.size() : std::max<std::size_t>(primitives.size() / (8 * threads), 4096);
     std::vector<Step> steps{{{0, static_cast<std::uint32_t>(primitives.size()), 0, false, &root_, bounds(threads)}}};
     std::vector<std::size_t> subtrees;
-    std::vector<Chunk> space(1);
+    std::vector<ChunkBins> space(1);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (steps[i].task.size() <= grain) {
         const auto larger = [&](std::size_t a, std::size_t b) { return steps[a].task.size() > steps[b].task.size(); };
@@ -60,7 +60,7 @@ class BinarySahTree {
     }
     for_each_index(subtrees.size(), threads, [&](std::size_t i) {
       Step& step = steps[subtrees[i]];
-      std::vector<Chunk> own(1);
+      std::vector<ChunkBins> own(1);
       step.sums = build(step.task, own);
     });
     for (std::size_t i = steps.size(); i-- > 0;)
@@ -142,7 +142,7 @@ class BinarySahTree {
   };
 
   /// A chunk of the primitives of a node, as a thread splits it.
-  struct Chunk {
+  struct ChunkBins {
     Bins bins;
     std::uint32_t to[2];  ///< where its primitives of either half go
     Growing centres[2];   ///< of these, doubled
@@ -169,7 +169,7 @@ class BinarySahTree {
   [[nodiscard]] Boxed<Real>* array(bool spare) const noexcept { return spare ? spare_.data() : primitives_.data(); }
 
   /// Makes a node and all that is below it, and plans them.
-  Sums build(const Task& task, std::vector<Chunk>& space) {
+  Sums build(const Task& task, std::vector<ChunkBins>& space) {
     if (task.size() > 2) {
       const auto [first, second] = split(task, space, 1);
       const Sums of_first = build(first, space), of_second = build(second, space);
@@ -189,7 +189,7 @@ class BinarySahTree {
   }
 
   /// Makes a node of three primitives or more, and divides them. Both parts are left with levels enough to be halved down to single ones.
-  std::array<Task, 2> split(const Task& task, std::vector<Chunk>& space, unsigned threads) {
+  std::array<Task, 2> split(const Task& task, std::vector<ChunkBins>& space, unsigned threads) {
     const Boxed<Real>* const from = array(task.spare) + task.begin;
     if (threads == 1 || task.size() <= 2 * chunk_size) threads = 1;
     const std::size_t parts = threads == 1 ? 1 : chunk_count(task.size());
@@ -201,7 +201,8 @@ class BinarySahTree {
     };
     const std::size_t count = primitives_.size() <= few ? max_slices : std::min<std::size_t>(max_slices, 4 + task.size() / 16);
     const Slices<Real> slices(task.bounds.centres.min, task.bounds.centres.max, count);
-    each_part([&](Chunk& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept { put_in_bins(part.bins, slices, begin, end); });
+    each_part(
+        [&](ChunkBins& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept { put_in_bins(part.bins, slices, begin, end); });
     Bins together;
     const Bins* all = &space[0].bins;
     if (parts > 1) {
@@ -221,11 +222,11 @@ class BinarySahTree {
     const std::uint32_t middle = first.end = second.begin = task.begin + left;
     std::uint32_t to[2] = {task.begin, middle};
     for (std::size_t i = 0; i < parts; ++i) {
-      Chunk& part = space[i];
+      ChunkBins& part = space[i];
       std::copy_n(to, 2, part.to);
       for (std::size_t s = 0; s < slices.count(); ++s) to[s < split.slice ? 0 : 1] += part.bins.counts[split.axis][s];
     }
-    each_part([&](Chunk& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
+    each_part([&](ChunkBins& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
       scatter(part, slices, split, array(!task.spare), begin, end);
     });
     for (std::size_t i = 0; i < parts; ++i)
@@ -257,7 +258,7 @@ class BinarySahTree {
   }
 
   /// Brings primitives to their halves, in the order in which they are.
-  static void scatter(Chunk& part, const Slices<Real>& slices, const Split& split, Boxed<Real>* to, const Boxed<Real>* begin,
+  static void scatter(ChunkBins& part, const Slices<Real>& slices, const Split& split, Boxed<Real>* to, const Boxed<Real>* begin,
                       const Boxed<Real>* end) noexcept {
     part.centres[0] = part.centres[1] = Growing();
     for (; begin != end; ++begin) {

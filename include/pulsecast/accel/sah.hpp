@@ -168,13 +168,13 @@ struct BuildInput {
     constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // one more would be taken for `ClosestHits::none`
     if (boxes.size() > most)
       throw SettingError("Accelerator::boxes", static_cast<double>(boxes.size()), "", "at most 4294967294 in number");
-    struct Chunk {
+    struct ChunkBounds {
       Box bounds;
       std::size_t first = 0, met = 0;  // in `primitives`
     };
-    std::vector<Chunk> all(chunk_count(boxes.size()));
+    std::vector<ChunkBounds> all(chunk_count(boxes.size()));
     for_each_chunk(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
-      Chunk own;
+      ChunkBounds own;
       boxes.for_each(begin, end, [&](std::size_t, const Box& box) {
         const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
         if (!(extent <= max_coordinate)) throw SettingError("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
@@ -183,7 +183,7 @@ struct BuildInput {
       all[part] = own;
     });
     std::size_t met = 0;
-    for (Chunk& own : all) bounds.extend(own.bounds), own.first = met, met += own.met;
+    for (ChunkBounds& own : all) bounds.extend(own.bounds), own.first = met, met += own.met;
     if (met == 0) return;
     centre = bounds.centre();
     primitives = SharedBuffer<Boxed<Real>>(met);

@@ -19,9 +19,14 @@
 #include <pulsecast/io/colour.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/page/detail/columns.hpp>
+#include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/sample.hpp>
-#include <pulsecast/page/detail/viewer.hpp>
 #include <pulsecast/version.hpp>
+
+#if !__has_include(<pulsecast/page/detail/assets.hpp>)
+#error "pulsecast/page/detail/assets.hpp is generated: install pulsecast with CMake, or run `cmake -P include/pulsecast/page/assets.cmake`"
+#endif
+#include <pulsecast/page/detail/assets.hpp>
 
 namespace pulsecast::page {
 
@@ -68,61 +73,61 @@ struct PageSettings {
 
 namespace detail {
 
-inline std::string json_of(const io::Srgb& colour) {
-  return '[' + std::to_string(colour[0]) + ',' + std::to_string(colour[1]) + ',' + std::to_string(colour[2]) + ']';
-}
-
-template <class Item>
-std::string json_list(std::size_t count, const Item& item) {
-  std::string out = "[";
-  for (std::size_t i = 0; i < count; ++i) out += (i > 0 ? "," : "") + item(i);
-  return out + ']';
-}
-
 /// The colours of pictures, for the page's own.
-inline std::string json_colours() {
+inline void write_colours(page::detail::JsonWriter& json) {
   const auto scale = [](std::span<const io::Srgb> colours) {
-    return json_list(256, [colours](std::size_t i) { return json_of(io::to_srgb(io::along(colours, static_cast<double>(i) / 255))); });
+    return [colours](std::size_t i) { return io::to_srgb(io::along(colours, static_cast<double>(i) / 255)); };
   };
-  return "{\"viridis\":" + scale(io::viridis) + ",\"greys\":" + scale(io::greys) +
-         ",\"hues\":" + json_list(256, [](std::size_t i) { return json_of(io::to_srgb(io::of_hue(static_cast<double>(i) / 256))); }) +
-         ",\"classes\":" + json_list(70, [](std::size_t i) { return json_of(io::of_class(static_cast<std::uint16_t>(i))); }) +
-         ",\"kinds\":" + json_list(io::okabe_ito.size(), [](std::size_t i) { return json_of(io::okabe_ito[i]); }) + '}';
+  json.begin_object();
+  json.key("viridis").array(256, scale(io::viridis));
+  json.key("greys").array(256, scale(io::greys));
+  json.key("hues").array(256, [](std::size_t i) { return io::to_srgb(io::of_hue(static_cast<double>(i) / 256)); });
+  json.key("classes").array(70, [](std::size_t i) { return io::of_class(static_cast<std::uint16_t>(i)); });
+  json.member("kinds", io::okabe_ito);
+  json.end_object();
 }
 
-inline std::string json_legs(std::span<const PageLeg> legs) {
-  const auto place = [](const Vec3& p) {
-    return json_list(3, [&p](std::size_t k) { return json_number(std::round(p[static_cast<int>(k)] * 1e4) / 1e4); });
-  };
-  return json_list(legs.size(), [&](std::size_t i) {
-    const PageLeg& leg = legs[i];
-    return "{\"name\":" + json_text(leg.name) + ",\"times\":" +
-           json_list(leg.times.size(), [&leg](std::size_t k) { return json_number(std::round(leg.times[k] * 1e7) / 1e7); }) +
-           ",\"places\":" + json_list(leg.places.size(), [&](std::size_t k) { return place(leg.places[k]); }) + '}';
-  });
+inline void write_legs(page::detail::JsonWriter& json, std::span<const PageLeg> legs) {
+  const auto rounded = [](double value, double steps) { return std::round(value * steps) / steps; };
+  json.begin_array();
+  for (const PageLeg& leg : legs) {
+    json.begin_object().member("name", leg.name);
+    json.key("times").array(leg.times.size(), [&](std::size_t i) { return rounded(leg.times[i], 1e7); });
+    json.key("places").array(leg.places.size(), [&](std::size_t i) {
+      const Vec3& p = leg.places[i];
+      return std::array{rounded(p.x, 1e4), rounded(p.y, 1e4), rounded(p.z, 1e4)};
+    });
+    json.end_object();
+  }
+  json.end_array();
 }
 
 inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool live) {
-  std::string objects = "{";
-  for (const auto& [id, name] : survey.objects)
-    objects += (objects.size() > 1 ? ",\"" : "\"") + std::to_string(id) + "\":" + json_text(name);
-  return "{\"name\":" + json_text(survey.name) + ",\"scanner\":" + json_text(survey.scanner) +
-         ",\"platform\":" + json_text(survey.platform) + ",\"version\":" + json_text(PULSECAST_VERSION) +
-         ",\"echoes\":" + std::to_string(echoes) + ",\"live\":" + (live ? "true" : "false") + ",\"objects\":" + objects +
-         "},\"legs\":" + json_legs(survey.legs) + ",\"colours\":" + json_colours() + '}';
+  page::detail::JsonWriter json;
+  json.begin_object().member("name", survey.name).member("scanner", survey.scanner).member("platform", survey.platform);
+  json.member("version", PULSECAST_VERSION).member("echoes", echoes).member("live", live);
+  json.key("objects").begin_object();
+  for (const auto& [id, name] : survey.objects) json.member(std::to_string(id), name);
+  json.end_object();
+  json.key("legs");
+  write_legs(json, survey.legs);
+  json.key("colours");
+  write_colours(json);
+  json.end_object();
+  return json.text();
 }
 
 }  // namespace detail
 
 /// A whole page: HTML that needs no other file and asks nobody for anything. With `live`, it has no points, but asks where it came from.
 [[nodiscard]] inline std::string page_html(const PageSurvey& survey, std::uint64_t echoes, std::string_view columns, bool live = false) {
-  std::string out(page_head);
+  std::string out;
+  for (const std::string_view piece : page::detail::html_before_survey) out += piece;
   out += detail::json_of(survey, echoes, live);
-  out += page_before_points;
+  for (const std::string_view piece : page::detail::html_before_points) out += piece;
   out += base64(columns);
-  out += page_before_scripts;
-  for (const std::string_view script : page_scripts) out += script;
-  return out += page_end;
+  for (const std::string_view piece : page::detail::html_after_points) out += piece;
+  return out;
 }
 
 /// A sink that leaves the cloud as one HTML file in which it can be looked at from all sides, coloured, played and asked for the attributes

@@ -24,6 +24,7 @@
 
 #include <httplib.h>
 
+#include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/local_server.hpp>
 #include <pulsecast/page/page.hpp>
 #include <pulsecast/run.hpp>
@@ -153,7 +154,7 @@ class PageServer {
   /// How far the run is, and points of later pulses than those the page has: four bytes that say how long the JSON text is which
   /// follows, and columns.
   [[nodiscard]] std::string news(std::optional<std::uint64_t> run, std::optional<std::uint64_t> after) {
-    std::string text;
+    page::detail::JsonWriter json;
     std::vector<PagePoint> fresh;
     {
       const std::lock_guard lock(mutex_);
@@ -166,17 +167,17 @@ class PageServer {
       if (end != first) end = std::upper_bound(end, all.end(), std::prev(end)->pulse, later);
       fresh.assign(first, end);
       const std::string last = !fresh.empty() ? std::to_string(fresh.back().pulse) : other || !after ? "" : std::to_string(*after);
-      text = "{\"run\":" + std::to_string(run_) + ",\"state\":" + json_text(state_) + ",\"done\":" + std::to_string(progress_.done) +
-             ",\"total\":" + std::to_string(progress_.total) + ",\"echoes\":" + std::to_string(sample_.seen()) +
-             ",\"seconds\":" + json_number(progress_.seconds) + ",\"largest_key\":" + std::to_string(sample_.largest_key()) +
-             ",\"more\":" + (end != all.end() ? "true" : "false") + ",\"last\":" + json_text(last);
-      if (other) text += ",\"legs\":" + detail::json_legs(survey_.legs);
-      text += '}';
+      json.begin_object().member("run", run_).member("state", state_).member("done", progress_.done).member("total", progress_.total);
+      json.member("echoes", sample_.seen()).member("seconds", progress_.seconds).member("largest_key", sample_.largest_key());
+      json.member("more", end != all.end()).member("last", last);
+      if (other) {
+        json.key("legs");
+        detail::write_legs(json, survey_.legs);
+      }
+      json.end_object();
     }
-    std::string out;
-    for (int k = 0; k < 4; ++k) out += static_cast<char>(static_cast<std::uint32_t>(text.size()) >> 8 * k);
     constexpr double step = 1e-3;  // that suits any extent: nothing is stored [m]
-    return out + text +
+    return detail::with_length(json.text()) +
            page_columns(fresh, {.position_step = settings_.position_step > 0 ? settings_.position_step : step, .keys = true, .effort = 1});
   }
 

@@ -207,15 +207,6 @@ async function checkFile() {
     new KeyboardEvent('keydown', { key: 'f', cancelable: true, bubbles: true, ...${JSON.stringify(more)} }))`)
   expect(await taken({}) && !await taken({ ctrlKey: true }) && !await taken({ metaKey: true }), "the browser's keys stay its own")
 
-  // what is thinned while it grows leaves a point that was chosen where it then is
-  const thinned = await page(`(() => {
-    const column = [0, 1, 2, 3, 4], columns = { pulse: column, key: [5, 1, 9, 2, 3] }, cloud = new Points()
-    for (const name of ['x', 'y', 'z', 'from_x', 'from_y', 'from_z', 'time']) columns[name] = column
-    cloud.append({ count: 5, columns, steps: {} })
-    return [cloud.thin(9, 3), cloud.thin(4, 3), cloud.thin(2, 2), cloud.count, [...cloud.arrays.pulse.subarray(0, 2)]]
-  })()`)
-  expect(JSON.stringify(thinned) === '[3,1,-1,2,[1,3]]', `points that are thinned: ${JSON.stringify(thinned)}`)
-
   // small windows and dark ones
   await tell('Emulation.setDeviceMetricsOverride', { width: 380, height: 600, deviceScaleFactor: 2, mobile: false })
   await tell('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: 'dark' }] })

@@ -206,14 +206,6 @@ TEST_CASE("a scan line takes few bytes") {
   CHECK(bytes < 9);  // 12 as base64
 }
 
-TEST_CASE("texts are JSON that may stand in HTML") {
-  CHECK(json_text("a") == "\"a\"");
-  CHECK(json_text("</script><!-- & \"\\\n\x7f") == R"("\u003c/script\u003e\u003c!-- \u0026 \u0022\u005c\u000a\u007f")");
-  CHECK(json_text("\xc3\xa4") == "\"\xc3\xa4\"");
-  CHECK(json_number(0.1) == "0.1");
-  CHECK(json_number(std::numeric_limits<double>::quiet_NaN()) == "null");
-}
-
 TEST_CASE("base64 is that of its standard") {  // source: RFC 4648, section 10
   CHECK(base64("") == "");
   CHECK(base64("f") == "Zg==");

@@ -9,39 +9,20 @@
 #include <cstdint>
 #include <limits>
 #include <new>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <zlib.h>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/sample.hpp>
 
 namespace pulsecast::page {
-
-/// A text as JSON has it, quotes included, that may stand in HTML as well: of `<`, `>` and `&` only the codes are left.
-/// Source: RFC 8259, section 7.
-[[nodiscard]] inline std::string json_text(std::string_view text) {
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 32 || code == 127 || std::string_view("\"\\<>&").find(c) != std::string_view::npos) {
-      out += "\\u00";
-      out += digits[code / 16];
-      out += digits[code % 16];
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
-
-/// A number as JSON has it; what is not finite is `null`.
-[[nodiscard]] inline std::string json_number(double value) { return std::isfinite(value) ? pulsecast::detail::to_text(value) : "null"; }
 
 /// How the points of a page are written.
 struct PageColumnSettings {
@@ -66,63 +47,63 @@ struct PageColumnSettings {
 
 namespace detail {
 
-/// Codes of one attribute of all points; code 0 is left for what has no value. `text` says as JSON how to read them.
+/// One attribute of all points as codes, of which 0 stands for no value, and the description by which a page reads them.
 struct PageCodes {
-  std::string text{};
+  std::string name{};
+  std::string_view kind{};              ///< "linear", "logarithmic" or "listed"
+  double offset = 0, step = 0;          ///< of what is not listed
+  std::vector<std::uint32_t> values{};  ///< of what is listed
+  std::optional<double> per_pulse{};    ///< what is to be added, times the number of the pulse
+  bool differences = true;              ///< whether neighbours are alike
   std::vector<std::uint64_t> codes{};
-  bool differences = true;  ///< whether neighbours are alike
 };
 
 inline constexpr double max_page_code = 0x1p52;  // which a double of the page can tell from its neighbours
 
 /// Values that are 1 + code times a step above their least.
 template <class Value>
-PageCodes linear_codes(std::string_view name, std::span<const PagePoint> points, double step, const Value& value) {
+PageCodes linear_codes(std::string name, std::span<const PagePoint> points, double step, const Value& value) {
   double least = std::numeric_limits<double>::infinity();
   for (const PagePoint& p : points)
     if (const double v = value(p); std::isfinite(v)) least = std::min(least, v);
   const double offset = std::isfinite(least) ? std::floor(least / step) * step : 0;
-  PageCodes out;
+  PageCodes out{.name = std::move(name), .kind = "linear", .offset = offset, .step = step};
   out.codes.reserve(points.size());
   for (const PagePoint& p : points) {
     const double code = 1 + std::round((static_cast<double>(value(p)) - offset) / step);
     out.codes.push_back(std::isfinite(code) ? static_cast<std::uint64_t>(std::clamp(code, 1.0, max_page_code)) : 0);
   }
-  out.text = "\"name\":" + json_text(name) + ",\"kind\":\"linear\",\"offset\":" + json_number(offset) + ",\"step\":" + json_number(step);
   return out;
 }
 
 /// Values whose logarithm is 1 + code times a step above the least; those that are not above zero have none.
 template <class Value>
-PageCodes logarithmic_codes(std::string_view name, std::span<const PagePoint> points, double step, const Value& value) {
+PageCodes logarithmic_codes(std::string name, std::span<const PagePoint> points, double step, const Value& value) {
   double least = std::numeric_limits<double>::infinity();
   const auto sound = [](double v) { return v > 0 && std::isfinite(v); };
   for (const PagePoint& p : points)
     if (const double v = value(p); sound(v)) least = std::min(least, v);
-  PageCodes out{.differences = false};
+  const double offset = std::isfinite(least) ? least : 1;
+  PageCodes out{.name = std::move(name), .kind = "logarithmic", .offset = offset, .step = step, .differences = false};
   for (const PagePoint& p : points) {
     const double v = value(p);
     out.codes.push_back(sound(v) ? static_cast<std::uint64_t>(1 + std::round(std::log(v / least) / step)) : 0);
   }
-  out.text = "\"name\":" + json_text(name) + ",\"kind\":\"logarithmic\",\"offset\":" + json_number(std::isfinite(least) ? least : 1) +
-             ",\"step\":" + json_number(step);
   return out;
 }
 
 /// Values that are few; codes are 1 + their places in a list.
 template <class Value>
-PageCodes listed_codes(std::string_view name, std::span<const PagePoint> points, const Value& value) {
+PageCodes listed_codes(std::string name, std::span<const PagePoint> points, const Value& value) {
   std::vector<std::uint32_t> values;
   for (const PagePoint& p : points)
     if (values.empty() || values.back() != value(p)) values.push_back(value(p));
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
-  PageCodes out{.differences = false};
+  PageCodes out{.name = std::move(name), .kind = "listed", .differences = false};
   for (const PagePoint& p : points)
     out.codes.push_back(1 + static_cast<std::uint64_t>(std::lower_bound(values.begin(), values.end(), value(p)) - values.begin()));
-  out.text = "\"name\":" + json_text(name) + ",\"kind\":\"listed\",\"values\":[";
-  for (const std::uint32_t v : values) out.text += (out.text.back() == '[' ? "" : ",") + std::to_string(v);
-  out.text += ']';
+  out.values = std::move(values);
   return out;
 }
 
@@ -164,6 +145,60 @@ inline void deflate_into(std::string& out, std::span<const std::uint8_t> bytes, 
   deflateEnd(&stream);
 }
 
+/// A JSON text behind its length in four bytes, little-endian.
+inline std::string with_length(const std::string& text) {
+  std::string out;
+  for (int k = 0; k < 4; ++k) out += static_cast<char>(static_cast<std::uint32_t>(text.size()) >> 8 * k);
+  return out + text;
+}
+
+/// Encoder of a block of columns: its head, and the byte planes of all codes.
+class PageBlock {
+ public:
+  explicit PageBlock(std::size_t count) { head_.begin_object().member("count", count).key("columns").begin_array(); }
+
+  void add(PageCodes column) {
+    if (column.differences) make_differences(column.codes);
+    std::uint64_t all = 0;
+    for (const std::uint64_t code : column.codes) all |= code;
+    int count = 0;
+    for (; all != 0; all >>= 8, ++count)
+      for (const std::uint64_t code : column.codes) planes_.push_back(static_cast<std::uint8_t>(code >> 8 * count));
+    head_.begin_object().member("name", column.name).member("kind", column.kind);
+    if (column.kind == "listed") {
+      head_.key("values").array(column.values.size(), [&column](std::size_t i) { return column.values[i]; });
+    } else {
+      head_.member("offset", column.offset).member("step", column.step);
+    }
+    if (column.per_pulse) head_.member("per_pulse", *column.per_pulse);
+    head_.member("differences", column.differences).member("planes", count).end_object();
+  }
+
+  /// The bytes of the whole block; `effort` of compression is from 1 to 9.
+  [[nodiscard]] std::string finish(int effort) {
+    head_.end_array().end_object();
+    std::string out = with_length(head_.text());
+    deflate_into(out, planes_, effort);
+    return out;
+  }
+
+ private:
+  page::detail::JsonWriter head_;
+  std::vector<std::uint8_t> planes_;
+};
+
+/// Step of coordinates that the settings name, or else one that suits the extent of the points [m].
+inline double position_step(std::span<const PagePoint> points, const PageColumnSettings& settings) {
+  if (settings.position_step > 0) return settings.position_step;
+  if (points.empty()) return 1e-3;
+  Vec3 least = points.front().position, most = least;
+  for (const PagePoint& p : points) {
+    least = min(least, p.position);
+    most = max(most, p.position);
+  }
+  return page_step(max_norm(most - least));
+}
+
 }  // namespace detail
 
 /// The points as a page reads them: four bytes that say how long the JSON text is which follows, little-endian, and deflated bytes.
@@ -177,65 +212,38 @@ inline void deflate_into(std::string& out, std::span<const std::uint8_t> bytes, 
 /// scan angles to 0.05 and incidences to 0.5 degrees, reflectances to 0.002, widths to 1 ps; amplitudes to 1 %, and numbers are exact.
 [[nodiscard]] inline std::string page_columns(std::span<const PagePoint> points, const PageColumnSettings& settings = {}) {
   settings.validate();
-  double step = settings.position_step;
-  if (step == 0 && !points.empty()) {
-    Vec3 least = points.front().position, most = least;
-    for (const PagePoint& p : points) least = min(least, p.position), most = max(most, p.position);
-    step = page_step(max_norm(most - least));
-  }
-  if (step == 0) step = 1e-3;
   using detail::linear_codes, detail::logarithmic_codes, detail::listed_codes;
   using Point = const PagePoint&;
-  std::string text;
-  std::vector<std::uint8_t> planes;
-  const auto add = [&](detail::PageCodes column) {
-    if (column.differences) detail::make_differences(column.codes);
-    std::uint64_t all = 0;
-    for (const std::uint64_t code : column.codes) all |= code;
-    int count = 0;
-    for (; all != 0; all >>= 8, ++count)
-      for (const std::uint64_t code : column.codes) planes.push_back(static_cast<std::uint8_t>(code >> 8 * count));
-    text += (text.empty() ? "{" : ",{") + column.text + ",\"differences\":" + (column.differences ? "true" : "false") +
-            ",\"planes\":" + std::to_string(count) + '}';
+  const auto unlike = [](detail::PageCodes column) {
+    column.differences = false;
+    return column;
   };
+  const double step = detail::position_step(points, settings), each = detail::time_of_a_pulse(points);
+  detail::PageBlock block(points.size());
   for (int k = 0; k < 3; ++k) {
     const std::string axis(1, "xyz"[k]);
-    add(linear_codes(axis, points, step, [k](Point p) { return p.position[k]; }));
-    add(linear_codes("from_" + axis, points, step,
-                     [k](Point p) { return p.position[k] + static_cast<double>(p.to_instrument[static_cast<std::size_t>(k)]); }));
+    block.add(linear_codes(axis, points, step, [k](Point p) { return p.position[k]; }));
+    block.add(linear_codes("from_" + axis, points, step,
+                           [k](Point p) { return p.position[k] + static_cast<double>(p.to_instrument[static_cast<std::size_t>(k)]); }));
   }
-  add(linear_codes("pulse", points, 1, [](Point p) { return static_cast<double>(p.pulse); }));
-  const double each = detail::time_of_a_pulse(points);
+  block.add(linear_codes("pulse", points, 1, [](Point p) { return static_cast<double>(p.pulse); }));
   detail::PageCodes times = linear_codes("time", points, 1e-7, [each](Point p) { return p.time - each * static_cast<double>(p.pulse); });
-  times.text += ",\"per_pulse\":" + json_number(each);
-  add(std::move(times));
-  add(linear_codes("return_number", points, 1, [](Point p) { return p.number; }));
-  add(linear_codes("returns", points, 1, [](Point p) { return p.returns; }));
-  add(linear_codes("leg", points, 1, [](Point p) { return p.leg; }));
-  add(linear_codes("channel", points, 1, [](Point p) { return p.channel; }));
-  add(linear_codes("scan_angle", points, 0.05, [](Point p) { return static_cast<double>(p.scan_angle) * 180 / pi; }));
-  add(listed_codes("object", points, [](Point p) { return p.object; }));
-  add(listed_codes("class", points, [](Point p) { return p.classification; }));
-  detail::PageCodes column = linear_codes("reflectance", points, 0.002, [](Point p) { return p.reflectance; });
-  column.differences = false;
-  add(std::move(column));
-  add(logarithmic_codes("amplitude", points, 0.02, [](Point p) { return p.amplitude; }));
-  column = linear_codes("incidence", points, 0.5, [](Point p) { return static_cast<double>(p.incidence) * 180 / pi; });
-  column.differences = false;
-  add(std::move(column));
+  times.per_pulse = each;
+  block.add(std::move(times));
+  block.add(linear_codes("return_number", points, 1, [](Point p) { return p.number; }));
+  block.add(linear_codes("returns", points, 1, [](Point p) { return p.returns; }));
+  block.add(linear_codes("leg", points, 1, [](Point p) { return p.leg; }));
+  block.add(linear_codes("channel", points, 1, [](Point p) { return p.channel; }));
+  block.add(linear_codes("scan_angle", points, 0.05, [](Point p) { return static_cast<double>(p.scan_angle) * 180 / pi; }));
+  block.add(listed_codes("object", points, [](Point p) { return p.object; }));
+  block.add(listed_codes("class", points, [](Point p) { return p.classification; }));
+  block.add(unlike(linear_codes("reflectance", points, 0.002, [](Point p) { return p.reflectance; })));
+  block.add(logarithmic_codes("amplitude", points, 0.02, [](Point p) { return p.amplitude; }));
+  block.add(unlike(linear_codes("incidence", points, 0.5, [](Point p) { return static_cast<double>(p.incidence) * 180 / pi; })));
   if (std::any_of(points.begin(), points.end(), [](Point p) { return p.width != 0; }))
-    add(linear_codes("width", points, 0.001, [](Point p) { return static_cast<double>(p.width) * 1e9; }));
-  if (settings.keys) {
-    column = linear_codes("key", points, 1, [](Point p) { return p.key; });
-    column.differences = false;
-    add(std::move(column));
-  }
-  text = "{\"count\":" + std::to_string(points.size()) + ",\"columns\":[" + text + "]}";
-  std::string out;
-  for (int k = 0; k < 4; ++k) out += static_cast<char>(static_cast<std::uint32_t>(text.size()) >> 8 * k);
-  out += text;
-  detail::deflate_into(out, planes, settings.effort);
-  return out;
+    block.add(linear_codes("width", points, 0.001, [](Point p) { return static_cast<double>(p.width) * 1e9; }));
+  if (settings.keys) block.add(unlike(linear_codes("key", points, 1, [](Point p) { return p.key; })));
+  return block.finish(settings.effort);
 }
 
 /// Bytes as text of 64 characters. Source: RFC 4648, section 4.

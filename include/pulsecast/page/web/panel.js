@@ -1,14 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
 
-#include <string_view>
-
-namespace pulsecast::page {
-
-/// What a page is made to run last: the panel, the marks in the view, the timeline, hands and keys, and what comes while a run goes on.
-/// Texts of a survey become text nodes, never HTML.
-inline constexpr std::string_view page_panel_script = R"js(
 // ----------------------------------------------------------------------------------------------------------- the panel
 
 const element = (tag, className, text) => {
@@ -472,6 +464,3 @@ begin().catch(error => {
   byId('wait').hidden = false
   byId('wait').textContent = String(error.message ?? error)
 })
-)js";
-
-}  // namespace pulsecast::page

@@ -1,13 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
 
-#include <string_view>
-
-namespace pulsecast::page {
-
-/// What a page is made to run after the view: the attributes of points, how they are told, coloured and counted.
-inline constexpr std::string_view page_attributes_script = R"js(
 // ------------------------------------------------------------------------------------------------------ the attributes
 
 const survey = JSON.parse(byId('survey').textContent)
@@ -175,6 +168,3 @@ class Colouring {
     for (const end of this.shown) c.fillRect(Math.round((end - this.ends[0]) / (this.ends[1] - this.ends[0]) * (width - 2)), 0, 2, height)
   }
 }
-)js";
-
-}  // namespace pulsecast::page

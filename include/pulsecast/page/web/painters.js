@@ -1,79 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
 
-#include <string_view>
-
-namespace pulsecast::page {
-
-/// What of a page draws points: by WebGL 2 where there is a graphics card, else by hand, which is many times faster than a card that is
-/// only imitated.
-inline constexpr std::string_view page_painters_script = R"js(
 // -------------------------------------------------------------------------------------------------------- two painters
 
-const pointsVertex = `#version 300 es
-layout(location = 0) in vec3 place;
-layout(location = 1) in float time;
-layout(location = 2) in vec4 colour;
-uniform mat4 camera;
-uniform vec3 size;   // px at a depth of 1 m, least, most
-uniform vec2 now;    // what is later is not there yet, and what is as much earlier is no longer new [s]
-uniform vec3 fresh;  // colour of what is new
-flat out vec3 tint;
-void main() {
-  gl_Position = camera * vec4(place, 1.0);
-  if (time > now.x || colour.a == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // out of sight
-  gl_PointSize = clamp(size.x / gl_Position.w, size.y, size.z);
-  tint = mix(colour.rgb, fresh, now.y > 0.0 ? 0.85 * clamp(1.0 - (now.x - time) / now.y, 0.0, 1.0) : 0.0);
-}`
+const pointsVertex = `@points.vert.glsl@`
 
-const pointsFragment = `#version 300 es
-precision mediump float;
-flat in vec3 tint;
-out vec4 colour;
-void main() { colour = vec4(tint, 1.0); }`
+const pointsFragment = `@points.frag.glsl@`
 
-const lineVertex = `#version 300 es
-layout(location = 0) in vec3 place;
-uniform mat4 camera;
-uniform vec3 line;
-flat out vec3 tint;
-void main() {
-  gl_Position = camera * vec4(place, 1.0);
-  tint = line;
-}`
+const lineVertex = `@line.vert.glsl@`
 
-const screenVertex = `#version 300 es
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`
+const screenVertex = `@screen.vert.glsl@`
 
 // Darker where it lies behind what is around. Source: Boucheny 2009, eye-dome lighting; amounts by eye.
-const screenFragment = `#version 300 es
-precision highp float;
-uniform sampler2D colours;
-uniform highp sampler2D depths;
-uniform vec4 lens;  // near, far, reach [px], strength
-uniform vec3 above, below;
-uniform float height;
-out vec4 colour;
-float depth(ivec2 at) {
-  float d = texelFetch(depths, clamp(at, ivec2(0), textureSize(depths, 0) - 1), 0).r;
-  return d == 1.0 ? 1e3 : log2(lens.x * lens.y / (lens.y - d * (lens.y - lens.x)));
-}
-void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  float here = depth(at);
-  if (here == 1e3) {
-    colour = vec4(mix(below, above, gl_FragCoord.y / height), 1.0);
-    return;
-  }
-  int r = int(lens.z);
-  float behind = 0.0;
-  behind += clamp(here - depth(at + ivec2(r, 0)), 0.0, 0.02);
-  behind += clamp(here - depth(at - ivec2(r, 0)), 0.0, 0.02);
-  behind += clamp(here - depth(at + ivec2(0, r)), 0.0, 0.02);
-  behind += clamp(here - depth(at - ivec2(0, r)), 0.0, 0.02);
-  colour = vec4(texelFetch(colours, at, 0).rgb * exp(-lens.w * behind), 1.0);
-}`
+const screenFragment = `@screen.frag.glsl@`
 
 /// Draws by WebGL 2.
 class GlPainter {
@@ -359,6 +298,3 @@ const mixed = (tint, [r, g, b], share) => {
   const mix = (from, to) => from + (to - from) * share & 255
   return (0xff000000 | mix(tint >>> 16 & 255, b) << 16 | mix(tint >>> 8 & 255, g) << 8 | mix(tint & 255, r)) >>> 0
 }
-)js";
-
-}  // namespace pulsecast::page
