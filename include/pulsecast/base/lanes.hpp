@@ -61,7 +61,12 @@ template <class Real>
     std::uint64_t four;
     std::memcpy(&four, &first, sizeof four);
     const Halves halves = Halves(Pair{four, 0});
-    return __builtin_convertvector(Words(__builtin_shufflevector(halves, Halves{}, 0, 8, 1, 9, 2, 10, 3, 11)), Pack<Real>);
+#if defined(__clang__)
+    const Halves interleaved = __builtin_shufflevector(halves, Halves{}, 0, 8, 1, 9, 2, 10, 3, 11);
+#else  // g++ 11 has no other
+    const Halves interleaved = __builtin_shuffle(halves, Halves{}, Halves{0, 8, 1, 9, 2, 10, 3, 11});
+#endif
+    return __builtin_convertvector(Words(interleaved), Pack<Real>);
   } else {
     static_assert(pack_count<Real> == 2);
     const std::uint16_t* two = &first;

@@ -41,8 +41,10 @@ namespace pulsecast::io {
 
 /// A geometry that can be kept in a cache. All it holds is named, in the same order for writing and reading, by one function; all its
 /// arrays are `SharedArray`, so that they can stay in the file:
+///
 ///     explicit G(DeserializeTag) {}
 ///     template <class Archive> void archive(Archive& a) { a(member1_, member2_, ...); }
+///
 /// The members may be `SharedArray` arrays, plain values without pointers, strings, vectors, and objects that have an `archive` themselves.
 /// Not required: `bool is_consistent() const`, which is asked after the filling whether every number in the arrays can be followed without
 /// leaving them.
