@@ -18,8 +18,11 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/accel/kd_tree.hpp>
+#include <pulsecast/accel/linear.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/height_field.hpp>
 
 #include "report.hpp"
 #include "scenes.hpp"
@@ -42,7 +45,7 @@ struct Entrant {
 template <class Shape>
 void check(const std::string& name, const Shape& shape, const MeshData& mesh) {
   const Bundles some = incoherent_rays(bounds_of(mesh), 32);
-  if (answers(shape, some) == answers(TriangleMesh<Linear>(mesh), some)) return;
+  if (answers(shape, some) == answers(TriangleMesh<Linear<>>(mesh), some)) return;
   std::printf("%s DIFFERS from Linear\n", name.c_str()), std::exit(1);
 }
 
@@ -90,9 +93,9 @@ void add_embree(std::vector<Entrant>& all, const std::string& name, const MeshDa
 
 void measure(Report& report, const std::string& scene, const MeshData& mesh) {
   std::vector<Entrant> all;
-  add<TriangleMesh<Bvh, float>>(all, scene + "/Bvh<float>", mesh);
-  add<TriangleMesh<Bvh, double>>(all, scene + "/Bvh<double>", mesh);
-  add<TriangleMesh<KdTree, float>>(all, scene + "/KdTree<float>", mesh);
+  add<TriangleMesh<Bvh<float>>>(all, scene + "/Bvh<float>", mesh);
+  add<TriangleMesh<Bvh<double>>>(all, scene + "/Bvh<double>", mesh);
+  add<TriangleMesh<KdTree<float>>>(all, scene + "/KdTree<float>", mesh);
 #ifdef PULSECAST_BENCH_EMBREE
   add_embree(all, scene + "/Embree", mesh, RTC_BUILD_QUALITY_MEDIUM);
   add_embree(all, scene + "/Embree high", mesh, RTC_BUILD_QUALITY_HIGH);

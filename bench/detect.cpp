@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/detector/analytic_waveform.hpp>
+#include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "report.hpp"

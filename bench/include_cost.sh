@@ -2,26 +2,36 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# What the library costs its users in compile time: processor seconds, the median of five runs. Usage: include_cost.sh [COMPILER...]
+# What the library costs its users in compile time: processor seconds, the least of five runs; the ratio to what a plain set of standard
+# headers takes, which hardly depends on the machine; and the most memory. Usage: include_cost.sh [COMPILER...]. Needs GNU time (Debian
+# package: time).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-echo '#include <pulsecast/pulsecast.hpp>' > "$folder/everything.cpp"
+printf '#include <%s>\n' algorithm array cmath cstdint functional memory optional span string thread vector > "$folder/standard.cpp"
 echo '#include <pulsecast/concepts.hpp>' > "$folder/contract.cpp"
-TIMEFORMAT='%U %S'
+echo '#include <pulsecast/pulsecast.hpp>' > "$folder/pulsecast.cpp"
+find include/pulsecast -name '*.hpp' ! -path '*/adapters/*' | sort | sed 's|^include/\(.*\)|#include <\1>|' > "$folder/core.cpp"
 
-# row WHAT FLAGS...: compiles with FLAGS five times.
+# row WHAT FLAGS...: compiles with FLAGS five times. What the first row takes is the unit of the ratios.
 row() {
-  seconds=$(for _ in 1 2 3 4 5; do { time "$compiler" -std=c++20 -Iinclude "${@:2}"; } 2>&1; done |
-            awk '{ printf "%.2f\n", $1 + $2 }' | sort -n | sed -n 3p)
-  echo "| $compiler | $1 | $seconds |"
+  for _ in 1 2 3 4 5; do
+    /usr/bin/time -f '%U %M' -o "$folder/cost" "$compiler" -std=c++20 -Iinclude "${@:2}"
+    cat "$folder/cost"
+  done | sort -n | awk -v unit="$unit" -v row="| $compiler | $1 |" '
+    NR == 1 { printf "%s %.2f | %.1f | %.0f |\n", row, $1, unit ? $1 / unit : 1, $2 / 1024 }'
 }
 
-echo '| compiler | what | seconds |'
-echo '|---|---|---|'
+echo '| compiler | what | seconds | ratio | MB |'
+echo '|---|---|---|---|---|'
 for compiler in "${@:-g++}"; do
+  unit=
+  row 'include the standard headers' -fsyntax-only "$folder/standard.cpp" | tee "$folder/unit"
+  unit=$(awk -F '|' '{ print $4 }' "$folder/unit")
   row 'include concepts.hpp' -fsyntax-only "$folder/contract.cpp"
-  row 'include pulsecast.hpp' -fsyntax-only "$folder/everything.cpp"
+  row 'include pulsecast.hpp' -fsyntax-only "$folder/pulsecast.cpp"
+  row 'include every header of the core' -fsyntax-only "$folder/core.cpp"
   row 'compile examples/embed.cpp with -O2' -O2 -c examples/embed.cpp -o "$folder/embed.o"
+  row 'compile bench/obj_to_las.cpp with -O2' -O2 -DTINYOBJLOADER_USE_DOUBLE -c bench/obj_to_las.cpp -o "$folder/obj_to_las.o"
 done

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/height_field.hpp>
 
 #include "scenes.hpp"
 #include "surveys.hpp"

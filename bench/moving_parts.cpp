@@ -18,6 +18,8 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/motion.hpp>
+#include <pulsecast/scene/moving_scene.hpp>
 
 #include "../examples/tree.hpp"
 

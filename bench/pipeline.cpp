@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/accel/linear.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/pulsecast.hpp>
 
@@ -123,7 +124,7 @@ void measure(Report& report, const std::string& name, const Source& source, cons
   const Noting noting{scene, known, bundles};
   const double sum = go(survey_of(noting, FullWaveform{}));
   const MeshData flat = flattened(scene);
-  if (const Bundles some = bundles.sample(16); answers(Mesh(flat), some) != answers(TriangleMesh<Linear>(flat), some))
+  if (const Bundles some = bundles.sample(16); answers(Mesh(flat), some) != answers(TriangleMesh<Linear<>>(flat), some))
     std::printf("%s DIFFERS from Linear\n", prefix.c_str()), std::exit(1);
   if (go(survey_of(known, FullWaveform{})) != sum) std::printf("%s gives other echoes by its known hits\n", prefix.c_str()), std::exit(1);
 

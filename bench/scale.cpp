@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/accel/linear.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "report.hpp"
@@ -68,7 +69,7 @@ void grow_triangles(Report& report) {
     if (std::exchange(first, false)) report.heading("hills from the air, beams of 19");
     MeshData data = hills(static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(number) / 2)))).mesh();
     const double triangles = static_cast<double>(data.triangles.size());
-    const auto expected = answers(TriangleMesh<Linear>(data), some);
+    const auto expected = answers(TriangleMesh<Linear<>>(data), some);
     const double start = process_seconds();
     const Mesh mesh(std::move(data));
     const double built = process_seconds() - start;
@@ -153,7 +154,7 @@ void grow_subrays(Report& report) {
       const std::string name = named("subrays/" + scene, number);
       if (!report.wanted(name)) continue;
       const Bundles all = beams(aims, number, divergence), some = all.sample(8);
-      if (answers(mesh, some) != answers(TriangleMesh<Linear>(data), some)) fail(name);
+      if (answers(mesh, some) != answers(TriangleMesh<Linear<>>(data), some)) fail(name);
       const auto times = report.by_turns({[&] { keep(sum_of_ranges(mesh, all)); }});
       const double each = 1e9 * median(times[0]) / static_cast<double>(aims.size());
       report.row(name, {{"ns/beam", each}, {"ns/subray", each / static_cast<double>(number)}});

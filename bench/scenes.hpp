@@ -11,6 +11,8 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/scene/variation.hpp>
 
 #include "../examples/street.hpp"
 #include "../examples/tree.hpp"

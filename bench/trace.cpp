@@ -20,8 +20,11 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/accel/kd_tree.hpp>
+#include <pulsecast/accel/linear.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/height_field.hpp>
 
 #include "report.hpp"
 #include "scenes.hpp"
@@ -114,8 +117,8 @@ void print_agreement(const Report& report, const Group& group, const EmbreeSubje
 class Races {
  public:
   Races(Report& report, const Course& course) : report_(report), course_(course), groups_(groups(course)) {
-    add<Bvh, float>("Bvh<float>"), add<Bvh, double>("Bvh<double>");
-    add<KdTree, float>("KdTree<float>"), add<KdTree, double>("KdTree<double>");
+    add<Bvh<float>>("Bvh<float>"), add<Bvh<double>>("Bvh<double>");
+    add<KdTree<float>>("KdTree<float>"), add<KdTree<double>>("KdTree<double>");
     if (course.field && wanted("HeightField")) subjects_.push_back(subject("HeightField", course.field()));
 #ifdef PULSECAST_BENCH_EMBREE
     for (const auto& [name, quality, robust] :
@@ -135,13 +138,13 @@ class Races {
     return std::ranges::any_of(groups_, [&](const Group& group) { return report_.wanted(group.name + "/" + subject); });
   }
 
-  template <template <class> class Index, class Real>
+  template <class Index>
   void add(const std::string& name) {
-    if (wanted(name)) subjects_.push_back(subject(name, std::make_shared<const TriangleMesh<Index, Real>>(course_.mesh)));
+    if (wanted(name)) subjects_.push_back(subject(name, std::make_shared<const TriangleMesh<Index>>(course_.mesh)));
   }
 
   void check(const Group& group, const Subject& subject, std::vector<Answer>& expected, const Bundles& some) {
-    if (!linear_) linear_ = std::make_unique<TriangleMesh<Linear>>(course_.mesh);
+    if (!linear_) linear_ = std::make_unique<TriangleMesh<Linear<>>>(course_.mesh);
     if (expected.empty()) expected = bench::answers(*linear_, some);
     auto found = subject.answers(some);
     if (subject.name == "HeightField")  // its triangles have other numbers
@@ -195,7 +198,7 @@ class Races {
   const Course& course_;
   std::vector<Group> groups_;
   std::vector<Subject> subjects_;
-  std::unique_ptr<TriangleMesh<Linear>> linear_;
+  std::unique_ptr<TriangleMesh<Linear<>>> linear_;
 #ifdef PULSECAST_BENCH_EMBREE
   std::vector<EmbreeSubject> embree_;
 #endif

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/voxel_data.hpp>
 #include <pulsecast/scene/voxel_grid.hpp>
 
 using namespace pulsecast;

@@ -13,6 +13,7 @@
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/platform/block_flight.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"

@@ -12,6 +12,7 @@
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"

@@ -11,6 +11,7 @@
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/platform/multicopter.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"

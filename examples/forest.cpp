@@ -20,7 +20,12 @@
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/xyz.hpp>
+#include <pulsecast/platform/block_flight.hpp>
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/scene/leaf_angles.hpp>
+#include <pulsecast/scene/voxel_data.hpp>
+#include <pulsecast/scene/voxel_grid.hpp>
 
 #include "command_line.hpp"
 #include "summary.hpp"

@@ -10,6 +10,10 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/deflector/fiber_array.hpp>
+#include <pulsecast/deflector/palmer_mirror.hpp>
+#include <pulsecast/deflector/pattern_table.hpp>
+#include <pulsecast/deflector/risley_prisms.hpp>
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/pulsecast.hpp>
 

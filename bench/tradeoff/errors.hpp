@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/platform/heading.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "bootstrap.hpp"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/height_field.hpp>
 
 #include "../../examples/wood.hpp"
 #include "../report.hpp"
@@ -57,8 +58,8 @@ inline void measure_precision(bench::Report& report) {
   for (const auto& [name, place] :
        {std::pair{"about the origin", Vec3{}}, std::pair{"at UTM coordinates", Vec3{512'000, 5'403'000, 300}}}) {
     const MeshData data = ten_kilometres(place);
-    const TriangleMesh<Bvh, float> single(data);
-    const TriangleMesh<Bvh, double> exact(data);
+    const TriangleMesh<Bvh<float>> single(data);
+    const TriangleMesh<Bvh<double>> exact(data);
     const bench::Bundles beams = beams_across(single.bounds(), 20'000);
     const auto a = bench::answers(single, beams), b = bench::answers(exact, beams);
     std::vector<double> differences;

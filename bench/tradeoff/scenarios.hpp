@@ -14,6 +14,8 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/scene/leaf_angles.hpp>
 
 #include "../../examples/street.hpp"
 #include "../../examples/wood.hpp"

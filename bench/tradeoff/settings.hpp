@@ -14,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include <pulsecast/detector/analytic_waveform.hpp>
+#include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "../report.hpp"

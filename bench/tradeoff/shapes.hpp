@@ -14,6 +14,8 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/voxel_data.hpp>
+#include <pulsecast/scene/voxel_grid.hpp>
 
 /// The same object by other means: in double precision, with fewer triangles, of voxels.
 namespace tradeoff {
@@ -21,7 +23,7 @@ namespace tradeoff {
 using namespace pulsecast;
 
 using Mesh = TriangleMesh<>;
-using ExactMesh = TriangleMesh<Bvh, double>;
+using ExactMesh = TriangleMesh<Bvh<double>>;
 using Solid = VoxelGrid<OpaqueVoxels>;
 using Foliage = VoxelGrid<TransmissiveVoxels>;
 

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Writes a header and all that it includes of the library as one file:
-# cmake -DINCLUDE=include -DHEADER=pulsecast/pulsecast.hpp -DOUT=pulsecast.hpp -P single_header.cmake
+# Writes headers, given as a list of their paths, and all that they include of the library as one file:
+# cmake -DINCLUDE=include "-DHEADERS=pulsecast/pulsecast.hpp;pulsecast/scene/voxel_grid.hpp" -DOUT=pulsecast.hpp -P single_header.cmake
 # INCLUDE is a folder, or a list of folders of which the first that has a header gives it.
 cmake_minimum_required(VERSION 3.25)
 set(written)
@@ -30,11 +30,13 @@ function(add header)
   set(written ${written} PARENT_SCOPE)
 endfunction()
 
-add(${HEADER})
+foreach(header IN LISTS HEADERS)
+  add(${header})
+endforeach()
 file(WRITE ${OUT} "// SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// The whole of ${HEADER} in one file, for those who copy rather than install. It needs GLM, C++20 and threads.
+// The whole core in one file, for those who copy rather than install. It needs GLM, C++20 and threads.
 // Adapters need an installation: no other header of the library goes with this one.
 ${text}")

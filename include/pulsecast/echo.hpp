@@ -80,13 +80,13 @@ struct EchoBatch {
   double sample_interval = 0;            ///< between two samples of a waveform [s]
   std::span<const SubrayHit> subrays{};  ///< all of each shot, in the order of the footprint; empty unless it is `WithSubrayRecord`
 
-  [[nodiscard]] std::span<const Echo> echoes_of(const Shot& s) const noexcept { return echoes.subspan(s.first_echo, s.echoes); }
-  [[nodiscard]] std::span<const float> waveform_of(const Shot& s) const noexcept { return samples.subspan(s.first_sample, s.samples); }
+  [[nodiscard]] std::span<const Echo> echoes_of(const Shot& s) const noexcept { return {echoes.data() + s.first_echo, s.echoes}; }
+  [[nodiscard]] std::span<const float> waveform_of(const Shot& s) const noexcept { return {samples.data() + s.first_sample, s.samples}; }
 
   /// Of the shot that stands at this place in `shots`.
   [[nodiscard]] std::span<const SubrayHit> subrays_of(std::size_t shot) const noexcept {
     const std::size_t each = subrays.size() / shots.size();
-    return subrays.subspan(shot * each, each);
+    return {subrays.data() + shot * each, each};
   }
 };
 

@@ -30,8 +30,6 @@ struct ShrunkBvh : Bvh<float> {
     return all;
   }
 };
-template <class>
-using Shrunk = ShrunkBvh;
 
 /// A tree that passes over every seventh primitive.
 struct HastyBvh : Bvh<float> {
@@ -46,15 +44,13 @@ struct HastyBvh : Bvh<float> {
         nearest);
   }
 };
-template <class>
-using Hasty = HastyBvh;
 
 Comparison all_trees(const MeshData& data, std::uint64_t seed, std::size_t times) {
-  const TriangleMesh<Linear> all(data);
-  const TriangleMesh<Bvh> bvh(data);
-  const TriangleMesh<Bvh, double> exact_bvh(data);
-  const TriangleMesh<KdTree> kd_tree(data);
-  const TriangleMesh<KdTree, double> exact_kd_tree(data);
+  const TriangleMesh<Linear<>> all(data);
+  const TriangleMesh<Bvh<>> bvh(data);
+  const TriangleMesh<Bvh<double>> exact_bvh(data);
+  const TriangleMesh<KdTree<>> kd_tree(data);
+  const TriangleMesh<KdTree<double>> exact_kd_tree(data);
   Generator random(seed);
   Comparison result;
   for (std::size_t time = 0; time < times; ++time) {
@@ -112,9 +108,9 @@ TEST_CASE("all accelerators find the same triangle at the same range, bit for bi
 TEST_CASE("the comparison notices a tree of boxes that are a thousandth too small, and one that skips primitives") {
   Generator random(21);
   const MeshData data = doubled(soup(random, 150, 10));
-  const TriangleMesh<Linear> all(data);
-  const TriangleMesh<Shrunk> shrunk(data);
-  const TriangleMesh<Hasty> hasty(data);
+  const TriangleMesh<Linear<>> all(data);
+  const TriangleMesh<ShrunkBvh> shrunk(data);
+  const TriangleMesh<HastyBvh> hasty(data);
   Comparison of_shrunk, of_hasty;
   for (int time = 0; time < 300; ++time) {
     const RayBundle rays = bundle(random, data, all.bounds(), 19);

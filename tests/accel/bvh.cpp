@@ -12,6 +12,8 @@
 using namespace pulsecast;
 using namespace pulsecast::support;
 
+static_assert(Accelerator<Bvh<double>>);
+
 static_assert(sizeof(BoundingBox<float>) == 24);
 
 TEST_CASE_TEMPLATE("every primitive stands in exactly one leaf of a Bvh, beside three others at most", Real, float, double) {

@@ -12,6 +12,8 @@
 using namespace pulsecast;
 using namespace pulsecast::support;
 
+static_assert(Accelerator<KdTree<double>>);
+
 TEST_CASE_TEMPLATE("every primitive stands in a leaf of a KdTree, and in four on average at most", Real, float, double) {
   Generator random(50);
   std::vector<Box> boxes;

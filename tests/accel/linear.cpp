@@ -11,6 +11,8 @@
 using namespace pulsecast;
 using namespace pulsecast::support;
 
+static_assert(Accelerator<Linear<double>>);
+
 TEST_CASE_TEMPLATE("testing all offers every primitive once, but never an empty box", Real, float, double) {
   Generator random(40);
   std::vector<Box> boxes;

@@ -81,10 +81,10 @@ TEST_CASE("no ray from inside a closed mesh gets out, at the origin or at map co
   const std::vector<Closed> meshes = closed_meshes();
   const std::uint64_t each = rays_asked() / (4 * meshes.size()) + 1;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    check(TriangleMesh<Bvh>(meshes[i].data), meshes[i], each, 310 + i);
-    check(TriangleMesh<Bvh, double>(meshes[i].data), meshes[i], each, 320 + i);
-    check(TriangleMesh<KdTree>(meshes[i].data), meshes[i], each, 330 + i);
-    check(TriangleMesh<KdTree, double>(meshes[i].data), meshes[i], each, 340 + i);
+    check(TriangleMesh<Bvh<>>(meshes[i].data), meshes[i], each, 310 + i);
+    check(TriangleMesh<Bvh<double>>(meshes[i].data), meshes[i], each, 320 + i);
+    check(TriangleMesh<KdTree<>>(meshes[i].data), meshes[i], each, 330 + i);
+    check(TriangleMesh<KdTree<double>>(meshes[i].data), meshes[i], each, 340 + i);
   }
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("the count of lost rays notices one missing triangle, and edges that d
   Closed mesh{"sphere", icosphere(3), {}, 0.5};
   Generator random(35);
   const auto lost = [&](const MeshData& data) {
-    const TriangleMesh<Bvh> shape(data);
+    const TriangleMesh<Bvh<>> shape(data);
     std::uint64_t count = 0;
     for (int time = 0; time < 300; ++time) count += escaped(shape, inside_out(random, mesh, 64));
     return count;

@@ -17,6 +17,8 @@
 
 using namespace pulsecast;
 
+static_assert(Detector<FullWaveform<MomentWidth>>);
+
 namespace {
 
 const Laser laser{.pulse_length = 4e-9};

@@ -31,11 +31,11 @@ namespace {
 
 using Real = long double;
 
-const std::string scale = "divergence";
+const std::string quantity = "divergence";
 constexpr double distance = 1;  // of the wall: so near that the pulse does not show how far apart its subrays are met [m]
 
 /// A wall of many triangles, so that there is a tree to go through.
-template <template <class> class Index, class Number>
+template <class Index>
 auto wall() {
   MeshData data;
   constexpr int n = 20;
@@ -46,7 +46,7 @@ auto wall() {
       const std::uint32_t a = i * (n + 1) + k, b = a + n + 1;
       data.triangles.push_back({a, b, b + 1}), data.triangles.push_back({a, b + 1, a + 1});
     }
-  using Mesh = TriangleMesh<Index, Number>;
+  using Mesh = TriangleMesh<Index>;
   return Scene<Mesh>({{std::make_shared<const Mesh>(data), material_table({{.reflectance = 1}}), {}, 1}});
 }
 
@@ -71,11 +71,11 @@ struct Expected {
 }  // namespace
 
 TEST_CASE("divergences before a wall") {
-  const auto linear = wall<Linear, double>();
-  const auto bvh = wall<Bvh, float>();
-  const auto exact_bvh = wall<Bvh, double>();
-  const auto kd_tree = wall<KdTree, float>();
-  const auto exact_kd_tree = wall<KdTree, double>();
+  const auto linear = wall<Linear<double>>();
+  const auto bvh = wall<Bvh<float>>();
+  const auto exact_bvh = wall<Bvh<double>>();
+  const auto kd_tree = wall<KdTree<float>>();
+  const auto exact_kd_tree = wall<KdTree<double>>();
   const SunflowerFootprint footprint{279};
   struct Case {
     const char* name;
@@ -107,8 +107,8 @@ TEST_CASE("divergences before a wall") {
                       : 1;
     });
     const std::string what = name + std::string(", wall at 1 m, 279 subrays, all detectors and widths: ");
-    row(scale, what + "largest error of the range [m]", 0, worst, 1e-9);
-    row(scale, what + "echoes that other accelerators give otherwise, in float and double", 0, differ, 0);
+    row(quantity, what + "largest error of the range [m]", 0, worst, 1e-9);
+    row(quantity, what + "echoes that other accelerators give otherwise, in float and double", 0, differ, 0);
   }
 }
 
@@ -120,5 +120,5 @@ TEST_CASE("divergences that cannot be") {
                                          {"0 by 1 mrad", {0, 1e-3}},
                                          {"1e-9 rad by 10 mrad", {1e-9, 1e-2}},
                                          {"0.5 rad by 5e-324 rad", {0.5, 5e-324}}})
-    refused(scale, name, [&divergence = divergence] { Scanner{.laser = {.divergence = divergence}}.validate(); });
+    refused(quantity, name, [&divergence = divergence] { Scanner{.laser = {.divergence = divergence}}.validate(); });
 }

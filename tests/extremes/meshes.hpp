@@ -80,11 +80,11 @@ struct Meshes {
     support::compare(linear, exact_kd_tree, "KdTree<double>", rays, result);
   }
 
-  TriangleMesh<Linear> linear;
-  TriangleMesh<Bvh> bvh;
-  TriangleMesh<Bvh, double> exact_bvh;
-  TriangleMesh<KdTree> kd_tree;
-  TriangleMesh<KdTree, double> exact_kd_tree;
+  TriangleMesh<Linear<>> linear;
+  TriangleMesh<Bvh<>> bvh;
+  TriangleMesh<Bvh<double>> exact_bvh;
+  TriangleMesh<KdTree<>> kd_tree;
+  TriangleMesh<KdTree<double>> exact_kd_tree;
 };
 
 /// Checks that an attempt is refused for the right reason, which the message says, and prints it as a row of the table.

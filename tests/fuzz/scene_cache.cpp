@@ -36,7 +36,7 @@ using namespace pulsecast::io;
 
 namespace {
 
-using Tested = Scene<TriangleMesh<KdTree>, TriangleMesh<Linear, double>>;
+using Tested = Scene<TriangleMesh<KdTree<>>, TriangleMesh<Linear<double>>>;
 constexpr Fingerprint key{};
 
 std::string saved(const Tested& scene) {
@@ -51,8 +51,8 @@ std::array<std::string, 2> saved_scenes() {
       material_table({{.name = "bark", .spectrum = spectrum}, {.name = "moss", .ground = true, .spectrum = spectrum}});
   support::Generator random(1);
   MeshData few{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}}, {{0, 1, 2}, {1, 2, 3}}, {0, 1}};
-  const auto small = std::make_shared<const TriangleMesh<Linear, double>>(few);
-  const auto tree = std::make_shared<const TriangleMesh<KdTree>>(support::soup(random, 30, 1));
+  const auto small = std::make_shared<const TriangleMesh<Linear<double>>>(few);
+  const auto tree = std::make_shared<const TriangleMesh<KdTree<>>>(support::soup(random, 30, 1));
   return {saved(Tested({{.geometry = small, .materials = materials, .name = "one"},
                         {.geometry = small, .materials = materials, .placement = {.translation = {0, 0, 1}}}})),
           saved(Tested({{.geometry = tree}, {.geometry = tree, .placement = {.scale = 2}, .object = 7}}))};

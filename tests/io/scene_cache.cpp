@@ -42,14 +42,14 @@ struct Secretive {
   Box box;
 };
 
-static_assert(Archived<TriangleMesh<>> && Archived<TriangleMesh<KdTree>> && Archived<TriangleMesh<Linear, double>>);
+static_assert(Archived<TriangleMesh<>> && Archived<TriangleMesh<KdTree<>>> && Archived<TriangleMesh<Linear<double>>>);
 static_assert(Geometry<Secretive> && !Archived<Secretive>);
-static_assert(CacheableScene<Scene<TriangleMesh<>, TriangleMesh<Linear>>>);
+static_assert(CacheableScene<Scene<TriangleMesh<>, TriangleMesh<Linear<>>>>);
 static_assert(!CacheableScene<Scene<TriangleMesh<>, Secretive>>);
 static_assert(CacheableScene<MovingScene<TriangleMesh<>>>);
 
-using Mixed = Scene<TriangleMesh<>, TriangleMesh<KdTree>, TriangleMesh<Linear>, TriangleMesh<KdTree, double>>;
-using Small = Scene<TriangleMesh<KdTree>, TriangleMesh<Linear>>;
+using Mixed = Scene<TriangleMesh<>, TriangleMesh<KdTree<>>, TriangleMesh<Linear<>>, TriangleMesh<KdTree<double>>>;
+using Small = Scene<TriangleMesh<KdTree<>>, TriangleMesh<Linear<>>>;
 
 const TemporaryFolder folder;
 const std::filesystem::path path = folder / "scene.cache";
@@ -93,12 +93,12 @@ S some_scene() {
   return S(std::move(parts));
 }
 
-Small small_scene() { return some_scene<Small, TriangleMesh<KdTree>, TriangleMesh<Linear>>(); }
+Small small_scene() { return some_scene<Small, TriangleMesh<KdTree<>>, TriangleMesh<Linear<>>>(); }
 
 /// A file of a few hundred bytes.
 std::vector<Small::Part> smallest_parts() {
   const MeshData mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}}, {{0, 1, 2}, {1, 2, 3}}, {}};
-  return {{.geometry = shared<TriangleMesh<KdTree>>(mesh), .name = "triangle"}};
+  return {{.geometry = shared<TriangleMesh<KdTree<>>>(mesh), .name = "triangle"}};
 }
 Small smallest_scene() { return Small(smallest_parts()); }
 
@@ -147,8 +147,8 @@ void seal(std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a scene from its cache is met in every bit as the one that was saved", Shape, TriangleMesh<>, TriangleMesh<Bvh, double>,
-                   TriangleMesh<KdTree>, TriangleMesh<KdTree, double>, TriangleMesh<Linear>) {
+TEST_CASE_TEMPLATE("a scene from its cache is met in every bit as the one that was saved", Shape, TriangleMesh<>, TriangleMesh<Bvh<double>>,
+                   TriangleMesh<KdTree<>>, TriangleMesh<KdTree<double>>, TriangleMesh<Linear<>>) {
   using S = Scene<Shape>;
   const S scene = some_scene<S, Shape, Shape>();
   save_scene(path, scene, key);
@@ -164,7 +164,7 @@ TEST_CASE_TEMPLATE("a scene from its cache is met in every bit as the one that w
 }
 
 TEST_CASE("every word about a part comes back, for several shapes in one scene") {
-  const Mixed scene = some_scene<Mixed, TriangleMesh<>, TriangleMesh<KdTree, double>>();
+  const Mixed scene = some_scene<Mixed, TriangleMesh<>, TriangleMesh<KdTree<double>>>();
   save_scene(path, scene, key);
   const OpenedScene<Mixed> opened = open_scene<Mixed>(path, key);
   REQUIRE(opened.scene);
@@ -233,9 +233,9 @@ TEST_CASE("height fields and grids of voxels come back, too") {
 }
 
 TEST_CASE("a scene that moves is made from its parts and its time") {
-  using S = MovingScene<TriangleMesh<KdTree>>;
+  using S = MovingScene<TriangleMesh<KdTree<>>>;
   const auto parts = [] {
-    return std::vector<S::Part>{{.geometry = shared<TriangleMesh<KdTree>>(some_mesh(1, 10)), .materials = some_materials()}};
+    return std::vector<S::Part>{{.geometry = shared<TriangleMesh<KdTree<>>>(some_mesh(1, 10)), .materials = some_materials()}};
   };
   const std::filesystem::path cache = folder / "moving.cache";
   CHECK_FALSE(cached_scene<S>(cache, {}, parts, MovingIndexSettings{.to = 10}).from_cache);
@@ -271,7 +271,7 @@ TEST_CASE("what parts share is kept once, and shared again") {
   CHECK((*parts[0].materials)[0].spectrum == (*parts[0].materials)[2].spectrum);
   CHECK((*parts[0].materials)[0].spectrum != (*parts[5].materials)[0].spectrum);
 
-  const auto one = shared<TriangleMesh<Linear>>(some_mesh(3, 2000));
+  const auto one = shared<TriangleMesh<Linear<>>>(some_mesh(3, 2000));
   std::vector<Small::Part> copies(100, {.geometry = one, .materials = some_materials()});
   save_scene(folder / "one.cache", Small({copies[0]}), key);
   save_scene(folder / "hundred.cache", Small(copies), key);
@@ -341,8 +341,8 @@ TEST_CASE("a cache of another version, other shapes or other sources is not take
   CHECK(contains(with([](io::detail::CacheHeader& h) { ++h.format; }), "another version"));
   CHECK(contains(with([](io::detail::CacheHeader& h) { h.order = 0x04030201; }), "another version"));
   CHECK(contains(with([](io::detail::CacheHeader& h) { h.program.low ^= 1; }), "another version"));
-  CHECK(contains(refusal<Scene<TriangleMesh<KdTree>>>(bytes), "other shapes"));
-  CHECK(contains(refusal<Scene<TriangleMesh<Linear>, TriangleMesh<KdTree>>>(bytes), "other shapes"));
+  CHECK(contains(refusal<Scene<TriangleMesh<KdTree<>>>>(bytes), "other shapes"));
+  CHECK(contains(refusal<Scene<TriangleMesh<Linear<>>, TriangleMesh<KdTree<>>>>(bytes), "other shapes"));
   CHECK(contains(refusal(bytes, {1, 3}), "has changed"));
   CHECK(contains(open_scene<Small>(folder / "none", key).reason, "is not there"));
   CHECK(contains(open_scene<Small>(folder.path(), key).reason, "is a directory"));

@@ -36,7 +36,7 @@ endif()
 
 file(STRINGS ${program} header REGEX "^#include <pulsecast/")
 string(REGEX REPLACE ".*<(.*)>.*" "\\1" header "${header}")
-execute_process(COMMAND ${CMAKE_COMMAND} "-DINCLUDE=${SOURCE}/include;${BUILD}/include" -DHEADER=${header} -DOUT=${FOLDER}/single/${header}
+execute_process(COMMAND ${CMAKE_COMMAND} "-DINCLUDE=${SOURCE}/include;${BUILD}/include" -DHEADERS=${header} -DOUT=${FOLDER}/single/${header}
                         -P ${SOURCE}/docs/packaging/single_header.cmake COMMAND_ERROR_IS_FATAL ANY)
 page_from(${FOLDER}/single)
 if(NOT html STREQUAL copied)

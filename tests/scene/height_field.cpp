@@ -41,7 +41,7 @@ Raster slope() {
 }
 
 /// The raster's mesh, with its triangles numbered as the height field's are.
-template <template <class> class Index>
+template <class Index>
 class RasterMesh {
  public:
   explicit RasterMesh(const Raster& raster) : data_(raster.mesh()), mesh_(data_) {
@@ -104,7 +104,7 @@ std::string refusal(const Raster& raster) {
   }
 }
 
-template <template <class> class Index>
+template <class Index>
 Comparison compared(const Raster& raster, std::uint64_t seed, std::size_t times) {
   const RasterMesh<Index> mesh(raster);
   const HeightField field(raster);
@@ -229,16 +229,16 @@ TEST_CASE("a height field answers as the raster's mesh does, bit for bit, for a 
     rays += result.rays;
   };
   for (std::size_t i = 0; i < small.size(); ++i) {
-    check(small[i], compared<Linear>(small[i].raster, 100 + i, 50));
-    check(small[i], compared<Bvh>(small[i].raster, 300 + i, 750));
+    check(small[i], compared<Linear<>>(small[i].raster, 100 + i, 50));
+    check(small[i], compared<Bvh<>>(small[i].raster, 300 + i, 750));
   }
-  for (std::size_t i = 0; i < large.size(); ++i) check(large[i], compared<Bvh>(large[i].raster, 200 + i, 80));
+  for (std::size_t i = 0; i < large.size(); ++i) check(large[i], compared<Bvh<>>(large[i].raster, 200 + i, 80));
   CHECK(rays >= 1000000);
 }
 
 TEST_CASE("the comparison notices a height that is a hundredth of a pixel off, and a cell that is passed over") {
   Raster raster = raster_of(20, 20, [](std::uint32_t c, std::uint32_t r) { return std::sin(c / 3.0) + std::cos(r / 4.0); });
-  const RasterMesh<Linear> mesh(raster);
+  const RasterMesh<Linear<>> mesh(raster);
   for (const float change : {0.01F, missing}) {
     Raster other = raster;
     other.heights[205] += change;
@@ -255,7 +255,7 @@ TEST_CASE("triangles and normals are those of the mesh, bit for bit") {
   const Raster raster = raster_of(
       40, 30, [&](std::uint32_t, std::uint32_t) { return random.whole(5) == 0 ? static_cast<double>(missing) : random.uniform(0, 9); },
       {4.7e5 + 0.1, 5.4e6 + 0.3}, {0.3, 0.7});
-  const RasterMesh<Linear> mesh(raster);
+  const RasterMesh<Linear<>> mesh(raster);
   const HeightField field(raster);
   for (std::size_t i = 0; i < mesh.numbers().size(); ++i) {
     const Triangle expected = mesh.data().triangle(i), found = field.triangle(mesh.numbers()[i]);

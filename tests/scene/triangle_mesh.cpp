@@ -19,7 +19,7 @@
 using namespace pulsecast;
 using namespace pulsecast::support;
 
-static_assert(Geometry<TriangleMesh<Linear>> && Geometry<TriangleMesh<KdTree>> && Geometry<TriangleMesh<Bvh, double>>);
+static_assert(Geometry<TriangleMesh<Linear<>>> && Geometry<TriangleMesh<KdTree<>>> && Geometry<TriangleMesh<Bvh<double>>>);
 static_assert(std::copyable<TriangleMesh<>>);
 
 namespace {
@@ -38,8 +38,8 @@ MeshData square() { return {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}, {{0, 1
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a mesh is met where its triangles are", Mesh, TriangleMesh<>, TriangleMesh<Bvh, double>, TriangleMesh<KdTree>,
-                   TriangleMesh<KdTree, double>, TriangleMesh<Linear>) {
+TEST_CASE_TEMPLATE("a mesh is met where its triangles are", Mesh, TriangleMesh<>, TriangleMesh<Bvh<double>>, TriangleMesh<KdTree<>>,
+                   TriangleMesh<KdTree<double>>, TriangleMesh<Linear<>>) {
   const Mesh mesh(square());
   CHECK(mesh.size() == 2);
   CHECK(mesh.bounds() == Box{{0, 0, 0}, {2, 2, 0}});
@@ -137,7 +137,7 @@ TEST_CASE("a mesh that cannot be is refused, and the refusal says what is wrong"
 }
 
 TEST_CASE_TEMPLATE("a mesh that was built is sound, and one that was not filled is met by nothing", Mesh, TriangleMesh<>,
-                   TriangleMesh<KdTree>, TriangleMesh<Linear>) {
+                   TriangleMesh<KdTree<>>, TriangleMesh<Linear<>>) {
   CHECK(Mesh(square()).is_consistent());
   const Mesh none(DeserializeTag{});
   CHECK(none.is_consistent());
@@ -173,7 +173,7 @@ bool same_bits(const Triangle& a, const Triangle& b) { return std::memcmp(&a, &b
 }  // namespace
 
 TEST_CASE_TEMPLATE("triangles of a mesh of several blocks keep their numbers and corners on any number of threads", Mesh, TriangleMesh<>,
-                   TriangleMesh<Bvh, double>, TriangleMesh<KdTree>, TriangleMesh<Linear>) {
+                   TriangleMesh<Bvh<double>>, TriangleMesh<KdTree<>>, TriangleMesh<Linear<>>) {
   MeshData data = torn_ground(100);
   data.vertices[4].x = -0.0, data.vertices[5].x = 0.0;
   for (const unsigned threads : {1U, 3U}) {

@@ -57,7 +57,7 @@ notices 'a file begins with two SPDX lines' 'sed -i 2d tests/base/frame.cpp'
 notices 'a file begins with two SPDX lines' 'sed -i 2d include/pulsecast/page/web/page.css'
 notices 'no open ends in the tree' 'echo "// TO""DO" >> include/pulsecast/echo.hpp'
 notices 'no absolute paths' 'echo "see /ho""me/me" >> CHANGELOG.md'
-notices 'pulsecast.hpp includes every header of the core' 'sed -i "/run.hpp/d" include/pulsecast/pulsecast.hpp'
+notices 'pulsecast.hpp includes the contract and the pipeline' 'sed -i "/run.hpp/d" include/pulsecast/pulsecast.hpp'
 notices 'every header has its test' 'rm tests/base/frame.cpp'
 notices 'every header has its test' 'sed -i "/^#include <pulsecast.base.frame/d" tests/base/frame.cpp'
 notices 'CMakeLists.txt knows what a header needs' "$add #include <pugixml.hpp>\" include/pulsecast/io/las.hpp"

@@ -173,8 +173,7 @@ class Bvh {
     std::vector<Open> below;
     const std::size_t grain = std::max<std::size_t>(count / 64, 4096);
     std::size_t next = 0;
-    std::size_t depth = make_nodes(
-        binary, {binary.root(), 0, 1}, upper, primitives, next, [&](const Open& open) { return open.range.size() <= grain; }, below);
+    std::size_t depth = make_nodes(binary, {binary.root(), 0, 1}, upper, primitives, next, grain, below);
     struct Subtree {
       std::vector<Node> nodes;
       std::size_t first_node = 0, first_primitive = 0, depth = 0;
@@ -186,8 +185,7 @@ class Bvh {
       own.nodes.resize(1);
       std::size_t at = own.first_primitive;
       std::vector<Open> none;
-      own.depth = make_nodes(
-          binary, {below[i].range, 0, below[i].depth}, own.nodes, primitives, at, [](const Open&) { return false; }, none);
+      own.depth = make_nodes(binary, {below[i].range, 0, below[i].depth}, own.nodes, primitives, at, 0, none);
     });
     std::size_t nodes = upper.size();
     for (Subtree& own : subtrees) own.first_node = nodes, nodes += own.nodes.size() - 1, depth = std::max(depth, own.depth);
@@ -203,10 +201,10 @@ class Bvh {
     nodes_ = all, primitives_ = primitives, depth_ = depth;
   }
 
-  /// Makes a node, for which there is a place, and all that is below it but for what is `left`, which goes to `below`. Gives the depth.
-  template <class Left>
+  /// Makes a node, for which there is a place, and all that is below it but for ranges of at most `grain` primitives, which go to `below`.
+  /// Gives the depth.
   static std::size_t make_nodes(const BinaryTree& binary, const Open& top, std::vector<Node>& nodes,
-                                const SharedBuffer<PrimitiveIndex>& primitives, std::size_t& next, const Left& left,
+                                const SharedBuffer<PrimitiveIndex>& primitives, std::size_t& next, std::size_t grain,
                                 std::vector<Open>& below) {
     std::size_t depth = 0;
     std::vector<Open> tasks{top};
@@ -214,7 +212,7 @@ class Bvh {
     while (!tasks.empty()) {
       const Open task = tasks.back();
       tasks.pop_back();
-      if (left(task)) {
+      if (task.range.size() <= grain) {
         below.push_back(task);
         continue;
       }
@@ -248,6 +246,6 @@ class Bvh {
   std::size_t depth_ = 0;
 };
 
-static_assert(Accelerator<Bvh<float>> && Accelerator<Bvh<double>>);
+static_assert(Accelerator<Bvh<float>>);
 
 }  // namespace pulsecast

@@ -236,6 +236,6 @@ class KdTree {
   std::size_t depth_ = 0;
 };
 
-static_assert(Accelerator<KdTree<float>> && Accelerator<KdTree<double>>);
+static_assert(Accelerator<KdTree<float>>);
 
 }  // namespace pulsecast

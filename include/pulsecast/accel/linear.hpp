@@ -52,6 +52,6 @@ class Linear {
   SharedArray<PrimitiveIndex> primitives_;
 };
 
-static_assert(Accelerator<Linear<float>> && Accelerator<Linear<double>>);
+static_assert(Accelerator<Linear<float>>);
 
 }  // namespace pulsecast

@@ -39,7 +39,9 @@ class SettingError : public std::invalid_argument {
 
  private:
   static std::string message(const std::string& field, double value, const std::string& unit, const std::string& allowed) {
-    return field + " is " + detail::to_text(value) + (unit.empty() ? "" : " ") + unit + ", but must be " + allowed;
+    std::string text = field;
+    text.append(" is ").append(detail::to_text(value)).append(unit.empty() ? "" : " ").append(unit);
+    return text.append(", but must be ").append(allowed);
   }
 
   std::string field_, unit_, allowed_;

@@ -6,8 +6,8 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <memory>
 #include <thread>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 
@@ -39,9 +39,10 @@ inline void call_for_each_index(std::size_t count, unsigned threads, void (*call
   };
   const std::size_t together = std::min<std::size_t>(thread_count(threads), count);
   {
-    std::vector<std::jthread> helpers;
+    std::unique_ptr<std::jthread[]> helpers;
     try {
-      for (std::size_t k = 1; k < together; ++k) helpers.emplace_back(work);
+      helpers = std::make_unique<std::jthread[]>(together);  // of which the first is this one
+      for (std::size_t k = 1; k < together; ++k) helpers[k] = std::jthread(work);
     } catch (...) {  // no more threads to be had: those there are do it all
     }
     work();

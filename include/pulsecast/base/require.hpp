@@ -38,10 +38,15 @@ inline void require_finite(std::string_view field, double value, std::string_vie
   if (!std::isfinite(value)) throw_setting_error(field, value, unit, "finite");
 }
 
+namespace detail {
+[[noreturn]] inline void refuse_outside(std::string_view field, double value, double low, double high, std::string_view unit) {
+  throw_setting_error(field, value, unit, std::string("from ").append(to_text(low)).append(" to ").append(to_text(high)));
+}
+}  // namespace detail
+
 /// Refuses a setting outside the closed interval [low, high].
 inline void require_within(std::string_view field, double value, double low, double high, std::string_view unit) {
-  if (value >= low && value <= high) return;
-  throw_setting_error(field, value, unit, "from " + detail::to_text(low) + " to " + detail::to_text(high));
+  if (!(value >= low && value <= high)) detail::refuse_outside(field, value, low, high, unit);
 }
 
 /// Settings with rotations: `normalize()` makes them unit, after `validate()` has let their norms pass.

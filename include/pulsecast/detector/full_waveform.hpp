@@ -218,6 +218,6 @@ class FullWaveform {
   ReceiverNoise noise_;
 };
 
-static_assert(Detector<FullWaveform<>> && Detector<FullWaveform<MomentWidth>>);
+static_assert(Detector<FullWaveform<>>);
 
 }  // namespace pulsecast

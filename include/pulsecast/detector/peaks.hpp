@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
@@ -64,8 +64,10 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
 /// The echo of a peak, among reflections sorted by range.
 [[nodiscard]] inline Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const PulseShape& shape, EchoTiming timing,
                                   std::size_t number) noexcept {
-  const auto before = [](const Reflection& r, double time) { return arrival(r) < time; };
-  const auto from = [&](double time) { return std::lower_bound(reflections.begin(), reflections.end(), time, before); };
+  const Reflection* const end = reflections.data() + reflections.size();
+  const auto from = [&](double time) noexcept {
+    return reflections.data() + detail::first_not(reflections.size(), [&](std::size_t i) { return arrival(reflections[i]) < time; });
+  };
 
   Echo echo{.range = 0.5 * speed_of_light * peak.time,
             .amplitude = peak.height,
@@ -73,8 +75,7 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
             .number = static_cast<std::uint8_t>(number)};
   constexpr double faded = 60;  // tau after its peak, 1e-22 of a pulse is left
   double strongest = 0;
-  for (auto r = from(peak.time - faded * shape.tau); r != reflections.end() && arrival(*r) < peak.time + PulseShape::peak * shape.tau;
-       ++r) {
+  for (auto r = from(peak.time - faded * shape.tau); r != end && arrival(*r) < peak.time + PulseShape::peak * shape.tau; ++r) {
     if (!(r->power > strongest)) continue;  // nor is it with what is left of its pulse
     const double power = r->power * shape(peak.time - arrival(*r));
     if (!(power > strongest)) continue;
@@ -84,8 +85,7 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
   if (timing == EchoTiming::energy) {
     const auto first = from(peak.begin);
     double sum = 0, beyond = 0;
-    for (auto r = first; r != reflections.end() && arrival(*r) < peak.end; ++r)
-      sum += r->power, beyond += r->power * (r->range - first->range);
+    for (auto r = first; r != end && arrival(*r) < peak.end; ++r) sum += r->power, beyond += r->power * (r->range - first->range);
     if (sum > 0) echo.range = first->range + beyond / sum;
   }
   return echo;

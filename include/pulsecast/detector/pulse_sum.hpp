@@ -27,9 +27,10 @@ namespace pulsecast {
 [[nodiscard]] inline std::span<Reflection> in_order_of_range(std::span<Reflection> all, double sample_interval) noexcept {
   const auto nearer = [](const Reflection& a, const Reflection& b) { return a.range < b.range; };
   const auto useless = [&](const Reflection& r) { return !can_count(r, sample_interval); };
-  const std::span<Reflection> useful(all.begin(), std::remove_if(all.begin(), all.end(), useless));
-  if (!std::is_sorted(useful.begin(), useful.end(), nearer)) std::sort(useful.begin(), useful.end(), nearer);
-  return useful;
+  Reflection* const begin = all.data();
+  Reflection* const end = std::remove_if(begin, begin + all.size(), useless);
+  if (!std::is_sorted(begin, end, nearer)) std::sort(begin, end, nearer);
+  return {begin, static_cast<std::size_t>(end - begin)};
 }
 
 /// The sum of the pulse shapes of reflections, sorted by range, sample by sample.

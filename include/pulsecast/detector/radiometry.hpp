@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/pulse.hpp>
@@ -55,12 +55,12 @@ struct RangeErrors {
   /// Standard deviation of the noise at a range, faced squarely [m].
   [[nodiscard]] double deviation_at(double range) const noexcept {
     if (deviations.size() == 0) return deviation + deviation_per_metre * range;
-    const auto after =
-        std::upper_bound(deviations.begin(), deviations.end(), range, [](double r, const DeviationAtRange& row) { return r < row.range; });
-    if (after == deviations.begin()) return deviations.begin()->deviation;
-    const DeviationAtRange& from = *(after - 1);
-    if (after == deviations.end()) return from.deviation;
-    return from.deviation + (after->deviation - from.deviation) * (range - from.range) / (after->range - from.range);
+    const std::size_t i = detail::first_not(deviations.size(), [&](std::size_t n) noexcept { return !(range < deviations[n].range); });
+    if (i == 0) return deviations[0].deviation;
+    const DeviationAtRange& from = deviations[i - 1];
+    if (i == deviations.size()) return from.deviation;
+    const DeviationAtRange& to = deviations[i];
+    return from.deviation + (to.deviation - from.deviation) * (range - from.range) / (to.range - from.range);
   }
 
   /// Reported less true range [m] of an echo at a range [m], for a draw from the standard normal distribution.

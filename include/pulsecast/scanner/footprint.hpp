@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -32,19 +31,26 @@ class RingFootprint {
   explicit RingFootprint(std::size_t circles = 3) {
     require_within("RingFootprint::circles", static_cast<double>(circles), 1, 1000, "");
     const double n = static_cast<double>(circles);
-    for (std::size_t i = 0; i < circles; ++i) {
+    const auto subrays_on = [](std::size_t i) {
+      return i == 0 ? std::size_t{1} : static_cast<std::size_t>(std::floor(2 * pi * static_cast<double>(i)));
+    };
+    std::size_t subrays = 0;
+    for (std::size_t i = 0; i < circles; ++i) subrays += subrays_on(i);
+    offsets_ = std::vector<Vec2>(subrays), shares_ = std::vector<double>(subrays);
+    for (std::size_t i = 0, j = 0; i < circles; ++i) {
       const double radius = static_cast<double>(i) / (n - 0.5);
       const double inner = i == 0 ? 0 : radius - 0.5 / (n - 0.5), outer = radius + 0.5 / (n - 0.5);
-      const auto count = i == 0 ? std::size_t{1} : static_cast<std::size_t>(std::floor(2 * pi * static_cast<double>(i)));
+      const std::size_t count = subrays_on(i);
       // share of a Gaussian beam between two radii. Source: irradiance exp(-2 r^2 / w^2), integrated
       const double ring = std::exp(-2 * inner * inner) - std::exp(-2 * outer * outer);
-      for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t k = 0; k < count; ++k, ++j) {
         const double angle = 2 * pi * static_cast<double>(k) / static_cast<double>(count);
-        offsets_.push_back({radius * std::sin(angle), radius * std::cos(angle)});
-        shares_.push_back(ring / static_cast<double>(count));
+        offsets_[j] = {radius * std::sin(angle), radius * std::cos(angle)};
+        shares_[j] = ring / static_cast<double>(count);
       }
     }
-    const double sum = std::accumulate(shares_.begin(), shares_.end(), 0.0);
+    double sum = 0;
+    for (const double share : shares_) sum += share;
     for (double& share : shares_) share /= sum;
   }
 
@@ -64,16 +70,19 @@ class SunflowerFootprint {
  public:
   explicit SunflowerFootprint(std::size_t subrays = 19) {
     require_within("SunflowerFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
+    offsets_ = std::vector<Vec2>(subrays);
     const double n = static_cast<double>(subrays);
     const double golden_angle = pi * (3 - std::sqrt(5.0));
     for (std::size_t j = 0; j < subrays; ++j) {
       const double energy_inside = (static_cast<double>(j) + 0.5) / n;
       const double radius = subrays == 1 ? 0 : std::sqrt(-0.5 * std::log1p(-energy_inside));
       const double angle = golden_angle * static_cast<double>(j);
-      offsets_.push_back({radius * std::sin(angle), radius * std::cos(angle)});
+      offsets_[j] = {radius * std::sin(angle), radius * std::cos(angle)};
     }
-    const Vec2 aside = std::accumulate(offsets_.begin(), offsets_.end(), Vec2{}) / n;  // else slopes would be met too near or too far
-    for (Vec2& offset : offsets_) offset -= aside;
+    Vec2 sum{};
+    for (const Vec2& offset : offsets_) sum += offset;
+    const Vec2 aside = sum / n;
+    for (Vec2& offset : offsets_) offset -= aside;  // else slopes would be met too near or too far
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return offsets_.size(); }
@@ -110,15 +119,22 @@ class LatticeFootprint {
   /// How far up the subray in each column is.
   static std::vector<Vec2> rows(std::size_t subrays) {
     require_within("LatticeFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
-    const auto multiple = [](std::size_t j) {
-      const double m = (static_cast<double>(j) + 0.5) * 0.5 * (std::sqrt(5.0) - 1);
-      return m - std::floor(m);
+    struct Column {
+      double multiple;
+      std::size_t number;
     };
-    std::vector<std::size_t> order(subrays);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return multiple(a) < multiple(b); });
+    std::vector<Column> columns(subrays);
+    for (std::size_t j = 0; j < subrays; ++j) {
+      const double m = (static_cast<double>(j) + 0.5) * 0.5 * (std::sqrt(5.0) - 1);
+      columns[j] = {m - std::floor(m), j};
+    }
+    // no two multiples are equal; std::sort would be compiled anew by whoever includes this
+    std::qsort(columns.data(), subrays, sizeof(Column), [](const void* a, const void* b) {
+      const double first = static_cast<const Column*>(a)->multiple, second = static_cast<const Column*>(b)->multiple;
+      return first < second ? -1 : first > second ? 1 : 0;
+    });
     std::vector<Vec2> offsets(subrays);
-    for (std::size_t row = 0; row < subrays; ++row) offsets[order[row]].y = quantile(row, subrays);
+    for (std::size_t row = 0; row < subrays; ++row) offsets[columns[row].number].y = quantile(row, subrays);
     return offsets;
   }
 

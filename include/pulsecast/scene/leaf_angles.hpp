@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -62,10 +61,9 @@ class LeafAngles {
 
   /// G by the angle between direction and vertical, in any order, none twice; linear in between, and as the nearest before the first
   /// and behind the last. Refuses a hole: 10 degrees without an entry are bridged, more are not.
-  template <std::same_as<LeafProjection> Entry = LeafProjection>  // so that only who has a table compiles it
-  [[nodiscard]] static LeafAngles table(std::vector<Entry> entries) {
+  [[nodiscard]] static LeafAngles table(std::vector<LeafProjection> entries) {
     constexpr double widest = 10 * pi / 180 * (1 + 1e-6);
-    for (const Entry& entry : entries) {
+    for (const LeafProjection& entry : entries) {
       require_within("LeafProjection::zenith", entry.zenith, 0, pi / 2 * (1 + 1e-6), "rad");
       require_within("LeafProjection::g", entry.g, 0, 1, "");
     }

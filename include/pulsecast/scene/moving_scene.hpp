@@ -6,8 +6,8 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <set>
 #include <span>
+#include <unordered_set>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -43,7 +43,7 @@ class MovingScene {
   /// Memory held, with all that parts share counted once [byte].
   [[nodiscard]] std::size_t memory() const {
     std::size_t bytes = scene_.memory() + index_.memory() + movers_.capacity() * sizeof(Mover);
-    std::set<const void*> counted;
+    std::unordered_set<const void*> counted;
     for (const Mover& mover : movers_) {
       const PartMotion* motion = parts()[mover.part].motion.get();
       bytes += counted.insert(motion).second ? motion->memory() : 0;

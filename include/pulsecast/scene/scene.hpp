@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
+#include <unordered_set>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -43,7 +43,7 @@ class Scene {
   /// Memory held, with all that parts share counted once [byte].
   [[nodiscard]] std::size_t memory() const {
     std::size_t bytes = index_.memory() + parts_.capacity() * sizeof(Part);
-    std::set<const void*> counted;
+    std::unordered_set<const void*> counted;
     for (const Part& part : parts_) {
       bytes += detail::heap_bytes(part.name);
       std::visit([&](const auto& shape) { bytes += counted.insert(shape.get()).second ? shape->memory() : 0; }, part.geometry);

@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>
 
 namespace pulsecast {
@@ -25,7 +24,7 @@ struct SpectralSample {
 class Spectrum {
  public:
   /// Samples in ascending order of wavelength, at least one, no two at the same.
-  explicit Spectrum(std::vector<SpectralSample> samples) {
+  explicit Spectrum(const std::vector<SpectralSample>& samples) {
     if (samples.empty()) throw SettingError("Spectrum::samples (number)", 0, "", "at least 1");
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::string field = "Spectrum::samples[" + std::to_string(i) + "]";
@@ -35,7 +34,9 @@ class Spectrum {
         throw SettingError(field + ".wavelength", samples[i].wavelength, "m",
                            "longer than that of the sample before, " + detail::to_text(samples[i - 1].wavelength));
     }
-    samples_ = std::move(samples);
+    const SharedBuffer<SpectralSample> copy(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) copy[i] = samples[i];
+    samples_ = copy;
   }
 
   explicit Spectrum(DeserializeTag) {}
@@ -52,13 +53,12 @@ class Spectrum {
 
   /// Reflectance at a wavelength [m]: a fraction.
   [[nodiscard]] double reflectance(double wavelength) const noexcept {
-    const auto above = std::lower_bound(samples_.begin(), samples_.end(), wavelength,
-                                        [](const SpectralSample& sample, double w) { return sample.wavelength < w; });
-    if (above == samples_.end()) return (above - 1)->reflectance;
-    if (above == samples_.begin()) return above->reflectance;
-    const SpectralSample& below = *(above - 1);
-    const double share = (wavelength - below.wavelength) / (above->wavelength - below.wavelength);
-    return below.reflectance + share * (above->reflectance - below.reflectance);
+    const std::size_t i = detail::first_not(samples_.size(), [&](std::size_t n) noexcept { return samples_[n].wavelength < wavelength; });
+    if (i == samples_.size()) return samples_[i - 1].reflectance;
+    if (i == 0) return samples_[0].reflectance;
+    const SpectralSample &below = samples_[i - 1], &above = samples_[i];
+    const double share = (wavelength - below.wavelength) / (above.wavelength - below.wavelength);
+    return below.reflectance + share * (above.reflectance - below.reflectance);
   }
 
  private:

@@ -30,24 +30,20 @@ struct MeshData {
   std::vector<std::uint32_t> materials{};                 ///< one a triangle: index into the part's table; empty if all are 0
 
   void validate() const {
-    const auto reject = [](const char* field, double value, const char* unit, std::string allowed) {
-      throw SettingError(field, value, unit, std::move(allowed));
-    };
-    if (triangles.empty()) reject("MeshData::triangles", 0, "", "at least one in number");
+    if (triangles.empty()) throw_setting_error("MeshData::triangles", 0, "", "at least one in number");
     validate_counts(vertices.size(), triangles.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       for (int k = 0; k < 3; ++k)
-        if (!std::isfinite(vertices[i][k])) reject("MeshData::vertices", vertices[i][k], "m", "finite; see vertex " + std::to_string(i));
+        if (!std::isfinite(vertices[i][k])) reject_at("MeshData::vertices", vertices[i][k], "m", "finite; see vertex ", i, "");
     }
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       for (const std::uint32_t corner : triangles[i])
         if (corner >= vertices.size())
-          reject("MeshData::triangles", corner, "",
-                 "less than the number of vertices, " + std::to_string(vertices.size()) + "; see triangle " + std::to_string(i));
+          reject_at("MeshData::triangles", corner, "", "less than the number of vertices, ", vertices.size(),
+                    "; see triangle " + std::to_string(i));
     }
     if (!materials.empty() && materials.size() != triangles.size())
-      reject("MeshData::materials", static_cast<double>(materials.size()), "",
-             "as many as triangles, " + std::to_string(triangles.size()) + ", or none");
+      reject_at("MeshData::materials", static_cast<double>(materials.size()), "", "as many as triangles, ", triangles.size(), ", or none");
   }
 
   /// Refuses more than can be numbered by 32 bits, before memory is asked for to index them; `ClosestHits::none` is no triangle.
@@ -61,14 +57,20 @@ struct MeshData {
     const auto& corners = triangles[i];
     return {vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]};
   }
+
+ private:
+  [[noreturn]] static void reject_at(const char* field, double value, const char* unit, std::string allowed, std::size_t number,
+                                     const std::string& rest) {
+    throw_setting_error(field, value, unit, allowed.append(std::to_string(number)).append(rest));
+  }
 };
 
 /// Triangles that share their corners where these are equal, to the last bit. Both sides count; a triangle without area is never met. They
 /// keep their numbers, but stand in memory as the index meets them, in blocks with corners of their own, which two bytes are enough to
 /// number. So a triangle takes 10 bytes beside its index and its corners of 24 bytes each, and one more if there are several materials.
-/// `float` is on the front of docs/tradeoff.md: it finds what `double` finds, in less time and memory, as triangles are met in double.
-template <template <class> class Index = Bvh, std::floating_point Real = float>
-requires Accelerator<Index<Real>>
+/// `Bvh<float>` is on the front of docs/tradeoff.md: it finds what `Bvh<double>` finds, in less time and memory, as triangles are met in
+/// double.
+template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
   static constexpr bool flat = true;
@@ -78,12 +80,12 @@ class TriangleMesh {
     arrange(data, threads);
     for (const std::uint32_t m : data.materials) material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
     if (material_count_ > 256)
-      materials_ = std::move(data.materials);
+      materials_ = numbers<std::uint32_t>(data.materials);
     else if (material_count_ > 1)
-      few_materials_ = std::vector<std::uint8_t>(data.materials.begin(), data.materials.end());
+      few_materials_ = numbers<std::uint8_t>(data.materials);
   }
 
-  explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index<Real>, DeserializeTag> : index_(tag) {}
+  explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}
   template <class Archive>
   void archive(Archive& a) {
     a(corners_, first_corners_, triangles_, places_, few_materials_, materials_, index_, material_count_);
@@ -107,7 +109,7 @@ class TriangleMesh {
 
   [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
   [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept { return triangle_at(places_[i]); }
-  [[nodiscard]] const Index<Real>& index() const noexcept { return index_; }
+  [[nodiscard]] const Index& index() const noexcept { return index_; }
   [[nodiscard]] std::size_t material_count() const noexcept { return material_count_; }
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   [[nodiscard]] std::size_t memory() const noexcept {
@@ -157,20 +159,27 @@ class TriangleMesh {
     [[nodiscard]] Box operator[](std::size_t i) const noexcept { return data.triangle(i).bounds(); }
   };
 
-  static Index<Real> built(const MeshData& data, unsigned threads) {
+  static Index built(const MeshData& data, unsigned threads) {
     data.validate();
     const Boxes boxes{data};
-    if constexpr (std::constructible_from<Index<Real>, Boxes, unsigned>) {
-      return Index<Real>(boxes, threads);
+    if constexpr (std::constructible_from<Index, Boxes, unsigned>) {
+      return Index(boxes, threads);
     } else {
       std::vector<Box> all;
       all.reserve(boxes.size());
       for (std::size_t i = 0; i < boxes.size(); ++i) all.push_back(boxes[i]);
-      if constexpr (std::constructible_from<Index<Real>, std::span<const Box>, unsigned>)
-        return Index<Real>(all, threads);
+      if constexpr (std::constructible_from<Index, std::span<const Box>, unsigned>)
+        return Index(all, threads);
       else
-        return Index<Real>(all);
+        return Index(all);
     }
+  }
+
+  template <class Number>
+  static SharedBuffer<Number> numbers(const std::vector<std::uint32_t>& all) {
+    const SharedBuffer<Number> copy(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) copy[i] = static_cast<Number>(all[i]);
+    return copy;
   }
 
   using Corners = std::array<std::uint16_t, 3>;  ///< of a triangle: their numbers in its block
@@ -235,7 +244,7 @@ class TriangleMesh {
   SharedArray<std::uint32_t> places_;         ///< of each triangle, in that order
   SharedArray<std::uint8_t> few_materials_;   ///< empty if all are 0, or if they are
   SharedArray<std::uint32_t> materials_;      ///< numbers too large for these
-  Index<Real> index_;
+  Index index_;
   std::size_t material_count_ = 1;
 };
 

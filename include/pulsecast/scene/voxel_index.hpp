@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -34,9 +33,8 @@ class VoxelIndex {
 
   explicit VoxelIndex(DeserializeTag) {}
 
-  /// `order` is set to which cell of the data each number stands for. A template, so that only who makes grids compiles it.
-  template <std::same_as<std::uint32_t> Number>
-  VoxelIndex(const VoxelData& data, std::vector<Number>& order) {
+  /// `order` is set to which cell of the data each number stands for.
+  VoxelIndex(const VoxelData& data, std::vector<std::uint32_t>& order) {
     std::array<std::uint32_t, 3> least = data.cells.front(), most = least;
     for (const auto& cell : data.cells)
       for (std::size_t k = 0; k < 3; ++k) least[k] = std::min(least[k], cell[k]), most[k] = std::max(most[k], cell[k]);
@@ -71,7 +69,7 @@ class VoxelIndex {
     const std::size_t budget = 26 * sorted.size(), flat = 25 * bricks, deep = 12 * bricks + 28 * blocks;
     height_ = deep < flat ? 2 : 1;
     const std::size_t roots = height_ == 2 ? blocks : bricks;
-    Nodes<Number> brick(bricks), block(height_ == 2 ? blocks : 0);
+    Nodes brick(bricks), block(height_ == 2 ? blocks : 0);
     std::vector<std::uint64_t> keys;
     keys.reserve(roots);
     last = ~std::uint64_t{0};
@@ -158,14 +156,13 @@ class VoxelIndex {
   };
 
   /// Masks of children, and the number of the first child of each.
-  template <std::same_as<std::uint32_t> Number>
   struct Nodes {
     std::vector<std::uint64_t> mask;
-    std::vector<Number> first;
+    std::vector<std::uint32_t> first;
 
     explicit Nodes(std::size_t n) { mask.reserve(n), first.reserve(n); }
     void put(unsigned bit, std::size_t child, bool begins) {
-      if (begins) mask.push_back(0), first.push_back(static_cast<Number>(child));
+      if (begins) mask.push_back(0), first.push_back(static_cast<std::uint32_t>(child));
       mask.back() |= std::uint64_t{1} << bit;
     }
   };
@@ -322,8 +319,7 @@ class VoxelIndex {
     return static_cast<std::size_t>(mixed * slots >> 32);
   }
 
-  template <std::same_as<std::uint64_t> Key>
-  void hash(const std::vector<Key>& keys, std::size_t size) {
+  void hash(const std::vector<std::uint64_t>& keys, std::size_t size) {
     std::vector<std::uint32_t> slots(size, nothing);
     for (std::size_t root = 0; root < keys.size(); ++root) {
       std::size_t s = slot(keys[root], size);
@@ -341,8 +337,7 @@ class VoxelIndex {
 
   /// From the cubes of the roots on, each level has cubes four times as long as the one before. A fourth of the budget is for those that
   /// are kept whole, the rest for those that are hashed.
-  template <std::same_as<std::uint64_t> Key>
-  void make_pyramid(const std::vector<Key>& keys, std::size_t budget) {
+  void make_pyramid(const std::vector<std::uint64_t>& keys, std::size_t budget) {
     const std::size_t affordable = budget / sizeof(std::uint64_t);
     std::vector<Level> levels;
     std::vector<std::size_t> whole;  // words
