@@ -204,7 +204,7 @@ class MpiMessage {
     Value value{};
     PULSECAST_ASSERT(at_ + sizeof value <= bytes_.size());
     std::memcpy(&value, bytes_.data() + bytes_.size() - sizeof value, sizeof value);
-    bytes_.resize(bytes_.size() - sizeof value);
+    bytes_.erase(bytes_.end() - sizeof value, bytes_.end());
     return value;
   }
   [[nodiscard]] std::span<const std::byte> rest() const noexcept { return std::span(bytes_).subspan(at_); }
