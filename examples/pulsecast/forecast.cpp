@@ -27,6 +27,11 @@
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
+using helios::Receiving;
+using helios::Sample;
+using helios::SampleBlock;
+using helios::Simulation;
+using helios::SlotCount;
 using helios::SurveyPlan;
 using helios::SurveySettings;
 

@@ -48,26 +48,25 @@ class SharedLegRun final : public LegRun {
   SharedLegRun(MpiTeam& team, const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
                const std::vector<std::string>& channels)
       : team_(team) {
-    if (team.first())
-      trajectory_.emplace(folder / (prefix + "_trajectory.txt"), io::TrajectoryFileSettings{.start_time = start_time});
+    if (team.first()) trajectory_.emplace(folder / (prefix + "_trajectory.txt"), io::TrajectoryFileSettings{.start_time = start_time});
     const std::vector<fs::path> files = point_files(folder, prefix, o, channels);
     for (const fs::path& path : files) {
       MpiOutput* const points = add(shared_points(team, path, o, start_time));
       if (files.size() > 1) points->channel = static_cast<std::uint8_t>(outputs_.size() - 1);
     }
     if (o.write_waveform)
-      add(std::make_unique<mpi::MpiRows<io::WaveformTextWriter, io::WaveformTextSettings>>(
-          team, folder / (prefix + "_fullwave.txt"), io::WaveformTextSettings{start_time}));
+      add(std::make_unique<mpi::MpiRows<io::WaveformTextWriter, io::WaveformTextSettings>>(team, folder / (prefix + "_fullwave.txt"),
+                                                                                           io::WaveformTextSettings{start_time}));
     if (o.write_pulse)
-      add(std::make_unique<mpi::MpiRows<io::PulseTextWriter, io::PulseTextSettings>>(
-          team, folder / (prefix + "_pulse.txt"), io::PulseTextSettings{start_time}));
+      add(std::make_unique<mpi::MpiRows<io::PulseTextWriter, io::PulseTextSettings>>(team, folder / (prefix + "_pulse.txt"),
+                                                                                     io::PulseTextSettings{start_time}));
   }
 
   void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override {
     if (trajectory_ && interval > 0) trajectory_->add(leg.path(), start, leg.duration(), interval);
   }
 
-  RunSummary run(const Simulation& simulation, const RunOptions& options) override {
+  RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override {
     std::vector<MpiOutput*> outputs;
     for (const auto& output : outputs_) outputs.push_back(output.get());
     const auto simulate = [&](const RunOptions& part, const std::function<void(const EchoBatch&)>& sink) {

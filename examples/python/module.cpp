@@ -21,12 +21,13 @@
 #include <pulsecast/python/bind.hpp>
 #include <pulsecast/version.hpp>
 
-#include "../pulsecast/simulation.hpp"
+#include "../pulsecast/loading.hpp"
 #include "settings.hpp"
 
 namespace py = pybind11;
 using namespace pulsecast;
 using namespace py::literals;
+using helios::Simulation;
 using helios::SurveyPlan;
 using Paths = std::vector<std::filesystem::path>;
 
@@ -92,17 +93,17 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
   std::unique_ptr<Simulation> simulation;
   {
     const py::gil_scoped_release free;
-    check_without_scene(settings);
-    simulation = std::make_unique<Simulation>(settings, Simulation::Settings{.seed = seed ? *seed : settings.seed.value_or(0),
-                                                                             .echo_width = echo_width,
-                                                                             .waveforms = waveforms,
-                                                                             .waveform_noise = waveform_noise,
-                                                                             .fixed_incidence = fixed_incidence,
-                                                                             .platform_noise = platform_noise,
-                                                                             .leg_noise = leg_noise,
-                                                                             .assets = std::move(assets),
-                                                                             .meshes = std::move(meshes),
-                                                                             .threads = threads});
+    (void)helios::check_without_scene(settings);
+    simulation = load(settings, {.seed = seed ? *seed : settings.seed.value_or(0),
+                                 .echo_width = echo_width,
+                                 .waveforms = waveforms,
+                                 .waveform_noise = waveform_noise,
+                                 .fixed_incidence = fixed_incidence,
+                                 .platform_noise = platform_noise,
+                                 .leg_noise = leg_noise,
+                                 .assets = std::move(assets),
+                                 .meshes = std::move(meshes),
+                                 .threads = threads});
     if (run > 0) simulation->begin(run);
   }
   warn(simulation->warnings());
@@ -160,8 +161,8 @@ PYBIND11_MODULE(_core, m) {
       "Reads the XML document of a survey and all that it refers to, and returns its SurveySettings. Files are looked for in the folders "
       "`assets` first, then beside the document. Raises FileError with all that is wrong; what is odd becomes a warning.");
   m.def(
-      "write_survey", [](const std::filesystem::path& path, py::handle survey) { helios::write_survey(path, survey_of(survey)); },
-      "path"_a, "survey"_a, "Writes SurveySettings as one XML document, which `read_survey` and the survey program read.");
+      "write_survey", [](const std::filesystem::path& path, py::handle survey) { helios::write_survey(path, survey_of(survey)); }, "path"_a,
+      "survey"_a, "Writes SurveySettings as one XML document, which `read_survey` and the survey program read.");
   m.def(
       "xml_text", [](py::handle survey) { return helios::xml_text(survey_of(survey)); }, "survey"_a, "What `write_survey` would write.");
   m.def(
