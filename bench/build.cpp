@@ -36,7 +36,7 @@ struct Entrant {
   std::string name;
   std::function<void(Entrant&)> go;
   Times wall{}, processor{};
-  double bytes = 0, most_bytes = 0;
+  double bytes = 0, max_bytes = 0;
 };
 
 template <class Shape>
@@ -83,7 +83,7 @@ void add_embree(std::vector<Entrant>& all, const std::string& name, const MeshDa
     all.push_back({name + "/" + std::to_string(threads), [&mesh, quality, threads](Entrant& self) {
                      const EmbreeMesh made(mesh, quality, false, threads);
                      self.wall.push_back(made.build_wall_seconds()), self.processor.push_back(made.build_seconds());
-                     self.bytes = made.bytes(), self.most_bytes = made.most_bytes();
+                     self.bytes = made.bytes(), self.max_bytes = made.max_bytes();
                    }});
 }
 #endif
@@ -109,7 +109,7 @@ void measure(Report& report, const std::string& scene, const MeshData& mesh) {
     Figures figures{{"Mtriangles/s", count / median(entrant.wall) / 1e6},
                     {"by processor time", count / median(entrant.processor) / 1e6},
                     {"bytes/triangle", entrant.bytes / count}};
-    if (entrant.most_bytes > 0) figures.emplace_back("bytes/triangle at most", entrant.most_bytes / count);
+    if (entrant.max_bytes > 0) figures.emplace_back("bytes/triangle at most", entrant.max_bytes / count);
     report.row(entrant.name, figures);
   }
 }

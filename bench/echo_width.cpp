@@ -43,7 +43,7 @@ auto airplane() {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 10000_W, .pulse_length = 4_ns, .divergence = 0.5_mrad};
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = 20'000, .laser = laser};
   const StraightLine line{.from = {-30, 0, 600}, .to = {30, 0, 600}, .speed = 30};
-  return Platform{line, Mount{.boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})},
+  return Platform{line, Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                   Deflector{OscillatingMirror{.cycles_per_second = 50, .half_angle = 3_deg}, scanner}};
 }
 

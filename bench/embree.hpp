@@ -57,19 +57,19 @@ class EmbreeMesh {
   [[nodiscard]] double build_seconds() const noexcept { return build_seconds_; }            ///< of the processor, all threads [s]
   [[nodiscard]] double build_wall_seconds() const noexcept { return build_wall_seconds_; }  ///< [s]
   [[nodiscard]] double bytes() const noexcept { return static_cast<double>(bytes_); }       ///< with vertices and corners
-  [[nodiscard]] double most_bytes() const noexcept { return static_cast<double>(most_bytes_); }
+  [[nodiscard]] double max_bytes() const noexcept { return static_cast<double>(max_bytes_); }
 
  private:
   static bool monitor(void* self, ssize_t more, bool) {
     auto& mesh = *static_cast<EmbreeMesh*>(self);
     const std::int64_t now = mesh.bytes_ += more;
-    std::int64_t most = mesh.most_bytes_;
-    while (now > most && !mesh.most_bytes_.compare_exchange_weak(most, now)) {
+    std::int64_t most = mesh.max_bytes_;
+    while (now > most && !mesh.max_bytes_.compare_exchange_weak(most, now)) {
     }
     return true;
   }
 
-  std::atomic<std::int64_t> bytes_ = 0, most_bytes_ = 0;
+  std::atomic<std::int64_t> bytes_ = 0, max_bytes_ = 0;
   RTCDevice device_;
   RTCScene scene_;
   double build_seconds_ = 0, build_wall_seconds_ = 0;

@@ -47,7 +47,7 @@ Cost cost(const Pattern& footprint, const Map& map, double waist_diameter) {
 TEST_CASE("waists and recorded subrays") {
   const auto map = street::scene(1);
   const Cost cone = cost(RingFootprint{3}, map, 0), waist = cost(RingFootprint{3}, map, 7_mm);
-  const Cost recorded = cost(Recorded{RingFootprint{3}}, map, 0);
+  const Cost recorded = cost(WithSubrayRecord{RingFootprint{3}}, map, 0);
   CHECK(recorded.echoes == cone.echoes);
   CHECK(std::fabs(static_cast<double>(waist.echoes) / static_cast<double>(cone.echoes) - 1) < 0.01);
   std::printf("a cone from a point: %.2f s; with a waist: %.2f times that; with all subrays handed on: %.2f times\n", cone.seconds,

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Holds what `pulsecast plan` forecasts against what runs come to, one after the other, in a table. Times are without loading, and those of
+# Holds what `pulsecast forecast` says against what runs come to, one after the other, in a table. Times are without loading, and those of
 # runs are of the processors, by thread: they hardly depend on what else the machine does. Where writing takes longer than all else, as with
 # waveforms, threads wait for the one that writes, and that figure says too little: ask for one thread.
 # Usage: forecast.sh PROGRAM SURVEY.xml ... [-- OPTIONS], as in
@@ -23,9 +23,9 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 TIMEFORMAT='%R %U %S'
-printf '%-12s %22s %30s %26s %26s %8s\n' survey 'simulating [s]' points 'memory [MB]' 'files [MB]' 'plan [s]'
+printf '%-12s %22s %30s %26s %26s %8s\n' survey 'simulating [s]' points 'memory [MB]' 'files [MB]' 'forecast [s]'
 for survey in "${surveys[@]}"; do
-  "$program" plan "$survey" -v "$@" > "$folder/plan" 2> "$folder/said" || { cat "$folder/said" >&2; exit 1; }
+  "$program" forecast "$survey" -v "$@" > "$folder/forecast" 2> "$folder/said" || { cat "$folder/said" >&2; exit 1; }
   { time "$program" info "$survey" "$@" > "$folder/info" 2> "$folder/said"; } 2> "$folder/time_to_load"
   rm -rf "$folder/output"
   { time "$program" "$survey" "$@" --output "$folder/output" > "$folder/run" 2> "$folder/said"; } 2> "$folder/time"
@@ -37,7 +37,7 @@ for survey in "${surveys[@]}"; do
     function against(forecast, actual, digits) {
       return sprintf("%." digits "f / %." digits "f (%+.1f %%)", forecast, actual, actual > 0 ? 100 * (forecast / actual - 1) : 0)
     }
-    FILENAME ~ /plan$/ && !seen[$1 $2]++ {
+    FILENAME ~ /forecast$/ && !seen[$1 $2]++ {
       if (/^  run time/) time = in_si($3, $4)
       if (/^  memory/) memory = in_si($2, $3) / 1e6
       if (/^  points/) points = $2
@@ -52,5 +52,5 @@ for survey in "${surveys[@]}"; do
     END {
       printf "%-12s %22s %30s %26s %26s %8.2f   wall %.2f s\n", survey, against(time - loading, (processor - load) / threads, 2), against(points, echoes, 0),
         against(memory, peak, 1), against(files, bytes / 1e6, 1), took, wall
-    }' "$folder/plan" "$folder/run" "$folder/time_to_load" "$folder/time"
+    }' "$folder/forecast" "$folder/run" "$folder/time_to_load" "$folder/time"
 done

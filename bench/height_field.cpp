@@ -53,7 +53,7 @@ Pulses from_the_air(const Box& ground, std::size_t subrays, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const double along = static_cast<double>(i) / static_cast<double>(count), line = 200 * along - std::floor(200 * along);
     const Vec3 place{ground.min.x + 0.5 * size.x, ground.min.y + along * size.y, ground.max.z + 800};
-    all.push_back(pulse(place, rotation_about(forward, (2 * line - 1) * 30_deg) * rotation_about(right, -90_deg), subrays));
+    all.push_back(pulse(place, rotation_about(axis::forward, (2 * line - 1) * 30_deg) * rotation_about(axis::right, -90_deg), subrays));
   }
   return all;
 }
@@ -61,14 +61,14 @@ Pulses from_the_air(const Box& ground, std::size_t subrays, std::size_t count) {
 /// All around a tripod on the ground in the middle, from 30 degrees below the horizon to 5 above.
 Pulses from_a_tripod(const HeightField& ground, std::size_t subrays, std::size_t count) {
   const Vec3 middle = ground.bounds().centre();
-  const RayBundle down = bundle_of({.origin = {middle.x, middle.y, ground.bounds().max.z + 1}, .direction = -up});
-  Nearest nearest(down);
+  const RayBundle down = bundle_of({.origin = {middle.x, middle.y, ground.bounds().max.z + 1}, .direction = -axis::up});
+  ClosestHits nearest(down);
   ground.closest(down, nearest);
   const Vec3 place{middle.x, middle.y, down.origin.z - nearest.range[0] + 1.8};
   Pulses all;
   for (std::size_t i = 0; i < count; ++i) {
     const double turn = static_cast<double>(i) / static_cast<double>(count), line = 100 * turn - std::floor(100 * turn);
-    all.push_back(pulse(place, rotation_about(up, 2 * pi * turn) * rotation_about(right, -30_deg + line * 35_deg), subrays));
+    all.push_back(pulse(place, rotation_about(axis::up, 2 * pi * turn) * rotation_about(axis::right, -30_deg + line * 35_deg), subrays));
   }
   return all;
 }
@@ -76,7 +76,7 @@ Pulses from_a_tripod(const HeightField& ground, std::size_t subrays, std::size_t
 double sum_of_ranges(const auto& ground, const Pulses& all) {
   double sum = 0;
   for (const RayBundle& rays : all) {
-    Nearest nearest(rays);
+    ClosestHits nearest(rays);
     ground.closest(rays, nearest);
     for (std::size_t j = 0; j < rays.size; ++j) sum += nearest.met(j) ? nearest.range[j] : 0;
   }

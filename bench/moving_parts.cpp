@@ -50,11 +50,11 @@ Cars plain(std::size_t cars, double seconds) {
     const Vec3 way{speed * std::sin(-heading), speed * std::cos(-heading), 0};
     MotionSequence round;
     for (int side = 0; side < 4; ++side) {
-      round.motions.push_back({.velocity = rotation_about(up, side * pi / 2) * way, .duration = block / speed});
+      round.motions.push_back({.velocity = rotation_about(axis::up, side * pi / 2) * way, .duration = block / speed});
       round.motions.push_back({.rate = pi / 2, .duration = 1});
     }
     parts.push_back({.geometry = shape,
-                     .placement = {rotation_about(up, heading), 1, {dice.between(-900, 900), dice.between(-900, 900), 0}},
+                     .placement = {rotation_about(axis::up, heading), 1, {dice.between(-900, 900), dice.between(-900, 900), 0}},
                      .object = static_cast<ObjectId>(i + 1),
                      .motion = std::make_shared<const PartMotion>(std::vector<MotionSequence>{round}, 0)});
   }
@@ -67,7 +67,8 @@ std::vector<RayBundle> pulses(std::size_t count, double seconds) {
   for (std::size_t i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count);
     const double elevation = -25_deg + 1.5_deg * static_cast<double>(i % 16);
-    RayBundle ray = bundle_of({{0, 0, 12}, rotation_about(up, 200 * pi * share) * rotation_about(right, elevation) * forward});
+    RayBundle ray =
+        bundle_of({{0, 0, 12}, rotation_about(axis::up, 200 * pi * share) * rotation_about(axis::right, elevation) * axis::forward});
     ray.tick = Tick::of_seconds(share * seconds);
     all.push_back(ray);
   }

@@ -34,7 +34,7 @@ inline constexpr OscillatingMirror mirror{.cycles_per_second = 50_Hz, .half_angl
 inline constexpr Scanner laser{.pulse_rate = 100_kHz,
                                .pulses = 100'000,
                                .laser = {.wavelength = 1550_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.25_mrad}};
-[[nodiscard]] inline Mount mount() { return {.boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})}; }
+[[nodiscard]] inline Mount mount() { return {.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})}; }
 
 /// Prints what a pulse takes [ns], by the processor's time of this thread, and the sum of all ranges [m], which tells whether others did
 /// the same work.

@@ -16,12 +16,12 @@ using AnyScene = MovingScene<TriangleMesh<>, HeightField, VoxelGrid<OpaqueVoxels
 
 template <class Optic>
 using Behind = Deflector<Optic, Scanner>;
-using Instrument = OneOf<Behind<OscillatingMirror>, Behind<PolygonMirror>, Behind<PalmerMirror>, Behind<FiberArray>, Behind<RisleyPrisms>,
-                         Behind<PatternTable>, Behind<FixedBeam>>;
-using Heads = OneOf<Instrument, Deflector<RotatingHead, Instrument>>;
+using Instrument = AnySource<Behind<OscillatingMirror>, Behind<PolygonMirror>, Behind<PalmerMirror>, Behind<FiberArray>,
+                             Behind<RisleyPrisms>, Behind<PatternTable>, Behind<FixedBeam>>;
+using Heads = AnySource<Instrument, Deflector<RotatingHead, Instrument>>;
 template <class Path>
 using On = Platform<Path, Channels<Heads>>;
-using AnyPlatform = OneOf<On<StraightLine>, On<Waypoints>, On<Tripod>>;
+using AnyPlatform = AnySource<On<StraightLine>, On<Waypoints>, On<Tripod>>;
 
 template <class Pattern, class Detecting>
 int scan(const AnyPlatform& platform, const Pattern& pattern, const AnyScene& scene, const Detecting& detector) {

@@ -65,7 +65,7 @@ struct Traced {
   const Known& known;
 
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    Nearest nearest(rays);
+    ClosestHits nearest(rays);
     mesh.closest(rays, nearest);
     keep(nearest);
     known.closest(rays, hits);

@@ -100,7 +100,7 @@ void grow_instances(Report& report) {
       const Vec3 foot{8.0 * static_cast<double>(i % row) + 4 - half, 8.0 * static_cast<double>(i / row) + 4 - half, 0};
       parts.push_back({.geometry = shape,
                        .materials = materials,
-                       .placement = {rotation_about(up, dice.between(0, 2 * pi)), dice.between(0.7, 1.2), foot},
+                       .placement = {rotation_about(axis::up, dice.between(0, 2 * pi)), dice.between(0.7, 1.2), foot},
                        .object = static_cast<ObjectId>(i)});
     }
     const double start = process_seconds();
@@ -111,14 +111,14 @@ void grow_instances(Report& report) {
     for (std::size_t line = 0; line < 64; ++line) {
       const double width = std::min(6.4, 2 * half), x = dice.between(-half, half - width), y = dice.between(-half, half);
       for (std::size_t i = 0; i < 64; ++i)
-        aims.push_back({{x + width * static_cast<double>(i) / 64, y, 300}, rotation_about(right, -90_deg)});
+        aims.push_back({{x + width * static_cast<double>(i) / 64, y, 300}, rotation_about(axis::right, -90_deg)});
     }
     const Bundles all = beams(aims, 19, 0.3_mrad);
     std::vector<Hit> hits(RayBundle::capacity), expected(RayBundle::capacity);
     const auto check = [&](std::size_t i) {  // against all parts one by one
       const RayBundle rays = all[i];
       scene.closest(rays, hits);
-      Nearest nearest(rays);
+      ClosestHits nearest(rays);
       for (std::size_t p = 0; p < number; ++p) {
         nearest.part = std::uint64_t{p} << 32;
         shape->closest(scene.parts()[p].placement.to_local(rays), nearest);

@@ -75,7 +75,7 @@ inline constexpr std::size_t pulse_count = 4096;
     for (std::size_t i = 0; i < in_line; ++i) {
       const double across = -480 + 960.0 * static_cast<double>(i) / in_line, along = -450 + 900.0 * static_cast<double>(line) / lines;
       const double y = along + 50.0 / lines * static_cast<double>(i) / in_line;
-      all.push_back({{0, y, 1250}, rotation_about(forward, -std::atan(across / 1250)) * rotation_about(right, -90_deg)});
+      all.push_back({{0, y, 1250}, rotation_about(axis::forward, -std::atan(across / 1250)) * rotation_about(axis::right, -90_deg)});
     }
   return all;
 }
@@ -84,19 +84,19 @@ inline constexpr std::size_t pulse_count = 4096;
 [[nodiscard]] inline Aims from_a_tripod(const Box& box) {
   constexpr std::size_t sweeps = 4, in_sweep = pulse_count / sweeps;
   const Vec3 place{box.max.x + 0.5 * box.size().z, box.centre().y, box.min.z + 1.7};
-  double least_turn = 0, most_turn = 0, low = 90_deg, high = -90_deg;
+  double min_turn = 0, max_turn = 0, low = 90_deg, high = -90_deg;
   for (int i = 0; i < 8; ++i) {
     const Vec3 to = Vec3{i & 1 ? box.min.x : box.max.x, i & 2 ? box.min.y : box.max.y, i & 4 ? box.min.z : box.max.z} - place;
     const double turn = std::atan2(to.y, -to.x), elevation = std::atan2(to.z, std::hypot(to.x, to.y));
-    least_turn = std::min(least_turn, turn), most_turn = std::max(most_turn, turn);
+    min_turn = std::min(min_turn, turn), max_turn = std::max(max_turn, turn);
     low = std::min(low, elevation), high = std::max(high, elevation);
   }
   Aims all;
   for (std::size_t sweep = 0; sweep < sweeps; ++sweep)
     for (std::size_t i = 0; i < in_sweep; ++i) {
-      const double turn = std::lerp(least_turn, most_turn, (static_cast<double>(sweep) + 0.5) / sweeps);
+      const double turn = std::lerp(min_turn, max_turn, (static_cast<double>(sweep) + 0.5) / sweeps);
       const double share = static_cast<double>(i) / in_sweep, elevation = std::lerp(low, high, sweep % 2 == 0 ? share : 1 - share);
-      all.push_back({place, rotation_about(up, 90_deg - turn) * rotation_about(right, elevation)});
+      all.push_back({place, rotation_about(axis::up, 90_deg - turn) * rotation_about(axis::right, elevation)});
     }
   return all;
 }
@@ -108,7 +108,7 @@ inline constexpr std::size_t pulse_count = 4096;
   for (std::size_t i = 0; i < pulse_count; ++i) {
     const double turn = static_cast<double>(i) / in_turn, y = -70 + 140 * turn / turns;
     const Vec3 place = street::on({2, y}) + Vec3{0, 0, 2.3};
-    all.push_back({place, rotation_about(forward, 360_deg * turn) * rotation_about(right, -90_deg)});
+    all.push_back({place, rotation_about(axis::forward, 360_deg * turn) * rotation_about(axis::right, -90_deg)});
   }
   return all;
 }
@@ -185,7 +185,7 @@ double sum_of_ranges(const Shape& shape, const Bundles& all) noexcept {
   double sum = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const RayBundle rays = all[i];
-    Nearest nearest(rays);
+    ClosestHits nearest(rays);
     shape.closest(rays, nearest);
     for (std::size_t j = 0; j < rays.size; ++j) sum += nearest.met(j) ? nearest.range[j] : 0;
   }
@@ -203,7 +203,7 @@ template <class Shape>
   std::vector<Answer> found;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const RayBundle rays = all[i];
-    Nearest nearest(rays);
+    ClosestHits nearest(rays);
     shape.closest(rays, nearest);
     for (std::size_t j = 0; j < rays.size; ++j) found.push_back({nearest.range[j], nearest.id[j]});
   }

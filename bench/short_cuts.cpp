@@ -34,10 +34,10 @@ struct WatchedScene {
 
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
     scene.closest(rays, hits);
-    Nearest nearest(rays);
+    ClosestHits nearest(rays);
     flat.closest(rays, nearest);
     std::size_t met = 0, described = 0;
-    std::uint64_t known = Nearest::none;
+    std::uint64_t known = ClosestHits::none;
     for (std::size_t j = 0; j < rays.size; ++j) {
       if (!nearest.met(j)) continue;
       ++met;

@@ -73,7 +73,7 @@ std::vector<RayBundle> pulses(const VoxelGrid<Filling>& grid, std::size_t subray
   for (std::size_t i = 0; i < count; ++i) {
     const double along = static_cast<double>(i) / static_cast<double>(count), across = 300 * along - std::floor(300 * along);
     const Vec3 towards = normalize(box.min + size * Vec3{across, along, 0.5} - place);
-    const Rotation aim = rotation_about(cross(forward, towards), std::acos(dot(forward, towards)));
+    const Rotation aim = rotation_about(cross(axis::forward, towards), std::acos(dot(axis::forward, towards)));
     RayBundle rays;
     rays.origin = place, rays.size = subrays, rays.pulse = i;
     for (std::size_t j = 0; j < subrays; ++j) rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.3_mrad));
@@ -92,7 +92,7 @@ double rate(const VoxelGrid<Filling>& grid, std::size_t subrays) {
     std::size_t met = 0;
     const auto start = std::chrono::steady_clock::now();
     for (const RayBundle& rays : all) {
-      Nearest nearest(rays);
+      ClosestHits nearest(rays);
       grid.closest(rays, nearest);
       for (std::size_t j = 0; j < subrays; ++j) met += nearest.met(j) ? 1 : 0;
     }

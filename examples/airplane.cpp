@@ -28,7 +28,7 @@ auto airplane(const StraightLine& pass, double pulse_rate) {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 2500_W, .pulse_length = 4_ns, .divergence = 0.3_mrad};
   const auto pulses = static_cast<PulseIndex>(std::ceil(pass.duration().seconds() * pulse_rate));
   const OscillatingMirror mirror{.cycles_per_second = 50_Hz, .half_angle = 18_deg, .turning_time = 1_ms};
-  return Platform{pass, Mount{.lever_arm = {0.1, 1.4, -0.8}, .boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})},
+  return Platform{pass, Mount{.lever_arm = {0.1, 1.4, -0.8}, .boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                   Deflector{mirror, Scanner{.pulse_rate = pulse_rate, .pulses = pulses, .laser = laser}}};
 }
 
@@ -57,8 +57,7 @@ int main(int argc, char** argv) {
 
     const Survey survey{Legs{legs}, RingFootprint{2}, scene, Receiver{}, FullWaveform{{.threshold = 20_nW}}, line.seed};
     io::LasWriter las(line.output / "cloud.las");
-    io::ImageWriter image(line.output / "cloud.png",
-                                {.azimuth = 15_deg, .elevation = 35_deg, .colour_by = io::ColourBy::classification});
+    io::ImageWriter image(line.output / "cloud.png", {.azimuth = 15_deg, .elevation = 35_deg, .colour_by = io::ColourBy::classification});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
     las.close(), image.close();

@@ -25,7 +25,7 @@ using namespace pulsecast::literals;
 auto scanner(const GroundVehicleDrive& drive, double angle, double pulse_rate) {
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 5_ns, .divergence = 0.5_mrad};
   const auto pulses = static_cast<PulseIndex>(drive.duration().seconds() * pulse_rate);
-  return Platform{drive, Mount{.lever_arm = {0, 1.1, 2.1}, .boresight = rotation_about(up, angle)},
+  return Platform{drive, Mount{.lever_arm = {0, 1.1, 2.1}, .boresight = rotation_about(axis::up, angle)},
                   Deflector{PolygonMirror{.lines_per_second = 60_Hz, .sweep = 180_deg},
                             Scanner{.pulse_rate = pulse_rate, .pulses = pulses, .laser = laser}}};
 }
@@ -46,8 +46,7 @@ int main(int argc, char** argv) {
 
     const Survey survey{both, SingleRay{}, scene, Receiver{.range_min = 1.5}, FullWaveform{}, line.seed};
     io::LasWriter las(line.output / "cloud.las");
-    io::ImageWriter image(line.output / "cloud.png",
-                                {.azimuth = 65_deg, .elevation = 42_deg, .colour_by = io::ColourBy::classification});
+    io::ImageWriter image(line.output / "cloud.png", {.azimuth = 65_deg, .elevation = 42_deg, .colour_by = io::ColourBy::classification});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
     las.close(), image.close();

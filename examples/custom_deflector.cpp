@@ -22,7 +22,7 @@ struct Rosette {
   Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     const double a = 2 * pi * t.phase(first), b = 2 * pi * t.phase(second);
     const double aside = bend * (std::cos(a) + std::cos(b)), upwards = bend * (std::sin(a) + std::sin(b));
-    return {rotation_about(up, -aside) * rotation_about(right, upwards), {}};
+    return {rotation_about(axis::up, -aside) * rotation_about(axis::right, upwards), {}};
   }
 };
 static_assert(Optic<Rosette>);
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
     const auto scene = wood::scene(line.seed);
     const Scanner scanner{.pulse_rate = 200_kHz, .pulses = 400'000};
     const Deflector deflector{Rosette{.bend = 11_deg, .first = 41.5_Hz, .second = -23_Hz}, scanner};
-    const Mount downwards{.boresight = rotation_about(right, -90_deg)};
+    const Mount downwards{.boresight = rotation_about(axis::right, -90_deg)};
     const Platform balloon{Tripod{.position = {0, 0, 80}}, downwards, deflector};
     const Survey survey{balloon, LatticeFootprint{19}, scene, Receiver{}, FullWaveform{}, line.seed};
 

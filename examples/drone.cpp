@@ -22,14 +22,14 @@ using namespace pulsecast::literals;
 
 /// From a glade up, over the wood in rows, and down to the glade again.
 std::vector<FlightPoint> route(const Vec3& glade, double height) {
-  std::vector<FlightPoint> points{{glade}, {glade + height * up}};
+  std::vector<FlightPoint> points{{glade}, {glade + height * axis::up}};
   bool north = true;
   for (const double row : {-24.0, -8.0, 8.0, 24.0}) {
     for (const double end : {-30.0, 30.0}) points.push_back({{row, north ? end : -end, glade.z + height}});
     north = !north;
   }
-  points.push_back({glade + height * up, 2});
-  points.push_back({glade + 1.0 * up});
+  points.push_back({glade + height * axis::up, 2});
+  points.push_back({glade + 1.0 * axis::up});
   return points;
 }
 
@@ -54,13 +54,12 @@ int main(int argc, char** argv) {
         .pulse_rate = pulse_rate, .pulses = static_cast<PulseIndex>(flight.duration().seconds() * pulse_rate), .laser = laser};
     const PolygonMirror mirror{.lines_per_second = 40_Hz, .sweep = 45_deg};
     // The instrument looks down, with its up to the right of the flight.
-    const Platform drone{flight, Mount{.lever_arm = {0, 0.1, -0.25}, .boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})},
+    const Platform drone{flight, Mount{.lever_arm = {0, 0.1, -0.25}, .boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                          Deflector{mirror, scanner}};
 
     const Survey survey{drone, RingFootprint{2}, scene, Receiver{}, FullWaveform{}, line.seed};
     io::LasWriter las(line.output / "cloud.las");
-    io::ImageWriter image(line.output / "cloud.png",
-                                {.azimuth = 20_deg, .elevation = 40_deg, .field_of_view = 20_deg, .point_size = 3});
+    io::ImageWriter image(line.output / "cloud.png", {.azimuth = 20_deg, .elevation = 40_deg, .field_of_view = 20_deg, .point_size = 3});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
     las.close(), image.close();

@@ -91,7 +91,7 @@ Forest plant(std::uint64_t seed, std::size_t count, double side, const std::vect
   wood::Dice dice(seed, 50);
   for (std::size_t tree = 1; tree <= count; ++tree) {
     const Vec2 at{dice.between(-0.49, 0.49) * side, dice.between(-0.49, 0.49) * side};
-    const Similarity placement{rotation_about(up, dice.between(0, 360_deg)), dice.between(0.7, 1.15), {at.x, at.y, ground(seed, at)}};
+    const Similarity placement{rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.7, 1.15), {at.x, at.y, ground(seed, at)}};
     const auto model = static_cast<std::size_t>(dice.between(0, static_cast<double>(models.size())));
     for (Forest::Part part : models[model]) {
       part.placement = placement, part.object = static_cast<ObjectId>(tree);
@@ -111,8 +111,7 @@ int main(int argc, char** argv) {
   return line.run(argc, argv, [&] {
     const auto tree = std::make_shared<const Mesh>(wood::broadleaf({}, wood::Dice(line.seed, 1)));
     scan_tree(tree, line.output / "tree.xyz", line.threads);
-    io::PointCloud cloud =
-        io::read_point_cloud(line.output / "tree.xyz", {.voxel_size = voxel_size, .normals = io::VoxelNormals::fitted});
+    io::PointCloud cloud = io::read_point_cloud(line.output / "tree.xyz", {.voxel_size = voxel_size, .normals = io::VoxelNormals::fitted});
 
     const auto foliage = std::make_shared<const Foliage>(crown(), TransmissiveVoxels{LeafAngles::plagiophile()});
     const auto solid = std::make_shared<const Solid>(std::move(cloud.voxels));
@@ -136,7 +135,7 @@ int main(int argc, char** argv) {
     const auto airplane = [&](const StraightLine& strip) {
       const auto pulses = static_cast<PulseIndex>(strip.duration().seconds() * pulse_rate);
       const Scanner scanner{.pulse_rate = pulse_rate, .pulses = pulses, .laser = {.peak_power = 1000_W, .divergence = 0.5_mrad}};
-      return Platform{strip, Mount{.boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})},
+      return Platform{strip, Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                       Deflector{OscillatingMirror{.cycles_per_second = 60_Hz, .half_angle = half_angle}, scanner}};
     };
     std::vector<decltype(airplane({}))> legs;
@@ -144,8 +143,7 @@ int main(int argc, char** argv) {
 
     const Survey survey{Legs{legs}, LatticeFootprint{19}, forest, Receiver{}, FullWaveform{}, line.seed};
     io::LasWriter las(line.output / "cloud.las");
-    io::ImageWriter image(line.output / "cloud.png",
-                                {.azimuth = 30_deg, .elevation = 25_deg, .field_of_view = 20_deg, .point_size = 2});
+    io::ImageWriter image(line.output / "cloud.png", {.azimuth = 30_deg, .elevation = 25_deg, .field_of_view = 20_deg, .point_size = 2});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
     las.close(), image.close();
 

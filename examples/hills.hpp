@@ -173,7 +173,7 @@ using Scene = pulsecast::Scene<Mesh>;
   const auto place = [&](const auto& shape, const auto& table, const Vec3& foot, double turn = 0, double scale = 1) {
     parts.push_back({shape,
                      table,
-                     {pulsecast::rotation_about(pulsecast::up, turn), scale, middle + foot},
+                     {pulsecast::rotation_about(pulsecast::axis::up, turn), scale, middle + foot},
                      static_cast<pulsecast::ObjectId>(parts.size())});
   };
   place(model(terrain.mesh()), built, {});

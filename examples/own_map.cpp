@@ -61,8 +61,9 @@ struct Cistern {
 
   static Hit describe(const Vec3& p, const Ray& ray, double range) noexcept {
     constexpr double h = 1e-4;
-    const Vec3 slope{distance(p + h * right) - distance(p - h * right), distance(p + h * forward) - distance(p - h * forward),
-                     distance(p + h * up) - distance(p - h * up)};
+    const Vec3 slope{distance(p + h * axis::right) - distance(p - h * axis::right),
+                     distance(p + h * axis::forward) - distance(p - h * axis::forward),
+                     distance(p + h * axis::up) - distance(p - h * axis::up)};
     const double cosine = std::fabs(dot(normalize(slope), ray.direction));
     const auto [to_water, to_column, to_vault] = distances(p);
     const Class what = to_water < 1e-3 ? water : to_column < 1e-3 ? column : vault;
@@ -82,11 +83,9 @@ int main(int argc, char** argv) {
     };
     const Legs stops(std::vector{stop_at(2), stop_at(10), stop_at(18), stop_at(26)});  // the robot drives along an aisle
     const Survey survey{stops, SingleRay{}, map, Receiver{}, FirstHit{}};
-    io::ImageWriter image(line.output / "own_map.png", {.azimuth = 0,
-                                                              .elevation = 2_deg,
-                                                              .field_of_view = 80_deg,
-                                                              .eye = Vec3(2, -3, 1.5),
-                                                              .colour_by = io::ColourBy::classification});
+    io::ImageWriter image(
+        line.output / "own_map.png",
+        {.azimuth = 0, .elevation = 2_deg, .field_of_view = 80_deg, .eye = Vec3(2, -3, 1.5), .colour_by = io::ColourBy::classification});
     print(run(survey, {.threads = line.threads, .progress = ProgressLine{}}, image));
     image.close();
   });

@@ -40,7 +40,7 @@ struct Drive {
   Vec3 start;    ///< [m]
   double speed;  ///< to the north [m/s]
 
-  Pose<frame::Body, frame::World> at(Tick t) const noexcept { return {no_rotation, start + speed * t.seconds() * forward}; }
+  Pose<frame::Body, frame::World> at(Tick t) const noexcept { return {no_rotation, start + speed * t.seconds() * axis::forward}; }
 };
 static_assert(Trajectory<Drive>);
 
@@ -74,11 +74,11 @@ int main(int argc, char** argv) {
     const auto map = street::scene(line.seed);
     const auto sensor = spinning_sensor(beams, 10, 1024);
     io::ImageWriter image(line.output / "robot.png", {.azimuth = 0,
-                                                            .elevation = 8_deg,
-                                                            .field_of_view = 70_deg,
-                                                            .eye = Vec3(0.5, -70, 8),
-                                                            .colour_by = io::ColourBy::classification,
-                                                            .point_size = 3});
+                                                      .elevation = 8_deg,
+                                                      .field_of_view = 70_deg,
+                                                      .eye = Vec3(0.5, -70, 8),
+                                                      .colour_by = io::ColourBy::classification,
+                                                      .point_size = 3});
     Scan scan;
     std::size_t points = 0;
     std::chrono::duration<double> spent{};

@@ -66,7 +66,7 @@ class Picture {
   void close() { image_.close(); }
 
  private:
-  static Mount looking_down() { return {.boresight = rotation_about(up, -90_deg) * rotation_about(right, -90_deg)}; }
+  static Mount looking_down() { return {.boresight = rotation_about(axis::up, -90_deg) * rotation_about(axis::right, -90_deg)}; }
 
   Picture& scan(const WorldSource auto& device) {
     const PaintedFloor floor;
@@ -120,14 +120,14 @@ void draw_curves(const CommandLine& line) {
 void draw_heads(const CommandLine& line) {
   const Deflector circling{RotatingHead{.rate = 37 * 360_deg, .axis = {0, std::cos(10_deg), std::sin(10_deg)}},
                            Deflector{FixedBeam{aimed_at(0, 19_deg)}, Scanner{.pulse_rate = 12_kHz, .pulses = 12'000}}};
-  const Deflector circling_in_a_circle{RotatingHead{.rate = -3 * 360_deg, .axis = forward}, circling};
+  const Deflector circling_in_a_circle{RotatingHead{.rate = -3 * 360_deg, .axis = axis::forward}, circling};
   Picture(line, "rotating_head").balloon(-45, circling).balloon(45, circling_in_a_circle).close();
 
   std::vector<Deflector<FixedBeam, Scanner>> beams;  // sixteen, one after the other
   for (int k = 0; k < 16; ++k)
     beams.emplace_back(FixedBeam{aimed_at(0, radians(-25 + k))}, Scanner{.pulse_rate = 5_kHz, .pulses = 500, .delay = k * 10_us});
   const Deflector spinning{RotatingHead{.rate = -10 * 360_deg}, Channels{beams}};
-  const Deflector tilted{RotatingHead{.rate = 0, .start = -4_deg, .axis = right}, spinning};
+  const Deflector tilted{RotatingHead{.rate = 0, .start = -4_deg, .axis = axis::right}, spinning};
   Picture(line, "channels").tripod(-14, spinning).tripod(20, tilted).close();
 }
 

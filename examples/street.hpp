@@ -99,7 +99,8 @@ inline void add_upright(MeshData& mesh, double left, double right, double y, dou
 inline void add_tube(MeshData& mesh, const Vec3& from, const Vec3& to, double radius_from, double radius_to, int sides,
                      MaterialIndex material) {
   const Vec3 along = normalize(to - from);
-  const Vec3 across = normalize(cross(along, std::fabs(along.z) < 0.9 ? pulsecast::up : pulsecast::right)), other = cross(along, across);
+  const Vec3 across = normalize(cross(along, std::fabs(along.z) < 0.9 ? pulsecast::axis::up : pulsecast::axis::right)),
+             other = cross(along, across);
   const auto rim = [&](int k) { return std::cos(2 * pi * k / sides) * across + std::sin(2 * pi * k / sides) * other; };
   for (int k = 0; k < sides; ++k) {
     const Vec3 a = rim(k), b = rim(k + 1);
@@ -173,7 +174,7 @@ struct House {
     add_face(mesh, {{0, eave, eaves - drop}, {width, eave, eaves - drop}, {width, depth / 2, ridge}, {0, depth / 2, ridge}}, tiles);
   for (int k = 0; k < 4; ++k) {  // chimney
     const auto corner = [&](int c) { return Vec3{width - 1.4 + (c % 4 == 1 || c % 4 == 2 ? 0.7 : 0), 5 + (c % 4 < 2 ? 0 : 0.7), 0}; };
-    const Vec3 low = eaves * pulsecast::up, high = (ridge + 0.9) * pulsecast::up;
+    const Vec3 low = eaves * pulsecast::axis::up, high = (ridge + 0.9) * pulsecast::axis::up;
     add_face(mesh, {corner(k) + low, corner(k + 1) + low, corner(k + 1) + high, corner(k) + high}, brick);
   }
   return mesh;
@@ -261,7 +262,7 @@ using Scene = pulsecast::Scene<Mesh>;
   std::vector<Scene::Part> parts;
   const auto place = [&](const std::shared_ptr<const Mesh>& shape, const Vec3& at, double turn) {
     parts.push_back(
-        {shape, table, {pulsecast::rotation_about(pulsecast::up, turn), 1, at}, static_cast<pulsecast::ObjectId>(parts.size())});
+        {shape, table, {pulsecast::rotation_about(pulsecast::axis::up, turn), 1, at}, static_cast<pulsecast::ObjectId>(parts.size())});
   };
   place(model(ground()), {}, 0);
 

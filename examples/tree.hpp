@@ -48,7 +48,9 @@ inline void add_triangle(MeshData& mesh, const Vec3& a, const Vec3& b, const Vec
 }
 
 /// Any direction square to the given one.
-inline Vec3 square_to(const Vec3& d) noexcept { return normalize(cross(d, std::fabs(d.z) < 0.9 ? pulsecast::up : pulsecast::right)); }
+inline Vec3 square_to(const Vec3& d) noexcept {
+  return normalize(cross(d, std::fabs(d.z) < 0.9 ? pulsecast::axis::up : pulsecast::axis::right));
+}
 
 /// A stem, limb or twig: a curve that grows thinner.
 struct Axis {
@@ -88,7 +90,7 @@ struct Growth {
 inline Axis grow(Dice& dice, Vec3 foot, Vec3 direction, const Growth& growth) {
   Axis axis{{foot}, {growth.radius}};
   for (int k = 1; k <= growth.steps; ++k) {
-    direction = normalize(direction + dice.vector(growth.wander) + growth.lift * pulsecast::up);
+    direction = normalize(direction + dice.vector(growth.wander) + growth.lift * pulsecast::axis::up);
     foot += direction * (growth.length / growth.steps);
     axis.points.push_back(foot);
     axis.radii.push_back(growth.radius * std::pow(1.04 - static_cast<double>(k) / growth.steps, 0.75));
@@ -158,8 +160,8 @@ inline void add_twig(MeshData& mesh, Dice& dice, const Broadleaf& kind, const Ve
   add_tube(mesh, twig, 3, kind.stem);
   for (int k = 0; k < 12; ++k) {
     const double share = dice.between(0.15, 1), fork = dice.between(0.5, 1.2);
-    const Vec3 midrib = normalize(branching(twig.tangent(share), fork, golden_angle * k) + dice.vector(0.3) - 0.3 * pulsecast::up);
-    const Vec3 side = normalize(cross(midrib, pulsecast::up + dice.vector(0.5)));
+    const Vec3 midrib = normalize(branching(twig.tangent(share), fork, golden_angle * k) + dice.vector(0.3) - 0.3 * pulsecast::axis::up);
+    const Vec3 side = normalize(cross(midrib, pulsecast::axis::up + dice.vector(0.5)));
     const double size = dice.about(kind.leaf_length, 0.3);
     add_leaf(mesh, twig.at(share), size * midrib, 0.3 * size * side, kind.leaves);
   }
@@ -167,7 +169,7 @@ inline void add_twig(MeshData& mesh, Dice& dice, const Broadleaf& kind, const Ve
 
 [[nodiscard]] inline MeshData broadleaf(const Broadleaf& kind, Dice dice) {
   MeshData mesh;
-  Axis stem = grow(dice, {0, 0, -0.4}, pulsecast::up,
+  Axis stem = grow(dice, {0, 0, -0.4}, pulsecast::axis::up,
                    {.length = kind.height * 0.95, .radius = kind.girth, .wander = 0.06, .lift = 0.08, .steps = 16});
   stem.radii[0] *= 1.8, stem.radii[1] *= 1.1;
   add_tube(mesh, stem, 12, kind.stem);
@@ -211,8 +213,8 @@ struct Conifer {
 
 [[nodiscard]] inline MeshData conifer(const Conifer& kind, Dice dice) {
   MeshData mesh;
-  Axis stem =
-      grow(dice, {0, 0, -0.4}, pulsecast::up, {.length = kind.height, .radius = kind.girth, .wander = 0.015, .lift = 0.1, .steps = 16});
+  Axis stem = grow(dice, {0, 0, -0.4}, pulsecast::axis::up,
+                   {.length = kind.height, .radius = kind.girth, .wander = 0.015, .lift = 0.1, .steps = 16});
   stem.radii[0] *= 1.5;
   add_tube(mesh, stem, 10, bark);
 
@@ -225,17 +227,17 @@ struct Conifer {
       const double angle = 1.75 - 0.9 * up_crown + dice.between(-0.15, 0.15);  // from hanging below to rising at the top
       const Vec3 foot = stem.at(share + dice.between(-0.3, 0.3) * (1 - kind.crown_base) / kind.whorls);
       const Axis branch =
-          grow(dice, foot, branching(pulsecast::up, angle, turn + 2 * pulsecast::pi * b / kind.branches + dice.between(-0.2, 0.2)),
+          grow(dice, foot, branching(pulsecast::axis::up, angle, turn + 2 * pulsecast::pi * b / kind.branches + dice.between(-0.2, 0.2)),
                {.length = reach, .radius = 0.012 * reach + 0.004, .wander = 0.05, .lift = 0.07, .steps = 4});
       add_tube(mesh, branch, 4, bark);
       const int sprays = 3 + static_cast<int>(reach * 9);
       for (int k = 0; k < sprays; ++k) {  // to the left and right in turn, and hanging
         const double out = 0.15 + 0.85 * (k + 0.5) / sprays;
-        const Vec3 along = branch.tangent(out), across = normalize(cross(along, pulsecast::up)) * (k % 2 == 0 ? 1.0 : -1.0);
+        const Vec3 along = branch.tangent(out), across = normalize(cross(along, pulsecast::axis::up)) * (k % 2 == 0 ? 1.0 : -1.0);
         const double size = (0.2 + 0.42 * reach * (1.05 - out)) * dice.between(0.7, 1.1);
-        const Vec3 midrib = size * normalize(0.75 * along + across - dice.between(0.25, 0.6) * pulsecast::up);
+        const Vec3 midrib = size * normalize(0.75 * along + across - dice.between(0.25, 0.6) * pulsecast::axis::up);
         for (const double roll : {0.1, 1.4}) {
-          const Vec3 side = normalize(std::cos(roll) * cross(midrib, pulsecast::up) + std::sin(roll) * size * pulsecast::up);
+          const Vec3 side = normalize(std::cos(roll) * cross(midrib, pulsecast::axis::up) + std::sin(roll) * size * pulsecast::axis::up);
           add_leaf(mesh, branch.at(out), midrib, (0.03 + 0.05 * size) * side, needle);
         }
       }
@@ -249,12 +251,12 @@ struct Conifer {
   MeshData mesh;
   for (int i = 0; i < 11; ++i) {
     const double reach = dice.about(0.75, 0.25);
-    const Axis frond = grow(dice, {0, 0, 0}, branching(pulsecast::up, dice.between(0.3, 0.7), golden_angle * i),
+    const Axis frond = grow(dice, {0, 0, 0}, branching(pulsecast::axis::up, dice.between(0.3, 0.7), golden_angle * i),
                             {.length = reach, .radius = 0.006, .wander = 0.05, .lift = -0.28, .steps = 6});
     add_tube(mesh, frond, 3, fern);
     for (int k = 0; k < 24; ++k) {
       const double out = 0.15 + 0.85 * k / 24.0;
-      const Vec3 along = frond.tangent(out), across = normalize(cross(along, pulsecast::up)) * (k % 2 == 0 ? 1.0 : -1.0);
+      const Vec3 along = frond.tangent(out), across = normalize(cross(along, pulsecast::axis::up)) * (k % 2 == 0 ? 1.0 : -1.0);
       const double size = 0.34 * reach * (1.05 - out) + 0.02;
       add_leaf(mesh, frond.at(out), size * normalize(across + 0.5 * along), 0.12 * size * along, fern);
     }

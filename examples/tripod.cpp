@@ -61,7 +61,8 @@ std::vector<Vec3> places_around(const Box& box) {
 
 /// Along the path to the hut in the wood.
 io::ImageSettings view_of_hut(std::uint64_t seed) {
-  const Vec3 eye = wood::Terrain(seed).on({-12.6, -13.2}) + 3.2 * up, sight = wood::Terrain(seed).on(wood::hut_place) + 2.5 * up - eye;
+  const Vec3 eye = wood::Terrain(seed).on({-12.6, -13.2}) + 3.2 * axis::up,
+             sight = wood::Terrain(seed).on(wood::hut_place) + 2.5 * axis::up - eye;
   return {.azimuth = std::atan2(sight.x - 1, sight.y),
           .elevation = 5_deg,
           .field_of_view = 75_deg,

@@ -178,8 +178,10 @@ class Planting {
   Planting(std::uint64_t seed, const Terrain& terrain) : seed_(seed), terrain_(terrain) {}
 
   void place(std::shared_ptr<const Mesh> model, const Vec2& at, const Rotation& rotation, double scale = 1, double sink = 0) {
-    parts_.push_back(
-        {model, materials_, {rotation, scale, terrain_.on(at) - sink * pulsecast::up}, static_cast<pulsecast::ObjectId>(parts_.size())});
+    parts_.push_back({model,
+                      materials_,
+                      {rotation, scale, terrain_.on(at) - sink * pulsecast::axis::up},
+                      static_cast<pulsecast::ObjectId>(parts_.size())});
   }
 
   /// Tries random places that are `apart` from each other [m] and where `free(place)` allows it; `choose(place, chance)` gives the model.
@@ -193,7 +195,7 @@ class Planting {
       if (std::ranges::any_of(taken, [&](const Vec2& other) { return length(other - at) < apart; }) || !free(at)) continue;
       taken.push_back(at);
       const Rotation leaning = pulsecast::rotation_about({std::cos(turn), std::sin(turn), 0}, lean);
-      place(choose(at, chance), at, leaning * pulsecast::rotation_about(pulsecast::up, 3 * turn), scale, sink);
+      place(choose(at, chance), at, leaning * pulsecast::rotation_about(pulsecast::axis::up, 3 * turn), scale, sink);
     }
   }
 
@@ -240,7 +242,7 @@ class Planting {
   const Terrain terrain(seed);
   Planting planting(seed, terrain);
   planting.place(model(terrain.mesh()), {0, 0}, pulsecast::no_rotation, 1, terrain.height({0, 0}));
-  planting.place(model(hut()), hut_place, pulsecast::rotation_about(pulsecast::up, -0.45));
+  planting.place(model(hut()), hut_place, pulsecast::rotation_about(pulsecast::axis::up, -0.45));
 
   const auto clear = [](const Vec2& at, double of_hut, double of_tripods) {
     return length(at - hut_place) > of_hut &&

@@ -182,14 +182,14 @@ static_assert(!Accelerator<OrderUnknown>, "it does not tell in which order its p
 struct TraversalMayThrow : LeastAccelerator {
   using LeastAccelerator::LeastAccelerator;
   template <class Test>
-  void closest(const RayBundle&, const Test&, Nearest&) const {}
+  void closest(const RayBundle&, const Test&, ClosestHits&) const {}
 };
 static_assert(!Accelerator<TraversalMayThrow>, "closest() is not noexcept");
 
 struct TraversalChanges : LeastAccelerator {
   using LeastAccelerator::LeastAccelerator;
   template <class Test>
-  void closest(const RayBundle&, const Test&, Nearest&) noexcept {}
+  void closest(const RayBundle&, const Test&, ClosestHits&) noexcept {}
 };
 static_assert(!Accelerator<TraversalChanges>, "closest() is not const");
 
@@ -197,7 +197,7 @@ struct TestsOneByOne : LeastAccelerator {
   using LeastAccelerator::LeastAccelerator;
   template <class Test>
   requires std::invocable<const Test&, PrimitiveIndex>
-  void closest(const RayBundle&, const Test&, Nearest&) const noexcept {}
+  void closest(const RayBundle&, const Test&, ClosestHits&) const noexcept {}
 };
 static_assert(!Accelerator<TestsOneByOne>, "it hands over single primitives, not spans of them");
 
@@ -209,12 +209,12 @@ struct Unbounded : LeastGeometry {
 static_assert(!Geometry<Unbounded>, "it has no bounds");
 
 struct GeometryMayThrow : LeastGeometry {
-  void closest(const RayBundle&, Nearest&) const {}
+  void closest(const RayBundle&, ClosestHits&) const {}
 };
 static_assert(!Geometry<GeometryMayThrow>, "closest() is not noexcept");
 
 struct GeometryChanges : LeastGeometry {
-  void closest(const RayBundle&, Nearest&) noexcept {}
+  void closest(const RayBundle&, ClosestHits&) noexcept {}
 };
 static_assert(!Geometry<GeometryChanges>, "closest() is not const");
 
@@ -229,7 +229,7 @@ struct MaterialsUncounted : LeastGeometry {
 static_assert(!Geometry<MaterialsUncounted>, "it does not tell how many materials it needs");
 
 struct NormalOnly : LeastGeometry {
-  Vec3 surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return up; }
+  Vec3 surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return axis::up; }
 };
 static_assert(!Geometry<NormalOnly>, "surface() returns a normal, not a surface");
 

@@ -96,7 +96,7 @@ struct Rain {
       for (PulseIndex seen = *asked; seen < i + 1 && !asked->compare_exchange_weak(seen, i + 1);) continue;
     Pulse<frame::World> p;
     p.index = i, p.tick = Tick::of(i, 1e5);
-    p.pose = {rotation_about(right, -90_deg), {0.001 * static_cast<double>(i), 0, 10}};
+    p.pose = {rotation_about(axis::right, -90_deg), {0.001 * static_cast<double>(i), 0, 10}};
     return p;
   }
 };
@@ -133,7 +133,7 @@ TEST_CASE("a run gives the same to the last bit on 1, 2, 3 and 7 threads, in pul
 TEST_CASE("a run with every error switched on gives the same to the last bit on 1, 2 and 7 threads, and with an other seed not") {
   const auto survey = [](std::uint64_t seed) {
     const Platform flight{
-        StraightLine{.from = {-30, 0, 50}, .to = {30, 5, 50}, .speed = 60}, Mount{.boresight = rotation_about(right, -90_deg)},
+        StraightLine{.from = {-30, 0, 50}, .to = {30, 5, 50}, .speed = 60}, Mount{.boresight = rotation_about(axis::right, -90_deg)},
         Deflector{PolygonMirror{.lines_per_second = 20, .sweep = 40_deg}, Scanner{.pulse_rate = 10_kHz, .pulses = 10'000}}};
     const PoseErrors errors{.position_noise = 2_cm,
                             .attitude_noise = 0.1_mrad,
@@ -142,10 +142,10 @@ TEST_CASE("a run with every error switched on gives the same to the last bit on 
                             .drift_time = 0.3_s,
                             .angular_jitter = 0.05_mrad,
                             .lever_arm_error = {0.01, 0, 0},
-                            .boresight_error = rotation_about(up, 0.3_mrad),
+                            .boresight_error = rotation_about(axis::up, 0.3_mrad),
                             .seed = seed};
     const Receiver receiver{.range_errors = {.bias = 1_cm, .deviation = 5_mm, .deviation_per_metre = 1e-5, .grows_with_incidence = true}};
-    return Survey{Legs{std::vector{Misreported{flight, errors}}}, RingFootprint{}, steps, receiver, waveforms, seed};
+    return Survey{Legs{std::vector{WithPoseErrors{flight, errors}}}, RingFootprint{}, steps, receiver, waveforms, seed};
   };
   std::string first;
   for (const unsigned threads : {1U, 2U, 7U}) {
@@ -228,18 +228,18 @@ TEST_CASE("a run accounts for all the energy that was sent, the same on any numb
   const double each = Laser{}.peak_power * Laser{}.pulse_length;
   CHECK(one.energy == support::relative(each * static_cast<double>(one.pulses()), 1e-12));
   double sum = 0;
-  for (const double spent : one.spent) sum += spent;
+  for (const double spent : one.energy_by_fate) sum += spent;
   CHECK(sum == support::relative(one.energy, 1e-12));
   CHECK(one.share(Fate::blocked) == 0);
   CHECK(one.share(Fate::returned) > 0.3);
   CHECK(one.share(Fate::missed) > 0.1);
   CHECK(one.energy == three.energy);
-  CHECK(one.spent == three.spent);
+  CHECK(one.energy_by_fate == three.energy_by_fate);
   CHECK(run(survey, {.threads = 1, .end = 0}).share(Fate::returned) == 0);
 }
 
 TEST_CASE("a run hands on the subrays of a footprint that is recorded, in batches that stay small") {
-  const auto recorded = Survey{two_legs(), Recorded{RingFootprint{7}}, steps, Receiver{}, waveforms};
+  const auto recorded = Survey{two_legs(), WithSubrayRecord{RingFootprint{7}}, steps, Receiver{}, waveforms};
   const auto plain = Survey{two_legs(), RingFootprint{7}, steps, Receiver{}, waveforms};
   auto workspace = recorded.workspace();
   support::LawfulSink sink, plain_sink;
@@ -284,12 +284,12 @@ TEST_CASE("no more threads are started than there are chunks of work") {
     CAPTURE(pulses);
     CHECK(allocations_of(64, pulses) == allocations_of(1, pulses));
   }
-  CHECK(allocations_of(most_threads, 2049) < 100);
+  CHECK(allocations_of(max_threads, 2049) < 100);
 }
 
 TEST_CASE("more threads than a machine can have are refused, by name") {
-  CHECK_THROWS_WITH_AS(run(rain(), {.threads = most_threads + 1}), "RunOptions::threads is 1025, but must be from 0 to 1024", SettingError);
-  CHECK(run(rain(1), {.threads = most_threads}).complete);
+  CHECK_THROWS_WITH_AS(run(rain(), {.threads = max_threads + 1}), "RunOptions::threads is 1025, but must be from 0 to 1024", SettingError);
+  CHECK(run(rain(1), {.threads = max_threads}).complete);
 }
 
 TEST_CASE("progress ascends, one call at a time, and reaches the total") {
@@ -420,7 +420,7 @@ TEST_CASE("workers run ahead of the sink by some megabytes, so that memory is bo
 TEST_CASE("workers run ahead of the sink by two batches each and two if batches are large") {
   const unsigned threads = 3;
   std::atomic<PulseIndex> asked = 0;
-  const Survey survey{Rain{8000, &asked}, Recorded{RingFootprint{7}}, steps, Receiver{}, FirstHit{}};
+  const Survey survey{Rain{8000, &asked}, WithSubrayRecord{RingFootprint{7}}, steps, Receiver{}, FirstHit{}};
   const Ahead ahead = ahead_of_a_slow_sink(survey, threads, asked);
   CHECK(ahead.batch_bytes > 3 << 20);
   CHECK(ahead.batches > 1);

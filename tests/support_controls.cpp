@@ -34,7 +34,7 @@ using BeamPose = Pose<frame::Beam, frame::Instrument>;
 
 struct Stepping {  // remembers how often it was asked
   mutable int asked = 0;
-  BeamPose at(Tick) const noexcept { return {rotation_about(up, 0.1 * asked++), {}}; }
+  BeamPose at(Tick) const noexcept { return {rotation_about(axis::up, 0.1 * asked++), {}}; }
 };
 
 struct Wakeful {  // another answer when asked for an earlier time than before
@@ -147,8 +147,8 @@ struct Sample {
   std::vector<Shot> shots;
   double interval = 0;
   explicit Sample(PulseIndex first) {
-    shots.push_back({.index = first, .direction = forward, .fate = Fate::returned, .first_echo = 0, .echoes = 2});
-    shots.push_back({.index = first + 1, .direction = forward, .fate = Fate::returned, .first_echo = 2, .echoes = 1});
+    shots.push_back({.index = first, .direction = axis::forward, .fate = Fate::returned, .first_echo = 0, .echoes = 2});
+    shots.push_back({.index = first + 1, .direction = axis::forward, .fate = Fate::returned, .first_echo = 2, .echoes = 1});
   }
   EchoBatch batch() const { return {shots, echoes, samples, interval}; }
 };
@@ -210,7 +210,7 @@ TEST_CASE("a checksum of a batch sees every field of shots, echoes and samples")
   after([](Shot& s, Echo&) { s.index = 99; });
   after([](Shot& s, Echo&) { s.tick.fraction = 0.5; });
   after([](Shot& s, Echo&) { s.origin.z = 1; });
-  after([](Shot& s, Echo&) { s.direction = up; });
+  after([](Shot& s, Echo&) { s.direction = axis::up; });
   after([](Shot& s, Echo&) { s.scan_angle = 1; });
   after([](Shot& s, Echo&) { s.leg = 1; });
   after([](Shot& s, Echo&) { s.channel = 1; });
@@ -372,7 +372,7 @@ TEST_CASE("generated cases keep to what was asked for") {
     const std::uint64_t w = any.whole(6);
     REQUIRE(w < 6);
     ++wholes[w];
-    const Vec3 u = any.unit(), t = any.rotation() * forward;
+    const Vec3 u = any.unit(), t = any.rotation() * axis::forward;
     REQUIRE(std::fabs(length(u) - 1) < 1e-14);
     mean += u / 6000.0, turned += t / 6000.0;
     const Box box = any.box(10, 0.1, 2);

@@ -58,7 +58,7 @@ auto all_around(const Vec3& position, PulseIndex pulses) {
 
 /// A plane that answers for single rays.
 struct Plane {
-  Vec3 point{}, normal = up;
+  Vec3 point{}, normal = axis::up;
   double reflectance = 0.5;
   std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
     const double along = dot(ray.direction, normal);
@@ -125,7 +125,7 @@ TEST_CASE("a plane scanned from a tripod gives points on the plane within 0.1 mm
     CHECK(worst < tolerance);
   };
   for (int k = 0; k < 5; ++k) {
-    const Plane plane{utm + any.point(1), normalize(any.unit() + 3.0 * up)};
+    const Plane plane{utm + any.point(1), normalize(any.unit() + 3.0 * axis::up)};
     const auto source = all_around(utm + Vec3{0, 0, 1}, 3000);
     check(Survey{source, SingleRay{}, plane, clear_air, FirstHit{}}, plane, 1e-7);
     check(Survey{source, SingleRay{}, plane, clear_air, FullWaveform{}}, plane, 1e-4);
@@ -136,9 +136,10 @@ TEST_CASE("a plane of triangles scanned from a tripod gives points on the plane 
   using Mesh = TriangleMesh<>;
   const double reach = 1000;
   const Vec3 corner = utm - Vec3{reach, reach, 0};
-  const MeshData data{{corner, corner + 2 * reach * right, corner + 2 * reach * (right + forward), corner + 2 * reach * forward},
-                      {{0, 1, 2}, {0, 2, 3}},
-                      {}};
+  const MeshData data{
+      {corner, corner + 2 * reach * axis::right, corner + 2 * reach * (axis::right + axis::forward), corner + 2 * reach * axis::forward},
+      {{0, 1, 2}, {0, 2, 3}},
+      {}};
   const Scene<Mesh> scene({{std::make_shared<const Mesh>(data), material_table(), {}, 3}});
   const Survey survey{all_around(utm, 3000), SingleRay{}, scene, clear_air, FullWaveform{}};
   auto workspace = survey.workspace();
@@ -203,7 +204,7 @@ TEST_CASE("pulses may be asked in any order, with a workspace of any history") {
 TEST_CASE("the amplitude of an extended plate met squarely is that of the radar equation, and falls with the square of the range") {
   for (const double range : {10.0, 20.0, 40.0, 80.0}) {
     CAPTURE(range);
-    const Plane plane{{0, range, 0}, forward, 0.4};
+    const Plane plane{{0, range, 0}, axis::forward, 0.4};
     const auto source = still({}, no_rotation);
     const auto amplitude = [&](const auto& footprint, const auto& detector) {
       const Survey survey{source, footprint, plane, clear_air, detector};
@@ -263,16 +264,16 @@ TEST_CASE("the footprint lies right and up as seen along the beam, and turns wit
     auto workspace = survey.workspace();
     return survey(0, workspace).shot.fate == Fate::returned;
   };
-  CHECK(meets({1, 0}, no_rotation, right));
-  CHECK_FALSE(meets({-1, 0}, no_rotation, right));
-  CHECK(meets({0, 1}, no_rotation, up));
-  CHECK_FALSE(meets({0, -1}, no_rotation, up));
-  CHECK_FALSE(meets({0, 1}, no_rotation, right));
+  CHECK(meets({1, 0}, no_rotation, axis::right));
+  CHECK_FALSE(meets({-1, 0}, no_rotation, axis::right));
+  CHECK(meets({0, 1}, no_rotation, axis::up));
+  CHECK_FALSE(meets({0, -1}, no_rotation, axis::up));
+  CHECK_FALSE(meets({0, 1}, no_rotation, axis::right));
   // the beam points down: the footprint's up is forward then
-  const Rotation down = rotation_about(right, -90_deg);
-  CHECK(meets({0, 1}, down, forward));
-  CHECK_FALSE(meets({0, -1}, down, forward));
-  CHECK(meets({1, 0}, down, right));
+  const Rotation down = rotation_about(axis::right, -90_deg);
+  CHECK(meets({0, 1}, down, axis::forward));
+  CHECK_FALSE(meets({0, -1}, down, axis::forward));
+  CHECK(meets({1, 0}, down, axis::right));
 }
 
 TEST_CASE("every pulse has one fate") {
@@ -280,7 +281,7 @@ TEST_CASE("every pulse has one fate") {
     Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return {}; }
     bool open(Tick t) const noexcept { return t.second % 2 == 0; }
   };
-  const Plane near{{0, 10, 0}, forward}, behind{{0, -10, 0}, forward};
+  const Plane near{{0, 10, 0}, axis::forward}, behind{{0, -10, 0}, axis::forward};
   const Platform source{Tripod{}, Mount{}, Deflector{HalfMirror{}, Scanner{.pulse_rate = 1, .pulses = 2}}};
   const auto fate = [&](const Plane& plane, const Receiver& receiver, const FirstHit& detector, PulseIndex i = 0) {
     const Survey survey{source, RingFootprint{}, plane, receiver, detector};
@@ -296,11 +297,12 @@ TEST_CASE("every pulse has one fate") {
   CHECK(fate(near, Receiver{.range_min = 11}, FirstHit{}) == Fate::out_of_range);
   CHECK(fate(near, Receiver{.range_max = 9}, FirstHit{}) == Fate::out_of_range);
   CHECK(fate(near, clear_air, FirstHit{.threshold = 1}) == Fate::below_threshold);
-  const Plane black{{0, 10, 0}, forward, 0};
+  const Plane black{{0, 10, 0}, axis::forward, 0};
   CHECK(fate(black, clear_air, FirstHit{}) == Fate::absorbed);
   CHECK(fate(black, Receiver{.range_max = 9}, FirstHit{}) == Fate::out_of_range);
   CHECK(fate(near, Receiver{.visibility = 10}, FirstHit{}) == Fate::returned);
-  CHECK(fate({{0, 2000, 0}, forward}, Receiver{.visibility = 10}, FirstHit{}) == Fate::absorbed);  // more decades of haze than a double has
+  CHECK(fate({{0, 2000, 0}, axis::forward}, Receiver{.visibility = 10}, FirstHit{}) ==
+        Fate::absorbed);  // more decades of haze than a double has
 }
 
 TEST_CASE("the energy of a pulse is spent to the last bit, each subray's by what became of it") {
@@ -336,11 +338,11 @@ TEST_CASE("the energy of a pulse is spent to the last bit, each subray's by what
 
 TEST_CASE("subrays that are recorded lie where they met the plane, with the power that they brought back") {
   const Plane plane{{0, 10, 0}, normalize(Vec3{0.3, 1, 0}), 0.5};
-  const Rotation turn = rotation_about(up, 10_deg);
+  const Rotation turn = rotation_about(axis::up, 10_deg);
   const auto check = [&](const Laser& laser) {
     const auto source = still(Vec3{1, 2, 3}, turn, 1, laser);
     const Survey plain{source, RingFootprint{6}, plane, clear_air, FullWaveform{}};
-    const Survey survey{source, Recorded{RingFootprint{6}}, plane, clear_air, FullWaveform{}};
+    const Survey survey{source, WithSubrayRecord{RingFootprint{6}}, plane, clear_air, FullWaveform{}};
     auto w = survey.workspace();
     auto plain_workspace = plain.workspace();
     const Outcome o = survey(0, w), without = plain(0, plain_workspace);
@@ -359,8 +361,8 @@ TEST_CASE("subrays that are recorded lie where they met the plane, with the powe
   };
   check(Laser{.divergence = 2_mrad});
   check(Laser{.divergence = 2_mrad, .waist_diameter = 8_mm, .waist_range = 4});
-  const Plane behind{{0, -10, 0}, forward};
-  const Survey missing{still({}, no_rotation), Recorded{RingFootprint{2}}, behind, clear_air, FirstHit{}};
+  const Plane behind{{0, -10, 0}, axis::forward};
+  const Survey missing{still({}, no_rotation), WithSubrayRecord{RingFootprint{2}}, behind, clear_air, FirstHit{}};
   auto w = missing.workspace();
   const Outcome o = missing(0, w);
   REQUIRE(o.subrays.size() == 7);
@@ -485,7 +487,7 @@ TEST_CASE("the footprint follows the waist of each pulse") {
     }
   };
   const Plate plate;
-  const Survey survey{Waists{}, Recorded{RingFootprint{4}}, plate, clear_air, FirstHit{}};
+  const Survey survey{Waists{}, WithSubrayRecord{RingFootprint{4}}, plate, clear_air, FirstHit{}};
   auto workspace = survey.workspace();
   for (const PulseIndex i : {0U, 1U, 2U, 0U, 2U, 1U, 3U, 4U, 5U}) {
     CAPTURE(i);
@@ -526,7 +528,7 @@ TEST_CASE("a survey refuses a footprint of one's own that is not a whole beam") 
 TEST_CASE("ranges err as the receiver is told, each echo on its own, and the same again") {
   const Plane plane{.point = {0, 0, -100}};
   const Receiver noisy{.range_errors = {.bias = 0.5, .deviation = 0.02}};
-  const auto source = still({0, 0, 0}, rotation_about(right, -90_deg), 20'000);
+  const auto source = still({0, 0, 0}, rotation_about(axis::right, -90_deg), 20'000);
   const Survey survey{source, SingleRay{}, plane, noisy, FirstHit{}, 5}, again = survey;
   const Survey other{source, SingleRay{}, plane, noisy, FirstHit{}, 6};
   auto w = survey.workspace();
@@ -590,7 +592,7 @@ TEST_CASE("the true pose casts the ray, and the reported one writes the point") 
     [[nodiscard]] Tick duration() const noexcept { return {1, 0}; }
     [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex) const noexcept {
       Pulse<frame::World> p;
-      p.pose = {rotation_about(right, -90_deg), {0, 0, 10}};
+      p.pose = {rotation_about(axis::right, -90_deg), {0, 0, 10}};
       p.reported = Pose<frame::Beam, frame::World>{no_rotation, {1, 2, 3}};
       return p;
     }

@@ -40,7 +40,8 @@ namespace tradeoff {
   for (std::size_t i = 0; i < count; ++i) {
     const auto anywhere = [&](double z) { return Vec3{dice.between(box.min.x, box.max.x), dice.between(box.min.y, box.max.y), z}; };
     const Vec3 place = anywhere(box.max.z + 1500), towards = normalize(anywhere(box.centre().z) - place);
-    const Rotation rotation = rotation_about(up, std::atan2(-towards.x, towards.y)) * rotation_about(right, std::asin(towards.z));
+    const Rotation rotation =
+        rotation_about(axis::up, std::atan2(-towards.x, towards.y)) * rotation_about(axis::right, std::asin(towards.z));
     RayBundle rays;
     rays.origin = place, rays.size = footprint.size();
     for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, rotation * subray_direction(footprint.offset(j), 0.3e-3));
@@ -63,7 +64,7 @@ inline void measure_precision(bench::Report& report) {
     std::vector<double> differences;
     std::size_t others = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const bool met = a[i].id != Nearest::none, as_well = b[i].id != Nearest::none;
+      const bool met = a[i].id != ClosestHits::none, as_well = b[i].id != ClosestHits::none;
       others += met != as_well ? 1 : 0;
       if (met && as_well) differences.push_back(1e3 * std::fabs(a[i].range - b[i].range));
     }

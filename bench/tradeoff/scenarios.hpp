@@ -104,7 +104,7 @@ template <class AnyScene>
   }
   const Laser laser{.wavelength = 1550_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.25_mrad};
   const Platform airplane{StraightLine{.from = {0, -150, 1500}, .to = {0, 150, 1500}, .speed = 60},
-                          Mount{.boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})},
+                          Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                           Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 5.5_deg},
                                     Scanner{.pulse_rate = 100_kHz, .pulses = 500'000, .laser = laser}}};
   s.pulses = sampled(airplane, pulses);
@@ -148,7 +148,7 @@ template <class AnyScene, class Plant>
     for (double y = -26; y <= 26; y += 6.5) {
       const Vec2 at{x + dice.between(-1.5, 1.5), y + dice.between(-1.5, 1.5)};
       const std::size_t kind = dice.between(0, 1) < 0.5 ? 0 : 1;
-      const Similarity placement{rotation_about(up, dice.between(0, 360_deg)), dice.between(0.8, 1.1), terrain.on(at)};
+      const Similarity placement{rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.8, 1.1), terrain.on(at)};
       for (auto part : plant(kind)) {
         part.materials = material_table(wood::materials()), part.placement = placement, part.object = static_cast<ObjectId>(parts.size());
         parts.push_back(std::move(part));
@@ -189,7 +189,7 @@ template <class AnyScene, class Plant>
   s.ground = [terrain = wood::Terrain(1)](const Vec2& at) { return terrain.height(at); };
   const Laser laser{.wavelength = 1550_nm, .peak_power = 100_W, .pulse_length = 3_ns, .divergence = 0.5_mrad};
   const Platform drone{StraightLine{.from = {0, -24, 45}, .to = {0, 24, 45}, .speed = 6},
-                       Mount{.boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})},
+                       Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                        Deflector{OscillatingMirror{.cycles_per_second = 20_Hz, .half_angle = 25_deg},
                                  Scanner{.pulse_rate = 100_kHz, .pulses = 800'000, .laser = laser}}};
   s.pulses = sampled(drone, pulses);
@@ -202,7 +202,7 @@ template <class AnyScene, class Plant>
   s.exact = shared(in_double(whole)), s.map = shared(whole);
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 5_ns, .divergence = 0.5_mrad};
   const Platform car{StraightLine{.from = street::on({2, -70}), .to = street::on({2, 70}), .speed = 10},
-                     Mount{.lever_arm = {0, 0, 2.1}, .boresight = rotation_about(up, 45_deg)},
+                     Mount{.lever_arm = {0, 0, 2.1}, .boresight = rotation_about(axis::up, 45_deg)},
                      Deflector{PolygonMirror{.lines_per_second = 60_Hz, .sweep = 180_deg},
                                Scanner{.pulse_rate = 100_kHz, .pulses = 1'400'000, .laser = laser}}};
   s.pulses = sampled(car, pulses);
@@ -214,7 +214,7 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
   constexpr int pieces = 16;
   const auto at = [&](int k) {
     const double share = static_cast<double>(k) / pieces;
-    return from + share * (to - from) - 4 * sag * share * (1 - share) * up;
+    return from + share * (to - from) - 4 * sag * share * (1 - share) * axis::up;
   };
   for (int k = 0; k < pieces; ++k) street::add_tube(mesh, at(k), at(k + 1), radius, radius, 6, street::metal);
 }
@@ -268,18 +268,18 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
   for (double x = -50; x <= 50; x += 2.5)
     for (double y = -50; y <= 50; y += 2.5) {
       const double turn = dice.between(0, 90_deg), size = dice.between(0.3, 1.0), height = 0.05 * std::pow(12, dice.between(0, 1));
-      const Vec3 middle{x, y, height}, along = size * Vec3(std::cos(turn), std::sin(turn), 0), across = cross(up, along);
+      const Vec3 middle{x, y, height}, along = size * Vec3(std::cos(turn), std::sin(turn), 0), across = cross(axis::up, along);
       const std::array<Vec3, 4> corners{middle - along - across, middle + along - across, middle + along + across, middle - along + across};
       street::add_face(mesh, {corners[0], corners[1], corners[2], corners[3]}, street::paving);
       for (std::size_t k = 0; k < 4; ++k) {
         const Vec3 &a = corners[k], &b = corners[(k + 1) % 4];
-        street::add_face(mesh, {a, b, b - height * up, a - height * up}, street::paving);
+        street::add_face(mesh, {a, b, b - height * axis::up, a - height * axis::up}, street::paving);
       }
     }
   const Scene<Mesh> whole({{.geometry = std::make_shared<const Mesh>(mesh), .materials = material_table(street::materials())}});
   const Laser laser{.wavelength = 1064_nm, .peak_power = 5000_W, .pulse_length = 4_ns, .divergence = 0.5_mrad};
   const Platform airplane{StraightLine{.from = {0, -48, 1000}, .to = {0, 48, 1000}, .speed = 60},
-                          Mount{.boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})},
+                          Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                           Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 2.5_deg},
                                     Scanner{.pulse_rate = 500_kHz, .pulses = 800'000, .laser = laser}}};
   s.pulses = sampled(airplane, pulses, meets_an_edge(whole));

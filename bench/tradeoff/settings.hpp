@@ -109,7 +109,7 @@ auto with_detector(double bin, Width width, double threshold, Function function)
   return std::visit(
       [&](const auto& map) {
         return with_detector(setting.bin, width, scenario.threshold, [&](const auto& detector) {
-          return results_of(Survey(scenario.pulses, Recorded(setting.footprint), *map, Receiver{}, detector, 1), setting.footprint);
+          return results_of(Survey(scenario.pulses, WithSubrayRecord(setting.footprint), *map, Receiver{}, detector, 1), setting.footprint);
         });
       },
       setting.map);

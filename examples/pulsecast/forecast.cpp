@@ -27,12 +27,12 @@
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
+using helios::CompiledSurvey;
 using helios::Receiving;
 using helios::Sample;
 using helios::SampleBlock;
 using helios::Simulation;
 using helios::SlotCount;
-using helios::SurveyPlan;
 using helios::SurveySettings;
 
 namespace {
@@ -64,15 +64,15 @@ struct Census {
   std::uint64_t sampled = 0;
 };
 
-/// One slot at random from each of many equal stretches of the survey, which are visited in rounds so that each round is spread over all of
+/// One slot at random from each of many equal strata of the survey, which are visited in rounds so that each round is spread over all of
 /// it. A small survey is counted as a whole. The mean of a stratified sample, and its variance from differences of neighbours.
 /// Source: Cochran 1977, sections 5.3 and 5A.12.
 Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned threads, double workers) {
   constexpr std::uint64_t rounds = 64, most = rounds << 12;
-  const std::uint64_t size = simulation.plan().source.size(), stretches = std::min(size, most),
-                      each_round = (stretches + rounds - 1) / rounds;
-  std::vector<std::optional<SlotCount>> counts(stretches);
-  std::vector<PulseIndex> places(stretches);
+  const std::uint64_t size = simulation.compiled().source.size(), strata = std::min(size, most),
+                      each_round = (strata + rounds - 1) / rounds;
+  std::vector<std::optional<SlotCount>> counts(strata);
+  std::vector<PulseIndex> places(strata);
   const Allowance allowance(0.35, workers);
   for (std::uint64_t round = 0; round < rounds && (round == 0 || allowance.left()); ++round) {
     std::vector<std::uint64_t> numbers;
@@ -80,10 +80,10 @@ Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned th
     for (std::uint64_t k = 0; k < each_round; ++k) {
       const auto turn = static_cast<std::uint64_t>(uniform({.seed = seed, .pulse = k, .subray = 1}) * rounds);
       const std::uint64_t i = k * rounds + (round * 37 + turn) % rounds;  // 37 has no divisor in common with the rounds
-      if (i >= stretches) continue;
-      const double from = static_cast<double>(size) * static_cast<double>(i) / static_cast<double>(stretches);
-      const double width = static_cast<double>(size) / static_cast<double>(stretches);
-      const double place = stretches == size ? static_cast<double>(i) : from + width * uniform({.seed = seed, .pulse = i, .subray = 2});
+      if (i >= strata) continue;
+      const double from = static_cast<double>(size) * static_cast<double>(i) / static_cast<double>(strata);
+      const double width = static_cast<double>(size) / static_cast<double>(strata);
+      const double place = strata == size ? static_cast<double>(i) : from + width * uniform({.seed = seed, .pulse = i, .subray = 2});
       numbers.push_back(i), slots.push_back(std::min(size - 1, static_cast<PulseIndex>(place)));
     }
     const std::vector<SlotCount> found = simulation.count(slots, threads);
@@ -92,7 +92,7 @@ Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned th
   Census census;
   double sum = 0, differences = 0, before = 0;
   std::array<double, kinds> of_kind{};
-  for (std::uint64_t i = 0; i < stretches; ++i) {
+  for (std::uint64_t i = 0; i < strata; ++i) {
     if (!counts[i]) continue;
     const double echoes = counts[i]->echoes;
     const Kind kind = kind_of(counts[i]->fate);
@@ -200,7 +200,8 @@ struct Writing {
 
 /// Some place to write to, which is gone at the end.
 struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / ("pulsecast_plan_" + std::to_string(getpid()) + '_' + std::to_string(std::random_device{}()));
+  fs::path path =
+      fs::temp_directory_path() / ("pulsecast_forecast_" + std::to_string(getpid()) + '_' + std::to_string(std::random_device{}()));
   TemporaryFolder() { fs::create_directories(path); }
   ~TemporaryFolder() {
     std::error_code ignored;
@@ -219,7 +220,7 @@ Sample only(const Sample& sample, bool with_echoes) {
   return some;
 }
 
-Writing measure_writing(std::span<const Sample> samples, const SurveyPlan& plan, const Options& options) {
+Writing measure_writing(std::span<const Sample> samples, const CompiledSurvey& compiled, const Options& options) {
   const auto processor = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
   // What is written may take some time [s] to get ready, which is told.
   const auto write = [&](const auto& what) {
@@ -257,13 +258,13 @@ Writing measure_writing(std::span<const Sample> samples, const SurveyPlan& plan,
     });
     (with_echoes ? w.point : w.empty) = each(all, number);
   }
-  for (std::size_t k = 0; k < plan.legs.size(); ++k) {
-    const SurveyPlan::LegPlan& leg = plan.legs[k];
+  for (std::size_t k = 0; k < compiled.legs.size(); ++k) {
+    const CompiledSurvey::Leg& leg = compiled.legs[k];
     if (!leg.active || !(leg.trajectory_interval > 0)) continue;
     constexpr double some = 1000;
     const double records = std::min(some, std::ceil(leg.duration.seconds() / leg.trajectory_interval));
     const Writing::Cost all = write([&](LegFiles& files) {
-      files.add_trajectory(plan.source.legs()[k], leg.start, leg.duration.seconds() / std::max(1.0, records));
+      files.add_trajectory(compiled.source.legs()[k], leg.start, leg.duration.seconds() / std::max(1.0, records));
       return 0.0;
     });
     w.record = each(all, static_cast<std::uint64_t>(records) + 1);
@@ -273,18 +274,18 @@ Writing measure_writing(std::span<const Sample> samples, const SurveyPlan& plan,
 }
 
 /// Records of all trajectories.
-double records_of(const SurveyPlan& plan) {
+double records_of(const CompiledSurvey& compiled) {
   double sum = 0;
-  for (const auto& leg : plan.legs)
+  for (const auto& leg : compiled.legs)
     if (leg.active && leg.trajectory_interval > 0) sum += std::ceil(leg.duration.seconds() / leg.trajectory_interval) + 1;
   return sum;
 }
 
 /// Sets of files: legs, and strips.
-double files_of(const SurveyPlan& plan) {
+double files_of(const CompiledSurvey& compiled) {
   std::set<std::string> strips;
   double legs = 0;
-  for (const auto& leg : plan.legs)
+  for (const auto& leg : compiled.legs)
     if (leg.active && !(leg.strip && !strips.insert(*leg.strip).second)) ++legs;
   return legs;
 }
@@ -357,7 +358,7 @@ class Forecaster {
   Forecaster(Simulation& simulation, const SurveySettings& survey, const Options& options, std::uint64_t seed, double loading)
       : simulation_(simulation),
         survey_(survey),
-        plan_(simulation.plan()),
+        compiled_(simulation.compiled()),
         options_(options),
         seed_(seed),
         threads_(thread_count(options.threads)),
@@ -375,8 +376,8 @@ class Forecaster {
   }
 
   Forecasts all() {
-    Forecasts out{.loading = loading_, .slots = plan_.source.size(), .finest = subrays_of(*finest_.rings)};
-    if (plan_.source.size() == 0) return out;
+    Forecasts out{.loading = loading_, .slots = compiled_.source.size(), .finest = subrays_of(*finest_.rings)};
+    if (compiled_.source.size() == 0) return out;
     measure_as_is();
     out.sampled = sampled_;
     prepare_others();
@@ -389,16 +390,16 @@ class Forecaster {
 
   [[nodiscard]] std::vector<SampleBlock> blocks(Kind kind, std::uint64_t first, std::uint64_t end, PulseIndex before,
                                                 PulseIndex length) const {
-    return blocks_at(census_, kind, first, end, before, length, seed_, plan_.source.size());
+    return blocks_at(census_, kind, first, end, before, length, seed_, compiled_.source.size());
   }
 
   /// The survey as it is: what slots of each kind take, and what it takes to write what comes of them.
   void measure_as_is() {
-    constexpr std::uint64_t most_rounds = 48;
+    constexpr std::uint64_t max_rounds = 48;
     std::vector<Sample> samples;
     std::vector<Kind> begin_at;
     const Allowance allowance(1.0, workers_);
-    for (std::uint64_t round = 0; round < most_rounds && (round == 0 || allowance.left()); ++round)
+    for (std::uint64_t round = 0; round < max_rounds && (round == 0 || allowance.left()); ++round)
       for (const Kind kind : {met, missed, blocked}) {
         const std::uint64_t each = kind == met ? 16 : 4;
         for (Sample& sample : simulation_.sample(blocks(kind, round * each, (round + 1) * each, 128, 896), threads_))
@@ -420,7 +421,7 @@ class Forecaster {
     computing_ = std::max(0.0, dot(census_.slots, cost));
     met_cost_ = std::max({cost[met], cost[missed], 1e-8});
     unsure_ = sum > 0 ? 2 * std::sqrt(rest) / sum : 0;
-    writing_ = measure_writing(samples, plan_, options_);
+    writing_ = measure_writing(samples, compiled_, options_);
   }
 
   /// What the other settings are held against, on so many pulses that trying them all takes a second or so.
@@ -501,7 +502,7 @@ class Forecaster {
 
   /// Time, memory and files from what was measured.
   void entire(Forecast& f, double computing) const {
-    const double repetitions = simulation_.runs(), legs = files_of(plan_), records = records_of(plan_),
+    const double repetitions = simulation_.runs(), legs = files_of(compiled_), records = records_of(compiled_),
                  shots = census_.slots[met] + census_.slots[missed];
     const auto bytes = [&](double points, double unsure) {
       return repetitions * (unsure * (points * writing_.point.bytes + std::max(0.0, shots - points) * writing_.empty.bytes) +
@@ -516,8 +517,8 @@ class Forecaster {
     const double unsure = std::hypot(0.1, unsure_);  // what a sample cannot know is put at a tenth
     f.seconds = {seconds(f.points.value, 1), seconds(f.points.low, 1 - unsure), seconds(f.points.high, 1 + unsure)};
     f.bytes = {bytes(f.points.value, 1), bytes(f.points.low, 0.99), bytes(f.points.high, 1.01)};
-    // Threads run ahead of the one that writes as `Conveyor` lets them, more and more as that one has more to do than they. Vectors grow to
-    // twice the room that they need, and then keep it.
+    // Threads run ahead of the one that writes as `ReorderBuffer` lets them, more and more as that one has more to do than they. Vectors
+    // grow to twice the room that they need, and then keep it.
     const double chunk = chunk_ + 1, always = 2 * threads_ + 2;
     const double ahead = std::clamp(6.3e6 / chunk + threads_ + 1, always, 16 * always);
     const double busy = computing > 0 ? writing_.point.seconds * f.points.value * workers_ / computing : 1;
@@ -542,7 +543,7 @@ class Forecaster {
 
   Simulation& simulation_;
   const SurveySettings& survey_;
-  const SurveyPlan& plan_;
+  const CompiledSurvey& compiled_;
   const Options& options_;
   std::uint64_t seed_;
   unsigned threads_;

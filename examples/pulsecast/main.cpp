@@ -29,12 +29,12 @@
 #include <pulsecast/version.hpp>
 
 #include "../summary.hpp"
+#include "forecast_report.hpp"
 #include "loading.hpp"
 #include "notes.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "pages.hpp"
-#include "plan.hpp"
 #include "ranks.hpp"
 #include "run_folder.hpp"
 #include "survey_files.hpp"
@@ -42,8 +42,8 @@
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
+using helios::CompiledSurvey;
 using helios::Simulation;
-using helios::SurveyPlan;
 using helios::SurveySettings;
 
 namespace {
@@ -86,7 +86,7 @@ std::int64_t unix_time_of(const std::string& text) {
   return moment;
 }
 
-std::string prefix_of(const SurveyPlan::LegPlan& leg) {
+std::string prefix_of(const CompiledSurvey::Leg& leg) {
   if (leg.strip) return "strip" + std::string(3 - std::min<std::size_t>(3, leg.strip->size()), '0') + *leg.strip;
   const std::string number = std::to_string(leg.number);
   return "leg" + std::string(3 - std::min<std::size_t>(3, number.size()), '0') + number;
@@ -137,7 +137,7 @@ class Session {
     else
       log_.start_time = start_time;
     const std::unique_ptr<Simulation> simulation = loaded(inputs);
-    if (again) expect_run(*again, simulation->runs());
+    if (again) require_run(*again, simulation->runs());
     settle_start_time(*simulation, again, start_time);
     if (again) forget_run_before(parent);
     tell_notes(*simulation);
@@ -147,7 +147,7 @@ class Session {
     if (all.complete && all.echoes == 0 && all.pulses() > 0) tell_of_nothing(*simulation);
     const std::string traffic = ranks_.traffic();
     if (!options_.quiet) tell_summary(all, traffic);
-    notes_.expect_none();
+    notes_.require_none();
     return all.complete ? success : interrupted;
   }
 
@@ -179,7 +179,7 @@ class Session {
   }
 
   /// Throws unless the run that goes on is one of the survey's.
-  void expect_run(const fs::path& folder, int runs) const {
+  void require_run(const fs::path& folder, int runs) const {
     if (log_.run >= runs)
       throw FileError((folder / RunLog::name).string(), "line 3",
                       "'run " + std::to_string(log_.run) + "': there are " + std::to_string(runs) + ", from 0");
@@ -187,8 +187,8 @@ class Session {
 
   /// The clock of a trajectory counts before the time that was asked for; of a run that goes on, its own time does.
   void settle_start_time(const Simulation& simulation, const std::optional<fs::path>& again, double asked) {
-    const std::optional<double> clock = simulation.plan().clock_start;
-    if (again && !clock && !options_.gps_start_time.empty()) expect_same(*again, second_of_week(log_.start_time), second_of_week(asked));
+    const std::optional<double> clock = simulation.compiled().clock_start;
+    if (again && !clock && !options_.gps_start_time.empty()) require_same(*again, second_of_week(log_.start_time), second_of_week(asked));
     if (!again && clock) log_.start_time = *clock;
   }
 
@@ -248,19 +248,19 @@ class Session {
   void tell_notes(const Simulation& simulation) {
     notes_.odd(simulation.warnings());
     notes_.say(scene_notes_);
-    notes_.expect_none();
+    notes_.require_none();
   }
 
   /// Why there may be no point at all: mostly, scene and legs have coordinates of different origin.
   void tell_of_nothing(const Simulation& simulation) {
     const Simulation::Scene scene = simulation.scene();
-    const SurveyPlan& plan = simulation.plan();
-    const auto leg = std::find_if(plan.legs.begin(), plan.legs.end(), [](const SurveyPlan::LegPlan& l) { return l.end > l.first; });
-    if (scene.empty || leg == plan.legs.end()) return notes_.odd("there is no point, as there is nothing to scan");
+    const CompiledSurvey& compiled = simulation.compiled();
+    const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(), [](const CompiledSurvey::Leg& l) { return l.end > l.first; });
+    if (scene.empty || leg == compiled.legs.end()) return notes_.odd("there is no point, as there is nothing to scan");
     std::ostringstream text;
     const auto put = [&](const char* words, const Vec3& v) { text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')'; };
     text << std::fixed << std::setprecision(1) << "there is no point: leg " << leg->number;
-    put(" begins at ", plan.source.legs()[leg->number].path().at({}).position);
+    put(" begins at ", compiled.source.legs()[leg->number].path().at({}).position);
     put(" m, and the scene is from ", scene.least), put(" to ", scene.most);
     notes_.odd(text.str() + " m");
   }
@@ -277,7 +277,7 @@ class Session {
     return out.str();
   }
 
-  static void expect_same(const fs::path& folder, const std::string& then, const std::string& now) {
+  static void require_same(const fs::path& folder, const std::string& then, const std::string& now) {
     if (then != now)
       throw std::invalid_argument(folder.string() + ": was begun with another survey or other options, '" + then + "'; now they are '" +
                                   now + "'");
@@ -289,7 +289,7 @@ class Session {
     return text.str();
   }
 
-  void expect_same_inputs(const fs::path& folder, const RunLog& then) const {
+  void require_same_inputs(const fs::path& folder, const RunLog& then) const {
     std::string changed;
     const auto tell = [&](const std::string& path, const char* fate) { changed += (changed.empty() ? "" : ", ") + path + fate; };
     for (const auto& [path, fingerprint] : log_.inputs) {
@@ -307,9 +307,9 @@ class Session {
   void go_on_from(const fs::path& folder) {
     const std::string text = ranks_.from_first(ranks_.first() ? RunLog::text_in(folder) : std::string());
     RunLog log = RunLog::parse(text, (folder / RunLog::name).string());
-    expect_same(folder, log.how, log_.how);
-    if (ranks_.first()) expect_same_inputs(folder, log);
-    if (options_.seed) expect_same(folder, "--seed " + std::to_string(log.seed), "--seed " + std::to_string(*options_.seed));
+    require_same(folder, log.how, log_.how);
+    if (ranks_.first()) require_same_inputs(folder, log);
+    if (options_.seed) require_same(folder, "--seed " + std::to_string(log.seed), "--seed " + std::to_string(*options_.seed));
     log_ = std::move(log);
   }
 
@@ -324,8 +324,8 @@ class Session {
 
   RunSummary play(const Simulation& simulation, const fs::path& folder, bool again) {
     folders_.push_back(folder.string());
-    const double start_time = log_.start_time + log_.run * simulation.plan().source.duration().seconds();
-    const SurveyPlan& plan = simulation.plan();
+    const double start_time = log_.start_time + log_.run * simulation.compiled().source.duration().seconds();
+    const CompiledSurvey& compiled = simulation.compiled();
     std::vector<std::string> channels;
     if (options_.split_by_channel && survey_.scanner.channels.size() > 1)
       for (const auto& c : survey_.scanner.channels) channels.push_back(c.id.empty() ? std::to_string(channels.size()) : c.id);
@@ -334,30 +334,30 @@ class Session {
     std::map<std::string, std::size_t> last;  // leg of each prefix
     std::map<std::string, bool> skipped;
     const auto files_of = [&](const std::string& prefix) { return leg_files(folder, prefix, options_, channels); };
-    for (std::size_t k = 0; k < plan.legs.size(); ++k) {
-      if (!plan.legs[k].active) continue;
-      const std::string prefix = prefix_of(plan.legs[k]);
+    for (std::size_t k = 0; k < compiled.legs.size(); ++k) {
+      if (!compiled.legs[k].active) continue;
+      const std::string prefix = prefix_of(compiled.legs[k]);
       last[prefix] = k;
       if (again && !skipped.contains(prefix))
         skipped[prefix] = ranks_.from_first(ranks_.first() && are_whole(files_of(prefix)) ? "whole" : "") == "whole";
     }
     if (again && ranks_.first()) log_.write(folder);  // without what is to be done again
     PulseIndex total = 0, before = 0;
-    for (const auto& leg : plan.legs)
+    for (const auto& leg : compiled.legs)
       if (leg.active && !skipped[prefix_of(leg)]) total += leg.end - leg.first;
 
-    if (total > 0) pages_.begin(folder, plan);
+    if (total > 0) pages_.begin(folder, compiled);
     std::map<std::string, std::unique_ptr<LegRun>> open;
     RunSummary all;
     ProgressLine line;
-    for (std::size_t k = 0; k < plan.legs.size() && all.complete; ++k) {
-      const SurveyPlan::LegPlan& leg = plan.legs[k];
+    for (std::size_t k = 0; k < compiled.legs.size() && all.complete; ++k) {
+      const CompiledSurvey::Leg& leg = compiled.legs[k];
       const std::string prefix = prefix_of(leg);
       if (!leg.active || skipped[prefix]) continue;
       const auto at = open.try_emplace(prefix).first;
       if (!at->second) at->second = ranks_.leg_run(folder, prefix, options_, start_time, channels);
       LegRun& files = *at->second;
-      files.add_trajectory(plan.source.legs()[k], leg.start, leg.trajectory_interval);
+      files.add_trajectory(compiled.source.legs()[k], leg.start, leg.trajectory_interval);
       if (options_.page || options_.live) files.watch = [this](const EchoBatch& batch) { pages_(batch); };
       RunOptions run{.threads = options_.threads, .first = leg.first, .end = leg.end, .stop = stopping.get_token()};
       run.progress = [&](const Progress& p) {
@@ -398,8 +398,8 @@ void tell(const Options& options, const SurveyFile& file, std::uint64_t seed, No
   const Simulation& simulation = *loaded;
   notes.odd(simulation.warnings());
   notes.say(scene_notes);
-  notes.expect_none();
-  const SurveyPlan& plan = simulation.plan();
+  notes.require_none();
+  const CompiledSurvey& compiled = simulation.compiled();
   const Simulation::Scene scene = simulation.scene();
   std::cout << std::fixed << std::setprecision(3) << "survey   " << survey.name << "\nscanner  " << survey.scanner.id << ", "
             << survey.scanner.channels.size() << (survey.scanner.channels.size() == 1 ? " channel" : " channels") << "\nplatform "
@@ -411,13 +411,13 @@ void tell(const Options& options, const SurveyFile& file, std::uint64_t seed, No
   }
   if (simulation.runs() > 1) std::cout << "runs     " << simulation.runs() << '\n';
   std::cout << "\n  files       starts [s]   lasts [s]   rate [kHz]        pulses\n";
-  for (const auto& leg : plan.legs) {
+  for (const auto& leg : compiled.legs) {
     const std::string name = leg.active ? prefix_of(leg) : "(inactive)";
     std::cout << "  " << std::left << std::setw(10) << name << std::right << std::setw(12) << leg.start.seconds() << std::setw(12)
               << leg.duration.seconds() << std::setw(13) << leg.pulse_rate / 1e3 << std::setw(14) << leg.end - leg.first << '\n';
   }
-  std::cout << "  in all    " << std::setw(12) << "" << std::setw(12) << plan.source.duration().seconds() << std::setw(13) << ""
-            << std::setw(14) << plan.source.size() << '\n';
+  std::cout << "  in all    " << std::setw(12) << "" << std::setw(12) << compiled.source.duration().seconds() << std::setw(13) << ""
+            << std::setw(14) << compiled.source.size() << '\n';
 }
 
 void preview(const Options& options, const SurveyFile& file, std::uint64_t seed, Notes& notes) {
@@ -425,13 +425,13 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
   const std::unique_ptr<Simulation> loaded = load(file.survey, loading_of(options, file, seed), scene_notes);
   const Simulation& simulation = *loaded;
   notes.odd(simulation.warnings());
-  notes.expect_none();
+  notes.require_none();
   std::error_code error;
   fs::create_directories(options.output, error);
   if (error) throw FileError(options.output.string(), "", "the output folder cannot be made (" + error.message() + ")");
   const fs::path path = options.output / (file.survey.name + "_preview.png");
   constexpr PulseIndex enough = 400'000;
-  const PulseIndex slots = simulation.plan().source.size();
+  const PulseIndex slots = simulation.compiled().source.size();
   PulseIndex stride = std::max<PulseIndex>(1, slots / enough);
   if (stride > 1) stride |= 1;  // so that it is not in step with the channels
   Picture picture(path);
@@ -448,7 +448,7 @@ int work(const Options& options, Ranks& ranks) {
   notes.say(options.notes);
   if (options.command == "catalogue") return print_catalogue(options), success;
   const SurveyFile file = read_survey_file(options, notes);
-  if (options.command != "check") notes.expect_none();  // which tells all
+  if (options.command != "check") notes.require_none();  // which tells all
   std::optional<std::uint64_t> seed = options.seed ? options.seed : file.survey.seed;
   if (!seed && options.command == "run")
     seed = std::stoull(ranks.from_first(std::to_string(std::random_device{}())));
@@ -456,15 +456,15 @@ int work(const Options& options, Ranks& ranks) {
     seed = std::random_device{}();
   if (options.command == "check") {
     notes.odd(helios::check_without_scene(file.survey, file.leg_places));
-    notes.expect_none();
+    notes.require_none();
     if (!options.quiet) std::cout << options.survey.string() << ": nothing is wrong\n";
   } else if (options.command == "info") {
     tell(options, file, *seed, notes);
   } else if (options.command == "preview") {
     preview(options, file, *seed, notes);
-  } else if (options.command == "plan") {
+  } else if (options.command == "forecast") {
     (void)helios::check_without_scene(file.survey, file.leg_places);
-    return plan(options, file, loading_of(options, file, *seed), notes) ? success : bad_input;
+    return forecast(options, file, loading_of(options, file, *seed), notes) ? success : bad_input;
   } else {
     (void)helios::check_without_scene(file.survey, file.leg_places);  // before anything expensive
     Options settled = options;

@@ -34,7 +34,7 @@ class Notes {
   }
 
   /// Throws if what was told is an error.
-  void expect_none() const {
+  void require_none() const {
     if (errors_ > 0) throw std::invalid_argument("--strict takes notes as errors: there are " + std::to_string(errors_));
   }
 

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* all_commands[] = {"run", "check", "info", "preview", "plan", "catalogue"};
+constexpr const char* all_commands[] = {"run", "check", "info", "preview", "forecast", "catalogue"};
 
 /// "; did you mean '--format'?"
 std::string nearest_option(const CLI::App& app, const std::string& given) {
@@ -117,7 +117,7 @@ class CommandLine {
     add_results();
     add_page();
     add_habits();
-    add_plan();
+    add_forecast();
     add_unused();
     app_.allow_extras();  // reported by `problem_of_words`
   }
@@ -136,7 +136,7 @@ class CommandLine {
       }
       problem = error.what();
     }
-    if (problem.empty()) problem = problem_of_plan();
+    if (problem.empty()) problem = problem_of_forecast();
     if (problem.empty()) problem = settle();
     if (problem.empty()) return o_;
     std::cerr << "error: " << problem << "\nTry --help.\n";
@@ -163,8 +163,8 @@ class CommandLine {
         });
     app_.add_option("-j,--threads,--nthreads,--njobs", o_.threads, "How many compute; 0 for as many as the machine runs at once")
         ->type_name("N")
-        ->check(number_check<unsigned>([](unsigned threads) { return threads <= pulsecast::most_threads; },
-                                       "whole number from 0 to " + std::to_string(pulsecast::most_threads)));
+        ->check(number_check<unsigned>([](unsigned threads) { return threads <= pulsecast::max_threads; },
+                                       "whole number from 0 to " + std::to_string(pulsecast::max_threads)));
     app_.add_option(both("gpsStartTime"), o_.gps_start_time, "When the survey begins: UTC, or seconds since 1970")
         ->type_name("'YYYY-MM-DD hh:mm:ss'");
   }
@@ -211,18 +211,18 @@ class CommandLine {
     app_.add_flag("-v,--verbose", o_.verbose, "Say more");
   }
 
-  void add_plan() {
+  void add_forecast() {
     const auto demand = [&](const std::string& name, std::string& text, const QuantityKind& kind, const char* help, const char* type) {
-      of_plan_.push_back(app_.add_option(name, text, help)->type_name(type)->check([&kind](const std::string& given) {
+      of_forecast_.push_back(app_.add_option(name, text, help)->type_name(type)->check([&kind](const std::string& given) {
         return quantity(given, kind) ? std::string() : "'" + given + "': expected " + kind.expected;
       }));
     };
-    demand("--range-error", range_error_, a_length, "plan: largest error of ranges, as in 5mm", "LENGTH");
-    demand("--intensity-error", intensity_error_, a_share, "plan: largest error of intensities, as in 2%", "SHARE");
-    demand("--time", time_, a_duration, "plan: longest run, as in 10min", "DURATION");
-    demand("--memory", memory_, a_size, "plan: most memory, as in 4GB", "SIZE");
-    of_plan_.push_back(
-        app_.add_option("--apply", apply_to_, "plan: changes the survey, or writes it to FILE")->type_name("[FILE]")->expected(0, 1));
+    demand("--range-error", range_error_, a_length, "forecast: largest error of ranges, as in 5mm", "LENGTH");
+    demand("--intensity-error", intensity_error_, a_share, "forecast: largest error of intensities, as in 2%", "SHARE");
+    demand("--time", time_, a_duration, "forecast: longest run, as in 10min", "DURATION");
+    demand("--memory", memory_, a_size, "forecast: most memory, as in 4GB", "SIZE");
+    of_forecast_.push_back(
+        app_.add_option("--apply", apply_to_, "forecast: changes the survey, or writes it to FILE")->type_name("[FILE]")->expected(0, 1));
   }
 
   void add_unused() {
@@ -260,18 +260,18 @@ class CommandLine {
     return "";
   }
 
-  /// Settles what the command `plan` is asked. Returns a problem; empty if there is none.
-  [[nodiscard]] std::string problem_of_plan() {
-    for (const CLI::Option* option : of_plan_)
-      if (option->count() > 0 && o_.command != "plan") return option->get_name() + " is for plan only";
-    if (o_.command != "plan") return "";
-    o_.plan = {.range_error = quantity(range_error_, a_length),
-               .intensity_error = quantity(intensity_error_, a_share),
-               .time = quantity(time_, a_duration),
-               .memory = quantity(memory_, a_size),
-               .apply = of_plan_.back()->count() > 0,
-               .apply_to = apply_to_};
-    const bool knows_why = !o_.plan.apply || o_.plan.asks();
+  /// Settles what the command `forecast` is asked. Returns a problem; empty if there is none.
+  [[nodiscard]] std::string problem_of_forecast() {
+    for (const CLI::Option* option : of_forecast_)
+      if (option->count() > 0 && o_.command != "forecast") return option->get_name() + " is for forecast only";
+    if (o_.command != "forecast") return "";
+    o_.forecast = {.range_error = quantity(range_error_, a_length),
+                   .intensity_error = quantity(intensity_error_, a_share),
+                   .time = quantity(time_, a_duration),
+                   .memory = quantity(memory_, a_size),
+                   .apply = of_forecast_.back()->count() > 0,
+                   .apply_to = apply_to_};
+    const bool knows_why = !o_.forecast.apply || o_.forecast.asks();
     return knows_why ? "" : "--apply must know what for: expected --range-error, --intensity-error, --time or --memory";
   }
 
@@ -305,13 +305,13 @@ class CommandLine {
       "  pulsecast check SURVEY.xml      says what is wrong with it\n"
       "  pulsecast info SURVEY.xml       says what would be simulated\n"
       "  pulsecast preview SURVEY.xml    draws a quick look of its points\n"
-      "  pulsecast plan SURVEY.xml       says what a run takes, and which settings are the cheapest that meet what is asked\n"
+      "  pulsecast forecast SURVEY.xml   says what a run takes, and which settings are the cheapest that meet what is asked\n"
       "  pulsecast catalogue             lists the scanners and platforms that surveys may name\n",
       "pulsecast"};
   Options o_;
   std::string seed_, epsg_, range_error_, intensity_error_, time_, memory_, apply_to_, swallowed_;
   bool las_ = false, zip_ = false, no_platform_noise_ = false, no_leg_noise_ = false, rebuild_scene_ = false, no_scene_writing_ = false;
-  std::vector<CLI::Option*> of_plan_, unused_;
+  std::vector<CLI::Option*> of_forecast_, unused_;
 };
 
 }  // namespace

@@ -14,8 +14,8 @@ struct SceneStore {
   bool read = true, write = true;
 };
 
-/// What the command `plan` is asked.
-struct PlanOptions {
+/// What the command `forecast` is asked.
+struct ForecastOptions {
   std::optional<double> range_error{};      ///< at most [m]
   std::optional<double> intensity_error{};  ///< at most, as a share
   std::optional<double> time{};             ///< of a run, at most [s]
@@ -28,7 +28,7 @@ struct PlanOptions {
 
 /// What the command line asks for.
 struct Options {
-  std::string command = "run";  ///< run, check, info, preview, plan or catalogue
+  std::string command = "run";  ///< run, check, info, preview, forecast or catalogue
   std::filesystem::path survey{};
   std::vector<std::filesystem::path> assets{};  ///< as given, then where the program finds its own
   std::filesystem::path output = "output";
@@ -45,7 +45,7 @@ struct Options {
   bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false, verbose = false;
   bool strict = false;  ///< notes about the survey and its files are errors
   SceneStore store{};
-  PlanOptions plan{};
+  ForecastOptions forecast{};
   std::vector<std::string> notes{};  ///< what was accepted but has no effect
 };
 

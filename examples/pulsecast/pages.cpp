@@ -21,7 +21,7 @@ struct Pages::Inside {
 
 Pages::Pages(const Options& options, const helios::SurveySettings& survey) : inside_(new Inside) {
   const auto name = [](const std::string& full, const std::string& id) { return full.empty() ? id : full; };
-  inside_->settings.most_points = options.page_points;
+  inside_->settings.points_max = options.page_points;
   inside_->file = options.page;
   inside_->survey = {.name = survey.name,
                      .scanner = name(survey.scanner.name, survey.scanner.id),
@@ -32,15 +32,15 @@ Pages::~Pages() = default;
 
 std::string Pages::address() const { return inside_->server ? inside_->server->address() : ""; }
 
-void Pages::begin(const std::filesystem::path& folder, const helios::SurveyPlan& plan) {
+void Pages::begin(const std::filesystem::path& folder, const helios::CompiledSurvey& compiled) {
   if (!inside_->file && !inside_->server) return;
   page::PageSurvey survey = inside_->survey;
-  const int moments = std::clamp(static_cast<int>(40'000 / std::max<std::size_t>(plan.legs.size(), 1)), 2, 1000);
-  for (std::size_t k = 0; k < plan.legs.size(); ++k) {
-    const helios::SurveyPlan::LegPlan& leg = plan.legs[k];
+  const int moments = std::clamp(static_cast<int>(40'000 / std::max<std::size_t>(compiled.legs.size(), 1)), 2, 1000);
+  for (std::size_t k = 0; k < compiled.legs.size(); ++k) {
+    const helios::CompiledSurvey::Leg& leg = compiled.legs[k];
     const std::string name =
         leg.strip ? "strip " + *leg.strip + ", leg " + std::to_string(leg.number) : "leg " + std::to_string(leg.number);
-    survey.legs.push_back(page::page_leg(name, plan.source.legs()[k].path(), leg.start, leg.duration, moments));
+    survey.legs.push_back(page::page_leg(name, compiled.source.legs()[k].path(), leg.start, leg.duration, moments));
   }
   if (inside_->file) inside_->writer.emplace(folder / "page.html", survey, inside_->settings);
   if (inside_->server) inside_->server->begin(std::move(survey));

@@ -23,7 +23,7 @@ class Pages {
   [[nodiscard]] std::string address() const;
 
   /// A run begins, whose results are left in a folder.
-  void begin(const std::filesystem::path& folder, const pulsecast::helios::SurveyPlan& plan);
+  void begin(const std::filesystem::path& folder, const pulsecast::helios::CompiledSurvey& compiled);
   void operator()(const pulsecast::EchoBatch& batch);
   void tell(const pulsecast::Progress& progress);
   [[nodiscard]] bool stop_requested() const;

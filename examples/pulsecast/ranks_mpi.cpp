@@ -26,39 +26,39 @@
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
+using mpi::MpiGroup;
 using mpi::MpiOutput;
-using mpi::MpiTeam;
 
 namespace {
 
-std::unique_ptr<MpiOutput> shared_points(MpiTeam& team, const fs::path& path, const Options& o, double start_time) {
-  if (o.format == "laz") return std::make_unique<mpi::MpiLaz>(team, path, las_settings(o, start_time), o.threads);
-  if (o.format == "las") return std::make_unique<mpi::MpiLas>(team, path, las_settings(o, start_time));
+std::unique_ptr<MpiOutput> shared_points(MpiGroup& group, const fs::path& path, const Options& o, double start_time) {
+  if (o.format == "laz") return std::make_unique<mpi::MpiLaz>(group, path, las_settings(o, start_time), o.threads);
+  if (o.format == "las") return std::make_unique<mpi::MpiLas>(group, path, las_settings(o, start_time));
   const io::XyzSettings settings{.start_time = start_time};
-  if (o.format == "xyz") return std::make_unique<mpi::MpiRows<io::XyzWriter, io::XyzSettings>>(team, path, settings);
-  const auto file = team.first() ? std::make_shared<io::OutputFile>(io::gzip_file(path)) : nullptr;
+  if (o.format == "xyz") return std::make_unique<mpi::MpiRows<io::XyzWriter, io::XyzSettings>>(group, path, settings);
+  const auto file = group.first() ? std::make_shared<io::OutputFile>(io::gzip_file(path)) : nullptr;
   return std::make_unique<mpi::MpiStream<io::XyzWriter>>(
-      team, [settings](io::OutputFile piece) { return io::XyzWriter(std::move(piece), settings); },
-      [file](const mpi::MpiParcel& bytes) { file->write(bytes.rest()); }, [file] { file->commit(); });
+      group, [settings](io::OutputFile piece) { return io::XyzWriter(std::move(piece), settings); },
+      [file](const mpi::MpiMessage& bytes) { file->write(bytes.rest()); }, [file] { file->commit(); });
 }
 
 /// `LegFiles`, written by all.
 class SharedLegRun final : public LegRun {
  public:
-  SharedLegRun(MpiTeam& team, const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
+  SharedLegRun(MpiGroup& group, const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
                const std::vector<std::string>& channels)
-      : team_(team) {
-    if (team.first()) trajectory_.emplace(folder / (prefix + "_trajectory.txt"), io::TrajectoryFileSettings{.start_time = start_time});
+      : group_(group) {
+    if (group.first()) trajectory_.emplace(folder / (prefix + "_trajectory.txt"), io::TrajectoryFileSettings{.start_time = start_time});
     const std::vector<fs::path> files = point_files(folder, prefix, o, channels);
     for (const fs::path& path : files) {
-      MpiOutput* const points = add(shared_points(team, path, o, start_time));
+      MpiOutput* const points = add(shared_points(group, path, o, start_time));
       if (files.size() > 1) points->channel = static_cast<std::uint8_t>(outputs_.size() - 1);
     }
     if (o.write_waveform)
-      add(std::make_unique<mpi::MpiRows<io::WaveformTextWriter, io::WaveformTextSettings>>(team, folder / (prefix + "_fullwave.txt"),
+      add(std::make_unique<mpi::MpiRows<io::WaveformTextWriter, io::WaveformTextSettings>>(group, folder / (prefix + "_fullwave.txt"),
                                                                                            io::WaveformTextSettings{start_time}));
     if (o.write_pulse)
-      add(std::make_unique<mpi::MpiRows<io::PulseTextWriter, io::PulseTextSettings>>(team, folder / (prefix + "_pulse.txt"),
+      add(std::make_unique<mpi::MpiRows<io::PulseTextWriter, io::PulseTextSettings>>(group, folder / (prefix + "_pulse.txt"),
                                                                                      io::PulseTextSettings{start_time}));
   }
 
@@ -72,7 +72,7 @@ class SharedLegRun final : public LegRun {
     const auto simulate = [&](const RunOptions& part, const std::function<void(const EchoBatch&)>& sink) {
       return simulation.run(part, sink);
     };
-    return mpi::run_parts(team_, options.end, options, simulate, outputs);
+    return mpi::run_parts(group_, options.end, options, simulate, outputs);
   }
 
   /// Points come last: a leg is complete when all its files are there.
@@ -84,7 +84,7 @@ class SharedLegRun final : public LegRun {
  private:
   MpiOutput* add(std::unique_ptr<MpiOutput> output) { return outputs_.emplace_back(std::move(output)).get(); }
 
-  MpiTeam& team_;
+  MpiGroup& group_;
   std::optional<io::TrajectoryWriter> trajectory_;  // on the first
   std::vector<std::unique_ptr<MpiOutput>> outputs_;
 };
@@ -102,9 +102,9 @@ class ManyRanks final : public Ranks {
       for (std::ostream* out : {&std::cout, &std::cerr}) out->setstate(std::ios::failbit);
   }
 
-  [[nodiscard]] bool first() const override { return team_.first(); }
-  [[nodiscard]] int count() const override { return team_.size(); }
-  [[nodiscard]] std::string from_first(std::string text) override { return team_.channel().from_first(std::move(text)); }
+  [[nodiscard]] bool first() const override { return group_.first(); }
+  [[nodiscard]] int count() const override { return group_.size(); }
+  [[nodiscard]] std::string from_first(std::string text) override { return group_.channel().from_first(std::move(text)); }
 
   [[nodiscard]] unsigned threads(unsigned asked) override {
     cpu_set_t own;
@@ -116,12 +116,12 @@ class ManyRanks final : public Ranks {
 
   [[nodiscard]] std::unique_ptr<LegRun> leg_run(const fs::path& folder, const std::string& prefix, const Options& options,
                                                 double start_time, const std::vector<std::string>& channels) override {
-    return std::make_unique<SharedLegRun>(team_, folder, prefix, options, start_time, channels);
+    return std::make_unique<SharedLegRun>(group_, folder, prefix, options, start_time, channels);
   }
 
   [[nodiscard]] std::string traffic() override {
     mpi::MpiTraffic sum;
-    for (const mpi::MpiTraffic& one : team_.channel().gather(team_.channel().traffic()))
+    for (const mpi::MpiTraffic& one : group_.channel().gather(group_.channel().traffic()))
       sum.messages += one.messages, sum.bytes += one.bytes;
     std::ostringstream text;
     text << std::setw(12) << sum.messages << " among " << count() << " processes, " << std::fixed << std::setprecision(2)
@@ -144,13 +144,13 @@ class ManyRanks final : public Ranks {
   [[nodiscard]] bool builds() const override { return machine_.first(); }
   [[nodiscard]] bool shared() const override { return machine_.size() > 1; }
   [[nodiscard]] std::string from_builder(std::string text) override { return machine_.from_first(std::move(text)); }
-  void meet() override {
-    machine_.meet([] { MpiTeam::pause(); });
+  void barrier() override {
+    machine_.barrier([] { MpiGroup::pause(); });
   }
 
  private:
   mpi::MpiSession session_;
-  MpiTeam team_;
+  MpiGroup group_;
   mpi::MpiChannel machine_;  // the processes of this one
 };
 

@@ -52,7 +52,7 @@ class OneRank final : public Ranks {
   [[nodiscard]] bool builds() const override { return true; }
   [[nodiscard]] bool shared() const override { return false; }
   [[nodiscard]] std::string from_builder(std::string text) override { return text; }
-  void meet() override {}
+  void barrier() override {}
 };
 
 /// Source: what Open MPI, MPICH and its kin, and Slurm with PMIx tell the processes that they start.

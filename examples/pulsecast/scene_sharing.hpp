@@ -13,5 +13,5 @@ class SceneSharing {
   /// What the one that builds says, by all.
   [[nodiscard]] virtual std::string from_builder(std::string text) = 0;
   /// Waits until all have come here.
-  virtual void meet() = 0;
+  virtual void barrier() = 0;
 };

@@ -28,8 +28,8 @@ using io::Fingerprint;
 namespace {
 
 constexpr std::uintmax_t worth_keeping = std::uintmax_t{16}
-                                         << 20;                 ///< of the scene's files: what is less is built in a second or so [byte]
-constexpr std::uintmax_t most_kept = std::uintmax_t{16} << 30;  ///< of all scenes, but for the newest [byte]
+                                         << 20;                ///< of the scene's files: what is less is built in a second or so [byte]
+constexpr std::uintmax_t max_kept = std::uintmax_t{16} << 30;  ///< of all scenes, but for the newest [byte]
 
 /// Says which program this is: one that was built anew may make other scenes.
 std::string this_program() {
@@ -96,7 +96,7 @@ void tidy(const fs::path& folder, const fs::path& newest) {
   }
   std::sort(all.begin(), all.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });
   for (const Kept& kept : all) {
-    if (sum <= most_kept) break;
+    if (sum <= max_kept) break;
     std::error_code ignored;
     if (fs::remove(kept.path, ignored)) sum -= kept.size;
   }
@@ -124,7 +124,7 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
   }
   if (store.read) {
     auto warnings = read_warnings(warnings_path, key);
-    auto opened = warnings ? io::open_scene<SurveyScene>(path, key, TimeWindows{.to = 1}) : io::OpenedScene<SurveyScene>{};
+    auto opened = warnings ? io::open_scene<SurveyScene>(path, key, MovingIndexSettings{.to = 1}) : io::OpenedScene<SurveyScene>{};
     if (opened.scene) {
       std::error_code ignored;
       for (const fs::path& used : {path, warnings_path}) fs::last_write_time(used, fs::file_time_type::clock::now(), ignored);
@@ -138,9 +138,9 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
     std::error_code error;
     fs::create_directories(store.folder, error);
     if (error) throw FileError(store.folder.string(), "", "the folder cannot be made: " + error.message());
-    const SurveyScene scene(made.built.parts, TimeWindows{.to = 1});
+    const SurveyScene scene(made.built.parts, MovingIndexSettings{.to = 1});
     const std::uintmax_t room = fs::space(store.folder, error).available;
-    if (scene.memory() > (error ? most_kept : std::min(most_kept, room)) / 2)
+    if (scene.memory() > (error ? max_kept : std::min(max_kept, room)) / 2)
       throw FileError(store.folder.string(), "", "it is too large for there");
     replace(warnings_path, [&](const fs::path& own) {
       io::OutputFile file(own);
@@ -167,7 +167,7 @@ void keep_for_now(KeptParts& kept) {
   const std::uint64_t mark = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
   std::error_code ignored;
   for (const fs::path& folder : {fs::path("/dev/shm"), fs::temp_directory_path(ignored)}) try {
-      const SurveyScene scene(kept.built.parts, TimeWindows{.to = 1});
+      const SurveyScene scene(kept.built.parts, MovingIndexSettings{.to = 1});
       std::error_code error;
       const std::uintmax_t room = fs::space(folder, error).available;
       if (error || room < scene.memory() + (scene.memory() >> 3)) continue;
@@ -208,14 +208,14 @@ KeptParts shared_parts(SceneSharing& sharing, const SceneStore& store, const Sce
   std::memcpy(&kept.key, key.data(), sizeof kept.key);
   std::string reason = "there is no room for it in a file";
   if (!path.empty()) {  // whoever has built it lets its own copy go for this one
-    auto opened = io::open_scene<SurveyScene>(path, kept.key, TimeWindows{.to = 1});
+    auto opened = io::open_scene<SurveyScene>(path, kept.key, MovingIndexSettings{.to = 1});
     reason = opened.reason;
     if (opened.scene) kept.built.parts.assign(opened.scene->parts().begin(), opened.scene->parts().end());
   }
   if (kept.built.parts.empty()) kept = {.built = build()};
   kept.built.warnings = lines_of(warnings);
   if (!reason.empty()) notes.push_back("each process has a scene of its own: " + reason);
-  sharing.meet();
+  sharing.barrier();
   if (for_now) {
     std::error_code ignored;
     fs::remove(path, ignored);

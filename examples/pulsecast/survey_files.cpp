@@ -79,15 +79,15 @@ void set_attribute(std::string& text, std::size_t tag, const std::string& name, 
 
 /// The file that a name leads to through symbolic links.
 fs::path target_of(fs::path path) {
-  constexpr int most_links = 40;  // source: path_resolution(7)
+  constexpr int max_links = 40;  // source: path_resolution(7)
   std::error_code error;
-  for (int links = 0; links < most_links && fs::is_symlink(path, error); ++links) path = path.parent_path() / fs::read_symlink(path, error);
+  for (int links = 0; links < max_links && fs::is_symlink(path, error); ++links) path = path.parent_path() / fs::read_symlink(path, error);
   return path;
 }
 
 /// Throws a `FileError` unless a text, read where `path` stands, says the same survey but for the change.
-void expect_same_survey(const Options& options, const SurveyFile& file, const WaveformChange& change, const std::string& text,
-                        const fs::path& path) {
+void require_same_survey(const Options& options, const SurveyFile& file, const WaveformChange& change, const std::string& text,
+                         const fs::path& path) {
   struct Trial {
     fs::path path;
     ~Trial() {
@@ -124,7 +124,7 @@ void write_survey_file(const Options& options, const SurveyFile& file, const Wav
   set_attribute(text, tag, "binSize_ns", helios::xml_number(helios::units::nanosecond.number(change.bin_size)));
   set_attribute(text, tag, "beamSampleQuality", std::to_string(change.rings));
 
-  expect_same_survey(options, file, change, text, path);
+  require_same_survey(options, file, change, text, path);
   const fs::path target = target_of(path);
   io::OutputFile out(target);
   out.write(text);

@@ -27,8 +27,8 @@
 namespace py = pybind11;
 using namespace pulsecast;
 using namespace py::literals;
+using helios::CompiledSurvey;
 using helios::Simulation;
-using helios::SurveyPlan;
 using Paths = std::vector<std::filesystem::path>;
 
 namespace {
@@ -56,13 +56,13 @@ void warn(const std::vector<std::string>& warnings) {
 /// Triangles of arrays, with one material.
 Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices, const py::object& triangles_given,
                          ObjectId object, double reflectance, std::uint16_t classification, bool ground) {
-  const auto expect_rows_of_three = [](const py::array& array, const std::string& field) {
+  const auto require_rows_of_three = [](const py::array& array, const std::string& field) {
     if (array.ndim() != 2) throw SettingError(field + " (dimensions)", static_cast<double>(array.ndim()), "", "2: shape (n, 3)");
     if (array.shape(1) != 3) throw SettingError(field + " (columns)", static_cast<double>(array.shape(1)), "", "3: shape (n, 3)");
   };
   const auto numbers = py::array::ensure(triangles_given);
   if (!numbers) throw py::type_error("Mesh triangles: expected an array, not " + std::string(py::repr(triangles_given)));
-  expect_rows_of_three(vertices, "Mesh::vertices"), expect_rows_of_three(numbers, "Mesh::triangles");
+  require_rows_of_three(vertices, "Mesh::vertices"), require_rows_of_three(numbers, "Mesh::triangles");
   if (const char kind = numbers.dtype().kind(); kind != 'i' && kind != 'u')  // else 1.7 would become 1
     throw py::type_error("Mesh triangles: expected whole numbers, not " + std::string(py::str(numbers.dtype())));
   const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles(numbers);
@@ -87,7 +87,7 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
                                           std::optional<std::uint64_t> seed, bool echo_width, bool waveforms, bool waveform_noise,
                                           bool fixed_incidence, bool platform_noise, bool leg_noise, unsigned threads, int run) {
   const helios::SurveySettings settings = survey_of(survey);
-  expect_within("Simulation repetition", run, 0, std::numeric_limits<int>::max(), "");
+  require_within("Simulation repetition", run, 0, std::numeric_limits<int>::max(), "");
   for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
     assets.push_back(std::move(folder));
   std::unique_ptr<Simulation> simulation;
@@ -111,17 +111,17 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
 }
 
 py::array trajectory_of(const Simulation& simulation, double interval) {
-  expect_within("Simulation.trajectory interval", interval, 1e-6, 1e9, "s");
+  require_within("Simulation.trajectory interval", interval, 1e-6, 1e9, "s");
   python::Rows<PoseRow> rows;
-  const SurveyPlan& plan = simulation.plan();
-  for (std::size_t k = 0; k < plan.legs.size(); ++k) {
-    const auto& path = plan.source.legs()[k].path();
-    io::for_each_record(plan.legs[k].duration, interval, [&](const Tick& tick) {
+  const CompiledSurvey& compiled = simulation.compiled();
+  for (std::size_t k = 0; k < compiled.legs.size(); ++k) {
+    const auto& path = compiled.source.legs()[k].path();
+    io::for_each_record(compiled.legs[k].duration, interval, [&](const Tick& tick) {
       const Pose<frame::Body, frame::World> pose = path.at(tick);
       const io::RollPitchYaw angles = io::roll_pitch_yaw(pose.rotation, {});
       const Vec3& p = pose.position;
-      rows.push_back({(plan.legs[k].start + tick).seconds(), p.x, p.y, p.z, angles.roll, angles.pitch, angles.yaw,
-                      static_cast<std::int32_t>(plan.legs[k].number)});
+      rows.push_back({(compiled.legs[k].start + tick).seconds(), p.x, p.y, p.z, angles.roll, angles.pitch, angles.yaw,
+                      static_cast<std::int32_t>(compiled.legs[k].number)});
     });
   }
   return rows.take();
@@ -129,7 +129,7 @@ py::array trajectory_of(const Simulation& simulation, double interval) {
 
 py::array legs_of(const Simulation& simulation) {
   python::Rows<LegRow> rows;
-  for (const SurveyPlan::LegPlan& leg : simulation.plan().legs)
+  for (const CompiledSurvey::Leg& leg : simulation.compiled().legs)
     rows.push_back({static_cast<std::int32_t>(leg.number),
                     leg.active,
                     {},
@@ -196,10 +196,10 @@ PYBIND11_MODULE(_core, m) {
            "scene, 0 "
            "for all. repetition: which scene, where parts are swapped from run to run. Raises SettingError or FileError.")
       .def(
-          "__len__", [](const Simulation& s) { return s.plan().source.size(); }, "Pulse slots.")
+          "__len__", [](const Simulation& s) { return s.compiled().source.size(); }, "Pulse slots.")
       .def("__repr__",
            [](const Simulation& s) {
-             return "<Simulation of " + std::to_string(s.plan().legs.size()) + " legs, " + std::to_string(s.plan().source.size()) +
+             return "<Simulation of " + std::to_string(s.compiled().legs.size()) + " legs, " + std::to_string(s.compiled().source.size()) +
                     " pulse slots, " + std::to_string(s.scene().triangles) + " triangles>";
            })
       .def("trajectory", &trajectory_of, "interval"_a,

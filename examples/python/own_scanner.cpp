@@ -19,15 +19,15 @@ struct Rosette {
   double first, second;  ///< turns of the prisms per second, negative for the other way [Hz]
 
   void validate() const {
-    expect_within("Rosette::bend", bend, -0.5, 0.5, "rad");
-    expect_finite("Rosette::first", first, "Hz");
-    expect_finite("Rosette::second", second, "Hz");
+    require_within("Rosette::bend", bend, -0.5, 0.5, "rad");
+    require_finite("Rosette::first", first, "Hz");
+    require_finite("Rosette::second", second, "Hz");
   }
 
   Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     const double a = 2 * pi * t.phase(first), b = 2 * pi * t.phase(second);
     const double aside = bend * (std::cos(a) + std::cos(b)), upwards = bend * (std::sin(a) + std::sin(b));
-    return {rotation_about(up, -aside) * rotation_about(right, upwards), {}};
+    return {rotation_about(axis::up, -aside) * rotation_about(axis::right, upwards), {}};
   }
 };
 
@@ -41,7 +41,7 @@ const Scene<TriangleMesh<>>& floor() {
 
 auto over_the_floor(PulseIndex pulses, double bend, double first, double second) {
   const Deflector deflector{Rosette{bend, first, second}, Scanner{.pulse_rate = 200_kHz, .pulses = pulses}};
-  const Platform hanging{Tripod{}, Mount{.boresight = rotation_about(right, -90_deg)}, deflector};
+  const Platform hanging{Tripod{}, Mount{.boresight = rotation_about(axis::right, -90_deg)}, deflector};
   return Survey{hanging, SunflowerFootprint{19}, floor(), Receiver{}, FullWaveform{}};
 }
 

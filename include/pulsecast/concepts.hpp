@@ -78,7 +78,8 @@ concept InstrumentSource = PulseSource<S, frame::Instrument>;  ///< as `Deflecto
 template <class S>
 concept WorldSource = PulseSource<S, frame::World>;  ///< as `Platform<...>`
 
-/// A source that draws random errors, as `Misreported`: `Legs` tells each of its legs its place in the list, so that no two draw the same.
+/// A source that draws random errors, as `WithPoseErrors`: `Legs` tells each of its legs its place in the list, so that no two draw the
+/// same.
 /// Law: place 0 changes nothing.
 template <class S>
 concept DrawsByLeg = WorldSource<S> && requires(S& s, std::uint32_t leg) { s.draw_for_leg(leg); };
@@ -93,12 +94,12 @@ struct TestsPrimitives {
 
 /// A search structure over the boxes of numbered primitives. It knows nothing of what is inside them: `test` is called with the
 /// primitives that a bundle may meet, and enters what it finds into `nearest`. What it is called with are stretches of `order()`, in which
-/// every primitive stands that can be met at all, side by side with its neighbours, and maybe in several places. `test.soon(stretch)`, if
+/// every primitive stands that can be met at all, side by side with its neighbours, and maybe in several places. `test.prefetch(range)`, if
 /// there is such a thing, may be told some time before.
 /// Law: where the primitives keep to their boxes, `nearest` ends as if every primitive had been tested; rays of NaN miss.
 template <class A>
 concept Accelerator = std::copyable<A> && std::constructible_from<A, std::span<const Box>> &&
-    requires(const A a, const RayBundle& rays, const detail::TestsPrimitives& test, Nearest& nearest) {
+    requires(const A a, const RayBundle& rays, const detail::TestsPrimitives& test, ClosestHits& nearest) {
   { a.bounds() } noexcept -> std::same_as<const Box&>;
   { a.memory() } noexcept -> std::same_as<std::size_t>;
   { a.order() } noexcept -> std::same_as<std::span<const PrimitiveIndex>>;
@@ -117,7 +118,7 @@ struct Surface {
 /// `static constexpr bool flat = true` if a primitive's surface is the same wherever it is met: it is then asked for once.
 /// Law: pure; random draws come from the bundle's names only; `closest` offers primitives to `nearest` and nothing else.
 template <class G>
-concept Geometry = requires(const G g, const RayBundle& rays, Nearest& nearest, PrimitiveIndex i, std::size_t j) {
+concept Geometry = requires(const G g, const RayBundle& rays, ClosestHits& nearest, PrimitiveIndex i, std::size_t j) {
   { g.bounds() } noexcept -> std::same_as<const Box&>;
   { g.memory() } noexcept -> std::same_as<std::size_t>;
   { g.material_count() } noexcept -> std::same_as<std::size_t>;
@@ -146,7 +147,7 @@ concept Target = BundleTarget<T> || RayTarget<T>;
 
 /// How a beam's cross section is sampled by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along the beam.
 /// Law: the shares are not negative and sum to one; a survey refuses others.
-/// May say `static constexpr bool recorded = true`, to have all subrays handed on to the sinks, as `Recorded` does.
+/// May say `static constexpr bool recorded = true`, to have all subrays handed on to the sinks, as `WithSubrayRecord` does.
 template <class F>
 concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
   { f.size() } noexcept -> std::same_as<std::size_t>;
@@ -184,7 +185,7 @@ concept Detector = std::copyable<D> && requires(const D d, const Laser& laser, s
 
 /// How the width of an echo is measured: a policy of the waveform detectors. `samples` is the waveform [W] between the valleys to the
 /// neighbouring echoes, every `interval` [s]; the answer is a standard deviation in time [s], NaN if there is none to be found.
-/// Not required: `width(const WaveformMoments&)`, from which `AnalyticWaveform` has the exact width without samples; `least_share()`, a
+/// Not required: `width(const WaveformMoments&)`, from which `AnalyticWaveform` has the exact width without samples; `min_share()`, a
 /// share of the highest sample below which samples do not matter, so that the tail of a waveform need not be sampled.
 template <class W>
 concept EchoWidth = std::copyable<W> && requires(const W w, std::span<const double> samples, double interval) {

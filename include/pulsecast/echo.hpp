@@ -78,7 +78,7 @@ struct EchoBatch {
   std::span<const Echo> echoes;          ///< those of one shot stand together, sorted by the range that is reported
   std::span<const float> samples;        ///< waveforms: received power [W]
   double sample_interval = 0;            ///< between two samples of a waveform [s]
-  std::span<const SubrayHit> subrays{};  ///< all of each shot, in the order of the footprint; empty unless it is `Recorded`
+  std::span<const SubrayHit> subrays{};  ///< all of each shot, in the order of the footprint; empty unless it is `WithSubrayRecord`
 
   [[nodiscard]] std::span<const Echo> echoes_of(const Shot& s) const noexcept { return echoes.subspan(s.first_echo, s.echoes); }
   [[nodiscard]] std::span<const float> waveform_of(const Shot& s) const noexcept { return samples.subspan(s.first_sample, s.samples); }

@@ -65,7 +65,7 @@ struct Pulse {
         channel(p.channel) {}
 
   [[nodiscard]] const Vec3& origin() const noexcept { return pose.position; }
-  [[nodiscard]] Vec3 direction() const noexcept { return pose.rotation * forward; }
+  [[nodiscard]] Vec3 direction() const noexcept { return pose.rotation * axis::forward; }
 };
 
 }  // namespace pulsecast

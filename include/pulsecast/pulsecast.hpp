@@ -4,21 +4,21 @@
 
 /// The core: all that needs GLM alone.
 
+#include <pulsecast/accel/binary_sah_tree.hpp>
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/accel/kd_tree.hpp>
 #include <pulsecast/accel/linear.hpp>
 #include <pulsecast/accel/sah.hpp>
-#include <pulsecast/accel/two_tree.hpp>
 #include <pulsecast/base/arithmetic.hpp>
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/rotation_list.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/base/units.hpp>
@@ -42,11 +42,11 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/detector/peaks.hpp>
-#include <pulsecast/detector/pulse_bunch.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/detector/receiver_noise.hpp>
+#include <pulsecast/detector/single_peak_group.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/geometry/box.hpp>
@@ -70,10 +70,10 @@
 #include <pulsecast/platform/waypoints.hpp>
 #include <pulsecast/pulse.hpp>
 #include <pulsecast/run.hpp>
+#include <pulsecast/scanner/any_source.hpp>
 #include <pulsecast/scanner/beam.hpp>
 #include <pulsecast/scanner/channels.hpp>
 #include <pulsecast/scanner/footprint.hpp>
-#include <pulsecast/scanner/one_of.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 #include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/lattice_ray.hpp>

@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/survey.hpp>
 
 namespace pulsecast {
@@ -40,7 +40,7 @@ struct RunSlots {
 };
 
 struct RunOptions {
-  unsigned threads = 0;                                     ///< at most `most_threads`; 0 for as many as the machine runs at once
+  unsigned threads = 0;                                     ///< at most `max_threads`; 0 for as many as the machine runs at once
   PulseIndex first = 0;                                     ///< the first slot to do
   PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< the slot after the last, at most the survey's size
   PulseIndex stride = 1;                                    ///< every so many-th slot only: a preview
@@ -48,8 +48,8 @@ struct RunOptions {
   std::stop_token stop{};                                   ///< ends the run early; what was delivered is whole up to there
 
   void validate() const {
-    expect_within("RunOptions::threads", threads, 0, most_threads, "");
-    expect_within("RunOptions::stride", static_cast<double>(stride), 1, 1e18, "");
+    require_within("RunOptions::threads", threads, 0, max_threads, "");
+    require_within("RunOptions::stride", static_cast<double>(stride), 1, 1e18, "");
   }
 
   /// Which of `size` slots to do. @throws SettingError if the options cannot be
@@ -62,10 +62,10 @@ struct RunOptions {
 
 /// What a run came to.
 struct RunSummary {
-  PulseIndex slots = 0;                           ///< pulse slots done
-  std::array<std::uint64_t, fate_count> fates{};  ///< slots by `Fate`
-  double energy = 0;                              ///< sent, as in `Outcome` [J]
-  std::array<double, fate_count> spent{};  ///< of that energy, by what became of the subrays that carried it; their sum is all of it [J]
+  PulseIndex slots = 0;                             ///< pulse slots done
+  std::array<std::uint64_t, fate_count> fates{};    ///< slots by `Fate`
+  double energy = 0;                                ///< sent, as in `Outcome` [J]
+  std::array<double, fate_count> energy_by_fate{};  ///< of that energy, by the fate of the subrays that carried it; in sum all of it [J]
   std::uint64_t echoes = 0;
   std::uint64_t rays = 0;  ///< subrays traced
   double seconds = 0;      ///< [s]
@@ -74,17 +74,17 @@ struct RunSummary {
   /// Takes in what another run came to, or another part of the same.
   void add(const RunSummary& other) noexcept {
     slots += other.slots, echoes += other.echoes, rays += other.rays, energy += other.energy, seconds += other.seconds;
-    for (std::size_t f = 0; f < fate_count; ++f) fates[f] += other.fates[f], spent[f] += other.spent[f];
+    for (std::size_t f = 0; f < fate_count; ++f) fates[f] += other.fates[f], energy_by_fate[f] += other.energy_by_fate[f];
     complete = complete && other.complete;
   }
 
   [[nodiscard]] std::uint64_t count(Fate fate) const noexcept { return fates[static_cast<std::size_t>(fate)]; }
-  [[nodiscard]] double share(Fate fate) const noexcept { return energy > 0 ? spent[static_cast<std::size_t>(fate)] / energy : 0; }
+  [[nodiscard]] double share(Fate fate) const noexcept { return energy > 0 ? energy_by_fate[static_cast<std::size_t>(fate)] / energy : 0; }
   [[nodiscard]] PulseIndex pulses() const noexcept { return slots - count(Fate::blocked); }  ///< that were sent
 };
 
 /// What came of slots, one after another, for those who ask a survey for single ones.
-struct Collected {
+struct ResultBuffer {
   std::vector<Shot> shots{};
   std::vector<Echo> echoes{};
   std::vector<float> samples{};
@@ -105,7 +105,7 @@ struct Collected {
     for (const SubrayHit& subray : outcome.subrays) subrays.push_back(subray);
     counts.echoes += outcome.echoes.size();
     counts.energy += outcome.energy;
-    for (std::size_t f = 0; f < fate_count; ++f) counts.spent[f] += outcome.energy * outcome.shares[f];
+    for (std::size_t f = 0; f < fate_count; ++f) counts.energy_by_fate[f] += outcome.energy * outcome.shares[f];
   }
 
   /// The batch that sinks get; it lives as long as this is not changed.
@@ -115,7 +115,7 @@ struct Collected {
 namespace detail {
 
 /// The results of consecutive slots, in memory of their own that is used again and again.
-struct Chunk : Collected {
+struct Chunk : ResultBuffer {
   std::uint64_t number = 0;
   Chunk* next_free = nullptr;
 
@@ -128,16 +128,16 @@ struct Chunk : Collected {
 /// Hands out chunks to workers, and the finished ones, in order and one at a time, to whoever takes them. Workers run ahead, so that none
 /// waits for one that is slow, or that the system has put aside; but only until what is finished fills a few megabytes, or until there are
 /// two chunks a worker if these are large, which bounds the memory. The chunk delivered last is the next to be used, as it is in the cache.
-class Conveyor {
+class ReorderBuffer {
  public:
-  Conveyor(std::uint64_t chunks, std::size_t workers, std::stop_token stop)
+  ReorderBuffer(std::uint64_t chunks, std::size_t workers, std::stop_token stop)
       : chunks_(chunks),
         always_ahead_(2 * workers + 2),
-        most_ahead_(16 * always_ahead_),
-        room_(std::make_unique<Chunk[]>(most_ahead_)),
-        finished_(std::make_unique<Chunk*[]>(most_ahead_)),
+        max_ahead_(16 * always_ahead_),
+        room_(std::make_unique<Chunk[]>(max_ahead_)),
+        finished_(std::make_unique<Chunk*[]>(max_ahead_)),
         stop_(std::move(stop)) {
-    for (std::size_t i = 0; i < most_ahead_; ++i) room_[i].next_free = std::exchange(free_, &room_[i]);
+    for (std::size_t i = 0; i < max_ahead_; ++i) room_[i].next_free = std::exchange(free_, &room_[i]);
   }
 
   /// The next chunk to work on, empty; none at the end, or when the run is stopped.
@@ -182,16 +182,16 @@ class Conveyor {
   [[nodiscard]] std::exception_ptr failure() const noexcept { return failure_; }
 
  private:
-  static constexpr std::size_t most_bytes = std::size_t{6} << 20;  // finished and not delivered: some milliseconds of fast work
+  static constexpr std::size_t max_bytes = std::size_t{6} << 20;  // finished and not delivered: some milliseconds of fast work
 
   [[nodiscard]] bool may_go_ahead() const noexcept {
     const std::uint64_t ahead = handed_out_ - delivered_;
-    return ahead < always_ahead_ || (ahead < most_ahead_ && finished_bytes_ < most_bytes);
+    return ahead < always_ahead_ || (ahead < max_ahead_ && finished_bytes_ < max_bytes);
   }
-  [[nodiscard]] Chunk*& place(std::uint64_t number) noexcept { return finished_[number % most_ahead_]; }
+  [[nodiscard]] Chunk*& place(std::uint64_t number) noexcept { return finished_[number % max_ahead_]; }
 
   std::uint64_t chunks_, handed_out_ = 0, delivered_ = 0;
-  std::size_t always_ahead_, most_ahead_, finished_bytes_ = 0;
+  std::size_t always_ahead_, max_ahead_, finished_bytes_ = 0;
   std::unique_ptr<Chunk[]> room_;
   std::unique_ptr<Chunk*[]> finished_;  // each at its place, which is empty before
   Chunk* free_ = nullptr;               // the first of them
@@ -217,7 +217,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   const auto began = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
 
-  detail::Conveyor conveyor(chunks, workers, options.stop);
+  detail::ReorderBuffer buffer(chunks, workers, options.stop);
   RunSummary summary;
   const auto deliver = [&](const detail::Chunk& chunk) {
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
@@ -227,19 +227,19 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   };
   for_each_index(workers, options.threads, [&](std::size_t) noexcept {  // each works on as long as there is something to do
     try {
-      detail::Chunk* chunk = conveyor.next();
+      detail::Chunk* chunk = buffer.next();
       if (!chunk) return;
       auto workspace = survey.workspace();
-      for (; chunk; chunk = conveyor.next()) {
+      for (; chunk; chunk = buffer.next()) {
         const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots.count);
         for (PulseIndex n = from; n < to; ++n) chunk->append(survey(slots[n], workspace));
-        conveyor.finish(*chunk, deliver);
+        buffer.finish(*chunk, deliver);
       }
     } catch (...) {
-      conveyor.fail(std::current_exception());
+      buffer.fail(std::current_exception());
     }
   });
-  if (conveyor.failure()) std::rethrow_exception(conveyor.failure());
+  if (buffer.failure()) std::rethrow_exception(buffer.failure());
   summary.rays = summary.pulses() * survey.subrays();
   summary.seconds = elapsed();
   summary.complete = summary.slots == slots.count;

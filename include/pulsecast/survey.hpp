@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/scanner/footprint.hpp>
@@ -27,7 +27,7 @@ struct Outcome {
   std::size_t hits = 0;  ///< subrays that met something
   double energy = 0;     ///< that was sent: peak power by pulse length; the shape of a pulse in time makes some percent of difference [J]
   std::array<double, fate_count> shares{};  ///< of that energy, by what became of it; they sum to one, or to nothing if nothing was sent
-  std::span<const SubrayHit> subrays{};     ///< all of them, if the footprint is `Recorded`
+  std::span<const SubrayHit> subrays{};     ///< all of them, if the footprint is `WithSubrayRecord`
 
   [[nodiscard]] double share(Fate fate) const noexcept { return shares[static_cast<std::size_t>(fate)]; }
 };
@@ -44,14 +44,14 @@ class Survey {
         receiver_(validated(receiver)),
         detector_(validated(std::move(detector))),
         seed_(seed) {
-    expect_whole_beam();
-    if constexpr (requires(const Laser& laser) { detector_.validate(laser); }) expect_lasers();
+    require_whole_beam();
+    if constexpr (requires(const Laser& laser) { detector_.validate(laser); }) require_lasers();
   }
 
   Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would be gone
 
   /// The subrays in the frame of the beam, number by number, and some lanes to spare.
-  struct Fan {
+  struct SubrayDirections {
     std::vector<double> x, y, z;  ///< directions
     std::vector<double> shares;
     std::vector<Vec3> exits;  ///< where they leave; not set for a beam from a point [m]
@@ -59,9 +59,9 @@ class Survey {
 
   /// The scratch memory of one worker, and what need not be computed again from pulse to pulse.
   struct Workspace {
-    Laser laser;  ///< that `budget` and `fan` are made for
+    Laser laser;  ///< that `budget` and `directions` are made for
     LinkBudget budget;
-    Fan fan;
+    SubrayDirections directions;
     std::vector<Hit> hits;                ///< of a bundle
     std::vector<Reflection> reflections;  ///< of a pulse, as many as there are, and room for more
     std::vector<SubrayHit> subrays;       ///< all of a pulse, if they are recorded
@@ -69,7 +69,7 @@ class Survey {
     struct {
       double range = -1;  ///< last asked for [m]
       double power = 0;   ///< what a white surface there gives of the whole pulse [W]
-    } white{};
+    } white_target{};
   };
 
   [[nodiscard]] Workspace workspace() const {
@@ -83,8 +83,8 @@ class Survey {
                 std::vector<Reflection>(n),
                 std::vector<SubrayHit>(recorded_subrays()),
                 detector_.workspace(n)};
-    for (std::size_t j = 0; j < n; ++j) w.fan.shares[j] = footprint_.share(j);
-    spread(laser, w.fan);
+    for (std::size_t j = 0; j < n; ++j) w.directions.shares[j] = footprint_.share(j);
+    fill_subrays(laser, w.directions);
     return w;
   }
 
@@ -113,26 +113,26 @@ class Survey {
     }
     const Pose<frame::Beam, frame::World>& reported = pulse->reported ? *pulse->reported : pulse->pose;
     out.shot.tick = pulse->tick;
-    out.shot.origin = reported.position, out.shot.direction = reported.direction(forward);
+    out.shot.origin = reported.position, out.shot.direction = reported.direction(axis::forward);
     out.shot.scan_angle = pulse->scan_angle;
     out.shot.leg = pulse->leg, out.shot.channel = pulse->channel;
 
-    if (pulse->laser != w.laser) make_for(pulse->laser, w);
-    const Spent spent = trace(*pulse, reported, w);
+    if (pulse->laser != w.laser) adapt_to(pulse->laser, w);
+    const EnergyByFate by_fate = trace(*pulse, reported, w);
     out.energy = pulse->laser.peak_power * pulse->laser.pulse_length;
     out.subrays = w.subrays;
-    out.shares[static_cast<std::size_t>(Fate::missed)] = spent.missed;
-    out.shares[static_cast<std::size_t>(Fate::out_of_range)] = spent.out_of_range;
-    out.shares[static_cast<std::size_t>(Fate::absorbed)] = spent.absorbed;
-    out.hits = spent.hits;
-    if (spent.reflections == 0) {
-      out.shot.fate = spent.any_in_gate ? Fate::absorbed : spent.hits > 0 ? Fate::out_of_range : Fate::missed;
+    out.shares[static_cast<std::size_t>(Fate::missed)] = by_fate.missed;
+    out.shares[static_cast<std::size_t>(Fate::out_of_range)] = by_fate.out_of_range;
+    out.shares[static_cast<std::size_t>(Fate::absorbed)] = by_fate.absorbed;
+    out.hits = by_fate.hits;
+    if (by_fate.reflections == 0) {
+      out.shot.fate = by_fate.any_in_gate ? Fate::absorbed : by_fate.hits > 0 ? Fate::out_of_range : Fate::missed;
       return out;
     }
 
-    const Detection detection = detect(pulse->laser, i, {w.reflections.data(), spent.reflections}, w.detector);
+    const Detection detection = detect(pulse->laser, i, {w.reflections.data(), by_fate.reflections}, w.detector);
     for (Echo& echo : detection.echoes) {
-      echo.reflectance = echo.amplitude / white(w, echo.range);
+      echo.reflectance = echo.amplitude / white_target_power(w, echo.range);
       if (!receiver_.range_errors.none())
         echo.range += receiver_.range_errors.at(echo.range, echo.cos_incidence, normal({seed_, i, echo.number, Purpose::range_noise}));
     }
@@ -141,7 +141,7 @@ class Survey {
     out.waveform = detection.waveform;
     out.shot.waveform_start = detection.waveform_start;
     out.shot.fate = detection.echoes.empty() ? Fate::below_threshold : Fate::returned;
-    out.shares[static_cast<std::size_t>(out.shot.fate)] = spent.reflected;
+    out.shares[static_cast<std::size_t>(out.shot.fate)] = by_fate.reflected;
     return out;
   }
 
@@ -149,19 +149,19 @@ class Survey {
   using Scratch = decltype(Workspace::detector);
 
   /// Refuses a footprint that keeps energy back, or gives more than there is.
-  void expect_whole_beam() const {
+  void require_whole_beam() const {
     double sum = 0;
     for (std::size_t j = 0; j < footprint_.size(); ++j) {
       const double share = footprint_.share(j);
-      expect_not_negative("Footprint::share", share, "");
-      expect_finite("Footprint::offset (length)", length(footprint_.offset(j)), "");
+      require_not_negative("Footprint::share", share, "");
+      require_finite("Footprint::offset (length)", length(footprint_.offset(j)), "");
       sum += share;
     }
-    expect_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // adding up a million rounds less
+    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // adding up a million rounds less
   }
 
   /// Refuses a laser that the detector cannot serve, as far as the first slots, of every channel, and some from all over tell.
-  void expect_lasers() const {
+  void require_lasers() const {
     constexpr PulseIndex first = 256;
     for (PulseIndex k = 0; k < 2 * first && k < size(); ++k) {
       const PulseIndex i = k < first ? k : static_cast<PulseIndex>(uniform({.pulse = k}) * static_cast<double>(size()));
@@ -189,32 +189,32 @@ class Survey {
 
   static constexpr bool recorded = requires { requires bool{Pattern::recorded}; };
 
-  void spread(const Laser& laser, Fan& fan) const noexcept {
+  void fill_subrays(const Laser& laser, SubrayDirections& directions) const noexcept {
     for (std::size_t j = 0; j < footprint_.size(); ++j) {
       const Vec3 direction = subray_direction(footprint_.offset(j), laser.divergence);
-      fan.x[j] = direction.x, fan.y[j] = direction.y, fan.z[j] = direction.z;
-      if (!laser.from_a_point()) fan.exits[j] = subray_exit(footprint_.offset(j), laser);
+      directions.x[j] = direction.x, directions.y[j] = direction.y, directions.z[j] = direction.z;
+      if (!laser.from_a_point()) directions.exits[j] = subray_exit(footprint_.offset(j), laser);
     }
   }
 
-  void make_for(const Laser& laser, Workspace& w) const noexcept {
+  void adapt_to(const Laser& laser, Workspace& w) const noexcept {
     if (laser.divergence != w.laser.divergence || laser.waist_diameter != w.laser.waist_diameter ||
         laser.waist_range != w.laser.waist_range)
-      spread(laser, w.fan);
-    w.budget = LinkBudget(receiver_, laser), w.white = {};
+      fill_subrays(laser, w.directions);
+    w.budget = LinkBudget(receiver_, laser), w.white_target = {};
     w.laser = laser;
   }
 
   /// What the subrays of a pulse met, and the shares of its energy that they carried there.
-  struct Spent {
+  struct EnergyByFate {
     double missed = 0, out_of_range = 0, absorbed = 0, reflected = 0;
     std::size_t hits = 0, reflections = 0;
     bool any_in_gate = false;
   };
 
   /// Fills in the reflections, and the subrays if they are recorded.
-  Spent trace(const Pulse<frame::World>& pulse, const Pose<frame::Beam, frame::World>& reported, Workspace& w) const noexcept {
-    Spent spent;
+  EnergyByFate trace(const Pulse<frame::World>& pulse, const Pose<frame::Beam, frame::World>& reported, Workspace& w) const noexcept {
+    EnergyByFate by_fate;
     RayBundle rays;
     rays.origin = pulse.origin();
     rays.wavelength = pulse.laser.wavelength, rays.tick = pulse.tick, rays.seed = seed_, rays.pulse = pulse.index;
@@ -225,45 +225,46 @@ class Survey {
     for (std::size_t first = 0; first < subrays; first += rays.size) {
       rays.first_subray = static_cast<std::uint32_t>(first);
       rays.size = std::min(from_a_point ? RayBundle::capacity : 1, subrays - first);
-      if (!from_a_point) rays.origin = pulse.origin() + world_from_beam * w.fan.exits[first];
-      turn(world_from_beam, w.fan, first, rays);
-      ask(rays, w.hits);
-      receive(w, first, rays.size, power);
+      if (!from_a_point) rays.origin = pulse.origin() + world_from_beam * w.directions.exits[first];
+      to_world(world_from_beam, w.directions, first, rays);
+      intersect(rays, w.hits);
+      received_power(w, first, rays.size, power);
       for (std::size_t j = 0; j < rays.size; ++j) {
         const Hit& hit = w.hits[j];
-        const double share = w.fan.shares[first + j];
+        const double share = w.directions.shares[first + j];
         if constexpr (recorded) {
-          const Vec3 exit = from_a_point ? Vec3{} : w.fan.exits[first + j];
-          const Vec3 direction{w.fan.x[first + j], w.fan.y[first + j], w.fan.z[first + j]};
+          const Vec3 exit = from_a_point ? Vec3{} : w.directions.exits[first + j];
+          const Vec3 direction{w.directions.x[first + j], w.directions.y[first + j], w.directions.z[first + j]};
           w.subrays[first + j] = {hit, 0, hit.met() ? reported.point(exit + hit.range * direction) : Vec3{}};
         }
         if (!hit.met()) {
-          spent.missed += share;
+          by_fate.missed += share;
           continue;
         }
-        ++spent.hits;
+        ++by_fate.hits;
         if (!receiver_.in_gate(hit.range)) {
-          spent.out_of_range += share;
+          by_fate.out_of_range += share;
           continue;
         }
-        spent.any_in_gate = true;
+        by_fate.any_in_gate = true;
         if (!(power[j] > 0)) {
-          spent.absorbed += share;
+          by_fate.absorbed += share;
           continue;
         }
-        spent.reflected += share;
-        w.reflections[spent.reflections++] = {hit.range, power[j], hit.object, hit.classification, hit.cos_incidence};
+        by_fate.reflected += share;
+        w.reflections[by_fate.reflections++] = {hit.range, power[j], hit.object, hit.classification, hit.cos_incidence};
         if constexpr (recorded) w.subrays[first + j].power = power[j];
       }
     }
-    return spent;
+    return by_fate;
   }
 
-  /// Sets the directions of a bundle to those of a fan from a number on.
-  static void turn(const Matrix3& world_from_beam, const Fan& fan, std::size_t first, RayBundle& rays) noexcept {
+  /// Sets the directions of a bundle to those of subrays from a number on.
+  static void to_world(const Matrix3& world_from_beam, const SubrayDirections& directions, std::size_t first, RayBundle& rays) noexcept {
     const Vec3 across = world_from_beam[0], ahead = world_from_beam[1], above = world_from_beam[2];
     for (std::size_t j = 0; j < rays.size; j += lane_count) {
-      const Lanes x = load<Lanes>(fan.x[first + j]), y = load<Lanes>(fan.y[first + j]), z = load<Lanes>(fan.z[first + j]);
+      const Lanes x = load<Lanes>(directions.x[first + j]), y = load<Lanes>(directions.y[first + j]),
+                  z = load<Lanes>(directions.z[first + j]);
       store(Lanes(x * across.x + y * ahead.x + z * above.x), rays.x[j]);
       store(Lanes(x * across.y + y * ahead.y + z * above.y), rays.y[j]);
       store(Lanes(x * across.z + y * ahead.z + z * above.z), rays.z[j]);
@@ -272,25 +273,25 @@ class Survey {
   }
 
   /// What the receiver gets of a whole pulse from a white surface; the echo of a single ray is asked about where the ray was [W].
-  static double white(Workspace& w, double range) noexcept {
-    if (range != w.white.range) w.white = {range, w.budget.power(1, 1, range)};
-    return w.white.power;
+  static double white_target_power(Workspace& w, double range) noexcept {
+    if (range != w.white_target.range) w.white_target = {range, w.budget.power(1, 1, range)};
+    return w.white_target.power;
   }
 
   /// What the receiver gets of the hits of a bundle, were it open at all ranges [W]. No number where nothing was met.
-  static void receive(Workspace& w, std::size_t first, std::size_t size, RayBundle::Column& power) noexcept {
+  static void received_power(Workspace& w, std::size_t first, std::size_t size, RayBundle::Column& power) noexcept {
     if (size == 1) {
-      power[0] = w.fan.shares[first] * w.hits[0].backscatter * white(w, w.hits[0].range);
+      power[0] = w.directions.shares[first] * w.hits[0].backscatter * white_target_power(w, w.hits[0].range);
       return;
     }
     for (std::size_t j = 0; j < size; j += lane_count) {
       const Lanes range = lanes_of([&](std::size_t lane) { return w.hits[j + lane].range; });
       const Lanes backscatter = lanes_of([&](std::size_t lane) { return w.hits[j + lane].backscatter; });
-      store(w.budget.power(load<Lanes>(w.fan.shares[first + j]), backscatter, range), power[j]);
+      store(w.budget.power(load<Lanes>(w.directions.shares[first + j]), backscatter, range), power[j]);
     }
   }
 
-  void ask(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+  void intersect(const RayBundle& rays, std::span<Hit> hits) const noexcept {
     if constexpr (BundleTarget<Map>)
       map_->closest(rays, hits);
     else

@@ -37,7 +37,7 @@ using Shrunk = ShrunkBvh;
 struct HastyBvh : Bvh<float> {
   using Bvh::Bvh;
   template <class Test>
-  void closest(const RayBundle& rays, const Test& test, Nearest& nearest) const noexcept {
+  void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
     Bvh::closest(
         rays,
         [&](std::span<const PrimitiveIndex> p) {

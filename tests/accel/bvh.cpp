@@ -49,7 +49,7 @@ TEST_CASE("a Bvh of boxes that crowd at a point is no deeper than 64 levels, and
 TEST_CASE_TEMPLATE("a Bvh is the same on any number of threads, and of boxes that are made as they are asked for", Real, float, double) {
   Generator random(51);
   std::vector<Box> boxes;
-  for (int i = 0; i < 40'000; ++i) boxes.push_back(random.box(100, 1e-3, 1));  // several stretches, and several subtrees
+  for (int i = 0; i < 40'000; ++i) boxes.push_back(random.box(100, 1e-3, 1));  // several chunks, and several subtrees
   struct Made {
     const std::vector<Box>& all;
     [[nodiscard]] std::size_t size() const noexcept { return all.size(); }
@@ -58,14 +58,14 @@ TEST_CASE_TEMPLATE("a Bvh is the same on any number of threads, and of boxes tha
   const Bvh<Real> alone(boxes, 1);
   std::size_t largest = 0;
   CHECK(offers(alone, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
-  CHECK(alone.sound(boxes.size()));
+  CHECK(alone.is_consistent(boxes.size()));
   for (const unsigned threads : {2U, 5U}) {
     CAPTURE(threads);
     const Bvh<Real> other(Made{boxes}, threads);
     CHECK(std::equal(other.order().begin(), other.order().end(), alone.order().begin(), alone.order().end()));
     CHECK(other.memory() == alone.memory());
     CHECK(other.depth() == alone.depth());
-    CHECK(other.sound(boxes.size()));
+    CHECK(other.is_consistent(boxes.size()));
     CHECK(offers(other, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
   }
 }

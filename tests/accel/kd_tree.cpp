@@ -58,8 +58,8 @@ TEST_CASE("a KdTree goes into a narrow column of leaves for rays along an axis")
   for (int x = 0; x < 50; ++x)
     for (int y = 0; y < 50; ++y) boxes.push_back({{x * 1.0, y * 1.0, 0}, {x + 1.0, y + 1.0, 0.1}});
   const KdTree<float> tree(boxes);
-  const RayBundle rays = bundle_of({{25.5, 25.5, 100}, -up});
-  Nearest nearest(rays);
+  const RayBundle rays = bundle_of({{25.5, 25.5, 100}, -axis::up});
+  ClosestHits nearest(rays);
   std::size_t count = 0;
   tree.closest(
       rays, [&](std::span<const PrimitiveIndex> p) { count += p.size(); }, nearest);
@@ -75,10 +75,10 @@ TEST_CASE_TEMPLATE("a tree that was built is sound for as many primitives as it 
     std::vector<Box> boxes;
     for (std::uint64_t n = 1 + random.whole(300); n > 0; --n) boxes.push_back(random.box(10, 1e-3, 10));
     const Tree tree(boxes);
-    CHECK(tree.sound(boxes.size()));
-    CHECK_FALSE(tree.sound(boxes.size() - 1));
+    CHECK(tree.is_consistent(boxes.size()));
+    CHECK_FALSE(tree.is_consistent(boxes.size() - 1));
   }
-  CHECK(Tree(std::span<const Box>{}).sound(0));
-  CHECK(Tree(crowd(200, 0.5)).sound(400));
-  CHECK(Tree(Unfilled{}).sound(0));
+  CHECK(Tree(std::span<const Box>{}).is_consistent(0));
+  CHECK(Tree(crowd(200, 0.5)).is_consistent(400));
+  CHECK(Tree(DeserializeTag{}).is_consistent(0));
 }

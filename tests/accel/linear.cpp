@@ -37,7 +37,7 @@ TEST_CASE("testing all of nothing tests nothing") {
 
 TEST_CASE("a list of primitives is sound for as many as it has, and for no fewer") {
   const Linear<> all(std::vector<Box>(3, Box{{0, 0, 0}, {1, 1, 1}}));
-  CHECK(all.sound(3));
-  CHECK_FALSE(all.sound(2));
-  CHECK(Linear<>(Unfilled{}).sound(0));
+  CHECK(all.is_consistent(3));
+  CHECK_FALSE(all.is_consistent(2));
+  CHECK(Linear<>(DeserializeTag{}).is_consistent(0));
 }

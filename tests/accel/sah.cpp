@@ -108,7 +108,7 @@ TEST_CASE_TEMPLATE("a build sees every box but the empty ones, relative to the c
 TEST_CASE_TEMPLATE("a build sees the same on any number of threads", Real, float, double) {
   Generator random(42);
   std::vector<Box> boxes;
-  for (int i = 0; i < 50'000; ++i) boxes.push_back(i % 7 == 3 ? Box{} : random.box(500, 1e-3, 10));  // several stretches
+  for (int i = 0; i < 50'000; ++i) boxes.push_back(i % 7 == 3 ? Box{} : random.box(500, 1e-3, 10));  // several chunks
   const pulsecast::detail::BuildInput<Real> alone(boxes);
   const pulsecast::detail::BuildInput<Real> shared(boxes, 3);
   CHECK(shared.bounds == alone.bounds);

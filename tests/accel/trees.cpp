@@ -47,18 +47,18 @@ TEST_CASE_TEMPLATE("a tree is not entered by rays that are not numbers, nor by t
   const Tree tree(boxes);
   const auto tested = [&](const Ray& ray) {
     const RayBundle rays = bundle_of(ray);
-    Nearest nearest(rays);
+    ClosestHits nearest(rays);
     std::size_t count = 0;
     tree.closest(
         rays, [&](std::span<const PrimitiveIndex> p) { count += p.size(); }, nearest);
     return count;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, forward}) > 0);
-  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, -forward}) == 0);
-  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, forward, 0, 10}) == 0);
-  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, forward, 100, 1000}) == 0);
-  CHECK(tested({Vec3{nan, 0, 0}, forward}) == 0);
+  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, axis::forward}) > 0);
+  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, -axis::forward}) == 0);
+  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, axis::forward, 0, 10}) == 0);
+  CHECK(tested({boxes[0].centre() - Vec3{0, 50, 0}, axis::forward, 100, 1000}) == 0);
+  CHECK(tested({Vec3{nan, 0, 0}, axis::forward}) == 0);
   CHECK(tested({boxes[0].centre(), Vec3{nan, nan, nan}}) == 0);
   CHECK(tested({boxes[0].centre(), Vec3{0, 1, nan}}) == 0);
 }

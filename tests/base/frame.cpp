@@ -37,19 +37,19 @@ TEST_CASE("a pose as made changes nothing") {
 }
 
 TEST_CASE("a pose turns first and moves then, and a direction only turns") {
-  const Pose<A, B> b_from_a{rotation_about(up, pi / 2), {10, 20, 30}};
+  const Pose<A, B> b_from_a{rotation_about(axis::up, pi / 2), {10, 20, 30}};
   CHECK(distance(b_from_a.point({1, 0, 0}), {10, 21, 30}) < 1e-14);
   CHECK(distance(b_from_a.direction({1, 0, 0}), {0, 1, 0}) < 1e-15);
 }
 
 TEST_CASE("poses compose from the inside out") {
-  const Pose<A, B> b_from_a{rotation_about(right, pi / 2), {1, 0, 0}};
-  const Pose<B, C> c_from_b{rotation_about(up, pi / 2), {0, 0, 5}};
+  const Pose<A, B> b_from_a{rotation_about(axis::right, pi / 2), {1, 0, 0}};
+  const Pose<B, C> c_from_b{rotation_about(axis::up, pi / 2), {0, 0, 5}};
   const Pose<A, C> c_from_a = c_from_b * b_from_a;
   // (0, 1, 0) in A is (1, 0, 1) in B, and that is (0, 1, 6) in C
   CHECK(distance(c_from_a.point({0, 1, 0}), {0, 1, 6}) < 1e-14);
   CHECK(distance(c_from_a.position, {0, 1, 5}) < 1e-14);
-  CHECK(distance(c_from_a.direction(forward), up) < 1e-15);
+  CHECK(distance(c_from_a.direction(axis::forward), axis::up) < 1e-15);
 }
 
 TEST_CASE("composition of random poses is applying one after the other, and is associative") {
@@ -82,9 +82,9 @@ TEST_CASE("the inverse of a random pose undoes it from both sides") {
 }
 
 TEST_CASE("what is ahead is x in forward-left-up axes, and what is right is negative y") {
-  CHECK(to_forward_left_up(forward) == Vec3{1, 0, 0});
-  CHECK(to_forward_left_up(right) == Vec3{0, -1, 0});
-  CHECK(to_forward_left_up(up) == Vec3{0, 0, 1});
+  CHECK(to_forward_left_up(axis::forward) == Vec3{1, 0, 0});
+  CHECK(to_forward_left_up(axis::right) == Vec3{0, -1, 0});
+  CHECK(to_forward_left_up(axis::up) == Vec3{0, 0, 1});
 }
 
 TEST_CASE("the conversions to and from forward-left-up axes undo each other and keep handedness") {

@@ -15,11 +15,11 @@ TEST_CASE("zero threads are those of the machine, any other number is itself") {
   CHECK(thread_count(0) >= 1);
   CHECK(thread_count(1) == 1);
   CHECK(thread_count(17) == 17);
-  CHECK(thread_count(most_threads) == most_threads);
+  CHECK(thread_count(max_threads) == max_threads);
 }
 
 TEST_CASE("more threads than a machine can have are refused before any is started") {
-  for (const unsigned threads : {most_threads + 1, 1'000'000U, ~0U}) {
+  for (const unsigned threads : {max_threads + 1, 1'000'000U, ~0U}) {
     bool began = false;
     CHECK_THROWS_AS(static_cast<void>(thread_count(threads)), SettingError);
     CHECK_THROWS_AS(for_each_index(2, threads, [&](std::size_t) { began = true; }), SettingError);

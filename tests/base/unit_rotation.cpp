@@ -19,7 +19,7 @@ Rotation scaled(const Rotation& r, double by) { return {by * r.w, by * r.x, by *
 
 bool passes(const Rotation& r) {
   try {
-    expect_rotation("Mount::boresight", r);
+    require_rotation("Mount::boresight", r);
     return true;
   } catch (const SettingError&) {
     return false;
@@ -28,7 +28,7 @@ bool passes(const Rotation& r) {
 
 struct Turned {
   Rotation rotation = no_rotation;
-  void validate() const { expect_rotation("Turned::rotation", rotation); }
+  void validate() const { require_rotation("Turned::rotation", rotation); }
   void normalize() noexcept { rotation = unit(rotation); }
 };
 static_assert(Normalizable<Turned>);
@@ -66,7 +66,7 @@ TEST_CASE("a rotation off by more is refused with its field, its norm and what i
   }
   std::string said;
   try {
-    expect_rotation("Mount::boresight", {0, 1.5, 0, 0});
+    require_rotation("Mount::boresight", {0, 1.5, 0, 0});
   } catch (const SettingError& error) {
     said = error.what();
   }

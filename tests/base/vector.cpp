@@ -17,34 +17,34 @@ double distance(const Vec3& a, const Vec3& b) { return length(a - b); }
 }  // namespace
 
 TEST_CASE("right, forward and up are a right-handed set of axes") {
-  CHECK(cross(right, forward) == up);
-  CHECK(cross(forward, up) == right);
-  CHECK(cross(up, right) == forward);
+  CHECK(cross(axis::right, axis::forward) == axis::up);
+  CHECK(cross(axis::forward, axis::up) == axis::right);
+  CHECK(cross(axis::up, axis::right) == axis::forward);
 }
 
 TEST_CASE("a quarter turn about up takes right to forward and forward to left") {
-  const Rotation quarter = rotation_about(up, pi / 2);
-  CHECK(distance(quarter * right, forward) < 1e-15);
-  CHECK(distance(quarter * forward, -right) < 1e-15);
-  CHECK(distance(quarter * up, up) < 1e-15);
+  const Rotation quarter = rotation_about(axis::up, pi / 2);
+  CHECK(distance(quarter * axis::right, axis::forward) < 1e-15);
+  CHECK(distance(quarter * axis::forward, -axis::right) < 1e-15);
+  CHECK(distance(quarter * axis::up, axis::up) < 1e-15);
 }
 
 TEST_CASE("a positive rotation about right tilts forward up, and about forward tilts right down") {
-  CHECK((rotation_about(right, 0.1) * forward).z == support::relative(std::sin(0.1), 1e-14));
-  CHECK((rotation_about(forward, 0.1) * right).z == support::relative(-std::sin(0.1), 1e-14));
+  CHECK((rotation_about(axis::right, 0.1) * axis::forward).z == support::relative(std::sin(0.1), 1e-14));
+  CHECK((rotation_about(axis::forward, 0.1) * axis::right).z == support::relative(-std::sin(0.1), 1e-14));
 }
 
 TEST_CASE("the length of a rotation's axis does not matter") {
-  CHECK(distance(rotation_about(up * 1e6, 1.0) * right, rotation_about(up, 1.0) * right) < 1e-15);
-  CHECK(distance(rotation_about(up * 1e-6, 1.0) * right, rotation_about(up, 1.0) * right) < 1e-15);
+  CHECK(distance(rotation_about(axis::up * 1e6, 1.0) * axis::right, rotation_about(axis::up, 1.0) * axis::right) < 1e-15);
+  CHECK(distance(rotation_about(axis::up * 1e-6, 1.0) * axis::right, rotation_about(axis::up, 1.0) * axis::right) < 1e-15);
 }
 
 TEST_CASE("no rotation leaves a vector as it is") { CHECK(no_rotation * Vec3{1, -2, 3} == Vec3{1, -2, 3}); }
 
 TEST_CASE("a product of rotations applies the right one first") {
-  const Rotation both = rotation_about(up, pi / 2) * rotation_about(right, pi / 2);
-  CHECK(distance(both * forward, up) < 1e-15);
-  CHECK(distance(both * right, forward) < 1e-15);
+  const Rotation both = rotation_about(axis::up, pi / 2) * rotation_about(axis::right, pi / 2);
+  CHECK(distance(both * axis::forward, axis::up) < 1e-15);
+  CHECK(distance(both * axis::right, axis::forward) < 1e-15);
 }
 
 TEST_CASE("rotations keep lengths and angles, and the conjugate undoes them") {

@@ -11,9 +11,9 @@ struct Slab {
   std::size_t memory() const noexcept { return 0; }
   std::span<const PrimitiveIndex> order() const noexcept { return {}; }
 #ifdef SHOULD_NOT_COMPILE
-  void closest(const RayBundle&, const auto& test, Nearest&) const { test(std::span<const PrimitiveIndex>()); }
+  void closest(const RayBundle&, const auto& test, ClosestHits&) const { test(std::span<const PrimitiveIndex>()); }
 #else
-  void closest(const RayBundle&, const auto& test, Nearest&) const noexcept { test(std::span<const PrimitiveIndex>()); }
+  void closest(const RayBundle&, const auto& test, ClosestHits&) const noexcept { test(std::span<const PrimitiveIndex>()); }
 #endif
 
  private:

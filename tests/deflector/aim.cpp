@@ -15,8 +15,8 @@ using namespace pulsecast::literals;
 
 TEST_CASE("a beam aimed above forward stays in the plane of forward and up") {
   for (const double angle : {-180_deg, -90_deg, -20_deg, 0.0, 1e-9, 45_deg, 170_deg}) {
-    CHECK(length(aimed_above(angle).direction(forward) - Vec3{0, std::cos(angle), std::sin(angle)}) < 1e-15);
-    CHECK(length(aimed_above(angle).direction(right) - right) < 1e-15);
+    CHECK(length(aimed_above(angle).direction(axis::forward) - Vec3{0, std::cos(angle), std::sin(angle)}) < 1e-15);
+    CHECK(length(aimed_above(angle).direction(axis::right) - axis::right) < 1e-15);
   }
 }
 
@@ -28,8 +28,8 @@ TEST_CASE("a beam aimed at two angles goes where a map and a level would say, an
     CAPTURE(elevation);
     const auto pose = aimed_at(azimuth, elevation);
     const double level = std::cos(elevation);
-    CHECK(length(pose.direction(forward) - Vec3{level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}) < 1e-15);
-    CHECK(std::fabs(pose.direction(right).z) < 1e-15);
+    CHECK(length(pose.direction(axis::forward) - Vec3{level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}) < 1e-15);
+    CHECK(std::fabs(pose.direction(axis::right).z) < 1e-15);
   }
 }
 
@@ -45,7 +45,7 @@ TEST_CASE("a beam aimed along a direction goes there by the shortest turn") {
     CAPTURE(k);
     CAPTURE(direction.y);
     const auto pose = aimed_along(direction);
-    CHECK(length(pose.direction(forward) - direction) < 2e-15);
+    CHECK(length(pose.direction(axis::forward) - direction) < 2e-15);
     CHECK(pose.rotation.y == 0);  // about an axis square to forward,
     CHECK(pose.rotation.w >= 0);  // by half a turn at most
     CHECK(pose.position == Vec3{});
@@ -53,7 +53,7 @@ TEST_CASE("a beam aimed along a direction goes there by the shortest turn") {
 }
 
 TEST_CASE("a beam can be aimed straight forward and straight back") {
-  CHECK(aimed_along(forward).direction(up) == up);
-  CHECK(length(aimed_along(-forward).direction(forward) + forward) < 1e-15);
-  CHECK(length(aimed_along({1e-160, -1, 0}).direction(forward) + forward) < 1e-15);
+  CHECK(aimed_along(axis::forward).direction(axis::up) == axis::up);
+  CHECK(length(aimed_along(-axis::forward).direction(axis::forward) + axis::forward) < 1e-15);
+  CHECK(length(aimed_along({1e-160, -1, 0}).direction(axis::forward) + axis::forward) < 1e-15);
 }

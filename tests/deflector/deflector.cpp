@@ -40,7 +40,7 @@ static_assert(!Deflects<support::LeastTrajectory, Scanner>, "a trajectory carrie
 
 /// Leaves from one metre above the middle of the housing, to the right.
 struct Periscope {
-  Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return {rotation_about(up, -90_deg), {0, 0, 1}}; }
+  Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return {rotation_about(axis::up, -90_deg), {0, 0, 1}}; }
 };
 
 /// Lets every pulse of an even second out.
@@ -73,18 +73,18 @@ TEST_CASE("a head turns what its instrument has deflected, not the other way rou
 }
 
 TEST_CASE("a head carries the place where the beam leaves around with it") {
-  const Deflector device{RotatingHead{.rate = 90_deg, .axis = right}, Deflector{Periscope{}, Scanner{.pulse_rate = 1, .pulses = 4}}};
+  const Deflector device{RotatingHead{.rate = 90_deg, .axis = axis::right}, Deflector{Periscope{}, Scanner{.pulse_rate = 1, .pulses = 4}}};
   const auto p = device.pulse(1);
   REQUIRE(p);
-  CHECK(length(p->origin() + forward) < 1e-15);  // what was above is behind
-  CHECK(length(p->direction() - right) < 1e-15);
+  CHECK(length(p->origin() + axis::forward) < 1e-15);  // what was above is behind
+  CHECK(length(p->direction() - axis::right) < 1e-15);
 }
 
 TEST_CASE("a whole spinning head may be turned again, about another axis: the outer turn comes last") {
   const double spin = 10 * 360_deg, tilt = -15_deg, turn = 7_deg;
   const Deflector spinning{RotatingHead{.rate = -spin},
                            Deflector{FixedBeam{aimed_at(0, tilt)}, Scanner{.pulse_rate = 20_kHz, .pulses = 40000}}};
-  const Deflector nodding{RotatingHead{.rate = turn, .axis = right}, spinning};
+  const Deflector nodding{RotatingHead{.rate = turn, .axis = axis::right}, spinning};
   const Deflector panning{RotatingHead{.rate = 3 * turn, .start = 1}, nodding};
   for (PulseIndex i = 0; i < 40000; i += 77) {
     CAPTURE(i);

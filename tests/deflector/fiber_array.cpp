@@ -24,7 +24,7 @@ TEST_CASE("a fibre array draws equally spaced points from end to end, both ends 
     const double expected = -20_deg + static_cast<double>(i % 11) * 4_deg;
     CHECK(array.fiber(t) == i % 11);
     CHECK(std::fabs(array.angle(t) - expected) < 1e-15);
-    CHECK(length(array.at(t).direction(forward) - Vec3{0, std::cos(expected), std::sin(expected)}) < 1e-15);
+    CHECK(length(array.at(t).direction(axis::forward) - Vec3{0, std::cos(expected), std::sin(expected)}) < 1e-15);
   }
 }
 
@@ -35,7 +35,7 @@ TEST_CASE("a fibre array still lights one fibre a pulse after a million million 
 
 TEST_CASE("a fibre array of one shines forward") {
   CHECK(FiberArray{.fibers = 1}.angle({0, 0.3}) == 0);
-  CHECK(FiberArray{.fibers = 1}.at({0, 0.3}).direction(forward) == forward);
+  CHECK(FiberArray{.fibers = 1}.at({0, 0.3}).direction(axis::forward) == axis::forward);
 }
 
 TEST_CASE("a fibre array keeps the laws of a motion") {

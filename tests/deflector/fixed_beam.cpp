@@ -20,10 +20,10 @@ using namespace pulsecast::literals;
 TEST_CASE("a fixed beam leaves from its origin along its two angles, at any time") {
   const FixedBeam beam{aimed_at(90_deg, -30_deg, {0.01, 0.02, 0.03})};
   for (const Tick t : {Tick{0, 0}, Tick{1000000, 0.5}}) {
-    CHECK(length(beam.at(t).direction(forward) - Vec3{std::cos(30_deg), 0, -0.5}) < 1e-15);
+    CHECK(length(beam.at(t).direction(axis::forward) - Vec3{std::cos(30_deg), 0, -0.5}) < 1e-15);
     CHECK(beam.at(t).position == Vec3{0.01, 0.02, 0.03});
   }
-  CHECK(length(FixedBeam{}.at({}).direction(forward) - forward) == 0);
+  CHECK(length(FixedBeam{}.at({}).direction(axis::forward) - axis::forward) == 0);
 }
 
 TEST_CASE("a fixed beam keeps the laws of a motion") {

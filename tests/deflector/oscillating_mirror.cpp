@@ -60,7 +60,7 @@ TEST_CASE("an oscillating mirror turns the beam up by its angle, in the plane of
   for (const OscillatingMirror& mirror : mirrors())
     for (const Tick t : some_ticks(1)) {
       const double a = mirror.angle(t);
-      CHECK(length(mirror.at(t).direction(forward) - Vec3{0, std::cos(a), std::sin(a)}) < 1e-15);
+      CHECK(length(mirror.at(t).direction(axis::forward) - Vec3{0, std::cos(a), std::sin(a)}) < 1e-15);
     }
 }
 

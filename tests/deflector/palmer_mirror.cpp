@@ -20,7 +20,7 @@ TEST_CASE("a Palmer mirror draws a cone of its half angle, from up over right, o
   const PalmerMirror mirror{.turns_per_second = 10, .half_angle = 20_deg};
   for (int k = 0; k < 1000; ++k) {
     const double turn = 2 * pi * k / 1000;
-    const Vec3 d = mirror.at(Tick::of_seconds(7 + k / 10000.0)).direction(forward);
+    const Vec3 d = mirror.at(Tick::of_seconds(7 + k / 10000.0)).direction(axis::forward);
     CHECK(length(d - Vec3{std::sin(20_deg) * std::sin(turn), std::cos(20_deg), std::sin(20_deg) * std::cos(turn)}) < 1e-12);
   }
 }
@@ -28,26 +28,26 @@ TEST_CASE("a Palmer mirror draws a cone of its half angle, from up over right, o
 TEST_CASE("a Palmer mirror with two half angles draws an ellipse of angles") {
   const double high = 20_deg, wide = 8_deg;
   const PalmerMirror mirror{.turns_per_second = 1, .half_angle = high, .half_angle_across = wide};
-  CHECK(length(mirror.at({0, 0}).direction(forward) - Vec3{0, std::cos(high), std::sin(high)}) < 1e-15);
-  CHECK(length(mirror.at({0, 0.25}).direction(forward) - Vec3{std::sin(wide), std::cos(wide), 0}) < 1e-15);
-  CHECK(length(mirror.at({0, 0.5}).direction(forward) - Vec3{0, std::cos(high), -std::sin(high)}) < 1e-15);
-  CHECK(length(mirror.at({0, 0.75}).direction(forward) - Vec3{-std::sin(wide), std::cos(wide), 0}) < 1e-15);
+  CHECK(length(mirror.at({0, 0}).direction(axis::forward) - Vec3{0, std::cos(high), std::sin(high)}) < 1e-15);
+  CHECK(length(mirror.at({0, 0.25}).direction(axis::forward) - Vec3{std::sin(wide), std::cos(wide), 0}) < 1e-15);
+  CHECK(length(mirror.at({0, 0.5}).direction(axis::forward) - Vec3{0, std::cos(high), -std::sin(high)}) < 1e-15);
+  CHECK(length(mirror.at({0, 0.75}).direction(axis::forward) - Vec3{-std::sin(wide), std::cos(wide), 0}) < 1e-15);
   for (int k = 0; k < 1000; ++k) {
-    const Vec3 d = mirror.at({0, k / 1000.0}).direction(forward);
+    const Vec3 d = mirror.at({0, k / 1000.0}).direction(axis::forward);
     const double off = std::acos(d.y), scale = off / std::hypot(d.x, d.z);
     CHECK(std::fabs(std::pow(d.x * scale / wide, 2) + std::pow(d.z * scale / high, 2) - 1) < 1e-12);
   }
 }
 
 TEST_CASE("a Palmer mirror that does not tilt shines forward") {
-  CHECK(PalmerMirror{.half_angle = 0}.at({0, 0.001}).direction(forward) == forward);
+  CHECK(PalmerMirror{.half_angle = 0}.at({0, 0.001}).direction(axis::forward) == axis::forward);
 }
 
 TEST_CASE("a Palmer mirror's angle does not wear out with time") {
   const PalmerMirror mirror{.turns_per_second = 60};
   for (PulseIndex i = 0; i < 5000; i += 7)  // 10^12 pulses are 10^7 s
-    CHECK(length(mirror.at(Tick::of(1000000000000 + i, 100e3)).direction(forward) - mirror.at(Tick::of(i, 100e3)).direction(forward)) <
-          1e-13);
+    CHECK(length(mirror.at(Tick::of(1000000000000 + i, 100e3)).direction(axis::forward) -
+                 mirror.at(Tick::of(i, 100e3)).direction(axis::forward)) < 1e-13);
 }
 
 TEST_CASE("a Palmer mirror keeps the laws of a motion") {

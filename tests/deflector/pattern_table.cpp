@@ -35,7 +35,7 @@ TEST_CASE("a pattern table goes through its entries, one a pulse, and begins aga
       const auto& [azimuth, elevation] = table.entries[i % 37];
       const double level = std::cos(elevation);
       const Vec3 expected{level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)};
-      CHECK(length(table.at(t).direction(forward) - expected) < 1e-15);
+      CHECK(length(table.at(t).direction(axis::forward) - expected) < 1e-15);
     }
 }
 

@@ -41,8 +41,8 @@ TEST_CASE("a polygon mirror turns the beam up by its angle, in the plane of forw
   const PolygonMirror mirror{.lines_per_second = 100, .sweep = 60_deg};
   for (const Tick t : some_ticks(1)) {
     const double a = mirror.angle(t);
-    CHECK(length(mirror.at(t).direction(forward) - Vec3{0, std::cos(a), std::sin(a)}) < 1e-15);
-    CHECK(length(mirror.at(t).direction(right) - right) < 1e-15);
+    CHECK(length(mirror.at(t).direction(axis::forward) - Vec3{0, std::cos(a), std::sin(a)}) < 1e-15);
+    CHECK(length(mirror.at(t).direction(axis::right) - axis::right) < 1e-15);
     CHECK(mirror.at(t).position == Vec3{});
   }
 }
@@ -72,7 +72,7 @@ TEST_CASE("a polygon mirror's facets take turns, and each sends its line out of 
       const Tick t = Tick::of(i, 10e3);
       const std::size_t facet = i / 100 % 3;
       REQUIRE(mirror.facet(t) == facet);
-      const Vec3 d = mirror.at(t).direction(forward);
+      const Vec3 d = mirror.at(t).direction(axis::forward);
       const double a = mirror.angle(t), aside = std::sin(tilts[facet]), along = std::cos(tilts[facet]);
       CHECK(length(d - Vec3{aside, along * std::cos(a), along * std::sin(a)}) < 1e-15);
     }
@@ -118,7 +118,7 @@ TEST_CASE("at the very beginning of a line, angle and facet tell of the same lin
 
 TEST_CASE("a polygon mirror without tilts is one whose tilts are zero") {
   const PolygonMirror plain{.lines_per_second = 77}, tilted{.lines_per_second = 77, .facet_tilts = {0}};
-  for (const Tick t : some_ticks(5)) CHECK(length(plain.at(t).direction(forward) - tilted.at(t).direction(forward)) == 0);
+  for (const Tick t : some_ticks(5)) CHECK(length(plain.at(t).direction(axis::forward) - tilted.at(t).direction(axis::forward)) == 0);
 }
 
 TEST_CASE("a polygon mirror keeps the laws of a motion") {

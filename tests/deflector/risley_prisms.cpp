@@ -61,7 +61,7 @@ TEST_CASE("light is refracted by Snell's law, in the plane of light and normal")
     if (dot(*on, normal) < -0.01) CHECK(length(-*refracted(-*on, -normal, 1 / ratio) - light) < 1e-12);  // the way back is the same
   }
   CHECK(reflected > 100);
-  CHECK(!refracted(forward, forward, 1));  // from behind the face
+  CHECK(!refracted(axis::forward, axis::forward, 1));  // from behind the face
 }
 
 TEST_CASE("one prism draws a cone whose angle follows from Snell's law in a plane") {
@@ -123,7 +123,7 @@ TEST_CASE("the pose is the shortest turn to where the light goes") {
   const RisleyPrisms optic = two_wedges(-121.5657, 77.7430);
   for (PulseIndex i = 0; i < 1000; ++i) {
     const Tick t = Tick::of(i, 1234.5);
-    CHECK(length(optic.at(t).direction(forward) - *optic.direction(t)) < 1e-15);
+    CHECK(length(optic.at(t).direction(axis::forward) - *optic.direction(t)) < 1e-15);
     CHECK(optic.at(t).rotation.y == 0);
   }
 }
@@ -148,8 +148,8 @@ TEST_CASE("two steep prisms let light out in a part of their turns only") {
 }
 
 TEST_CASE("light that does not come from the front does not get through") {
-  CHECK(!RisleyPrisms{.prisms = {{}}, .incident = -forward}.open({}));
-  CHECK(!RisleyPrisms{.prisms = {{}}, .incident = up}.open({0, 0.005}));
+  CHECK(!RisleyPrisms{.prisms = {{}}, .incident = -axis::forward}.open({}));
+  CHECK(!RisleyPrisms{.prisms = {{}}, .incident = axis::up}.open({0, 0.005}));
 }
 
 TEST_CASE("a rosette does not wear out with time") {

@@ -18,36 +18,36 @@ using namespace pulsecast::literals;
 
 TEST_CASE("a head that turns at a positive rate turns left") {
   const RotatingHead head{.rate = 90_deg};
-  CHECK(length(head.at({0, 0}).direction(forward) - forward) < 1e-15);
-  CHECK(length(head.at({1, 0}).direction(forward) + right) < 1e-15);
-  CHECK(length(head.at({2, 0}).direction(forward) + forward) < 1e-15);
-  CHECK(length(head.at({3, 0}).direction(forward) - right) < 1e-15);
-  CHECK(length(head.at({0, 0.5}).direction(forward) - Vec3{-std::sin(45_deg), std::cos(45_deg), 0}) < 1e-15);
+  CHECK(length(head.at({0, 0}).direction(axis::forward) - axis::forward) < 1e-15);
+  CHECK(length(head.at({1, 0}).direction(axis::forward) + axis::right) < 1e-15);
+  CHECK(length(head.at({2, 0}).direction(axis::forward) + axis::forward) < 1e-15);
+  CHECK(length(head.at({3, 0}).direction(axis::forward) - axis::right) < 1e-15);
+  CHECK(length(head.at({0, 0.5}).direction(axis::forward) - Vec3{-std::sin(45_deg), std::cos(45_deg), 0}) < 1e-15);
   CHECK(head.at({1, 0}).position == Vec3{});
 }
 
 TEST_CASE("a head that turns at a negative rate turns right") {
   const RotatingHead head{.rate = -90_deg};
-  CHECK(length(head.at({1, 0}).direction(forward) - right) < 1e-15);
-  CHECK(length(head.at({5, 0}).direction(forward) - right) < 1e-15);
+  CHECK(length(head.at({1, 0}).direction(axis::forward) - axis::right) < 1e-15);
+  CHECK(length(head.at({5, 0}).direction(axis::forward) - axis::right) < 1e-15);
 }
 
 TEST_CASE("a head begins at its start angle, and a head at rest stays there") {
   const RotatingHead head{.rate = 0, .start = -90_deg};
-  CHECK(length(head.at({0, 0}).direction(forward) - right) < 1e-15);
-  CHECK(length(head.at({1000000, 0.3}).direction(forward) - right) < 1e-15);
+  CHECK(length(head.at({0, 0}).direction(axis::forward) - axis::right) < 1e-15);
+  CHECK(length(head.at({1000000, 0.3}).direction(axis::forward) - axis::right) < 1e-15);
 }
 
 TEST_CASE("a head turns about its own axis, whatever its length") {
   const RotatingHead head{.rate = 90_deg, .axis = {5, 0, 0}};
-  CHECK(length(head.at({1, 0}).direction(forward) - up) < 1e-15);
+  CHECK(length(head.at({1, 0}).direction(axis::forward) - axis::up) < 1e-15);
 }
 
 TEST_CASE("a head's angle does not wear out with time") {
   // a turn a second: after any whole number of seconds it stands where it began
   const RotatingHead head{.rate = 2 * pi, .start = 0.3};
   for (const std::int64_t second : {1LL, 1000LL, 100000000LL})
-    CHECK(length(head.at({second, 0.25}).direction(forward) - head.at({0, 0.25}).direction(forward)) < 1e-14);
+    CHECK(length(head.at({second, 0.25}).direction(axis::forward) - head.at({0, 0.25}).direction(axis::forward)) < 1e-14);
 }
 
 TEST_CASE("a head keeps the laws of a motion") {

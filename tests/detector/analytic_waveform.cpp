@@ -55,7 +55,7 @@ std::vector<Reflection> some(support::Generator& any, std::size_t most) {
 }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-const WaveformSettings all_peaks{.threshold = 0, .window = 0, .max_returns = 255, .timing = EchoTiming::peak};
+const WaveformSettings all_peaks{.threshold = 0, .window = 0, .returns_max = 255, .timing = EchoTiming::peak};
 
 }  // namespace
 
@@ -83,7 +83,7 @@ TEST_CASE("between two edges, ages give the sum of pulses, where it turns, and i
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    PulseAges ages;
+    EdgeAgeMoments ages;
     std::vector<Reflection> reflections;
     double now = 0;
     for (std::size_t k = any.whole(9) + 1; k-- > 0;) {
@@ -166,8 +166,8 @@ TEST_CASE("both waveform detectors find the same peaks, but for those that are l
   CHECK(close * 100 > peaks * 97);
 }
 
-TEST_CASE("the echo of a bunch, found directly, is what the pass over its edges finds") {
-  // A reflection without power makes the bunch none, and nothing else.
+TEST_CASE("the echo of a group, found directly, is what the pass over its edges finds") {
+  // A reflection without power makes the group none, and nothing else.
   const auto both = [](const auto& detector, std::vector<Reflection> reflections) {
     const auto directly = echoes_of(detector, reflections);
     reflections.push_back({reflections.front().range, 0, 77, 7});
@@ -236,7 +236,7 @@ TEST_CASE("a slope of thousands of hits is one echo at its middle, as wide as va
 
 TEST_CASE("an echo's moments are those of the sum between its valleys") {
   const AnalyticWaveform<MomentWidth> detector(all_peaks);
-  const WaveformSettings fine{.sample_interval = 0.02e-9, .threshold = 0, .window = 0, .max_returns = 255, .timing = EchoTiming::peak};
+  const WaveformSettings fine{.sample_interval = 0.02e-9, .threshold = 0, .window = 0, .returns_max = 255, .timing = EchoTiming::peak};
   const FullWaveform<MomentWidth> sampled(fine);
   std::size_t compared = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {

@@ -143,7 +143,7 @@ TEST_CASE("two equal hits far apart are two echoes of full strength, and two clo
 }
 
 TEST_CASE("echoes are the peaks of the sum of all pulses, as found on a finer grid") {
-  const FullWaveform detector(WaveformSettings{.threshold = 0, .window = 0, .max_returns = 255, .timing = EchoTiming::peak});
+  const FullWaveform detector(WaveformSettings{.threshold = 0, .window = 0, .returns_max = 255, .timing = EchoTiming::peak});
   int compared = 0, several = 0, peaks_compared = 0, off_by_a_millimetre = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     CAPTURE(seed);
@@ -198,7 +198,7 @@ TEST_CASE("reflections close to one another, of which the echo is found directly
 }
 
 TEST_CASE("a long row of hits gives an echo each, all of the same strength and width") {
-  const FullWaveform<MomentWidth> detector(WaveformSettings{.max_returns = 255});
+  const FullWaveform<MomentWidth> detector(WaveformSettings{.returns_max = 255});
   const double deviation = PulseShape(laser.pulse_length).deviation();
   for (const double spacing : {5.55, 7.77}) {  // the waveform dies away between the latter, but not between the former
     CAPTURE(spacing);
@@ -258,7 +258,7 @@ TEST_CASE("no more returns than allowed are reported, the nearest ones") {
   for (int k = 0; k < 20; ++k) reflections.push_back({200.0 - 5 * k, 1e-8 * (20 - k)});
   for (const std::size_t most : {1U, 3U, 19U, 20U, 21U}) {
     CAPTURE(most);
-    const auto echoes = echoes_of(FullWaveform(WaveformSettings{.max_returns = most}), reflections);
+    const auto echoes = echoes_of(FullWaveform(WaveformSettings{.returns_max = most}), reflections);
     REQUIRE(echoes.size() == std::min<std::size_t>(most, 20));
     for (std::size_t k = 0; k < echoes.size(); ++k) CHECK(echoes[k].range == support::relative(105 + 5 * static_cast<double>(k), 1e-5));
   }
@@ -342,7 +342,7 @@ TEST_CASE("full waveforms keep the laws of a detector") {
   }
   CHECK(support::detector_laws(FullWaveform(), laser, cases) == "");
   CHECK(support::detector_laws(FullWaveform<MomentWidth>(WaveformSettings{.record_length = 100e-9}), laser, cases) == "");
-  CHECK(support::detector_laws(FullWaveform(WaveformSettings{.threshold = 0, .window = 0, .max_returns = 255}), laser, cases) == "");
+  CHECK(support::detector_laws(FullWaveform(WaveformSettings{.threshold = 0, .window = 0, .returns_max = 255}), laser, cases) == "");
 }
 
 TEST_CASE("a waveform detector refuses settings that cannot be") {
@@ -415,7 +415,7 @@ TEST_CASE("false echoes come at the rate that the normal distribution predicts")
   constexpr std::size_t samples = 100'000;
   for (const double threshold : {0.0, 1.0, 2.0, 3.0}) {
     CAPTURE(threshold);
-    const WaveformSettings settings{.threshold = threshold * 1e-9, .window = 0, .max_returns = 255, .record_length = 1000 * 0.25e-9};
+    const WaveformSettings settings{.threshold = threshold * 1e-9, .window = 0, .returns_max = 255, .record_length = 1000 * 0.25e-9};
     const FullWaveform detector(settings, NoWidth{}, ReceiverNoise{.deviation = 1e-9});
     auto workspace = detector.workspace(1);
     std::size_t found = 0, looked_at = 0;
@@ -465,7 +465,7 @@ TEST_CASE("noise does not break the laws of a detector, nor grow beyond the work
     for (Reflection& r : c) r = {start + any.uniform(0, spread), any.log_uniform(1e-6, 1e-5)};
     cases.push_back(c);
   }
-  const WaveformSettings settings{.threshold = 0, .window = 0, .max_returns = 255, .record_length = 10000e-9};
+  const WaveformSettings settings{.threshold = 0, .window = 0, .returns_max = 255, .record_length = 10000e-9};
   CHECK(support::detector_laws(FullWaveform(settings, MomentWidth{}, ReceiverNoise{.deviation = 1e-11}), laser, cases) == "");
   CHECK(support::detector_laws(FullWaveform(settings, GaussianFit{}, ReceiverNoise{.deviation = 1e-11}), laser, cases) == "");
 }

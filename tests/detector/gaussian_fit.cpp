@@ -105,7 +105,7 @@ TEST_CASE("a fit ends within the iterations allowed, and says so if it did not c
     CHECK(r.gaussian.position < static_cast<double>(y.size()) + r.gaussian.width);
   }
   CHECK(unconverged > 100);
-  CHECK_FALSE(GaussianFit{.max_iterations = 1}.fit(planted({1, 30.4, 9}, 61)).converged);
+  CHECK_FALSE(GaussianFit{.iterations_max = 1}.fit(planted({1, 30.4, 9}, 61)).converged);
 }
 
 TEST_CASE("what has no top has no width") {
@@ -154,7 +154,7 @@ TEST_CASE("each echo has a fitted width of its own") {
 
 TEST_CASE("a fit refuses settings that cannot be") {
   CHECK_NOTHROW(GaussianFit{}.validate());
-  CHECK_THROWS_AS(FullWaveform(WaveformSettings{}, GaussianFit{.max_iterations = 0}), SettingError);
+  CHECK_THROWS_AS(FullWaveform(WaveformSettings{}, GaussianFit{.iterations_max = 0}), SettingError);
   for (const double bad : {-0.1, 1.0, std::numeric_limits<double>::quiet_NaN()})
     CHECK_THROWS_AS(GaussianFit{.share = bad}.validate(), SettingError);
 }

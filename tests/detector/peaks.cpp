@@ -17,7 +17,7 @@ namespace {
 std::vector<Peak> kept(const WaveformSettings& s, const std::vector<Peak>& all) {
   std::vector<Peak> peaks;
   peaks.reserve(all.size());
-  for (const Peak& p : all) enter({p.time, p.height, p.time - 0.5, p.time + 0.5}, s.separation, peaks);
+  for (const Peak& p : all) merge_or_append({p.time, p.height, p.time - 0.5, p.time + 0.5}, s.separation, peaks);
   keep_echoes(s, peaks);
   return peaks;
 }
@@ -57,8 +57,8 @@ TEST_CASE("after an echo, the receiver is blind for its dead time, whatever come
 }
 
 TEST_CASE("the first so many are kept") {
-  CHECK(times(kept({.window = 0, .max_returns = 2}, {{10, 1}, {20, 5}, {30, 9}})) == Times{10, 20});
-  CHECK(times(kept({.window = 0, .dead_time = 15, .max_returns = 2}, {{10, 1}, {20, 5}, {30, 9}})) == Times{10, 30});
+  CHECK(times(kept({.window = 0, .returns_max = 2}, {{10, 1}, {20, 5}, {30, 9}})) == Times{10, 20});
+  CHECK(times(kept({.window = 0, .dead_time = 15, .returns_max = 2}, {{10, 1}, {20, 5}, {30, 9}})) == Times{10, 30});
   CHECK(kept({}, {}).empty());
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("peaks for which there is no room are lost") {
   std::vector<Peak> peaks;
   peaks.reserve(2);
   const std::size_t room = peaks.capacity();
-  for (std::size_t k = 0; k < room + 3; ++k) CHECK_FALSE(enter({.time = static_cast<double>(k), .height = 1}, 0, peaks));
+  for (std::size_t k = 0; k < room + 3; ++k) CHECK_FALSE(merge_or_append({.time = static_cast<double>(k), .height = 1}, 0, peaks));
   CHECK(peaks.size() == room);
   CHECK(peaks.capacity() == room);
 }
@@ -79,7 +79,7 @@ TEST_CASE("windows are kept to by all that stay, whatever there is") {
     double t = 0;
     for (Peak& p : all) p = {t += any.uniform(), any.uniform()};
     const WaveformSettings s{
-        .separation = any.uniform(0, 1), .window = any.uniform(0, 3), .dead_time = any.uniform(0, 3), .max_returns = 20};
+        .separation = any.uniform(0, 1), .window = any.uniform(0, 3), .dead_time = any.uniform(0, 3), .returns_max = 20};
     const auto stay = kept(s, all);
     CHECK(stay.size() <= 20);
     for (std::size_t i = 1; i < stay.size(); ++i) {

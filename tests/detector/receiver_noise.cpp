@@ -57,7 +57,7 @@ TEST_CASE("a survey has the same noise whatever the number of threads, another f
   const Wall wall;
   const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 3000}}};
   const auto sum = [&](unsigned threads, std::uint64_t seed, double deviation) {
-    const WaveformSettings settings{.threshold = 0, .max_returns = 255, .record_length = 100e-9};
+    const WaveformSettings settings{.threshold = 0, .returns_max = 255, .record_length = 100e-9};
     const Survey survey{
         source, RingFootprint(3), wall, Receiver{}, FullWaveform(settings, NoWidth{}, ReceiverNoise{.deviation = deviation}), seed};
     support::LawfulSink sink;

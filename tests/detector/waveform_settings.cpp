@@ -24,8 +24,8 @@ TEST_CASE("settings of a waveform that cannot be are refused") {
     CHECK_THROWS_AS(WaveformSettings{.dead_time = bad}.validate(), SettingError);
     CHECK_THROWS_AS(WaveformSettings{.record_length = bad}.validate(), SettingError);
   }
-  CHECK_THROWS_AS(WaveformSettings{.max_returns = 0}.validate(), SettingError);
-  CHECK_THROWS_AS(WaveformSettings{.max_returns = 256}.validate(), SettingError);
+  CHECK_THROWS_AS(WaveformSettings{.returns_max = 0}.validate(), SettingError);
+  CHECK_THROWS_AS(WaveformSettings{.returns_max = 256}.validate(), SettingError);
 }
 
 TEST_CASE("a record has as many samples as begin in its length") {
@@ -35,8 +35,8 @@ TEST_CASE("a record has as many samples as begin in its length") {
 }
 
 TEST_CASE("peaks are one if they are closer than the separation, or than window and pulse") {
-  CHECK(WaveformSettings{.separation = 3, .window = 1}.apart(4) == 3);
-  CHECK(WaveformSettings{.separation = 3, .window = 9}.apart(4) == 4);
-  CHECK(WaveformSettings{.window = 1}.apart(4) == 1);
-  CHECK(WaveformSettings{.window = 0}.apart(4) == 0);
+  CHECK(WaveformSettings{.separation = 3, .window = 1}.min_separation(4) == 3);
+  CHECK(WaveformSettings{.separation = 3, .window = 9}.min_separation(4) == 4);
+  CHECK(WaveformSettings{.window = 1}.min_separation(4) == 1);
+  CHECK(WaveformSettings{.window = 0}.min_separation(4) == 0);
 }

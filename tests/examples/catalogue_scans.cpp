@@ -93,16 +93,16 @@ struct Scan {
 
 Scan scan(const SurveySettings& survey) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
-  const SurveyPlan plan = plan_survey(survey, ground);
+  const CompiledSurvey compiled = compile_survey(survey, ground);
   const Floor floor;
   const auto receiver = [](const ChannelSettings& channel) -> ChannelReceiver<FullWaveform<>> {
     return {RingFootprint(2), survey_receiver(channel), FullWaveform(survey_waveform(channel))};
   };
-  const auto run = survey_by_channel(survey.scanner, plan.source, floor, 7, receiver);
+  const auto run = survey_by_channel(survey.scanner, compiled.source, floor, 7, receiver);
   auto workspace = run.workspace();
   Scan out;
   const PulseIndex slots = run.size(), step = std::max<PulseIndex>(1, slots / 1200) | 1;
-  CHECK(plan.legs.front().pulse_rate == survey.scanner.pulse_rates.front());
+  CHECK(compiled.legs.front().pulse_rate == survey.scanner.pulse_rates.front());
   CHECK(slots >= survey.scanner.channels.size());
   for (PulseIndex i = 0; i < slots && out.pulses < 600; i += step) {
     const Outcome o = run(i, workspace);
@@ -146,7 +146,7 @@ TEST_CASE("every scanner of the catalogue scans a plane, at the rates that it is
       }
       if (scanner.channels.front().scan_frequency_max == 0) continue;
       survey.legs.front().scanner.scan_frequency = 1.01 * scanner.channels.front().scan_frequency_max;
-      CHECK_THROWS_AS((void)plan_survey(survey, [](const Vec2&) -> std::optional<double> { return 0; }), SettingError);
+      CHECK_THROWS_AS((void)compile_survey(survey, [](const Vec2&) -> std::optional<double> { return 0; }), SettingError);
     }
   }
   CHECK(scanners >= 59);
@@ -163,8 +163,8 @@ TEST_CASE("every platform of the catalogue goes where it is sent") {
       leg.scanner.scan_frequency = scan_frequency_of(scanner);
       survey.legs.push_back(leg);
     }
-    const SurveyPlan plan = plan_survey(survey, [](const Vec2&) -> std::optional<double> { return 10; });
-    const SurveyLeg& leg = plan.source.legs().front();
+    const CompiledSurvey compiled = compile_survey(survey, [](const Vec2&) -> std::optional<double> { return 10; });
+    const SurveyLeg& leg = compiled.source.legs().front();
     const Vec3 from = leg.path().at({}).position, to = leg.path().at(leg.duration()).position;
     CHECK(length(from - Vec3{5, 0, 10}) < 0.5);
     if (platform.kind != PlatformKind::stationary) CHECK(length(to - Vec3{5, 40, 10}) < 0.5);

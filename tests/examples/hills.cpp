@@ -31,7 +31,7 @@ struct Met {
 Met below(const Vec2& at) {
   const Vec3 from = hills::middle + Vec3{at.x, at.y, 1000};
   std::array<Hit, 1> hits;
-  valley().closest(bundle_of({.origin = from, .direction = -up}), hits);
+  valley().closest(bundle_of({.origin = from, .direction = -axis::up}), hits);
   return {hits[0], from.z - hits[0].range};
 }
 
@@ -78,8 +78,8 @@ TEST_CASE("houses and trees stand on the ground, off river and road") {
 
 TEST_CASE("a house has a roof at the height it is given") {
   const hills::Mesh house(hills::house(9, 12, 5.5, 9.5));
-  const RayBundle down = bundle_of({.origin = {0, 1, 100}, .direction = -up});
-  Nearest nearest(down);
+  const RayBundle down = bundle_of({.origin = {0, 1, 100}, .direction = -axis::up});
+  ClosestHits nearest(down);
   house.closest(down, nearest);
   CHECK(100 - nearest.range[0] == doctest::Approx(9.5));
   CHECK(house.bounds().max.z == doctest::Approx(9.5));

@@ -72,9 +72,9 @@ TEST_CASE("the ground is where the height says, from edge to edge, and goes up a
 TEST_CASE("houses stand on both sides, the way between them is free, and the houses have their fronts to it") {
   int houses = 0;
   for (double y = -80; y <= 80; y += 1) {
-    const Vec3 eye = street::on({0, y}) + 4.5 * up;
+    const Vec3 eye = street::on({0, y}) + 4.5 * axis::up;
     if (std::fabs(y) < 12) continue;
-    for (const Vec3& aside : {right, -right}) {
+    for (const Vec3& aside : {axis::right, -axis::right}) {
       const Hit hit = seen(eye, aside);
       if (hit.classification != 6) continue;  // a tree, or a lamp post
       ++houses;
@@ -82,7 +82,7 @@ TEST_CASE("houses stand on both sides, the way between them is free, and the hou
     }
   }
   CHECK(houses > 150);
-  CHECK(seen(street::on({1.9, -85}) + 1.5 * up, forward + Vec3{0, 0, 0.02}).range > 150);
+  CHECK(seen(street::on({1.9, -85}) + 1.5 * axis::up, axis::forward + Vec3{0, 0, 0.02}).range > 150);
 }
 
 TEST_CASE("a car that drives there has its wheels on the ground") {

@@ -153,7 +153,7 @@ run check
 [ "$status" = 1 ] || fail "ends with $status"
 grep -qF "note: case/survey.xml:18:10: attribute 'colour'" said || fail "does not tell what is odd"
 grep -qF 'case/survey.xml:20:24: scanFreq_hz="much": expected a number' said || fail "does not tell what is wrong"
-for command in run check info preview plan; do
+for command in run check info preview forecast; do
   name="--strict $command"
   cp tidy/survey.xml case/survey.xml
   sed -i 's/<leg /&colour="red" /' case/survey.xml

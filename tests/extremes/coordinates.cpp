@@ -205,8 +205,8 @@ TEST_CASE("voxels of any size, anywhere") {
       // straight down into a stair, from above: the face is where corner + edge k is, without a rounding
       const Vec3 origin =
           c.corner + Vec3{(column + random.uniform(0.1, 0.9)) * c.edge, random.uniform(0.5, 9.5) * c.edge, 10 * c.edge + depth};
-      const RayBundle rays = bundle_of({origin, -up});
-      Nearest nearest(rays);
+      const RayBundle rays = bundle_of({origin, -axis::up});
+      ClosestHits nearest(rays);
       grid.closest(rays, nearest);
       // the column that the origin is in, as rounded
       const DoubleDouble stair = DoubleDouble(origin.x, -c.corner.x) / DoubleDouble(c.edge);

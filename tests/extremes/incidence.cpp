@@ -36,7 +36,7 @@ double radians(const std::string& degrees) { return std::stod(degrees) * pi / 18
 
 template <Geometry G>
 double range_of(const G& shape, const RayBundle& rays) {
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   shape.closest(rays, nearest);
   return nearest.met(0) ? nearest.range[0] : -1;
 }
@@ -57,7 +57,7 @@ TEST_CASE("a plane at any incidence") {
     for (int time = 0; time < 100; ++time) {
       // a square of 2 m in any attitude, met near its middle from 1 m away
       const Rotation turn = random.rotation();
-      const Vec3 u = turn * right, v = turn * forward, n = turn * up, middle = random.point(10);
+      const Vec3 u = turn * axis::right, v = turn * axis::forward, n = turn * axis::up, middle = random.point(10);
       const MeshData data{{middle - u - v, middle + u - v, middle + u + v, middle - u + v}, {{0, 1, 2}, {0, 2, 3}}, {}};
       const Vec3 aim = middle + u * random.uniform(-0.1, 0.1) + v * random.uniform(-0.1, 0.1);
       const double turned = random.uniform(0, 2 * pi);
@@ -123,7 +123,7 @@ TEST_CASE("a ray within next to nothing of a triangle's plane") {
   Comparison others;
   for (int time = 0; time < 10000; ++time) {
     const Rotation turn = random.rotation();
-    const Vec3 u = turn * right, v = turn * forward, n = turn * up, at = random.point(3);
+    const Vec3 u = turn * axis::right, v = turn * axis::forward, n = turn * axis::up, at = random.point(3);
     const double thin = random.coin() ? 1 : random.log_uniform(1e-8, 1);
     const MeshData data{{at, at + u, at + u * random.uniform() + v * thin}, {{0, 1, 2}}, {}};
     const double turned = random.coin() ? random.uniform(0, 2 * pi) : random.log_uniform(1e-12, 1);
@@ -140,7 +140,7 @@ TEST_CASE("a ray within next to nothing of a triangle's plane") {
   // the same at a corner, where a wall stands right before it: what the wall hides may depend on roundings, but not on the accelerator
   for (int time = 0; time < 10000; ++time) {
     const Rotation turn = random.rotation();
-    const Vec3 u = turn * right, v = turn * forward, n = turn * up, corner = random.point(1);
+    const Vec3 u = turn * axis::right, v = turn * axis::forward, n = turn * axis::up, corner = random.point(1);
     MeshData data{{corner, corner - u - v * 0.3, corner - u + v * 0.3}, {{0, 1, 2}}, {}};
     const double off = random.log_uniform(1e-12, 1e-6), range = random.uniform(1, 3);
     const Vec3 origin = corner + (u * std::cos(0.1) + v * std::sin(0.1)) * range + n * off, way = normalize(corner - origin);
@@ -208,7 +208,7 @@ TEST_CASE("a ray in the plane of a triangle") {
   Generator random(seed);
   for (int time = 0; time < 1000; ++time) {
     const Rotation turn = random.rotation();
-    const Vec3 u = turn * right, v = turn * forward;
+    const Vec3 u = turn * axis::right, v = turn * axis::forward;
     const MeshData data{{-u, u, v}, {{0, 1, 2}}, {}};
     const Vec3 from = u * random.uniform(-5, 5) + v * random.uniform(-5, -1),
                to = u * random.uniform(-0.5, 0.5) + v * random.uniform(0, 0.5);

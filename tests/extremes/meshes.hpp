@@ -44,7 +44,7 @@ struct Verdict {
 /// Tests every triangle in double-double arithmetic. One whose plane a ray is in, within 1e-12 rad, need not be met.
 template <Geometry G>
 void judge(const G& shape, const MeshData& data, const RayBundle& rays, Verdict& verdict) {
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   shape.closest(rays, nearest);
   for (std::size_t j = 0; j < rays.size; ++j) {
     const Ray ray = rays.ray(j);

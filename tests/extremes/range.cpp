@@ -85,10 +85,10 @@ TEST_CASE("what lies at the very ends of a ray, at any range") {
     const MeshData data{{{d.range, -size, -size}, {d.range, size, -size}, {d.range, 0, size}}, {{0, 1, 2}}, {}};
     const Meshes meshes(data);
     const auto meet = [&](double near, double far) {
-      const RayBundle rays = bundle_of({{}, right, near, far});
+      const RayBundle rays = bundle_of({{}, axis::right, near, far});
       std::size_t met = 0;
       const auto ask = [&](const auto& mesh) {
-        Nearest nearest(rays);
+        ClosestHits nearest(rays);
         mesh.closest(rays, nearest);
         met += nearest.met(0) && nearest.range[0] == d.range ? 1 : 0;
       };
@@ -119,7 +119,7 @@ TEST_CASE("voxels at any range") {
       const Vec3 aim{0, random.uniform(-4.9, 4.9) * edge, random.uniform(-4.9, 4.9) * edge};
       const Vec3 origin{-d.range, random.uniform(-0.3, 0.3) * d.range, random.uniform(-0.3, 0.3) * d.range};
       const RayBundle rays = bundle_of({origin, normalize(aim - origin)});
-      Nearest nearest(rays);
+      ClosestHits nearest(rays);
       grid.closest(rays, nearest);
       met += nearest.met(0) ? 1 : 0;
       if (nearest.met(0)) worst = std::max(worst, std::fabs(nearest.range[0] * rays.x[0] - d.range));

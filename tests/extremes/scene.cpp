@@ -41,7 +41,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <Geometry G>
 std::size_t met_in(const G& shape, const RayBundle& rays) {
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   shape.closest(rays, nearest);
   std::size_t met = 0;
   for (std::size_t j = 0; j < rays.size; ++j) met += nearest.met(j) ? 1 : 0;
@@ -53,7 +53,7 @@ std::size_t met_in(const G& shape, const RayBundle& rays) {
 TEST_CASE("a scene without parts, and shapes without primitives, are met nowhere") {
   Generator random(8500);
   const Scene<TriangleMesh<>, HeightField, VoxelGrid<>> none({});
-  const MovingScene<TriangleMesh<>> none_moves({}, TimeWindows{});
+  const MovingScene<TriangleMesh<>> none_moves({}, MovingIndexSettings{});
   const std::vector<Box> no_boxes, empty_boxes(5);
   Raster missing{.columns = 9, .rows = 9};
   missing.heights.assign(81, std::numeric_limits<float>::quiet_NaN());
@@ -68,7 +68,7 @@ TEST_CASE("a scene without parts, and shapes without primitives, are met nowhere
     for (const Hit& hit : hits) met += hit.range < infinity ? 1 : 0;
     met += met_in(hole, rays);
     for (const std::vector<Box>& boxes : {no_boxes, empty_boxes}) {
-      Nearest nearest(rays);
+      ClosestHits nearest(rays);
       const auto test = [&](std::span<const PrimitiveIndex> some) { met += some.size(); };
       Linear<float>(boxes).closest(rays, test, nearest), Linear<double>(boxes).closest(rays, test, nearest);
       Bvh<float>(boxes).closest(rays, test, nearest), Bvh<double>(boxes).closest(rays, test, nearest);
@@ -90,7 +90,7 @@ TEST_CASE("a scene of one triangle") {
   Verdict verdict;
   Comparison others;
   for (int time = 0; time < 200; ++time) {
-    const RayBundle rays = random.cone(random.point(1), normalize(forward + random.point(0.3)), 0.2, 8);
+    const RayBundle rays = random.cone(random.point(1), normalize(axis::forward + random.point(0.3)), 0.2, 8);
     judge(meshes.linear, data, rays, verdict);
     meshes.compare(rays, others);
   }
@@ -134,7 +134,7 @@ TEST_CASE("a lattice of 9e18 cells, of which the outermost are there, is served"
       way[k] = low ? 1 : -1;
       const Vec3 centre = data.corner + cell + Vec3(0.5);
       const RayBundle before = bundle_of({centre - way * 10.0, way}), after = bundle_of({centre + way * 10.0, way});
-      Nearest first(before), second(after);
+      ClosestHits first(before), second(after);
       grid.closest(before, first), grid.closest(after, second);
       wrong += first.met(0) && first.range[0] == 9.5 ? 0 : 1;
       wrong += second.met(0) && second.range[0] == last - 10.5 ? 0 : 1;
@@ -154,7 +154,7 @@ struct FlatGround {
   std::size_t size;  ///< of the zeros [byte]
 
   void operator()(pulsecast::detail::RasterGrid& grid, auto& levels, std::uint32_t& top, Vec2& per_metre, Vec2& pad, Vec3& centre,
-                  Box& bounds, Frozen<float>& heights, Frozen<float>& pyramid) const {
+                  Box& bounds, SharedArray<float>& heights, SharedArray<float>& pyramid) const {
     grid = {.columns = columns, .rows = rows};
     per_metre = {1, -1}, pad = Vec2(1e-6 * columns), centre = {0.5 * columns, -0.5 * rows, 0};
     bounds = {{0, 1.0 - rows, 0}, {columns - 1.0, 0, 0}};
@@ -175,7 +175,7 @@ struct FlatGround {
     }
     const auto of = [&](std::size_t count) {
       REQUIRE(count * sizeof(float) <= size);
-      return Frozen<float>({static_cast<const float*>(zeros.get()), count}, zeros);
+      return SharedArray<float>({static_cast<const float*>(zeros.get()), count}, zeros);
     };
     heights = of(std::size_t{columns} * rows), pyramid = of(floats);
   }
@@ -188,10 +188,10 @@ TEST_CASE("ground of nearly 2^32 triangles is served") {
   constexpr std::size_t size = std::size_t{side} * side * sizeof(float);
   void* const memory = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   REQUIRE(memory != MAP_FAILED);
-  HeightField field(Unfilled{});
+  HeightField field(DeserializeTag{});
   FlatGround flat{side, side, {memory, [](void* m) { ::munmap(m, size); }}, size};
   field.archive(flat);
-  REQUIRE(field.sound());
+  REQUIRE(field.is_consistent());
   Generator random(8530);
   std::size_t wrong = 0;
   for (int time = 0; time < 2000; ++time) {
@@ -204,7 +204,7 @@ TEST_CASE("ground of nearly 2^32 triangles is served") {
     const Vec2 at{rays.origin.x + range * rays.x[0], -(rays.origin.y + range * rays.y[0])};
     const auto c = static_cast<std::uint32_t>(at.x), r = static_cast<std::uint32_t>(at.y);
     const std::uint32_t expected = 2 * (r * (side - 1) + c) + (at.x - c + (at.y - r) > 1 ? 1 : 0);
-    Nearest nearest(rays);
+    ClosestHits nearest(rays);
     field.closest(rays, nearest);
     wrong += nearest.met(0) && std::fabs(nearest.range[0] - range) < 1e-9 && nearest.primitive_of(0) == expected ? 0 : 1;
     const Triangle t = field.triangle(expected);

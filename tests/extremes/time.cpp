@@ -216,7 +216,7 @@ TEST_CASE("trajectories") {
   Real slow = 0, fast = 0, between = 0, smooth = 0;
   const StraightLine survey{.to = {0, 1e6, 0}, .speed = 0.0078125}, orbit{.from = {0, -1e9, 0}, .to = {0, 1e9, 0}, .speed = 32};
   const auto begin = static_cast<double>(late / rate);  // a whole second, shortly before the pulse
-  std::vector<Waypoint> points;
+  std::vector<TimedPose> points;
   for (int k = 0; k < 5; ++k) points.push_back({.time = begin + k, .position = {0, 32.0 * k, 0}});
   const Waypoints linear{points}, cubic{points, Interpolation::cubic};
   for (PulseIndex i = late; i < late + window; ++i) {
@@ -239,7 +239,7 @@ TEST_CASE("the errors of a pose") {
                     Deflector{FixedBeam{}, Scanner{.pulse_rate = rate, .pulses = static_cast<PulseIndex>(duration * rate)}}};
   };
   constexpr double year = 31'557'600, hour = 3600;
-  const Misreported drifting{tripod(year), PoseErrors{.position_drift = 1, .drift_time = hour, .seed = 7}};
+  const WithPoseErrors drifting{tripod(year), PoseErrors{.position_drift = 1, .drift_time = hour, .seed = 7}};
 
   // the same walk in extended precision, fifty steps an hour
   const Real kept = std::exp(-1 / 50.0L), fresh = std::sqrt(1 - kept * kept);
@@ -261,11 +261,11 @@ TEST_CASE("the errors of a pose") {
   row(axis, "PoseErrors, the same drift: its deviation over the year [m]", 1,
       static_cast<double>(std::sqrt(squares / static_cast<Real>(steps))), 0.05);
   refused(axis, "a drift of 1 s through a year", [&] {
-    return Misreported{tripod(year), PoseErrors{.position_drift = 1, .drift_time = 1}};
+    return WithPoseErrors{tripod(year), PoseErrors{.position_drift = 1, .drift_time = 1}};
   });
 
   // moments in the upper half of a second; those of another second which differ in the bit that the second changes
-  const Misreported noisy{tripod(year), PoseErrors{.position_noise = 1, .seed = 7}};
+  const WithPoseErrors noisy{tripod(year), PoseErrors{.position_noise = 1, .seed = 7}};
   std::uint64_t same = 0;
   for (int k = 0; k < 1000; ++k) {
     const double fraction = 0.5 + k / 4096.0, other = std::bit_cast<double>(std::bit_cast<std::uint64_t>(fraction) ^ 2U);
@@ -299,7 +299,7 @@ TEST_CASE("a whole survey") {
       return Hit{.range = -ray.origin.z / ray.direction.z};
     }
   };
-  const Mount down{.boresight = rotation_about(right, -90_deg)};
+  const Mount down{.boresight = rotation_about(axis::right, -90_deg)};
   const Platform source{StraightLine{.from = {0, 0, 1000}, .to = {0, 4e9, 1000}, .speed = 64}, down,
                         Deflector{PolygonMirror{.lines_per_second = frequency, .sweep = 30_deg}, scanner}};
   const Plane plane;

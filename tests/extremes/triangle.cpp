@@ -62,7 +62,7 @@ struct Answer {
 template <Geometry G>
 Answer ask(const G& mesh, const Ray& ray) {
   const RayBundle rays = bundle_of(ray);
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   mesh.closest(rays, nearest);
   return {nearest.range[0], nearest.primitive_of(0)};
 }
@@ -89,7 +89,7 @@ std::size_t wrong_on_slope(const G& mesh, std::uint32_t cells, int times) {
   for (int time = 0; time < times; ++time) {
     const auto at = [&] { return 0.125 * static_cast<double>(random.coin() ? 8 * random.whole(cells) + 8 : random.whole(8ULL * cells)); };
     const double x = at(), y = random.whole(4) == 0 ? x : at();
-    const Answer answer = ask(mesh, {{x, y, 2.0 * cells}, -up});
+    const Answer answer = ask(mesh, {{x, y, 2.0 * cells}, -axis::up});
     wrong += answer.range == 2.0 * cells - 0.5 * x && answer.primitive == first_of(cells, x, y) ? 0 : 1;
   }
   return wrong;
@@ -169,7 +169,7 @@ TEST_CASE("triangles without area are never met, and hide nothing") {
   Comparison others;
   for (int time = 0; time < 2000; ++time) {
     const RayBundle rays = bundle(random, time % 2 == 0 ? flat : both, mixed.bvh.bounds(), random.coin() ? 1 : 19);
-    Nearest none(rays), found(rays), expected(rays);
+    ClosestHits none(rays), found(rays), expected(rays);
     degenerate.linear.closest(rays, none), mixed.linear.closest(rays, found), alone.closest(rays, expected);
     for (std::size_t j = 0; j < rays.size; ++j) {
       met += none.met(j) ? 1 : 0;
@@ -218,7 +218,7 @@ TEST_CASE("one triangle very many times over") {
   Comparison others;
   for (int time = 0; time < 30; ++time) {
     const Vec3 at = t.a + (t.b - t.a) * random.uniform(0.1, 0.4) + (t.c - t.a) * random.uniform(0.1, 0.4);
-    const RayBundle rays = bundle_of({at + Vec3{0, 0, 5}, -up});
+    const RayBundle rays = bundle_of({at + Vec3{0, 0, 5}, -axis::up});
     meshes.compare(rays, others);
     const Answer first = ask(meshes.linear, rays.ray(0));
     ++asked, wrong += std::fabs(first.range - 5) < 1e-14 && first.primitive >= 1 ? 0 : 1;

@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::filesystem::path path = fuzz::file(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), "leaves.txt");
   fuzz::may_refuse([&] {
     const LeafAngles leaves = read_leaf_angles(path);
-    for (const Vec3& direction : {up, right, -up, Vec3{1, 2, 3}, Vec3{0, 1e-300, 1}, Vec3{1, 0, -1e-9}}) {
+    for (const Vec3& direction : {axis::up, axis::right, -axis::up, Vec3{1, 2, 3}, Vec3{0, 1e-300, 1}, Vec3{1, 0, -1e-9}}) {
       const double projection = leaves.projection(direction);
       fuzz::expect(projection >= 0 && projection <= 1);
     }

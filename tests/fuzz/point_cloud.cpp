@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                              PointCloudSettings{.voxel_size = 0.25,
                                              .lattice = VoxelLattice::at_multiples,
                                              .normals = VoxelNormals::mean,
-                                             .default_normal = up,
+                                             .default_normal = axis::up,
                                              .colours = true},
                                              PointCloudSettings{.voxel_size = 1e-6, .normals = VoxelNormals::nearest, .colours = true}})
     fuzz::may_refuse([&] {

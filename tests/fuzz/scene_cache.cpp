@@ -3,7 +3,7 @@
 
 // Opening a scene cache that someone has tampered with, and tracing what it holds. The input says what is changed in a cache that was just
 // saved, so that it never goes stale; the header and its checksum are made right again, as they would stop nearly every input.
-// The shapes are those whose `sound` is complete, down to the nodes of their trees.
+// The shapes are those whose `is_consistent` is complete, down to the nodes of their trees.
 //
 // The first byte chooses the scene, or (from 128 on) that all other bytes are the file behind its header. Then come changes: two bytes of
 // position, one byte of which the upper half is the kind (even: overwritten; 1 mod 4: inserted; 3 mod 4: cut off there) and the lower half
@@ -111,7 +111,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::shared_ptr<std::byte> memory = mapped(file);
   const std::span<const std::byte> bytes(memory.get(), file.size());
   try {
-    io::detail::expect_cache(bytes, io::detail::program_of<Tested::Part>(), key);
+    io::detail::require_cache(bytes, io::detail::program_of<Tested::Part>(), key);
   } catch (const io::detail::Unusable&) {
     fuzz::expect(false);  // the header is right
   }

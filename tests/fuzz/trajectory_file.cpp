@@ -17,7 +17,7 @@ namespace {
 void check(const TrajectoryTable& table) {
   fuzz::expect(!table.poses.empty() && table.poses.front().time == 0);
   for (std::size_t i = 0; i < table.poses.size(); ++i) {
-    const Waypoint& pose = table.poses[i];
+    const TimedPose& pose = table.poses[i];
     fuzz::expect(i == 0 || pose.time >= table.poses[i - 1].time);
     fuzz::expect(std::fabs(table.start_time + pose.time) <= 1.000001e12 && max_norm(pose.position) <= 1e12);
     fuzz::expect(std::fabs(length(pose.rotation) - 1) <= 1e-9);

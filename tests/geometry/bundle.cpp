@@ -25,7 +25,7 @@ TEST_CASE("the bundle of a ray gives the ray back") {
 TEST_CASE("a bundle is filled up with copies of its last ray") {
   Generator random(61);
   for (const std::size_t size : {1U, 7U, 8U, 9U, 19U, 63U, 64U}) {
-    const RayBundle rays = random.cone({}, forward, 1e-3, size);
+    const RayBundle rays = random.cone({}, axis::forward, 1e-3, size);
     CHECK(rays.padded_size() % RayBundle::lanes == 0);
     CHECK(rays.padded_size() >= size);
     CHECK(rays.padded_size() < size + RayBundle::lanes);
@@ -35,7 +35,7 @@ TEST_CASE("a bundle is filled up with copies of its last ray") {
 
 TEST_CASE("the nearer offer wins, and on equal range the smaller number, whatever the order") {
   const RayBundle rays = bundle_of({});
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   CHECK_FALSE(nearest.met(0));
   CHECK(nearest.limit(rays) == std::numeric_limits<double>::infinity());
   nearest.offer(0, 5, 7);
@@ -55,7 +55,7 @@ TEST_CASE("the nearer offer wins, and on equal range the smaller number, whateve
 
 TEST_CASE("on equal range the smaller part wins before the smaller primitive") {
   const RayBundle rays = bundle_of({});
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   nearest.part = std::uint64_t{2} << 32;
   nearest.offer(0, 5, 1);
   nearest.part = std::uint64_t{1} << 32;
@@ -65,8 +65,8 @@ TEST_CASE("on equal range the smaller part wins before the smaller primitive") {
 }
 
 TEST_CASE("what is met at the far end counts, what is beyond does not") {
-  RayBundle rays = bundle_of({{}, forward, 0, 10});
-  Nearest nearest(rays);
+  RayBundle rays = bundle_of({{}, axis::forward, 0, 10});
+  ClosestHits nearest(rays);
   nearest.offer(0, 10.5, 1);
   CHECK_FALSE(nearest.met(0));
   nearest.offer(0, 10, 1);
@@ -75,8 +75,8 @@ TEST_CASE("what is met at the far end counts, what is beyond does not") {
 
 TEST_CASE("the limit is that of the ray which may still go farthest, and idle lanes have no say") {
   Generator random(62);
-  const RayBundle rays = random.cone({}, forward, 1e-3, 9);
-  Nearest nearest(rays);
+  const RayBundle rays = random.cone({}, axis::forward, 1e-3, 9);
+  ClosestHits nearest(rays);
   for (std::size_t j = 0; j < 8; ++j) nearest.offer(j, 2 + static_cast<double>(j), 0);
   CHECK(nearest.limit(rays) == std::numeric_limits<double>::infinity());
   nearest.offer(8, 1, 0);

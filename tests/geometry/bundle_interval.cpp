@@ -50,7 +50,7 @@ RayBundle random_rays(Generator& random, const Vec3& origin, const Vec3& aim) {
   Vec3 axis = kind == 0 ? random.unit() : normalize(aim - origin);
   if (kind == 1) {  // along an axis, or in a plane of two
     axis[static_cast<int>(random.whole(3))] = 0;
-    if (random.coin()) axis = random.coin() ? forward : -up;
+    if (random.coin()) axis = random.coin() ? axis::forward : -axis::up;
     axis = normalize(axis);
   }
   RayBundle rays = random.cone(origin, axis, angles[random.whole(6)], 1 + random.whole(20));
@@ -93,27 +93,27 @@ TEST_CASE_TEMPLATE("one ray is inside a box between its walls", Real, float, dou
   const auto span = [&](const Ray& ray) {
     return BundleInterval<Real>(bundle_of(ray), box, {}).inside(BoundingBox<Real>::around(box, {}));
   };
-  const auto through = span({{}, right});
+  const auto through = span({{}, axis::right});
   CHECK(static_cast<double>(through.entry) == doctest::Approx(2).epsilon(1e-5));
   CHECK(static_cast<double>(through.exit) == doctest::Approx(5).epsilon(1e-5));
-  CHECK(span({{}, -right}).empty());
-  CHECK(span({{}, forward}).empty());
-  CHECK(span({{0, 3, 0}, right}).empty());
-  CHECK(span({{}, right, 6}).empty());
-  CHECK_FALSE(span({{3, 0, 0}, up}).empty());
+  CHECK(span({{}, -axis::right}).empty());
+  CHECK(span({{}, axis::forward}).empty());
+  CHECK(span({{0, 3, 0}, axis::right}).empty());
+  CHECK(span({{}, axis::right, 6}).empty());
+  CHECK_FALSE(span({{3, 0, 0}, axis::up}).empty());
 }
 
 TEST_CASE_TEMPLATE("a plane parts a stretch into what is above and what is below", Real, float, double) {
   const Box bounds{{-10, -10, -10}, {10, 10, 10}};
   const typename BundleInterval<Real>::Span all{0, 100};
-  const BundleInterval<Real> rising(bundle_of({{0, 0, -5}, up}), bounds, {});
+  const BundleInterval<Real> rising(bundle_of({{0, 0, -5}, axis::up}), bounds, {});
   CHECK(static_cast<double>(rising.above(all, 2, 1).entry) == doctest::Approx(6).epsilon(1e-5));
   CHECK(rising.above(all, 2, 1).exit == 100);
   CHECK(rising.below(all, 2, 1).entry == 0);
   CHECK(static_cast<double>(rising.below(all, 2, 1).exit) == doctest::Approx(6).epsilon(1e-5));
   CHECK(rising.above(all, 0, 1).empty());  // it never gets there
   CHECK_FALSE(rising.below(all, 0, 1).empty());
-  const BundleInterval<Real> falling(bundle_of({{0, 0, 5}, -up}), bounds, {});
+  const BundleInterval<Real> falling(bundle_of({{0, 0, 5}, -axis::up}), bounds, {});
   CHECK(static_cast<double>(falling.below(all, 2, 1).entry) == doctest::Approx(4).epsilon(1e-5));
   CHECK(static_cast<double>(falling.above(all, 2, 1).exit) == doctest::Approx(4).epsilon(1e-5));
 }
@@ -177,7 +177,7 @@ TEST_CASE_TEMPLATE("no compact box that any ray of a bundle meets is passed over
     const double share = random.log_uniform(1e-5, 1);
     node.min = bounds.min + bounds.size() * ((1 - share) * random.uniform()), node.max = node.min + bounds.size() * share;
     std::vector<Box> boxes;
-    CompactBoxes<Real> compact;
+    QuantizedBox8<Real> compact;
     compact.begin(BoundingBox<Real>::around(node, centre));
     for (int i = 0; i < 8; ++i) {
       Box box;
@@ -240,7 +240,7 @@ TEST_CASE_TEMPLATE("the range at which a triangle is met is inside the span of i
     if (random.whole(5) == 0) v = 0;
     const Vec3 aim = t.a + (t.b - t.a) * u + (t.c - t.a) * v;
     const RayBundle rays = random.cone(origin, normalize(aim - origin), random.coin() ? 1e-12 : 1e-4, 4);
-    Nearest nearest(rays);
+    ClosestHits nearest(rays);
     intersect(t, 0, rays, nearest);
     const Box box = t.bounds();
     const Vec3 centre = box.centre();
@@ -259,27 +259,27 @@ TEST_CASE_TEMPLATE("rays that are not numbers do not hide what the others meet, 
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Box box{{-1, 4, -1}, {1, 6, 1}};
   const auto around = BoundingBox<Real>::around(box, {});
-  RayBundle rays = bundle_of({{}, forward});
+  RayBundle rays = bundle_of({{}, axis::forward});
   rays.size = 3;
-  rays.set_direction(0, {nan, nan, nan}), rays.set_direction(1, forward), rays.set_direction(2, {0, 1, nan});
+  rays.set_direction(0, {nan, nan, nan}), rays.set_direction(1, axis::forward), rays.set_direction(2, {0, 1, nan});
   rays.pad();
   CHECK(holds<Real>(BundleInterval<Real>(rays, box, {}).inside(around), 5));
   rays.set_direction(1, {nan, nan, nan});
   rays.pad();
   CHECK(BundleInterval<Real>(rays, box, {}).inside(around).empty());
-  CHECK(BundleInterval<Real>(bundle_of({{nan, 0, 0}, forward}), box, {}).inside(around).empty());
-  CompactBoxes<Real> boxes;
+  CHECK(BundleInterval<Real>(bundle_of({{nan, 0, 0}, axis::forward}), box, {}).inside(around).empty());
+  QuantizedBox8<Real> boxes;
   boxes.begin(around), boxes.add(around);
   std::array<Real, 8> entries;
   const auto found = [&](const Ray& ray) { return RayInterval<Real>(bundle_of(ray), box, {}).inside(boxes, 100, entries); };
-  CHECK(found({{}, forward}) == 1);
+  CHECK(found({{}, axis::forward}) == 1);
   CHECK(found({{}, {0, 1, nan}}) == 0);
-  CHECK(found({{nan, 0, 0}, forward}) == 0);
+  CHECK(found({{nan, 0, 0}, axis::forward}) == 0);
 }
 
 TEST_CASE_TEMPLATE("an empty box is never met", Real, float, double) {
   const Box bounds{{-1, -1, -1}, {1, 1, 1}};
   const auto nothing = BoundingBox<Real>::around(Box{}, {});
-  for (const Vec3& d : {right, forward, up, normalize(Vec3{1, 1, 1}), normalize(Vec3{-1, 2, -3})})
+  for (const Vec3& d : {axis::right, axis::forward, axis::up, normalize(Vec3{1, 1, 1}), normalize(Vec3{-1, 2, -3})})
     CHECK(BundleInterval<Real>(bundle_of({{}, d}), bounds, {}).inside(nothing).empty());
 }

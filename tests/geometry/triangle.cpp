@@ -21,7 +21,7 @@ const double no_number = std::numeric_limits<double>::quiet_NaN();
 /// The range at which a ray meets a triangle.
 std::optional<double> meets(const Triangle& t, const Ray& ray) {
   const RayBundle rays = bundle_of(ray);
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   intersect(t, 0, rays, nearest);
   if (!nearest.met(0)) return std::nullopt;
   return nearest.range[0];
@@ -44,39 +44,39 @@ Reference reference(const Triangle& t, const Ray& ray) {
 }  // namespace
 
 TEST_CASE("a triangle is met where its plane is, from both sides") {
-  CHECK(meets(flat, {{1, 1, 3}, -up}) == 3);
-  CHECK(meets(flat, {{1, 1, -3}, up}) == 3);
+  CHECK(meets(flat, {{1, 1, 3}, -axis::up}) == 3);
+  CHECK(meets(flat, {{1, 1, -3}, axis::up}) == 3);
   const Triangle turned{flat.b, flat.a, flat.c};
-  CHECK(meets(turned, {{1, 1, 3}, -up}) == 3);
+  CHECK(meets(turned, {{1, 1, 3}, -axis::up}) == 3);
   CHECK(meets(flat, {{1 - 4, 1, 3}, Vec3{0.8, 0, -0.6}}).value() == doctest::Approx(5).epsilon(1e-15));
 }
 
 TEST_CASE("a triangle is missed beside its edges") {
   for (const Vec3 p : {Vec3{-1e-9, 1, 3}, {1, -1e-9, 3}, {2 + 1e-9, 2, 3}, {5, 5, 3}, {-1, -1, 3}, {4 + 1e-9, 0, 3}})
-    CHECK_FALSE(meets(flat, {p, -up}));
+    CHECK_FALSE(meets(flat, {p, -axis::up}));
 }
 
 TEST_CASE("edges and corners belong to the triangle") {
-  for (const Vec3 p : {Vec3{0, 0, 3}, {4, 0, 3}, {0, 4, 3}, {2, 0, 3}, {0, 2, 3}, {2, 2, 3}}) CHECK(meets(flat, {p, -up}) == 3);
+  for (const Vec3 p : {Vec3{0, 0, 3}, {4, 0, 3}, {0, 4, 3}, {2, 0, 3}, {0, 2, 3}, {2, 2, 3}}) CHECK(meets(flat, {p, -axis::up}) == 3);
 }
 
 TEST_CASE("what is behind the origin, or at it, is not met") {
-  CHECK_FALSE(meets(flat, {{1, 1, 3}, up}));
-  CHECK_FALSE(meets(flat, {{1, 1, 0}, up}));
-  CHECK_FALSE(meets(flat, {{1, 1, 0}, -up}));
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, axis::up}));
+  CHECK_FALSE(meets(flat, {{1, 1, 0}, axis::up}));
+  CHECK_FALSE(meets(flat, {{1, 1, 0}, -axis::up}));
 }
 
 TEST_CASE("a triangle is met beyond the near end and up to the far end, the far end included") {
-  CHECK(meets(flat, {{1, 1, 3}, -up, 2.999, 10}) == 3);
-  CHECK_FALSE(meets(flat, {{1, 1, 3}, -up, 3, 10}));
-  CHECK(meets(flat, {{1, 1, 3}, -up, 0, 3}) == 3);
-  CHECK_FALSE(meets(flat, {{1, 1, 3}, -up, 0, 2.999}));
+  CHECK(meets(flat, {{1, 1, 3}, -axis::up, 2.999, 10}) == 3);
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, -axis::up, 3, 10}));
+  CHECK(meets(flat, {{1, 1, 3}, -axis::up, 0, 3}) == 3);
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, -axis::up, 0, 2.999}));
 }
 
 TEST_CASE("rays in the triangle's plane, or along it, miss") {
-  CHECK_FALSE(meets(flat, {{-1, 1, 0}, right}));
-  CHECK_FALSE(meets(flat, {{-1, 1, 1}, right}));
-  CHECK_FALSE(meets(flat, {{-1, 0, 0}, right}));
+  CHECK_FALSE(meets(flat, {{-1, 1, 0}, axis::right}));
+  CHECK_FALSE(meets(flat, {{-1, 1, 1}, axis::right}));
+  CHECK_FALSE(meets(flat, {{-1, 0, 0}, axis::right}));
   CHECK_FALSE(meets(flat, {{5, -1, 0}, normalize(Vec3{-1, 1, 0})}));
 }
 
@@ -86,30 +86,30 @@ TEST_CASE("a ray within 1e-12 rad of the triangle's plane misses, one at ten tim
 }
 
 TEST_CASE("a triangle without area is never met") {
-  CHECK_FALSE(meets({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}, {{0.5, 0, 3}, -up}));
-  CHECK_FALSE(meets({{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}, {{1, 1, 3}, -up}));
-  CHECK_FALSE(meets({{0, 0, 0}, {0, 0, 0}, {3, 0, 0}}, {{0.5, 0, 3}, -up}));
+  CHECK_FALSE(meets({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}, {{0.5, 0, 3}, -axis::up}));
+  CHECK_FALSE(meets({{1, 1, 0}, {1, 1, 0}, {1, 1, 0}}, {{1, 1, 3}, -axis::up}));
+  CHECK_FALSE(meets({{0, 0, 0}, {0, 0, 0}, {3, 0, 0}}, {{0.5, 0, 3}, -axis::up}));
 }
 
 TEST_CASE("nothing that is not a number is met") {
-  CHECK_FALSE(meets(flat, {{1, no_number, 3}, -up}));
+  CHECK_FALSE(meets(flat, {{1, no_number, 3}, -axis::up}));
   for (int k = 0; k < 3; ++k) {
-    Vec3 d = -up;
+    Vec3 d = -axis::up;
     d[k] = no_number;
     CHECK_FALSE(meets(flat, {{1, 1, 3}, d}));
     Triangle t = flat;
     t.b[k] = no_number;
-    CHECK_FALSE(meets(t, {{1, 1, 3}, -up}));
+    CHECK_FALSE(meets(t, {{1, 1, 3}, -axis::up}));
   }
-  CHECK_FALSE(meets(flat, {{1, 1, 3}, -up, no_number}));
-  CHECK_FALSE(meets(flat, {{1, 1, 3}, -up, 0, no_number}));
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, -axis::up, no_number}));
+  CHECK_FALSE(meets(flat, {{1, 1, 3}, -axis::up, 0, no_number}));
   CHECK_FALSE(meets(flat, {{1, 1, 3}, Vec3{0, 0, 0}}));
 }
 
 TEST_CASE("of triangles at exactly the same range the one of the smallest number is met, whatever the order") {
-  const RayBundle rays = bundle_of({{1, 1, 3}, -up});
+  const RayBundle rays = bundle_of({{1, 1, 3}, -axis::up});
   for (const bool upwards : {true, false}) {
-    Nearest nearest(rays);
+    ClosestHits nearest(rays);
     for (PrimitiveIndex i = 0; i < 5; ++i) intersect(flat, upwards ? i : 4 - i, rays, nearest);
     CHECK(nearest.range[0] == 3);
     CHECK(nearest.primitive_of(0) == 0);
@@ -119,8 +119,8 @@ TEST_CASE("of triangles at exactly the same range the one of the smallest number
 TEST_CASE("every ray of a bundle is answered as it is alone, and idle lanes are left alone") {
   Generator random(70);
   for (const std::size_t size : {2U, 5U, 8U, 19U, 33U, 64U}) {
-    const RayBundle rays = random.cone({1, 1, 3}, -up, 0.7, size);
-    Nearest nearest(rays);
+    const RayBundle rays = random.cone({1, 1, 3}, -axis::up, 0.7, size);
+    ClosestHits nearest(rays);
     intersect(flat, 6, rays, nearest);
     for (std::size_t j = 0; j < size; ++j) {
       const auto alone = meets(flat, rays.ray(j));
@@ -135,11 +135,11 @@ TEST_CASE("every ray of a bundle is answered as it is alone, and idle lanes are 
 }
 
 TEST_CASE("where directions are not unit, ranges are in multiples of their length") {
-  RayBundle rays = bundle_of({{1, 1, 3}, -up});
+  RayBundle rays = bundle_of({{1, 1, 3}, -axis::up});
   rays.direction_length = 0.25;
   rays.set_direction(0, rays.direction(0) * 0.25);
   rays.pad();
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   intersect(flat, 0, rays, nearest);
   CHECK(nearest.range[0] == 12);
 }
@@ -175,6 +175,6 @@ TEST_CASE("random triangles are met as long double says, at any scale") {
 TEST_CASE("a triangle's bounds hold its corners, and its normal is right-handed") {
   const Box box = Triangle{{3, 0, 1}, {0, 2, 1}, {1, 1, -1}}.bounds();
   CHECK(box == Box{{0, 0, -1}, {3, 2, 1}});
-  CHECK(flat.normal() == up);
+  CHECK(flat.normal() == axis::up);
   CHECK_FALSE(finite(Triangle{}.normal()));
 }

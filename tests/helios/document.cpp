@@ -73,7 +73,7 @@ TEST_CASE("a survey is read with its templates, its scanner, its platform and it
 
   CHECK(survey.platform.kind == PlatformKind::linear_path);
   CHECK(survey.platform.mount.position == Vec3(0, 0, 0.7));
-  const Vec3 beam = survey.platform.mount.rotation.rotation() * forward;  // down by the first turn, which the second does not change
+  const Vec3 beam = survey.platform.mount.rotation.rotation() * axis::forward;  // down by the first turn, which the second does not change
   CHECK(length(beam - Vec3(0, 0, -1)) < 1e-12);
   CHECK(survey.platform.position_noise[0]->deviation == 0.02);
   CHECK(survey.platform.position_noise[1]->deviation == 0.03);
@@ -171,7 +171,7 @@ TEST_CASE("parts have their filters, motions and swaps") {
   CHECK(voxels.random_shift);
   const auto& cloud = std::get<XyzSource>(assets.scenes[2].parts.at(2).source);
   CHECK(cloud.separator == ",");
-  CHECK(cloud.default_normal == up);
+  CHECK(cloud.default_normal == axis::up);
   const SceneSettings& moving = assets.scenes[3];
   CHECK(moving.dynamic_step == 2);
   const PartSettings& spinner = moving.parts.at(1);
@@ -180,7 +180,7 @@ TEST_CASE("parts have their filters, motions and swaps") {
   CHECK(spinner.motions[0].next == "turn");
   CHECK(spinner.motions[0].motions.at(1).about_itself);
   CHECK(std::get<TranslationMotion>(spinner.motions[0].motions.at(0).kind).by == Vec3(0.002, 0, 0));
-  CHECK(std::get<RotationMotion>(spinner.motions[1].motions.at(0).kind) == RotationMotion{up, radians(1), Vec3(1, 2, 3), {}});
+  CHECK(std::get<RotationMotion>(spinner.motions[1].motions.at(0).kind) == RotationMotion{axis::up, radians(1), Vec3(1, 2, 3), {}});
   CHECK(spinner.motions[1].motions.at(0).shift_factor == 1);
   CHECK(std::get<RotationMotion>(spinner.motions[1].motions.at(1).kind).glide == 0.01);
   CHECK(std::get<ReflectionMotion>(spinner.motions[1].motions.at(3).kind).shift == Vec3(0, 1, 0));
@@ -521,7 +521,7 @@ TEST_CASE("hostile documents are refused at once") {
     FAIL("was read");
   } catch (const XmlFaults& faults) {
     CHECK(contains(faults.what(), "there is no <survey>"));
-    CHECK(faults.warnings().size() == XmlReport::most);
+    CHECK(faults.warnings().size() == XmlReport::max_told);
     CHECK(contains(faults.warnings().back(), "; more than 1000 are not told"));
   }
   refuses("<document><scene id=\"s\"><part><filter type=\"objloader\">" + params + "</filter></part></scene>" +

@@ -43,7 +43,7 @@ SceneSettings scene_of(std::vector<PartSettings> parts) {
 
 /// What a ray straight down from a height of 100 m meets.
 Hit below(const SurveyScene& scene, double x, double y, double time = 0) {
-  RayBundle rays = bundle_of({.origin = {x, y, 100}, .direction = -up});
+  RayBundle rays = bundle_of({.origin = {x, y, 100}, .direction = -axis::up});
   rays.tick = Tick::of_seconds(time);
   std::vector<Hit> hits(RayBundle::capacity);
   scene.closest(rays, hits);
@@ -139,11 +139,11 @@ TEST_CASE("motions go on from step to step, at the pulse rate") {
   SUBCASE("a turn about itself stays where it is; one about a place does not") {
     cube.transform.translation = {10, 0, 0};
     const double angle = pi / 4 / 1000;
-    cube.motions = {sequence("turn", 0, {RotationMotion{.axis = up, .angle = angle}, true})};
+    cube.motions = {sequence("turn", 0, {RotationMotion{.axis = axis::up, .angle = angle}, true})};
     const SurveyScene own = built(scene_of({files.part("plane.obj", "0"), cube}), options);
     CHECK(below(own, 11.3, 0, 1).object == 1);
     CHECK(below(own, 11.3, 0, 0).object == 0);
-    cube.motions = {sequence("turn", 0, {RotationMotion{.axis = up, .angle = 2 * angle}, false, 0})};
+    cube.motions = {sequence("turn", 0, {RotationMotion{.axis = axis::up, .angle = 2 * angle}, false, 0})};
     const SurveyScene orbit = built(scene_of({files.part("plane.obj", "0"), cube}), options);
     CHECK(below(orbit, 0, 10, 1).object == 1);
     CHECK(below(orbit, 10, 0, 1).object == 0);
@@ -151,7 +151,7 @@ TEST_CASE("motions go on from step to step, at the pulse rate") {
   SUBCASE("one mirror is refused; two parallel ones are a way, two that meet are a turn") {
     cube.motions = {sequence("mirror", 0, {ReflectionMotion{}})};
     CHECK_THROWS_AS((void)built(scene_of({cube}), options), SettingError);
-    cube.motions = {sequence("mirror", 0, {RotoreflectionMotion{.axis = up, .angle = 0.1}})};
+    cube.motions = {sequence("mirror", 0, {RotoreflectionMotion{.axis = axis::up, .angle = 0.1}})};
     CHECK_THROWS_AS((void)built(scene_of({cube}), options), SettingError);
 
     cube.motions = {sequence("glide", 0, {ReflectionMotion{.normal = {3, 4, 0}, .shift = Vec3{0, 0, -0.0005}}})};
@@ -162,12 +162,12 @@ TEST_CASE("motions go on from step to step, at the pulse rate") {
 
     cube.transform.translation = {10, 0, 0};
     const double half = pi / 4 / 1000;  // twice the angle between the mirrors is that of the turn
-    cube.motions = {sequence("turn", 0, {ReflectionMotion{.normal = right}})};
+    cube.motions = {sequence("turn", 0, {ReflectionMotion{.normal = axis::right}})};
     cube.motions[0].motions.push_back({ReflectionMotion{.normal = {std::cos(half), std::sin(half), 0}}});
     const SurveyScene orbit = built(scene_of({files.part("plane.obj", "0"), cube}), options);
     CHECK(below(orbit, 0, 10, 1).object == 1);
     CHECK(below(orbit, 10, 0, 1).object == 0);
-    cube.motions = {sequence("turn", 0, {RotoreflectionMotion{.axis = up, .angle = half, .center = Vec3{0, 0, 1}}})};
+    cube.motions = {sequence("turn", 0, {RotoreflectionMotion{.axis = axis::up, .angle = half, .center = Vec3{0, 0, 1}}})};
     cube.motions[0].motions.push_back(cube.motions[0].motions[0]);
     const SurveyScene same = built(scene_of({files.part("plane.obj", "0"), cube}), options);
     CHECK(below(same, 0, 10, 1).object == 1);
@@ -247,8 +247,7 @@ TEST_CASE("what a file comes to, and cannot be, is told with the file; what a pa
   PartSettings cloud = cube;
   cloud.source = XyzSource{.files = {files.folder / "none.xyz"}, .voxel_size = -1};
   CHECK_THROWS_AS((void)built(scene_of({cloud})), SettingError);
-  CHECK_THROWS_WITH_AS((void)built(scene_of({}), {.threads = 1025}), doctest::Contains("SceneBuildOptions::threads is 1025"),
-                       SettingError);
+  CHECK_THROWS_WITH_AS((void)built(scene_of({}), {.threads = 1025}), doctest::Contains("SceneBuildOptions::threads is 1025"), SettingError);
 }
 
 }  // namespace

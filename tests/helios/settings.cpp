@@ -12,8 +12,9 @@ using namespace pulsecast::helios;
 TEST_CASE("turns about fixed axes and about moving axes are composed as the reference's golden numbers say") {
   // Mount list (x -90, z 90), heading 30 degrees to the left, deflector 10 degrees up: HELIOS++ behaviour reference, appendix A8.
   const RotationList fixed{.turns = {{Axis::x, radians(-90)}, {Axis::z, radians(90)}}}, moving{.turns = fixed.turns, .local = true};
-  const Rotation heading = rotation_about(up, radians(30)), deflection = rotation_about(right, radians(10));
-  const Vec3 by_fixed = heading * fixed.rotation() * deflection * forward, by_moving = heading * moving.rotation() * deflection * forward;
+  const Rotation heading = rotation_about(axis::up, radians(30)), deflection = rotation_about(axis::right, radians(10));
+  const Vec3 by_fixed = heading * fixed.rotation() * deflection * axis::forward,
+             by_moving = heading * moving.rotation() * deflection * axis::forward;
   CHECK(length(by_fixed - Vec3(-0.150383733180435, -0.086824088833465, -0.984807753012208)) < 1e-14);
   CHECK(length(by_moving - Vec3(-0.939692620785909, -0.342020143325669, 0)) < 1e-14);
 }
@@ -21,9 +22,9 @@ TEST_CASE("turns about fixed axes and about moving axes are composed as the refe
 TEST_CASE("no turns are no rotation, and every axis is its own") {
   CHECK(RotationList{}.rotation() == no_rotation);
   const auto turned = [](Axis axis, const Vec3& v) { return RotationList{.turns = {{axis, radians(90)}}}.rotation() * v; };
-  CHECK(length(turned(Axis::x, forward) - up) < 1e-15);
-  CHECK(length(turned(Axis::y, up) - right) < 1e-15);
-  CHECK(length(turned(Axis::z, right) - forward) < 1e-15);
+  CHECK(length(turned(Axis::x, axis::forward) - axis::up) < 1e-15);
+  CHECK(length(turned(Axis::y, axis::up) - axis::right) < 1e-15);
+  CHECK(length(turned(Axis::z, axis::right) - axis::forward) < 1e-15);
 }
 
 TEST_CASE("settings are equal if all that they hold is") {

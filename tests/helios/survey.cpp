@@ -38,123 +38,123 @@ SurveySettings survey_of(PlatformKind kind, const std::vector<Vec3>& places, dou
   return s;
 }
 
-Vec3 origin(const SurveyPlan& plan, PulseIndex i) { return plan.source.pulse(i).value().pose.position; }
+Vec3 origin(const CompiledSurvey& compiled, PulseIndex i) { return compiled.source.pulse(i).value().pose.position; }
 
 TEST_CASE("a tripod stands where each leg says, until the head has turned") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}, {4, 5, 6}});
   for (LegSettings& leg : s.legs) leg.scanner.head_speed = radians(90), leg.scanner.head_stop = radians(180);
   s.platform.mount.position = {0, 0, 1.5};
-  const SurveyPlan plan = plan_survey(s, flat);
-  REQUIRE(plan.legs.size() == 2);
-  CHECK(plan.legs[0].end == 2000);
-  CHECK(plan.legs[1].first == 2000);
-  CHECK(plan.legs[1].start.seconds() == 2);
-  CHECK(length(origin(plan, 0) - Vec3{1, 2, 4.5}) < 1e-12);
-  CHECK(length(origin(plan, 2000) - Vec3{4, 5, 7.5}) < 1e-12);
-  CHECK(plan.source.pulse(2000)->leg == 1);
-  CHECK(plan.source.pulse(2000)->tick.seconds() == 2);
+  const CompiledSurvey compiled = compile_survey(s, flat);
+  REQUIRE(compiled.legs.size() == 2);
+  CHECK(compiled.legs[0].end == 2000);
+  CHECK(compiled.legs[1].first == 2000);
+  CHECK(compiled.legs[1].start.seconds() == 2);
+  CHECK(length(origin(compiled, 0) - Vec3{1, 2, 4.5}) < 1e-12);
+  CHECK(length(origin(compiled, 2000) - Vec3{4, 5, 7.5}) < 1e-12);
+  CHECK(compiled.source.pulse(2000)->leg == 1);
+  CHECK(compiled.source.pulse(2000)->tick.seconds() == 2);
 
   SUBCASE("on the ground, if it asks for that") {
     s.legs[0].platform.on_ground = true;
-    CHECK(origin(plan_survey(s, flat), 0).z == relative(8.5, 1e-12));
+    CHECK(origin(compile_survey(s, flat), 0).z == relative(8.5, 1e-12));
     const auto none = [](const Vec2&) -> std::optional<double> { return std::nullopt; };
-    CHECK_THROWS_WITH_AS((void)plan_survey(s, none), doctest::Contains("leg 0: onGround"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, none), doctest::Contains("leg 0: onGround"), SettingError);
   }
   SUBCASE("not longer than it may") {
     s.legs[0].duration_max = 0.5;
-    CHECK(plan_survey(s, flat).legs[0].end == 500);
+    CHECK(compile_survey(s, flat).legs[0].end == 500);
   }
   SUBCASE("an inactive leg takes its time, and holds no pulses") {
     s.legs[0].scanner.active = false;
-    const SurveyPlan later = plan_survey(s, flat);
+    const CompiledSurvey later = compile_survey(s, flat);
     CHECK(later.legs[0].end == 0);
     CHECK(later.legs[1].end == 2000);
     CHECK(later.source.pulse(0)->tick.seconds() == 2);
   }
   SUBCASE("a leg whose head begins where it stops ends at once") {
     s.legs[1].scanner.head_stop = s.legs[1].scanner.head_start;
-    const SurveyPlan none = plan_survey(s, flat);
+    const CompiledSurvey none = compile_survey(s, flat);
     CHECK(none.legs[1].end == none.legs[1].first);
   }
   SUBCASE("nor of more pulses than can be counted") {
     s.legs[1].duration_max = 1e14, s.legs[1].scanner.head_speed = 0, s.legs[1].scanner.head_stop = 0;
-    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1 (pulses) is 1e+17"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1 (pulses) is 1e+17"), SettingError);
   }
   SUBCASE("nor faster than a laser can be") {
     s.legs[1].scanner.pulse_rate = 1e13, s.legs[1].duration_max = 1;
-    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: Scanner::pulse_rate is 1e+13"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: Scanner::pulse_rate is 1e+13"), SettingError);
     s.legs[1].scanner.pulse_rate = -1;
-    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: pulseFreq_hz is -1"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: pulseFreq_hz is -1"), SettingError);
   }
   SUBCASE("a leg that would never end is refused") {
     s.legs[1].scanner.head_speed = 0, s.legs[1].scanner.head_stop = 0;
-    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: maxDuration_s"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: maxDuration_s"), SettingError);
     s.legs[1].scanner.head_stop = 1;
-    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: headRotatePerSec_deg"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: headRotatePerSec_deg"), SettingError);
     s.legs[1].scanner.head_speed = -1;
-    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: headRotateStop_deg"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: headRotateStop_deg"), SettingError);
   }
 }
 
 TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with it") {
   SurveySettings s = survey_of(PlatformKind::linear_path, {{0, 0, 100}, {50, 0, 100}, {50, 30, 100}});
   s.platform.mount.position = {0, 2, -1};
-  const SurveyPlan plan = plan_survey(s, flat);
-  CHECK(plan.legs[0].duration.seconds() == 5);
-  CHECK(plan.legs[1].duration.seconds() == 3);
-  CHECK(plan.legs[2].duration.seconds() == 0);
+  const CompiledSurvey compiled = compile_survey(s, flat);
+  CHECK(compiled.legs[0].duration.seconds() == 5);
+  CHECK(compiled.legs[1].duration.seconds() == 3);
+  CHECK(compiled.legs[2].duration.seconds() == 0);
   // 60 degrees either side of what is swept is measured; the first pulse of a leg is straight ahead
-  CHECK(length(origin(plan, 0) - Vec3{2, 0, 99}) < 1e-9);
-  CHECK(length(origin(plan, plan.legs[1].first) - Vec3{50, 2, 99}) < 1e-9);
-  CHECK(length(plan.source.pulse(0)->direction() - right) < 1e-9);
+  CHECK(length(origin(compiled, 0) - Vec3{2, 0, 99}) < 1e-9);
+  CHECK(length(origin(compiled, compiled.legs[1].first) - Vec3{50, 2, 99}) < 1e-9);
+  CHECK(length(compiled.source.pulse(0)->direction() - axis::right) < 1e-9);
 
   SUBCASE("a head that outlasts the way is told of") {
     s.legs[0].scanner.head_speed = radians(90), s.legs[0].scanner.head_stop = radians(900);
-    const SurveyPlan waits = plan_survey(s, flat);
+    const CompiledSurvey waits = compile_survey(s, flat);
     CHECK(waits.legs[0].duration.seconds() == 10);
     REQUIRE(waits.warnings.size() == 1);
     CHECK(waits.warnings[0].find("leg 0: the platform is there after 5 s, and stays until the head has turned, 5 s more") == 0);
     s.legs[0].scanner.head_stop = 0;  // turns all the way
-    CHECK(plan_survey(s, flat).legs[0].duration.seconds() == 5);
-    CHECK(plan_survey(s, flat).warnings.empty());
+    CHECK(compile_survey(s, flat).legs[0].duration.seconds() == 5);
+    CHECK(compile_survey(s, flat).warnings.empty());
   }
   SUBCASE("one leg alone has no end") {
     s.legs.resize(1);
-    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 0: maxDuration_s"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 0: maxDuration_s"), SettingError);
   }
   SUBCASE("what is wrong is told with the place where it stands") {
     s.legs[1].platform.speed = 0;
     SurveyBuildOptions options;
     options.leg_places = {"a.xml:3:5", "a.xml:7:5", "a.xml:9:5"};
-    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat, options), doctest::Contains("a.xml:7:5: leg 1: movePerSec_m"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options), doctest::Contains("a.xml:7:5: leg 1: movePerSec_m"), SettingError);
   }
   SUBCASE("the last leg says where the way ends, whatever the scanner could do there") {
     for (ChannelSettings& channel : s.scanner.channels) channel.scan_frequency_min = 5;
     s.legs.back().scanner.scan_frequency = 0;
     s.legs.back().duration_max = 4;
-    const SurveyPlan later = plan_survey(s, flat);
-    CHECK(later.source.size() == plan.source.size());
+    const CompiledSurvey later = compile_survey(s, flat);
+    CHECK(later.source.size() == compiled.source.size());
     CHECK(later.legs[2].duration.seconds() == 0);
   }
   SUBCASE("it must move") {
     s.legs[1].platform.speed = 0;
-    CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: movePerSec_m"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: movePerSec_m"), SettingError);
   }
   SUBCASE("legs of one strip have one number") {
     s.legs[0].strip = s.legs[1].strip = "a";
-    const SurveyPlan strips = plan_survey(s, flat);
+    const CompiledSurvey strips = compile_survey(s, flat);
     CHECK(strips.source.pulse(strips.legs[1].first)->leg == 0);
   }
 }
 
 TEST_CASE("a multicopter that stops is at each place when its leg begins; one that turns smoothly passes there") {
   SurveySettings s = survey_of(PlatformKind::multicopter, {{-60, 0, 40}, {0, 0, 40}, {0, 60, 40}}, 8);
-  const SurveyPlan stops = plan_survey(s, flat);
+  const CompiledSurvey stops = compile_survey(s, flat);
   for (std::size_t k = 0; k < 2; ++k) CHECK(length(stops.source.legs()[k].path().at({}).position - s.legs[k].platform.position) < 1e-6);
-  CHECK(length(stops.source.legs()[1].path().at({}).direction(forward) - forward) < 1e-6);
+  CHECK(length(stops.source.legs()[1].path().at({}).direction(axis::forward) - axis::forward) < 1e-6);
 
   for (LegSettings& leg : s.legs) leg.platform.smooth_turn = true;
-  const SurveyPlan smooth = plan_survey(s, flat);
+  const CompiledSurvey smooth = compile_survey(s, flat);
   double nearest = 1e9;
   for (double t = 0; t < smooth.legs[0].duration.seconds(); t += 0.01)
     nearest = std::min(nearest, length(smooth.source.legs()[0].path().at(Tick::of_seconds(t)).position - s.legs[1].platform.position));
@@ -166,14 +166,14 @@ TEST_CASE("a multicopter that stops is at each place when its leg begins; one th
 
 TEST_CASE("a vehicle drives over the ground from leg to leg") {
   const SurveySettings s = survey_of(PlatformKind::ground_vehicle, {{0, 0, 0}, {40, 0, 0}, {40, 40, 0}}, 5);
-  const SurveyPlan plan = plan_survey(s, flat);
-  const auto at = [&](std::size_t k, double t) { return plan.source.legs()[k].path().at(Tick::of_seconds(t)).position; };
+  const CompiledSurvey compiled = compile_survey(s, flat);
+  const auto at = [&](std::size_t k, double t) { return compiled.source.legs()[k].path().at(Tick::of_seconds(t)).position; };
   CHECK(length(at(0, 0) - Vec3{0, 0, 7}) < 1e-6);
   CHECK(length(at(1, 0) - Vec3{40, 0, 7}) == relative((std::sqrt(2.0) - 1) * GroundVehicleSettings{}.turn_radius, 0.01));  // cut corner
-  CHECK(length(at(1, plan.legs[1].duration.seconds()) - Vec3{40, 40, 7}) < 0.1);
-  CHECK(plan.legs[2].end == plan.legs[2].first);
+  CHECK(length(at(1, compiled.legs[1].duration.seconds()) - Vec3{40, 40, 7}) < 0.1);
+  CHECK(compiled.legs[2].end == compiled.legs[2].first);
   SUBCASE("where there is none, at the height of the leg") {
-    const SurveyPlan lost = plan_survey(s, [](const Vec2&) -> std::optional<double> { return std::nullopt; });
+    const CompiledSurvey lost = compile_survey(s, [](const Vec2&) -> std::optional<double> { return std::nullopt; });
     CHECK(std::fabs(lost.source.legs()[0].path().at(Tick::of_seconds(3)).position.z) < 1e-9);
   }
 }
@@ -188,19 +188,19 @@ TEST_CASE("a platform that moves stays where the next leg begins at the same pla
       for (LegSettings& leg : s.legs) leg.platform.smooth_turn = smooth;
       s.legs[0].duration_max = 2, s.legs[2].duration_max = 3;
       s.leg_offset = LegOffsetSettings{.mean = 0, .deviation = 0.5};
-      const SurveyPlan plan = plan_survey(s, flat, {.seed = 3});
-      CHECK(plan.legs[0].duration.seconds() == 2);
-      CHECK(plan.legs[2].duration.seconds() == 3);
-      CHECK(plan.legs[3].duration.seconds() == 0);  // nobody says for how long
-      CHECK(plan.legs[0].end == 2000);
-      const auto at = [&](std::size_t k, double t) { return plan.source.legs()[k].path().at(Tick::of_seconds(t)); };
+      const CompiledSurvey compiled = compile_survey(s, flat, {.seed = 3});
+      CHECK(compiled.legs[0].duration.seconds() == 2);
+      CHECK(compiled.legs[2].duration.seconds() == 3);
+      CHECK(compiled.legs[3].duration.seconds() == 0);  // nobody says for how long
+      CHECK(compiled.legs[0].end == 2000);
+      const auto at = [&](std::size_t k, double t) { return compiled.source.legs()[k].path().at(Tick::of_seconds(t)); };
       for (const std::size_t k : {0U, 2U}) CHECK(at(k, 0).position == at(k, 1.7).position);
       for (std::size_t k = 0; k < 5; ++k) {
         CAPTURE(k);
-        const auto end = at(k, plan.legs[k].duration.seconds()), begin = at(k + 1, 0);
+        const auto end = at(k, compiled.legs[k].duration.seconds()), begin = at(k + 1, 0);
         CHECK(length(end.position - begin.position) < 0.01);             // legs end with a whole slot
         const bool jumps = kind != PlatformKind::multicopter && k == 3;  // it cannot turn on the spot, and leaves as if it had
-        CHECK((jumps || length(end.direction(forward) - begin.direction(forward)) < 0.01));
+        CHECK((jumps || length(end.direction(axis::forward) - begin.direction(axis::forward)) < 0.01));
       }
     }
 }
@@ -209,17 +209,17 @@ TEST_CASE("a platform that moves, and has but one leg, stays there") {
   for (const PlatformKind kind : {PlatformKind::linear_path, PlatformKind::multicopter, PlatformKind::ground_vehicle}) {
     SurveySettings s = survey_of(kind, {{3, 4, 7}}, 5);
     s.legs[0].duration_max = 2;
-    const SurveyPlan plan = plan_survey(s, flat);
-    CHECK(plan.source.size() == 2000);
-    CHECK(origin(plan, 0) == Vec3{3, 4, 7});
-    CHECK(plan.source.pulse(1999)->pose.position == Vec3{3, 4, 7});
+    const CompiledSurvey compiled = compile_survey(s, flat);
+    CHECK(compiled.source.size() == 2000);
+    CHECK(origin(compiled, 0) == Vec3{3, 4, 7});
+    CHECK(compiled.source.pulse(1999)->pose.position == Vec3{3, 4, 7});
     s.legs[0].duration_max.reset();
     s.legs[0].scanner.head_speed = radians(90), s.legs[0].scanner.head_stop = radians(360);
-    CHECK(plan_survey(s, flat).source.size() == 4000);
+    CHECK(compile_survey(s, flat).source.size() == 4000);
   }
   SurveySettings s = survey_of(PlatformKind::multicopter, {{0, 0, 40}});
   s.legs[0].duration_max = 1, s.legs[0].platform.yaw_at_departure = radians(90);
-  CHECK(length(plan_survey(s, flat).source.pulse(0)->direction() + right) < 1e-9);
+  CHECK(length(compile_survey(s, flat).source.pulse(0)->direction() + axis::right) < 1e-9);
 }
 
 TEST_CASE("an interpolated platform follows its file, with the columns that the leg names") {
@@ -230,15 +230,15 @@ TEST_CASE("an interpolated platform follows its file, with the columns that the 
   TrajectorySettings t{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
   t.sync_clock = true, t.start = 1;
   s.legs[0].platform.trajectory = t;
-  const SurveyPlan plan = plan_survey(s, flat);
-  CHECK(plan.legs[0].duration.seconds() == 3);
-  CHECK(plan.clock_start == 1);
-  CHECK(length(origin(plan, 0) - Vec3{110, 200, 50}) < 1e-9);
-  CHECK(length(plan.source.pulse(0)->direction() - right) < 1e-9);
+  const CompiledSurvey compiled = compile_survey(s, flat);
+  CHECK(compiled.legs[0].duration.seconds() == 3);
+  CHECK(compiled.clock_start == 1);
+  CHECK(length(origin(compiled, 0) - Vec3{110, 200, 50}) < 1e-9);
+  CHECK(length(compiled.source.pulse(0)->direction() - axis::right) < 1e-9);
   s.legs[0].platform.trajectory->columns->roll = 0;
-  CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 0: TrajectoryFormat::columns"), SettingError);
+  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 0: TrajectoryFormat::columns"), SettingError);
   s.legs[0].platform.trajectory.reset();
-  CHECK_THROWS_AS((void)plan_survey(s, flat), SettingError);
+  CHECK_THROWS_AS((void)compile_survey(s, flat), SettingError);
 }
 
 TEST_CASE("what one leg says of the columns of a file, and what separates them, holds for all that follow it; others do not count") {
@@ -249,11 +249,11 @@ TEST_CASE("what one leg says of the columns of a file, and what separates them, 
   for (LegSettings& leg : s.legs) leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .position_only = true};
   s.legs[0].platform.trajectory->columns = columns, s.legs[0].platform.trajectory->separator = ',';
   s.legs[1].platform.trajectory->start = 1;
-  const SurveyPlan plan = plan_survey(s, flat);
-  CHECK(plan.legs[0].duration.seconds() == 2);
-  CHECK(length(origin(plan, plan.legs[1].first) - Vec3{120, 200, 50}) < 1e-9);
+  const CompiledSurvey compiled = compile_survey(s, flat);
+  CHECK(compiled.legs[0].duration.seconds() == 2);
+  CHECK(length(origin(compiled, compiled.legs[1].first) - Vec3{120, 200, 50}) < 1e-9);
   s.legs[0].platform.trajectory->separator.reset();
-  CHECK_THROWS_AS((void)plan_survey(s, flat), FileError);
+  CHECK_THROWS_AS((void)compile_survey(s, flat), FileError);
 }
 
 TEST_CASE("legs end before a jump of their file, begin after it, or jump, with a note") {
@@ -264,25 +264,25 @@ TEST_CASE("legs end before a jump of their file, begin after it, or jump, with a
   for (const bool position_only : {false, true}) {
     for (LegSettings& leg : s.legs) leg.platform.trajectory->position_only = position_only;
     s.legs[0].platform.trajectory->end = 2, s.legs[1].platform.trajectory->start = 2;
-    const SurveyPlan plan = plan_survey(s, flat);
-    const auto at = [&](std::size_t k, double t) { return plan.source.legs()[k].path().at(Tick::of_seconds(t)); };
-    CHECK(plan.legs[0].duration.seconds() == 2);
-    CHECK(plan.legs[1].duration.seconds() == 2);
-    CHECK(plan.legs[2].duration.seconds() == 4);
+    const CompiledSurvey compiled = compile_survey(s, flat);
+    const auto at = [&](std::size_t k, double t) { return compiled.source.legs()[k].path().at(Tick::of_seconds(t)); };
+    CHECK(compiled.legs[0].duration.seconds() == 2);
+    CHECK(compiled.legs[1].duration.seconds() == 2);
+    CHECK(compiled.legs[2].duration.seconds() == 4);
     CHECK(length(at(0, 2).position - Vec3{20, 0, 9}) < 1e-12);
     CHECK(length(at(1, 0).position - Vec3{500, 0, 9}) < 1e-12);
     CHECK(length(at(2, 1.5).position - Vec3{15, 0, 9}) < 1e-12);
     CHECK(length(at(2, 2.5).position - Vec3{500, 5, 9}) < 1e-12);
-    CHECK(length(origin(plan, plan.legs[1].first) - origin(plan, plan.legs[2].first + 2000)) < 1e-12);
+    CHECK(length(origin(compiled, compiled.legs[1].first) - origin(compiled, compiled.legs[2].first + 2000)) < 1e-12);
     const auto notes = [&](const char* what) {
-      return std::count_if(plan.warnings.begin(), plan.warnings.end(),
+      return std::count_if(compiled.warnings.begin(), compiled.warnings.end(),
                            [&](const std::string& w) { return w.find(what) != std::string::npos; });
     };
     CHECK(notes("way.trj, line 3: has the time of the pose before it, but another pose, the first of 1: the platform jumps there") == 1);
     CHECK(notes("jumps") == 1);
     if (!position_only) continue;
-    CHECK(length(at(0, 2).direction(forward) - right) < 1e-12);  // it looks where it goes, and not where it jumps
-    CHECK(length(at(1, 0).direction(forward) - forward) < 1e-12);
+    CHECK(length(at(0, 2).direction(axis::forward) - axis::right) < 1e-12);  // it looks where it goes, and not where it jumps
+    CHECK(length(at(1, 0).direction(axis::forward) - axis::forward) < 1e-12);
   }
 }
 
@@ -293,8 +293,8 @@ TEST_CASE("the optic of a leg that teleports starts anew, as after a leg that is
   s.scanner.channels[0].optic = ConicOptic{};
   for (LegSettings& leg : s.legs) leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
   const auto turned = [&] {
-    const SurveyPlan plan = plan_survey(s, flat);
-    return length(plan.source.pulse(plan.legs[1].first)->direction() - plan.source.pulse(0)->direction());
+    const CompiledSurvey compiled = compile_survey(s, flat);
+    return length(compiled.source.pulse(compiled.legs[1].first)->direction() - compiled.source.pulse(0)->direction());
   };
   CHECK(turned() > 0.1);
   s.legs[1].platform.trajectory->teleports = true;
@@ -306,14 +306,14 @@ TEST_CASE("a leg has at most 1e9 records of its trajectory, and as many pulses a
   for (LegSettings& leg : s.legs) leg.duration_max = 1e6;
   s.legs[1].scanner.trajectory_interval = 1e-9;
   const SurveyBuildOptions options{.leg_places = {"a.xml:3:5", "a.xml:4:5"}};
-  CHECK_THROWS_WITH_AS((void)plan_survey(s, flat, options),
+  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options),
                        doctest::Contains("a.xml:4:5: leg 1: trajectoryTimeInterval_s (records) is 1e+15"), SettingError);
   s.legs[1].scanner.active = false;
-  CHECK_NOTHROW((void)plan_survey(s, flat, options));
+  CHECK_NOTHROW((void)compile_survey(s, flat, options));
   s.legs[1].scanner.active = true, s.legs[1].scanner.trajectory_interval = 1e-3;
-  CHECK(plan_survey(s, flat, options).legs[1].trajectory_interval == 1e-3);
+  CHECK(compile_survey(s, flat, options).legs[1].trajectory_interval == 1e-3);
   s.legs[1].duration_max = 1e13;
-  CHECK_THROWS_WITH_AS((void)plan_survey(s, flat, options), doctest::Contains("a.xml:4:5: leg 1 (pulses) is 1e+16"), SettingError);
+  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options), doctest::Contains("a.xml:4:5: leg 1 (pulses) is 1e+16"), SettingError);
 }
 
 TEST_CASE("a leg that is too slow to end, or too fast for its platform, is told by its speed") {
@@ -324,11 +324,11 @@ TEST_CASE("a leg that is too slow to end, or too fast for its platform, is told 
                                     {multicopter, 2e3},
                                     {ground_vehicle, 1e-320},
                                     {ground_vehicle, 2e3}})
-    CHECK_THROWS_WITH_AS((void)plan_survey(survey_of(kind, {{}, {20, 0, 0}}, speed), flat), doctest::Contains("leg 0: movePerSec_m is "),
+    CHECK_THROWS_WITH_AS((void)compile_survey(survey_of(kind, {{}, {20, 0, 0}}, speed), flat), doctest::Contains("leg 0: movePerSec_m is "),
                          SettingError);
   SurveySettings s = survey_of(stationary, {{}});
   s.legs[0].scanner.head_speed = 1e-300, s.legs[0].scanner.head_stop = 2;
-  CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 0 (duration) is "), SettingError);
+  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 0 (duration) is "), SettingError);
 }
 
 TEST_CASE("channels fire together, each from its own place") {
@@ -337,9 +337,9 @@ TEST_CASE("channels fire together, each from its own place") {
   s.scanner.channels.push_back(s.scanner.channels[0]);
   s.scanner.channels[1].beam_origin.position = {0, 0, 0.3};
   s.scanner.channels[1].wavelength = 1550e-9;
-  const SurveyPlan plan = plan_survey(s, flat);
-  CHECK(plan.source.size() == 2000);
-  const auto a = plan.source.pulse(20), b = plan.source.pulse(21);
+  const CompiledSurvey compiled = compile_survey(s, flat);
+  CHECK(compiled.source.size() == 2000);
+  const auto a = compiled.source.pulse(20), b = compiled.source.pulse(21);
   REQUIRE((a && b));
   CHECK(a->tick == b->tick);
   CHECK(b->channel == 1);
@@ -352,12 +352,12 @@ TEST_CASE("noise of platform and legs is as the settings say, and can be left ou
   s.legs[0].duration_max = 1;
   s.legs[0].scanner.scan_frequency = 0;
   s.platform.position_noise[2] = NoiseSettings{.mean = 5, .deviation = 0};
-  const auto first = plan_survey(s, flat, {.seed = 4}).source.pulse(0);
+  const auto first = compile_survey(s, flat, {.seed = 4}).source.pulse(0);
   CHECK(first->reported.value().position.z - first->pose.position.z == 5);
-  CHECK_FALSE(plan_survey(s, flat, {.seed = 4, .platform_noise = false}).source.pulse(0)->reported);
+  CHECK_FALSE(compile_survey(s, flat, {.seed = 4, .platform_noise = false}).source.pulse(0)->reported);
   s.leg_offset = LegOffsetSettings{.mean = 10, .deviation = 0};
-  CHECK(length(origin(plan_survey(s, flat), 0) - Vec3{10, 10, 10}) < 1e-12);
-  CHECK(length(origin(plan_survey(s, flat, {.leg_noise = false}), 0)) < 1e-12);
+  CHECK(length(origin(compile_survey(s, flat), 0) - Vec3{10, 10, 10}) < 1e-12);
+  CHECK(length(origin(compile_survey(s, flat, {.leg_noise = false}), 0)) < 1e-12);
 }
 
 TEST_CASE("what is wrong with an optic names its leg") {
@@ -365,15 +365,15 @@ TEST_CASE("what is wrong with an optic names its leg") {
   for (LegSettings& leg : s.legs) leg.duration_max = 1;
   s.scanner.channels[0].scan_frequency_max = 9;
   s.legs[0].scanner.scan_frequency = 5;
-  CHECK_THROWS_WITH_AS((void)plan_survey(s, flat), doctest::Contains("leg 1: scanFreq_hz is 10 Hz"), SettingError);
+  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: scanFreq_hz is 10 Hz"), SettingError);
 }
 
 TEST_CASE("a survey of ten thousand legs is planned at once") {
   std::vector<Vec3> places;
   for (int i = 0; i < 10'000; ++i) places.push_back({i * 10.0, 0, 0});
-  const SurveyPlan plan = plan_survey(survey_of(PlatformKind::linear_path, places), flat);
-  CHECK(plan.legs.size() == 10'000);
-  CHECK(plan.source.size() == 9'999'000);
+  const CompiledSurvey compiled = compile_survey(survey_of(PlatformKind::linear_path, places), flat);
+  CHECK(compiled.legs.size() == 10'000);
+  CHECK(compiled.source.size() == 9'999'000);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ std::string xml_told(const std::string& text, Fields fields) {
   io.finish();
   std::string told;
   try {
-    report.expect_clean();
+    report.require_clean();
   } catch (const helios::XmlFaults& faults) {
     told = faults.what();
   }

@@ -44,7 +44,7 @@ TEST_CASE("tallies of parts add up to that of the whole, in any order") {
   CHECK(sum.points_by_return[0] == 300);
   CHECK(sum.points_by_return[3] == 75);
   CHECK(sum.points_by_return == whole.tally().points_by_return);
-  CHECK(sum.most_amplitude == whole.tally().most_amplitude);
+  CHECK(sum.max_amplitude == whole.tally().max_amplitude);
 }
 
 TEST_CASE("points are located against an offset that comes later") {

@@ -18,8 +18,6 @@
 namespace pulsecast::io {
 namespace {
 
-using LasPacket;
-using LasPackets;
 using support::content;
 using support::Generator;
 using support::TemporaryFolder;

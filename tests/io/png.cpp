@@ -37,8 +37,11 @@ void give(ImageWriter& writer, const std::vector<Point>& points, std::size_t a_b
     std::vector<Echo> echoes;
     for (std::size_t i = begin; i < std::min(begin + a_batch, points.size()); ++i) {
       const Point& p = points[i];
-      shots.push_back(
-          {.index = i, .origin = p.at + up * 8.0, .direction = -up, .first_echo = static_cast<std::uint32_t>(echoes.size()), .echoes = 1});
+      shots.push_back({.index = i,
+                       .origin = p.at + axis::up * 8.0,
+                       .direction = -axis::up,
+                       .first_echo = static_cast<std::uint32_t>(echoes.size()),
+                       .echoes = 1});
       echoes.push_back({.range = 8, .reflectance = p.reflectance, .object = p.object, .number = p.number});
     }
     EchoBatch batch;
@@ -200,7 +203,7 @@ TEST_CASE("points that are not finite are passed over") {
     damaged.push_back(p);
     damaged.push_back({{0, -infinity, 0}});
   }
-  const ImageSettings settings{.width = 160, .height = 90, .most_points = 500};
+  const ImageSettings settings{.width = 160, .height = 90, .points_max = 500};
   CHECK(png(damaged, settings) == png(sound, settings));
 }
 
@@ -253,7 +256,7 @@ TEST_CASE("too many points are thinned evenly") {
   std::vector<Point> row;
   for (int k = 0; k < 10000; ++k) row.push_back({{0.01 * k, 0, 0}});
   ImageSettings settings = map;
-  settings.most_points = 128;
+  settings.points_max = 128;
   const Picture picture = decoded(png(row, settings));
   for (int x = 10; x < 190; x += 10) {
     CAPTURE(x);
@@ -280,7 +283,7 @@ TEST_CASE("settings that cannot be are refused") {
   CHECK_THROWS_AS(ImageWriter(path, {.elevation = 2}), SettingError);
   CHECK_THROWS_AS(ImageWriter(path, {.field_of_view = -0.1}), SettingError);
   CHECK_THROWS_AS(ImageWriter(path, {.point_size = std::numeric_limits<double>::quiet_NaN()}), SettingError);
-  CHECK_THROWS_AS(ImageWriter(path, {.most_points = 1}), SettingError);
+  CHECK_THROWS_AS(ImageWriter(path, {.points_max = 1}), SettingError);
   CHECK_FALSE(std::filesystem::exists(path));
 }
 

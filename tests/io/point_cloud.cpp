@@ -234,7 +234,7 @@ TEST_CASE("colours are averaged as squares") {
   CHECK(cloud.colours[0][1] == 0);
   CHECK(cloud.colours[0][2] == 0.2f);
   CHECK(cloud.colours[1] == std::array<float, 3>{0.4f, 1, 0});
-  CHECK(read("0 0 0 0.5 1 0.25\n", {.colours = true, .largest_colour = 1, .columns = {.colour = PointColumns::Columns{3, 4, 5}}}).colours ==
+  CHECK(read("0 0 0 0.5 1 0.25\n", {.colours = true, .colour_max = 1, .columns = {.colour = PointColumns::Columns{3, 4, 5}}}).colours ==
         std::vector<std::array<float, 3>>{{0.5f, 1, 0.25f}});
   CHECK(error("0 0 0 0 0 1 0 0 0\n0 0 0 0 0 1 256 0 0\n", {.colours = true}).place() == "line 2");
   CHECK(error("0 0 0 0 0 1 0 -1 0\n", {.colours = true}).problem() == "has the colour -1: expected one from 0 to 255");
@@ -255,7 +255,7 @@ TEST_CASE("a LAS file is recognised as it begins, and gives the same voxels as i
     for (auto& channel : point.colour) channel = static_cast<std::uint16_t>(channel / 257);
   CHECK(read(las.bytes(), {.colours = true}).warnings ==
         std::vector<std::string>{"no colour in the LAS files is above 255, of 65535: if they are bytes, the largest colour should be 255"});
-  const PointCloud bytes = read(las.bytes(), {.colours = true, .largest_colour = 255});
+  const PointCloud bytes = read(las.bytes(), {.colours = true, .colour_max = 255});
   CHECK(bytes.colours == cloud.colours);
   CHECK(bytes.warnings.empty());
   las.format = 1;
@@ -403,8 +403,7 @@ TEST_CASE("voxels that are small against the rounding of coordinates are an erro
   const std::string far =
       "\xEF\xBB\xBF"
       "1;2;-1e12\n";
-  CHECK(
-      error(far, {.voxel_size = 1e-6}).problem().starts_with("the cloud begins 1e+12 m from the origin, where voxels of 1e-06 m"));
+  CHECK(error(far, {.voxel_size = 1e-6}).problem().starts_with("the cloud begins 1e+12 m from the origin, where voxels of 1e-06 m"));
   CHECK(read(far, {.voxel_size = 1e-3}).voxels.cells.size() == 1);
 }
 
@@ -416,7 +415,7 @@ TEST_CASE("settings that cannot be are refused") {
                                              {.voxel_size = 2e12},
                                              {.default_normal = Vec3{0, 0, 0}},
                                              {.default_normal = Vec3{0, nan, 0}},
-                                             {.largest_colour = 0},
+                                             {.colour_max = 0},
                                              {.columns = {.separators = "e"}},
                                              {.columns = {.position = {0, 1, 5000}}}})
     CHECK_THROWS_AS((void)read("0 0 0\n", settings), SettingError);

@@ -37,7 +37,7 @@ struct Secretive {
   const Box& bounds() const noexcept { return box; }
   std::size_t memory() const noexcept { return 0; }
   std::size_t material_count() const noexcept { return 1; }
-  void closest(const RayBundle&, Nearest&) const noexcept {}
+  void closest(const RayBundle&, ClosestHits&) const noexcept {}
   Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return {}; }
   Box box;
 };
@@ -238,8 +238,8 @@ TEST_CASE("a scene that moves is made from its parts and its time") {
     return std::vector<S::Part>{{.geometry = shared<TriangleMesh<KdTree>>(some_mesh(1, 10)), .materials = some_materials()}};
   };
   const std::filesystem::path cache = folder / "moving.cache";
-  CHECK_FALSE(cached_scene<S>(cache, {}, parts, TimeWindows{.to = 10}).from_cache);
-  CHECK(cached_scene<S>(cache, {}, parts, TimeWindows{.to = 10}).from_cache);
+  CHECK_FALSE(cached_scene<S>(cache, {}, parts, MovingIndexSettings{.to = 10}).from_cache);
+  CHECK(cached_scene<S>(cache, {}, parts, MovingIndexSettings{.to = 10}).from_cache);
 
   const auto moving = [&] {
     auto some = parts();
@@ -247,9 +247,9 @@ TEST_CASE("a scene that moves is made from its parts and its time") {
     return some;
   };
   const SceneSources other{.settings = "moving"};
-  const auto first = cached_scene<S>(cache, other, moving, TimeWindows{.to = 10});
-  const auto second = cached_scene<S>(cache, other, moving, TimeWindows{.to = 10});
-  if constexpr (io::detail::Fillable<PartMotion>) {
+  const auto first = cached_scene<S>(cache, other, moving, MovingIndexSettings{.to = 10});
+  const auto second = cached_scene<S>(cache, other, moving, MovingIndexSettings{.to = 10});
+  if constexpr (io::detail::Restorable<PartMotion>) {
     REQUIRE(second.from_cache);
     const Tick later = Tick::of_seconds(3);
     CHECK(second.scene.placement(0, later).translation == first.scene.placement(0, later).translation);

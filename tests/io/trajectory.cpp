@@ -74,26 +74,28 @@ TEST_CASE("legs stand one after the other in one file") {
 
 TEST_CASE("yaw counts counter-clockwise from north, roll about x, pitch about y") {
   const TemporaryFolder folder;
-  CHECK(turned(folder, rotation_about(up, radians(90))) == "0.0000 0.0000 90.0000\n");    // heads west
-  CHECK(turned(folder, rotation_about(up, radians(-90))) == "0.0000 0.0000 270.0000\n");  // heads east
-  CHECK(turned(folder, rotation_about(right, radians(20))) == "20.0000 0.0000 0.0000\n");
-  CHECK(turned(folder, rotation_about(forward, radians(-20))) == "0.0000 -20.0000 0.0000\n");
-  CHECK(turned(folder, rotation_about(right, radians(10)) * rotation_about(forward, radians(-20)) * rotation_about(up, radians(200))) ==
-        "10.0000 -20.0000 200.0000\n");
+  CHECK(turned(folder, rotation_about(axis::up, radians(90))) == "0.0000 0.0000 90.0000\n");    // heads west
+  CHECK(turned(folder, rotation_about(axis::up, radians(-90))) == "0.0000 0.0000 270.0000\n");  // heads east
+  CHECK(turned(folder, rotation_about(axis::right, radians(20))) == "20.0000 0.0000 0.0000\n");
+  CHECK(turned(folder, rotation_about(axis::forward, radians(-20))) == "0.0000 -20.0000 0.0000\n");
+  CHECK(turned(folder, rotation_about(axis::right, radians(10)) * rotation_about(axis::forward, radians(-20)) *
+                           rotation_about(axis::up, radians(200))) == "10.0000 -20.0000 200.0000\n");
 }
 
 TEST_CASE("yaw stays below 360 as written, and no zero has a sign") {
   const TemporaryFolder folder;
-  CHECK(turned(folder, rotation_about(up, radians(-0.00001))) == "0.0000 0.0000 0.0000\n");
-  CHECK(turned(folder, rotation_about(up, radians(-0.00006))) == "0.0000 0.0000 359.9999\n");
-  CHECK(turned(folder, rotation_about(right, radians(-0.00001)) * rotation_about(forward, radians(-0.00001))) == "0.0000 0.0000 0.0000\n");
+  CHECK(turned(folder, rotation_about(axis::up, radians(-0.00001))) == "0.0000 0.0000 0.0000\n");
+  CHECK(turned(folder, rotation_about(axis::up, radians(-0.00006))) == "0.0000 0.0000 359.9999\n");
+  CHECK(turned(folder, rotation_about(axis::right, radians(-0.00001)) * rotation_about(axis::forward, radians(-0.00001))) ==
+        "0.0000 0.0000 0.0000\n");
 }
 
 TEST_CASE("where roll and yaw are one turn, all of it is yaw") {
   const TemporaryFolder folder;
-  CHECK(turned(folder, rotation_about(forward, radians(90))) == "0.0000 90.0000 0.0000\n");
-  CHECK(turned(folder, rotation_about(forward, radians(-90)) * rotation_about(up, radians(30))) == "0.0000 -90.0000 30.0000\n");
-  CHECK(turned(folder, rotation_about(right, radians(30)) * rotation_about(forward, radians(90))) == "0.0000 90.0000 30.0000\n");
+  CHECK(turned(folder, rotation_about(axis::forward, radians(90))) == "0.0000 90.0000 0.0000\n");
+  CHECK(turned(folder, rotation_about(axis::forward, radians(-90)) * rotation_about(axis::up, radians(30))) == "0.0000 -90.0000 30.0000\n");
+  CHECK(turned(folder, rotation_about(axis::right, radians(30)) * rotation_about(axis::forward, radians(90))) ==
+        "0.0000 90.0000 30.0000\n");
 }
 
 TEST_CASE("a pose that is no pose is an error, and impossible settings are refused") {
@@ -121,9 +123,9 @@ double apart(const Rotation& a, const Rotation& b) {
 }
 
 /// Poses anywhere on Earth; of every four attitudes, one is at a pole of the convention and one is near to it.
-std::vector<Waypoint> poses(std::uint64_t seed, const AngleConvention& convention) {
+std::vector<TimedPose> poses(std::uint64_t seed, const AngleConvention& convention) {
   support::Generator random(seed);
-  std::vector<Waypoint> result;
+  std::vector<TimedPose> result;
   double time = 0;
   for (int i = 0; i < 40; ++i, time += random.log_uniform(1e-3, 10)) {
     Rotation rotation = random.rotation();
@@ -164,7 +166,7 @@ TEST_CASE("what is written is read: every format, convention, axis and separator
   double worst = 0;
   for (std::size_t k = 0; k < formats.size(); ++k) {
     CAPTURE(k);
-    const std::vector<Waypoint> written = poses(k, formats[k].angles);
+    const std::vector<TimedPose> written = poses(k, formats[k].angles);
     write_trajectory(folder / "t.txt", written, formats[k], 1000);
     const TrajectoryTable table = read_trajectory(folder / "t.txt", formats[k]);
     CHECK(table.warnings.empty());
@@ -184,7 +186,7 @@ TEST_CASE("what is written is read: every format, convention, axis and separator
 TEST_CASE("metres and seconds come back to the last digit") {
   const TemporaryFolder folder;
   for (const TrajectoryFormat& format : {csv_format(), helios_format(), tum_format()}) {
-    const std::vector<Waypoint> written = poses(7, format.angles);
+    const std::vector<TimedPose> written = poses(7, format.angles);
     write_trajectory(folder / "t.txt", written, format);
     const TrajectoryTable table = read_trajectory(folder / "t.txt", format);
     for (std::size_t i = 0; i < written.size(); ++i) {
@@ -196,8 +198,8 @@ TEST_CASE("metres and seconds come back to the last digit") {
 
 TEST_CASE("a written trajectory looks like its format") {
   const TemporaryFolder folder;
-  const std::vector<Waypoint> east{{0, {476200, 5474300.5, 600}, rotation_about(-up, radians(90))},
-                                   {0.5, {476230, 5474300.5, 600}, no_rotation}};
+  const std::vector<TimedPose> east{{0, {476200, 5474300.5, 600}, rotation_about(-axis::up, radians(90))},
+                                    {0.5, {476230, 5474300.5, 600}, no_rotation}};
   const auto text = [&](const TrajectoryFormat& format) {
     write_trajectory(folder / "t.txt", east, format, 10);
     return content(folder / "t.txt");
@@ -207,7 +209,7 @@ TEST_CASE("a written trajectory looks like its format") {
   CHECK(text(helios_format()) ==
         "#TIME_COLUMN: 0\n#HEADER: \"t\", \"roll\", \"pitch\", \"yaw\", \"x\", \"y\", \"z\"\n"
         "10,0,0,90,476200,5474300.5,600\n10.5,0,0,0,476230,5474300.5,600\n");
-  const std::vector<Waypoint> west{{0, {}, rotation_about(up, radians(90))}};
+  const std::vector<TimedPose> west{{0, {}, rotation_about(axis::up, radians(90))}};
   write_trajectory(folder / "t.txt", west, helios_output_format());
   CHECK(content(folder / "t.txt") == "0 0 0 0 0 0 90\n");
   write_trajectory(folder / "t.txt", west, {.columns = {"t", "x", "y", "z", "heading"}});
@@ -217,7 +219,8 @@ TEST_CASE("a written trajectory looks like its format") {
 
 TEST_CASE("what the writer of records has written can be read") {
   const TemporaryFolder folder;
-  const Rotation rotation = rotation_about(right, radians(10)) * rotation_about(forward, radians(-20)) * rotation_about(up, radians(200));
+  const Rotation rotation =
+      rotation_about(axis::right, radians(10)) * rotation_about(axis::forward, radians(-20)) * rotation_about(axis::up, radians(200));
   (void)written(folder, East{rotation}, {}, {2, 0}, 0.5, {.start_time = 100});
   const TrajectoryTable table = read_trajectory(folder / "trajectory.txt", helios_output_format());
   CHECK(table.warnings.empty());
@@ -231,7 +234,7 @@ TEST_CASE("what the writer of records has written can be read") {
 TEST_CASE("a jump, and a rotation of single precision, are written and read") {
   const TemporaryFolder folder;
   const Rotation rounded{0.6F, 0, 0, 0.8F};
-  const std::vector<Waypoint> jump{{0, {}, rounded}, {1, right, rounded}, {1, up, no_rotation}, {2, {}, no_rotation}};
+  const std::vector<TimedPose> jump{{0, {}, rounded}, {1, axis::right, rounded}, {1, axis::up, no_rotation}, {2, {}, no_rotation}};
   write_trajectory(folder / "t.txt", jump, tum_format(), 5);
   const TrajectoryTable table = read_trajectory(folder / "t.txt", tum_format());
   REQUIRE(table.poses.size() == 4);
@@ -240,21 +243,21 @@ TEST_CASE("a jump, and a rotation of single precision, are written and read") {
     CHECK(table.poses[k].position == jump[k].position);
     CHECK(apart(table.poses[k].rotation, jump[k].rotation) < 1e-7);
   }
-  CHECK_THROWS_AS(write_trajectory(folder / "t.txt", std::vector<Waypoint>{{0, {}}, {1e-9, right}}, csv_format(), 1e10), FileError);
+  CHECK_THROWS_AS(write_trajectory(folder / "t.txt", std::vector<TimedPose>{{0, {}}, {1e-9, axis::right}}, csv_format(), 1e10), FileError);
 }
 
 TEST_CASE("what could not be read back is not written, and no file is left") {
   const TemporaryFolder folder;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const std::vector<Waypoint>& bad : std::vector<std::vector<Waypoint>>{{},
-                                                                             {{nan, {}, no_rotation}},
-                                                                             {{0, {0, nan, 0}, no_rotation}},
-                                                                             {{0, {0, 2e12, 0}, no_rotation}},
-                                                                             {{0, {}, Rotation{2, 0, 0, 0}}},
-                                                                             {{0, {}, Rotation{nan, 0, 0, 0}}},
-                                                                             {{1, {}, no_rotation}, {0, {}, no_rotation}}})
+  for (const std::vector<TimedPose>& bad : std::vector<std::vector<TimedPose>>{{},
+                                                                               {{nan, {}, no_rotation}},
+                                                                               {{0, {0, nan, 0}, no_rotation}},
+                                                                               {{0, {0, 2e12, 0}, no_rotation}},
+                                                                               {{0, {}, Rotation{2, 0, 0, 0}}},
+                                                                               {{0, {}, Rotation{nan, 0, 0, 0}}},
+                                                                               {{1, {}, no_rotation}, {0, {}, no_rotation}}})
     CHECK_THROWS_AS(write_trajectory(folder / "t.txt", bad), FileError);
-  const std::vector<Waypoint> good{{0, {}, no_rotation}};
+  const std::vector<TimedPose> good{{0, {}, no_rotation}};
   TrajectoryFormat format;
   format.columns = {"t"};
   CHECK_THROWS_AS(write_trajectory(folder / "t.txt", good, format), SettingError);

@@ -52,7 +52,7 @@ TEST_CASE("transmissive voxels have the density of their rows") {
   CHECK(file.voxels.cells == std::vector<Cell>{{0, 0, 0}, {3, 2, 1}});  // without density, it is not there
   CHECK(file.voxels.densities == std::vector<float>{0.5f, 1.75f});
   CHECK(file.transmittances == std::vector<float>{0.25f, 1});
-  CHECK(file.max_density == 2);
+  CHECK(file.density_max == 2);
   CHECK(file.voxels.scales.empty());
   CHECK(file.voxels.shifts.empty());
   CHECK(file.warnings.empty());
@@ -87,13 +87,13 @@ TEST_CASE("scaled cubes are a power of their density large") {
   CHECK(file.warnings[0].ends_with("a.vox: a voxel is denser than the maximum, 2 m^2/m^3, one of 1: they fill their cells"));
   CHECK(read(text, {.use = VoxelUse::scaled, .exponent = 1}).voxels.scales == std::vector<float>{1, 0.25f, 1});
   CHECK(read(text, {.use = VoxelUse::scaled, .exponent = 0}).voxels.scales == std::vector<float>{1, 1, 1, 1});
-  CHECK(read(text, {.use = VoxelUse::scaled, .exponent = 1, .max_density = 4}).voxels.scales == std::vector<float>{0.5f, 0.125f, 0.75f});
+  CHECK(read(text, {.use = VoxelUse::scaled, .exponent = 1, .density_max = 4}).voxels.scales == std::vector<float>{0.5f, 0.125f, 0.75f});
 }
 
 TEST_CASE("the greatest density is the file's own where nobody names one") {
   const std::string plain = "VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1\ni j k PadBVTotal transmittance\n";
   const VoxelFile file = read(plain + "0 0 0 1 0\n0 0 1 4 1\n0 0 2 NaN 0\n", scaled);  // 4, though it is not opaque
-  CHECK(file.max_density == 4);
+  CHECK(file.density_max == 4);
   CHECK(file.voxels.scales == std::vector<float>{0.5f});
   CHECK(error(plain + "0 0 0 0 0\n", scaled).problem() == "has no voxel that light can meet: expected at least one");
 }
@@ -143,7 +143,7 @@ TEST_CASE("keys come in any order and spelling, with brackets or without, one or
     const VoxelFile file = read(std::string("VOXEL SPACE\r\n") + given + "i j k PadBVTotal\n0 1 2 3\n");
     CHECK(file.voxels.corner == Vec3{1, 2, 3});
     CHECK(file.voxels.edge == 0.5);
-    CHECK(file.max_density == 3);
+    CHECK(file.density_max == 3);
     CHECK(file.transmittances.empty());
   }
   CHECK(read(head + "0 0 0 1 0\n").warnings.empty());
@@ -164,7 +164,7 @@ TEST_CASE("a file of AMAPVox is read as it stands") {
   const VoxelFile file = read_voxel_file(path);
   CHECK(file.voxels.corner == Vec3{-2, -2, 2});
   CHECK(file.voxels.edge == 0.25);
-  CHECK(file.max_density == 2.5);
+  CHECK(file.density_max == 2.5);
   REQUIRE(file.voxels.cells.size() == 54);
   CHECK(file.voxels.cells.front() == Cell{0, 5, 8});
   CHECK(file.voxels.densities.front() == 0.3065f);
@@ -249,7 +249,7 @@ TEST_CASE("rows that cannot be right are refused, with line and column") {
 
 TEST_CASE("settings that cannot be are refused") {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const VoxelFileSettings& settings : {VoxelFileSettings{.exponent = -1}, {.exponent = nan}, {.max_density = 0}, {.max_density = nan}})
+  for (const VoxelFileSettings& settings : {VoxelFileSettings{.exponent = -1}, {.exponent = nan}, {.density_max = 0}, {.density_max = nan}})
     CHECK_THROWS_AS((void)read(head + "0 0 0 1 0\n", settings), SettingError);
 }
 

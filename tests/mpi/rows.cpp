@@ -16,8 +16,8 @@ namespace pulsecast::mpi {
 namespace {
 
 using support::content;
-using support::expect_same_bytes;
-using support::mpi_team;
+using support::mpi_group;
+using support::require_same_bytes;
 using support::SharedFolder;
 using support::Showers;
 using support::written_alone;
@@ -25,22 +25,22 @@ using support::written_by_all;
 
 TEST_CASE("texts are those of one process") {
   const Showers survey{50'000, 8};
-  expect_same_bytes(survey, "xyz", written_alone<io::XyzWriter>(survey, io::XyzSettings{.start_time = 5}),
-                    written_by_all<MpiRows<io::XyzWriter, io::XyzSettings>>(io::XyzSettings{.start_time = 5}), {""});
-  expect_same_bytes(survey, "txt", written_alone<io::PulseTextWriter>(survey, io::PulseTextSettings{}),
-                    written_by_all<MpiRows<io::PulseTextWriter, io::PulseTextSettings>>(io::PulseTextSettings{}), {""});
-  expect_same_bytes(survey, "txt", written_alone<io::WaveformTextWriter>(survey, io::WaveformTextSettings{}),
-                    written_by_all<MpiRows<io::WaveformTextWriter, io::WaveformTextSettings>>(io::WaveformTextSettings{}), {""});
+  require_same_bytes(survey, "xyz", written_alone<io::XyzWriter>(survey, io::XyzSettings{.start_time = 5}),
+                     written_by_all<MpiRows<io::XyzWriter, io::XyzSettings>>(io::XyzSettings{.start_time = 5}), {""});
+  require_same_bytes(survey, "txt", written_alone<io::PulseTextWriter>(survey, io::PulseTextSettings{}),
+                     written_by_all<MpiRows<io::PulseTextWriter, io::PulseTextSettings>>(io::PulseTextSettings{}), {""});
+  require_same_bytes(survey, "txt", written_alone<io::WaveformTextWriter>(survey, io::WaveformTextSettings{}),
+                     written_by_all<MpiRows<io::WaveformTextWriter, io::WaveformTextSettings>>(io::WaveformTextSettings{}), {""});
 }
 
 TEST_CASE("outputs may want one channel only") {
   const SharedFolder folder;
   const Showers survey{20'000};
-  MpiRows<io::XyzWriter, io::XyzSettings> rows(mpi_team(), folder / "all.xyz", {});
+  MpiRows<io::XyzWriter, io::XyzSettings> rows(mpi_group(), folder / "all.xyz", {});
   rows.channel = 2;
-  run(mpi_team(), survey, {.threads = 1}, rows);
+  run(mpi_group(), survey, {.threads = 1}, rows);
   rows.close();
-  if (!mpi_team().first()) return;
+  if (!mpi_group().first()) return;
   io::XyzWriter writer(folder / "one.xyz");
   std::vector<Shot> shots;
   pulsecast::run(survey, {.threads = 1}, [&](EchoBatch batch) {

@@ -14,7 +14,7 @@
 namespace pulsecast::mpi {
 namespace {
 
-using support::mpi_team;
+using support::mpi_group;
 using support::Showers;
 
 TEST_CASE("sinks of the first process get all, in pulse order") {
@@ -25,7 +25,7 @@ TEST_CASE("sinks of the first process get all, in pulse order") {
   std::vector<Progress> told;
   RunOptions options{.threads = 2, .first = 100, .stride = 7};
   options.progress = [&](const Progress& p) { told.push_back(p); };
-  const RunSummary summary = run(mpi_team(), survey, options, cloud, [&](const EchoBatch& batch) {
+  const RunSummary summary = run(mpi_group(), survey, options, cloud, [&](const EchoBatch& batch) {
     for (const Shot& shot : batch.shots) {
       CHECK(shot.index >= next);
       next = shot.index + 1;
@@ -38,9 +38,9 @@ TEST_CASE("sinks of the first process get all, in pulse order") {
   CHECK(summary.rays == alone.rays);
   CHECK(summary.energy == alone.energy);  // whole numbers
   CHECK(summary.complete);
-  CHECK(cloud.size() == (mpi_team().first() ? expected.size() : 0));
-  REQUIRE(told.empty() != mpi_team().first());
-  if (!mpi_team().first()) return;
+  CHECK(cloud.size() == (mpi_group().first() ? expected.size() : 0));
+  REQUIRE(told.empty() != mpi_group().first());
+  if (!mpi_group().first()) return;
   CHECK(told.back().done == alone.slots);
   CHECK(told.back().total == alone.slots);
 }
@@ -51,12 +51,12 @@ TEST_CASE("a run that is stopped leaves whole results up to some slot") {
   RunOptions options{.threads = 1, .stop = source.get_token()};
   options.progress = [&](const Progress&) { source.request_stop(); };
   PulseIndex pulses = 0, last = 0;
-  const RunSummary summary = run(mpi_team(), survey, options, [&](const EchoBatch& batch) {
+  const RunSummary summary = run(mpi_group(), survey, options, [&](const EchoBatch& batch) {
     for (const Shot& shot : batch.shots) ++pulses, last = shot.index;
   });
   CHECK(!summary.complete);
   CHECK(summary.slots > 0);
-  if (!mpi_team().first()) return;
+  if (!mpi_group().first()) return;
   CHECK(pulses == summary.pulses());
   CHECK(last < summary.slots);
   CHECK(last + 2 >= summary.slots);

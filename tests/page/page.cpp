@@ -29,7 +29,7 @@ void give(PageWriter& writer, std::size_t n, std::size_t a_batch) {
       shots.push_back({.index = i,
                        .tick = Tick::of(i, 1e4),
                        .origin = {static_cast<double>(i % 100), static_cast<double>(i / 100), 50},
-                       .direction = -up,
+                       .direction = -axis::up,
                        .first_echo = static_cast<std::uint32_t>(i - begin),
                        .echoes = 1});
       echoes.push_back({.range = 50 + 0.01 * static_cast<double>(i % 7), .amplitude = 1e-6, .object = static_cast<ObjectId>(i % 5)});
@@ -94,12 +94,12 @@ TEST_CASE("no word of a survey is taken for HTML or script") {
 }
 
 TEST_CASE("the same echoes give the same bytes, however they come") {
-  const PageSettings settings{.most_points = 1000};
+  const PageSettings settings{.points_max = 1000};
   const std::string html = page_of({}, settings);
   CHECK(page_of({}, settings) == html);
   CHECK(page_of({}, settings, 5000, 17) == html);
   CHECK(page_of({}, settings, 5000, 5000) == html);
-  CHECK(page_of({}, {.most_points = 999}) != html);
+  CHECK(page_of({}, {.points_max = 999}) != html);
 }
 
 TEST_CASE("no points give a page as well, and without close there is none") {
@@ -125,7 +125,7 @@ TEST_CASE("a leg that does not move is a set-up") {
 }
 
 TEST_CASE("settings that cannot be are refused") {
-  CHECK_THROWS_AS(PageWriter(path, {}, {.most_points = 1}), SettingError);
+  CHECK_THROWS_AS(PageWriter(path, {}, {.points_max = 1}), SettingError);
   CHECK_THROWS_AS(PageWriter(path, {}, {.position_step = -1}), SettingError);
   CHECK_THROWS_AS(PageWriter(path, {}, {.effort = 10}), SettingError);
   CHECK_THROWS_AS(PageWriter(path / "no" / "folder.html"), FileError);

@@ -65,7 +65,7 @@ void give(PageServer& server, PulseIndex first, PulseIndex end) {
   std::vector<Shot> shots;
   std::vector<Echo> echoes;
   for (PulseIndex i = first; i < end; ++i) {
-    shots.push_back({.index = i, .direction = forward, .first_echo = static_cast<std::uint32_t>(echoes.size()), .echoes = 1});
+    shots.push_back({.index = i, .direction = axis::forward, .first_echo = static_cast<std::uint32_t>(echoes.size()), .echoes = 1});
     echoes.push_back({.range = 5});
   }
   EchoBatch batch;

@@ -72,7 +72,9 @@ const Vec3 lever_arm{0.3, -1.2, 0.7};
 constexpr double rate = 50e3, lines_per_second = 77.3, speed = 61.7;
 
 /// The instrument looks down and sweeps to the right; then it is off by 1, -2 and 3 degrees about the axes of the body.
-Rotation boresight() { return fixed_axes({{right, -90_deg}, {up, -90_deg}, {right, 1_deg}, {forward, -2_deg}, {up, 3_deg}}); }
+Rotation boresight() {
+  return extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}, {axis::right, 1_deg}, {axis::forward, -2_deg}, {axis::up, 3_deg}});
+}
 
 Matrix expected_boresight() { return turn(2, 3) * turn(1, -2) * turn(0, 1) * turn(2, -90) * turn(0, -90); }
 
@@ -86,7 +88,7 @@ auto airplane(double heading, const Vec3& climb = {}) {
 /// A plane through a place of the world.
 struct Plane {
   Vec3 place{};
-  Vec3 normal = up;
+  Vec3 normal = axis::up;
 
   std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
     const double range = dot(place - ray.origin, normal) / dot(ray.direction, normal);
@@ -167,8 +169,11 @@ TEST_CASE("the closed form is worth the comparison: a lever arm, a boresight or 
   CHECK(error({lever_arm, boresight()}) < 1e-4);
   CHECK(error({lever_arm + Vec3{0.001, 0, 0}, boresight()}) > 5e-4);
   CHECK(error({{}, boresight()}) > 1);
-  CHECK(error({lever_arm, fixed_axes({{up, 0.001_deg}}) * boresight()}) > 1e-3);
-  CHECK(error({lever_arm, fixed_axes({{right, -90_deg}, {up, -90_deg}, {up, 3_deg}, {forward, -2_deg}, {right, 1_deg}})}) > 0.1);
+  CHECK(error({lever_arm, extrinsic({{axis::up, 0.001_deg}}) * boresight()}) > 1e-3);
+  CHECK(
+      error({lever_arm,
+             extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}, {axis::up, 3_deg}, {axis::forward, -2_deg}, {axis::right, 1_deg}})}) >
+      0.1);
   CHECK(largest_error(scan(airplane(90_deg), ground, 611), Real{90.001}, ground) > 1e-3);
 }
 
@@ -181,7 +186,7 @@ TEST_CASE("a lever arm turns with the body") {
 
 TEST_CASE("a lever arm turns with roll and pitch, and so does the beam") {
   // rolled to the right by 90 degrees: what was to the right is below, what was above is to the right
-  const Waypoints rolled({{.rotation = rotation_about(forward, 90_deg)}});
+  const Waypoints rolled({{.rotation = rotation_about(axis::forward, 90_deg)}});
   const Platform platform{rolled, Mount{.lever_arm = {2, 3, 5}}, airplane(0).source()};
   const auto p = platform.pulse(0);
   CHECK(length(p->origin() - Vec3{5, 3, -2}) < 1e-14);

@@ -103,7 +103,7 @@ TEST_CASE("a straight drive takes L / v + v / a + a / j and looks along its way"
   CHECK(drive.duration().seconds() == relative(100 / 5.0 + 5 / 2.0 + 2 / 4.0, 1e-14));
   CHECK(length(drive.at({}).position) < 1e-15);
   CHECK(length(drive.at(drive.duration()).position - Vec3{100, 0, 0}) < 1e-13);
-  CHECK(length(drive.at({7, 0}).direction(forward) - right) < 1e-15);
+  CHECK(length(drive.at({7, 0}).direction(axis::forward) - axis::right) < 1e-15);
 }
 
 TEST_CASE("on a ramp all wheels are on the ground to a tenth of a millimetre, whichever way it goes") {
@@ -111,7 +111,8 @@ TEST_CASE("on a ramp all wheels are on the ground to a tenth of a millimetre, wh
   const auto drive = plan_ground_vehicle(Points{{0, 0}, {40, 10}, {60, -40}, {0, 0}, {60, 0}}, ramp, s);
   CHECK(farthest_wheel(drive, s, ramp, 2000) < 1e-4);
   const Vec3 normal = normalize(Vec3{-0.15, 0.1, 1});
-  for (double t = 0; t < drive.duration().seconds(); t += 0.5) CHECK(length(drive.at(Tick::of_seconds(t)).direction(up) - normal) < 1e-5);
+  for (double t = 0; t < drive.duration().seconds(); t += 0.5)
+    CHECK(length(drive.at(Tick::of_seconds(t)).direction(axis::up) - normal) < 1e-5);
 }
 
 TEST_CASE("where steep ground bends, the wheels are where the leaning body has them") {
@@ -122,7 +123,7 @@ TEST_CASE("where steep ground bends, the wheels are where the leaning body has t
 
 TEST_CASE("pitch and roll come from the ground") {
   const auto east = plan_ground_vehicle(Points{{0, 0}, {40, 0}}, ramp, {});
-  const Vec3 ahead = east.at({3, 0}).direction(forward), aside = east.at({3, 0}).direction(right);
+  const Vec3 ahead = east.at({3, 0}).direction(axis::forward), aside = east.at({3, 0}).direction(axis::right);
   CHECK(ahead.z / std::hypot(ahead.x, ahead.y) == relative(0.15, 1e-6));
   CHECK(std::fabs(ahead.y) < 1e-12);                                                    // the map shows it looking east
   CHECK(aside.z / std::hypot(aside.x, aside.y) == doctest::Approx(0.1).epsilon(0.02));  // to the south it rises
@@ -177,7 +178,7 @@ TEST_CASE("the radius of the way driven is never below the least, by the poses t
   for (double t = h; t + h < drive.duration().seconds(); t += h) {
     const auto at = [&](double time) { return drive.at(Tick::of_seconds(time)); };
     const double moved = length(at(t + h).position - at(t - h).position);
-    const double turned = std::acos(std::clamp(dot(at(t + h).direction(forward), at(t - h).direction(forward)), -1.0, 1.0));
+    const double turned = std::acos(std::clamp(dot(at(t + h).direction(axis::forward), at(t - h).direction(axis::forward)), -1.0, 1.0));
     if (turned > 1e-3) tightest = std::fmin(tightest, moved / turned);
   }
   CHECK(tightest < 6.001);
@@ -190,8 +191,8 @@ TEST_CASE("the pose of a drive does not jump, also where it changes gear") {
   for (double t = 0; t < drive.duration().seconds(); t += h) {
     const auto a = drive.at(Tick::of_seconds(t)), b = drive.at(Tick::of_seconds(t + h));
     CHECK(length(a.position - b.position) < 11 * h);
-    CHECK(length(a.direction(forward) - b.direction(forward)) < 2 * h);
-    CHECK(length(a.direction(up) - b.direction(up)) < 2 * h);
+    CHECK(length(a.direction(axis::forward) - b.direction(axis::forward)) < 2 * h);
+    CHECK(length(a.direction(axis::up) - b.direction(axis::up)) < 2 * h);
   }
 }
 

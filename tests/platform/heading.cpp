@@ -31,8 +31,8 @@ TEST_CASE("a level body looks where its heading says, and its right is a quarter
   for (const double heading : {-3.0, -1.0, 0.001, 0.5, 1.5, 3.1}) {
     CAPTURE(heading);
     const Rotation r = level(heading);
-    CHECK(heading_of(r * forward) == support::relative(heading, 1e-14));
-    CHECK(length(r * right - Vec3{std::cos(heading), -std::sin(heading), 0}) < 1e-15);
-    CHECK(length(r * up - up) < 1e-15);
+    CHECK(heading_of(r * axis::forward) == support::relative(heading, 1e-14));
+    CHECK(length(r * axis::right - Vec3{std::cos(heading), -std::sin(heading), 0}) < 1e-15);
+    CHECK(length(r * axis::up - axis::up) < 1e-15);
   }
 }

@@ -89,11 +89,11 @@ TEST_CASE("a straight flight takes L / v + v / a + a / j and leans into its acce
   CHECK(flight.duration().seconds() == relative(100 / 5.0 + 5 / 2.0 + 2 / 4.0, 1e-14));
   CHECK(flight.at({0, 0}).position == Vec3{0, 0, 30});
   CHECK(flight.at(flight.duration()).position == Vec3{0, 100, 30});
-  const Vec3 thrust = flight.at({1, 0}).direction(up);  // full acceleration
+  const Vec3 thrust = flight.at({1, 0}).direction(axis::up);  // full acceleration
   CHECK(std::atan2(thrust.y, thrust.z) == relative(std::atan(2 / standard_gravity), 1e-14));
-  CHECK(length(flight.at({10, 0}).direction(up) - up) < 1e-15);  // steady
-  CHECK(flight.at(flight.duration()).direction(forward) == forward);
-  CHECK(flight.at({21, 0}).direction(up).y < -0.1);  // braking
+  CHECK(length(flight.at({10, 0}).direction(axis::up) - axis::up) < 1e-15);  // steady
+  CHECK(flight.at(flight.duration()).direction(axis::forward) == axis::forward);
+  CHECK(flight.at({21, 0}).direction(axis::up).y < -0.1);  // braking
 }
 
 TEST_CASE("where it stops and turns it flies straight legs and looks along them") {
@@ -107,7 +107,7 @@ TEST_CASE("where it stops and turns it flies straight legs and looks along them"
   }
   const auto half = flight.at(Tick::of_seconds(leg_1 + turn / 2));
   CHECK(length(half.position - Vec3{0, 40, 9}) < 1e-12);
-  CHECK(length(half.direction(forward) - Vec3{std::sqrt(0.5), std::sqrt(0.5), 0}) < 1e-12);
+  CHECK(length(half.direction(axis::forward) - Vec3{std::sqrt(0.5), std::sqrt(0.5), 0}) < 1e-12);
 }
 
 TEST_CASE("it hovers as long as it is told, and turning counts") {
@@ -131,7 +131,7 @@ TEST_CASE("in a smooth turn the bank follows from speed and radius: tan(bank) = 
     const double twice_area = length(cross(b - a, c - a)), speed = length(c - a) / 0.04;
     const double radius = length(b - a) * length(c - b) * length(c - a) / (2 * twice_area);
     if (!(radius < 60)) continue;
-    const Vec3 way = normalize(c - a), aside = cross(way, up), thrust = at(0).direction(up);
+    const Vec3 way = normalize(c - a), aside = cross(way, axis::up), thrust = at(0).direction(axis::up);
     const double bank = dot(thrust, aside) / thrust.z;  // to the right
     CHECK(std::fabs(bank - speed * speed / (standard_gravity * radius)) < 3e-3);
     ++asked;
@@ -157,17 +157,17 @@ TEST_CASE("a smooth turn begins and ends on its legs, as far from the waypoint a
 TEST_CASE("it departs and arrives with the headings that are wished, and turns the shorter way") {
   const MulticopterSettings s{.yaw_rate = 0.5, .departure_heading = 350_deg, .arrival_heading = -20_deg};
   const auto flight = plan_multicopter(Points{{{5, 5, 9}}, {{15, 5, 9}}}, s);
-  CHECK(length(flight.at({}).direction(forward) - Vec3{std::sin(-10_deg), std::cos(-10_deg), 0}) < 1e-14);
-  CHECK(length(flight.at(flight.duration()).direction(forward) - Vec3{std::sin(-20_deg), std::cos(-20_deg), 0}) < 1e-14);
+  CHECK(length(flight.at({}).direction(axis::forward) - Vec3{std::sin(-10_deg), std::cos(-10_deg), 0}) < 1e-14);
+  CHECK(length(flight.at(flight.duration()).direction(axis::forward) - Vec3{std::sin(-20_deg), std::cos(-20_deg), 0}) < 1e-14);
   const auto plain = plan_multicopter(Points{{{5, 5, 9}}, {{15, 5, 9}}}, {});
   CHECK(flight.duration().seconds() - plain.duration().seconds() == relative((100_deg + 110_deg) / 0.5, 1e-12));
 }
 
 TEST_CASE("a vertical flight is level and keeps the heading") {
   const auto flight = plan_multicopter(Points{{{5, 5, 0}}, {{5, 5, 40}}, {{25, 5, 40}}, {{25, 5, 0}}}, {});
-  CHECK(length(flight.at({}).direction(forward) - right) < 1e-14);  // it rises as it will fly on
-  CHECK(length(flight.at({1, 0}).direction(up) - up) < 1e-14);
-  CHECK(length(flight.at(flight.duration()).direction(forward) - right) < 1e-14);
+  CHECK(length(flight.at({}).direction(axis::forward) - axis::right) < 1e-14);  // it rises as it will fly on
+  CHECK(length(flight.at({1, 0}).direction(axis::up) - axis::up) < 1e-14);
+  CHECK(length(flight.at(flight.duration()).direction(axis::forward) - axis::right) < 1e-14);
 }
 
 TEST_CASE("however fast it may sink, it keeps a tenth of its weight on its rotors and does not topple") {
@@ -176,7 +176,7 @@ TEST_CASE("however fast it may sink, it keeps a tenth of its weight on its rotor
   double least = 0;
   for (const auto& [start, piece] : flight.motion().pieces()) least = std::fmin(least, piece.acceleration.z);
   CHECK(least == relative(-0.9 * standard_gravity, 1e-9));
-  for (double t = 0; t < flight.duration().seconds(); t += 0.01) CHECK(flight.at(Tick::of_seconds(t)).direction(up) == up);
+  for (double t = 0; t < flight.duration().seconds(); t += 0.01) CHECK(flight.at(Tick::of_seconds(t)).direction(axis::up) == axis::up);
 }
 
 TEST_CASE("flights over random waypoints keep all limits, have no gaps, and arrive") {

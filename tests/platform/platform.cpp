@@ -38,7 +38,7 @@ static_assert(!Carries<PolygonMirror, Deflector<PolygonMirror, Scanner>>, "a mir
 /// Ten metres a second to the north, turning left by a quarter of a turn a second.
 struct Spinning {
   Pose<frame::Body, frame::World> at(Tick t) const noexcept {
-    return {rotation_about(up, 90_deg * t.seconds()), {0, 10 * t.seconds(), 100}};
+    return {rotation_about(axis::up, 90_deg * t.seconds()), {0, 10 * t.seconds(), 100}};
   }
 };
 
@@ -49,7 +49,7 @@ struct Fixed {
 };
 
 struct Asks : support::LeastTrajectory {
-  void validate() const { expect_positive("Asks::value", -1, "m"); }
+  void validate() const { require_positive("Asks::value", -1, "m"); }
 };
 
 }  // namespace
@@ -57,15 +57,15 @@ struct Asks : support::LeastTrajectory {
 TEST_CASE("a pulse passes from beam to instrument to body to world") {
   // The beam leaves 0.1 m ahead of the instrument's origin, down by 90 degrees. The instrument sits 1 m to the right of the body's origin,
   // turned left by 90 degrees. At 1 s the body is at (0, 10, 100), turned left by 90 degrees.
-  const Platform platform{Spinning{}, Mount{.lever_arm = {1, 0, 0}, .boresight = rotation_about(up, 90_deg)},
-                          Deflector{Fixed{{rotation_about(right, -90_deg), {0, 0.1, 0}}}, Scanner{.pulse_rate = 1, .pulses = 2}}};
+  const Platform platform{Spinning{}, Mount{.lever_arm = {1, 0, 0}, .boresight = rotation_about(axis::up, 90_deg)},
+                          Deflector{Fixed{{rotation_about(axis::right, -90_deg), {0, 0.1, 0}}}, Scanner{.pulse_rate = 1, .pulses = 2}}};
   const auto p = platform.pulse(1);
   REQUIRE(p);
   // origin: instrument (0, 0.1, 0), body (1 - 0.1, 0, 0), world (0, 10 + 0.9, 100)
   CHECK(length(p->origin() - Vec3{0, 10.9, 100}) < 1e-13);
-  CHECK(length(p->direction() + up) < 1e-15);
+  CHECK(length(p->direction() + axis::up) < 1e-15);
   // the footprint's up was forward for the instrument, left for the body, and is backward in the world
-  CHECK(length(p->pose.direction(up) + forward) < 1e-15);
+  CHECK(length(p->pose.direction(axis::up) + axis::forward) < 1e-15);
   CHECK(p->tick == Tick{1, 0});
   CHECK(p->index == 1);
 }
@@ -83,8 +83,8 @@ TEST_CASE("the whole chain of a random platform is the product of its poses") {
     REQUIRE(p);
     const auto expected = Spinning{}.at(Tick::of(i, 10)) * body_from_instrument * instrument_from_beam;
     CHECK(length(p->origin() - expected.position) < 1e-12);
-    CHECK(length(p->direction() - expected.direction(forward)) < 1e-14);
-    CHECK(length(p->pose.direction(up) - expected.direction(up)) < 1e-14);
+    CHECK(length(p->direction() - expected.direction(axis::forward)) < 1e-14);
+    CHECK(length(p->pose.direction(axis::up) - expected.direction(axis::up)) < 1e-14);
   }
 }
 
@@ -94,14 +94,14 @@ TEST_CASE("a scan angle is zero below the body, positive to its right, and does 
   };
   for (const double heading : {0.0, 1.0, 3.0}) {
     const Tripod tripod{.heading = heading};
-    const Rotation down = rotation_about(right, -90_deg);
+    const Rotation down = rotation_about(axis::right, -90_deg);
     CHECK(std::fabs(scan_angle(down, tripod)) < 1e-15);
     // about the body's forward axis, what is below moves to the left for a positive turn
-    CHECK(scan_angle(rotation_about(forward, -20_deg) * down, tripod) == support::relative(20_deg, 1e-14));
-    CHECK(scan_angle(rotation_about(forward, 20_deg) * down, tripod) == support::relative(-20_deg, 1e-14));
-    CHECK(scan_angle(rotation_about(up, -90_deg), tripod) == support::relative(90_deg, 1e-14));
+    CHECK(scan_angle(rotation_about(axis::forward, -20_deg) * down, tripod) == support::relative(20_deg, 1e-14));
+    CHECK(scan_angle(rotation_about(axis::forward, 20_deg) * down, tripod) == support::relative(-20_deg, 1e-14));
+    CHECK(scan_angle(rotation_about(axis::up, -90_deg), tripod) == support::relative(90_deg, 1e-14));
     // a beam that looks ahead and down has the scan angle of what is below
-    CHECK(std::fabs(scan_angle(rotation_about(right, -45_deg), tripod)) < 1e-15);
+    CHECK(std::fabs(scan_angle(rotation_about(axis::right, -45_deg), tripod)) < 1e-15);
   }
 }
 

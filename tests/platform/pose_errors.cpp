@@ -11,7 +11,7 @@
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/platform/legs.hpp>
-#include <pulsecast/scanner/one_of.hpp>
+#include <pulsecast/scanner/any_source.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
 #include <doctest/doctest.h>
@@ -26,11 +26,13 @@ namespace {
 
 /// North at 50 m/s, heading 30 degrees west of it: a crabbing aircraft.
 struct Flight {
-  Pose<frame::Body, frame::World> at(Tick t) const noexcept { return {rotation_about(up, 30_deg), {5e5, 5e6 + 50 * t.seconds(), 1000}}; }
+  Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+    return {rotation_about(axis::up, 30_deg), {5e5, 5e6 + 50 * t.seconds(), 1000}};
+  }
 };
 
 auto airplane(PulseIndex pulses = 2000) {
-  return Platform{Flight{}, Mount{.lever_arm = {0.3, -1.2, 0.7}, .boresight = rotation_about(right, -90_deg)},
+  return Platform{Flight{}, Mount{.lever_arm = {0.3, -1.2, 0.7}, .boresight = rotation_about(axis::right, -90_deg)},
                   Deflector{PolygonMirror{}, Scanner{.pulse_rate = 1_kHz, .pulses = pulses}}};
 }
 
@@ -47,42 +49,42 @@ const PoseErrors all{.position_noise = 2_cm,
                      .drift_time = 0.5_s,
                      .angular_jitter = 0.05_mrad,
                      .lever_arm_error = {0.01, 0, 0},
-                     .boresight_error = rotation_about(up, 0.3_mrad),
+                     .boresight_error = rotation_about(axis::up, 0.3_mrad),
                      .seed = 7};
 
 }  // namespace
 
 TEST_CASE("an instrument without errors reports where it is") {
-  const Misreported platform{airplane(), {}};
+  const WithPoseErrors platform{airplane(), {}};
   for (PulseIndex i = 0; i < platform.size(); i += 97) {
     const auto p = platform.pulse(i), truth = airplane().pulse(i);
     REQUIRE(p.has_value());
     CHECK(p->pose.position == truth->pose.position);
     CHECK(length(displacement(*p)) < 1e-8);
-    CHECK(angle_between(p->reported->direction(forward), p->direction()) < 1e-14);
+    CHECK(angle_between(p->reported->direction(axis::forward), p->direction()) < 1e-14);
   }
 }
 
 TEST_CASE("an error of the lever arm turns with the body") {
-  const Misreported platform{airplane(), {.lever_arm_error = {0.1, 0.2, -0.3}}};
+  const WithPoseErrors platform{airplane(), {.lever_arm_error = {0.1, 0.2, -0.3}}};
   const auto p = platform.pulse(500);
-  const Vec3 expected = rotation_about(up, 30_deg) * Vec3{0.1, 0.2, -0.3};
+  const Vec3 expected = rotation_about(axis::up, 30_deg) * Vec3{0.1, 0.2, -0.3};
   CHECK(length(displacement(*p) - expected) < 1e-8);
-  CHECK(angle_between(p->reported->direction(forward), p->direction()) < 1e-14);
+  CHECK(angle_between(p->reported->direction(axis::forward), p->direction()) < 1e-14);
 }
 
 TEST_CASE("an error of the boresight turns the reported beam in the frame of the instrument") {
-  const Rotation error = rotation_about(up, 1_mrad);
-  const Misreported platform{airplane(), {.boresight_error = error}};
+  const Rotation error = rotation_about(axis::up, 1_mrad);
+  const WithPoseErrors platform{airplane(), {.boresight_error = error}};
   const auto p = platform.pulse(500);
   const auto inner = airplane().source().pulse(500);
-  const Vec3 expected = rotation_about(up, 30_deg) * (rotation_about(right, -90_deg) * (error * inner->direction()));
-  CHECK(length(p->reported->direction(forward) - expected) < 1e-14);
+  const Vec3 expected = rotation_about(axis::up, 30_deg) * (rotation_about(axis::right, -90_deg) * (error * inner->direction()));
+  CHECK(length(p->reported->direction(axis::forward) - expected) < 1e-14);
   CHECK(p->pose.rotation == airplane().pulse(500)->pose.rotation);
 }
 
 TEST_CASE("white noise has the deviation that was asked for, and no memory") {
-  const Misreported platform{airplane(20'000), {.position_noise = 2_cm, .attitude_noise = 0.1_mrad, .seed = 3}};
+  const WithPoseErrors platform{airplane(20'000), {.position_noise = 2_cm, .attitude_noise = 0.1_mrad, .seed = 3}};
   double square = 0, product = 0, turned = 0;
   Vec3 before{};
   const double n = static_cast<double>(platform.size());
@@ -91,7 +93,7 @@ TEST_CASE("white noise has the deviation that was asked for, and no memory") {
     const Tick t = p->tick;
     const Vec3 off = platform.reported(t).position - platform.truth().trajectory().at(t).position;
     square += dot(off, off), product += dot(off, before);
-    const double angle = 2 * std::asin(length(cross(platform.reported(t).direction(up), up)) / 2);
+    const double angle = 2 * std::asin(length(cross(platform.reported(t).direction(axis::up), axis::up)) / 2);
     turned += angle * angle;
     before = off;
   }
@@ -101,7 +103,7 @@ TEST_CASE("white noise has the deviation that was asked for, and no memory") {
 }
 
 TEST_CASE("a drift has the deviation that was asked for, and forgets itself in its time") {
-  const Misreported platform{airplane(2'000'000), {.position_drift = 5_cm, .drift_time = 0.5_s, .seed = 11}};
+  const WithPoseErrors platform{airplane(2'000'000), {.position_drift = 5_cm, .drift_time = 0.5_s, .seed = 11}};
   double square = 0, product = 0;
   int n = 0;
   for (double t = 0; t < 1999; t += 0.1, ++n) {
@@ -116,17 +118,17 @@ TEST_CASE("a drift has the deviation that was asked for, and forgets itself in i
 }
 
 TEST_CASE("a drift is smooth from pulse to pulse") {
-  const Misreported platform{airplane(), {.position_drift = 5_cm, .drift_time = 10_s}};
+  const WithPoseErrors platform{airplane(), {.position_drift = 5_cm, .drift_time = 10_s}};
   for (PulseIndex i = 1; i < platform.size(); ++i)
     CHECK(length(displacement(*platform.pulse(i)) - displacement(*platform.pulse(i - 1))) < 1_mm);
 }
 
 TEST_CASE("jitter moves the beam and not what is reported of it") {
-  const Misreported platform{airplane(20'000), {.angular_jitter = 1_mrad}};
+  const WithPoseErrors platform{airplane(20'000), {.angular_jitter = 1_mrad}};
   double square = 0;
   for (PulseIndex i = 0; i < platform.size(); ++i) {
     const auto p = platform.pulse(i), truth = airplane(20'000).pulse(i);
-    CHECK(angle_between(p->reported->direction(forward), truth->direction()) < 1e-14);
+    CHECK(angle_between(p->reported->direction(axis::forward), truth->direction()) < 1e-14);
     const double off = angle_between(p->direction(), truth->direction());
     square += off * off;
   }
@@ -134,22 +136,22 @@ TEST_CASE("jitter moves the beam and not what is reported of it") {
 }
 
 TEST_CASE("a platform that errs keeps the laws of a source, with everything switched on") {
-  const Misreported platform{airplane(500), all};
+  const WithPoseErrors platform{airplane(500), all};
   CHECK(support::source_laws(platform) == "");
-  CHECK(support::source_laws(Legs{std::vector{platform, Misreported{airplane(300), {.position_noise = 1_m, .seed = 2}}}}) == "");
+  CHECK(support::source_laws(Legs{std::vector{platform, WithPoseErrors{airplane(300), {.position_noise = 1_m, .seed = 2}}}}) == "");
 }
 
 TEST_CASE("the seed decides") {
   PoseErrors other = all;
   other.seed = 8;
-  const Misreported a{airplane(), all}, b{airplane(), all}, c{airplane(), other};
+  const WithPoseErrors a{airplane(), all}, b{airplane(), all}, c{airplane(), other};
   CHECK(a.pulse(10)->reported->position == b.pulse(10)->reported->position);
   CHECK(a.pulse(10)->reported->position != c.pulse(10)->reported->position);
 }
 
 TEST_CASE("no two legs err alike, whatever they share; a platform alone errs as the first leg does") {
-  using Strip = Misreported<Flight, Deflector<PolygonMirror, Scanner>>;
-  using Any = OneOf<Strip, decltype(airplane())>;
+  using Strip = WithPoseErrors<Flight, Deflector<PolygonMirror, Scanner>>;
+  using Any = AnySource<Strip, decltype(airplane())>;
   static_assert(DrawsByLeg<Strip> && DrawsByLeg<Any> && !DrawsByLeg<decltype(airplane())>);
   const PoseErrors one_kind[] = {{.position_noise = 1}, {.attitude_noise = 1e-3}, {.position_drift = 1}, {.angular_jitter = 1e-3}};
   for (const PoseErrors& errors : one_kind) {
@@ -157,7 +159,9 @@ TEST_CASE("no two legs err alike, whatever they share; a platform alone errs as 
     const Legs legs{std::vector{strip, strip, strip}};
     const Legs<Any> any{std::vector<Any>{strip, strip, airplane(100)}};
     const auto both = [](const auto& p) { return std::pair(p->reported->position, p->direction()); };
-    const auto drawn = [&](const auto& p) { return std::pair(p->reported->position, p->reported->direction(forward) - p->direction()); };
+    const auto drawn = [&](const auto& p) {
+      return std::pair(p->reported->position, p->reported->direction(axis::forward) - p->direction());
+    };
     for (const PulseIndex i : {PulseIndex{0}, PulseIndex{99}}) {
       CHECK(both(legs.pulse(i)) == both(strip.pulse(i)));
       CHECK(drawn(legs.pulse(i)) != drawn(legs.pulse(100 + i)));
@@ -169,16 +173,16 @@ TEST_CASE("no two legs err alike, whatever they share; a platform alone errs as 
 }
 
 TEST_CASE("an error of the boresight in single precision is made unit") {
-  const Misreported platform{airplane(), {.boresight_error = Rotation{0.6F, 0.8F, 0, 0}}};
+  const WithPoseErrors platform{airplane(), {.boresight_error = Rotation{0.6F, 0.8F, 0, 0}}};
   CHECK(std::fabs(length(platform.pulse(0)->reported->rotation) - 1) < 1e-14);
 }
 
 TEST_CASE("errors that cannot be are refused") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_AS((Misreported{airplane(), {.position_noise = -1}}), SettingError);
-  CHECK_THROWS_AS((Misreported{airplane(), {.attitude_noise = nan}}), SettingError);
-  CHECK_THROWS_AS((Misreported{airplane(), {.drift_time = 0}}), SettingError);
-  CHECK_THROWS_AS((Misreported{airplane(), {.lever_arm_error = {nan, 0, 0}}}), SettingError);
-  CHECK_THROWS_AS((Misreported{airplane(), {.boresight_error = {2, 0, 0, 0}}}), SettingError);
-  CHECK_THROWS_AS((Misreported{airplane(2'000'000), {.position_drift = 1, .drift_time = 1e-9}}), SettingError);
+  CHECK_THROWS_AS((WithPoseErrors{airplane(), {.position_noise = -1}}), SettingError);
+  CHECK_THROWS_AS((WithPoseErrors{airplane(), {.attitude_noise = nan}}), SettingError);
+  CHECK_THROWS_AS((WithPoseErrors{airplane(), {.drift_time = 0}}), SettingError);
+  CHECK_THROWS_AS((WithPoseErrors{airplane(), {.lever_arm_error = {nan, 0, 0}}}), SettingError);
+  CHECK_THROWS_AS((WithPoseErrors{airplane(), {.boresight_error = {2, 0, 0, 0}}}), SettingError);
+  CHECK_THROWS_AS((WithPoseErrors{airplane(2'000'000), {.position_drift = 1, .drift_time = 1e-9}}), SettingError);
 }

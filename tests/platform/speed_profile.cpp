@@ -69,7 +69,7 @@ TEST_CASE("profiles keep their limits, join up, and end where and as fast as the
                              random.log_uniform(0.01, 100)};
     const double way = random.log_uniform(1e-6, 1e4);
     std::vector<double> joints{random.uniform(0, limits.speed), random.uniform(0, limits.speed)};
-    settle_speeds(joints, std::vector<Stretch>{{way, limits}});
+    settle_speeds(joints, std::vector<PathSection>{{way, limits}});
     const auto pieces = speed_profile(way, joints[0], joints[1], limits);
     double position = 0, velocity = joints[0], acceleration = 0;
     for (const auto& p : pieces) {
@@ -91,21 +91,21 @@ TEST_CASE("profiles keep their limits, join up, and end where and as fast as the
   }
 }
 
-TEST_CASE("settled speeds are never raised, and every stretch can be driven with them") {
+TEST_CASE("settled speeds are never raised, and every section can be driven with them") {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
     Generator random(seed);
-    std::vector<Stretch> stretches(1 + random.whole(20));
-    std::vector<double> wished(stretches.size() + 1, 0.0);
-    for (std::size_t k = 0; k < stretches.size(); ++k) {
-      stretches[k] = {random.log_uniform(1e-3, 1e3),
-                      {30, random.log_uniform(0.1, 10), random.log_uniform(0.1, 10), random.log_uniform(0.1, 10)}};
+    std::vector<PathSection> sections(1 + random.whole(20));
+    std::vector<double> wished(sections.size() + 1, 0.0);
+    for (std::size_t k = 0; k < sections.size(); ++k) {
+      sections[k] = {random.log_uniform(1e-3, 1e3),
+                     {30, random.log_uniform(0.1, 10), random.log_uniform(0.1, 10), random.log_uniform(0.1, 10)}};
       if (k > 0) wished[k] = random.uniform(0, 30);
     }
     std::vector<double> joints = wished;
-    settle_speeds(joints, stretches);
-    for (std::size_t k = 0; k < stretches.size(); ++k) {
-      const auto& [way, limits] = stretches[k];
+    settle_speeds(joints, sections);
+    for (std::size_t k = 0; k < sections.size(); ++k) {
+      const auto& [way, limits] = sections[k];
       const bool faster = joints[k + 1] > joints[k];
       CHECK(SpeedChange{joints[k], joints[k + 1], faster ? limits.acceleration : limits.braking, limits.jerk}.distance() <=
             way * (1 + 1e-12));

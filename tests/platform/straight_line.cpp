@@ -26,8 +26,8 @@ TEST_CASE("a straight line is flown at its speed, level and looking along it") {
   const auto pose = east.at({20, 0.5});
   const double slant = std::hypot(3000.0, 400.0);
   CHECK(length(pose.position - (utm + Vec3{3000, 0, 400} * (50 * 20.5 / slant))) < 1e-9);
-  CHECK(length(pose.direction(forward) - right) < 1e-15);  // level, though the path climbs
-  CHECK(length(pose.direction(up) - up) < 1e-15);
+  CHECK(length(pose.direction(axis::forward) - axis::right) < 1e-15);  // level, though the path climbs
+  CHECK(length(pose.direction(axis::up) - axis::up) < 1e-15);
   CHECK(east.duration().seconds() == support::relative(slant / 50, 1e-15));
 }
 
@@ -49,8 +49,10 @@ TEST_CASE("a right turn from one line to the next turns right") {
         return StraightLine{.from = utm, .to = utm + 1000.0 * way}.at({});
       };
       const auto before = pose(heading_deg), after = pose(heading_deg + turn_deg);
-      CHECK(dot(after.direction(forward), before.direction(right)) == doctest::Approx(std::sin(radians(turn_deg))).epsilon(1e-10));
-      CHECK(dot(after.direction(forward), before.direction(forward)) == doctest::Approx(std::cos(radians(turn_deg))).epsilon(1e-10));
+      CHECK(dot(after.direction(axis::forward), before.direction(axis::right)) ==
+            doctest::Approx(std::sin(radians(turn_deg))).epsilon(1e-10));
+      CHECK(dot(after.direction(axis::forward), before.direction(axis::forward)) ==
+            doctest::Approx(std::cos(radians(turn_deg))).epsilon(1e-10));
     }
   }
 }
@@ -61,7 +63,7 @@ TEST_CASE("who goes straight up, or nowhere, looks north") {
     CHECK_NOTHROW(line.validate());
     for (const Tick t : {Tick{}, Tick{2, 0.5}, Tick{100, 0}}) {
       CHECK(finite(line.at(t).position));
-      CHECK(length(line.at(t).direction(forward) - forward) < 1e-15);
+      CHECK(length(line.at(t).direction(axis::forward) - axis::forward) < 1e-15);
     }
     CHECK(line.at({100, 0}).position == line.to);
   }

@@ -39,7 +39,7 @@ TEST_CASE("over an inclined plane the path is parallel to it, at its height and 
   for (double share = 0; share <= 1; share += 0.01) {
     const auto pose = path.at(Tick::of_seconds(share * path.duration().seconds()));
     CHECK(length(pose.position - Vec3{utm.x + 300 * share, utm.y + 400 * share, 130 + 30 * share}) < 1e-6);
-    CHECK(length(pose.direction(forward) - Vec3{0.6, 0.8, 0}) < 1e-9);
+    CHECK(length(pose.direction(axis::forward) - Vec3{0.6, 0.8, 0}) < 1e-9);
   }
   CHECK(path.duration().seconds() == support::relative(std::hypot(500.0, 30.0) / 20, 1e-9));
 }
@@ -48,7 +48,7 @@ TEST_CASE("before a cliff the path climbs as steeply as it may, no sooner than i
   const StraightLine line{.from = {0, 0, 0}, .to = {1000, 0, 0}};
   const auto cliff = [](const Vec2& p) { return p.x < 500 ? 0.0 : 60.0; };
   const Waypoints path = plan_terrain_following(line, cliff, {.height = 40, .step = 5, .slope = 0.3});
-  for (const Waypoint& p : path.points()) {
+  for (const TimedPose& p : path.points()) {
     const double x = p.position.x;
     CHECK(p.position.z == support::relative(x < 300 ? 40 : x < 500 ? 40 + 0.3 * (x - 300) : 100, 1e-9));
   }
@@ -64,7 +64,7 @@ TEST_CASE("over any ground the path keeps its height and its slope") {
     const Vec3 from = any.point(1000);
     const Waypoints path = plan_terrain_following({.from = from, .to = from + any.point(2000)}, ground, settings);
     CHECK(steepest(path) <= settings.slope * (1 + 1e-9));
-    for (const Waypoint& p : path.points()) CHECK(p.position.z >= ground({p.position.x, p.position.y}) + settings.height - 1e-9);
+    for (const TimedPose& p : path.points()) CHECK(p.position.z >= ground({p.position.x, p.position.y}) + settings.height - 1e-9);
   }
 }
 

@@ -19,11 +19,11 @@ TEST_CASE("a tripod stands where it stands and looks where a compass says") {
   const Vec3 utm{500000, 5400000, 300};
   const Tripod north{.position = utm}, east{.position = utm, .heading = 90_deg}, northwest{.position = utm, .heading = -45_deg};
   CHECK(north.at({}).position == utm);
-  CHECK(length(north.at({}).direction(forward) - forward) < 1e-15);
-  CHECK(length(east.at({}).direction(forward) - right) < 1e-15);
-  CHECK(length(east.at({}).direction(right) + forward) < 1e-15);
-  CHECK(length(northwest.at({}).direction(forward) - Vec3{-std::sqrt(0.5), std::sqrt(0.5), 0}) < 1e-15);
-  CHECK(length(northwest.at({}).direction(up) - up) < 1e-15);
+  CHECK(length(north.at({}).direction(axis::forward) - axis::forward) < 1e-15);
+  CHECK(length(east.at({}).direction(axis::forward) - axis::right) < 1e-15);
+  CHECK(length(east.at({}).direction(axis::right) + axis::forward) < 1e-15);
+  CHECK(length(northwest.at({}).direction(axis::forward) - Vec3{-std::sqrt(0.5), std::sqrt(0.5), 0}) < 1e-15);
+  CHECK(length(northwest.at({}).direction(axis::up) - axis::up) < 1e-15);
 }
 
 TEST_CASE("a tripod keeps the laws of a motion and does not move") {

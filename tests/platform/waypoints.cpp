@@ -25,11 +25,11 @@ const Vec3 utm{512345.678, 5403210.987, 1234.5};
 
 Tick at(double seconds) { return Tick::of_seconds(seconds); }
 
-double heading(const Pose<frame::Body, frame::World>& pose) { return heading_of(pose.direction(forward)); }
+double heading(const Pose<frame::Body, frame::World>& pose) { return heading_of(pose.direction(axis::forward)); }
 
 /// Waypoints at random times that are up to 10,000 times farther apart here than there.
-std::vector<Waypoint> random_points(support::Generator& any, std::size_t n) {
-  std::vector<Waypoint> points;
+std::vector<TimedPose> random_points(support::Generator& any, std::size_t n) {
+  std::vector<TimedPose> points;
   double time = any.uniform(0, 100);
   for (std::size_t i = 0; i < n; ++i, time += any.log_uniform(1e-3, 10))
     points.push_back({.time = time, .position = utm + any.point(100), .rotation = any.rotation()});
@@ -40,11 +40,11 @@ std::vector<Waypoint> random_points(support::Generator& any, std::size_t n) {
 std::vector<std::vector<Vec3>> awkward_lists() {
   std::vector<std::vector<Vec3>> lists{
       {utm},
-      {utm, utm, utm},                                                                 // repeated
-      {utm, utm + up, utm + 2.0 * up, utm},                                            // vertical
-      {utm, utm + 100.0 * right, utm, utm + 100.0 * right},                            // straight back
-      {utm, utm, utm + right, utm + right, utm + right + up, utm + right},             // all of it
-      {{}, {1e-200, 0, 0}, {0, 1e-200, 0}, {5e-324, 5e-324, 5e-324}, {0, 1e-160, 0}},  // next to nothing
+      {utm, utm, utm},                                                                                    // repeated
+      {utm, utm + axis::up, utm + 2.0 * axis::up, utm},                                                   // vertical
+      {utm, utm + 100.0 * axis::right, utm, utm + 100.0 * axis::right},                                   // straight back
+      {utm, utm, utm + axis::right, utm + axis::right, utm + axis::right + axis::up, utm + axis::right},  // all of it
+      {{}, {1e-200, 0, 0}, {0, 1e-200, 0}, {5e-324, 5e-324, 5e-324}, {0, 1e-160, 0}},                     // next to nothing
   };
   std::vector<Vec3> millimetres, many, still(10'000, utm);
   support::Generator any(7);
@@ -66,13 +66,13 @@ TEST_CASE("between two waypoints a body moves straight at constant velocity") {
 
 TEST_CASE("before the first and after the last waypoint a body stands there") {
   for (const auto kind : {Interpolation::linear, Interpolation::cubic}) {
-    const Waypoints path({{2, utm, level(1)}, {3, utm + right, level(2)}, {5, utm - right, level(3)}}, kind);
+    const Waypoints path({{2, utm, level(1)}, {3, utm + axis::right, level(2)}, {5, utm - axis::right, level(3)}}, kind);
     for (const double t : {0.0, 1.0, 1.999}) {
       CHECK(path.at(at(t)).position == utm);
       CHECK(heading(path.at(at(t))) == support::relative(1, 1e-14));
     }
     for (const double t : {5.0, 5.001, 1e9}) {
-      CHECK(path.at(at(t)).position == utm - right);
+      CHECK(path.at(at(t)).position == utm - axis::right);
       CHECK(heading(path.at(at(t))) == support::relative(3, 1e-14));
     }
   }
@@ -95,7 +95,7 @@ TEST_CASE("a turn to the right turns right, at a constant rate") {
   for (int second = 0; second <= 10; ++second) {
     CAPTURE(second);
     CHECK(degrees(heading(path.at({second, 0}))) == support::relative(80 + 6 * second, 1e-12));
-    CHECK(length(path.at({second, 0}).direction(up) - up) < 1e-14);
+    CHECK(length(path.at({second, 0}).direction(axis::up) - axis::up) < 1e-14);
   }
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("cubic positions follow any parabola exactly, whatever the times") {
     support::Generator any(seed);
     const Vec3 velocity = any.point(50), acceleration = any.point(3);
     const auto place = [&](double t) { return t * velocity + 0.5 * t * t * acceleration; };
-    std::vector<Waypoint> points;
+    std::vector<TimedPose> points;
     for (double t = any.uniform(); points.size() < 3 + seed % 5; t += any.log_uniform(0.1, 10))
       points.push_back({.time = t, .position = place(t)});
     const Waypoints path(points, Interpolation::cubic);
@@ -120,7 +120,7 @@ TEST_CASE("cubic positions pass through the waypoints, and their velocity does n
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    std::vector<Waypoint> points;
+    std::vector<TimedPose> points;
     for (double t = 0; points.size() < 12; t += any.log_uniform(0.1, 10)) points.push_back({.time = t, .position = any.point(100)});
     const Waypoints path(points, Interpolation::cubic);
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
@@ -135,7 +135,7 @@ TEST_CASE("cubic positions pass through the waypoints, and their velocity does n
 }
 
 TEST_CASE("two waypoints are the same path, linear or cubic") {
-  const std::vector<Waypoint> points{{.time = 1, .position = utm}, {.time = 4, .position = utm + Vec3{30, 60, -3}}};
+  const std::vector<TimedPose> points{{.time = 1, .position = utm}, {.time = 4, .position = utm + Vec3{30, 60, -3}}};
   const Waypoints linear(points), cubic(points, Interpolation::cubic);
   for (double t = 0; t < 5; t += 0.1) CHECK(length(linear.at(at(t)).position - cubic.at(at(t)).position) < 1e-8);
 }
@@ -157,12 +157,12 @@ TEST_CASE("waypoints keep the laws of a motion") {
 }
 
 TEST_CASE("where a time stands twice, a body jumps: it arrives as the first waypoint says, and is from then on where the last one does") {
-  const std::vector<Waypoint> points{{0, utm, level(1)},
-                                     {2, utm + 4.0 * right, level(1)},
-                                     {2, utm, level(3)},
-                                     {2, utm + 9.0 * up, level(2)},
-                                     {4, utm + 5.0 * up, level(2)},
-                                     {5, utm + 5.0 * up, level(2)}};
+  const std::vector<TimedPose> points{{0, utm, level(1)},
+                                      {2, utm + 4.0 * axis::right, level(1)},
+                                      {2, utm, level(3)},
+                                      {2, utm + 9.0 * axis::up, level(2)},
+                                      {4, utm + 5.0 * axis::up, level(2)},
+                                      {5, utm + 5.0 * axis::up, level(2)}};
   for (const auto kind : {Interpolation::linear, Interpolation::cubic}) {
     const Waypoints path(points, kind), before({points[0], points[1]}, kind), after({points[3], points[4], points[5]}, kind);
     for (double t = 0; t < 2; t += 0.125) CHECK(path.at(at(t)).position == before.at(at(t)).position);
@@ -189,7 +189,7 @@ TEST_CASE("a rotation of single precision is made unit") {
 
 TEST_CASE("waypoints refuse times that do not ascend and poses that cannot be, and name the waypoint") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto refused = [](const std::vector<Waypoint>& points) -> std::string {
+  const auto refused = [](const std::vector<TimedPose>& points) -> std::string {
     try {
       const Waypoints path(points);
     } catch (const SettingError& error) {
@@ -205,18 +205,18 @@ TEST_CASE("waypoints refuse times that do not ascend and poses that cannot be, a
   CHECK(refused({{.time = 1, .rotation = Rotation{1, 1, 0, 0}}}) == "Waypoints::points[0].rotation (norm)");
   CHECK(refused({{.time = 1, .rotation = Rotation{1.0011, 0, 0, 0}}}) == "Waypoints::points[0].rotation (norm)");
   CHECK(refused({{.time = 1}, {.time = 2}}) == "");
-  CHECK_THROWS_WITH_AS(Waypoints({{0, {}}, {5e-324, right}, {1, up}}, Interpolation::cubic),
+  CHECK_THROWS_WITH_AS(Waypoints({{0, {}}, {5e-324, axis::right}, {1, axis::up}}, Interpolation::cubic),
                        "Waypoints::points[1] (velocity from the one before) is inf m/s, but must be finite", SettingError);
 }
 
 TEST_CASE("bodies without a heading look along their path") {
   const auto headings = [](const std::vector<Vec3>& positions) {
-    std::vector<Waypoint> points;
+    std::vector<TimedPose> points;
     for (const Vec3& p : positions) points.push_back({.time = static_cast<double>(points.size()), .position = utm + p});
     std::vector<int> all;
-    for (const Waypoint& p : with_headings(points)) {
-      all.push_back(static_cast<int>(std::lround(degrees(heading_of(p.rotation * forward)))));
-      CHECK(length(p.rotation * up - up) < 1e-14);
+    for (const TimedPose& p : with_headings(points)) {
+      all.push_back(static_cast<int>(std::lround(degrees(heading_of(p.rotation * axis::forward)))));
+      CHECK(length(p.rotation * axis::up - axis::up) < 1e-14);
     }
     return all;
   };
@@ -232,7 +232,7 @@ TEST_CASE("bodies without a heading look along their path") {
 
   const auto of_jump = with_headings({{0, {0, 0, 0}}, {1, {9, 0, 0}}, {1, {0, -9, 0}}, {2, {0, 0, 0}}, {2, {5, 5, 0}}});
   const int expected[] = {90, 90, 0, 0, 0};
-  for (std::size_t k = 0; k < 5; ++k) CHECK(std::lround(degrees(heading_of(of_jump[k].rotation * forward))) == expected[k]);
+  for (std::size_t k = 0; k < 5; ++k) CHECK(std::lround(degrees(heading_of(of_jump[k].rotation * axis::forward))) == expected[k]);
 }
 
 TEST_CASE("a path at constant speed reaches each position when its length says") {
@@ -242,7 +242,7 @@ TEST_CASE("a path at constant speed reaches each position when its length says")
   CHECK(points[1].time == support::relative(2.5, 1e-9));
   CHECK(points[2].time == support::relative(8.5, 1e-9));
   CHECK(points[2].position == utm + Vec3{3, 4, 12});
-  CHECK_THROWS_AS((void)at_constant_speed({utm, right}, 0), SettingError);
+  CHECK_THROWS_AS((void)at_constant_speed({utm, axis::right}, 0), SettingError);
   CHECK_THROWS_AS((void)at_constant_speed({utm, {std::nan(""), 0, 0}}, 1), SettingError);
 }
 

@@ -171,7 +171,7 @@ TEST_CASE("a footprint without subrays is refused") {
 
 TEST_CASE("a subray at the 1/e^2 radius leaves at half the divergence") {
   const double divergence = 2e-3;
-  CHECK(subray_direction({0, 0}, divergence) == forward);
+  CHECK(subray_direction({0, 0}, divergence) == axis::forward);
   const Vec3 to_the_right = subray_direction({1, 0}, divergence), upward = subray_direction({0, 1}, divergence);
   CHECK(to_the_right.x == support::relative(std::sin(1e-3), 1e-13));
   CHECK(to_the_right.z == 0);
@@ -183,7 +183,7 @@ TEST_CASE("a subray of an elliptical beam leaves at half the divergence of its a
   const Divergence divergence{2e-3, 6e-3};
   CHECK(subray_direction({1, 0}, divergence).x == support::relative(std::sin(1e-3), 1e-13));
   CHECK(subray_direction({0, 1}, divergence).z == support::relative(std::sin(3e-3), 1e-13));
-  CHECK(subray_direction({0, 0}, divergence) == forward);
+  CHECK(subray_direction({0, 0}, divergence) == axis::forward);
   const Vec3 aslant = subray_direction({0.6, 0.8}, divergence);
   CHECK(aslant.z / aslant.x == support::relative(0.8 * 3 / 0.6, 1e-13));
 }
@@ -211,7 +211,7 @@ TEST_CASE("the subrays of a beam with a waist make up the hyperboloid that it is
 }
 
 TEST_CASE("a footprint that is recorded is the same footprint") {
-  const Recorded footprint{SunflowerFootprint{30}};
+  const WithSubrayRecord footprint{SunflowerFootprint{30}};
   CHECK(support::footprint_laws(footprint) == "");
   CHECK(footprint.size() == 30);
   CHECK(footprint.offset(7) == SunflowerFootprint{30}.offset(7));
@@ -226,6 +226,6 @@ TEST_CASE("subrays are unit, and without divergence all go along the axis") {
     const Vec3 d = subray_direction(offset, divergence);
     CHECK(length(d) == support::relative(1, 1e-15));
     CHECK(std::atan2(std::hypot(d.x, d.z), d.y) == support::relative(radius(offset) * divergence / 2, 1e-12));
-    CHECK(subray_direction(offset, 0) == forward);
+    CHECK(subray_direction(offset, 0) == axis::forward);
   }
 }

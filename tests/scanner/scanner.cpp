@@ -21,7 +21,7 @@ TEST_CASE("a scanner sends its pulses at a constant rate, forward, from its orig
   CHECK(p->index == 250001);
   CHECK(p->tick == Tick{2, 50001 / 1e5});
   CHECK(p->origin() == Vec3{});
-  CHECK(p->direction() == forward);
+  CHECK(p->direction() == axis::forward);
   CHECK(p->laser.wavelength == 1550_nm);
   CHECK(p->leg == 0);
 }

@@ -58,7 +58,7 @@ class RasterMesh {
   [[nodiscard]] const Box& bounds() const noexcept { return mesh_.bounds(); }
   [[nodiscard]] std::size_t memory() const noexcept { return mesh_.memory(); }
   [[nodiscard]] std::size_t material_count() const noexcept { return 1; }
-  void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
+  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
     mesh_.closest(rays, nearest);
     for (std::size_t j = 0; j < rays.size; ++j)
       if (nearest.met(j)) nearest.id[j] = numbers_[nearest.primitive_of(j)];
@@ -78,20 +78,20 @@ struct Look {
   void operator()(Members&... members) {
     (see(members), ...);
   }
-  void see(Frozen<float>& array) { found = found == nullptr ? array.data() : found; }
+  void see(SharedArray<float>& array) { found = found == nullptr ? array.data() : found; }
   void see(auto&) {}
 };
 
 double range_of(const HeightField& field, const Ray& ray) {
   const RayBundle rays = bundle_of(ray);
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   field.closest(rays, nearest);
   return nearest.met(0) ? nearest.range[0] : -1;
 }
 
 /// The height of the ground under a place; -1 if there is none.
 double height_at(const HeightField& field, double x, double y) {
-  const double range = range_of(field, {{x, y, 1000}, -up});
+  const double range = range_of(field, {{x, y, 1000}, -axis::up});
   return range < 0 ? -1 : 1000 - range;
 }
 
@@ -132,7 +132,7 @@ TEST_CASE("a slope is met where it is, from above and from below") {
     CAPTURE(x);
     CAPTURE(y);
     CHECK(height_at(field, x, y) == relative(z, 1e-12));
-    CHECK(range_of(field, {{x, y, -50}, up}) == relative(z + 50, 1e-12));
+    CHECK(range_of(field, {{x, y, -50}, axis::up}) == relative(z + 50, 1e-12));
     const Vec3 from{x, y, z}, aim = normalize(random.unit() + Vec3{0, 0, 1.5});
     CHECK(range_of(field, {from + aim * 7.0, -aim}) == relative(7, 1e-11));
   }
@@ -155,8 +155,8 @@ TEST_CASE("rows go from north to south, and the diagonal of a cell from south-we
   CHECK(height_at(field, 0.5, -0.5) == 5);
   CHECK(height_at(field, 0.25, -0.25) == 3);    // half-way up the north-western triangle
   CHECK(height_at(field, 0.75, -0.75) == 3.5);  // and the south-eastern
-  const RayBundle rays = bundle_of({{0.75, -0.75, 9}, -up});
-  Nearest nearest(rays);
+  const RayBundle rays = bundle_of({{0.75, -0.75, 9}, -axis::up});
+  ClosestHits nearest(rays);
   field.closest(rays, nearest);
   CHECK(nearest.primitive_of(0) == 1);
 }
@@ -181,7 +181,7 @@ TEST_CASE("where all is missing nothing is met") {
   const HeightField field(raster_of(30, 20, [](std::uint32_t, std::uint32_t) { return missing; }));
   CHECK(field.bounds().empty());
   CHECK(height_at(field, 3, -3) == -1);
-  CHECK(HeightField(Unfilled{}).bounds().empty());
+  CHECK(HeightField(DeserializeTag{}).bounds().empty());
 }
 
 TEST_CASE("a height field answers as the raster's mesh does, bit for bit, for a million rays") {
@@ -276,7 +276,7 @@ TEST_CASE("nothing falls through the ground: not at corners, not along edges, at
       const double step = time % 3 == 0 ? 1 : time % 3 == 1 ? 0.5 : 1e-9;
       const double x = std::round(random.uniform(20, 40) / step) * step, y = std::round(random.uniform(20, 30) / step) * step;
       const Vec3 aim{first.x + x, first.y - y, 1};
-      const Vec3 from = aim + (random.coin() ? up * random.uniform(3, 1000) : Vec3{random.uniform(-9, 9), random.uniform(-9, 9), 3});
+      const Vec3 from = aim + (random.coin() ? axis::up * random.uniform(3, 1000) : Vec3{random.uniform(-9, 9), random.uniform(-9, 9), 3});
       escapes += escaped(field, random.cone(from, normalize(aim - from), 1e-3, 1 + random.whole(8)));
     }
     CHECK(escapes == 0);
@@ -312,7 +312,7 @@ TEST_CASE("what is left of a raster in the middle of nothing is met, however wid
       const Vec3 direction = normalize(Vec3{westward ? -1 : 1, random.uniform(-1e-3, 1e-3), random.uniform(-1e-6, 1e-6)});
       const Ray ray{aim - direction * random.log_uniform(1e-6, 0.01), direction};
       const RayBundle rays = bundle_of(ray);
-      Nearest nearest(rays);
+      ClosestHits nearest(rays);
       for (std::uint32_t c = first; c < last; ++c)
         for (const int which : {0, 1})
           intersect(detail::RasterCell(grid, heights.data(), c, 0).triangle(grid, which), 2 * c + static_cast<PrimitiveIndex>(which), rays,
@@ -328,20 +328,20 @@ TEST_CASE("what is left of a raster in the middle of nothing is met, however wid
 
 TEST_CASE("rays that are not numbers meet nothing and spoil nothing") {
   const HeightField field(slope());
-  RayBundle rays = bundle_of({{120, 180, 100}, -up});
+  RayBundle rays = bundle_of({{120, 180, 100}, -axis::up});
   rays.size = 3;
   const double nothing = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
   rays.set_direction(1, {nothing, nothing, nothing}), rays.set_direction(2, {0, endless, 0});
   rays.pad();
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   field.closest(rays, nearest);
   CHECK(nearest.met(0));
   CHECK_FALSE(nearest.met(1));
   for (const double bad : {nothing, endless}) {
-    CHECK(range_of(field, {{bad, 180, 100}, -up}) == -1);
-    CHECK(range_of(field, {{120, 180, bad}, -up}) == -1);
+    CHECK(range_of(field, {{bad, 180, 100}, -axis::up}) == -1);
+    CHECK(range_of(field, {{120, 180, bad}, -axis::up}) == -1);
     CHECK(range_of(field, {{120, 180, 100}, {bad, 0, -1}}) == -1);
-    CHECK(range_of(field, {{120, 180, 100}, -up, bad}) == -1);
+    CHECK(range_of(field, {{120, 180, 100}, -axis::up, bad}) == -1);
   }
 }
 
@@ -370,7 +370,7 @@ TEST_CASE("a height field is the same on however many threads it is built") {
   CHECK(one.bounds() == three.bounds());
   Generator random(5);
   for (int time = 0; time < 2000; ++time) {
-    const Ray ray{{random.uniform(0, 1100), random.uniform(-1000, 0), 1500}, normalize(random.unit() - 1.2 * up)};
+    const Ray ray{{random.uniform(0, 1100), random.uniform(-1000, 0), 1500}, normalize(random.unit() - 1.2 * axis::up)};
     REQUIRE(range_of(one, ray) == range_of(three, ray));
   }
 }
@@ -387,7 +387,7 @@ TEST_CASE("a raster is taken over, not copied") {
 }
 
 TEST_CASE("what was kept of a height field makes one that answers alike") {
-  HeightField field(slope()), other(Unfilled{});
+  HeightField field(slope()), other(DeserializeTag{});
   std::vector<void*> kept;
   const auto keep = [&](auto&... members) { (kept.push_back(&members), ...); };
   field.archive(keep);
@@ -395,7 +395,7 @@ TEST_CASE("what was kept of a height field makes one that answers alike") {
   const auto fill = [&]<class... Members>(Members&... members) { ((members = *static_cast<Members*>(kept[i++])), ...); };
   other.archive(fill);
   CHECK(i == kept.size());
-  CHECK(other.sound());
+  CHECK(other.is_consistent());
   CHECK(other.bounds() == field.bounds());
   CHECK(other.memory() == field.memory());
   CHECK(height_at(other, 111, 177) == height_at(field, 111, 177));
@@ -403,9 +403,9 @@ TEST_CASE("what was kept of a height field makes one that answers alike") {
 
 TEST_CASE("arrays that are not as long as the grid says are noticed") {
   const HeightField field(slope()), smaller(raster_of(5, 3, [](std::uint32_t, std::uint32_t) { return 1; }));
-  CHECK(field.sound());
-  CHECK(smaller.sound());
-  CHECK_FALSE(HeightField(Unfilled{}).sound());
+  CHECK(field.is_consistent());
+  CHECK(smaller.is_consistent());
+  CHECK_FALSE(HeightField(DeserializeTag{}).is_consistent());
   for (std::size_t from_smaller = 0; from_smaller < 9; ++from_smaller) {  // in the order of `archive`
     HeightField mixed = field, other = smaller;
     std::vector<void*> kept;
@@ -417,7 +417,8 @@ TEST_CASE("arrays that are not as long as the grid says are noticed") {
     };
     mixed.archive(replace);
     CAPTURE(from_smaller);
-    CHECK(mixed.sound() == (from_smaller >= 3 && from_smaller <= 6));  // per_metre, pad, centre and bounds are not followed anywhere
+    CHECK(mixed.is_consistent() ==
+          (from_smaller >= 3 && from_smaller <= 6));  // per_metre, pad, centre and bounds are not followed anywhere
   }
 }
 

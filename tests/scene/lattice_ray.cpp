@@ -26,7 +26,7 @@ TEST_CASE("crossings at one range are in the order of their axes, after where th
 }
 
 TEST_CASE("a cell owns its least faces for rays that go along them") {
-  RayBundle rays = bundle_of({{1, 0, 0.5}, forward});
+  RayBundle rays = bundle_of({{1, 0, 0.5}, axis::forward});
   const LatticeRay ray({0, 0, 0}, 1, rays, 0);
   CHECK(ray.sense(0) == 0);
   CHECK(ray.sense(1) == 1);
@@ -77,10 +77,10 @@ TEST_CASE("a ray of no number, or without a direction, goes nowhere") {
     const RayBundle rays = bundle_of({origin, direction});
     return LatticeRay({0, 0, 0}, 1, rays, 0).valid();
   };
-  CHECK(valid({1, 2, 3}, up));
+  CHECK(valid({1, 2, 3}, axis::up));
   CHECK_FALSE(valid({1, 2, 3}, {0, 0, 0}));
   CHECK_FALSE(valid({1, 2, 3}, {0, 1e-320, 0}));
   CHECK_FALSE(valid({1, 2, 3}, {0, nan, 1}));
   CHECK_FALSE(valid({1, 2, 3}, {infinity, 0, 1}));
-  CHECK_FALSE(valid({nan, 2, 3}, up));
+  CHECK_FALSE(valid({nan, 2, 3}, axis::up));
 }

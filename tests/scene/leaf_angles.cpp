@@ -89,8 +89,8 @@ TEST_CASE("G has its closed values along the vertical and the horizontal") {
                           {LeafAngles::extremophile(), 28 / (15 * pi), 56 / (15 * pi * pi)},
                           {LeafAngles::ellipsoidal(1), 0.5, 0.5}};
   for (const Value& value : values) {
-    CHECK(std::fabs(value.leaves.projection(up) - value.vertical) < 1e-12);
-    CHECK(std::fabs(value.leaves.projection(right) - value.horizontal) < 1e-12);
+    CHECK(std::fabs(value.leaves.projection(axis::up) - value.vertical) < 1e-12);
+    CHECK(std::fabs(value.leaves.projection(axis::right) - value.horizontal) < 1e-12);
   }
 }
 
@@ -138,9 +138,9 @@ TEST_CASE("ellipsoidal leaves agree with the fit of Campbell's, and reach their 
       CHECK(std::fabs(leaves.projection(at_zenith(zenith)) / expected - 1) < 0.015);
     }
   }
-  CHECK(std::fabs(LeafAngles::ellipsoidal(1e-6).projection(right) - 2 / pi) < 1e-5);
-  CHECK(std::fabs(LeafAngles::ellipsoidal(1e6).projection(up) - 1) < 1e-5);
-  CHECK(std::fabs(LeafAngles::ellipsoidal(1 + 1e-12).projection(up) - 0.5) < 1e-9);
+  CHECK(std::fabs(LeafAngles::ellipsoidal(1e-6).projection(axis::right) - 2 / pi) < 1e-5);
+  CHECK(std::fabs(LeafAngles::ellipsoidal(1e6).projection(axis::up) - 1) < 1e-5);
+  CHECK(std::fabs(LeafAngles::ellipsoidal(1 + 1e-12).projection(axis::up) - 0.5) < 1e-9);
   CHECK_THROWS_AS((void)LeafAngles::ellipsoidal(0), SettingError);
   CHECK_THROWS_AS((void)LeafAngles::ellipsoidal(std::nan("")), SettingError);
 }
@@ -150,7 +150,7 @@ TEST_CASE("G depends on neither length, nor azimuth, nor sense of the direction"
   const LeafAngles all[] = {LeafAngles::planophile(), LeafAngles::ellipsoidal(3)};
   for (int i = 0; i < 1000; ++i) {
     const Vec3 d = random.unit();
-    const Vec3 other = rotation_about(up, random.uniform(0, 6)) * (d * (random.coin() ? -1.0 : 1.0)) * random.log_uniform(1e-3, 1e3);
+    const Vec3 other = rotation_about(axis::up, random.uniform(0, 6)) * (d * (random.coin() ? -1.0 : 1.0)) * random.log_uniform(1e-3, 1e3);
     for (const LeafAngles& leaves : all) CHECK(std::fabs(leaves.projection(d) - leaves.projection(other)) < 1e-12);
   }
 }
@@ -159,14 +159,14 @@ TEST_CASE("a table is read in any order, linearly in between") {
   std::vector<LeafProjection> entries;
   for (int i = 18; i >= 0; --i) entries.push_back({i * pi / 36, 0.9 - 0.03 * i});
   const LeafAngles leaves = LeafAngles::table(entries);
-  CHECK(std::fabs(leaves.projection(up) - 0.9) < 1e-15);
-  CHECK(std::fabs(leaves.projection(-up) - 0.9) < 1e-15);
-  CHECK(std::fabs(leaves.projection(right) - 0.36) < 1e-15);
+  CHECK(std::fabs(leaves.projection(axis::up) - 0.9) < 1e-15);
+  CHECK(std::fabs(leaves.projection(-axis::up) - 0.9) < 1e-15);
+  CHECK(std::fabs(leaves.projection(axis::right) - 0.36) < 1e-15);
   for (const double zenith : {0.0, 0.01, 0.5, 1.2, 1.55})
     CHECK(std::fabs(leaves.projection(at_zenith(zenith)) - (0.9 - 0.03 * zenith * 36 / pi)) < 1e-12);
   std::vector<LeafProjection> inner(entries.begin() + 1, entries.end() - 1);
-  CHECK(std::fabs(LeafAngles::table(inner).projection(up) - 0.87) < 1e-15);
-  CHECK(std::fabs(LeafAngles::table(inner).projection(right) - 0.39) < 1e-15);
+  CHECK(std::fabs(LeafAngles::table(inner).projection(axis::up) - 0.87) < 1e-15);
+  CHECK(std::fabs(LeafAngles::table(inner).projection(axis::right) - 0.39) < 1e-15);
 }
 
 TEST_CASE("a table with a hole, a repeated angle or an impossible number is refused") {
@@ -193,11 +193,11 @@ TEST_CASE("a table with a hole, a repeated angle or an impossible number is refu
 TEST_CASE("what an archive keeps of leaf angles is all of them") {
   struct Kept {
     double chi = 0, half_surface = 0;
-    Frozen<LeafProjection> table{};
+    SharedArray<LeafProjection> table{};
   } kept;
   LeafAngles made = LeafAngles::planophile(), other;
-  const auto keep = [&](double chi, double half_surface, const Frozen<LeafProjection>& table) { kept = {chi, half_surface, table}; };
-  const auto fill = [&](double& chi, double& half_surface, Frozen<LeafProjection>& table) {
+  const auto keep = [&](double chi, double half_surface, const SharedArray<LeafProjection>& table) { kept = {chi, half_surface, table}; };
+  const auto fill = [&](double& chi, double& half_surface, SharedArray<LeafProjection>& table) {
     chi = kept.chi, half_surface = kept.half_surface, table = kept.table;
   };
   made.archive(keep);

@@ -79,7 +79,7 @@ TEST_CASE("one scene answers each laser at its own wavelength") {
   const MeshData floor{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
   const Scene<TriangleMesh<Linear>> scene(
       {{.geometry = std::make_shared<const TriangleMesh<Linear>>(floor), .materials = material_table({{.spectrum = spectrum}})}});
-  RayBundle ray = bundle_of({.origin = {0.2, 0.2, 5}, .direction = -up});
+  RayBundle ray = bundle_of({.origin = {0.2, 0.2, 5}, .direction = -axis::up});
   for (const double wavelength : {0.532e-6, 1.064e-6, 1.55e-6}) {
     ray.wavelength = wavelength;
     Hit hit;

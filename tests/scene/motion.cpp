@@ -123,7 +123,7 @@ TEST_CASE("a rotation without a centre turns about the body's own, wherever it i
 
 TEST_CASE("a body may orbit without turning, or turn otherwise than it orbits") {
   const Vec3 own{10, 0, 5};
-  const PartMotion cabin(SteadyMotion{.axis = forward, .rate = pi / 2, .centre = Vec3{}, .spin = Vec3{}});
+  const PartMotion cabin(SteadyMotion{.axis = axis::forward, .rate = pi / 2, .centre = Vec3{}, .spin = Vec3{}});
   CHECK(length(moved(cabin, 1, own + Vec3{1, 2, 3}, own) - Vec3{5 + 1, 2, -10 + 3}) < 1e-14);
   const PartMotion moon(SteadyMotion{.rate = pi / 2, .centre = Vec3{}, .spin = Vec3{pi, 0, 0}});
   CHECK(length(moved(moon, 1, own + Vec3{1, 2, 3}, own) - Vec3{1, 10 - 2, 5 - 3}) < 1e-14);
@@ -243,7 +243,7 @@ TEST_CASE("the same tick gives the same displacement, in any order and from a co
 }
 
 TEST_CASE("a body passes its timed poses, straight and at constant rates between them, and rests after the last") {
-  const PartMotion motion(std::vector<TimedPose>{{1, {10, 0, 0}}, {3, {10, 4, 0}, rotation_about(up, pi / 2)}, {4, {0, 4, 0}}});
+  const PartMotion motion(std::vector<TimedPose>{{1, {10, 0, 0}}, {3, {10, 4, 0}, rotation_about(axis::up, pi / 2)}, {4, {0, 4, 0}}});
   const Vec3 p{1, 0, 0};
   CHECK(length(moved(motion, 0, p) - Vec3{11, 0, 0}) < 1e-14);  // before the first pose it is there
   CHECK(length(moved(motion, 1, p) - Vec3{11, 0, 0}) < 1e-14);
@@ -255,7 +255,7 @@ TEST_CASE("a body passes its timed poses, straight and at constant rates between
 }
 
 TEST_CASE("timed poses may come again, and then each time at the same place") {
-  const std::vector<TimedPose> poses{{0, {0, 0, 0}}, {2, {8, 0, 0}, rotation_about(up, 1)}};
+  const std::vector<TimedPose> poses{{0, {0, 0, 0}}, {2, {8, 0, 0}, rotation_about(axis::up, 1)}};
   const PartMotion motion(poses, AfterLastPose::start_again);
   CHECK(length(moved(motion, 0.5, {}) - Vec3{2, 0, 0}) < 1e-14);
   CHECK(length(moved(motion, 2, {}) - Vec3{0, 0, 0}) < 1e-14);
@@ -334,9 +334,9 @@ TEST_CASE("what a body sweeps on a polygon of many turns and steps is inside of 
     const double turn = -all / passes;
     const Vec3 middle{0, 100, 0};
     const PartMotion motion({{.motions = {{.rate = turn, .centre = Vec3{}, .duration = 1},
-                                          {.velocity = middle - rotation_about(up, turn) * middle, .duration = 1}}}},
+                                          {.velocity = middle - rotation_about(axis::up, turn) * middle, .duration = 1}}}},
                             0);
-    const Vec3 start = middle + rotation_about(up, all / 2) * Vec3{0, 100, 0};
+    const Vec3 start = middle + rotation_about(axis::up, all / 2) * Vec3{0, 100, 0};
     const std::array<Vec3, 1> body{start};
     const Box swept = motion.swept(body, start, {0, 0}, {2 * passes, 0});
     Box passed;
@@ -366,7 +366,8 @@ TEST_CASE("the box that is swept is as large as it has to be where that is plain
 
 TEST_CASE("timed poses and steps of single precision move rigidly") {
   const Rotation rounded{0.6F, 0.8F, 0, 0};
-  const PartMotion poses(std::vector<TimedPose>{{0, {}, rounded}, {1, right, rounded}}), step(steady_motion({rounded, right}, 1));
+  const PartMotion poses(std::vector<TimedPose>{{0, {}, rounded}, {1, axis::right, rounded}}),
+      step(steady_motion({rounded, axis::right}, 1));
   for (const PartMotion& motion : {poses, step})
     for (const double t : {0.0, 0.5, 1.0, 2.0}) CHECK(std::fabs(length(motion.at(Tick::of_seconds(t), {}).rotation) - 1) < 1e-14);
 }

@@ -28,15 +28,15 @@ struct Cube {
   }
 };
 
-MovingIndex index_of(const std::vector<Cube>& cubes, const TimeWindows& time) {
+MovingIndex index_of(const std::vector<Cube>& cubes, const MovingIndexSettings& time) {
   return {cubes.size(), time, [&](PrimitiveIndex i, const Tick& from, const Tick& to) { return cubes[i].swept(from, to); }};
 }
 
 /// The cubes that are offered to a ray straight down at a place and time.
 std::multiset<PrimitiveIndex> offered(const MovingIndex& index, const Vec2& place, double t) {
-  RayBundle ray = bundle_of({{place.x, place.y, 1000}, -up});
+  RayBundle ray = bundle_of({{place.x, place.y, 1000}, -axis::up});
   ray.tick = Tick::of_seconds(t);
-  Nearest nearest(ray);
+  ClosestHits nearest(ray);
   std::multiset<PrimitiveIndex> all;
   index.closest(
       ray, [&](PrimitiveIndex i) { all.insert(i); }, nearest);
@@ -110,9 +110,9 @@ TEST_CASE("outside of the time everything is offered, and of nothing nothing") {
 
 TEST_CASE("time windows refuse a time that is none") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK_NOTHROW(TimeWindows{}.validate());
-  CHECK_THROWS_AS((TimeWindows{5, 5}.validate()), SettingError);
-  CHECK_THROWS_AS((TimeWindows{nan, 5}.validate()), SettingError);
-  CHECK_THROWS_AS((TimeWindows{0, nan}.validate()), SettingError);
-  CHECK_THROWS_AS((TimeWindows{0, 1, 0}.validate()), SettingError);
+  CHECK_NOTHROW(MovingIndexSettings{}.validate());
+  CHECK_THROWS_AS((MovingIndexSettings{5, 5}.validate()), SettingError);
+  CHECK_THROWS_AS((MovingIndexSettings{nan, 5}.validate()), SettingError);
+  CHECK_THROWS_AS((MovingIndexSettings{0, nan}.validate()), SettingError);
+  CHECK_THROWS_AS((MovingIndexSettings{0, 1, 0}.validate()), SettingError);
 }

@@ -70,7 +70,7 @@ class Ball {
   const Box& bounds() const noexcept { return bounds_; }
   std::size_t memory() const noexcept { return 0; }
   std::size_t material_count() const noexcept { return 1; }
-  void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
+  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
     for (std::size_t j = 0; j < rays.size; ++j) {
       const double a = rays.direction_length * rays.direction_length, b = dot(rays.origin, rays.direction(j));
       const double root = b * b - a * (dot(rays.origin, rays.origin) - 1), range = (-b - std::sqrt(root)) / a;
@@ -114,7 +114,7 @@ TEST_CASE("a disc that moves is met where it is at the tick of the ray") {
   const Discs scene({disc({.translation = {5, 0, 0}}, 1, moving({.velocity = {0, 0, 2}}))}, {.to = 10});
   for (const double t : {0.0, 0.1, 3.3, 9.99, 10.0, 12.0}) {  // the last is outside of the time
     CAPTURE(t);
-    const Hit hit = ask(scene, {{5, 0, 100}, -up}, Tick::of_seconds(t));
+    const Hit hit = ask(scene, {{5, 0, 100}, -axis::up}, Tick::of_seconds(t));
     REQUIRE(hit.met());
     CHECK(hit.range == support::relative(100 - 2 * t, 1e-14));
     CHECK(hit.object == 1);
@@ -124,12 +124,12 @@ TEST_CASE("a disc that moves is met where it is at the tick of the ray") {
 
 TEST_CASE("a motion comes on top of the placement, and turns about the part's own centre if it has none of its own") {
   // twice as large, upright, facing north; it turns about up
-  const Discs scene({disc({rotation_about(right, pi / 2), 2, {7, 8, 9}}, 1, moving({.rate = pi / 2}))}, {.to = 5});
-  CHECK(ask(scene, {{7, 0, 9}, forward}, {0, 0}).range == support::relative(8, 1e-12));
-  CHECK(ask(scene, {{7, 0, 9}, forward}, {0, 0}).cos_incidence == support::relative(1, 1e-12));
-  CHECK(ask(scene, {{7, 0, 10.9}, forward}, {0, 0.5}).cos_incidence == support::relative(std::sqrt(0.5), 1e-12));
-  CHECK_FALSE(ask(scene, {{7, 0, 11.1}, forward}, {0, 0.5}).met());
-  CHECK(ask(scene, {{0, 8, 9}, right}, {1, 0}).range == support::relative(7, 1e-12));
+  const Discs scene({disc({rotation_about(axis::right, pi / 2), 2, {7, 8, 9}}, 1, moving({.rate = pi / 2}))}, {.to = 5});
+  CHECK(ask(scene, {{7, 0, 9}, axis::forward}, {0, 0}).range == support::relative(8, 1e-12));
+  CHECK(ask(scene, {{7, 0, 9}, axis::forward}, {0, 0}).cos_incidence == support::relative(1, 1e-12));
+  CHECK(ask(scene, {{7, 0, 10.9}, axis::forward}, {0, 0.5}).cos_incidence == support::relative(std::sqrt(0.5), 1e-12));
+  CHECK_FALSE(ask(scene, {{7, 0, 11.1}, axis::forward}, {0, 0.5}).met());
+  CHECK(ask(scene, {{0, 8, 9}, axis::right}, {1, 0}).range == support::relative(7, 1e-12));
 }
 
 TEST_CASE("a scene of moving parts answers as one of still parts that stand where they are at that tick") {
@@ -178,7 +178,7 @@ TEST_CASE("of parts in the same place the first in the list is met, moving or no
     CAPTURE(moves);
     std::vector<Disc> parts;
     for (ObjectId k = 0; k < 3; ++k) parts.push_back(disc({}, 10 + k, moves >> k & 1 ? moving({.velocity = {0.25, 0, 0}}) : nullptr));
-    CHECK(ask(Discs(parts, {.to = 5}), {{0, 0, 10}, -up}, {1, 0}).object == 10);
+    CHECK(ask(Discs(parts, {.to = 5}), {{0, 0, 10}, -axis::up}, {1, 0}).object == 10);
   }
 }
 
@@ -186,10 +186,10 @@ TEST_CASE("a scene in which nothing moves answers as a scene does") {
   const std::vector<Disc> parts{disc({.translation = {0, 0, 1}}, 1), disc({.scale = 3}, 2)};
   const Discs scene(parts, {.to = 1});
   const Scene<LeastGeometry> still(parts);
-  CHECK(ask(scene, {{0.5, 0, 9}, -up}).range == ask(still, {{0.5, 0, 9}, -up}).range);
-  CHECK(ask(scene, {{2.5, 0, 9}, -up}).object == 2);
+  CHECK(ask(scene, {{0.5, 0, 9}, -axis::up}).range == ask(still, {{0.5, 0, 9}, -axis::up}).range);
+  CHECK(ask(scene, {{2.5, 0, 9}, -axis::up}).object == 2);
   CHECK(scene.bounds() == still.bounds());
-  CHECK_FALSE(ask(Discs({}, {.to = 1}), {{0, 0, 9}, -up}).met());
+  CHECK_FALSE(ask(Discs({}, {.to = 1}), {{0, 0, 9}, -axis::up}).met());
 }
 
 TEST_CASE("a scene refuses parts that move, and a moving scene the same parts as a scene") {
@@ -249,7 +249,7 @@ TEST_CASE("every point of a survey lies on what it met, where that was at its ow
     const Vec3& p = cloud.points[i];
     const ObjectId object = cloud.echoes[i].object;
     const double off = object == 1   ? length(p - 10.0 * Vec3{std::cos(orbit * t), std::sin(orbit * t), 0}) - 1
-                       : object == 2 ? max_norm(rotation_about(up, -spin * t) * (p - start - t * drift)) - 1
+                       : object == 2 ? max_norm(rotation_about(axis::up, -spin * t) * (p - start - t * drift)) - 1
                                      : p.z - (-9 + climb * t);
     ++met[object], worst[object] = std::max(worst[object], std::fabs(off));
   }

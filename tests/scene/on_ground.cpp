@@ -47,26 +47,27 @@ std::optional<double> height(const std::optional<Part<Mesh>>& part) {
 
 TEST_CASE("a part stands by its origin, by its lowest point, by the first that touches, or sunk until nothing hovers") {
   const Part<Mesh> part{.geometry = top(), .placement = {.translation = {20, 0, 500}}};
-  const auto stands = [&](Standing standing) { return height(on_ground(part, slope, standing)).value(); };
-  CHECK(stands(Standing::origin) == support::relative(20, 1e-12));
-  CHECK(stands(Standing::lowest_point) == support::relative(20 + 1, 1e-12));
-  CHECK(height(on_ground(part, slope)).value() == stands(Standing::lowest_point));
-  CHECK(stands(Standing::touching) == support::relative(20 + 1, 1e-12));  // the other corners are 3 m above a ground that rises by 1 m
-  CHECK(stands(Standing::sunk) == support::relative(20 - 1 + 1, 1e-12));  // the lower corners of its box are over ground at 19 m
+  const auto stands = [&](GroundPlacement ground_placement) { return height(on_ground(part, slope, ground_placement)).value(); };
+  CHECK(stands(GroundPlacement::origin) == support::relative(20, 1e-12));
+  CHECK(stands(GroundPlacement::lowest_point) == support::relative(20 + 1, 1e-12));
+  CHECK(height(on_ground(part, slope)).value() == stands(GroundPlacement::lowest_point));
+  CHECK(stands(GroundPlacement::touching) ==
+        support::relative(20 + 1, 1e-12));  // the other corners are 3 m above a ground that rises by 1 m
+  CHECK(stands(GroundPlacement::sunk) == support::relative(20 - 1 + 1, 1e-12));  // the lower corners of its box are over ground at 19 m
 }
 
 TEST_CASE("what is wide touches a slope uphill first") {
   const auto plate = std::make_shared<const Mesh>(MeshData{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}});
   const Part<Mesh> part{.geometry = plate, .placement = {.scale = 3, .translation = {0, 0, -50}}};
-  CHECK(height(on_ground(part, slope, Standing::touching)).value() == support::relative(13, 1e-12));
-  CHECK(height(on_ground(part, slope, Standing::sunk)).value() == support::relative(7, 1e-12));
-  CHECK(height(on_ground(part, slope, Standing::lowest_point)).value() ==
+  CHECK(height(on_ground(part, slope, GroundPlacement::touching)).value() == support::relative(13, 1e-12));
+  CHECK(height(on_ground(part, slope, GroundPlacement::sunk)).value() == support::relative(7, 1e-12));
+  CHECK(height(on_ground(part, slope, GroundPlacement::lowest_point)).value() ==
         support::relative(10, 1e-12));  // the middle of all that is lowest
 }
 
 TEST_CASE("a part is turned and scaled first, then it stands") {
   // upside down and twice as large: its plate is below by 4 m, in the middle of which it stands
-  const Part<Mesh> part{.geometry = top(), .placement = {rotation_about(forward, pi), 2, {20, 0, 0}}};
+  const Part<Mesh> part{.geometry = top(), .placement = {rotation_about(axis::forward, pi), 2, {20, 0, 0}}};
   CHECK(height(on_ground(part, slope)).value() == support::relative(20 + 4, 1e-12));
 }
 
@@ -78,19 +79,20 @@ TEST_CASE("a placement of single precision is unit on the ground and in a scene"
 
 TEST_CASE("shapes without triangles stand by the corners of their box") {
   const Part<LeastGeometry> disc{.geometry = std::make_shared<const LeastGeometry>(), .placement = {.translation = {20, 0, 0}}};
-  CHECK(on_ground(disc, slope, Standing::touching)->placement.translation.z == support::relative(20.5, 1e-12));
-  CHECK(on_ground(disc, slope, Standing::lowest_point)->placement.translation.z == support::relative(20, 1e-12));
+  CHECK(on_ground(disc, slope, GroundPlacement::touching)->placement.translation.z == support::relative(20.5, 1e-12));
+  CHECK(on_ground(disc, slope, GroundPlacement::lowest_point)->placement.translation.z == support::relative(20, 1e-12));
 }
 
 TEST_CASE("where there is no ground, nothing stands") {
-  for (const Standing standing : {Standing::origin, Standing::lowest_point, Standing::touching, Standing::sunk}) {
-    CHECK_FALSE(on_ground(Part<Mesh>{.geometry = top(), .placement = {.translation = {200, 0, 0}}}, slope, standing).has_value());
-    CHECK_THROWS_AS((void)on_ground(Part<Mesh>{}, slope, standing), SettingError);
+  for (const GroundPlacement ground_placement :
+       {GroundPlacement::origin, GroundPlacement::lowest_point, GroundPlacement::touching, GroundPlacement::sunk}) {
+    CHECK_FALSE(on_ground(Part<Mesh>{.geometry = top(), .placement = {.translation = {200, 0, 0}}}, slope, ground_placement).has_value());
+    CHECK_THROWS_AS((void)on_ground(Part<Mesh>{}, slope, ground_placement), SettingError);
   }
   // at the edge, the points over the ground decide
   const Part<Mesh> edge{.geometry = top(), .placement = {.translation = {101, 0, 0}}};
-  CHECK_FALSE(on_ground(edge, slope, Standing::lowest_point).has_value());
-  CHECK(on_ground(edge, slope, Standing::touching).has_value());
+  CHECK_FALSE(on_ground(edge, slope, GroundPlacement::lowest_point).has_value());
+  CHECK(on_ground(edge, slope, GroundPlacement::touching).has_value());
 }
 
 TEST_CASE("any part stands on any ground as it is meant to") {
@@ -113,9 +115,9 @@ TEST_CASE("any part stands on any ground as it is meant to") {
       }
       return least;
     };
-    CHECK(std::fabs(clearance(on_ground(part, hills, Standing::touching).value(), false)) < 1e-9);
-    CHECK(std::fabs(clearance(on_ground(part, hills, Standing::lowest_point).value(), true)) < 1e-9);
-    const Part<Mesh> sunk = on_ground(part, hills, Standing::sunk).value();
+    CHECK(std::fabs(clearance(on_ground(part, hills, GroundPlacement::touching).value(), false)) < 1e-9);
+    CHECK(std::fabs(clearance(on_ground(part, hills, GroundPlacement::lowest_point).value(), true)) < 1e-9);
+    const Part<Mesh> sunk = on_ground(part, hills, GroundPlacement::sunk).value();
     Box box;
     for (const Vec3& v : data.vertices) box.extend(sunk.placement.point(v));
     double highest = -std::numeric_limits<double>::infinity();

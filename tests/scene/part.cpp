@@ -21,14 +21,14 @@ Similarity any_similarity(support::Generator& any) { return {any.rotation(), any
 }  // namespace
 
 TEST_CASE("a similarity turns, then scales, then moves") {
-  const Similarity s{rotation_about(up, pi / 2), 2, {10, 20, 30}};
+  const Similarity s{rotation_about(axis::up, pi / 2), 2, {10, 20, 30}};
   CHECK(length(s.point({1, 0, 0}) - Vec3{10, 22, 30}) < 1e-14);
   CHECK(length(s.point({0, 0, 1}) - Vec3{10, 20, 32}) < 1e-14);
 }
 
 TEST_CASE("only a similarity that does nothing is the identity") {
   CHECK(Similarity{}.identity());
-  CHECK_FALSE(Similarity{.rotation = rotation_about(up, 0.1)}.identity());
+  CHECK_FALSE(Similarity{.rotation = rotation_about(axis::up, 0.1)}.identity());
   CHECK_FALSE(Similarity{.scale = 2}.identity());
   CHECK_FALSE((Similarity{.translation = {0, 0, 1e-9}}.identity()));
 }

@@ -62,10 +62,10 @@ struct Counted {
   const Box& bounds() const noexcept { return box; }
   std::size_t memory() const noexcept { return 0; }
   std::size_t material_count() const noexcept { return 1; }
-  void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
+  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
     for (std::size_t j = 0; j < rays.size; ++j) nearest.offer(j, -rays.origin.z / rays.z[j], 0);
   }
-  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return ++asked, Surface{up, 0}; }
+  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return ++asked, Surface{axis::up, 0}; }
 };
 
 /// How often it is for a bundle of seven rays, each of which is described as it should be.
@@ -122,15 +122,15 @@ TEST_CASE("nothing is met at the near end or before it, nor beyond the far end")
 TEST_CASE("a disc that is turned, scaled and moved is met where it stands, with ranges in metres of the world") {
   // three times as large, standing upright, facing north, at UTM coordinates
   const Vec3 utm{500000, 5400000, 300};
-  const Scene<LeastGeometry> scene({disc({rotation_about(right, pi / 2), 3, utm}, 5)});
-  const Hit hit = ask(scene, {utm + Vec3{2.9, -50, 0}, forward});
+  const Scene<LeastGeometry> scene({disc({rotation_about(axis::right, pi / 2), 3, utm}, 5)});
+  const Hit hit = ask(scene, {utm + Vec3{2.9, -50, 0}, axis::forward});
   REQUIRE(hit.met());
   CHECK(std::fabs(hit.range - 50) < 1e-8);
   CHECK(hit.cos_incidence == support::relative(1, 1e-12));
   CHECK(hit.object == 5);
-  CHECK_FALSE(ask(scene, {utm + Vec3{3.1, -50, 0}, forward}).met());
-  CHECK(ask(scene, {utm + Vec3{0, -50, 2.9}, forward}).met());
-  CHECK_FALSE(ask(scene, {utm + Vec3{0, -50, 3.1}, forward}).met());
+  CHECK_FALSE(ask(scene, {utm + Vec3{3.1, -50, 0}, axis::forward}).met());
+  CHECK(ask(scene, {utm + Vec3{0, -50, 2.9}, axis::forward}).met());
+  CHECK_FALSE(ask(scene, {utm + Vec3{0, -50, 3.1}, axis::forward}).met());
 }
 
 TEST_CASE("an instance of a mesh answers as the same mesh transformed by hand") {
@@ -265,7 +265,7 @@ TEST_CASE("ten thousand trees cost less than twice the memory of one and 300 byt
   for (ObjectId k = 0; k < 10'000; ++k)
     wood.push_back({.geometry = tree,
                     .materials = materials,
-                    .placement = {rotation_about(up, any.uniform(0, 2 * pi)), any.uniform(0.5, 2), any.point(1000)},
+                    .placement = {rotation_about(axis::up, any.uniform(0, 2 * pi)), any.uniform(0.5, 2), any.point(1000)},
                     .object = k,
                     .name = "tree " + std::to_string(k)});
   const Scene<Mesh> scene(std::move(wood));
@@ -306,7 +306,7 @@ TEST_CASE("a scene for each repetition of a survey, of the same geometries, cost
   CHECK(own < 10 * 20 * 300 + 10 * 1000);
   std::size_t met = 0;
   for (const auto& scene : repetitions) {
-    const RayBundle rays = any.cone({140, 0, 100}, -up, 0.05, 60);
+    const RayBundle rays = any.cone({140, 0, 100}, -axis::up, 0.05, 60);
     std::array<Hit, RayBundle::capacity> hits;
     scene.closest(rays, hits);
     for (std::size_t j = 0; j < rays.size; ++j) met += hits[j].met() && hits[j].object == 7 ? 1 : 0;

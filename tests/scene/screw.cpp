@@ -10,8 +10,8 @@
 #include "support/generators.hpp"
 
 using namespace pulsecast;
-using detail::AxisAngle;
 using detail::Periods;
+using detail::RotationParts;
 using detail::Screw;
 
 TEST_CASE("a rigid motion done n times is that motion after itself") {
@@ -34,7 +34,7 @@ TEST_CASE("a rigid motion done n times is that motion after itself") {
 TEST_CASE("a full circle in many steps ends where it began, after any number of rounds") {
   // a polygon of 1000 corners around a point 5 m away
   const Vec3 centre{3, 4, 0};
-  const Rotation turn = rotation_about(up, 2 * pi / 1000);
+  const Rotation turn = rotation_about(axis::up, 2 * pi / 1000);
   const Screw once{turn, centre - turn * centre};
   CHECK(length(repeated(once, 1000).point({}) - Vec3{}) < 1e-11);
   CHECK(length(repeated(once, 1'000'000'000).point({}) - Vec3{}) < 1e-5);
@@ -44,9 +44,9 @@ TEST_CASE("a full circle in many steps ends where it began, after any number of 
 TEST_CASE("a rotation has an axis and an angle up to half a turn") {
   for (const double angle : {0.0, 1e-12, 0.5, 3.0, 3.5}) {
     CAPTURE(angle);
-    const AxisAngle found(rotation_about({0, 0, 2}, angle));
+    const RotationParts found(rotation_about({0, 0, 2}, angle));
     CHECK(std::fabs(found.angle - (angle <= pi ? angle : 2 * pi - angle)) < 1e-14);
-    if (angle > 0) CHECK(length(found.axis - (angle <= pi ? up : -up)) < 1e-12);
+    if (angle > 0) CHECK(length(found.axis - (angle <= pi ? axis::up : -axis::up)) < 1e-12);
   }
 }
 

@@ -53,8 +53,8 @@ VoxelData scattered(Generator& random, std::size_t n, std::uint32_t size, double
 }
 
 template <class Grid>
-Nearest met(const Grid& grid, const RayBundle& rays) {
-  Nearest nearest(rays);
+ClosestHits met(const Grid& grid, const RayBundle& rays) {
+  ClosestHits nearest(rays);
   grid.closest(rays, nearest);
   return nearest;
 }
@@ -62,14 +62,14 @@ Nearest met(const Grid& grid, const RayBundle& rays) {
 /// Range at which a single ray meets the grid; infinite if it does not.
 template <class Grid>
 double range(const Grid& grid, const Ray& ray) {
-  const Nearest nearest = met(grid, bundle_of(ray));
+  const ClosestHits nearest = met(grid, bundle_of(ray));
   return nearest.met(0) ? nearest.range[0] : infinity;
 }
 
 template <class Grid>
 Vec3 normal(const Grid& grid, const Ray& ray) {
   const RayBundle rays = bundle_of(ray);
-  const Nearest nearest = met(grid, rays);
+  const ClosestHits nearest = met(grid, rays);
   return nearest.met(0) ? grid.surface(nearest.primitive_of(0), rays, 0).normal : Vec3{7};
 }
 
@@ -155,7 +155,7 @@ void compare_with_every_cube(const VoxelData& data, std::uint64_t seed, int bund
   std::size_t count = 0, wrong = 0;
   for (int b = 0; b < bundles; ++b) {
     const RayBundle rays = rays_for(random, data, grid.bounds());
-    const Nearest nearest = met(grid, rays);
+    const ClosestHits nearest = met(grid, rays);
     for (std::size_t j = 0; j < rays.size; ++j) {
       const Between expected = every_cube(data, rays.ray(j), slack);
       const double found = nearest.met(j) ? nearest.range[j] : infinity;
@@ -192,35 +192,35 @@ TEST_CASE("a single cube is entered by its faces") {
     }
   CHECK(range(grid, {{0, 1, 2}, normalize(Vec3{1, 1, 1})}) == relative(std::sqrt(3), 1e-14));
   CHECK(range(grid, {{0, 2.5, 3.5}, normalize(Vec3{2, 1, 0})}) == relative(std::sqrt(1.25), 1e-14));
-  CHECK(range(grid, {{0, 3, 4}, -right}) == infinity);
-  CHECK(range(grid, {{0, 5, 4}, right}) == infinity);
-  CHECK(range(grid, {{0, 3, 4}, right, 0, 0.99}) == infinity);
-  CHECK(range(grid, {{0, 3, 4}, right, 0, 1}) == 1);
+  CHECK(range(grid, {{0, 3, 4}, -axis::right}) == infinity);
+  CHECK(range(grid, {{0, 5, 4}, axis::right}) == infinity);
+  CHECK(range(grid, {{0, 3, 4}, axis::right, 0, 0.99}) == infinity);
+  CHECK(range(grid, {{0, 3, 4}, axis::right, 0, 1}) == 1);
 }
 
 TEST_CASE("a ray that begins inside a cube meets its far side") {
   const VoxelGrid<> grid(one_cell());
-  CHECK(range(grid, {{2, 3, 4}, right}) == 1);
-  CHECK(normal(grid, {{2, 3, 4}, right}) == -right);
-  CHECK(range(grid, {{2, 3, 4}, -up}) == 1);
-  CHECK(range(grid, {{0, 3, 4}, right, 1.5}) == 3);
-  CHECK(range(grid, {{0, 3, 4}, right, 1}) == 3);  // nothing is met at `near` itself
-  CHECK(range(grid, {{0, 3, 4}, right, 3}) == infinity);
-  CHECK(range(grid, {{2, 3, 4}, right, 0, 0.5}) == infinity);
-  CHECK(range(grid, {{1, 3, 4}, right}) == 2);
-  CHECK(range(grid, {{3, 3, 4}, -right}) == 2);
+  CHECK(range(grid, {{2, 3, 4}, axis::right}) == 1);
+  CHECK(normal(grid, {{2, 3, 4}, axis::right}) == -axis::right);
+  CHECK(range(grid, {{2, 3, 4}, -axis::up}) == 1);
+  CHECK(range(grid, {{0, 3, 4}, axis::right, 1.5}) == 3);
+  CHECK(range(grid, {{0, 3, 4}, axis::right, 1}) == 3);  // nothing is met at `near` itself
+  CHECK(range(grid, {{0, 3, 4}, axis::right, 3}) == infinity);
+  CHECK(range(grid, {{2, 3, 4}, axis::right, 0, 0.5}) == infinity);
+  CHECK(range(grid, {{1, 3, 4}, axis::right}) == 2);
+  CHECK(range(grid, {{3, 3, 4}, -axis::right}) == 2);
 }
 
 TEST_CASE("from inside a cube that has a neighbour, the neighbour is met where it begins") {
   VoxelData data = block(3, 1, 1, 1);
   data.materials = {0, 1, 2};
   const VoxelGrid<> grid(data);
-  const RayBundle rays = bundle_of({{0.25, 0.5, 0.5}, right});
-  const Nearest nearest = met(grid, rays);
+  const RayBundle rays = bundle_of({{0.25, 0.5, 0.5}, axis::right});
+  const ClosestHits nearest = met(grid, rays);
   CHECK(nearest.range[0] == 0.75);
   CHECK(grid.surface(nearest.primitive_of(0), rays, 0).material == 1);
   CHECK(grid.material_count() == 3);
-  CHECK(range(grid, {{2.25, 0.5, 0.5}, right}) == 0.75);
+  CHECK(range(grid, {{2.25, 0.5, 0.5}, axis::right}) == 0.75);
 }
 
 TEST_CASE("the ground below voxels that are no ground is found at its top") {
@@ -239,17 +239,17 @@ TEST_CASE("the ground below voxels that are no ground is found at its top") {
 TEST_CASE("incidence is by the voxel's normal, by the face, or perpendicular") {
   VoxelData data = block(2, 1, 1, 1);
   data.normals = {{0.6F, 0, 0.8F}, {0, 0, 0}};
-  const Ray first{{0.5, 0.5, 9}, -up}, second{{1.5, 0.5, 9}, -up};
+  const Ray first{{0.5, 0.5, 9}, -axis::up}, second{{1.5, 0.5, 9}, -axis::up};
   const VoxelGrid<OpaqueVoxels> by_normal(data);
   CHECK(length(normal(by_normal, first) - Vec3{0.6, 0, 0.8}) < 1e-6);
-  CHECK(normal(by_normal, second) == up);
+  CHECK(normal(by_normal, second) == axis::up);
   const VoxelGrid<OpaqueVoxels> by_face(data, {.incidence = Incidence::face});
-  CHECK(normal(by_face, first) == up);
-  CHECK(normal(by_face, {{9, 0.5, 0.5}, -right}) == right);
+  CHECK(normal(by_face, first) == axis::up);
+  CHECK(normal(by_face, {{9, 0.5, 0.5}, -axis::right}) == axis::right);
   const VoxelGrid<OpaqueVoxels> straight(data, {.incidence = Incidence::perpendicular});
   CHECK(normal(straight, first) == Vec3{});
   data.scales = {0.5F, 0.5F};
-  CHECK(normal(VoxelGrid<ScaledVoxels>(data), first) == up);
+  CHECK(normal(VoxelGrid<ScaledVoxels>(data), first) == axis::up);
   CHECK(normal(VoxelGrid<ScaledVoxels>(data, {.incidence = Incidence::perpendicular}), first) == Vec3{});
 }
 
@@ -263,7 +263,7 @@ TEST_CASE("normals are kept to a few millionths, and those along axes exactly") 
   const VoxelGrid<> grid(data);
   for (std::size_t i = 0; i < 1000; ++i) {
     const Vec3 expected{data.normals[i][0], data.normals[i][1], data.normals[i][2]};
-    const Vec3 found = normal(grid, {{-5, 0.5, static_cast<double>(i) + 0.5}, right});
+    const Vec3 found = normal(grid, {{-5, 0.5, static_cast<double>(i) + 0.5}, axis::right});
     CHECK(length(found - expected) < (i < 3 ? 1e-300 : 2e-6));
   }
 }
@@ -273,16 +273,16 @@ TEST_CASE("a scaled cube is as large as it is said and where it is said") {
   data.scales = {0.5F}, data.shifts = {{0.25F, -0.25F, 0}};
   const VoxelGrid<ScaledVoxels> grid(data);  // the cube goes from (13, 22, 32.5) to (14, 23, 33.5)
   CHECK(grid.bounds() == Box{{12, 22, 32}, {14, 24, 34}});
-  CHECK(range(grid, {{13.5, 22.5, 40}, -up}) == relative(6.5, 1e-6));
-  CHECK(range(grid, {{0, 22.5, 33}, right}) == relative(13, 1e-6));
-  CHECK(range(grid, {{20, 22.5, 33}, -right}) == relative(6, 1e-6));
-  CHECK(range(grid, {{12.9, 22.5, 40}, -up}) == infinity);
-  CHECK(range(grid, {{13.5, 23.1, 40}, -up}) == infinity);
-  CHECK(range(grid, {{13.5, 22.5, 33}, up}) == relative(0.5, 1e-5));
-  CHECK(range(grid, {{12.5, 22.5, 33}, right}) == relative(0.5, 1e-5));
-  CHECK(normal(grid, {{12.5, 22.5, 33}, right}) == -right);
+  CHECK(range(grid, {{13.5, 22.5, 40}, -axis::up}) == relative(6.5, 1e-6));
+  CHECK(range(grid, {{0, 22.5, 33}, axis::right}) == relative(13, 1e-6));
+  CHECK(range(grid, {{20, 22.5, 33}, -axis::right}) == relative(6, 1e-6));
+  CHECK(range(grid, {{12.9, 22.5, 40}, -axis::up}) == infinity);
+  CHECK(range(grid, {{13.5, 23.1, 40}, -axis::up}) == infinity);
+  CHECK(range(grid, {{13.5, 22.5, 33}, axis::up}) == relative(0.5, 1e-5));
+  CHECK(range(grid, {{12.5, 22.5, 33}, axis::right}) == relative(0.5, 1e-5));
+  CHECK(normal(grid, {{12.5, 22.5, 33}, axis::right}) == -axis::right);
   data.scales = {1}, data.shifts.clear();
-  CHECK(range(VoxelGrid<ScaledVoxels>(data), {{13, 23, 40}, -up}) == 6);
+  CHECK(range(VoxelGrid<ScaledVoxels>(data), {{13, 23, 40}, -axis::up}) == 6);
 }
 
 TEST_CASE("a grid is met as if every cube had been tested") {
@@ -311,9 +311,9 @@ TEST_CASE("a bundle finds what its rays find alone") {
   const VoxelGrid<> grid(data);
   for (int b = 0; b < 200; ++b) {
     const RayBundle rays = rays_for(random, data, grid.bounds());
-    const Nearest nearest = met(grid, rays);
+    const ClosestHits nearest = met(grid, rays);
     for (std::size_t j = 0; j < rays.size; ++j) {
-      const Nearest alone = met(grid, bundle_of(rays.ray(j)));
+      const ClosestHits alone = met(grid, bundle_of(rays.ray(j)));
       CHECK(alone.range[0] == nearest.range[j]);
       CHECK(alone.id[0] == nearest.id[j]);
     }
@@ -322,9 +322,9 @@ TEST_CASE("a bundle finds what its rays find alone") {
 
 TEST_CASE("what was met before is beaten only by what is nearer, or as near and of a smaller number") {
   const VoxelGrid<> grid(one_cell());
-  const RayBundle rays = bundle_of({{0, 3, 4}, right});
+  const RayBundle rays = bundle_of({{0, 3, 4}, axis::right});
   for (const double before : {0.5, 1.0, 1.5}) {
-    Nearest nearest(rays);
+    ClosestHits nearest(rays);
     nearest.part = std::uint64_t{1} << 32;
     nearest.offer(0, before, 5);
     nearest.part = 0;
@@ -352,7 +352,7 @@ TEST_CASE("through the edges and corners of a closed wall nothing escapes") {
             for (int z = -reach; z <= reach; ++z)
               if (x != 0 || y != 0 || z != 0) rays.set_direction(rays.size++, normalize(Vec3{x, y, z}));
             rays.pad();
-            const Nearest nearest = met(grid, rays);
+            const ClosestHits nearest = met(grid, rays);
             for (std::size_t j = 0; j < rays.size; ++j) escaped += nearest.met(j) ? 0 : 1;
           }
       }
@@ -367,9 +367,9 @@ TEST_CASE("rays between cells of a block, along its planes and edges, meet it wh
     const VoxelGrid<> grid(block(9, 9, 9, 1, corner));
     for (int i = 0; i < 9; ++i)
       for (int j = 0; j < 9; ++j) {
-        CHECK(range(grid, {corner + Vec3{i, j, 20}, -up}) == 11);
-        CHECK(range(grid, {corner + Vec3{i, -4, j + 0.5}, forward}) == 4);
-        CHECK(range(grid, {corner + Vec3{14, i, j}, -right}) == 5);
+        CHECK(range(grid, {corner + Vec3{i, j, 20}, -axis::up}) == 11);
+        CHECK(range(grid, {corner + Vec3{i, -4, j + 0.5}, axis::forward}) == 4);
+        CHECK(range(grid, {corner + Vec3{14, i, j}, -axis::right}) == 5);
         if (i < 8 && j > 0) CHECK(range(grid, {corner + Vec3{i - 1.0, j, -1}, normalize(Vec3{1, 0, 1})}) == relative(std::sqrt(2), 1e-9));
       }
   }
@@ -380,19 +380,19 @@ TEST_CASE("rays of no number, without direction or without range meet nothing, a
   const double nan = std::nan("");
   RayBundle rays;
   rays.origin = {2.5, 2.5, 9}, rays.size = 7;
-  const Vec3 directions[] = {-up, {nan, 0, -1}, {0, 0, 0}, {0, 0, -infinity}, {nan, nan, nan}, {0, 1e-320, 0}, {0, 0, -0.5}};
+  const Vec3 directions[] = {-axis::up, {nan, 0, -1}, {0, 0, 0}, {0, 0, -infinity}, {nan, nan, nan}, {0, 1e-320, 0}, {0, 0, -0.5}};
   for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, directions[j]);
   rays.pad();
-  const Nearest nearest = met(grid, rays);
+  const ClosestHits nearest = met(grid, rays);
   for (std::size_t j = 1; j < 6; ++j) CHECK_FALSE(nearest.met(j));
   CHECK(nearest.range[0] == 4);
   CHECK(nearest.range[6] == 8);
-  CHECK(range(grid, {{nan, 2, 9}, -up}) == infinity);
-  CHECK(range(grid, {{2, 2, infinity}, -up}) == infinity);
+  CHECK(range(grid, {{nan, 2, 9}, -axis::up}) == infinity);
+  CHECK(range(grid, {{2, 2, infinity}, -axis::up}) == infinity);
   CHECK(range(grid, {{2.5, 2.5, 2.5}, {1e-320, 0, 0}}) == infinity);
-  CHECK(range(grid, {{2.5, 2.5, 9}, -up, infinity}) == infinity);
-  CHECK(range(grid, {{2.5, 2.5, 9}, -up, 5, 4}) == infinity);
-  CHECK(range(grid, {{2.5, 2.5, 1e9}, -up}) == relative(1e9 - 5, 1e-15));
+  CHECK(range(grid, {{2.5, 2.5, 9}, -axis::up, infinity}) == infinity);
+  CHECK(range(grid, {{2.5, 2.5, 9}, -axis::up, 5, 4}) == infinity);
+  CHECK(range(grid, {{2.5, 2.5, 1e9}, -axis::up}) == relative(1e9 - 5, 1e-15));
 }
 
 TEST_CASE("cells that are the same, or too far apart, are refused") {
@@ -448,7 +448,7 @@ TEST_CASE("a filled grid is met like the one that it was archived from") {
   Generator random(420);
   VoxelData data = scattered(random, 3000, 50, 0.5, {3, 4, 5});
   for (std::size_t i = 0; i < data.cells.size(); ++i) data.materials.push_back(static_cast<std::uint16_t>(i % 7));
-  VoxelGrid<> made(data), filled{Unfilled{}};
+  VoxelGrid<> made(data), filled{DeserializeTag{}};
   CHECK(filled.size() == 0);
 
   // members in their order: what one lists is put into the other
@@ -463,7 +463,7 @@ TEST_CASE("a filled grid is met like the one that it was archived from") {
   CHECK(filled.memory() == made.memory());
   for (int b = 0; b < 50; ++b) {
     const RayBundle rays = rays_for(random, data, made.bounds());
-    const Nearest one = met(made, rays), other = met(filled, rays);
+    const ClosestHits one = met(made, rays), other = met(filled, rays);
     for (std::size_t j = 0; j < rays.size; ++j) {
       CHECK(one.id[j] == other.id[j]);
       if (one.met(j)) CHECK(made.surface(one.primitive_of(j), rays, j).material == filled.surface(other.primitive_of(j), rays, j).material);
@@ -497,7 +497,7 @@ std::vector<NamedLeaves> all_leaves() {
 }
 
 /// Downwards at an angle from the vertical.
-Vec3 downwards(double zenith) { return rotation_about(up, 0.4) * Vec3{std::sin(zenith), 0, -std::cos(zenith)}; }
+Vec3 downwards(double zenith) { return rotation_about(axis::up, 0.4) * Vec3{std::sin(zenith), 0, -std::cos(zenith)}; }
 
 constexpr double five_zeniths[] = {0.0, 0.35, 0.7, 1.05, 1.3};
 
@@ -515,7 +515,7 @@ double share_that_passes(const Target& target, const Ray& ray, std::size_t n, st
       target.closest(rays, hits);
       for (const Hit& hit : hits) passed += hit.range < infinity ? 0 : 1;
     } else {
-      const Nearest nearest = met(target, rays);
+      const ClosestHits nearest = met(target, rays);
       for (std::size_t j = 0; j < rays.size; ++j) passed += nearest.met(j) ? 0 : 1;
     }
   }
@@ -578,7 +578,7 @@ TEST_CASE("leaves are met at depths of an exponential distribution, and at the s
   for (PulseIndex pulse = 0; pulse < 40'000; ++pulse) {
     RayBundle rays = bundle_of({{0, 0, 2}, direction});
     rays.pulse = pulse, rays.seed = 426;
-    const Nearest one = met(coarse, rays), other = met(fine, rays);
+    const ClosestHits one = met(coarse, rays), other = met(fine, rays);
     REQUIRE(one.met(0) == other.met(0));
     if (!one.met(0)) continue;
     apart = std::max(apart, std::fabs(one.range[0] - other.range[0]));
@@ -608,7 +608,7 @@ TEST_CASE("through voxels of different densities, and gaps, the depths add up") 
   const double slanted = 1 / std::cos(0.8);
   CHECK(errors(share_that_passes(grid, {{0, 0, 3}, downwards(0.8)}, n, 427), std::exp(-0.5 * 5 * 0.2 * slanted), n) < 3);
   data.densities.assign(data.cells.size(), 0);
-  CHECK(share_that_passes(VoxelGrid<TransmissiveVoxels>(data), {{0, 0, 3}, -up}, 1000, 427) == 1);
+  CHECK(share_that_passes(VoxelGrid<TransmissiveVoxels>(data), {{0, 0, 3}, -axis::up}, 1000, 427) == 1);
 }
 
 TEST_CASE("plants behind each other draw for themselves; each keeps its gaps when it is scaled, and its vertical when it is turned") {
@@ -629,27 +629,27 @@ TEST_CASE("plants behind each other draw for themselves; each keeps its gaps whe
   CHECK(errors(share_that_passes(Woods({at(0), at(5), at(10)}), ray, n, 430), one * one * one, n) < 3);
   CHECK(errors(share_that_passes(Woods({at(0, 4)}), ray, n, 431), one, n) < 3);
   // leaning so that the beam comes along its own vertical
-  const Rotation lean = rotation_about(cross(up, -ray.direction), zenith);
-  CHECK(errors(share_that_passes(Woods({at(0, 1, lean)}), ray, n, 432), std::exp(-leaves.projection(up) * density), n) < 3);
+  const Rotation lean = rotation_about(cross(axis::up, -ray.direction), zenith);
+  CHECK(errors(share_that_passes(Woods({at(0, 1, lean)}), ray, n, 432), std::exp(-leaves.projection(axis::up) * density), n) < 3);
 }
 
 TEST_CASE("no leaf is met at `near` itself, however dense they are") {
   const VoxelGrid<TransmissiveVoxels> grid(slab(1, 1e30));
   for (const double near : {0.0, 0.25, 0.75}) {
-    const double found = range(grid, {{0, 0, 1.5}, -up, near});
+    const double found = range(grid, {{0, 0, 1.5}, -axis::up, near});
     CHECK(found > near);
     CHECK(found == relative(std::max(near, 0.5), 1e-15));
   }
-  CHECK(range(grid, {{0, 0, 0.5}, -up}) > 0);
-  CHECK(range(grid, {{0, 0, 1.5}, -up, 0, 0.4}) == infinity);
+  CHECK(range(grid, {{0, 0, 0.5}, -axis::up}) > 0);
+  CHECK(range(grid, {{0, 0, 1.5}, -axis::up, 0, 0.4}) == infinity);
 }
 
 TEST_CASE("a subray draws the same whatever bundle it comes in, and leaves have no direction") {
   const VoxelGrid<TransmissiveVoxels> grid(slab(3, 1));
   Generator random(433);
-  RayBundle rays = random.cone({0, 0, 4}, -up, 0.2, 40);
+  RayBundle rays = random.cone({0, 0, 4}, -axis::up, 0.2, 40);
   rays.seed = 434, rays.pulse = 435, rays.first_subray = 7;
-  const Nearest all = met(grid, rays);
+  const ClosestHits all = met(grid, rays);
   for (std::size_t j = 0; j < rays.size; ++j) {
     RayBundle alone = bundle_of(rays.ray(j));
     alone.seed = rays.seed, alone.pulse = rays.pulse, alone.first_subray = 7 + static_cast<std::uint32_t>(j);

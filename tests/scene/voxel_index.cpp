@@ -121,7 +121,7 @@ TEST_CASE("a walk ends where its visitor says") {
   for (std::uint32_t x = 0; x < 40; ++x) data.cells.push_back({x, 0, 0});
   std::vector<std::uint32_t> order;
   const VoxelIndex index(data, order);
-  const RayBundle rays = bundle_of({{-1, 0.5, 0.5}, right});
+  const RayBundle rays = bundle_of({{-1, 0.5, 0.5}, axis::right});
   const auto visits = [&](double limit, auto answer) {
     int n = 0;
     index.walk(index.ray(rays, 0), 0, limit, [&](auto, const LatticeCell&, const Crossing& in, auto) { return ++n, answer(in); });

@@ -48,7 +48,7 @@ class LeastAccelerator {
   std::size_t memory() const noexcept { return all_.size() * sizeof(PrimitiveIndex); }
   std::span<const PrimitiveIndex> order() const noexcept { return all_; }
   template <class Test>
-  void closest(const RayBundle&, const Test& test, Nearest&) const noexcept {
+  void closest(const RayBundle&, const Test& test, ClosestHits&) const noexcept {
     test(std::span<const PrimitiveIndex>(all_));
   }
 
@@ -63,7 +63,7 @@ class LeastGeometry {
   const Box& bounds() const noexcept { return bounds_; }
   std::size_t memory() const noexcept { return 0; }
   std::size_t material_count() const noexcept { return 1; }
-  void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
+  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
     for (std::size_t j = 0; j < rays.size; ++j) {
       const double range = -rays.origin.z / rays.z[j];
       if (!(range > rays.near && range <= rays.far)) continue;
@@ -71,7 +71,7 @@ class LeastGeometry {
       if (p.x * p.x + p.y * p.y <= 1) nearest.offer(j, range, 0);
     }
   }
-  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return {up, 0}; }
+  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return {axis::up, 0}; }
 
  private:
   Box bounds_{{-1, -1, 0}, {1, 1, 0}};

@@ -15,7 +15,7 @@
 #include <pulsecast/mpi/run.hpp>
 #include <pulsecast/run.hpp>
 
-#include "support/mpi_team.hpp"
+#include "support/mpi_group.hpp"
 #include "support/temporary_folder.hpp"
 
 // Tests that run as they are, in one process, and under mpirun in several, all of which do all of them and must find the same.
@@ -73,24 +73,24 @@ struct Showers {
 
 /// A file as one process writes it, and as all do.
 template <class Survey>
-void expect_same_bytes(const Survey& survey, const std::string& name, const std::function<void(const std::filesystem::path&)>& alone,
-                       const std::function<std::unique_ptr<MpiOutput>(const std::filesystem::path&)>& shared,
-                       const std::vector<std::string>& endings) {
+void require_same_bytes(const Survey& survey, const std::string& name, const std::function<void(const std::filesystem::path&)>& alone,
+                        const std::function<std::unique_ptr<MpiOutput>(const std::filesystem::path&)>& shared,
+                        const std::vector<std::string>& endings) {
   for (const unsigned threads : {1U, 2U}) {
     const SharedFolder folder;
     const std::filesystem::path one = folder / ("one." + name), all = folder / ("all." + name);
-    if (mpi_team().first()) alone(one);
+    if (mpi_group().first()) alone(one);
     {
       const auto output = shared(all);
       // in two runs, as a strip of two legs is
-      const RunSummary first = run(mpi_team(), survey, {.threads = threads, .end = survey.size() / 3}, *output);
-      const RunSummary second = run(mpi_team(), survey, {.threads = threads, .first = survey.size() / 3}, *output);
+      const RunSummary first = run(mpi_group(), survey, {.threads = threads, .end = survey.size() / 3}, *output);
+      const RunSummary second = run(mpi_group(), survey, {.threads = threads, .first = survey.size() / 3}, *output);
       CHECK(first.complete);
       CHECK(first.slots + second.slots == survey.size());
       output->close();
     }
-    if (!mpi_team().first()) continue;
-    INFO(name, ", ", mpi_team().size(), " processes, ", threads, " threads");
+    if (!mpi_group().first()) continue;
+    INFO(name, ", ", mpi_group().size(), " processes, ", threads, " threads");
     for (const std::string& ending : endings) {
       const auto with = [&](std::filesystem::path path) { return ending.empty() ? path : path.replace_extension(ending); };
       const std::string expected = content(with(one));
@@ -112,7 +112,7 @@ auto written_alone(const Survey& survey, const Arguments&... arguments) {
 
 template <class Output, class... Arguments>
 auto written_by_all(const Arguments&... arguments) {
-  return [=](const std::filesystem::path& path) { return std::make_unique<Output>(mpi_team(), path, arguments...); };
+  return [=](const std::filesystem::path& path) { return std::make_unique<Output>(mpi_group(), path, arguments...); };
 }
 
 }  // namespace pulsecast::support

@@ -239,7 +239,7 @@ struct Comparison {
 /// Asks two geometries for the same bundle, and counts the rays whose answers differ in any bit.
 template <Geometry Believed, Geometry Other>
 void compare(const Believed& believed, const Other& other, const char* name, const RayBundle& rays, Comparison& result) {
-  Nearest expected(rays), found(rays);
+  ClosestHits expected(rays), found(rays);
   believed.closest(rays, expected);
   other.closest(rays, found);
   for (std::size_t j = 0; j < rays.size; ++j) {
@@ -259,7 +259,7 @@ void compare(const Believed& believed, const Other& other, const char* name, con
 /// Rays from an inner point that met nothing, although the mesh around it is closed.
 template <Geometry G>
 [[nodiscard]] std::uint64_t escaped(const G& mesh, const RayBundle& rays) {
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   mesh.closest(rays, nearest);
   std::uint64_t count = 0;
   for (std::size_t j = 0; j < rays.size; ++j) count += nearest.met(j) ? 0 : 1;
@@ -280,7 +280,7 @@ template <Accelerator A>
 [[nodiscard]] std::vector<std::size_t> offers(const A& tree, std::size_t n, std::size_t& largest) {
   std::vector<std::size_t> count(n);
   const RayBundle rays = all_around(tree.bounds().empty() ? Vec3{} : tree.bounds().centre());
-  Nearest nearest(rays);
+  ClosestHits nearest(rays);
   largest = 0;
   const auto test = [&](std::span<const PrimitiveIndex> primitives) {
     largest = std::max(largest, primitives.size());

@@ -25,8 +25,8 @@ namespace {
 /// Reflectance of a plate 10 m ahead that is turned by an angle.
 double measured(const Material& material, double angle) {
   using Mesh = TriangleMesh<>;
-  const Vec3 across = rotation_about(up, angle) * right, centre{0, 10, 0};
-  const MeshData plate{{centre - across - 3.0 * up, centre + across - 3.0 * up, centre + 2.0 * up}, {{0, 1, 2}}, {}};
+  const Vec3 across = rotation_about(axis::up, angle) * axis::right, centre{0, 10, 0};
+  const MeshData plate{{centre - across - 3.0 * axis::up, centre + across - 3.0 * axis::up, centre + 2.0 * axis::up}, {{0, 1, 2}}, {}};
   const Scene<Mesh> scene({{std::make_shared<const Mesh>(plate), material_table({material}), {}, 1}});
   const Result result = one_pulse(scene, SingleRay{}, Laser{}, Receiver{});
   return result.echoes.empty() ? 0 : result.echoes[0].reflectance;

@@ -23,7 +23,7 @@ using namespace pulsecast::validation;
 
 TEST_CASE("rate of false echoes") {
   for (const int threshold : {2, 3, 4}) {
-    const WaveformSettings settings{.threshold = threshold * 1e-9, .window = 0, .max_returns = 255, .record_length = 1000e-9};
+    const WaveformSettings settings{.threshold = threshold * 1e-9, .window = 0, .returns_max = 255, .record_length = 1000e-9};
     const FullWaveform detector(settings, NoWidth{}, ReceiverNoise{.deviation = 1e-9});
     auto workspace = detector.workspace(1);
     double found = 0, samples = 0;

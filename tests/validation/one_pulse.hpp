@@ -35,7 +35,7 @@ template <Footprint Pattern, Target Map, Detector Instrument = FirstHit>
 [[nodiscard]] Result one_pulse(const Map& map, const Pattern& footprint, const Laser& laser = {}, const Receiver& receiver = vacuum,
                                const Instrument& detector = {}) {
   const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}};
-  const Survey survey{source, Recorded{footprint}, map, receiver, detector};
+  const Survey survey{source, WithSubrayRecord{footprint}, map, receiver, detector};
   auto workspace = survey.workspace();
   const Outcome o = survey(0, workspace);
   Result result{o.shares, 0, {o.subrays.begin(), o.subrays.end()}, {o.echoes.begin(), o.echoes.end()}};

@@ -13,18 +13,18 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/accel/two_tree.hpp>
-#include <pulsecast/base/expect.hpp>
-#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/accel/binary_sah_tree.hpp>
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
 
 /// A tree of boxes with up to eight children a node, all of whose boxes a bundle is tested against at once. It is split in two by the
 /// surface-area heuristic, down to single primitives; then some levels are made one, and up to `leaf_size` primitives a leaf, as costs
-/// least. Every primitive stands in exactly one leaf. A bundle goes through it as a whole, front to back. Where a split would make the tree
-/// of twos deeper than 64 levels, halves are made. The tree is the same for every number of threads that it is built on; 0 for as many as
+/// least. Every primitive stands in exactly one leaf. A bundle goes through it as a whole, front to back. Where a split would make the
+/// binary tree deeper than 64 levels, it halves. The tree is the same for every number of threads that it is built on; 0 for as many as
 /// the machine runs.
 /// Source: Wald 2007 (build in bins); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic); Wald, Benthin & Boulos 2008
 /// (collapsing).
@@ -34,28 +34,28 @@ class Bvh {
   /// Of a span of boxes, or of anything that has a size and gives a `Box` of each number. Leaves of some primitives, at most 7, are for
   /// those that are tested several at once; where a test is a search of its own, as in the parts of a scene, take one a leaf, each behind
   /// its own box.
-  explicit Bvh(const detail::BoxSource& boxes, unsigned threads = 0, std::uint32_t leaf_size = 4) {
-    expect_within("Bvh::leaf_size", leaf_size, 1, 7, "");
+  explicit Bvh(const detail::BoxRangeRef& boxes, unsigned threads = 0, std::uint32_t leaf_size = 4) {
+    require_within("Bvh::leaf_size", leaf_size, 1, 7, "");
     detail::BuildInput<Real> input(boxes, threads);
     bounds_ = input.bounds, centre_ = input.centre;
     if (input.primitives.empty()) return;
-    const Twos twos(input.primitives, leaf_size, threads);
-    collapse(twos, threads);
+    const BinaryTree binary(input.primitives, leaf_size, threads);
+    collapse(binary, threads);
   }
 
-  explicit Bvh(Unfilled) {}
+  explicit Bvh(DeserializeTag) {}
   template <class Archive>
   void archive(Archive& a) {
     a(bounds_, centre_, depth_, nodes_, primitives_);
   }
 
   /// Whether it is a tree at all, no deeper than it may be, and over so many primitives.
-  [[nodiscard]] bool sound(std::size_t primitives) const {
+  [[nodiscard]] bool is_consistent(std::size_t primitives) const {
     std::vector<std::uint8_t> depths(nodes_.size());  // 0 where nothing leads to so far
     if (!depths.empty()) depths[0] = 1;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const Node& node = nodes_[i];
-      if (depths[i] == 0 || depths[i] > detail::deepest || node.boxes.count > places) return false;
+      if (depths[i] == 0 || depths[i] > detail::max_depth || node.boxes.count > places) return false;
       for (std::size_t place = 0; place < node.boxes.count; ++place) {
         const std::size_t first = node.first(place);
         if (node.size(place) > 0) {
@@ -79,7 +79,7 @@ class Bvh {
 
   template <class Test>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
-  void closest(const RayBundle& rays, const Test& test, Nearest& nearest) const noexcept {
+  void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
     if (nodes_.empty()) return;
     if (rays.size == 1)
       descend(RayInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
@@ -88,11 +88,11 @@ class Bvh {
   }
 
  private:
-  using Twos = detail::TwoTree<Real>;
-  static constexpr std::size_t places = Twos::places;
+  using BinaryTree = detail::BinarySahTree<Real>;
+  static constexpr std::size_t places = BinaryTree::places;
 
   struct alignas(64) Node {
-    CompactBoxes<Real> boxes;
+    QuantizedBox8<Real> boxes;
     std::uint32_t children = 0;       ///< the first node below; the others follow it
     std::uint32_t primitives = 0;     ///< the first primitive of the leaves; the others follow it
     std::uint8_t kinds[places] = {};  ///< by place: the size of a leaf in the lower three bits, 0 for a node; above, where it follows
@@ -104,35 +104,35 @@ class Bvh {
   };
   static_assert(sizeof(Node) == (sizeof(Real) == 4 ? 128 : 192));
 
-  struct Waiting {
+  struct StackEntry {
     Real entry;
     std::uint32_t first, size;  ///< of a leaf's primitives, or the number of a node and 0
   };
   static constexpr std::uint32_t nothing = 0xFFFFFFFF;  ///< in place of a size
 
   template <class Interval, class Test>
-  void descend(const Interval& interval, const RayBundle& rays, const Test& test, Nearest& nearest) const noexcept {
-    std::array<Waiting, (places - 1) * detail::deepest + 1> stack;
-    std::size_t waiting = 0;
+  void descend(const Interval& interval, const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
+    std::array<StackEntry, (places - 1) * detail::max_depth + 1> stack;
+    std::size_t stack_size = 0;
     Real limit = interval.limit(rays, nearest);
     const Node* node = nodes_.data();
     for (;;) {
       std::array<Real, places> entries;
       unsigned met = interval.inside(node->boxes, limit, entries);
-      const auto take_first = [&]() noexcept -> Waiting {
+      const auto take_first = [&]() noexcept -> StackEntry {
         const auto place = static_cast<std::size_t>(std::countr_zero(met));
         met &= met - 1;
         return {entries[place], node->first(place), node->size(place)};
       };
-      Waiting next{0, 0, nothing};
+      StackEntry next{0, 0, nothing};
       if (met != 0) {  // the nearest at once; the others to the stack, the nearest of them on top
         next = take_first();
-        const std::size_t bottom = waiting;
+        const std::size_t bottom = stack_size;
         while (met != 0) {
-          Waiting other = take_first();
+          StackEntry other = take_first();
           if (other.entry < next.entry) std::swap(other, next);
-          announce(other, test);
-          std::size_t at = waiting++;
+          prefetch_entry(other, test);
+          std::size_t at = stack_size++;
           for (; at > bottom && stack[at - 1].entry < other.entry; --at) stack[at] = stack[at - 1];
           stack[at] = other;
         }
@@ -143,8 +143,8 @@ class Bvh {
           limit = interval.limit(rays, nearest);
         }
         do {
-          if (waiting == 0) return;
-          next = stack[--waiting];
+          if (stack_size == 0) return;
+          next = stack[--stack_size];
         } while (next.entry > limit);
       }
       node = &nodes_[next.first];
@@ -152,29 +152,29 @@ class Bvh {
   }
 
   template <class Test>
-  void announce(const Waiting& next, const Test& test) const noexcept {
+  void prefetch_entry(const StackEntry& next, const Test& test) const noexcept {
     if (next.size == 0)
       prefetch(&nodes_[next.first]);
-    else if constexpr (requires { test.soon(std::span<const PrimitiveIndex>()); })
-      test.soon(std::span<const PrimitiveIndex>(primitives_.data() + next.first, next.size));
+    else if constexpr (requires { test.prefetch(std::span<const PrimitiveIndex>()); })
+      test.prefetch(std::span<const PrimitiveIndex>(primitives_.data() + next.first, next.size));
   }
 
-  /// A node to be made of what is below one of twos.
+  /// A node to be made of what is below one of the binary tree.
   struct Open {
-    typename Twos::Range range;
+    typename BinaryTree::Range range;
     std::uint32_t node, depth;
   };
 
   /// Makes the upper nodes one after another, and what is below them side by side: first by themselves, then where they stand in the end.
-  void collapse(const Twos& twos, unsigned threads) {
-    const std::size_t count = twos.primitives().size();
-    const Draft<PrimitiveIndex> primitives(count);
+  void collapse(const BinaryTree& binary, unsigned threads) {
+    const std::size_t count = binary.primitives().size();
+    const SharedBuffer<PrimitiveIndex> primitives(count);
     std::vector<Node> upper(1);
     std::vector<Open> below;
     const std::size_t grain = std::max<std::size_t>(count / 64, 4096);
     std::size_t next = 0;
     std::size_t depth = make_nodes(
-        twos, {twos.root(), 0, 1}, upper, primitives, next, [&](const Open& open) { return open.range.size() <= grain; }, below);
+        binary, {binary.root(), 0, 1}, upper, primitives, next, [&](const Open& open) { return open.range.size() <= grain; }, below);
     struct Subtree {
       std::vector<Node> nodes;
       std::size_t first_node = 0, first_primitive = 0, depth = 0;
@@ -187,11 +187,11 @@ class Bvh {
       std::size_t at = own.first_primitive;
       std::vector<Open> none;
       own.depth = make_nodes(
-          twos, {below[i].range, 0, below[i].depth}, own.nodes, primitives, at, [](const Open&) { return false; }, none);
+          binary, {below[i].range, 0, below[i].depth}, own.nodes, primitives, at, [](const Open&) { return false; }, none);
     });
     std::size_t nodes = upper.size();
     for (Subtree& own : subtrees) own.first_node = nodes, nodes += own.nodes.size() - 1, depth = std::max(depth, own.depth);
-    const Draft<Node> all(nodes);
+    const SharedBuffer<Node> all(nodes);
     std::copy(upper.begin(), upper.end(), all.begin());
     for_each_index(subtrees.size(), threads, [&](std::size_t i) {  // its first node takes the place that was left for it
       const Subtree& own = subtrees[i];
@@ -205,11 +205,12 @@ class Bvh {
 
   /// Makes a node, for which there is a place, and all that is below it but for what is `left`, which goes to `below`. Gives the depth.
   template <class Left>
-  static std::size_t make_nodes(const Twos& twos, const Open& top, std::vector<Node>& nodes, const Draft<PrimitiveIndex>& primitives,
-                                std::size_t& next, const Left& left, std::vector<Open>& below) {
+  static std::size_t make_nodes(const BinaryTree& binary, const Open& top, std::vector<Node>& nodes,
+                                const SharedBuffer<PrimitiveIndex>& primitives, std::size_t& next, const Left& left,
+                                std::vector<Open>& below) {
     std::size_t depth = 0;
     std::vector<Open> tasks{top};
-    std::vector<typename Twos::Range> children;
+    std::vector<typename BinaryTree::Range> children;
     while (!tasks.empty()) {
       const Open task = tasks.back();
       tasks.pop_back();
@@ -218,16 +219,16 @@ class Bvh {
         continue;
       }
       children.clear();
-      twos.gather(task.range, places, children);
+      binary.gather(task.range, places, children);
       Node node;
       node.children = static_cast<std::uint32_t>(nodes.size()), node.primitives = static_cast<std::uint32_t>(next);
-      node.boxes.begin(twos.box(task.range));
+      node.boxes.begin(binary.box(task.range));
       for (std::size_t place = 0; place < children.size(); ++place) {
         const auto& child = children[place];
-        node.boxes.add(twos.box(child));
-        if (twos.leaf(child)) {
+        node.boxes.add(binary.box(child));
+        if (binary.leaf(child)) {
           node.kinds[place] = static_cast<std::uint8_t>((next - node.primitives) << 3U | child.size());
-          for (std::uint32_t i = child.begin; i < child.end; ++i) primitives[next++] = twos.primitives()[i].primitive;
+          for (std::uint32_t i = child.begin; i < child.end; ++i) primitives[next++] = binary.primitives()[i].primitive;
         } else {
           node.kinds[place] = static_cast<std::uint8_t>((nodes.size() - node.children) << 3U);
           tasks.push_back({child, static_cast<std::uint32_t>(nodes.size()), task.depth + 1});
@@ -242,8 +243,8 @@ class Bvh {
 
   Box bounds_;
   Vec3 centre_{};
-  Frozen<Node> nodes_;                 ///< the root first
-  Frozen<PrimitiveIndex> primitives_;  ///< of the leaves
+  SharedArray<Node> nodes_;                 ///< the root first
+  SharedArray<PrimitiveIndex> primitives_;  ///< of the leaves
   std::size_t depth_ = 0;
 };
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <pulsecast/accel/sah.hpp>
-#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -32,14 +32,14 @@ class KdTree {
     build({input.primitives.begin(), input.primitives.end()});
   }
 
-  explicit KdTree(Unfilled) {}
+  explicit KdTree(DeserializeTag) {}
   template <class Archive>
   void archive(Archive& a) {
     a(bounds_, centre_, cell_, depth_, nodes_, order_);
   }
 
   /// Whether it is a tree at all, no deeper than it may be, and over so many primitives.
-  [[nodiscard]] bool sound(std::size_t primitives) const {
+  [[nodiscard]] bool is_consistent(std::size_t primitives) const {
     std::vector<std::uint8_t> depths(nodes_.size());  // 0 where nothing leads to so far
     if (!depths.empty()) depths[0] = 1;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -51,7 +51,7 @@ class KdTree {
         continue;
       }
       if (first <= i || first >= nodes_.size() - 1 || depths[first] != 0 || depths[first + 1] != 0) return false;
-      if (depths[i] > detail::deepest) return false;
+      if (depths[i] > detail::max_depth) return false;
       depths[first] = depths[first + 1] = static_cast<std::uint8_t>(depths[i] + 1);
     }
     return std::all_of(order_.begin(), order_.end(), [&](PrimitiveIndex i) { return i < primitives; });
@@ -67,11 +67,11 @@ class KdTree {
 
   template <class Test>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
-  void closest(const RayBundle& rays, const Test& test, Nearest& nearest) const noexcept {
+  void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
     if (nodes_.empty()) return;
     const BundleInterval<Real> interval(rays, bounds_, centre_);
-    std::array<Waiting, detail::deepest> stack;
-    std::size_t waiting = 0;
+    std::array<StackEntry, detail::max_depth> stack;
+    std::size_t stack_size = 0;
     Real limit = round_up<Real>(nearest.limit(rays));
     const Node* node = &nodes_[0];
     Span span = interval.inside(cell_);
@@ -84,8 +84,8 @@ class KdTree {
         const bool earlier = low.entry < high.entry || (low.entry == high.entry && low.exit <= high.exit);
         const bool low_first = into_low && (!into_high || earlier);
         if (into_low && into_high) {
-          PULSECAST_EXPECT(waiting < stack.size());
-          stack[waiting++] = low_first ? Waiting{children + 1, high} : Waiting{children, low};
+          PULSECAST_ASSERT(stack_size < stack.size());
+          stack[stack_size++] = low_first ? StackEntry{children + 1, high} : StackEntry{children, low};
         }
         if (into_low || into_high) {
           node = low_first ? children : children + 1, span = low_first ? low : high;
@@ -96,8 +96,8 @@ class KdTree {
         limit = round_up<Real>(nearest.limit(rays));
       }
       do {
-        if (waiting == 0) return;
-        node = stack[--waiting].node, span = stack[waiting].span;
+        if (stack_size == 0) return;
+        node = stack[--stack_size].node, span = stack[stack_size].span;
       } while (span.entry > limit);
     }
   }
@@ -123,7 +123,7 @@ class KdTree {
   };
   static_assert(sizeof(Node) == 16);
 
-  struct Waiting {
+  struct StackEntry {
     const Node* node;
     Span span;
   };
@@ -147,7 +147,7 @@ class KdTree {
     cell_ = box_of(heap).box();
     const auto n = static_cast<double>(heap.size());
     // Source: Pharr, Jakob & Humphreys 2016, sec. 4.4
-    const std::size_t deepest = std::min(detail::deepest, static_cast<std::size_t>(8 + 1.3 * std::log2(n)));
+    const std::size_t deepest = std::min(detail::max_depth, static_cast<std::size_t>(8 + 1.3 * std::log2(n)));
     std::vector<Node> nodes(1);
     std::vector<PrimitiveIndex> order;
     std::vector<Task> tasks{{0, 0, 0, cell_, leaves_per_primitive * n}};
@@ -231,8 +231,8 @@ class KdTree {
   Box bounds_;
   Vec3 centre_{};
   BoundingBox<Real> cell_{};
-  Frozen<Node> nodes_;  ///< the root first
-  Frozen<PrimitiveIndex> order_;
+  SharedArray<Node> nodes_;  ///< the root first
+  SharedArray<PrimitiveIndex> order_;
   std::size_t depth_ = 0;
 };
 

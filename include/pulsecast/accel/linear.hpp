@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <pulsecast/accel/sah.hpp>
-#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -28,12 +28,12 @@ class Linear {
     primitives_ = std::move(primitives);
   }
 
-  explicit Linear(Unfilled) {}
+  explicit Linear(DeserializeTag) {}
   template <class Archive>
   void archive(Archive& a) {
     a(bounds_, primitives_);
   }
-  [[nodiscard]] bool sound(std::size_t primitives) const noexcept {
+  [[nodiscard]] bool is_consistent(std::size_t primitives) const noexcept {
     return std::all_of(primitives_.begin(), primitives_.end(), [&](PrimitiveIndex i) { return i < primitives; });
   }
 
@@ -43,13 +43,13 @@ class Linear {
 
   template <class Test>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
-  void closest(const RayBundle&, const Test& test, Nearest&) const noexcept {
+  void closest(const RayBundle&, const Test& test, ClosestHits&) const noexcept {
     if (!primitives_.empty()) test(std::span<const PrimitiveIndex>(primitives_.data(), primitives_.size()));
   }
 
  private:
   Box bounds_;
-  Frozen<PrimitiveIndex> primitives_;
+  SharedArray<PrimitiveIndex> primitives_;
 };
 
 static_assert(Accelerator<Linear<float>> && Accelerator<Linear<double>>);

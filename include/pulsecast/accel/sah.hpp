@@ -13,9 +13,9 @@
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 
 /// What the builds by the surface-area heuristic share: the cost of a node is that of the tests which a ray that meets it must expect,
@@ -27,10 +27,10 @@ namespace pulsecast::detail {
 inline constexpr double test_cost = 2;
 
 /// No leaf lies deeper, so a traversal may keep its way back in as many places.
-inline constexpr std::size_t deepest = 64;
+inline constexpr std::size_t max_depth = 64;
 
 /// Coordinates beyond are refused, so that sums and areas of any Real stay finite [m].
-inline constexpr double farthest = 1e18;
+inline constexpr double max_coordinate = 1e18;
 
 /// Half of the surface [m^2].
 template <std::floating_point Real>
@@ -114,31 +114,31 @@ class Slices {
   bool valid_[3];
 };
 
-/// Calls act(part, i) for the i-th stretch of an array, on several threads if there is more than one. The results are the same for any
-/// number of threads if stretches are put together in order, or if the order does not matter.
-inline constexpr std::size_t stretch = std::size_t{1} << 14;
-[[nodiscard]] constexpr std::size_t stretches(std::size_t count) noexcept { return (count + stretch - 1) / stretch; }
+/// Calls act(part, i) for the i-th chunk of an array, on several threads if there is more than one. The results are the same for any
+/// number of threads if chunks are put together in order, or if the order does not matter.
+inline constexpr std::size_t chunk_size = std::size_t{1} << 14;
+[[nodiscard]] constexpr std::size_t chunk_count(std::size_t count) noexcept { return (count + chunk_size - 1) / chunk_size; }
 template <class Act>
-void for_each_stretch(std::size_t count, unsigned threads, const Act& act) {
-  for_each_index(stretches(count), threads, [&](std::size_t i) { act(i, i * stretch, std::min(count, (i + 1) * stretch)); });
+void for_each_chunk(std::size_t count, unsigned threads, const Act& act) {
+  for_each_index(chunk_count(count), threads, [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
 }
 
 /// Boxes by number, of whatever has a size and gives a `Box` of each number, the same at all times: an array, or what makes them as they
 /// are asked for. It must outlive this, which is there so that a build need be compiled but once.
-class BoxSource {
+class BoxRangeRef {
  public:
   template <class Boxes>
   requires requires(const Boxes& boxes) {
     { boxes[boxes.size()] } -> std::convertible_to<Box>;
   }
-  BoxSource(const Boxes& boxes)  // NOLINT(google-explicit-constructor): an array is one
+  BoxRangeRef(const Boxes& boxes)  // NOLINT(google-explicit-constructor): an array is one
       : boxes_(&boxes), size_(boxes.size()), copy_([](const void* all, std::size_t begin, std::size_t end, Box* to) {
           for (std::size_t i = begin; i < end; ++i) *to++ = (*static_cast<const Boxes*>(all))[i];
         }) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-  /// Calls act(i, box) for those of a stretch that are not empty.
+  /// Calls act(i, box) for those of a chunk that are not empty.
   template <class Act>
   void for_each(std::size_t begin, std::size_t end, const Act& act) const {
     constexpr std::size_t at_once = 64;
@@ -162,32 +162,32 @@ template <std::floating_point Real>
 struct BuildInput {
   Box bounds;
   Vec3 centre{};
-  Draft<Boxed<Real>> primitives;
+  SharedBuffer<Boxed<Real>> primitives;
 
-  explicit BuildInput(const BoxSource& boxes, unsigned threads = 1) {
-    constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // one more would be taken for `Nearest::none`
+  explicit BuildInput(const BoxRangeRef& boxes, unsigned threads = 1) {
+    constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // one more would be taken for `ClosestHits::none`
     if (boxes.size() > most)
       throw SettingError("Accelerator::boxes", static_cast<double>(boxes.size()), "", "at most 4294967294 in number");
-    struct Stretch {
+    struct Chunk {
       Box bounds;
       std::size_t first = 0, met = 0;  // in `primitives`
     };
-    std::vector<Stretch> all(stretches(boxes.size()));
-    for_each_stretch(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
-      Stretch own;
+    std::vector<Chunk> all(chunk_count(boxes.size()));
+    for_each_chunk(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+      Chunk own;
       boxes.for_each(begin, end, [&](std::size_t, const Box& box) {
         const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
-        if (!(extent <= farthest)) throw SettingError("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
+        if (!(extent <= max_coordinate)) throw SettingError("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
         own.bounds.extend(box), ++own.met;
       });
       all[part] = own;
     });
     std::size_t met = 0;
-    for (Stretch& own : all) bounds.extend(own.bounds), own.first = met, met += own.met;
+    for (Chunk& own : all) bounds.extend(own.bounds), own.first = met, met += own.met;
     if (met == 0) return;
     centre = bounds.centre();
-    primitives = Draft<Boxed<Real>>(met);
-    for_each_stretch(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    primitives = SharedBuffer<Boxed<Real>>(met);
+    for_each_chunk(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
       Boxed<Real>* to = primitives.data() + all[part].first;
       boxes.for_each(begin, end, [&](std::size_t i, const Box& box) {
         *to++ = {BoundingBox<Real>::around(box, centre), static_cast<PrimitiveIndex>(i)};

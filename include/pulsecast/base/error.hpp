@@ -13,7 +13,7 @@ namespace pulsecast {
 
 namespace detail {
 /// A number as people write it, shortest so that it reads back the same.
-inline std::string written(double value) {
+inline std::string to_text(double value) {
   std::array<char, 32> digits;
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
@@ -39,7 +39,7 @@ class SettingError : public std::invalid_argument {
 
  private:
   static std::string message(const std::string& field, double value, const std::string& unit, const std::string& allowed) {
-    return field + " is " + detail::written(value) + (unit.empty() ? "" : " ") + unit + ", but must be " + allowed;
+    return field + " is " + detail::to_text(value) + (unit.empty() ? "" : " ") + unit + ", but must be " + allowed;
   }
 
   std::string field_, unit_, allowed_;

@@ -43,6 +43,13 @@ template <class A, class B, class C>
   return {c_from_b.rotation * b_from_a.rotation, c_from_b.point(b_from_a.position)};
 }
 
+/// Pose of a body at a time.
+struct TimedPose {
+  double time = 0;                  ///< since the start of the leg or survey that it belongs to [s]
+  Vec3 position{};                  ///< in the world [m]
+  Rotation rotation = no_rotation;  ///< from the body to the world; unit to a thousandth
+};
+
 /// From axes x right, y forward, z up to x forward, y left, z up, which ROS uses. Source: ROS REP 103.
 [[nodiscard]] inline Vec3 to_forward_left_up(const Vec3& v) noexcept { return {v.y, -v.x, v.z}; }
 

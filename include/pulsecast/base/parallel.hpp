@@ -9,16 +9,16 @@
 #include <thread>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 
 namespace pulsecast {
 
-inline constexpr unsigned most_threads = 1024;  ///< that a setting may ask for
+inline constexpr unsigned max_threads = 1024;  ///< that a setting may ask for
 
 /// Number of threads to use: as many as asked for, or as the machine runs at once where 0 is asked for.
-/// @throws SettingError if more than `most_threads` are asked for
+/// @throws SettingError if more than `max_threads` are asked for
 [[nodiscard]] inline unsigned thread_count(unsigned asked) {
-  expect_within("threads", asked, 0, most_threads, "");
+  require_within("threads", asked, 0, max_threads, "");
   return asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
 }
 

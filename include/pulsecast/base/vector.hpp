@@ -33,9 +33,11 @@ using glm::length;
 using glm::normalize;
 using std::numbers::pi;
 
+namespace axis {
 inline GLM_CONSTEXPR const Vec3 right{1, 0, 0};    ///< +x of the world (east), a body and an instrument
 inline GLM_CONSTEXPR const Vec3 forward{0, 1, 0};  ///< +y: north, and where a beam leaves
 inline GLM_CONSTEXPR const Vec3 up{0, 0, 1};       ///< +z
+}  // namespace axis
 
 inline const Rotation no_rotation{1, 0, 0, 0};
 

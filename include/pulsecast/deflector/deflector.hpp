@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -31,7 +31,7 @@ class Deflector {
       if (!moving_.open(inner->tick)) return std::nullopt;
     }
     const auto pose = moving_.at(inner->tick);
-    PULSECAST_EXPECT(pose.rigid());
+    PULSECAST_ASSERT(pose.rigid());
     return std::optional<Pulse<frame::Instrument>>(std::in_place, pose, *inner);
   }
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/deflector/cycle.hpp>
@@ -20,9 +20,9 @@ struct FiberArray {
   double half_angle = pi / 9;        ///< of the outermost fibres, either side of forward [rad]
 
   void validate() const {
-    expect_within("FiberArray::fibers", fibers, 1, 4294967295.0, "");
-    expect_rate("FiberArray::fibers_per_second", fibers_per_second);
-    expect_within("FiberArray::half_angle", half_angle, 0, pi, "rad");
+    require_within("FiberArray::fibers", fibers, 1, 4294967295.0, "");
+    require_rate("FiberArray::fibers_per_second", fibers_per_second);
+    require_within("FiberArray::half_angle", half_angle, 0, pi, "rad");
   }
 
   /// The fibre that is lit, from 0.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
@@ -14,8 +14,8 @@ struct FixedBeam {
   Pose<frame::Beam, frame::Instrument> pose{};
 
   void validate() const {
-    expect_rotation("FixedBeam::pose.rotation", pose.rotation);
-    expect_finite("FixedBeam::pose (length of position)", length(pose.position), "m");
+    require_rotation("FixedBeam::pose.rotation", pose.rotation);
+    require_finite("FixedBeam::pose (length of position)", length(pose.position), "m");
   }
   void normalize() noexcept { pose.rotation = unit(pose.rotation); }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
@@ -26,9 +26,9 @@ struct OscillatingMirror {
   double turning_time = 0;  ///< of one turning round, half of it before the end and half after; of a triangle, at most half a cycle [s]
 
   void validate() const {
-    expect_rate("OscillatingMirror::cycles_per_second", cycles_per_second);
-    expect_within("OscillatingMirror::half_angle", half_angle, 0, pi, "rad");
-    expect_within("OscillatingMirror::turning_time", turning_time, 0, swing == Swing::triangle ? 0.5 / cycles_per_second : 0, "s");
+    require_rate("OscillatingMirror::cycles_per_second", cycles_per_second);
+    require_within("OscillatingMirror::half_angle", half_angle, 0, pi, "rad");
+    require_within("OscillatingMirror::turning_time", turning_time, 0, swing == Swing::triangle ? 0.5 / cycles_per_second : 0, "s");
   }
 
   /// Above forward [rad].

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
@@ -19,9 +19,9 @@ struct PalmerMirror {
   std::optional<double> half_angle_across{};  ///< of the cone, to the right and left; if empty, the cone is circular [rad]
 
   void validate() const {
-    expect_rate("PalmerMirror::turns_per_second", turns_per_second);
-    expect_within("PalmerMirror::half_angle", half_angle, 0, pi / 2, "rad");
-    if (half_angle_across) expect_within("PalmerMirror::half_angle_across", *half_angle_across, 0, pi / 2, "rad");
+    require_rate("PalmerMirror::turns_per_second", turns_per_second);
+    require_within("PalmerMirror::half_angle", half_angle, 0, pi / 2, "rad");
+    if (half_angle_across) require_within("PalmerMirror::half_angle_across", *half_angle_across, 0, pi / 2, "rad");
   }
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/deflector/cycle.hpp>
@@ -24,11 +24,11 @@ struct PatternTable {
   double entries_per_second = 100e3;  ///< changes from one to the next: best the pulse rate; at most 1e12 [Hz]
 
   void validate() const {
-    expect_within("PatternTable::entries (number)", static_cast<double>(entries.size()), 1, 1e9, "");
-    expect_rate("PatternTable::entries_per_second", entries_per_second);
+    require_within("PatternTable::entries (number)", static_cast<double>(entries.size()), 1, 1e9, "");
+    require_rate("PatternTable::entries_per_second", entries_per_second);
     for (const BeamAngles& e : entries) {
-      expect_finite("BeamAngles::azimuth", e.azimuth, "rad");
-      expect_within("BeamAngles::elevation", e.elevation, -pi / 2, pi / 2, "rad");
+      require_finite("BeamAngles::azimuth", e.azimuth, "rad");
+      require_within("BeamAngles::elevation", e.elevation, -pi / 2, pi / 2, "rad");
     }
   }
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
@@ -22,12 +22,12 @@ struct PolygonMirror {
   std::vector<double> facet_tilts{};  ///< how far out of the plane, to the right, each facet in turn sends the beam; none if empty [rad]
 
   void validate() const {
-    expect_rate("PolygonMirror::lines_per_second", lines_per_second);
-    expect_within("PolygonMirror::sweep", sweep, 0, pi, "rad");
-    expect_within("PolygonMirror::angle_min", angle_min, -pi, pi, "rad");
-    expect_within("PolygonMirror::angle_max", angle_max, angle_min, pi, "rad");
-    expect_within("PolygonMirror::facet_tilts (number)", static_cast<double>(facet_tilts.size()), 0, 1000, "");
-    for (const double tilt : facet_tilts) expect_within("PolygonMirror::facet_tilts", tilt, -pi / 2, pi / 2, "rad");
+    require_rate("PolygonMirror::lines_per_second", lines_per_second);
+    require_within("PolygonMirror::sweep", sweep, 0, pi, "rad");
+    require_within("PolygonMirror::angle_min", angle_min, -pi, pi, "rad");
+    require_within("PolygonMirror::angle_max", angle_max, angle_min, pi, "rad");
+    require_within("PolygonMirror::facet_tilts (number)", static_cast<double>(facet_tilts.size()), 0, 1000, "");
+    for (const double tilt : facet_tilts) require_within("PolygonMirror::facet_tilts", tilt, -pi / 2, pi / 2, "rad");
   }
 
   /// Above forward [rad].

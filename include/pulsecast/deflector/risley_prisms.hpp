@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
@@ -35,20 +35,20 @@ struct Prism {
 /// Wedges one behind the other, each turning at its own rate: the beam draws a rosette. Light that is totally reflected inside does not
 /// get out. The wedges bend the beam, but do not shift it: their thickness and distance do not count.
 struct RisleyPrisms {
-  std::vector<Prism> prisms{};   ///< in the order in which the beam passes them; at least one
-  double surrounding_index = 1;  ///< refractive index between and around the prisms
-  Vec3 incident = forward;       ///< where the laser shines, of any length but zero
+  std::vector<Prism> prisms{};    ///< in the order in which the beam passes them; at least one
+  double surrounding_index = 1;   ///< refractive index between and around the prisms
+  Vec3 incident = axis::forward;  ///< where the laser shines, of any length but zero
 
   void validate() const {
-    expect_within("RisleyPrisms::prisms (number)", static_cast<double>(prisms.size()), 1, 16, "");
+    require_within("RisleyPrisms::prisms (number)", static_cast<double>(prisms.size()), 1, 16, "");
     for (const Prism& p : prisms) {
-      expect_within("Prism::wedge", p.wedge, 0, 1.5, "rad");
-      expect_within("Prism::turns_per_second", p.turns_per_second, -1e12, 1e12, "Hz");
-      expect_within("Prism::refractive_index", p.refractive_index, 0.5, 10, "");
-      expect_within("Prism::start", p.start, -1e6, 1e6, "rad");
+      require_within("Prism::wedge", p.wedge, 0, 1.5, "rad");
+      require_within("Prism::turns_per_second", p.turns_per_second, -1e12, 1e12, "Hz");
+      require_within("Prism::refractive_index", p.refractive_index, 0.5, 10, "");
+      require_within("Prism::start", p.start, -1e6, 1e6, "rad");
     }
-    expect_within("RisleyPrisms::surrounding_index", surrounding_index, 0.5, 10, "");
-    expect_positive("RisleyPrisms::incident (length)", length(incident), "");
+    require_within("RisleyPrisms::surrounding_index", surrounding_index, 0.5, 10, "");
+    require_positive("RisleyPrisms::incident (length)", length(incident), "");
   }
 
   /// Where the light leaves; none if it does not get out.
@@ -57,7 +57,7 @@ struct RisleyPrisms {
     for (const Prism& p : prisms) {
       const double turn = p.start + 2 * pi * t.phase(p.turns_per_second);
       const double aside = p.inclined_exit ? -std::sin(p.wedge) : std::sin(p.wedge);
-      const Vec3 square = -forward, inclined{std::sin(turn) * aside, -std::cos(p.wedge), std::cos(turn) * aside};
+      const Vec3 square = -axis::forward, inclined{std::sin(turn) * aside, -std::cos(p.wedge), std::cos(turn) * aside};
       const double ratio = surrounding_index / p.refractive_index;
       light = refracted(*light, p.inclined_exit ? square : inclined, ratio);
       if (light) light = refracted(*light, p.inclined_exit ? inclined : square, 1 / ratio);
@@ -68,7 +68,7 @@ struct RisleyPrisms {
 
   [[nodiscard]] bool open(Tick t) const noexcept { return direction(t).has_value(); }
 
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return aimed_along(direction(t).value_or(forward)); }
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return aimed_along(direction(t).value_or(axis::forward)); }
 };
 
 static_assert(Optic<RisleyPrisms> && Gated<RisleyPrisms>);

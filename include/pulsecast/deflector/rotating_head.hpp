@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -12,12 +12,12 @@ struct RotatingHead {
   double rate = 2 * pi;  ///< positive turns left about an axis that points up; from -1e12 to 1e12; it goes by what a
                          ///< double holds of its turns a second [rad/s]
   double start = 0;      ///< angle at the survey's start, from -1e6 to 1e6 [rad]
-  Vec3 axis = up;        ///< of any length but zero
+  Vec3 axis = axis::up;  ///< of any length but zero
 
   void validate() const {
-    expect_within("RotatingHead::rate", rate, -1e12, 1e12, "rad/s");
-    expect_within("RotatingHead::start", start, -1e6, 1e6, "rad");
-    expect_positive("RotatingHead::axis (length)", length(axis), "");
+    require_within("RotatingHead::rate", rate, -1e12, 1e12, "rad/s");
+    require_within("RotatingHead::start", start, -1e6, 1e6, "rad");
+    require_positive("RotatingHead::axis (length)", length(axis), "");
   }
 
   [[nodiscard]] Pose<frame::Instrument, frame::Instrument> at(Tick t) const noexcept {

@@ -12,15 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/peaks.hpp>
-#include <pulsecast/detector/pulse_bunch.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
+#include <pulsecast/detector/single_peak_group.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
 namespace pulsecast {
@@ -30,7 +30,7 @@ namespace pulsecast {
 /// An edge that passed an age u ago, in tau, gives P u^2 e^-u. Weigh each age by P e^-u: with the sum W of the weights, the mean m and the
 /// variance v of the ages, the sum of pulses is W (m^2 + v), and after a time x it is W e^-x ((m + x)^2 + v). Its slope is zero at ages
 /// m + x = 1 - sqrt(1 - v), in a valley, and 1 + sqrt(1 - v), at a peak; and nowhere, for v > 1. Derived from `PulseShape`.
-class PulseAges {
+class EdgeAgeMoments {
  public:
   /// A pulse whose leading edge comes in now.
   void add(double power) noexcept {
@@ -72,7 +72,7 @@ class PulseAges {
 
 /// Finds the peaks of the sum of the pulse shapes of all reflections without sampling it: their times and heights are exact. Between the
 /// leading edges of two pulses the sum is a quadratic polynomial times one exponential, so that it turns at the roots of a quadratic; one
-/// pass over the reflections finds them all. Reflections that are a bunch have one peak, which is found without sorting them.
+/// pass over the reflections finds them all. Reflections that are a group have one peak, which is found without sorting them.
 /// On the front of docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. That one has the digitiser's bins,
 /// and the receiver's noise.
 ///
@@ -88,7 +88,7 @@ class AnalyticWaveform {
 
   /// Refuses pulses that samples do not resolve, if samples are taken: for a record, or a width that is fitted.
   void validate(const Laser& laser) const {
-    if (by_samples || s_.record_length > 0) s_.expect_sampled(laser.pulse_length, infinity);
+    if (by_samples || s_.record_length > 0) s_.require_sampled(laser.pulse_length, infinity);
   }
 
   /// The width of a laser's outgoing pulse, by the measure of its echoes [s].
@@ -97,9 +97,9 @@ class AnalyticWaveform {
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
     if constexpr (by_samples) {
       const double whole = (PulseShape::peak + SampledSum::negligible) * shape.tau;
-      return pulsecast::pulse_width(width_, shape, std::fmax(s_.sample_interval, whole / static_cast<double>(most_samples - 2)));
+      return pulsecast::pulse_width(width_, shape, std::fmax(s_.sample_interval, whole / static_cast<double>(max_samples - 2)));
     } else if constexpr (by_moments) {
-      PulseAges pulse;
+      EdgeAgeMoments pulse;
       pulse.add(1);
       return shape.tau * width_.width(pulse.until(infinity));
     } else {
@@ -112,14 +112,14 @@ class AnalyticWaveform {
     std::vector<double> samples;  ///< of one echo, for a width that is fitted [W]
     std::vector<Echo> echoes;
     std::vector<float> record;
-    PulseBunch::Workspace bunch;
+    SinglePeakGroup::Workspace group;
   };
 
   [[nodiscard]] Workspace workspace(std::size_t subrays) const {
-    Workspace w{{}, {}, {}, {}, PulseBunch::Workspace(subrays)};
+    Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(subrays)};
     w.peaks.reserve(subrays);
-    if constexpr (by_samples) w.samples.reserve(most_samples);
-    w.echoes.reserve(std::min(subrays, s_.max_returns));
+    if constexpr (by_samples) w.samples.reserve(max_samples);
+    w.echoes.reserve(std::min(subrays, s_.returns_max));
     w.record.reserve(s_.record_capacity());
     return w;
   }
@@ -129,15 +129,15 @@ class AnalyticWaveform {
     w.peaks.clear(), w.echoes.clear(), w.record.clear();
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
     if (!by_samples && s_.record_length == 0) {
-      const PulseBunch bunch(all, shape, s_.sample_interval, w.bunch);
-      if (bunch.one()) {
-        detect(bunch, shape, w.echoes);
+      const SinglePeakGroup group(all, shape, s_.sample_interval, w.group);
+      if (group.one()) {
+        detect(group, shape, w.echoes);
         return {w.echoes, {}, 0};
       }
     }
     const std::span<const Reflection> reflections = in_order_of_range(all, s_.sample_interval);
     if (reflections.empty()) return {};
-    find_peaks(reflections, shape, s_.apart(laser.pulse_length), w);
+    find_peaks(reflections, shape, s_.min_separation(laser.pulse_length), w);
     keep_echoes(s_, w.peaks);
     for (Peak& peak : w.peaks) {
       if constexpr (by_samples) peak.width = sampled_width(peak, reflections, shape, w.samples);
@@ -153,20 +153,20 @@ class AnalyticWaveform {
  private:
   static constexpr bool by_moments = requires(const Width w, const WaveformMoments& m) { w.width(m); };
   static constexpr bool by_samples = !by_moments && !std::same_as<Width, NoWidth>;
-  static constexpr std::size_t most_samples = 4096;  ///< of one echo; the grid is coarser if they do not reach
+  static constexpr std::size_t max_samples = 4096;  ///< of one echo; the grid is coarser if they do not reach
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// Enters the only echo of a bunch, if it reaches the threshold.
-  void detect(const PulseBunch& bunch, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
-    const double peak = bunch.peak(), height = bunch.power(Lanes{} + peak)[0];
+  /// Enters the only echo of a group, if it reaches the threshold.
+  void detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
+    const double peak = group.peak(), height = group.power(Lanes{} + peak)[0];
     if (height < s_.threshold) return;
-    echoes.push_back(bunch.echo(bunch.last_edge() + peak * shape.tau, height, s_.timing));
-    if constexpr (by_moments) echoes.back().width = shape.tau * width_.width(bunch.moments());
+    echoes.push_back(group.echo(group.last_edge() + peak * shape.tau, height, s_.timing));
+    if constexpr (by_moments) echoes.back().width = shape.tau * width_.width(group.moments());
   }
 
-  void find_peaks(std::span<const Reflection> reflections, const PulseShape& shape, double apart, Workspace& w) const noexcept {
+  void find_peaks(std::span<const Reflection> reflections, const PulseShape& shape, double min_separation, Workspace& w) const noexcept {
     const double per_metre = 2 / (speed_of_light * shape.tau);
-    PulseAges ages;
+    EdgeAgeMoments ages;
     Peak peak;             // the one at hand
     WaveformMoments m;     // of its stretch so far
     WaveformMoments last;  // of the peak that was entered last
@@ -175,7 +175,7 @@ class AnalyticWaveform {
     const auto finish = [&](double end) {
       peak.end = end;
       if (!met || peak.height < s_.threshold) return;
-      if (!enter(peak, apart, w.peaks)) last = {};
+      if (!merge_or_append(peak, min_separation, w.peaks)) last = {};
       last.add(m, (peak.begin - w.peaks.back().begin) / shape.tau);
       if constexpr (by_moments) w.peaks.back().width = shape.tau * width_.width(last);
     };
@@ -196,7 +196,7 @@ class AnalyticWaveform {
       const double rest = next - x;
       if (rising && (!ages.can_turn() || ages.until_peak() < rest)) {
         const double ahead = ages.can_turn() ? std::fmax(ages.until_peak(), 0) : 0;
-        PulseAges then = ages;
+        EdgeAgeMoments then = ages;
         then.advance(ahead);
         peak.time = edge + (x + ahead) * shape.tau;
         peak.height = then.power(), met = true, rising = false;
@@ -214,7 +214,7 @@ class AnalyticWaveform {
     const auto before = [](double limit) { return [limit](const Reflection& r) { return arrival(r) < limit; }; };
     const auto last = std::partition_point(reflections.begin() + 1, reflections.end(), before(peak.end)) - 1;
     const double end = std::fmin(peak.end, arrival(*last) + tail_of(width_) * shape.tau);
-    const double interval = std::fmax(s_.sample_interval, (end - peak.begin) / static_cast<double>(most_samples - 2));
+    const double interval = std::fmax(s_.sample_interval, (end - peak.begin) / static_cast<double>(max_samples - 2));
     const double faded = peak.begin - SampledSum::negligible * shape.tau;
     const auto first = std::partition_point(reflections.begin(), reflections.end(), before(faded));
     SampledSum sum(reflections, shape, interval, static_cast<std::size_t>(first - reflections.begin()), std::ceil(peak.begin / interval));

@@ -58,8 +58,8 @@ static_assert(EchoWidth<NoWidth> && EchoWidth<MomentWidth>);
 /// How long after the peak of its last pulse a waveform matters to a width [tau].
 template <EchoWidth Width>
 [[nodiscard]] double tail_of(const Width& width) noexcept {
-  if constexpr (requires { width.least_share(); })
-    return std::fmin(SampledSum::negligible, PulseShape::fallen_to(width.least_share()));
+  if constexpr (requires { width.min_share(); })
+    return std::fmin(SampledSum::negligible, PulseShape::fallen_to(width.min_share()));
   else
     return std::same_as<Width, NoWidth> ? 0 : SampledSum::negligible;
 }

@@ -13,7 +13,7 @@ namespace pulsecast {
 struct FirstHit {
   double threshold = 0;  ///< weaker reflections are not seen [W]
 
-  void validate() const { expect_not_negative("FirstHit::threshold", threshold, "W"); }
+  void validate() const { require_not_negative("FirstHit::threshold", threshold, "W"); }
 
   struct Workspace {
     Echo echo;

@@ -12,17 +12,17 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/peaks.hpp>
-#include <pulsecast/detector/pulse_bunch.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
 #include <pulsecast/detector/receiver_noise.hpp>
+#include <pulsecast/detector/single_peak_group.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
 namespace pulsecast {
@@ -46,7 +46,7 @@ class FullWaveform {
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
   /// Refuses pulses that the samples do not resolve, or that do not fit into those at hand.
-  void validate(const Laser& laser) const { s_.expect_sampled(laser.pulse_length, WaveformSettings::most_samples); }
+  void validate(const Laser& laser) const { s_.require_sampled(laser.pulse_length, WaveformSettings::max_samples); }
 
   /// The width of a laser's outgoing pulse, by the measure of its echoes [s].
   [[nodiscard]] double pulse_width(const Laser& laser) const {
@@ -55,18 +55,18 @@ class FullWaveform {
   }
 
   struct Workspace {
-    std::vector<double> samples;  ///< of the stretch at hand [W]
+    std::vector<double> samples;  ///< of the window at hand [W]
     std::vector<Peak> peaks;
     std::vector<Echo> echoes;
     std::vector<float> record;
-    PulseBunch::Workspace bunch;
+    SinglePeakGroup::Workspace group;
   };
 
   [[nodiscard]] Workspace workspace(std::size_t subrays) const {
-    Workspace w{{}, {}, {}, {}, PulseBunch::Workspace(subrays)};
-    w.samples.reserve(stretch);
-    w.peaks.reserve(noise_.none() ? subrays : std::max(subrays, most_peaks));
-    w.echoes.reserve(std::min(w.peaks.capacity(), s_.max_returns));
+    Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(subrays)};
+    w.samples.reserve(window_samples);
+    w.peaks.reserve(noise_.none() ? subrays : std::max(subrays, max_peaks));
+    w.echoes.reserve(std::min(w.peaks.capacity(), s_.returns_max));
     w.record.reserve(s_.record_capacity());
     return w;
   }
@@ -77,8 +77,8 @@ class FullWaveform {
     w.peaks.clear(), w.echoes.clear(), w.record.clear();
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
     if (std::same_as<Width, NoWidth> && s_.record_length == 0 && noise_.none()) {
-      const PulseBunch bunch(all, shape, s_.sample_interval, w.bunch);
-      if (bunch.one() && detect(bunch, shape, w.echoes)) return {w.echoes, {}, 0};
+      const SinglePeakGroup group(all, shape, s_.sample_interval, w.group);
+      if (group.one() && detect(group, shape, w.echoes)) return {w.echoes, {}, 0};
     }
     const std::span<const Reflection> reflections = in_order_of_range(all, s_.sample_interval);
     if (reflections.empty()) return {};
@@ -90,7 +90,7 @@ class FullWaveform {
     const double tail = to_the_end ? died_away : std::fmax(3 * s_.sample_interval, tail_of(width_) * shape.tau);
     const auto first_sample = [&](std::size_t r) { return SampledSum::first_sample(reflections[r], shape, s_.sample_interval); };
     const double record_start = first_sample(0);
-    const double apart = s_.apart(laser.pulse_length);
+    const double min_separation = s_.min_separation(laser.pulse_length);
 
     key.purpose = Purpose::receiver_noise;
     for (std::size_t next = 0; next < reflections.size();) {
@@ -110,12 +110,12 @@ class FullWaveform {
         const bool silent = next > 0 && t > sum.last_peak() + tail;
         const bool listening = noisy && n - record_start < record_size;
         going_on = !silent || listening || (next < reflections.size() && first_sample(next) <= n + died_away / s_.sample_interval);
-        if (going_on && w.samples.size() == stretch) {
+        if (going_on && w.samples.size() == window_samples) {
           const std::size_t cut = last_valley(w.samples);  // so that no echo is cut in two
-          find_peaks(n, cut, apart, w);
+          find_peaks(n, cut, min_separation, w);
           w.samples.erase(w.samples.begin(), w.samples.begin() + static_cast<std::ptrdiff_t>(cut - 2));
         }
-        if (!going_on) find_peaks(n, w.samples.size() - 2, apart, w);
+        if (!going_on) find_peaks(n, w.samples.size() - 2, min_separation, w);
       }
     }
     keep_echoes(s_, w.peaks);
@@ -125,25 +125,25 @@ class FullWaveform {
   }
 
  private:
-  static constexpr std::size_t stretch = 262144;   ///< samples at hand at one time: the longest pulse until it has died away
-  static constexpr std::size_t most_peaks = 4096;  ///< of the noise
+  static constexpr std::size_t window_samples = 262144;  ///< samples at hand at one time: the longest pulse until it has died away
+  static constexpr std::size_t max_peaks = 4096;         ///< of the noise
 
-  /// Enters the only echo of a bunch, if it reaches the threshold: what sampling all of it would give, from the samples about its peak.
+  /// Enters the only echo of a group, if it reaches the threshold: what sampling all of it would give, from the samples about its peak.
   /// False if these reach back to where edges come in.
-  bool detect(const PulseBunch& bunch, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
+  bool detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
     const double per_tau = 1 / shape.tau;
     const double before =
-        std::floor((bunch.last_edge() + bunch.peak() * shape.tau) / s_.sample_interval);  // the last sample before the peak
-    const double first = ((before - 2) * s_.sample_interval - bunch.last_edge()) * per_tau, step = s_.sample_interval * per_tau;
+        std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // the last sample before the peak
+    const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau, step = s_.sample_interval * per_tau;
     if (!(first >= 0)) return false;
     std::array<double, 8> y;  // from two samples before that one on
     for (std::size_t j = 0; j < y.size(); j += lane_count)
-      store(bunch.power(lanes_of([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), y[j]);
+      store(group.power(lanes_of([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), y[j]);
     const std::size_t top = y[3] > y[2] ? 3 : 2;
     const auto [offset, height] = vertex(&y[top]);
     if (height < s_.threshold) return true;
     const double time = (before - 2 + static_cast<double>(top) + offset) * s_.sample_interval;
-    echoes.push_back(bunch.echo(time, height, s_.timing));
+    echoes.push_back(group.echo(time, height, s_.timing));
     return true;
   }
 
@@ -160,8 +160,8 @@ class FullWaveform {
     return y.size() - 2;
   }
 
-  /// Enters every peak before `end` of the stretch whose last sample has the number `last`.
-  void find_peaks(double last, std::size_t end, double apart, Workspace& w) const noexcept {
+  /// Enters every peak before `end` of the window whose last sample has the number `last`.
+  void find_peaks(double last, std::size_t end, double min_separation, Workspace& w) const noexcept {
     const std::vector<double>& y = w.samples;
     const double start = last - static_cast<double>(y.size() - 1);
     const auto time = [&](std::size_t i) { return (start + static_cast<double>(i)) * s_.sample_interval; };
@@ -179,12 +179,13 @@ class FullWaveform {
       std::size_t from = i, to = i;
       while (from > 0 && y[from - 1] < y[from]) --from;
       while (to + 1 < y.size() && y[to + 1] < y[to]) ++to;
-      enter({.time = time(i) + offset * s_.sample_interval, .height = height, .begin = valley(from), .end = valley(to)}, apart, w.peaks);
+      merge_or_append({.time = time(i) + offset * s_.sample_interval, .height = height, .begin = valley(from), .end = valley(to)},
+                      min_separation, w.peaks);
     }
     if constexpr (!std::same_as<Width, NoWidth>) {
       for (; entered < w.peaks.size(); ++entered) {
         Peak& peak = w.peaks[entered];
-        if (outdone(entered, s_, w.peaks)) continue;
+        if (is_dominated(entered, s_, w.peaks)) continue;
         const auto from = static_cast<std::size_t>(std::lround(peak.begin / s_.sample_interval - start));
         const auto to = static_cast<std::size_t>(std::lround(peak.end / s_.sample_interval - start));
         peak.width = width_.width(std::span(y).subspan(from, to - from + 1), s_.sample_interval);

@@ -8,9 +8,9 @@
 #include <limits>
 #include <span>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
 
@@ -29,15 +29,15 @@ struct Gaussian {
 /// and where the samples lie on a steep edge must not matter: it changes the width of a pulse by less than 0.5 %.
 /// Source: Levenberg 1944, Marquardt 1963, with the damping of Marquardt: normal equations whose diagonal is stretched.
 struct GaussianFit {
-  int max_iterations = 50;
+  int iterations_max = 50;
   double share = 0.03;  ///< of the highest sample, in [0, 1): the fit ends to either side where samples are lower
 
   void validate() const {
-    expect_within("GaussianFit::max_iterations", max_iterations, 1, 1000, "");
+    require_within("GaussianFit::iterations_max", iterations_max, 1, 1000, "");
     if (!(share >= 0 && share < 1)) throw SettingError("GaussianFit::share", share, "", "at least 0 and less than 1");
   }
 
-  [[nodiscard]] double least_share() const noexcept { return share; }
+  [[nodiscard]] double min_share() const noexcept { return share; }
 
   struct Result {
     Gaussian gaussian{};
@@ -73,7 +73,7 @@ struct GaussianFit {
     r.gaussian = {all[top], position, std::sqrt(2 * std::fmax(second / sum - position * position, 0.1))};
     Equations e = equations(samples, r.gaussian);
     double damping = 1e-3;
-    while (r.iterations < max_iterations && !r.converged) {
+    while (r.iterations < iterations_max && !r.converged) {
       ++r.iterations;
       const Gaussian step = solution(e, damping);
       const Gaussian next{r.gaussian.amplitude + step.amplitude, r.gaussian.position + step.position, r.gaussian.width + step.width};

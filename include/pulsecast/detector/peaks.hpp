@@ -18,18 +18,18 @@ namespace pulsecast {
 
 /// A peak of a waveform, and the stretch that belongs to it. Times are two-way.
 struct Peak {
-  double time = 0;       ///< of its highest point [s]
-  double height = 0;     ///< there [W]
-  double begin = 0;      ///< of the valley before it [s]
-  double end = 0;        ///< of the valley after it [s]
-  double width = 0;      ///< as in `Echo` [s]
-  bool outdone = false;  ///< by a higher one within the window
+  double time = 0;         ///< of its highest point [s]
+  double height = 0;       ///< there [W]
+  double begin = 0;        ///< of the valley before it [s]
+  double end = 0;          ///< of the valley after it [s]
+  double width = 0;        ///< as in `Echo` [s]
+  bool dominated = false;  ///< by a higher one within the window
 };
 
 /// Enters a peak after those before it, if there is room. True if it has become one with the last of them, for being closer to it than
 /// peaks must be apart [s].
-inline bool enter(const Peak& peak, double apart, std::vector<Peak>& peaks) noexcept {
-  if (!peaks.empty() && peak.time - peaks.back().time < apart) {
+inline bool merge_or_append(const Peak& peak, double min_separation, std::vector<Peak>& peaks) noexcept {
+  if (!peaks.empty() && peak.time - peaks.back().time < min_separation) {
     Peak& one = peaks.back();
     if (peak.height > one.height) one.time = peak.time, one.height = peak.height;
     one.end = peak.end;
@@ -40,7 +40,7 @@ inline bool enter(const Peak& peak, double apart, std::vector<Peak>& peaks) noex
 }
 
 /// True if a higher peak, or as high a one before it, is within the window of a peak. Peaks are in order of time.
-[[nodiscard]] inline bool outdone(std::size_t i, const WaveformSettings& s, const std::vector<Peak>& peaks) noexcept {
+[[nodiscard]] inline bool is_dominated(std::size_t i, const WaveformSettings& s, const std::vector<Peak>& peaks) noexcept {
   const Peak& peak = peaks[i];
   for (std::size_t j = i; j-- > 0 && peak.time - peaks[j].time <= s.window;)
     if (peaks[j].height >= peak.height) return true;
@@ -51,10 +51,10 @@ inline bool enter(const Peak& peak, double apart, std::vector<Peak>& peaks) noex
 
 /// Leaves those of peaks, in order of time, that are echoes by window, dead time and number.
 inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noexcept {
-  for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].outdone = outdone(i, s, peaks);
+  for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].dominated = is_dominated(i, s, peaks);
   std::size_t kept = 0;
   for (const Peak& peak : peaks) {
-    if (peak.outdone || kept == s.max_returns) continue;
+    if (peak.dominated || kept == s.returns_max) continue;
     if (kept > 0 && peak.time - peaks[kept - 1].time < s.dead_time) continue;
     peaks[kept++] = peak;
   }

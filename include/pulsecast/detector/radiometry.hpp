@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <limits>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/pulse.hpp>
 
@@ -37,16 +37,16 @@ struct RangeErrors {
   double deviation_per_metre = 0;     ///< by which it grows with range
   bool grows_with_incidence = false;  ///< divided by the cosine of the incidence. Source: Soudarissanane et al. 2011
   /// If it has rows, in place of the two deviations above: a straight line from row to row, and level beyond them. Ranges ascend.
-  Frozen<DeviationAtRange> deviations{};
+  SharedArray<DeviationAtRange> deviations{};
 
   void validate() const {
-    expect_finite("RangeErrors::bias", bias, "m");
-    expect_not_negative("RangeErrors::deviation", deviation, "m");
-    expect_not_negative("RangeErrors::deviation_per_metre", deviation_per_metre, "");
+    require_finite("RangeErrors::bias", bias, "m");
+    require_not_negative("RangeErrors::deviation", deviation, "m");
+    require_not_negative("RangeErrors::deviation_per_metre", deviation_per_metre, "");
     for (std::size_t i = 0; i < deviations.size(); ++i) {
-      expect_finite("RangeErrors::deviations (range)", deviations[i].range, "m");
-      expect_not_negative("RangeErrors::deviations (deviation)", deviations[i].deviation, "m");
-      if (i > 0) expect_positive("RangeErrors::deviations (from range to range)", deviations[i].range - deviations[i - 1].range, "m");
+      require_finite("RangeErrors::deviations (range)", deviations[i].range, "m");
+      require_not_negative("RangeErrors::deviations (deviation)", deviations[i].deviation, "m");
+      if (i > 0) require_positive("RangeErrors::deviations (from range to range)", deviations[i].range - deviations[i - 1].range, "m");
     }
   }
 
@@ -65,8 +65,8 @@ struct RangeErrors {
 
   /// Reported less true range [m] of an echo at a range [m], for a draw from the standard normal distribution.
   [[nodiscard]] double at(double range, double cos_incidence, double draw) const noexcept {
-    constexpr double least_cosine = 0.01;  // an edge-on surface has no noise without bound
-    const double slant = grows_with_incidence ? (cos_incidence > least_cosine ? cos_incidence : least_cosine) : 1;
+    constexpr double min_cosine = 0.01;  // an edge-on surface has no noise without bound
+    const double slant = grows_with_incidence ? (cos_incidence > min_cosine ? cos_incidence : min_cosine) : 1;
     return bias + draw * deviation_at(range) / slant;
   }
 };
@@ -81,12 +81,12 @@ struct Receiver {
   RangeErrors range_errors{};
 
   void validate() const {
-    expect_within("Receiver::diameter", diameter, 1e-4, 1e3, "m");  // its square is a factor of every received power
-    expect_within("Receiver::efficiency", efficiency, 0, 1, "");
-    expect_within("Receiver::visibility", visibility, 1, std::numeric_limits<double>::infinity(), "m");
-    expect_not_negative("Receiver::range_min", range_min, "m");
+    require_within("Receiver::diameter", diameter, 1e-4, 1e3, "m");  // its square is a factor of every received power
+    require_within("Receiver::efficiency", efficiency, 0, 1, "");
+    require_within("Receiver::visibility", visibility, 1, std::numeric_limits<double>::infinity(), "m");
+    require_not_negative("Receiver::range_min", range_min, "m");
     range_errors.validate();
-    expect_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
+    require_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
   }
 
   [[nodiscard]] bool in_gate(double range) const noexcept { return range >= range_min && range <= range_max; }

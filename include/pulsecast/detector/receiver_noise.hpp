@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/pulse.hpp>
 
@@ -19,10 +19,10 @@ struct ReceiverNoise {
   double quantum_efficiency = 1;  ///< share of the photons of the background that are counted, in (0, 1]
 
   void validate() const {
-    expect_within("ReceiverNoise::deviation", deviation, 0, 1e20, "W");
-    expect_within("ReceiverNoise::background", background, 0, 1e20, "W");
-    expect_positive("ReceiverNoise::quantum_efficiency", quantum_efficiency, "");
-    expect_within("ReceiverNoise::quantum_efficiency", quantum_efficiency, 0, 1, "");
+    require_within("ReceiverNoise::deviation", deviation, 0, 1e20, "W");
+    require_within("ReceiverNoise::background", background, 0, 1e20, "W");
+    require_positive("ReceiverNoise::quantum_efficiency", quantum_efficiency, "");
+    require_within("ReceiverNoise::quantum_efficiency", quantum_efficiency, 0, 1, "");
   }
 
   [[nodiscard]] bool none() const noexcept { return deviation == 0 && background == 0; }

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 
 namespace pulsecast {
 
@@ -22,7 +22,7 @@ enum class EchoTiming : std::uint8_t {
 ///
 /// A peak of the waveform is an echo if it passes, in this order: it reaches the threshold; it is not closer than `separation` to a peak
 /// before it, with which it would be one; it is the highest within the window; it comes after the dead time of the echo before it; it is
-/// among the first `max_returns`.
+/// among the first `returns_max`.
 ///
 /// Of all bins, these are on the front of docs/tradeoff.md, to within a few percent: at a sixteenth of a pulse they cost hardly more than
 /// wider ones, which lose echoes that are close to each other, and narrower ones gain little. Widths of echoes cost more than any other
@@ -33,35 +33,35 @@ struct WaveformSettings {
   double separation = 0;             ///< peaks that are closer to each other are one, as high as the highest of them [s]
   double window = 1e-9;              ///< an echo is the highest within this time before and after it [s]
   double dead_time = 0;              ///< so long after the peak of an echo, there is no other [s]
-  std::size_t max_returns = 15;      ///< the first so many in order of range; at least 1
+  std::size_t returns_max = 15;      ///< the first so many in order of range; at least 1
   EchoTiming timing = EchoTiming::energy;
   double record_length = 0;    ///< how much of the waveform is kept, from its first sample on, at most 1e7 bins; 0 for none [s]
   double shape_divisor = 3.5;  ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
 
   void validate() const {
-    expect_within("WaveformSettings::sample_interval", sample_interval, 1e-16, 1, "s");
-    expect_not_negative("WaveformSettings::threshold", threshold, "W");
-    expect_not_negative("WaveformSettings::separation", separation, "s");
-    expect_not_negative("WaveformSettings::window", window, "s");
-    expect_not_negative("WaveformSettings::dead_time", dead_time, "s");
-    expect_within("WaveformSettings::max_returns", static_cast<double>(max_returns), 1, 255, "");
-    expect_within("WaveformSettings::record_length", record_length, 0, most_kept * sample_interval, "s");
-    expect_within("WaveformSettings::shape_divisor", shape_divisor, 1, 10, "");
+    require_within("WaveformSettings::sample_interval", sample_interval, 1e-16, 1, "s");
+    require_not_negative("WaveformSettings::threshold", threshold, "W");
+    require_not_negative("WaveformSettings::separation", separation, "s");
+    require_not_negative("WaveformSettings::window", window, "s");
+    require_not_negative("WaveformSettings::dead_time", dead_time, "s");
+    require_within("WaveformSettings::returns_max", static_cast<double>(returns_max), 1, 255, "");
+    require_within("WaveformSettings::record_length", record_length, 0, max_kept * sample_interval, "s");
+    require_within("WaveformSettings::shape_divisor", shape_divisor, 1, 10, "");
   }
 
-  static constexpr double most_kept = 1e7;     ///< samples of a record
-  static constexpr double most_samples = 1e4;  ///< in the length of a pulse, that `FullWaveform` takes
+  static constexpr double max_kept = 1e7;     ///< samples of a record
+  static constexpr double max_samples = 1e4;  ///< in the length of a pulse, that `FullWaveform` takes
 
   /// Refuses bins that are longer than a pulse [s], which would fall between two samples, or so short that it has more than so many.
-  void expect_sampled(double pulse_length, double most) const {
+  void require_sampled(double pulse_length, double most) const {
     if (sample_interval <= pulse_length && pulse_length <= most * sample_interval) return;
     throw SettingError("WaveformSettings::sample_interval", sample_interval, "s",
-                       "from " + detail::written(pulse_length / most) + " to " + detail::written(pulse_length) + " for such a pulse");
+                       "from " + detail::to_text(pulse_length / most) + " to " + detail::to_text(pulse_length) + " for such a pulse");
   }
 
   /// Peaks closer than this are one echo, for which all that is between its outer valleys counts: the separation; or else, as nobody tells
   /// the lower from the flank of the higher, the window, unless it is wider than the pulse is long [s].
-  [[nodiscard]] double apart(double pulse_length) const noexcept { return std::fmax(separation, std::fmin(window, pulse_length)); }
+  [[nodiscard]] double min_separation(double pulse_length) const noexcept { return std::fmax(separation, std::fmin(window, pulse_length)); }
 
   /// The most samples that a record can have.
   [[nodiscard]] std::size_t record_capacity() const noexcept {

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <limits>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/geometry/ray.hpp>
 
 namespace pulsecast {
@@ -62,7 +62,7 @@ struct RayBundle : BundleOrigin {
   /// Makes the idle lanes copies of the last ray, as every reader of `padded_size()` rays expects, and finds `least` and `most`.
   /// Call it when the directions are set.
   void pad() noexcept {
-    PULSECAST_EXPECT(size > 0 && size <= capacity && !(near < 0));
+    PULSECAST_ASSERT(size > 0 && size <= capacity && !(near < 0));
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
     const Column* const columns[] = {&x, &y, &z};
     if (size == 1) {
@@ -101,7 +101,7 @@ struct RayBundle : BundleOrigin {
 }
 
 /// The nearest primitive that each ray of a bundle has met so far. On exactly equal range the smallest identity wins.
-struct Nearest {
+struct ClosestHits {
   static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
 
   alignas(64) std::array<double, RayBundle::capacity> range;  ///< [m]; `far` if nothing was met
@@ -109,7 +109,7 @@ struct Nearest {
       64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< part in the upper half, primitive in the lower; `none` if nothing was met
   std::uint64_t part = 0;                                     ///< of what is being tested, in the upper half
 
-  explicit Nearest(const RayBundle& rays) noexcept {
+  explicit ClosestHits(const RayBundle& rays) noexcept {
     for (std::size_t j = 0; j < rays.padded_size(); ++j) {
       range[j] = j < rays.size ? rays.far : -std::numeric_limits<double>::infinity();  // an idle lane meets nothing
       id[j] = none;

@@ -62,10 +62,10 @@ struct BoundingBox {
 
 /// Eight boxes, wall by wall. A place that is not taken holds the box that nothing is inside of.
 template <std::floating_point Real>
-struct EightBoxes {
+struct Box8 {
   alignas(8 * sizeof(Real)) Real min[3][8], max[3][8];  ///< [m]
 
-  EightBoxes() noexcept {
+  Box8() noexcept {
     constexpr Real most = std::numeric_limits<Real>::max();
     for (std::size_t k = 0; k < 3; ++k)
       for (std::size_t place = 0; place < 8; ++place) min[k][place] = most, max[k][place] = -most;
@@ -79,13 +79,13 @@ struct EightBoxes {
 /// Up to eight boxes in half the memory, none smaller than what it stands for: their walls are at steps of a grid of 65,536 an axis.
 /// Source: Mahovsky & Wyvill 2006; Ylitie, Karras & Laine 2017.
 template <std::floating_point Real>
-struct CompactBoxes {
+struct QuantizedBox8 {
   std::uint16_t walls[3][2][8];  ///< by axis, the lower ones first
   Real origin[3];                ///< of the grid [m]
   std::uint8_t exponent[3];      ///< of two, and 127 more: the grid's step [m]
   std::uint8_t count = 0;        ///< places that hold a box, the first ones
 
-  CompactBoxes() noexcept {}  // leaves all but the number of boxes unset
+  QuantizedBox8() noexcept {}  // leaves all but the number of boxes unset
 
   /// Makes the grid; `around` holds all the boxes that will be added.
   void begin(const BoundingBox<Real>& around) noexcept {
@@ -93,7 +93,7 @@ struct CompactBoxes {
       const double extent = static_cast<double>(around.max[k]) - static_cast<double>(around.min[k]);
       int e;  // of a power of two above the ratio
       std::frexp(extent / (steps - 1), &e);
-      origin[k] = around.min[k], exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 && e > least_exponent ? e : least_exponent));
+      origin[k] = around.min[k], exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 && e > min_exponent ? e : min_exponent));
       for (auto& side : walls[k]) std::fill(std::begin(side), std::end(side), std::uint16_t{0});
     }
     count = 0;
@@ -120,7 +120,7 @@ struct CompactBoxes {
 
  private:
   static constexpr double steps = 65535;
-  static constexpr int least_exponent = -126;
+  static constexpr int min_exponent = -126;
 };
 
 /// A whole bundle against boxes and planes, by interval arithmetic. An answer may be too cautious, never too bold: where any ray
@@ -160,7 +160,7 @@ class BundleInterval {
   }
 
   /// The range beyond which no ray can find anything nearer.
-  [[nodiscard]] Real limit(const RayBundle& rays, const Nearest& nearest) const noexcept { return round_up<Real>(nearest.limit(rays)); }
+  [[nodiscard]] Real limit(const RayBundle& rays, const ClosestHits& nearest) const noexcept { return round_up<Real>(nearest.limit(rays)); }
 
   /// The stretch of range over which any ray may be inside the box; empty if none can be.
   [[nodiscard]] Span inside(const BoundingBox<Real>& box) const noexcept {
@@ -173,14 +173,14 @@ class BundleInterval {
   }
 
   /// The boxes that any ray may be inside of at a range of at most `limit`, a bit each, and where it may enter them.
-  [[nodiscard]] unsigned inside(const EightBoxes<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
+  [[nodiscard]] unsigned inside(const Box8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
     return inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
       const Axis& axis = axes_[k];
       return {(load<Pack<Real>>(boxes.min[k][first]) - axis.origin_high) * axis.per_min,
               (load<Pack<Real>>(boxes.max[k][first]) - axis.origin_low) * axis.per_max};
     });
   }
-  [[nodiscard]] unsigned inside(const CompactBoxes<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
+  [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
     // two roundings of how far a wall is from the origin, as its grid's steps are powers of two
     Real to_low[3], to_high[3], steps[3];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -287,7 +287,7 @@ class RayInterval {
     const double slack = 64 * std::numeric_limits<double>::epsilon() * std::max(std::max(farthest[0], farthest[1]), farthest[2]);
     const Axes margin = Axes(slack) + (magnitude(o) + (high - low)) * Axes(4 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
     const Axes outwards = margin * sense(direction);
-    const Axes slowness = sense(direction) / greater(magnitude(direction), Axes(least_speed * ray.direction_length));
+    const Axes slowness = sense(direction) / greater(magnitude(direction), Axes(min_speed * ray.direction_length));
     put(0, o + outwards, slowness * Axes(1 - tolerance));
     put(1, o - outwards, slowness * Axes(1 + tolerance));
     for (std::size_t k = 0; k < 3; ++k) upper_[k] = direction[k] < 0 ? 1 : 0;
@@ -298,12 +298,12 @@ class RayInterval {
   }
 
   /// The range beyond which the ray can find nothing nearer.
-  [[nodiscard]] Real limit(const RayBundle&, const Nearest& nearest) const noexcept {
+  [[nodiscard]] Real limit(const RayBundle&, const ClosestHits& nearest) const noexcept {
     return static_cast<Real>(std::min(nearest.range[0] * (1 + tolerance), double{std::numeric_limits<Real>::max()}));
   }
 
   /// The boxes that the ray may be inside of at a range of at most `limit`, a bit each, and where it may enter them.
-  [[nodiscard]] unsigned inside(const CompactBoxes<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
+  [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
     Real steps[3];
     for (std::size_t k = 0; k < 3; ++k) steps[k] = boxes.step(k);
     unsigned met = 0;
@@ -327,7 +327,7 @@ class RayInterval {
   static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
   /// By the length of the direction. A slower ray counts as one of this speed: from the margin on, it leaves a box so late all the same
   /// that nothing is met beyond.
-  static constexpr double least_speed = 1e-18;
+  static constexpr double min_speed = 1e-18;
 
   void put(std::size_t side, const Four<double>& from, const Four<double>& slowness) noexcept {
     per_[side] = slowness.template as<Real>();

@@ -47,7 +47,8 @@ struct TrianglePacket {
     for (std::size_t lane = 0; lane < lane_count; ++lane) primitives[lane] = of[in_use(lane)];
     const auto triangles = [&]<std::size_t... lane>(std::index_sequence<lane...>) noexcept {
       return std::array{triangle_of(in_use(lane))...};
-    }(std::make_index_sequence<lane_count>());
+    }
+    (std::make_index_sequence<lane_count>());
     const auto corner = [&](Vec3 Triangle::*which) noexcept {
       const auto coordinate = [&](double Vec3::*axis) noexcept {
         return lanes_of([&](std::size_t lane) { return triangles[lane].*which.*axis; });
@@ -70,7 +71,7 @@ struct TrianglePacket {
 /// Never inlined, so that every accelerator gets the same bits.
 /// Source: the volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin 2007; the stretch inside
 /// the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
-[[gnu::noinline]] inline void intersect(const TrianglePacket& triangles, const RayBundle& rays, Nearest& nearest) noexcept {
+[[gnu::noinline]] inline void intersect(const TrianglePacket& triangles, const RayBundle& rays, ClosestHits& nearest) noexcept {
   static_assert(RayBundle::lanes % lane_count == 0);
   constexpr double unit = std::numeric_limits<double>::epsilon();
   using Corner = TrianglePacket::Corner;
@@ -178,7 +179,7 @@ struct TrianglePacket {
 /// Tests as many triangles as there are primitives; `triangle_of(n)` gives the n-th.
 template <class TriangleOf>
 void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const RayBundle& rays,
-               Nearest& nearest) noexcept {
+               ClosestHits& nearest) noexcept {
   for (std::size_t first = 0; first < primitives.size(); first += lane_count)
     intersect({primitives.subspan(first, std::min(lane_count, primitives.size() - first)),
                [&](std::size_t n) noexcept { return triangle_of(first + n); }},
@@ -186,8 +187,9 @@ void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& tri
 }
 
 /// Tests one triangle.
-inline void intersect(const Triangle& triangle, PrimitiveIndex primitive, const RayBundle& rays, Nearest& nearest) noexcept {
-  intersect(std::span(&primitive, 1), [&](std::size_t) noexcept { return triangle; }, rays, nearest);
+inline void intersect(const Triangle& triangle, PrimitiveIndex primitive, const RayBundle& rays, ClosestHits& nearest) noexcept {
+  intersect(
+      std::span(&primitive, 1), [&](std::size_t) noexcept { return triangle; }, rays, nearest);
 }
 
 }  // namespace pulsecast

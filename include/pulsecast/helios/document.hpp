@@ -78,7 +78,7 @@ inline AssetDocument read_assets(const std::filesystem::path& path, const XmlOpt
   reader.read_all("scanner", assets.scanners);
   reader.read_all("platform", assets.platforms);
   reader.read_all("scene", assets.scenes);
-  reader.report().expect_clean();
+  reader.report().require_clean();
   assets.warnings = reader.report().warnings();
   return assets;
 }

@@ -97,7 +97,7 @@ class WaveformLimits {
 
   /// Cuts waveforms that are too long for where they go.
   void limit_record(WaveformSettings& s, std::vector<std::string>& warnings) const {
-    const double most = las_ ? io::LasPackets::most_samples : WaveformSettings::most_kept;
+    const double most = las_ ? io::LasPackets::max_samples : WaveformSettings::max_kept;
     const double longest = (most - 0.5) * s.sample_interval;  // half a sample for rounding
     if (s.record_length <= longest) return;
     s.record_length = longest;
@@ -146,21 +146,21 @@ class LoadedSimulation final : public Simulation {
   void begin(int run) override {
     std::vector<SurveyPart> all = parts(run);
     all.insert(all.end(), meshes_.begin(), meshes_.end());
-    scene_.emplace(all, TimeWindows{.to = 1});
+    scene_.emplace(all, MovingIndexSettings{.to = 1});
     const auto ground = [&](const Vec2& at) { return scene_->ground_height(at); };
     const SurveyBuildOptions options{settings_.seed, settings_.platform_noise, settings_.leg_noise, settings_.leg_places};
-    plan_.emplace(plan_survey(survey_, ground, options));
-    const double duration = plan_->source.duration().seconds();
+    compiled_.emplace(compile_survey(survey_, ground, options));
+    const double duration = compiled_->source.duration().seconds();
     const bool moves = std::any_of(all.begin(), all.end(), [](const SurveyPart& p) { return p.motion != nullptr; });
-    if (moves) scene_.emplace(all, TimeWindows{.to = std::max(1e-3, duration)});
+    if (moves) scene_.emplace(all, MovingIndexSettings{.to = std::max(1e-3, duration)});
 
     seed_ = settings_.seed + static_cast<std::uint64_t>(run) * 0x9e3779b97f4a7c15U;
     warnings_ = scene_warnings_;
-    warnings_.insert(warnings_.end(), plan_->warnings.begin(), plan_->warnings.end());
+    warnings_.insert(warnings_.end(), compiled_->warnings.begin(), compiled_->warnings.end());
     receive({});
   }
 
-  [[nodiscard]] const SurveyPlan& plan() const override { return *plan_; }
+  [[nodiscard]] const CompiledSurvey& compiled() const override { return *compiled_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
 
   [[nodiscard]] Scene scene() const override {
@@ -194,7 +194,7 @@ class LoadedSimulation final : public Simulation {
     std::vector<Sample> all(blocks.size());
     for_each_index((blocks.size() + at_once - 1) / at_once, threads, [&](std::size_t task) {
       AnySurvey::Workspace workspace = survey.workspace();
-      Collected room;  // used again and again, as those of a run are
+      ResultBuffer room;  // used again and again, as those of a run are
       for (std::size_t k = task * at_once; k < std::min((task + 1) * at_once, blocks.size()); ++k) {
         const SampleBlock& block = blocks[k];
         Sample& sample = all[k];
@@ -205,7 +205,7 @@ class LoadedSimulation final : public Simulation {
         for (PulseIndex i = block.from; i < block.end; ++i) room.append(survey(i, workspace));
         sample.seconds = processor_seconds() - start;
         sample.sample_interval = survey.sample_interval();
-        static_cast<Collected&>(sample) = room;
+        static_cast<ResultBuffer&>(sample) = room;
       }
     });
     return all;
@@ -264,7 +264,7 @@ class LoadedSimulation final : public Simulation {
               FullWaveform<Width>(waveform, {}, noise)};
     };
     using Pipeline = SurveyByChannel<SurveyScene, FullWaveform<Width>>;
-    pipeline_ = std::make_unique<SurveyOf<Pipeline>>(survey_by_channel(scanner, plan_->source, *scene_, seed_, receiver));
+    pipeline_ = std::make_unique<SurveyOf<Pipeline>>(survey_by_channel(scanner, compiled_->source, *scene_, seed_, receiver));
   }
 
   SurveySettings survey_;
@@ -272,7 +272,7 @@ class LoadedSimulation final : public Simulation {
   PartProvider provider_;
   SceneBuilder builder_;
   WaveformLimits limits_;
-  std::optional<SurveyPlan> plan_;
+  std::optional<CompiledSurvey> compiled_;
   std::optional<SurveyScene> scene_;
   std::unique_ptr<const AnySurvey> pipeline_;
   std::vector<SurveyPart> meshes_;  // beside the survey's own parts

@@ -46,9 +46,9 @@ struct SceneBuildOptions {
   double pulse_rate = 100e3;      ///< of the first leg: motions may be given per pulse [Hz]
   std::uint64_t seed = 0;         ///< of what is random in the scene
   bool fixed_incidence = false;   ///< all surfaces scatter as if they were met squarely
-  unsigned threads = 0;           ///< that read and build, at most `most_threads`; 0 for as many as the machine runs
+  unsigned threads = 0;           ///< that read and build, at most `max_threads`; 0 for as many as the machine runs
 
-  void validate() const { expect_within("SceneBuildOptions::threads", threads, 0, most_threads, ""); }
+  void validate() const { require_within("SceneBuildOptions::threads", threads, 0, max_threads, ""); }
 };
 
 /// The parts of a scene, and what was odd about its files. Files and grids are kept, so that a further scene of the same files costs
@@ -171,7 +171,7 @@ class SceneBuilder {
         warn({file.string() + ": has no voxel of three points or more, as estimateNormals needs, and is left out"});
         return;
       }
-      MaterialTable materials = spread(source.material, cloud.voxels);
+      MaterialTable materials = assign_materials(source.material, cloud.voxels);
       all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(cloud.voxels), std::move(materials)});
     });
   }
@@ -205,7 +205,7 @@ class SceneBuilder {
         warn({file.string() + ": holds no voxel that light could meet, and is left out"});
         return;
       }
-      MaterialTable materials = spread(source.material, voxels.voxels);
+      MaterialTable materials = assign_materials(source.material, voxels.voxels);
       if (!source.leaf_angles.empty())  // of surveys, where a `ladlut` is said to give 2 pi times the extinction of a unit of density
         for (float& density : voxels.voxels.densities) density /= static_cast<float>(2 * pi);
       if (source.mode == VoxelMode::transmittive)
@@ -240,13 +240,13 @@ class SceneBuilder {
   }
 
   /// The material of voxels, or its variants, which they take in turn.
-  MaterialTable spread(const MaterialSource& source, VoxelData& voxels) {
+  MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels) {
     std::vector<Material> all{material(source)};
     if (source.random > 0) {
       const std::vector<Material> variants =
-          varied(all[0], static_cast<std::size_t>(source.random), std::min(1.0, source.random_range), options_.seed);
+          vary_reflectance(all[0], static_cast<std::size_t>(source.random), std::min(1.0, source.random_range), options_.seed);
       all.insert(all.end(), variants.begin(), variants.end());
-      const std::vector<std::uint32_t> turns = in_turn(voxels.cells.size(), static_cast<std::uint32_t>(all.size()));
+      const std::vector<std::uint32_t> turns = assign_round_robin(voxels.cells.size(), static_cast<std::uint32_t>(all.size()));
       voxels.materials.assign(turns.begin(), turns.end());
     }
     return table(std::move(all));
@@ -299,7 +299,7 @@ class SceneBuilder {
     const auto ground = [&](const Vec2& at) { return carriers.ground_height(at); };
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (lifted[i] == 0) continue;
-      auto stood = on_ground(all[i], ground, lifted[i] == -1 ? Standing::touching : Standing::lowest_point);
+      auto stood = on_ground(all[i], ground, lifted[i] == -1 ? GroundPlacement::touching : GroundPlacement::lowest_point);
       if (stood)
         all[i] = std::move(*stood);
       else

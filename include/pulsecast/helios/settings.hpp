@@ -41,18 +41,18 @@ struct SurveySettings {
 };
 
 /// Whether legs of such a platform lead to the place where the next one begins.
-[[nodiscard]] constexpr bool goes_on(PlatformKind kind) noexcept {
+[[nodiscard]] constexpr bool legs_connect(PlatformKind kind) noexcept {
   return kind != PlatformKind::stationary && kind != PlatformKind::interpolated;
 }
 
 /// Whether a platform that moves does not in a leg.
-[[nodiscard]] inline bool rests(const SurveySettings& survey, std::size_t leg) {
-  return goes_on(survey.platform.kind) && hovers(survey.legs, leg);
+[[nodiscard]] inline bool is_stationary(const SurveySettings& survey, std::size_t leg) {
+  return legs_connect(survey.platform.kind) && stays_in_place(survey.legs, leg);
 }
 
 /// Whether a leg only says where the one before it ends, and has no pulses: the last of several of a platform that moves.
 [[nodiscard]] inline bool only_ends(const SurveySettings& survey, std::size_t leg) {
-  return goes_on(survey.platform.kind) && leg > 0 && leg + 1 == survey.legs.size();
+  return legs_connect(survey.platform.kind) && leg > 0 && leg + 1 == survey.legs.size();
 }
 
 /// Pulse rate of the first leg that sets one; the scanner's usual one if none does, and 100 kHz if it has none [Hz].

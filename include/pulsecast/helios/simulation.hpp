@@ -38,11 +38,11 @@ struct SampleBlock {
 };
 
 /// What came of the slots of a block that count.
-struct Sample : Collected {
+struct Sample : ResultBuffer {
   double seconds = 0;          ///< of one processor [s]
   double sample_interval = 0;  ///< [s]
 
-  [[nodiscard]] EchoBatch batch() const { return Collected::batch(sample_interval); }
+  [[nodiscard]] EchoBatch batch() const { return ResultBuffer::batch(sample_interval); }
 };
 
 /// What came of a single slot.
@@ -95,7 +95,7 @@ class Simulation {
   /// Loads the scene of a repetition, from 0, and plans its legs. Throws as `make_simulation`.
   virtual void begin(int run) = 0;
 
-  [[nodiscard]] virtual const SurveyPlan& plan() const = 0;
+  [[nodiscard]] virtual const CompiledSurvey& compiled() const = 0;
   [[nodiscard]] virtual Scene scene() const = 0;
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;  ///< of scene, legs and receivers, each once
 
@@ -114,7 +114,7 @@ class Simulation {
 [[nodiscard]] inline std::vector<std::string> check_without_scene(const SurveySettings& survey,
                                                                   const std::vector<std::string>& leg_places = {}) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
-  std::vector<std::string> warnings = plan_survey(survey, ground, {.leg_places = leg_places}).warnings;
+  std::vector<std::string> warnings = compile_survey(survey, ground, {.leg_places = leg_places}).warnings;
   for (const ChannelSettings& channel : survey.scanner.channels) {
     survey_receiver(channel).validate();
     survey_waveform(channel).validate();

@@ -23,8 +23,8 @@
 namespace pulsecast::helios {
 
 /// A survey that can be run, and what is known of its legs.
-struct SurveyPlan {
-  struct LegPlan {
+struct CompiledSurvey {
+  struct Leg {
     std::size_t number = 0;  ///< in the document, from 0
     bool active = true;
     std::optional<std::string> strip{};
@@ -34,7 +34,7 @@ struct SurveyPlan {
     double pulse_rate = 0;           ///< [Hz]
   };
   Legs<SurveyLeg> source;
-  std::vector<LegPlan> legs;
+  std::vector<Leg> legs;
   std::optional<double> clock_start{};  ///< when the survey begins, if a trajectory says so [s]
   std::vector<std::string> warnings{};
 };
@@ -42,38 +42,40 @@ struct SurveyPlan {
 namespace detail {
 
 /// Turns settings into a plan.
-class SurveyPlanner {
+class SurveyCompiler {
  public:
-  SurveyPlanner(const SurveySettings& survey, const SurveyWays& ways, const SurveyBuildOptions& options)
-      : survey_(survey), ways_(ways), options_(options) {}
+  SurveyCompiler(const SurveySettings& survey, const LegPaths& paths, const SurveyBuildOptions& options)
+      : survey_(survey), paths_(paths), options_(options) {}
 
-  [[nodiscard]] SurveyPlan plan() const {
+  [[nodiscard]] CompiledSurvey compile() const {
     if (survey_.scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
     survey_.scanner.validate(), survey_.platform.validate();
     std::vector<Leg<SurveyLeg>> legs;
-    std::vector<SurveyPlan::LegPlan> plans;
-    std::vector<std::string> warnings = ways_.warnings();
+    std::vector<CompiledSurvey::Leg> compiled;
+    std::vector<std::string> warnings = paths_.warnings();
     PulseIndex first = 0;
     Tick start{};
     double optic_time = 0;
     std::unordered_map<std::string, std::size_t> strips;  // first leg of each
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
-      ways_.of_leg(k, [&] { leg.validate(); });
-      const double rate = ways_.of_leg(k, [&] { return rate_of(leg); });
-      const double duration = duration_of(k), way = ways_[k].duration;
+      paths_.of_leg(k, [&] { leg.validate(); });
+      const double rate = paths_.of_leg(k, [&] { return rate_of(leg); });
+      const double duration = duration_of(k), way = paths_[k].duration;
       if (way > 0 && duration > 1.1 * way && leg.scanner.active)
-        warnings.push_back(ways_.leg_name(k) + ": the platform is there after " + brief(way) + " s, and stays until the head has turned, " +
-                           brief(duration - way) + " s more; without headRotateStop_deg, the head turns for as long as the way lasts");
-      expect_within(ways_.leg_name(k) + " (duration)", duration, 0, 1e15, "s");
-      expect_within(ways_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");
+        warnings.push_back(paths_.leg_name(k) + ": the platform is there after " + brief(way) +
+                           " s, and stays until the head has turned, " + brief(duration - way) +
+                           " s more; without headRotateStop_deg, the head turns for as long as the way lasts");
+      require_within(paths_.leg_name(k) + " (duration)", duration, 0, 1e15, "s");
+      require_within(paths_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");
       const double interval = leg.scanner.active ? leg.scanner.trajectory_interval : 0;
-      if (interval > 0) expect_within(ways_.leg_name(k) + ": trajectoryTimeInterval_s (records)", duration / interval, 0, most_records, "");
+      if (interval > 0)
+        require_within(paths_.leg_name(k) + ": trajectoryTimeInterval_s (records)", duration / interval, 0, max_records, "");
       const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
       if (!leg.scanner.active || teleports(leg)) optic_time = 0;
       std::vector<SurveyChannel> channels;
       for (const ChannelSettings& channel : survey_.scanner.channels)
-        channels.push_back(ways_.of_leg(k, [&] {
+        channels.push_back(paths_.of_leg(k, [&] {
           return SurveyChannel(
               slots > 0 ? optic(channel, leg.scanner, rate, optic_time) : SurveyOptic{},  // if there are none, nobody asks it
               Scanner{.pulse_rate = rate, .pulses = slots, .laser = survey_laser(channel, leg.scanner)});
@@ -84,28 +86,28 @@ class SurveyPlanner {
       if (options_.platform_noise) noise.position = survey_.platform.position_noise, noise.attitude = survey_.platform.attitude_noise;
       const Mount mount{.lever_arm = survey_.platform.mount.position, .boresight = survey_.platform.mount.rotation.rotation()};
       legs.push_back(
-          {SurveyLeg(ways_[k].path, mount, std::move(channels), time, std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
+          {SurveyLeg(paths_[k].path, mount, std::move(channels), time, std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
       const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
-      plans.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
+      compiled.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size, start = start + time;
     }
-    return {Legs<SurveyLeg>(std::move(legs)), std::move(plans), ways_.clock_start(), std::move(warnings)};
+    return {Legs<SurveyLeg>(std::move(legs)), std::move(compiled), paths_.clock_start(), std::move(warnings)};
   }
 
  private:
-  static constexpr double most_records = 1e9;  ///< of a leg's trajectory: some 70 GB of text
+  static constexpr double max_records = 1e9;  ///< of a leg's trajectory: some 70 GB of text
 
   [[nodiscard]] bool teleports(const LegSettings& leg) const {
     return survey_.platform.kind == PlatformKind::interpolated && leg.platform.trajectory && leg.platform.trajectory->teleports;
   }
 
   /// A time for people, to the millisecond.
-  [[nodiscard]] static std::string brief(double seconds) { return pulsecast::detail::written(std::round(seconds * 1e3) / 1e3); }
+  [[nodiscard]] static std::string brief(double seconds) { return pulsecast::detail::to_text(std::round(seconds * 1e3) / 1e3); }
 
   [[nodiscard]] double rate_of(const LegSettings& leg) const {
     double rate = leg.scanner.pulse_rate;
     if (!(rate > 0) && !survey_.scanner.pulse_rates.empty()) rate = survey_.scanner.pulse_rates.front();
-    expect_positive("pulseFreq_hz", rate, "Hz");
+    require_positive("pulseFreq_hz", rate, "Hz");
     return rate;
   }
 
@@ -124,30 +126,30 @@ class SurveyPlanner {
     const LegSettings& leg = survey_.legs[k];
     const LegScannerSettings& s = leg.scanner;
     const double turn = s.head_stop - s.head_start, speed = head_rate(survey_.scanner.channels.front(), s);
-    const bool stands = ways_[k].duration == 0;
-    double duration = ways_[k].duration;
+    const bool stands = paths_[k].duration == 0;
+    double duration = paths_[k].duration;
     if (only_ends(survey_, k)) return 0;
     if (speed != 0 && turn / speed > 0)
       duration = std::max(duration, turn / speed - s.warm_up);
     else if (turns_away(s))
-      throw SettingError(ways_.leg_name(k) + ": headRotateStop_deg", degrees(s.head_stop), "deg",
+      throw SettingError(paths_.leg_name(k) + ": headRotateStop_deg", degrees(s.head_stop), "deg",
                          "on the side of headRotateStart_deg to which the head turns");
     else if (head_never_stops(survey_.scanner.channels.front(), leg) && s.active)
-      throw SettingError(ways_.leg_name(k) + ": headRotatePerSec_deg", degrees(s.head_speed), "deg/s",
+      throw SettingError(paths_.leg_name(k) + ": headRotatePerSec_deg", degrees(s.head_speed), "deg/s",
                          "other than 0, for a scanner whose headRotatePerSecMax_deg is, or the leg would never end");
     if (leg.duration_max) {
       const double most = *leg.duration_max;
       return stands && duration == 0 ? most : std::min(duration, most);
     }
-    if (ways_.rests(k) && k + 1 < survey_.legs.size()) return duration;
+    if (paths_.is_stationary(k) && k + 1 < survey_.legs.size()) return duration;
     if (stands && duration == 0 && speed == 0 && s.active)
-      throw SettingError(ways_.leg_name(k) + ": maxDuration_s", 0, "s",
+      throw SettingError(paths_.leg_name(k) + ": maxDuration_s", 0, "s",
                          "given where neither platform nor head moves, or the leg would never end");
     return std::max(0.0, duration);
   }
 
   const SurveySettings& survey_;
-  const SurveyWays& ways_;
+  const LegPaths& paths_;
   const SurveyBuildOptions& options_;
 };
 
@@ -155,9 +157,10 @@ class SurveyPlanner {
 
 /// The pulses of a survey. `ground` gives the height of the scene's ground. Throws a `SettingError` that names leg and attribute, or a
 /// `FileError` of a trajectory.
-[[nodiscard]] SurveyPlan plan_survey(const SurveySettings& survey, const Ground auto& ground, const SurveyBuildOptions& options = {}) {
-  const SurveyWays ways(survey, ground, options);
-  return detail::SurveyPlanner(survey, ways, options).plan();
+[[nodiscard]] CompiledSurvey compile_survey(const SurveySettings& survey, const Ground auto& ground,
+                                            const SurveyBuildOptions& options = {}) {
+  const LegPaths paths(survey, ground, options);
+  return detail::SurveyCompiler(survey, paths, options).compile();
 }
 
 }  // namespace pulsecast::helios

@@ -27,7 +27,7 @@
 
 #include <tiffio.h>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/scene/height_field.hpp>
 
@@ -39,8 +39,8 @@ struct GeoTiffSettings {
   std::optional<double> missing = std::nullopt;         ///< what stands where no height is; if empty, as the file says (GDAL_NODATA)
 
   void validate() const {
-    expect_within("GeoTiffSettings::band", band, 1, 65535, "");
-    if (vertical_scale) expect_positive("GeoTiffSettings::vertical_scale", *vertical_scale, "m");
+    require_within("GeoTiffSettings::band", band, 1, 65535, "");
+    if (vertical_scale) require_positive("GeoTiffSettings::vertical_scale", *vertical_scale, "m");
   }
 };
 
@@ -145,14 +145,14 @@ class GeoTiffReader {
 
   /// More than any strip or tile of this file can unfold to: deflate reaches 1,032 to 1, LZW and others somewhat more, and a tile of 256 by
   /// 256 that is left out, or all alike, stands for 16,384 times its entry in the lists of tiles.
-  [[nodiscard]] std::uint64_t most_bytes() const noexcept { return (std::uint64_t{1} << 26) + 4096 * file_.size(); }
+  [[nodiscard]] std::uint64_t max_bytes() const noexcept { return (std::uint64_t{1} << 26) + 4096 * file_.size(); }
 
   [[nodiscard]] Handle open() {
     const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
     if (!options) throw std::bad_alloc();
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, this);
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), drop_warning, this);
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), static_cast<tmsize_t>(most_bytes()));
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), static_cast<tmsize_t>(max_bytes()));
     Handle tiff(TIFFOpenExt(file_.path().c_str(), "rm", options.get()));  // not mapped into memory, as a file may be cut meanwhile
     if (!tiff) fail("is not a TIFF file that can be read" + complaint() + ": expected a GeoTIFF");
     return tiff;
@@ -211,9 +211,9 @@ class GeoTiffReader {
     if (needed == 0 || l.chunk_bytes / (l.bits / 8U) / l.stride() != needed || l.chunk_bytes % (l.bits / 8U) != 0)
       fail(std::string("has a ") + l.chunk() + "of no or too large a size" + complaint());
     const std::uint64_t chunks = l.tiled ? TIFFNumberOfTiles(tiff_.get()) : TIFFNumberOfStrips(tiff_.get());
-    if (pixels > most_bytes() / sizeof(float) || l.chunk_bytes > most_bytes() || chunks > file_.size())
+    if (pixels > max_bytes() / sizeof(float) || l.chunk_bytes > max_bytes() || chunks > file_.size())
       fail("claims " + size + ", more than its " + std::to_string(file_.size()) + " bytes can hold");
-    constexpr std::uint32_t most = pulsecast::detail::most_pixels;
+    constexpr std::uint32_t most = pulsecast::detail::max_pixels;
     if (l.columns > most || l.rows > most || !((l.columns - 1.0) * (l.rows - 1.0) <= 2147483647))
       fail("is of " + size + ": expected at most 2^27 in a row or column, and 2^31 cells between them");
   }

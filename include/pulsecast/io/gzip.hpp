@@ -20,7 +20,7 @@ namespace pulsecast::io {
 struct GzipSettings {
   int level = 1;  ///< of effort, from 1, fast, to 9, small
 
-  void validate() const { expect_within("GzipSettings::level", level, 1, 9, ""); }
+  void validate() const { require_within("GzipSettings::level", level, 1, 9, ""); }
 };
 
 namespace detail {

@@ -32,7 +32,7 @@ struct LasTally {
   std::array<std::int32_t, 3> least{}, most{};  ///< of the coordinates as stored
   std::uint64_t points = 0;
   std::array<std::uint64_t, 15> points_by_return{};
-  float most_amplitude = -200;  ///< [dB]
+  float max_amplitude = -200;  ///< [dB]
 
   void add(const LasTally& other) noexcept {
     if (other.points == 0) return;
@@ -42,12 +42,12 @@ struct LasTally {
     }
     points += other.points;
     for (std::size_t i = 0; i < points_by_return.size(); ++i) points_by_return[i] += other.points_by_return[i];
-    most_amplitude = std::max(most_amplitude, other.most_amplitude);
+    max_amplitude = std::max(max_amplitude, other.max_amplitude);
   }
 };
 
-/// Turns echoes into the point records of a LAS file, as `detail::LasFileWriter` says, and keeps count of them. Where a point is comes last, so
-/// that all else can be done before the offset of the coordinates is known.
+/// Turns echoes into the point records of a LAS file, as `detail::LasFileWriter` says, and keeps count of them. Where a point is comes
+/// last, so that all else can be done before the offset of the coordinates is known.
 class LasEncoder {
  public:
   using Record = detail::LasBytes<30 + detail::las_packet_size + detail::las_extras_size>;  ///< the longest
@@ -66,7 +66,7 @@ class LasEncoder {
   template <class Put>
   void encode(const Shot& shot, const EchoBatch& batch, const LasPacket* packet, const Put& put) {
     Record record{};
-    const std::uint32_t returns = std::min(shot.echoes, layout_.most_returns);
+    const std::uint32_t returns = std::min(shot.echoes, layout_.max_returns);
     const auto source = static_cast<std::uint16_t>(std::min(shot.leg + 1U, 65535U));
     const double time = settings_.start_time + shot.tick.seconds();
     if (layout_.legacy) {  // positions: LAS 1.4 R15, Point Data Record Format 1
@@ -85,10 +85,10 @@ class LasEncoder {
     for (const Echo& echo : batch.echoes_of(shot)) {
       const std::uint32_t number = std::clamp<std::uint32_t>(echo.number, 1, returns);
       const float amplitude = las_level(echo.amplitude / settings_.amplitude_reference);
-      tally_.most_amplitude = std::max(tally_.most_amplitude, amplitude);
+      tally_.max_amplitude = std::max(tally_.max_amplitude, amplitude);
       record.put(12, intensity(echo));
       record.put(14, static_cast<std::uint8_t>(number | returns << (layout_.legacy ? 3 : 4)));
-      record.put(layout_.legacy ? 15 : 16, static_cast<std::uint8_t>(std::min<std::uint32_t>(echo.classification, layout_.most_class)));
+      record.put(layout_.legacy ? 15 : 16, static_cast<std::uint8_t>(std::min<std::uint32_t>(echo.classification, layout_.max_class)));
       if (packet) record.put(layout_.packet + 13, static_cast<float>((2 / speed_of_light * echo.range - shot.waveform_start) * 1e12));
       record.put(extras + range_at, echo.range);
       record.put(extras + amplitude_at, amplitude);
@@ -145,7 +145,7 @@ class LasEncoder {
     for (std::size_t at = 0; at < bytes.size(); at += layout_.record()) {
       float level = 0;
       std::memcpy(&level, bytes.data() + at + layout_.extras + amplitude_at, sizeof level);
-      const auto scaled = detail::las_rounded<std::uint16_t>(65535 * std::pow(10, (double{level} - tally_.most_amplitude) / 10), 0, 65535);
+      const auto scaled = detail::las_rounded<std::uint16_t>(65535 * std::pow(10, (double{level} - tally_.max_amplitude) / 10), 0, 65535);
       std::memcpy(bytes.data() + at + 12, &scaled, sizeof scaled);
     }
   }

@@ -52,7 +52,7 @@ class LasPackets {
 
   /// Writes a waveform [W], of at least one sample, every so many seconds.
   [[nodiscard]] LasPacket add(std::span<const float> waveform, double interval) {
-    expect_interval(interval);
+    require_interval(interval);
     const unsigned size_class = size_class_of(waveform.size()), gain_class = gain_class_of(waveform);
     raw_.assign(samples_of(size_class), no_light);
     const double per_watt = 1 / gain_of(gain_class);
@@ -90,7 +90,7 @@ class LasPackets {
     file_.commit();
   }
 
-  static constexpr double most_samples = 32768;  ///< of a waveform
+  static constexpr double max_samples = 32768;  ///< of a waveform
   static constexpr unsigned size_classes = 23, gain_classes = 11, descriptor_count = size_classes * gain_classes;
 
  private:
@@ -109,7 +109,7 @@ class LasPackets {
     unsigned c = 0;
     while (c < size_classes && samples_of(c) < samples) ++c;
     if (c < size_classes) return c;
-    refuse("a waveform has " + std::to_string(samples) + " samples", "at most " + std::to_string(samples_of(size_classes - 1)));
+    reject("a waveform has " + std::to_string(samples) + " samples", "at most " + std::to_string(samples_of(size_classes - 1)));
   }
 
   [[nodiscard]] static unsigned gain_class_of(std::span<const float> waveform) noexcept {
@@ -120,16 +120,16 @@ class LasPackets {
   }
 
   /// The file has one interval, in whole picoseconds; a millionth of one is rounding.
-  void expect_interval(double interval) {
+  void require_interval(double interval) {
     const double picoseconds = interval * 1e12, whole = std::nearbyint(picoseconds);
     const bool can_be = std::fabs(picoseconds - whole) <= 1e-6 && whole >= 1 && whole <= 4294967295.0;
     if (can_be && spacing_ == 0) spacing_ = static_cast<std::uint32_t>(whole);
     if (can_be && spacing_ == whole) return;
-    refuse("samples are " + pulsecast::detail::written(picoseconds) + " ps apart",
+    reject("samples are " + pulsecast::detail::to_text(picoseconds) + " ps apart",
            spacing_ == 0 ? "a whole number from 1 to 2^32 - 1" : std::to_string(spacing_) + " ps, as before");
   }
 
-  [[noreturn]] void refuse(const std::string& problem, const std::string& expected) {
+  [[noreturn]] void reject(const std::string& problem, const std::string& expected) {
     file_.discard();
     throw FileError(file_.path().string(), "byte " + std::to_string(file_.position()), problem + "; expected " + expected);
   }

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 
 namespace pulsecast::io {
@@ -51,14 +51,14 @@ struct LasSettings {
   void validate() const {
     if (waveforms && format == LasFormat::las_1_0)
       throw SettingError("LasSettings::waveforms", 1, "", "false with version 1.0, which knows none");
-    expect_positive("LasSettings::scale", scale, "m");
-    for (int axis = 0; offset && axis < 3; ++axis) expect_finite("LasSettings::offset", (*offset)[axis], "m");
-    expect_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // with its end, 16 bits count it
-    if (epsg != 0) expect_within("LasSettings::epsg", epsg, 1024, 32766, "");  // source: OGC GeoTIFF 1.1, the codes that are EPSG's
-    expect_finite("LasSettings::start_time", start_time, "s");
+    require_positive("LasSettings::scale", scale, "m");
+    for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
+    require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // with its end, 16 bits count it
+    if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // source: OGC GeoTIFF 1.1, the codes that are EPSG's
+    require_finite("LasSettings::start_time", start_time, "s");
     if (intensity_full_scale)
-      expect_positive("LasSettings::intensity_full_scale", *intensity_full_scale, intensity == LasIntensity::amplitude ? "W" : "");
-    expect_positive("LasSettings::amplitude_reference", amplitude_reference, "W");
+      require_positive("LasSettings::intensity_full_scale", *intensity_full_scale, intensity == LasIntensity::amplitude ? "W" : "");
+    require_positive("LasSettings::amplitude_reference", amplitude_reference, "W");
     if (created && !created->ok()) throw SettingError("LasSettings::created day", unsigned{created->day()}, "", "a day of its month");
   }
 };

@@ -51,7 +51,7 @@ namespace detail {
 
 static_assert(std::same_as<tinyobj::real_t, double>, "define TINYOBJLOADER_USE_DOUBLE and link libtinyobjloader_double");
 
-inline constexpr double largest_number = 1e12;  ///< allowed in a file, so that no product of a few overflows
+inline constexpr double max_number = 1e12;  ///< allowed in a file, so that no product of a few overflows
 
 [[nodiscard]] inline std::string_view trimmed(std::string_view text) {
   const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
@@ -154,7 +154,7 @@ class StatementBuffer : public std::streambuf {
 
   [[nodiscard]] std::string quoted() const { return std::string("'").append(statement_, 0, 64) + (statement_.size() > 64 ? "...'" : "'"); }
   [[noreturn]] void fail_here(const std::string& problem) const { throw FileError(path_, "line " + std::to_string(line_), problem); }
-  void expect(bool fulfilled, const char* expected) const {
+  void require(bool fulfilled, const char* expected) const {
     if (!fulfilled) fail_here(quoted() + ": expected " + expected);
   }
 
@@ -245,12 +245,12 @@ class MtlReader : private StatementBuffer {
  private:
   void check(std::string& ready) override {
     // tinyobjloader drops what stands before the first name, and its own exponent is 1.
-    static const std::string exponent = "\nNs " + pulsecast::detail::written(Material{}.specular_exponent) + "\n";
+    static const std::string exponent = "\nNs " + pulsecast::detail::to_text(Material{}.specular_exponent) + "\n";
     const bool is_first = !std::exchange(begun_, true);
     if (keyword() == "newmtl") current_ = rest();
     lines_.try_emplace({current_, std::string(keyword())}, line());
     if (keyword() == "newmtl") {
-      expect(!rest().empty(), "the name of a material");
+      require(!rest().empty(), "the name of a material");
       ready = statement() + exponent;
       return;
     }
@@ -262,10 +262,10 @@ class MtlReader : private StatementBuffer {
       });
     };
     const bool is_one = given.size() == 1, is_colour = keyword() == "Kd" || keyword() == "Ks";
-    if (is_colour) expect((is_one || given.size() == 3) && are_within(largest_number), "one or three numbers that are not negative");
-    if (keyword() == "Ns") expect(is_one && are_within(largest_number), "a number that is not negative");
-    if (keyword() == "helios_reflectance") expect(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
-    if (keyword() == "helios_classification") expect(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
+    if (is_colour) require((is_one || given.size() == 3) && are_within(max_number), "one or three numbers that are not negative");
+    if (keyword() == "Ns") require(is_one && are_within(max_number), "a number that is not negative");
+    if (keyword() == "helios_reflectance") require(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
+    if (keyword() == "helios_classification") require(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
     if (is_first) ready = "newmtl default" + exponent;
     // A texture would make tinyobjloader change the colour, in some orders.
     if (is_colour || keyword() == "Ns" || keyword().starts_with("helios_")) ready += statement();
@@ -317,7 +317,7 @@ class MtlReader : private StatementBuffer {
     return made;
   }
 
-  [[nodiscard]] static std::string nanometres(double metres) { return pulsecast::detail::written(std::round(metres * 1e12) / 1e3); }
+  [[nodiscard]] static std::string nanometres(double metres) { return pulsecast::detail::to_text(std::round(metres * 1e12) / 1e3); }
 
   const SpectralLibrary& spectra_;
   bool begun_ = false;

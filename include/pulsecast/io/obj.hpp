@@ -63,7 +63,7 @@ struct ObjModel {
 
 namespace detail {
 
-inline constexpr std::size_t largest_polygon = 4096;  ///< corners; cutting takes time with their square
+inline constexpr std::size_t max_polygon_corners = 4096;  ///< corners; cutting takes time with their square
 
 /// Cuts a polygon into triangles by clipping ears; a convex one becomes the fan about its first corner. Gives their corners' places in
 /// the polygon, three each; empty if the outline crosses itself. Source: Meisters 1975, every simple polygon has two ears.
@@ -186,7 +186,7 @@ class ObjPiece : private StatementBuffer {
       const auto count = static_cast<std::int64_t>(before + face.above);
       for (const int corner : given) {
         const std::int64_t index = corner < 0 ? count + corner : std::int64_t{corner} - 1;
-        if (index < 0 || index >= count) return refuse(face.line, corner, count);
+        if (index < 0 || index >= count) return reject(face.line, corner, count);
         numbers_.push_back(static_cast<std::uint32_t>(index));
         positions_.push_back(all[numbers_.back()]);
       }
@@ -219,14 +219,14 @@ class ObjPiece : private StatementBuffer {
   void check(std::string& ready) override {
     const std::vector<std::string_view>& given = words();
     if (keyword() == "v") {
-      expect(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
-             "three finite numbers, none beyond 1e12");
+      require(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
+              "three finite numbers, none beyond 1e12");
     } else if (keyword() == "f" && given.size() < 3 && !line_is_open()) {
       add_flat(line());
       return;
     } else if (keyword() == "f") {
-      expect(std::all_of(given.begin(), given.end(), is_corner), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
-      expect(given.size() >= 3 && given.size() <= largest_polygon, "a face of 3 to 4096 corners");
+      require(std::all_of(given.begin(), given.end(), is_corner), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
+      require(given.size() >= 3 && given.size() <= max_polygon_corners, "a face of 3 to 4096 corners");
     } else if (keyword() == "usemtl" && given.empty()) {
       uses.push_back({"default", line(), std::nullopt});
       return;
@@ -260,7 +260,7 @@ class ObjPiece : private StatementBuffer {
   }
 
   void vertex(const Vec3& p) {
-    expect(max_norm(p) <= largest_number, "three finite numbers, none beyond 1e12");
+    require(max_norm(p) <= max_number, "three finite numbers, none beyond 1e12");
     vertices.push_back(up_ == UpAxis::y ? Vec3{p.x, -p.z, p.y} : p);
   }
 
@@ -271,7 +271,7 @@ class ObjPiece : private StatementBuffer {
   }
 
   /// The face in a line names a vertex that is not there.
-  void refuse(std::size_t face_line, int corner, std::int64_t count) {
+  void reject(std::size_t face_line, int corner, std::int64_t count) {
     try {
       rewind();
       while (next_statement() && line() < face_line) continue;

@@ -21,7 +21,7 @@
 #include <unistd.h>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 
 namespace pulsecast::io {
 
@@ -91,7 +91,7 @@ class OutputFile {
       position_ += bytes.size();
       return void(piece_->insert(piece_->end(), bytes.begin(), bytes.end()));
     }
-    expect_open();
+    require_open();
     if (buffer_.size() + bytes.size() > capacity) flush();
     if (bytes.size() < capacity) {
       buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
@@ -120,8 +120,8 @@ class OutputFile {
 
   /// Goes on where others have written to, in the temporary file; without an encoder.
   void continue_at(std::uint64_t position) {
-    PULSECAST_EXPECT(!encoder_);
-    expect_open();
+    PULSECAST_ASSERT(!encoder_);
+    require_open();
     flush();
     position_ = position;
     seek(static_cast<long>(position), SEEK_SET);
@@ -139,7 +139,7 @@ class OutputFile {
   /// Makes the file stand under its final name, in place of any that stood there.
   void commit() {
     if (std::exchange(piece_, nullptr) != nullptr) return;
-    expect_open();
+    require_open();
     flush(true);
     const std::filesystem::path& temporary = file_.get_deleter().temporary;
     const int number = ::fileno(file_.get());
@@ -205,7 +205,7 @@ class OutputFile {
     throw FileError(path_.string(), "", std::string(what) + ": " + system_error(error).message() + "; expected " + std::string(expected));
   }
 
-  void expect_open() const {
+  void require_open() const {
     if (!file_) throw FileError(path_.string(), "", "cannot be written any more: it was committed or given up");
   }
 
@@ -228,8 +228,8 @@ class OutputFile {
   }
 
   void go_back(std::uint64_t position, [[maybe_unused]] std::size_t size) {
-    PULSECAST_EXPECT(!encoder_ && position + size <= position_);
-    expect_open();
+    PULSECAST_ASSERT(!encoder_ && position + size <= position_);
+    require_open();
     flush();
     seek(static_cast<long>(position), SEEK_SET);
   }

@@ -17,7 +17,7 @@
 
 #include <stb/stb_image_write.h>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/colour.hpp>
@@ -38,17 +38,17 @@ struct ImageSettings {
   ColourBy colour_by = ColourBy::height;
   double point_size = 0;  ///< diameter in the middle of the scene; 0 for what closes the gaps [px]
   Srgb background{13, 17, 23};
-  std::size_t most_points = 3'000'000;  ///< of more, every k-th is shown
+  std::size_t points_max = 3'000'000;  ///< of more, every k-th is shown
 
   void validate() const {
-    expect_within("ImageSettings::width", width, 1, 4096, "px");
-    expect_within("ImageSettings::height", height, 1, 4096, "px");
-    expect_finite("ImageSettings::azimuth", azimuth, "rad");
-    expect_within("ImageSettings::elevation", elevation, -pi / 2, pi / 2, "rad");
-    expect_within("ImageSettings::field_of_view", field_of_view, eye ? radians(1) : 0, radians(120), "rad");
-    if (eye) expect_finite("ImageSettings::eye (length)", length(*eye), "m");
-    expect_within("ImageSettings::point_size", point_size, 0, 64, "px");
-    expect_within("ImageSettings::most_points", static_cast<double>(most_points), 2, 1e8, "");
+    require_within("ImageSettings::width", width, 1, 4096, "px");
+    require_within("ImageSettings::height", height, 1, 4096, "px");
+    require_finite("ImageSettings::azimuth", azimuth, "rad");
+    require_within("ImageSettings::elevation", elevation, -pi / 2, pi / 2, "rad");
+    require_within("ImageSettings::field_of_view", field_of_view, eye ? radians(1) : 0, radians(120), "rad");
+    if (eye) require_finite("ImageSettings::eye (length)", length(*eye), "m");
+    require_within("ImageSettings::point_size", point_size, 0, 64, "px");
+    require_within("ImageSettings::points_max", static_cast<double>(points_max), 2, 1e8, "");
   }
 };
 
@@ -170,7 +170,7 @@ class Canvas {
 
  private:
   static constexpr float nothing = std::numeric_limits<float>::infinity();
-  static constexpr double largest_disc = 64;  // radius, in pixels of the canvas
+  static constexpr double max_disc = 64;  // radius, in pixels of the canvas
 
   [[nodiscard]] std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
@@ -195,8 +195,8 @@ class Canvas {
 
   void draw(std::uint32_t i, double diameter) {
     const Vec3 p = camera_.pixel(points_[i]) * Vec3{2, 2, 1};
-    if (!(p.x > -largest_disc && p.x < width_ + largest_disc && p.y > -largest_disc && p.y < height_ + largest_disc)) return;
-    const double radius = std::clamp(diameter * camera_.magnification(p.z), 0.75, largest_disc);
+    if (!(p.x > -max_disc && p.x < width_ + max_disc && p.y > -max_disc && p.y < height_ + max_disc)) return;
+    const double radius = std::clamp(diameter * camera_.magnification(p.z), 0.75, max_disc);
     const auto first = [](double low) { return std::max(0, static_cast<int>(std::ceil(low - 0.5))); };
     const auto last = [](double high, int size) { return std::min(size - 1, static_cast<int>(std::floor(high - 0.5))); };
     const float depth = static_cast<float>(p.z);
@@ -287,7 +287,7 @@ class ImageWriter {
         if (points_.empty()) origin_ = point;
         const Vec3 p = point - origin_;
         points_.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), value(echo)});
-        if (points_.size() >= settings_.most_points) thin();
+        if (points_.size() >= settings_.points_max) thin();
       }
   }
 

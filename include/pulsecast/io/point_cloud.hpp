@@ -17,7 +17,7 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
@@ -43,20 +43,20 @@ enum class VoxelLattice : std::uint8_t {
 };
 
 struct PointCloudSettings {
-  double voxel_size = 1;                                ///< edge of a voxel [m]
-  VoxelLattice lattice = VoxelLattice::at_cloud;        ///< where it stands
-  VoxelNormals normals = VoxelNormals::none;            ///< where they come from
-  std::optional<Vec3> default_normal = std::nullopt;    ///< for voxels that get none otherwise, of any length but 0
-  bool colours = false;                                 ///< whether voxels get any
-  std::optional<double> largest_colour = std::nullopt;  ///< that a channel may have; if not given, 65535 in LAS and 255 in text
-  PointColumns columns = {};                            ///< of text files
+  double voxel_size = 1;                              ///< edge of a voxel [m]
+  VoxelLattice lattice = VoxelLattice::at_cloud;      ///< where it stands
+  VoxelNormals normals = VoxelNormals::none;          ///< where they come from
+  std::optional<Vec3> default_normal = std::nullopt;  ///< for voxels that get none otherwise, of any length but 0
+  bool colours = false;                               ///< whether voxels get any
+  std::optional<double> colour_max = std::nullopt;    ///< that a channel may have; if not given, 65535 in LAS and 255 in text
+  PointColumns columns = {};                          ///< of text files
 
   void validate() const {
-    expect_positive("PointCloudSettings::voxel_size", voxel_size, "m");
-    expect_within("PointCloudSettings::voxel_size", voxel_size, 0, 1e12, "m");
+    require_positive("PointCloudSettings::voxel_size", voxel_size, "m");
+    require_within("PointCloudSettings::voxel_size", voxel_size, 0, 1e12, "m");
     if (default_normal && !(max_norm(*default_normal) >= 1e-100 && max_norm(*default_normal) <= 1e100))
       throw SettingError("PointCloudSettings::default_normal length", length(*default_normal), "", "from 1e-100 to 1e100");
-    if (largest_colour) expect_positive("PointCloudSettings::largest_colour", *largest_colour, "");
+    if (colour_max) require_positive("PointCloudSettings::colour_max", *colour_max, "");
     columns.validate();
   }
 };
@@ -125,7 +125,7 @@ class PointCloudReader {
   PointCloudReader(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings) : settings_(validated(settings)) {
     measure(paths);
     for (int axis = 0; axis < 3; ++axis) lay(axis, paths.front());
-    expect_room(paths.front());
+    require_room(paths.front());
     for (const std::filesystem::path& path : paths)
       with_points(path, settings_, [this](auto& points) {
         while (points.next()) add(points);
@@ -177,22 +177,22 @@ class PointCloudReader {
     }
     if (!(cells <= 0x1p32))
       throw FileError(path.string(), "",
-                      std::string("the cloud extends over ") + pulsecast::detail::written(extent) + " m along " + "xyz"[axis] +
-                          ", which is " + pulsecast::detail::written(cells) + " voxels: expected no more than 2^32; voxels are " +
-                          pulsecast::detail::written(edge) + " m large");
+                      std::string("the cloud extends over ") + pulsecast::detail::to_text(extent) + " m along " + "xyz"[axis] +
+                          ", which is " + pulsecast::detail::to_text(cells) + " voxels: expected no more than 2^32; voxels are " +
+                          pulsecast::detail::to_text(edge) + " m large");
     last_[axis] = cells - 1;
   }
 
   [[nodiscard]] Vec3 corner() const noexcept { return origin_ + first_ * settings_.voxel_size; }
 
   /// Refuses voxels that are small against the rounding of coordinates where they stand.
-  void expect_room(const std::filesystem::path& path) const {
-    const double edge = settings_.voxel_size, least = VoxelData::least_edge(corner());
+  void require_room(const std::filesystem::path& path) const {
+    const double edge = settings_.voxel_size, least = VoxelData::min_edge(corner());
     if (edge >= least) return;
     throw FileError(path.string(), "",
-                    "the cloud begins " + pulsecast::detail::written(max_norm(corner())) + " m from the origin, where voxels of " +
-                        pulsecast::detail::written(edge) + " m cannot be told apart: expected at least " +
-                        pulsecast::detail::written(least) + " m");
+                    "the cloud begins " + pulsecast::detail::to_text(max_norm(corner())) + " m from the origin, where voxels of " +
+                        pulsecast::detail::to_text(edge) + " m cannot be told apart: expected at least " +
+                        pulsecast::detail::to_text(least) + " m");
   }
 
   /// Enters a point, in the second pass.
@@ -207,7 +207,7 @@ class PointCloudReader {
       cell[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(place);
       centre[axis] = origin_[axis] + (first_[axis] + place + 0.5) * settings_.voxel_size;
     }
-    if (cells_.size() == CellNumbers::most) points.fail_here("needs one voxel more than the 2^32 - 2 that there can be");
+    if (cells_.size() == CellNumbers::max_size) points.fail_here("needs one voxel more than the 2^32 - 2 that there can be");
     const std::size_t voxel = cells_.number(cell);
     if (voxel == counts_.size()) append();
     ++counts_[voxel];
@@ -245,13 +245,13 @@ class PointCloudReader {
   template <class Points>
   void add_colour(const Points& points, std::size_t voxel) {
     const Vec3 colour = points.colour();
-    const double largest = settings_.largest_colour.value_or(Points::largest_colour);
+    const double largest = settings_.colour_max.value_or(Points::max_colour);
     for (int k = 0; k < 3; ++k)
       if (!(colour[k] >= 0 && colour[k] <= largest))
-        points.fail_here("has the colour " + pulsecast::detail::written(colour[k]) + ": expected one from 0 to " +
-                         pulsecast::detail::written(largest));
+        points.fail_here("has the colour " + pulsecast::detail::to_text(colour[k]) + ": expected one from 0 to " +
+                         pulsecast::detail::to_text(largest));
     const Vec3 share = colour / largest;
-    if (!settings_.largest_colour && largest > 255) brightest_ = std::max(brightest_, max_norm(colour));
+    if (!settings_.colour_max && largest > 255) brightest_ = std::max(brightest_, max_norm(colour));
     squares_[voxel] += share * share;
   }
 

@@ -15,7 +15,7 @@ namespace pulsecast::io {
 struct PulseTextSettings {
   double start_time = 0;  ///< what the clock shows at tick 0 [s]
 
-  void validate() const { expect_finite("PulseTextSettings::start_time", start_time, "s"); }
+  void validate() const { require_finite("PulseTextSettings::start_time", start_time, "s"); }
 };
 
 /// Writes the pulses that were sent as text, with or without echoes, one a line, with these columns and a blank between them:

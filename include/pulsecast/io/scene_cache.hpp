@@ -34,30 +34,30 @@
 ///
 /// A cache belongs to one build of the program on one machine: it holds arrays as they stand in memory, and says which version, shapes and
 /// element types it was written with. It is taken only if it is whole, by a checksum over all its bytes, and if it was made from the very
-/// bytes that its sources hold now. The checksum is there for accidents; what was forged is caught as far as a shape has a `sound`.
+/// bytes that its sources hold now. The checksum is there for accidents; what was forged is caught as far as a shape has a `is_consistent`.
 /// Limits: a file that is mapped must not be written to. Caches are only ever replaced as a whole, which does not touch a mapped one; but
 /// programs that start at the same time should not make the same cache.
 namespace pulsecast::io {
 
 /// A geometry that can be kept in a cache. All it holds is named, in the same order for writing and reading, by one function; all its
-/// arrays are `Frozen`, so that they can stay in the file:
-///     explicit G(Unfilled) {}
+/// arrays are `SharedArray`, so that they can stay in the file:
+///     explicit G(DeserializeTag) {}
 ///     template <class Archive> void archive(Archive& a) { a(member1_, member2_, ...); }
-/// The members may be `Frozen` arrays, plain values without pointers, strings, vectors, and objects that have an `archive` themselves.
-/// Not required: `bool sound() const`, which is asked after the filling whether every number in the arrays can be followed without leaving
-/// them.
+/// The members may be `SharedArray` arrays, plain values without pointers, strings, vectors, and objects that have an `archive` themselves.
+/// Not required: `bool is_consistent() const`, which is asked after the filling whether every number in the arrays can be followed without
+/// leaving them.
 template <class G>
-concept Archived = Geometry<G> && detail::Fillable<G>;
+concept Archived = Geometry<G> && detail::Restorable<G>;
 
 namespace detail {
 template <Archived... Shapes>
-void expect_archived(std::span<const Part<Shapes...>> parts);
+void require_archived(std::span<const Part<Shapes...>> parts);
 }  // namespace detail
 
 /// A scene of parts, all of whose shapes are `Archived`: `Scene` and `MovingScene`.
 template <class S>
 concept CacheableScene = requires(const S& scene) {
-  detail::expect_archived(std::span<const typename S::Part>(scene.parts()));
+  detail::require_archived(std::span<const typename S::Part>(scene.parts()));
 };
 
 /// What a scene is made from.
@@ -111,7 +111,7 @@ template <class Archive, class... Shapes>
 void list_members(Archive& a, Part<Shapes...>& part) {
   auto& [geometry, materials, placement, object, name, motion] = part;
   a(geometry, materials, placement, object, name);
-  if constexpr (detail::Fillable<PartMotion>) a(motion);
+  if constexpr (detail::Restorable<PartMotion>) a(motion);
 }
 
 namespace detail {
@@ -162,7 +162,7 @@ struct Unusable {
 };
 
 /// Whether the bytes are a cache of this program, whole and from these sources; throws `Unusable` if not.
-inline void expect_cache(std::span<const std::byte> bytes, const Fingerprint& program, const Fingerprint& key) {
+inline void require_cache(std::span<const std::byte> bytes, const Fingerprint& program, const Fingerprint& key) {
   CacheHeader header;
   if (bytes.size() < sizeof header) throw Unusable{"is cut short"};
   std::memcpy(&header, bytes.data(), sizeof header);
@@ -181,7 +181,7 @@ template <class P>
   ArchiveReader reader(bytes.subspan(sizeof(CacheHeader)), std::move(owner));
   std::vector<P> parts;
   reader(parts);
-  reader.expect_end();
+  reader.require_end();
   return parts;
 }
 
@@ -204,7 +204,7 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
   ArchiveWriter writer(file);
   writer(std::uint64_t{parts.size()});
   for (const typename S::Part& part : parts) {
-    if (part.motion && !detail::Fillable<PartMotion>) throw FileError(path.string(), "", "cannot be written: motions are not kept");
+    if (part.motion && !detail::Restorable<PartMotion>) throw FileError(path.string(), "", "cannot be written: motions are not kept");
     writer(part);
   }
   header.program = detail::program_of<typename S::Part>(), header.key = key, header.size = file.position();
@@ -217,7 +217,7 @@ template <CacheableScene S, class... Further>
 OpenedScene<S> open_scene(const std::filesystem::path& path, const Fingerprint& key, const Further&... further) {
   try {
     const auto file = std::make_shared<const MappedFile>(path);
-    detail::expect_cache(file->bytes(), detail::program_of<typename S::Part>(), key);
+    detail::require_cache(file->bytes(), detail::program_of<typename S::Part>(), key);
     return {S(detail::parts_in<typename S::Part>(file->bytes(), file), further...), {}};
   } catch (const detail::Unusable& unusable) {
     return {std::nullopt, unusable.reason};

@@ -12,7 +12,7 @@
 
 namespace pulsecast::io {
 
-/// Writes what the subrays of a `Recorded` footprint met as text, one hit a line, with these columns and a blank between them:
+/// Writes what the subrays of a `WithSubrayRecord` footprint met as text, one hit a line, with these columns and a blank between them:
 ///
 ///     fullwaveIndex subray x y z range intensity cosIncidence backscatter hitObjectId classification
 ///

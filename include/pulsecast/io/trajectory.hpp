@@ -26,7 +26,7 @@ namespace pulsecast::io {
 struct TrajectoryFileSettings {
   double start_time = 0;  ///< what the clock shows at tick 0 [s]
 
-  void validate() const { expect_finite("TrajectoryFileSettings::start_time", start_time, "s"); }
+  void validate() const { require_finite("TrajectoryFileSettings::start_time", start_time, "s"); }
 };
 
 /// Calls `record` with the times of the records of a leg: 0, `interval` [s, positive], twice that and so on, and the end, `duration`.
@@ -68,7 +68,7 @@ class TrajectoryWriter {
   /// A leg that begins at `start` in the survey's time. The trajectory is asked in its own time: at 0, `interval` [s], twice the interval
   /// and so on, and at the end, `duration`.
   void add(const Trajectory auto& trajectory, Tick start, Tick duration, double interval) {
-    expect_positive("TrajectoryWriter::add interval", interval, "s");
+    require_positive("TrajectoryWriter::add interval", interval, "s");
     for_each_record(duration, interval, [&](const Tick& tick) { add(start + tick, trajectory.at(tick)); });
   }
 
@@ -83,7 +83,7 @@ class TrajectoryWriter {
 
 /// Writes a trajectory so that `read_trajectory` reads it back, with every digit that a double has; yaw is in [0, 2 pi). The poses come in
 /// order of time, where a jump's stands twice; to the times, `start_time` [s] is added.
-void write_trajectory(const std::filesystem::path& path, std::span<const Waypoint> poses, const TrajectoryFormat& format = csv_format(),
+void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses, const TrajectoryFormat& format = csv_format(),
                       double start_time = 0);
 
 namespace detail {
@@ -104,7 +104,7 @@ namespace detail {
 }
 
 /// A pose as a format tells it.
-[[nodiscard]] inline QuantityValues values_of(const Waypoint& pose, const TrajectoryFormat& format, double start_time) {
+[[nodiscard]] inline QuantityValues values_of(const TimedPose& pose, const TrajectoryFormat& format, double start_time) {
   const Vec3 p = pose.position, in_file = format.axes.swapped(p);
   const Rotation q = format.axes.to_file(pose.rotation);
   const RollPitchYaw angles = roll_pitch_yaw(pose.rotation, format.angles);
@@ -121,19 +121,19 @@ namespace detail {
 
 }  // namespace detail
 
-inline void write_trajectory(const std::filesystem::path& path, std::span<const Waypoint> poses, const TrajectoryFormat& format,
+inline void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses, const TrajectoryFormat& format,
                              double start_time) {
   format.validate();
-  expect_finite("write_trajectory start_time", start_time, "s");
+  require_finite("write_trajectory start_time", start_time, "s");
   const TrajectoryColumns columns(format.columns, format.left_out, format.angle_unit);
   if (poses.empty()) throw FileError(path.string(), "", "cannot be written: expected at least one pose");
   OutputFile file(path);
   file.write(detail::head_of(format, columns));
   TextRow row(format.separator);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Waypoint pose{poses[i].time, poses[i].position, unit(poses[i].rotation)};
+    const TimedPose pose{poses[i].time, poses[i].position, unit(poses[i].rotation)};
     const double time = start_time + pose.time;
-    constexpr double largest = detail::largest_in_trajectory;
+    constexpr double largest = detail::max_in_trajectory;
     const bool in_order = i == 0 || time > start_time + poses[i - 1].time || pose.time == poses[i - 1].time;
     if (!(std::fabs(time) <= largest) || !finite(pose.position) || !(max_norm(pose.position) <= largest) ||
         !(std::fabs(length(poses[i].rotation) - 1) <= 1e-3) || !in_order)

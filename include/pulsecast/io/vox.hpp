@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
@@ -36,12 +36,12 @@ enum class VoxelUse : std::uint8_t {
 struct VoxelFileSettings {
   VoxelUse use = VoxelUse::transmissive;
   double exponent = 0.5;                              ///< of scaled cubes: their edge is (PAD / PADmax)^exponent of their cell's
-  std::optional<double> max_density = std::nullopt;   ///< PADmax; if not given, as the file says, else its largest [m^2/m^3]
+  std::optional<double> density_max = std::nullopt;   ///< PADmax; if not given, as the file says, else its largest [m^2/m^3]
   std::optional<std::uint64_t> shift = std::nullopt;  ///< seed by which scaled cubes are moved inside their cells; if not given, none is
 
   void validate() const {
-    expect_not_negative("VoxelFileSettings::exponent", exponent, "");
-    if (max_density) expect_positive("VoxelFileSettings::max_density", *max_density, "m^2/m^3");
+    require_not_negative("VoxelFileSettings::exponent", exponent, "");
+    if (density_max) require_positive("VoxelFileSettings::density_max", *density_max, "m^2/m^3");
   }
 };
 
@@ -49,7 +49,7 @@ struct VoxelFileSettings {
 struct VoxelFile {
   VoxelData voxels;                   ///< with densities, or with scales and shifts, as they are to be used
   std::vector<float> transmittances;  ///< of each voxel, NaN where it is not known; none if there is no such column
-  double max_density = 0;             ///< PADmax: as set, as the file says, or its largest [m^2/m^3]
+  double density_max = 0;             ///< PADmax: as set, as the file says, or its largest [m^2/m^3]
   std::vector<std::string> warnings;  ///< what was odd, but could be read
 };
 
@@ -100,7 +100,7 @@ class VoxelFileReader {
     std::size_t count = 0, first = 0;
   };
 
-  static constexpr double largest = 1e12;  ///< number that may stand in a file
+  static constexpr double max_number = 1e12;  ///< number that may stand in a file
 
   [[nodiscard]] static std::string lower(std::string_view text) {
     std::string result(text);
@@ -163,7 +163,7 @@ class VoxelFileReader {
       if (value.empty()) return result;
       const std::string_view word = value.substr(0, value.find_first_of(between));
       const std::optional<double> number = TextTable::number_in(word);
-      if (!number || std::fabs(*number) > largest) return {};
+      if (!number || std::fabs(*number) > max_number) return {};
       result.push_back(*number);
       value.remove_prefix(word.size());
     }
@@ -190,9 +190,9 @@ class VoxelFileReader {
     if (!min_corner_) table_.fail("has no key 'min_corner': expected '#min_corner: x y z' above the rows");
     if (!edge_) table_.fail("has no key 'res': expected '#res: edge' above the rows");
     file_.voxels.corner = *min_corner_, file_.voxels.edge = *edge_;
-    if (const double least = VoxelData::least_edge(*min_corner_); !(*edge_ >= least))
+    if (const double least = VoxelData::min_edge(*min_corner_); !(*edge_ >= least))
       throw FileError(table_.path(), TextTable::place(edge_line_),
-                      "'res' is " + pulsecast::detail::written(*edge_) + ": expected at least " + pulsecast::detail::written(least) +
+                      "'res' is " + pulsecast::detail::to_text(*edge_) + ": expected at least " + pulsecast::detail::to_text(least) +
                           " so far from the origin as 'min_corner' is");
     if (!max_corner_ || !split_) return;
     const Vec3 should = *min_corner_ + *split_ * *edge_;
@@ -205,16 +205,16 @@ class VoxelFileReader {
     if (cells.size() < columns_) table_.fail_here("has " + std::to_string(cells.size()) + " columns: expected " + std::to_string(columns_));
     const CellNumbers::Cell cell{index(0), index(1), index(2)};
     for (int axis = 0; axis < 3; ++axis)
-      if (!(std::fabs((*min_corner_)[axis] + cell[static_cast<std::size_t>(axis)] * *edge_) <= largest))
-        table_.fail_here("the voxel " + written(cell) + " stands beyond 1e12 m: expected one within");
+      if (!(std::fabs((*min_corner_)[axis] + cell[static_cast<std::size_t>(axis)] * *edge_) <= max_number))
+        table_.fail_here("the voxel " + to_text(cell) + " stands beyond 1e12 m: expected one within");
     const double density = number(density_), transmittance = transmittance_ ? number(*transmittance_) : 0;
-    if (density < 0 || density > largest)
+    if (density < 0 || density > max_number)
       table_.fail_here(density_, TextTable::quoted(cells[density_]) + ": expected a density from 0 to 1e12");
     if (table_.line_is_open()) file_.warnings.push_back(table_.path() + ": the last line has no end: the file may have been cut short");
-    if (cells_.size() == CellNumbers::most) table_.fail_here("expected fewer than 2^32 - 1 voxels");
+    if (cells_.size() == CellNumbers::max_size) table_.fail_here("expected fewer than 2^32 - 1 voxels");
     const std::size_t before = cells_.size();
-    if (cells_.number(cell) != before) table_.fail_here("the voxel " + written(cell) + " stands twice: expected each once");
-    max_density_ = std::fmax(max_density_, density);
+    if (cells_.number(cell) != before) table_.fail_here("the voxel " + to_text(cell) + " stands twice: expected each once");
+    density_max_ = std::fmax(density_max_, density);
     if (settings_.use == VoxelUse::transmissive ? density == 0 : !(transmittance != 1) || std::isnan(transmittance)) return;
     if (std::isnan(density) && settings_.use != VoxelUse::opaque) return no_density_.at(table_.line());
     kept_.push_back(cell);
@@ -230,7 +230,7 @@ class VoxelFileReader {
     if (error != std::errc{} || end != text.data() + text.size() || text.empty())
       table_.fail_here(column, TextTable::quoted(text) + ": expected a whole number from 0 to 2^32 - 1");
     if (split_ && !(value < (*split_)[axis]))
-      table_.fail_here(column, TextTable::quoted(text) + ": expected less than the " + pulsecast::detail::written((*split_)[axis]) +
+      table_.fail_here(column, TextTable::quoted(text) + ": expected less than the " + pulsecast::detail::to_text((*split_)[axis]) +
                                    " voxels that 'split' gives");
     return value;
   }
@@ -244,12 +244,12 @@ class VoxelFileReader {
   }
 
   void finish() {
-    file_.max_density = settings_.max_density.value_or(max_pad_.value_or(max_density_));
+    file_.density_max = settings_.density_max.value_or(max_pad_.value_or(density_max_));
     if (settings_.use == VoxelUse::scaled) scale();
     if (settings_.use == VoxelUse::transmissive) file_.voxels.densities = std::move(densities_);
     file_.voxels.cells = std::move(kept_);
     warn(no_density_, "has no density (NaN)", "they are left out");
-    warn(too_dense_, "is denser than the maximum, " + pulsecast::detail::written(file_.max_density) + " m^2/m^3", "they fill their cells");
+    warn(too_dense_, "is denser than the maximum, " + pulsecast::detail::to_text(file_.density_max) + " m^2/m^3", "they fill their cells");
     if (file_.voxels.cells.empty())
       table_.fail(cells_.size() == 0 ? "has no rows: expected at least one voxel"
                                      : "has no voxel that light can meet: expected at least one");
@@ -259,7 +259,7 @@ class VoxelFileReader {
   void scale() {
     std::size_t n = 0;
     for (std::size_t i = 0; i < kept_.size(); ++i) {
-      const double share = densities_[i] > 0 ? densities_[i] / file_.max_density : 0;
+      const double share = densities_[i] > 0 ? densities_[i] / file_.density_max : 0;
       if (share > 1 + 1e-6) ++too_dense_.count;
       // Source: Weiser et al. 2021, eq. 2, with its base size the edge of the cell.
       const auto size = static_cast<float>(std::pow(std::min(share, 1.0), settings_.exponent));
@@ -291,7 +291,7 @@ class VoxelFileReader {
     file_.warnings.push_back(table_.path() + place + ": a voxel " + what + ", one of " + std::to_string(oddity.count) + ": " + consequence);
   }
 
-  [[nodiscard]] static std::string written(const CellNumbers::Cell& cell) {
+  [[nodiscard]] static std::string to_text(const CellNumbers::Cell& cell) {
     return std::to_string(cell[0]) + " " + std::to_string(cell[1]) + " " + std::to_string(cell[2]);
   }
 
@@ -304,7 +304,7 @@ class VoxelFileReader {
   std::array<std::size_t, 3> index_{};  // columns
   std::size_t density_ = 0, columns_ = 0;
   std::optional<std::size_t> transmittance_;
-  double max_density_ = 0;  // of all rows
+  double density_max_ = 0;  // of all rows
   Oddity no_density_, too_dense_;
   CellNumbers cells_;                    // of all rows
   std::vector<CellNumbers::Cell> kept_;  // of rows that become voxels

@@ -14,7 +14,7 @@ namespace pulsecast::io {
 struct WaveformTextSettings {
   double start_time = 0;  ///< what the clock shows at tick 0 [s]
 
-  void validate() const { expect_finite("WaveformTextSettings::start_time", start_time, "s"); }
+  void validate() const { require_finite("WaveformTextSettings::start_time", start_time, "s"); }
 };
 
 /// Writes waveforms as text, one a line, for all pulses that have one, be there echoes in it or not, with these columns and a blank

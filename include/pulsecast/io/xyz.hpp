@@ -14,7 +14,7 @@ namespace pulsecast::io {
 struct XyzSettings {
   double start_time = 0;  ///< what the clock shows at tick 0 [s]
 
-  void validate() const { expect_finite("XyzSettings::start_time", start_time, "s"); }
+  void validate() const { require_finite("XyzSettings::start_time", start_time, "s"); }
 };
 
 /// Writes points as text, one a line, with these columns and a blank between them:

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/io/las_packets.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/las_encoder.hpp>
+#include <pulsecast/io/las_packets.hpp>
 #include <pulsecast/io/las_settings.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/file.hpp>
@@ -52,7 +52,7 @@ class MpiLasPiece final : public MpiPiece {
     }
   }
 
-  [[nodiscard]] MpiClaim claim() override {
+  [[nodiscard]] MpiExtent extent() override {
     if (packets_) packets_->end_piece();
     return {{points_.size(), packet_bytes_.size()}, points_.empty() ? Vec3{} : points_.front()};
   }
@@ -98,9 +98,9 @@ struct MpiLasShare {
   void add(const MpiLasShare& other) noexcept { tally.add(other.tally), spacing = std::max(spacing, other.spacing); }
 };
 
-[[nodiscard]] inline MpiLasShare sum_of_shares(MpiTeam& team, const MpiLasShare& own) {
+[[nodiscard]] inline MpiLasShare sum_of_shares(MpiGroup& group, const MpiLasShare& own) {
   MpiLasShare sum;
-  for (const MpiLasShare& one : team.channel().gather(own)) sum.add(one);
+  for (const MpiLasShare& one : group.channel().gather(own)) sum.add(one);
   return sum;
 }
 
@@ -110,17 +110,17 @@ struct MpiLasShare {
 /// are scaled to the greatest amplitude.
 class MpiLas final : public MpiOutput {
  public:
-  MpiLas(MpiTeam& team, const std::filesystem::path& path, io::LasSettings settings)
-      : MpiOutput(team),
+  MpiLas(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings)
+      : MpiOutput(group),
         settings_(detail::mpi_las_settings(std::move(settings))),
         record_(io::LasEncoder::record_size(settings_)),
         points_file_(path),
         packets_file_(std::filesystem::path(path).replace_extension(".wdp")) {
-    if (team.first()) {
+    if (group.first()) {
       whole_.emplace(path, settings_);
       packets_end_ = whole_->packets_at();
     }
-    begin_ = team.channel().from_first(whole_ ? whole_->records_at() : 0);
+    begin_ = group.channel().from_first(whole_ ? whole_->records_at() : 0);
   }
 
   [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<detail::MpiLasPiece>(points_file_.path(), settings_); }
@@ -133,16 +133,16 @@ class MpiLas final : public MpiOutput {
     share_.add({own.encoder().tally(), own.spacing()});
   }
 
-  [[nodiscard]] MpiPlace place(const MpiClaim& claim, int /*owner*/) override {
-    if (points_ == 0) first_ = claim.first;
+  [[nodiscard]] MpiPlace place(const MpiExtent& extent, int /*owner*/) override {
+    if (points_ == 0) first_ = extent.first;
     const MpiPlace place{{points_, packets_end_}, first_};
-    points_ += claim.amounts[0], packets_end_ += claim.amounts[1];
+    points_ += extent.amounts[0], packets_end_ += extent.amounts[1];
     return place;
   }
 
   void close() override {
     points_file_.close(), packets_file_.close();
-    const detail::MpiLasShare all = detail::sum_of_shares(team(), share_);
+    const detail::MpiLasShare all = detail::sum_of_shares(group(), share_);
     if (!whole_) return;
     whole_->adopt(all.tally, first_, begin_ + points_ * record_, packets_end_, all.spacing);
     whole_->close();
@@ -154,7 +154,7 @@ class MpiLas final : public MpiOutput {
   MpiFile points_file_, packets_file_;
   detail::MpiLasShare share_;
   std::uint64_t begin_ = 0;                     // of the points [byte]
-  std::optional<io::LasWriter> whole_;              // on the first process, as what follows
+  std::optional<io::LasWriter> whole_;          // on the first process, as what follows
   std::uint64_t points_ = 0, packets_end_ = 0;  // that have their place; [byte]
   Vec3 first_{};
 };

@@ -27,13 +27,13 @@ namespace pulsecast::mpi {
 /// on so many threads as are said; others send it what they have of that chunk. The first process adds up the sizes of chunks.
 class MpiLaz final : public MpiOutput {
  public:
-  MpiLaz(MpiTeam& team, const std::filesystem::path& path, io::LasSettings settings, unsigned threads = 0)
-      : MpiOutput(team),
+  MpiLaz(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings, unsigned threads = 0)
+      : MpiOutput(group),
         settings_(io::LazWriter::compressible(detail::mpi_las_settings(std::move(settings)))),
         record_(io::LasEncoder::record_size(settings_)),
         threads_(thread_count(threads)),
         file_(path) {
-    if (team.first()) {
+    if (group.first()) {
       whole_.emplace(path, settings_, threads);
       end_ = whole_->records_at();
     }
@@ -50,47 +50,47 @@ class MpiLaz final : public MpiOutput {
     while (!records.empty()) {
       const std::uint64_t before = at % chunk_points;
       const auto some = records.first(std::min(records.size(), (chunk_points - before) * record_));
-      if (before == 0 || place.chunk_owner == team().rank())
+      if (before == 0 || place.chunk_owner == group().rank())
         add(at, some);
       else
-        send(place.chunk_owner, std::move(MpiParcel().add(Message::part).add(at).add(some)));
+        send(place.chunk_owner, std::move(MpiMessage().add(MessageKind::part).add(at).add(some)));
       records = records.subspan(some.size()), at += some.size() / record_;
     }
   }
 
-  [[nodiscard]] MpiPlace place(const MpiClaim& claim, int owner) override {
-    if (points_ == 0) first_ = claim.first;
+  [[nodiscard]] MpiPlace place(const MpiExtent& extent, int owner) override {
+    if (points_ == 0) first_ = extent.first;
     const MpiPlace place{{points_, 0}, first_, chunk_owner_};
     const std::uint64_t begun = chunks_of(points_);
-    points_ += claim.amounts[0];
+    points_ += extent.amounts[0];
     if (chunks_of(points_) > begun) chunk_owner_ = owner;
     return place;
   }
 
-  void receive(int from, MpiParcel parcel) override {
-    switch (parcel.next<Message>()) {
-      case Message::part: {
-        const auto at = parcel.next<std::uint64_t>();
-        return add(at, parcel.rest());
+  void receive(int from, MpiMessage message) override {
+    switch (message.next<MessageKind>()) {
+      case MessageKind::part: {
+        const auto at = message.next<std::uint64_t>();
+        return add(at, message.rest());
       }
-      case Message::sizes:
-        while (!parcel.rest().empty()) {
-          const auto [number, size] = parcel.next<Size>();
+      case MessageKind::sizes:
+        while (!message.rest().empty()) {
+          const auto [number, size] = message.next<Size>();
           sizes_.emplace(number, std::pair(size, from));
         }
         return place_chunks();
-      case Message::position: {
-        const auto [number, position] = parcel.next<Size>();
+      case MessageKind::position: {
+        const auto [number, position] = message.next<Size>();
         const auto chunk = compressed_.find(number);
         file_.write(position, chunk->second);
         compressed_.erase(chunk);
         return;
       }
-      case Message::all_points:
-        all_points_ = parcel.next<std::uint64_t>();
+      case MessageKind::all_points:
+        all_points_ = message.next<std::uint64_t>();
         if (const auto last = gathered_.find(*all_points_ / chunk_points); last != gathered_.end()) finish(last);
         return;
-      case Message::all_placed:
+      case MessageKind::all_placed:
         all_placed_ = true;
         return;
     }
@@ -102,8 +102,8 @@ class MpiLaz final : public MpiOutput {
     for (; !ready_.empty() && some.size() < threads_; ready_.pop_front()) some.push_back(std::move(ready_.front()));
     if (some.empty()) return false;
     for_each_index(some.size(), threads_, [&](std::size_t i) { some[i].bytes = io::LazWriter::compressed_chunk(some[i].bytes, record_); });
-    MpiParcel sizes;
-    sizes.add(Message::sizes);
+    MpiMessage sizes;
+    sizes.add(MessageKind::sizes);
     for (Chunk& chunk : some) {
       sizes.add(Size{chunk.number, chunk.bytes.size()});
       compressed_.emplace(chunk.number, std::move(chunk.bytes));
@@ -112,20 +112,20 @@ class MpiLaz final : public MpiOutput {
     return true;
   }
 
-  [[nodiscard]] bool full() const noexcept override { return compressed_.size() + ready_.size() > most_waiting; }
+  [[nodiscard]] bool full() const noexcept override { return compressed_.size() + ready_.size() > max_waiting; }
 
   void close() override {
-    if (team().first())
-      for (int rank = 0; rank < team().size(); ++rank) send(rank, std::move(MpiParcel().add(Message::all_points).add(points_)));
+    if (group().first())
+      for (int rank = 0; rank < group().size(); ++rank) send(rank, std::move(MpiMessage().add(MessageKind::all_points).add(points_)));
     work_until([&] {
-      if (team().first() && !all_told_ && sizes_of_placed_.size() == chunks_of(points_)) {
+      if (group().first() && !all_told_ && sizes_of_placed_.size() == chunks_of(points_)) {
         all_told_ = true;
-        for (int rank = 0; rank < team().size(); ++rank) send(rank, std::move(MpiParcel().add(Message::all_placed)));
+        for (int rank = 0; rank < group().size(); ++rank) send(rank, std::move(MpiMessage().add(MessageKind::all_placed)));
       }
       return all_placed_ && compressed_.empty();
     });
     file_.close();
-    const detail::MpiLasShare all = detail::sum_of_shares(team(), share_);
+    const detail::MpiLasShare all = detail::sum_of_shares(group(), share_);
     if (!whole_) return;
     whole_->adopt(all.tally, first_, end_);
     whole_->records().adopt(std::move(sizes_of_placed_));
@@ -133,7 +133,7 @@ class MpiLaz final : public MpiOutput {
   }
 
  private:
-  enum class Message : std::uint8_t { part, sizes, position, all_points, all_placed };
+  enum class MessageKind : std::uint8_t { part, sizes, position, all_points, all_placed };
   struct Size {
     std::uint64_t number, bytes;
   };
@@ -144,7 +144,7 @@ class MpiLaz final : public MpiOutput {
   };
   using Chunks = std::map<std::uint64_t, Chunk>;
   static constexpr std::uint64_t chunk_points = io::LazWriter::chunk_points;
-  static constexpr std::size_t most_waiting = 64;  // chunks
+  static constexpr std::size_t max_waiting = 64;  // chunks
 
   [[nodiscard]] static std::uint64_t chunks_of(std::uint64_t points) noexcept { return (points + chunk_points - 1) / chunk_points; }
 
@@ -170,7 +170,7 @@ class MpiLaz final : public MpiOutput {
   void place_chunks() {
     for (auto next = sizes_.find(sizes_of_placed_.size()); next != sizes_.end(); next = sizes_.find(sizes_of_placed_.size())) {
       const auto [size, owner] = next->second;
-      send(owner, std::move(MpiParcel().add(Message::position).add(Size{next->first, end_})));
+      send(owner, std::move(MpiMessage().add(MessageKind::position).add(Size{next->first, end_})));
       end_ += size;
       sizes_of_placed_.push_back(size);
       sizes_.erase(next);

@@ -20,23 +20,23 @@ namespace pulsecast::mpi {
 template <class Writer, class Settings>
 class MpiRows final : public MpiOutput {
  public:
-  MpiRows(MpiTeam& team, std::filesystem::path path, Settings settings)
-      : MpiOutput(team), settings_(std::move(settings)), file_(std::move(path)) {
-    if (team.first()) whole_.emplace(file_.path());
+  MpiRows(MpiGroup& group, std::filesystem::path path, Settings settings)
+      : MpiOutput(group), settings_(std::move(settings)), file_(std::move(path)) {
+    if (group.first()) whole_.emplace(file_.path());
   }
 
   [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(file_.path(), settings_); }
   void put(MpiPiece& piece, const MpiPlace& place) override { file_.write(place.starts[0], static_cast<Piece&>(piece).bytes); }
 
-  [[nodiscard]] MpiPlace place(const MpiClaim& claim, int /*owner*/) override {
+  [[nodiscard]] MpiPlace place(const MpiExtent& extent, int /*owner*/) override {
     MpiPlace place;
-    place.starts[0] = std::exchange(size_, size_ + claim.amounts[0]);
+    place.starts[0] = std::exchange(size_, size_ + extent.amounts[0]);
     return place;
   }
 
   void close() override {
     file_.close();
-    (void)team().channel().gather(0);  // all have written
+    (void)group().channel().gather(0);  // all have written
     if (!whole_) return;
     whole_->continue_at(size_);
     whole_->commit();
@@ -50,11 +50,11 @@ class MpiRows final : public MpiOutput {
       writer.emplace(io::OutputFile(path, bytes), settings);
     }
     void operator()(const EchoBatch& batch) override { (*writer)(batch); }
-    [[nodiscard]] MpiClaim claim() override {
+    [[nodiscard]] MpiExtent extent() override {
       writer->close();
-      MpiClaim claim;
-      claim.amounts[0] = bytes.size();
-      return claim;
+      MpiExtent extent;
+      extent.amounts[0] = bytes.size();
+      return extent;
     }
     [[nodiscard]] std::size_t memory() const noexcept override { return bytes.size(); }
 
@@ -67,7 +67,7 @@ class MpiRows final : public MpiOutput {
   Settings settings_;
   MpiFile file_;
   std::optional<io::OutputFile> whole_;  // on the first process
-  std::uint64_t size_ = 0;           // of what has its place, there [byte]
+  std::uint64_t size_ = 0;               // of what has its place, there [byte]
 };
 
 }  // namespace pulsecast::mpi

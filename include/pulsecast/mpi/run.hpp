@@ -27,9 +27,9 @@
 /// Runs a survey on the processes of an MPI communicator, one or several a machine, each with threads of its own.
 ///
 ///     MpiSession mpi;
-///     MpiTeam team;                                   // of MPI_COMM_WORLD
-///     MpiLas points(team, "points.las", {});          // all processes write it
-///     run(team, survey, {.threads = 8}, points);      // all processes make the same survey
+///     MpiGroup group;                                   // of MPI_COMM_WORLD
+///     MpiLas points(group, "points.las", {});          // all processes write it
+///     run(group, survey, {.threads = 8}, points);      // all processes make the same survey
 ///     points.close();
 ///
 /// The first process hands out blocks of pulses as others ask, and works as they do. The results are those of one process, byte for byte.
@@ -44,25 +44,26 @@ namespace detail {
 /// One run, as one process takes part in it.
 class MpiRun {
  public:
-  MpiRun(MpiTeam& team, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate, std::span<MpiOutput* const> outputs)
-      : team_(team), slots_(options.slots(size)), options_(options), simulate_(simulate), outputs_(outputs.begin(), outputs.end()) {
-    if (team.first()) ledger_.emplace(slots_.count, static_cast<unsigned>(team.size()));
+  MpiRun(MpiGroup& group, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate, std::span<MpiOutput* const> outputs)
+      : group_(group), slots_(options.slots(size)), options_(options), simulate_(simulate), outputs_(outputs.begin(), outputs.end()) {
+    if (group.first()) scheduler_.emplace(slots_.count, static_cast<unsigned>(group.size()));
   }
 
   RunSummary run() {
-    team_.begin(this, [](void* self, int from, int kind, MpiParcel parcel) { static_cast<MpiRun*>(self)->receive(from, kind, parcel); });
+    group_.begin(this,
+                 [](void* self, int from, int kind, MpiMessage message) { static_cast<MpiRun*>(self)->receive(from, kind, message); });
     send(0, ask, {});
     while (!(no_more_ && held_.empty())) {
       const bool served = serve(), worked = work();
-      if (work_ && held_.size() < most_held && !full())
+      if (work_ && held_.size() < max_held && !full())
         simulate(*std::exchange(work_, std::nullopt));
       else if (!served && !worked)
-        MpiTeam::pause();
+        MpiGroup::pause();
     }
-    team_.channel().meet([this] {
-      if (!serve() && !work()) MpiTeam::pause();
+    group_.channel().barrier([this] {
+      if (!serve() && !work()) MpiGroup::pause();
     });
-    team_.end();
+    group_.end();
     return sum();
   }
 
@@ -74,51 +75,51 @@ class MpiRun {
     std::vector<std::unique_ptr<MpiPiece>> pieces;
     std::optional<std::vector<MpiPlace>> places{};
   };
-  static constexpr std::size_t most_held = 3;
+  static constexpr std::size_t max_held = 3;
 
-  void send(int to, Kind kind, MpiParcel parcel) { team_.send(to, kind, std::move(parcel)); }
+  void send(int to, Kind kind, MpiMessage message) { group_.send(to, kind, std::move(message)); }
 
   bool serve() {
-    const bool served = team_.serve();
+    const bool served = group_.serve();
     place();
     return served;
   }
 
-  void receive(int from, int kind, MpiParcel& parcel) {
+  void receive(int from, int kind, MpiMessage& message) {
     if (kind == ask) {
-      if (options_.stop.stop_requested()) ledger_->stop();
-      const std::optional<MpiBlock> block = ledger_->next(from);
-      send(from, give, std::move(MpiParcel().add(block.value_or(MpiBlock{}))));
+      if (options_.stop.stop_requested()) scheduler_->stop();
+      const std::optional<MpiBlock> block = scheduler_->next(from);
+      send(from, give, std::move(MpiMessage().add(block.value_or(MpiBlock{}))));
     } else if (kind == give) {
-      const auto block = parcel.next<MpiBlock>();
+      const auto block = message.next<MpiBlock>();
       if (block.from < block.to)
         work_ = block;
       else
         no_more_ = true;
     } else if (kind == done) {
-      const auto number = parcel.next<std::uint64_t>();
-      const auto cost = parcel.next<MpiCost>();
-      std::vector<MpiClaim> claims;
-      parcel.next(claims, outputs_.size());
-      ledger_->finish(number, std::move(claims), cost);
-      const MpiCost& spent = ledger_->spent();
-      if (options_.progress) options_.progress({spent.slots, slots_.count, spent.echoes, elapsed()});
+      const auto number = message.next<std::uint64_t>();
+      const auto cost = message.next<MpiCost>();
+      std::vector<MpiExtent> extents;
+      message.next(extents, outputs_.size());
+      scheduler_->finish(number, std::move(extents), cost);
+      const MpiCost& all = scheduler_->cost();
+      if (options_.progress) options_.progress({all.slots, slots_.count, all.echoes, elapsed()});
     } else {
-      const auto number = parcel.next<std::uint64_t>();
+      const auto number = message.next<std::uint64_t>();
       const auto held = std::find_if(held_.begin(), held_.end(), [&](const Held& h) { return h.number == number; });
-      parcel.next(held->places.emplace(), outputs_.size());
+      message.next(held->places.emplace(), outputs_.size());
     }
   }
 
   /// On the first process: says where the pieces of blocks belong, as soon as that is known.
   void place() {
-    if (!ledger_) return;
+    if (!scheduler_) return;
     const auto may = [this] { return std::all_of(outputs_.begin(), outputs_.end(), [](const MpiOutput* o) { return o->may_place(); }); };
-    ledger_->settle(may, [this](std::uint64_t number, int owner, const std::vector<MpiClaim>& claims) {
-      MpiParcel parcel;
-      parcel.add(number);
-      for (std::size_t k = 0; k < outputs_.size(); ++k) parcel.add(outputs_[k]->place(claims[k], owner));
-      send(owner, belongs, std::move(parcel));
+    scheduler_->settle(may, [this](std::uint64_t number, int owner, const std::vector<MpiExtent>& extents) {
+      MpiMessage message;
+      message.add(number);
+      for (std::size_t k = 0; k < outputs_.size(); ++k) message.add(outputs_[k]->place(extents[k], owner));
+      send(owner, belongs, std::move(message));
     });
   }
 
@@ -146,10 +147,7 @@ class MpiRun {
     send(0, ask, {});  // so that the next is here when this is done
     Held& held = held_.emplace_back(Held{block.number, {}});
     for (MpiOutput* output : outputs_) held.pieces.push_back(output->take_piece());
-    RunOptions part{.threads = options_.threads,
-                    .first = slots_[block.from],
-                    .end = slots_[block.to - 1] + 1,
-                    .stride = slots_.stride};
+    RunOptions part{.threads = options_.threads, .first = slots_[block.from], .end = slots_[block.to - 1] + 1, .stride = slots_.stride};
     part.progress = [this](const Progress&) { serve(); };
     std::vector<Shot> shots;
     const RunSummary summary = simulate_(part, [&](const EchoBatch& batch) {
@@ -166,32 +164,32 @@ class MpiRun {
     });
     own_.add(summary);
     MpiCost cost{summary.slots, summary.echoes, 0, summary.seconds};
-    MpiParcel claims;
+    MpiMessage extents;
     for (const auto& piece : held.pieces) {
-      claims.add(piece->claim());
+      extents.add(piece->extent());
       cost.bytes += piece->memory();
     }
-    send(0, done, std::move(MpiParcel().add(block.number).add(cost).add(claims.rest())));
+    send(0, done, std::move(MpiMessage().add(block.number).add(cost).add(extents.rest())));
   }
 
   /// What all have done together.
   [[nodiscard]] RunSummary sum() {
-    const std::vector<RunSummary> all = team_.channel().gather(std::exchange(own_, {}));
+    const std::vector<RunSummary> all = group_.channel().gather(std::exchange(own_, {}));
     for (const RunSummary& one : all) own_.add(one);
     own_.seconds = elapsed();
     own_.complete = own_.slots == slots_.count;
-    return team_.channel().from_first(own_);
+    return group_.channel().from_first(own_);
   }
 
   [[nodiscard]] double elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
 
-  MpiTeam& team_;
+  MpiGroup& group_;
   RunSlots slots_;
   const RunOptions& options_;
   const MpiSimulate& simulate_;
   std::vector<MpiOutput*> outputs_;
-  std::optional<MpiLedger> ledger_;  // on the first process
-  std::optional<MpiBlock> work_;     // to be done next
+  std::optional<MpiBlockScheduler> scheduler_;  // on the first process
+  std::optional<MpiBlock> work_;                // to be done next
   bool no_more_ = false;
   std::deque<Held> held_;  // what is done, and the block at hand
   RunSummary own_;
@@ -200,10 +198,10 @@ class MpiRun {
 
 /// A sink of the first process, fed with what all simulate.
 template <class Sink>
-[[nodiscard]] std::unique_ptr<MpiOutput> mpi_output(MpiTeam& team, Sink& sink) {
+[[nodiscard]] std::unique_ptr<MpiOutput> mpi_output(MpiGroup& group, Sink& sink) {
   return std::make_unique<MpiStream<MpiBatchWriter>>(
-      team, [](io::OutputFile piece) { return MpiBatchWriter(std::move(piece)); },
-      [&sink](MpiParcel bytes) { for_each_batch(std::move(bytes), sink); }, [] {});
+      group, [](io::OutputFile piece) { return MpiBatchWriter(std::move(piece)); },
+      [&sink](MpiMessage bytes) { for_each_batch(std::move(bytes), sink); }, [] {});
 }
 
 }  // namespace detail
@@ -211,15 +209,15 @@ template <class Sink>
 /// Runs a survey of so many slots, of which every process can simulate any part. Outputs may be written to in several runs; they are closed
 /// by whoever made them. `options.progress` and `options.stop` are asked on the first process only: when stopped, blocks that were begun
 /// are finished, so that what is there is whole up to some slot. `options.threads` is per process.
-inline RunSummary run_parts(MpiTeam& team, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate,
+inline RunSummary run_parts(MpiGroup& group, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate,
                             std::span<MpiOutput* const> outputs) {
-  return detail::MpiRun(team, size, options, simulate, outputs).run();
+  return detail::MpiRun(group, size, options, simulate, outputs).run();
 }
 
 /// Simulates the pulses of a survey, which all processes have made alike. A sink is an `MpiOutput`, which all write to, or any `EchoSink`:
 /// of these, only the first process's are called, with the batches in pulse order. All processes get the summary of all.
 template <class Survey, class... Sinks>
-RunSummary run(MpiTeam& team, const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
+RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   std::vector<MpiOutput*> outputs;
   std::vector<std::unique_ptr<MpiOutput>> own;
   const auto take = [&]<class Sink>(Sink& sink) {
@@ -227,14 +225,14 @@ RunSummary run(MpiTeam& team, const Survey& survey, const RunOptions& options, S
       outputs.push_back(&sink);
     } else {
       static_assert(EchoSink<Sink>);
-      outputs.push_back(own.emplace_back(detail::mpi_output(team, sink)).get());
+      outputs.push_back(own.emplace_back(detail::mpi_output(group, sink)).get());
     }
   };
   (take(sinks), ...);
   const MpiSimulate simulate = [&](const RunOptions& part, const std::function<void(const EchoBatch&)>& sink) {
     return pulsecast::run(survey, part, sink);
   };
-  const RunSummary summary = run_parts(team, survey.size(), options, simulate, outputs);
+  const RunSummary summary = run_parts(group, survey.size(), options, simulate, outputs);
   for (const auto& output : own) output->close();
   return summary;
 }

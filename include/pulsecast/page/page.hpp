@@ -55,12 +55,12 @@ struct PageSurvey {
 };
 
 struct PageSettings {
-  std::size_t most_points = 1'000'000;  ///< from 2 to 2^27; more are thinned
-  double position_step = 0;             ///< of coordinates; 0 for one that suits the extent: see `page_step` [m]
-  int effort = 6;                       ///< of compression, from 1 to 9
+  std::size_t points_max = 1'000'000;  ///< from 2 to 2^27; more are thinned
+  double position_step = 0;            ///< of coordinates; 0 for one that suits the extent: see `page_step` [m]
+  int effort = 6;                      ///< of compression, from 1 to 9
 
   void validate() const {
-    expect_within("PageSettings::most_points", static_cast<double>(most_points), 2, 134'217'728, "");
+    require_within("PageSettings::points_max", static_cast<double>(points_max), 2, 134'217'728, "");
     columns().validate();
   }
   [[nodiscard]] PageColumnSettings columns() const { return {.position_step = position_step, .effort = effort}; }
@@ -132,7 +132,7 @@ inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool 
 class PageWriter {
  public:
   explicit PageWriter(std::filesystem::path path, PageSurvey survey = {}, const PageSettings& settings = {})
-      : settings_(validated(settings)), survey_(std::move(survey)), file_(std::move(path)), sample_(settings.most_points) {}
+      : settings_(validated(settings)), survey_(std::move(survey)), file_(std::move(path)), sample_(settings.points_max) {}
 
   void operator()(const EchoBatch& batch) { sample_(batch); }
 

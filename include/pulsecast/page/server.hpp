@@ -41,7 +41,7 @@ class PageServer {
  public:
   /// Throws a `std::runtime_error` if nothing can be served. `port` is 0 for any that is free.
   explicit PageServer(PageSurvey survey = {}, const PageSettings& settings = {}, int port = 0)
-      : settings_(validated(settings)), token_(secret()), survey_(std::move(survey)), sample_(settings.most_points) {
+      : settings_(validated(settings)), token_(secret()), survey_(std::move(survey)), sample_(settings.points_max) {
     server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       if (is_ours(request)) return httplib::Server::HandlerResponse::Unhandled;
       response.status = 403;
@@ -78,7 +78,7 @@ class PageServer {
   void begin(PageSurvey survey) {
     const std::lock_guard lock(mutex_);
     survey_ = std::move(survey);
-    sample_ = PageSample(settings_.most_points);
+    sample_ = PageSample(settings_.points_max);
     progress_ = {};
     state_ = "running";
     ++run_;
@@ -116,7 +116,7 @@ class PageServer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::size_t most_at_once = 65'536;  // points
+  static constexpr std::size_t max_at_once = 65'536;  // points
 
   /// 128 random bits as text.
   [[nodiscard]] static std::string secret() {
@@ -162,7 +162,7 @@ class PageServer {
       const std::span<const PagePoint> all = sample_.points();
       const auto later = [](std::uint64_t pulse, const PagePoint& p) { return pulse < p.pulse; };
       const auto first = other || !after ? all.begin() : std::upper_bound(all.begin(), all.end(), *after, later);
-      auto end = first + static_cast<std::ptrdiff_t>(std::min(most_at_once, static_cast<std::size_t>(all.end() - first)));
+      auto end = first + static_cast<std::ptrdiff_t>(std::min(max_at_once, static_cast<std::size_t>(all.end() - first)));
       if (end != first) end = std::upper_bound(end, all.end(), std::prev(end)->pulse, later);
       fresh.assign(first, end);
       const std::string last = !fresh.empty() ? std::to_string(fresh.back().pulse) : other || !after ? "" : std::to_string(*after);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/platform/straight_line.hpp>
 
@@ -26,13 +26,13 @@ struct BlockFlight {
 
   void validate() const {
     if (area.empty()) throw SettingError("BlockFlight::area (width)", area.size().x, "m", "not negative, nor the length");
-    expect_finite("BlockFlight::area (size)", std::hypot(area.size().x, area.size().y), "m");
-    expect_finite("BlockFlight::altitude", altitude, "m");
-    expect_positive("BlockFlight::swath", swath, "m");
-    expect_within("BlockFlight::overlap", overlap, 0, 0.99, "");
-    expect_finite("BlockFlight::heading", heading, "rad");
-    expect_positive("BlockFlight::speed", speed, "m/s");
-    expect_finite("BlockFlight::run_in", run_in, "m");
+    require_finite("BlockFlight::area (size)", std::hypot(area.size().x, area.size().y), "m");
+    require_finite("BlockFlight::altitude", altitude, "m");
+    require_positive("BlockFlight::swath", swath, "m");
+    require_within("BlockFlight::overlap", overlap, 0, 0.99, "");
+    require_finite("BlockFlight::heading", heading, "rad");
+    require_positive("BlockFlight::speed", speed, "m/s");
+    require_finite("BlockFlight::run_in", run_in, "m");
   }
 };
 
@@ -45,7 +45,7 @@ struct BlockFlight {
   const double length_along = size.x * std::fabs(along.x) + size.y * std::fabs(along.y) + 2 * block.run_in;
   const double width = size.x * std::fabs(across.x) + size.y * std::fabs(across.y);
   const double spacing = block.swath * (1 - block.overlap);
-  expect_within("BlockFlight::swath (lines)", width / spacing, 0, 65534, "");  // as legs are numbered
+  require_within("BlockFlight::swath (lines)", width / spacing, 0, 65534, "");  // as legs are numbered
   // the swaths of n lines cover (n - 1) spacings and one swath; rounding asks for no further line
   const auto lines = 1 + static_cast<std::size_t>(std::ceil(std::max(0.0, (width - block.swath) / spacing - 1e-9)));
   const Vec3 centre{block.area.centre().x, block.area.centre().y, block.altitude};

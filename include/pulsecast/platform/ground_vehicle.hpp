@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/curved_path.hpp>
 #include <pulsecast/platform/heading.hpp>
@@ -31,13 +31,13 @@ struct GroundVehicleSettings {
   double ground_step = 0.1;  ///< the ground is asked at least this often along the way [m]
 
   void validate() const {
-    expect_within("GroundVehicleSettings::speed", speed, 1e-3, 1e3, "m/s");
-    expect_within("GroundVehicleSettings::acceleration", acceleration, 1e-3, 1e3, "m/s^2");
-    expect_within("GroundVehicleSettings::jerk", jerk, 1e-3, 1e3, "m/s^3");
-    expect_within("GroundVehicleSettings::turn_radius", turn_radius, 1e-2, 1e6, "m");
-    expect_within("GroundVehicleSettings::wheelbase", wheelbase, 1e-2, 1e2, "m");
-    expect_within("GroundVehicleSettings::track", track, 1e-2, 1e2, "m");
-    expect_within("GroundVehicleSettings::ground_step", ground_step, 1e-3, 1e2, "m");
+    require_within("GroundVehicleSettings::speed", speed, 1e-3, 1e3, "m/s");
+    require_within("GroundVehicleSettings::acceleration", acceleration, 1e-3, 1e3, "m/s^2");
+    require_within("GroundVehicleSettings::jerk", jerk, 1e-3, 1e3, "m/s^3");
+    require_within("GroundVehicleSettings::turn_radius", turn_radius, 1e-2, 1e6, "m");
+    require_within("GroundVehicleSettings::wheelbase", wheelbase, 1e-2, 1e2, "m");
+    require_within("GroundVehicleSettings::track", track, 1e-2, 1e2, "m");
+    require_within("GroundVehicleSettings::ground_step", ground_step, 1e-3, 1e2, "m");
   }
 };
 
@@ -51,7 +51,7 @@ struct Footing {
   /// Source: the up of Rx(pitch) Ry(roll) is (sin r, -sin p cos r, cos p cos r), and the normal is (-aside, -ahead, 1).
   [[nodiscard]] Rotation attitude(double heading) const noexcept {
     const double pitch = std::atan(ahead);
-    return level(heading) * rotation_about(right, pitch) * rotation_about(forward, -std::atan(aside * std::cos(pitch)));
+    return level(heading) * rotation_about(axis::right, pitch) * rotation_about(axis::forward, -std::atan(aside * std::cos(pitch)));
   }
 };
 
@@ -103,12 +103,12 @@ namespace detail {
 /// The waypoints, checked, without those that are less than a centimetre from the one before; the last one stays, and the first.
 /// `numbers` receives where in the list they were.
 [[nodiscard]] inline std::vector<Vec2> checked(std::span<const Vec2> waypoints, std::vector<std::size_t>& numbers) {
-  expect_within("plan_ground_vehicle: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
+  require_within("plan_ground_vehicle: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
   std::vector<Vec2> points;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     const std::string name = "plan_ground_vehicle: waypoints[" + std::to_string(k) + "].";
-    expect_within(name + "x", waypoints[k].x, -1e9, 1e9, "m");
-    expect_within(name + "y", waypoints[k].y, -1e9, 1e9, "m");
+    require_within(name + "x", waypoints[k].x, -1e9, 1e9, "m");
+    require_within(name + "y", waypoints[k].y, -1e9, 1e9, "m");
     const auto near = [&](const Vec2& p) { return length(waypoints[k] - p) < 0.01; };
     if (k + 1 == waypoints.size()) {
       while (points.size() > 1 && near(points.back())) points.pop_back(), numbers.pop_back();
@@ -126,8 +126,8 @@ namespace detail {
   const auto height = [&](const Vec2& place) {
     const std::optional<double> h = ground(place);
     const std::string name = "plan_ground_vehicle: the way to waypoints[" + std::to_string(waypoint) + "], ";
-    if (!h) throw SettingError(name + "x", place.x, "m", "on the ground (with y " + written(place.y) + " m there is none)");
-    expect_within(name + "height", *h, -1e9, 1e9, "m");
+    if (!h) throw SettingError(name + "x", place.x, "m", "on the ground (with y " + to_text(place.y) + " m there is none)");
+    require_within(name + "height", *h, -1e9, 1e9, "m");
     return *h;
   };
   Footing footing{height(stance.position), 0, 0};
@@ -177,10 +177,10 @@ namespace detail {
 
   double whole = 0;
   for (const PathPiece& piece : path) whole += piece.length;
-  expect_within("plan_ground_vehicle: the way (length)", whole, 0, 1e7 * settings.ground_step, "m");  // footings take some 240 MB
+  require_within("plan_ground_vehicle: the way (length)", whole, 0, 1e7 * settings.ground_step, "m");  // footings take some 240 MB
 
   std::vector<GroundVehicleDrive::Section> sections;
-  std::vector<Stretch> stretches;
+  std::vector<PathSection> path_sections;
   std::vector<double> joints(path.size() + 1, 0.0);
   double start = 0;
   for (std::size_t k = 0; k < path.size(); ++k) {
@@ -190,17 +190,17 @@ namespace detail {
       const double along = path[k].length * static_cast<double>(i) / static_cast<double>(steps);
       section.footings.push_back(detail::footing_at(path[k].after(along), numbers[path[k].waypoint], settings, ground));
     }
-    stretches.push_back({path[k].length, detail::limits_on(section, settings)});
-    if (k > 0 && path[k].gear == path[k - 1].gear) joints[k] = std::fmin(stretches[k - 1].limits.speed, stretches[k].limits.speed);
+    path_sections.push_back({path[k].length, detail::limits_on(section, settings)});
+    if (k > 0 && path[k].gear == path[k - 1].gear) joints[k] = std::fmin(path_sections[k - 1].limits.speed, path_sections[k].limits.speed);
     sections.push_back(std::move(section));
     start += path[k].length;
   }
-  settle_speeds(joints, stretches);
+  settle_speeds(joints, path_sections);
 
   PiecewiseCubic<double> driven(0);
   Tick now{};
   for (std::size_t k = 0; k < sections.size(); ++k) {
-    for (CubicPiece<double> piece : speed_profile(stretches[k].length, joints[k], joints[k + 1], stretches[k].limits)) {
+    for (CubicPiece<double> piece : speed_profile(path_sections[k].length, joints[k], joints[k + 1], path_sections[k].limits)) {
       piece.position += sections[k].start;
       if (piece.duration > 0) driven.add(now, piece);
       now = now + Tick::of_seconds(piece.duration);

@@ -14,6 +14,6 @@ namespace pulsecast {
 }
 
 /// A body that stands level and looks where a compass says: clockwise from north [rad].
-[[nodiscard]] inline Rotation level(double heading) noexcept { return rotation_about(up, -heading); }
+[[nodiscard]] inline Rotation level(double heading) noexcept { return rotation_about(axis::up, -heading); }
 
 }  // namespace pulsecast

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -30,18 +30,18 @@ class Legs {
  public:
   /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s together.
   explicit Legs(std::vector<Leg<P>> legs) {
-    expect_within("Legs::legs (number)", static_cast<double>(legs.size()), 1, 65535, "");
+    require_within("Legs::legs (number)", static_cast<double>(legs.size()), 1, 65535, "");
     PulseIndex first = 0;
     Tick start{};
     for (Leg<P>& leg : legs) {
       starts_.push_back({first, start, leg.strip.value_or(static_cast<std::uint16_t>(starts_.size()))});
       if (leg.active) {
-        expect_within("Legs::legs (slots)", static_cast<double>(first) + static_cast<double>(leg.platform.size()), 0, 0x1p60, "");
+        require_within("Legs::legs (slots)", static_cast<double>(first) + static_cast<double>(leg.platform.size()), 0, 0x1p60, "");
         first += leg.platform.size();
       }
       if constexpr (DrawsByLeg<P>) leg.platform.draw_for_leg(static_cast<std::uint32_t>(legs_.size()));
       start = start + leg.platform.duration();
-      expect_within("Legs::legs (duration)", start.seconds(), 0, 1e15, "s");
+      require_within("Legs::legs (duration)", start.seconds(), 0, 1e15, "s");
       legs_.push_back(std::move(leg.platform));
     }
     end_ = {first, start, 0};

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
 #include <pulsecast/platform/piecewise_cubic.hpp>
@@ -45,14 +45,14 @@ struct MulticopterSettings {
   std::optional<double> arrival_heading{};         ///< clockwise from north; if empty, along the last leg [rad]
 
   void validate() const {
-    expect_within("MulticopterSettings::speed", speed, 1e-3, 1e3, "m/s");
-    expect_within("MulticopterSettings::acceleration", acceleration, 1e-3, 1e3, "m/s^2");
-    expect_within("MulticopterSettings::jerk", jerk, 1e-3, 1e3, "m/s^3");
-    expect_within("MulticopterSettings::bank_max", bank_max, 1e-3, 1.5, "rad");
-    expect_within("MulticopterSettings::yaw_rate", yaw_rate, 1e-3, 1e3, "rad/s");
-    expect_within("MulticopterSettings::turn_distance", turn_distance, 1e-3, 1e9, "m");
-    if (departure_heading) expect_within("MulticopterSettings::departure_heading", *departure_heading, -100, 100, "rad");
-    if (arrival_heading) expect_within("MulticopterSettings::arrival_heading", *arrival_heading, -100, 100, "rad");
+    require_within("MulticopterSettings::speed", speed, 1e-3, 1e3, "m/s");
+    require_within("MulticopterSettings::acceleration", acceleration, 1e-3, 1e3, "m/s^2");
+    require_within("MulticopterSettings::jerk", jerk, 1e-3, 1e3, "m/s^3");
+    require_within("MulticopterSettings::bank_max", bank_max, 1e-3, 1.5, "rad");
+    require_within("MulticopterSettings::yaw_rate", yaw_rate, 1e-3, 1e3, "rad/s");
+    require_within("MulticopterSettings::turn_distance", turn_distance, 1e-3, 1e9, "m");
+    if (departure_heading) require_within("MulticopterSettings::departure_heading", *departure_heading, -100, 100, "rad");
+    if (arrival_heading) require_within("MulticopterSettings::arrival_heading", *arrival_heading, -100, 100, "rad");
   }
 };
 
@@ -67,7 +67,7 @@ class MulticopterFlight {
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const CubicPiece<Vec3> state = motion_.at(t);
-    const Vec3 thrust = normalize(state.acceleration + standard_gravity * up);
+    const Vec3 thrust = normalize(state.acceleration + standard_gravity * axis::up);
     const Rotation lean = normalize(Rotation{1 + thrust.z, -thrust.y, thrust.x, 0});  // takes up to thrust by the shortest way
     return {lean * level(heading_.at(t).position), state.position};
   }
@@ -166,15 +166,15 @@ class FlightPlan {
 /// The waypoints, checked, without those that are less than a nanometre from the one before; whose hover times add up. `numbers` receives
 /// which of them each waypoint is.
 [[nodiscard]] inline std::vector<FlightPoint> checked(std::span<const FlightPoint> waypoints, std::vector<std::size_t>& numbers) {
-  expect_within("plan_multicopter: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
+  require_within("plan_multicopter: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
   std::vector<FlightPoint> points;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     const std::string name = "plan_multicopter: waypoints[" + std::to_string(k) + "].";
     const FlightPoint& point = waypoints[k];
-    expect_within(name + "position.x", point.position.x, -1e9, 1e9, "m");
-    expect_within(name + "position.y", point.position.y, -1e9, 1e9, "m");
-    expect_within(name + "position.z", point.position.z, -1e9, 1e9, "m");
-    expect_within(name + "hover", point.hover, 0, 1e9, "s");
+    require_within(name + "position.x", point.position.x, -1e9, 1e9, "m");
+    require_within(name + "position.y", point.position.y, -1e9, 1e9, "m");
+    require_within(name + "position.z", point.position.z, -1e9, 1e9, "m");
+    require_within(name + "hover", point.hover, 0, 1e9, "s");
     const bool again = !points.empty() && length(point.position - points.back().position) < 1e-9;
     if (again) points.back().hover += point.hover;
     if (!again) points.push_back(point);
@@ -197,14 +197,14 @@ class FlightPlan {
 
   std::vector<Vec3> directions(legs);
   std::vector<double> headings(legs);
-  std::vector<Stretch> stretches(legs);
+  std::vector<PathSection> sections(legs);
   double heading = settings.departure_heading.value_or(0);
   bool level_leg = settings.departure_heading.has_value();  // so far
   for (std::size_t k = 0; k < legs; ++k) {
     const Vec3 way = points[k + 1].position - points[k].position;
     directions[k] = normalize(way);
     const double ahead = detail::acceleration_along(directions[k], settings), back = detail::acceleration_along(-directions[k], settings);
-    stretches[k] = {length(way), {settings.speed, ahead, back, settings.jerk}};
+    sections[k] = {length(way), {settings.speed, ahead, back, settings.jerk}};
     if (std::hypot(directions[k].x, directions[k].y) > 1e-6) {
       heading = heading_of(directions[k]);
       if (!level_leg) std::fill_n(headings.begin(), k, heading);  // it rises as it will fly on
@@ -222,17 +222,17 @@ class FlightPlan {
     const Vec3 change = after - before;
     const double most = length(change) > 0 ? detail::acceleration_along(normalize(change), settings) : settings.acceleration;
     turns[k] = {before, after, {0, 0, most, settings.jerk}};
-    const double room = std::fmin(settings.turn_distance, std::fmin(stretches[k - 1].length, stretches[k].length) / 3);
-    speeds[k] = largest_speed(0, settings.speed, [&](double speed) { return turns[k].distance(speed) <= room; });
+    const double room = std::fmin(settings.turn_distance, std::fmin(sections[k - 1].length, sections[k].length) / 3);
+    speeds[k] = max_speed(0, settings.speed, [&](double speed) { return turns[k].distance(speed) <= room; });
   }
-  std::vector<Stretch> straights = stretches;
+  std::vector<PathSection> straights = sections;
   for (std::size_t k = 0; k < legs; ++k) straights[k].length -= turns[k].distance(speeds[k]) + turns[k + 1].distance(speeds[k + 1]);
   settle_speeds(speeds, straights);
 
   detail::FlightPlan plan(points[0].position, settings.departure_heading.value_or(legs > 0 ? headings[0] : 0), settings.yaw_rate);
   for (std::size_t k = 0; k < legs; ++k) {
     const Vec3 at = points[k].position;
-    const double begin = turns[k].distance(speeds[k]), end = stretches[k].length - turns[k + 1].distance(speeds[k + 1]);
+    const double begin = turns[k].distance(speeds[k]), end = sections[k].length - turns[k + 1].distance(speeds[k + 1]);
     const SpeedChange change = turns[k].change(speeds[k]);
     plan.pass(0.5 * change.duration());
     if (speeds[k] == 0) {
@@ -243,7 +243,7 @@ class FlightPlan {
       plan.turn_to(headings[k], change.duration());
       plan.fly(blend, at - begin * turns[k].before, normalize(turns[k].after - turns[k].before), speeds[k] * turns[k].before);
     }
-    plan.fly(speed_profile(end - begin, speeds[k], speeds[k + 1], stretches[k].limits), at + begin * directions[k], directions[k]);
+    plan.fly(speed_profile(end - begin, speeds[k], speeds[k + 1], sections[k].limits), at + begin * directions[k], directions[k]);
   }
   plan.pass(0);
   const double last_heading = legs > 0 ? headings.back() : settings.departure_heading.value_or(0);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/tick.hpp>
 
 namespace pulsecast {
@@ -35,7 +35,7 @@ class PiecewiseCubic {
 
   /// A piece that cuts short what was there from its start on. Starts do not decrease.
   void add(Tick start, const CubicPiece<V>& piece) {
-    PULSECAST_EXPECT(pieces_.empty() || !(start < pieces_.back().start));
+    PULSECAST_ASSERT(pieces_.empty() || !(start < pieces_.back().start));
     pieces_.push_back({start, piece});
   }
 

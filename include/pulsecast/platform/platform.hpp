@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 
@@ -18,8 +18,8 @@ struct Mount {
   Rotation boresight = no_rotation;  ///< from the instrument to the body; unit to a thousandth
 
   void validate() const {
-    expect_finite("Mount::lever_arm (length)", length(lever_arm), "m");
-    expect_rotation("Mount::boresight", boresight);
+    require_finite("Mount::lever_arm (length)", length(lever_arm), "m");
+    require_rotation("Mount::boresight", boresight);
   }
   void normalize() noexcept { boresight = unit(boresight); }
 
@@ -45,7 +45,7 @@ class Platform {
   /// A pulse of the instrument, in the world. It is always there; optional, so that `pulse` hands it on without a copy.
   [[nodiscard]] std::optional<Pulse<frame::World>> placed(const Pulse<frame::Instrument>& inner) const noexcept {
     const Pose<frame::Body, frame::World> world_from_body = path_.at(inner.tick);
-    PULSECAST_EXPECT(world_from_body.rigid());
+    PULSECAST_ASSERT(world_from_body.rigid());
     std::optional<Pulse<frame::World>> out(std::in_place, world_from_body * mount_.pose(), inner);
     const Vec3 on_body = mount_.boresight * inner.direction();
     out->scan_angle = std::atan2(on_body.x, -on_body.z);

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/platform/platform.hpp>
 
@@ -32,23 +32,23 @@ struct PoseErrors {
   std::uint64_t seed = 0;                  ///< of all that is random; each of several `Legs` draws numbers of its own
 
   void validate() const {
-    expect_not_negative("PoseErrors::position_noise", position_noise, "m");
-    expect_not_negative("PoseErrors::attitude_noise", attitude_noise, "rad");
-    expect_not_negative("PoseErrors::position_drift", position_drift, "m");
-    expect_not_negative("PoseErrors::attitude_drift", attitude_drift, "rad");
-    expect_positive("PoseErrors::drift_time", drift_time, "s");
-    expect_not_negative("PoseErrors::angular_jitter", angular_jitter, "rad");
-    expect_finite("PoseErrors::lever_arm_error (length)", length(lever_arm_error), "m");
-    expect_rotation("PoseErrors::boresight_error", boresight_error);
+    require_not_negative("PoseErrors::position_noise", position_noise, "m");
+    require_not_negative("PoseErrors::attitude_noise", attitude_noise, "rad");
+    require_not_negative("PoseErrors::position_drift", position_drift, "m");
+    require_not_negative("PoseErrors::attitude_drift", attitude_drift, "rad");
+    require_positive("PoseErrors::drift_time", drift_time, "s");
+    require_not_negative("PoseErrors::angular_jitter", angular_jitter, "rad");
+    require_finite("PoseErrors::lever_arm_error (length)", length(lever_arm_error), "m");
+    require_rotation("PoseErrors::boresight_error", boresight_error);
   }
   void normalize() noexcept { boresight_error = unit(boresight_error); }
 };
 
 /// A platform whose instrument errs: rays are cast from where it is, and points are written where it takes itself to be.
 template <Trajectory Path, InstrumentSource Source>
-class Misreported {
+class WithPoseErrors {
  public:
-  Misreported(Platform<Path, Source> truth, PoseErrors errors) : truth_(std::move(truth)), errors_(validated(errors)) { plan_drift(); }
+  WithPoseErrors(Platform<Path, Source> truth, PoseErrors errors) : truth_(std::move(truth)), errors_(validated(errors)) { plan_drift(); }
 
   /// Draws other errors of the same kind for each leg.
   void draw_for_leg(std::uint32_t leg) {
@@ -64,8 +64,8 @@ class Misreported {
   [[nodiscard]] Pose<frame::Body, frame::World> reported(Tick t) const noexcept {
     const Pose<frame::Body, frame::World> world_from_body = truth_.trajectory().at(t);
     const Drift drift = drift_at(t);
-    const Vec3 position = drift.position + white(t, Purpose::position_noise, errors_.position_noise);
-    const Vec3 attitude = drift.attitude + white(t, Purpose::attitude_noise, errors_.attitude_noise);
+    const Vec3 position = drift.position + white_noise(t, Purpose::position_noise, errors_.position_noise);
+    const Vec3 attitude = drift.attitude + white_noise(t, Purpose::attitude_noise, errors_.attitude_noise);
     return world_from_body * Pose<frame::Body, frame::Body>{turned_by(attitude), position};
   }
 
@@ -99,7 +99,7 @@ class Misreported {
   }
 
   /// Emitters that fire at the same time share it. No two moments within 45 years do.
-  Vec3 white(Tick t, Purpose purpose, double deviation) const noexcept {
+  Vec3 white_noise(Tick t, Purpose purpose, double deviation) const noexcept {
     if (deviation == 0) return {};
     return deviation * normals(std::bit_cast<std::uint64_t>(t.fraction), purpose, static_cast<std::uint32_t>(t.second));
   }
@@ -108,7 +108,7 @@ class Misreported {
     if (errors_.angular_jitter == 0) return p;
     const double aside = errors_.angular_jitter * drawn(p.index, 0, Purpose::angular_jitter);
     const double upwards = errors_.angular_jitter * drawn(p.index, 1, Purpose::angular_jitter);
-    p.pose.rotation = p.pose.rotation * rotation_about(up, -aside) * rotation_about(right, upwards);
+    p.pose.rotation = p.pose.rotation * rotation_about(axis::up, -aside) * rotation_about(axis::right, upwards);
     return p;
   }
 
@@ -117,7 +117,7 @@ class Misreported {
     if (errors_.position_drift == 0 && errors_.attitude_drift == 0) return;
     const double kept = std::exp(-1.0 / nodes_per_drift_time), added = std::sqrt(1 - kept * kept);
     const double nodes = std::ceil(truth_.duration().seconds() / errors_.drift_time * nodes_per_drift_time) + 2;
-    expect_within("PoseErrors::drift_time (the survey's length by it)", nodes / nodes_per_drift_time, 0, 1e6, "");
+    require_within("PoseErrors::drift_time (the survey's length by it)", nodes / nodes_per_drift_time, 0, 1e6, "");
     drift_.clear();
     for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(nodes); ++n) {
       const Vec3 position = errors_.position_drift * normals(n, Purpose::position_drift);

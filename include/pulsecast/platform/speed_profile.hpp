@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/platform/piecewise_cubic.hpp>
 
 namespace pulsecast {
@@ -52,7 +52,7 @@ struct SpeedChange {
 };
 
 /// The largest speed from `low` to `high` that fits, if all below one that fits fit and `low` does: by halving.
-[[nodiscard]] double largest_speed(double low, double high, auto&& fits) {
+[[nodiscard]] double max_speed(double low, double high, auto&& fits) {
   if (fits(high)) return high;
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);
@@ -66,8 +66,8 @@ struct SpeedChange {
 [[nodiscard]] inline std::vector<CubicPiece<double>> speed_profile(double length, double from, double to, const SpeedLimits& limits) {
   const auto rise = [&](double speed) { return SpeedChange{from, speed, limits.acceleration, limits.jerk}; };
   const auto fall = [&](double speed) { return SpeedChange{speed, to, limits.braking, limits.jerk}; };
-  const double most = largest_speed(std::fmax(from, to), std::fmax(limits.speed, std::fmax(from, to)),
-                                    [&](double speed) { return rise(speed).distance() + fall(speed).distance() <= length; });
+  const double most = max_speed(std::fmax(from, to), std::fmax(limits.speed, std::fmax(from, to)),
+                                [&](double speed) { return rise(speed).distance() + fall(speed).distance() <= length; });
   const double begin = rise(most).distance(), end = std::fmax(begin, length - fall(most).distance());
   std::vector<CubicPiece<double>> pieces;
   rise(most).add_to(pieces, 0);
@@ -78,29 +78,29 @@ struct SpeedChange {
 
 /// The highest speed after a length [m], from one speed [m/s].
 [[nodiscard]] inline double reachable_speed(double length, double from, double acceleration, const SpeedLimits& limits) {
-  return largest_speed(from, std::fmax(from, limits.speed), [&](double speed) {
+  return max_speed(from, std::fmax(from, limits.speed), [&](double speed) {
     return SpeedChange{from, speed, acceleration, limits.jerk}.distance() <= length;
   });
 }
 
 /// A part of a way, to be driven without a stop in between.
-struct Stretch {
+struct PathSection {
   double length = 0;     ///< [m]
   SpeedLimits limits{};  ///< all along it
 };
 
-/// Lowers the speeds at the joints of stretches, of which there is one more than of stretches, until each stretch can be driven within its
+/// Lowers the speeds at the joints of sections, of which there is one more than of sections, until each section can be driven within its
 /// limits: forwards for speeding up, then backwards for braking.
 /// Source: the look-ahead of machine tools, with no acceleration at a joint.
-inline void settle_speeds(std::span<double> joints, std::span<const Stretch> stretches) {
-  PULSECAST_EXPECT(joints.size() == stretches.size() + 1);
-  for (std::size_t k = 0; k < stretches.size(); ++k) {
-    const Stretch& s = stretches[k];
+inline void settle_speeds(std::span<double> joints, std::span<const PathSection> sections) {
+  PULSECAST_ASSERT(joints.size() == sections.size() + 1);
+  for (std::size_t k = 0; k < sections.size(); ++k) {
+    const PathSection& s = sections[k];
     if (joints[k + 1] > joints[k])
       joints[k + 1] = std::fmin(joints[k + 1], reachable_speed(s.length, joints[k], s.limits.acceleration, s.limits));
   }
-  for (std::size_t k = stretches.size(); k-- > 0;) {
-    const Stretch& s = stretches[k];
+  for (std::size_t k = sections.size(); k-- > 0;) {
+    const PathSection& s = sections[k];
     if (joints[k] > joints[k + 1]) joints[k] = std::fmin(joints[k], reachable_speed(s.length, joints[k + 1], s.limits.braking, s.limits));
   }
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
 
@@ -16,10 +16,10 @@ struct StraightLine {
   double speed = 60;    ///< along the path, slopes included [m/s]
 
   void validate() const {
-    expect_finite("StraightLine::from (length)", length(from), "m");
-    expect_finite("StraightLine::to (length)", length(to), "m");
-    expect_positive("StraightLine::speed", speed, "m/s");
-    expect_within("StraightLine (duration)", length(to - from) / speed, 0, 1e15, "s");  // as a Tick counts
+    require_finite("StraightLine::from (length)", length(from), "m");
+    require_finite("StraightLine::to (length)", length(to), "m");
+    require_positive("StraightLine::speed", speed, "m/s");
+    require_within("StraightLine (duration)", length(to - from) / speed, 0, 1e15, "s");  // as a Tick counts
   }
 
   /// When it arrives: a scanner that shoots until then covers the line.

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/waypoints.hpp>
@@ -22,9 +22,9 @@ struct TerrainFollowing {
   double slope = 0.2;   ///< steepest climb and descent: height by distance
 
   void validate() const {
-    expect_finite("TerrainFollowing::height", height, "m");
-    expect_positive("TerrainFollowing::step", step, "m");
-    expect_positive("TerrainFollowing::slope", slope, "");
+    require_finite("TerrainFollowing::height", height, "m");
+    require_positive("TerrainFollowing::step", step, "m");
+    require_positive("TerrainFollowing::slope", slope, "");
   }
 };
 
@@ -35,7 +35,7 @@ struct TerrainFollowing {
   line.validate(), settings.validate();
   const Vec3 path = line.to - line.from;
   const double distance = std::hypot(path.x, path.y);
-  expect_within("TerrainFollowing::step (steps)", distance / settings.step, 0, 1e7, "");
+  require_within("TerrainFollowing::step (steps)", distance / settings.step, 0, 1e7, "");
   const auto steps = static_cast<std::size_t>(std::ceil(distance / settings.step));
   const double step = steps == 0 ? 0 : distance / static_cast<double>(steps);
 

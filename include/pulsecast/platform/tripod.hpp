@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
 
@@ -14,10 +14,10 @@ struct Tripod {
   double heading = 0;  ///< clockwise from north, as a compass shows it [rad]
 
   void validate() const {
-    expect_finite("Tripod::position (x)", position.x, "m");
-    expect_finite("Tripod::position (y)", position.y, "m");
-    expect_finite("Tripod::position (z)", position.z, "m");
-    expect_finite("Tripod::heading", heading, "rad");
+    require_finite("Tripod::position (x)", position.x, "m");
+    require_finite("Tripod::position (y)", position.y, "m");
+    require_finite("Tripod::position (z)", position.z, "m");
+    require_finite("Tripod::heading", heading, "rad");
   }
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick) const noexcept { return {level(heading), position}; }

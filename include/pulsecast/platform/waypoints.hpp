@@ -10,19 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
 
 namespace pulsecast {
-
-/// Where a body is at a time, and how it is turned.
-struct Waypoint {
-  double time = 0;                  ///< since the start of its leg [s]
-  Vec3 position{};                  ///< in the world [m]
-  Rotation rotation = no_rotation;  ///< from the body to the world; unit to a thousandth
-};
 
 /// How a position is found between two waypoints.
 enum class Interpolation : std::uint8_t {
@@ -38,17 +32,17 @@ enum class Interpolation : std::uint8_t {
 /// Cubic positions are found on either side of a jump alone.
 class Waypoints {
  public:
-  explicit Waypoints(std::vector<Waypoint> points, Interpolation positions = Interpolation::linear) : points_(std::move(points)) {
-    expect_within("Waypoints::points (number)", static_cast<double>(points_.size()), 1, 1e9, "");
+  explicit Waypoints(std::vector<TimedPose> points, Interpolation positions = Interpolation::linear) : points_(std::move(points)) {
+    require_within("Waypoints::points (number)", static_cast<double>(points_.size()), 1, 1e9, "");
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const std::string field = "Waypoints::points[" + std::to_string(i) + "]";
-      Waypoint& p = points_[i];
-      expect_within(field + ".time", p.time, -1e15, 1e15, "s");  // as a Tick counts
+      TimedPose& p = points_[i];
+      require_within(field + ".time", p.time, -1e15, 1e15, "s");  // as a Tick counts
       if (i > 0 && p.time < points_[i - 1].time)
         throw SettingError(field + ".time", p.time, "s",
-                           "no earlier than that of the waypoint before, " + detail::written(points_[i - 1].time));
-      expect_finite(field + ".position (length)", length(p.position), "m");
-      expect_rotation(field + ".rotation", p.rotation);
+                           "no earlier than that of the waypoint before, " + detail::to_text(points_[i - 1].time));
+      require_finite(field + ".position (length)", length(p.position), "m");
+      require_rotation(field + ".rotation", p.rotation);
       p.rotation = normalize(p.rotation);
     }
     if (positions == Interpolation::cubic && points_.size() > 1) find_velocities();
@@ -57,14 +51,14 @@ class Waypoints {
   /// From the start of the leg to the last waypoint.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(std::max(0.0, points_.back().time)); }
 
-  [[nodiscard]] const std::vector<Waypoint>& points() const noexcept { return points_; }
+  [[nodiscard]] const std::vector<TimedPose>& points() const noexcept { return points_; }
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick tick) const noexcept {
     const double t = tick.seconds();
-    const auto after = std::upper_bound(points_.begin(), points_.end(), t, [](double time, const Waypoint& p) { return time < p.time; });
+    const auto after = std::upper_bound(points_.begin(), points_.end(), t, [](double time, const TimedPose& p) { return time < p.time; });
     if (after == points_.begin()) return {points_.front().rotation, points_.front().position};
     if (after == points_.end()) return {points_.back().rotation, points_.back().position};
-    const Waypoint &a = *(after - 1), &b = *after;
+    const TimedPose &a = *(after - 1), &b = *after;
     // counted from the waypoint, for as late as it is, the time is as exact as its fraction of a second
     const double since = (static_cast<double>(tick.second) - a.time) + tick.fraction;
     const double interval = b.time - a.time, s = since / interval;
@@ -84,7 +78,7 @@ class Waypoints {
       while (last + 1 < points_.size() && points_[last + 1].time > points_[last].time) ++last;
       if (last > first) find_velocities(first, last);
     }
-    for (const Vec3& v : velocities_) expect_finite("Waypoints::points (velocity between)", length(v), "m/s");
+    for (const Vec3& v : velocities_) require_finite("Waypoints::points (velocity between)", length(v), "m/s");
   }
 
   /// From one jump to the next: at each waypoint, the velocity of the parabola through it and its neighbours; at the ends, of the parabola
@@ -94,7 +88,7 @@ class Waypoints {
     const auto interval = [&](std::size_t i) { return points_[i + 1].time - points_[i].time; };
     const auto mean = [&](std::size_t i) { return (points_[i + 1].position - points_[i].position) / interval(i); };  // velocity
     for (std::size_t i = first; i < last; ++i)
-      expect_finite("Waypoints::points[" + std::to_string(i + 1) + "] (velocity from the one before)", length(mean(i)), "m/s");
+      require_finite("Waypoints::points[" + std::to_string(i + 1) + "] (velocity from the one before)", length(mean(i)), "m/s");
     velocities_[first] = velocities_[last] = mean(first);
     for (std::size_t i = first + 1; i < last; ++i) {
       const double share = interval(i) / (interval(i - 1) + interval(i));
@@ -106,7 +100,7 @@ class Waypoints {
     }
   }
 
-  std::vector<Waypoint> points_;
+  std::vector<TimedPose> points_;
   std::vector<Vec3> velocities_;  ///< at each waypoint [m/s]; empty if linear
 };
 
@@ -115,7 +109,7 @@ static_assert(Trajectory<Waypoints>);
 /// Turns bodies so that they are level and look along their path: at a bend, halfway between the ways in and out; at a turn straight back,
 /// the way in. Who rests or moves straight up keeps the last heading, or else takes the next one; who never moves aside looks north. Where
 /// a time stands twice, the body jumps: neither side looks along that way.
-[[nodiscard]] inline std::vector<Waypoint> with_headings(std::vector<Waypoint> points) {
+[[nodiscard]] inline std::vector<TimedPose> with_headings(std::vector<TimedPose> points) {
   const std::size_t n = points.size();
   std::vector<Vec3> ahead(n, Vec3{});  // of each waypoint: the horizontal direction of the next way out; zero if there is none
   const auto jump_to = [&](std::size_t i) { return points[i].time == points[i - 1].time; };
@@ -144,12 +138,12 @@ static_assert(Trajectory<Waypoints>);
 
 /// Waypoints at which a body arrives that follows the path through these positions [m] at a constant speed [m/s], level and looking along
 /// it. Positions that repeat the one before are left out.
-[[nodiscard]] inline std::vector<Waypoint> at_constant_speed(const std::vector<Vec3>& positions, double speed) {
-  expect_positive("at_constant_speed (speed)", speed, "m/s");
-  std::vector<Waypoint> points;
+[[nodiscard]] inline std::vector<TimedPose> at_constant_speed(const std::vector<Vec3>& positions, double speed) {
+  require_positive("at_constant_speed (speed)", speed, "m/s");
+  std::vector<TimedPose> points;
   double gone = 0;
   for (const Vec3& p : positions) {
-    expect_finite("at_constant_speed (position, length)", length(p), "m");
+    require_finite("at_constant_speed (position, length)", length(p), "m");
     if (!points.empty()) gone += length(p - points.back().position);
     if (points.empty() || gone / speed > points.back().time) points.push_back({.time = gone / speed, .position = p});
   }

@@ -212,7 +212,7 @@ struct RunRequest {
   bool pulses = true;  ///< keep them, and their waveforms
 
   void validate() const {
-    expect_not_negative("run every_seconds", every_seconds, "s");
+    require_not_negative("run every_seconds", every_seconds, "s");
     for (const auto& [name, function] : {std::pair{"callback", callback}, std::pair{"progress", progress}})
       if (!function.is_none() && PyCallable_Check(function.ptr()) == 0)
         throw pybind11::type_error(std::string(name) + ": expected a function, not " + std::string(pybind11::repr(function)));
@@ -345,7 +345,7 @@ inline void bind_common(pybind11::module_& m) {
           "fates", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.count(f); }); },
           "Pulse slots by what became of them.")
       .def_property_readonly(
-          "energy", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.spent[static_cast<std::size_t>(f)]; }); },
+          "energy", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.energy_by_fate[static_cast<std::size_t>(f)]; }); },
           "Energy sent, by what became of the subrays that carried it [J].")
       .def(
           "waveform_of",
@@ -403,7 +403,7 @@ void bind_run(Class& bound, const Runner& runner) {
       "Interrupted on Ctrl-C; its `result` is whole up to there.");
 }
 
-}  // namespace python
+}  // namespace gnu::visibility("hidden")]]python
 }  // namespace pulsecast
 
 namespace pulsecast::python {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/pulse.hpp>
 
@@ -32,9 +32,9 @@ struct BeamExit {
   double quality = 1;                           ///< M^2, at least 1
 
   void validate() const {
-    expect_positive("BeamExit::diameter", diameter, "m");
+    require_positive("BeamExit::diameter", diameter, "m");
     if (!(std::fabs(focus) > 0)) throw SettingError("BeamExit::focus", focus, "m", "other than 0");
-    expect_within("BeamExit::quality", quality, 1, 1e6, "");
+    require_within("BeamExit::quality", quality, 1, 1e6, "");
   }
 };
 
@@ -43,7 +43,7 @@ struct BeamExit {
 /// in Siegman 1990; waist and divergence from completing the square.
 [[nodiscard]] inline Laser gaussian_beam(const BeamExit& exit, Laser laser) {
   exit.validate();
-  expect_positive("Laser::wavelength", laser.wavelength, "m");
+  require_positive("Laser::wavelength", laser.wavelength, "m");
   const double radius = exit.diameter / 2, spread = exit.quality * laser.wavelength / pi;  // of a waist's radius by half its divergence
   const double half_angle = std::hypot(radius / exit.focus, spread / radius);
   laser.divergence = 2 * half_angle;

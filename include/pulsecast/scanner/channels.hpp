@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -27,14 +27,14 @@ class Channels {
  public:
   /// At most 256 channels, all of one size and duration.
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {
-    expect_within("Channels::channels (number)", static_cast<double>(channels_.size()), 1, 256, "");
+    require_within("Channels::channels (number)", static_cast<double>(channels_.size()), 1, 256, "");
     for (Source& c : channels_) c = validated(std::move(c));
     const double size = static_cast<double>(channels_[0].size()), duration = channels_[0].duration().seconds();
     for (const Source& c : channels_) {
-      expect_within("Channels::channels (slots)", static_cast<double>(c.size()), size, size, "");
-      expect_within("Channels::channels (duration)", c.duration().seconds(), duration, duration, "s");
+      require_within("Channels::channels (slots)", static_cast<double>(c.size()), size, size, "");
+      require_within("Channels::channels (duration)", c.duration().seconds(), duration, duration, "s");
     }
-    expect_order();
+    require_order();
   }
 
   [[nodiscard]] PulseIndex size() const noexcept { return channels_.size() * channels_[0].size(); }
@@ -52,7 +52,7 @@ class Channels {
  private:
   /// Refuses time that goes backwards from one channel to the next, as far as some rounds spread over the whole tell: channels of one
   /// rate show it in any round.
-  void expect_order() const {
+  void require_order() const {
     const PulseIndex n = channels_.size(), rounds = channels_[0].size(), step = rounds / 64 + 1;
     for (PulseIndex round = 0; round < rounds; round += step) {
       std::optional<Tick> last;
@@ -60,7 +60,7 @@ class Channels {
         const auto p = pulse(i);
         if (p && last && p->tick < *last)
           throw SettingError("Channels::channels (pulse of channel " + std::to_string(i % n) + ")", p->tick.seconds(), "s",
-                             "not before that of the channel in front of it, at " + detail::written(last->seconds()) + " s");
+                             "not before that of the channel in front of it, at " + detail::to_text(last->seconds()) + " s");
         if (p) last = p->tick;
       }
     }

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -30,7 +30,7 @@ class RingFootprint {
  public:
   /// `circles`: the central ray counts as the first; 3 circles are 19 subrays.
   explicit RingFootprint(std::size_t circles = 3) {
-    expect_within("RingFootprint::circles", static_cast<double>(circles), 1, 1000, "");
+    require_within("RingFootprint::circles", static_cast<double>(circles), 1, 1000, "");
     const double n = static_cast<double>(circles);
     for (std::size_t i = 0; i < circles; ++i) {
       const double radius = static_cast<double>(i) / (n - 0.5);
@@ -63,7 +63,7 @@ class RingFootprint {
 class SunflowerFootprint {
  public:
   explicit SunflowerFootprint(std::size_t subrays = 19) {
-    expect_within("SunflowerFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
+    require_within("SunflowerFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
     const double n = static_cast<double>(subrays);
     const double golden_angle = pi * (3 - std::sqrt(5.0));
     for (std::size_t j = 0; j < subrays; ++j) {
@@ -109,7 +109,7 @@ class LatticeFootprint {
 
   /// How far up the subray in each column is.
   static std::vector<Vec2> rows(std::size_t subrays) {
-    expect_within("LatticeFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
+    require_within("LatticeFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
     const auto multiple = [](std::size_t j) {
       const double m = (static_cast<double>(j) + 0.5) * 0.5 * (std::sqrt(5.0) - 1);
       return m - std::floor(m);
@@ -128,21 +128,21 @@ class LatticeFootprint {
 static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<SunflowerFootprint> && Footprint<LatticeFootprint>);
 
 /// A footprint whose subrays are handed on to the sinks, each with what it met (`EchoBatch::subrays`), for those who study footprints:
-/// `Recorded{RingFootprint{5}}`.
+/// `WithSubrayRecord{RingFootprint{5}}`.
 template <Footprint Pattern>
-struct Recorded : Pattern {
+struct WithSubrayRecord : Pattern {
   static constexpr bool recorded = true;
-  explicit Recorded(Pattern pattern) : Pattern(std::move(pattern)) {}
+  explicit WithSubrayRecord(Pattern pattern) : Pattern(std::move(pattern)) {}
 };
 
-static_assert(Footprint<Recorded<RingFootprint>>);
+static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 
 /// The direction of a subray in the frame of its beam: unit, along +y for no offset.
 /// `offset` is in units of the beam's 1/e^2 radius, which stands at half the divergence in the far field.
 [[nodiscard]] inline Vec3 subray_direction(const Vec2& offset, const Divergence& divergence) noexcept {
   const Vec2 scaled{offset.x, offset.y * divergence.aspect()};
   const double radius = std::hypot(scaled.x, scaled.y);
-  if (radius == 0) return forward;
+  if (radius == 0) return axis::forward;
   const double angle = radius * divergence.across / 2;
   const double aside = std::sin(angle) / radius;
   return {aside * scaled.x, std::cos(angle), aside * scaled.y};

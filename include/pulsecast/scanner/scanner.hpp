@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 
@@ -19,21 +19,21 @@ struct Scanner {
 
   void validate() const {
     using namespace literals;
-    expect_rate("Scanner::pulse_rate", pulse_rate);
-    expect_within("Scanner::pulses", static_cast<double>(pulses), 0, 0x1p52, "");  // as a Tick and a clockwork count
-    expect_within("Scanner::pulses (duration)", static_cast<double>(pulses) / pulse_rate, 0, 1e15, "s");
+    require_rate("Scanner::pulse_rate", pulse_rate);
+    require_within("Scanner::pulses", static_cast<double>(pulses), 0, 0x1p52, "");  // as a Tick and a clockwork count
+    require_within("Scanner::pulses (duration)", static_cast<double>(pulses) / pulse_rate, 0, 1e15, "s");
     if (!(delay >= 0 && delay < 1 / pulse_rate))
-      throw SettingError("Scanner::delay", delay, "s", "at least 0 and less than " + detail::written(1 / pulse_rate));
-    expect_within("Laser::wavelength", laser.wavelength, 1e-8, 1e-2, "m");
-    expect_within("Laser::peak_power", laser.peak_power, 1e-20, 1e20, "W");
-    expect_within("Laser::pulse_length", laser.pulse_length, 1e-15, 1, "s");
-    expect_within("Laser::divergence", laser.divergence.across, 0, 30_deg, "rad");
-    expect_within("Laser::divergence", laser.divergence.up, 0, 30_deg, "rad");
+      throw SettingError("Scanner::delay", delay, "s", "at least 0 and less than " + detail::to_text(1 / pulse_rate));
+    require_within("Laser::wavelength", laser.wavelength, 1e-8, 1e-2, "m");
+    require_within("Laser::peak_power", laser.peak_power, 1e-20, 1e20, "W");
+    require_within("Laser::pulse_length", laser.pulse_length, 1e-15, 1, "s");
+    require_within("Laser::divergence", laser.divergence.across, 0, 30_deg, "rad");
+    require_within("Laser::divergence", laser.divergence.up, 0, 30_deg, "rad");
     if ((laser.divergence.across > 0) != (laser.divergence.up > 0))
       throw SettingError("Laser::divergence", 0, "rad", "greater than 0 both across and up, or neither");
-    expect_within("Laser::divergence (up by across)", laser.divergence.aspect(), 1e-6, 1e6, "");
-    expect_not_negative("Laser::waist_diameter", laser.waist_diameter, "m");
-    expect_finite("Laser::waist_range", laser.waist_range, "m");
+    require_within("Laser::divergence (up by across)", laser.divergence.aspect(), 1e-6, 1e6, "");
+    require_not_negative("Laser::waist_diameter", laser.waist_diameter, "m");
+    require_finite("Laser::waist_range", laser.waist_range, "m");
   }
 
   [[nodiscard]] PulseIndex size() const noexcept { return pulses; }

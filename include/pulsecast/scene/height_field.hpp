@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
-#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 #include <pulsecast/geometry/triangle.hpp>
@@ -28,7 +28,7 @@ namespace pulsecast {
 
 namespace detail {
 
-inline constexpr std::uint32_t most_pixels = std::uint32_t{1} << 27;  ///< in a row or column
+inline constexpr std::uint32_t max_pixels = std::uint32_t{1} << 27;  ///< in a row or column
 
 /// Where the pixels of a raster are: row 0 is the northernmost, column 0 the westernmost.
 struct RasterGrid {
@@ -78,16 +78,16 @@ struct Raster {
   std::vector<float> heights{};         ///< row by row from the north [m]; NaN where it is missing
 
   void validate() const {
-    expect_within("Raster::columns", columns, 2, detail::most_pixels, "");
-    expect_within("Raster::rows", rows, 2, detail::most_pixels, "");
-    // two primitives a cell, and `Nearest::none` is none of them
-    expect_within("Raster::columns and rows, cells between them", (columns - 1.0) * (rows - 1.0), 1, 2147483647, "");
-    expect_within("Raster::first.x", first.x, -1e15, 1e15, "m");
-    expect_within("Raster::first.y", first.y, -1e15, 1e15, "m");
+    require_within("Raster::columns", columns, 2, detail::max_pixels, "");
+    require_within("Raster::rows", rows, 2, detail::max_pixels, "");
+    // two primitives a cell, and `ClosestHits::none` is none of them
+    require_within("Raster::columns and rows, cells between them", (columns - 1.0) * (rows - 1.0), 1, 2147483647, "");
+    require_within("Raster::first.x", first.x, -1e15, 1e15, "m");
+    require_within("Raster::first.y", first.y, -1e15, 1e15, "m");
     // far from the origin, coordinates round: by an eighth of these pixels, and so no two of them fall together
     constexpr double least = 4 * std::numeric_limits<double>::epsilon();
-    expect_within("Raster::pixel.x", pixel.x, std::max(1e-9, least * std::fabs(first.x)), 1e6, "m");
-    expect_within("Raster::pixel.y", pixel.y, std::max(1e-9, least * std::fabs(first.y)), 1e6, "m");
+    require_within("Raster::pixel.x", pixel.x, std::max(1e-9, least * std::fabs(first.x)), 1e6, "m");
+    require_within("Raster::pixel.y", pixel.y, std::max(1e-9, least * std::fabs(first.y)), 1e6, "m");
     if (heights.size() != std::size_t{columns} * rows)
       throw SettingError("Raster::heights", static_cast<double>(heights.size()), "",
                          "as many as pixels, " + std::to_string(std::size_t{columns} * rows));
@@ -144,16 +144,16 @@ class HeightField {
     build(threads);
   }
 
-  explicit HeightField(Unfilled) {}
+  explicit HeightField(DeserializeTag) {}
   template <class Archive>
   void archive(Archive& a) {
     a(grid_, levels_, top_, per_metre_, pad_, centre_, bounds_, heights_, pyramid_);
   }
 
   /// Whether the arrays are as long as the grid says.
-  [[nodiscard]] bool sound() const noexcept {
-    if (grid_.columns < 2 || grid_.rows < 2 || grid_.columns > detail::most_pixels || grid_.rows > detail::most_pixels) return false;
-    HeightField other(Unfilled{});
+  [[nodiscard]] bool is_consistent() const noexcept {
+    if (grid_.columns < 2 || grid_.rows < 2 || grid_.columns > detail::max_pixels || grid_.rows > detail::max_pixels) return false;
+    HeightField other(DeserializeTag{});
     other.grid_ = grid_;
     const std::size_t size = other.lay_out();
     return heights_.size() == std::size_t{grid_.columns} * grid_.rows && pyramid_.size() == size && top_ == other.top_ &&
@@ -172,7 +172,7 @@ class HeightField {
     return detail::RasterCell(grid_, heights_.data(), cell % cells, cell / cells).triangle(grid_, static_cast<int>(i % 2));
   }
 
-  void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
+  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
     if (bounds_.empty()) return;
     Walk walk(*this, rays, nearest);
     auto span = walk.interval.inside(slab(static_cast<float>(bounds_.min.z), static_cast<float>(bounds_.max.z)));
@@ -244,12 +244,12 @@ class HeightField {
     [[nodiscard]] std::uint32_t wide() const noexcept { return shift[0] - below[0]; }
     friend bool operator==(const Level&, const Level&) = default;
   };
-  static constexpr std::size_t most_levels = 18;  // as two of them make 8 by 8 to one
+  static constexpr std::size_t max_levels = 18;  // as two of them make 8 by 8 to one
 
   /// One bundle on its way.
   struct Walk {
     const RayBundle& rays;
-    Nearest& nearest;
+    ClosestHits& nearest;
     BundleInterval<float> interval;
     double least[2], greatest[2];  ///< of the directions, in pixels to the east and to the south
     double from[2], slack[2];      ///< origin and what rounding may make of it, likewise
@@ -261,7 +261,7 @@ class HeightField {
     std::array<PrimitiveIndex, lane_count> primitives;
     std::size_t taken = 0;
 
-    Walk(const HeightField& field, const RayBundle& r, Nearest& n) noexcept
+    Walk(const HeightField& field, const RayBundle& r, ClosestHits& n) noexcept
         : rays(r), nearest(n), interval(r, field.bounds_, field.centre_), limit(round_up<float>(n.limit(r))) {
       const double scale = std::max(max_norm(r.origin), std::max(max_norm(field.bounds_.min), max_norm(field.bounds_.max)));
       const double rounding = 128 * std::numeric_limits<double>::epsilon() * scale;
@@ -358,7 +358,7 @@ class HeightField {
 
   void visit(Walk& walk, unsigned level, std::uint32_t column, std::uint32_t row) const noexcept {
     const Level& own = levels_[level];
-    EightBoxes<float> boxes;
+    Box8<float> boxes;
     put_walls(boxes, walk, own, column, row);
     const unsigned taken = level == 1 ? put_cells(boxes, column, row) : put_nodes(boxes, level, column, row);
     std::array<float, 8> entries;
@@ -382,7 +382,7 @@ class HeightField {
   }
 
   /// Enters the walls of a node's children.
-  void put_walls(EightBoxes<float>& boxes, const Walk& walk, const Level& own, std::uint32_t column, std::uint32_t row) const noexcept {
+  void put_walls(Box8<float>& boxes, const Walk& walk, const Level& own, std::uint32_t column, std::uint32_t row) const noexcept {
     const float west = west_of(column << own.shift[0]) - walk.pad[0], north = north_of(row << own.shift[1]) + walk.pad[1];
     const float width = own.size[0] + 2 * walk.pad[0], height = own.size[1] + 2 * walk.pad[1];
     for (std::size_t i = 0; i < 8; i += pack_count<float>) {
@@ -393,7 +393,7 @@ class HeightField {
   }
 
   /// Enters the heights of a node's children, and gives the places of those that are in the raster.
-  unsigned put_nodes(EightBoxes<float>& boxes, unsigned level, std::uint32_t column, std::uint32_t row) const noexcept {
+  unsigned put_nodes(Box8<float>& boxes, unsigned level, std::uint32_t column, std::uint32_t row) const noexcept {
     const Level &own = levels_[level], &below = levels_[level - 1];
     const float* heights = pyramid_.data() + own.node(column, row);
     std::memcpy(boxes.min[2], heights, sizeof boxes.min[2]), std::memcpy(boxes.max[2], heights + 8, sizeof boxes.max[2]);
@@ -405,7 +405,7 @@ class HeightField {
   }
 
   /// Enters the heights of 4 by 2 cells, and gives the places of those that are in the raster.
-  unsigned put_cells(EightBoxes<float>& boxes, std::uint32_t column, std::uint32_t row) const noexcept {
+  unsigned put_cells(Box8<float>& boxes, std::uint32_t column, std::uint32_t row) const noexcept {
     using Four = typename detail::VectorOf<16, float>::type;
     const std::uint32_t c = 4 * column, r = 2 * row;
     const float* rows[3] = {heights_.data() + grid_.index(c, r), nullptr, nullptr};
@@ -523,13 +523,13 @@ class HeightField {
   }
 
   detail::RasterGrid grid_;
-  std::array<Level, most_levels + 1> levels_{};
+  std::array<Level, max_levels + 1> levels_{};
   std::uint32_t top_ = 0;
   Vec2 per_metre_{};  ///< pixels to the east a metre to the east, and to the south a metre to the north
   Vec2 pad_{};        ///< what single precision may make of walls [m]
   Vec3 centre_{};     ///< of the raster, at height 0, so that heights are exact
   Box bounds_;
-  Frozen<float> heights_, pyramid_;
+  SharedArray<float> heights_, pyramid_;
 };
 
 static_assert(Geometry<HeightField>);

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
-#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>
 
 namespace pulsecast {
@@ -49,7 +49,7 @@ class LeafAngles {
   /// As the surface of an ellipsoid whose horizontal axes are `chi` times the vertical one: 1 is spherical, less stands, more lies.
   /// Source: Campbell 1986; the surface of the ellipsoid is its exact one.
   [[nodiscard]] static LeafAngles ellipsoidal(double chi) {
-    expect_within("LeafAngles::ellipsoidal (chi)", chi, 1e-6, 1e6, "");
+    require_within("LeafAngles::ellipsoidal (chi)", chi, 1e-6, 1e6, "");
     LeafAngles made;
     made.chi_ = chi;
     const double eccentricity = std::sqrt(chi < 1 ? 1 - chi * chi : 1 - 1 / (chi * chi));
@@ -66,18 +66,18 @@ class LeafAngles {
   [[nodiscard]] static LeafAngles table(std::vector<Entry> entries) {
     constexpr double widest = 10 * pi / 180 * (1 + 1e-6);
     for (const Entry& entry : entries) {
-      expect_within("LeafProjection::zenith", entry.zenith, 0, pi / 2 * (1 + 1e-6), "rad");
-      expect_within("LeafProjection::g", entry.g, 0, 1, "");
+      require_within("LeafProjection::zenith", entry.zenith, 0, pi / 2 * (1 + 1e-6), "rad");
+      require_within("LeafProjection::g", entry.g, 0, 1, "");
     }
     std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.zenith < b.zenith; });
     double reached = 0;
     for (std::size_t i = 0; i < entries.size(); reached = entries[i++].zenith) {
       if (i > 0 && entries[i].zenith == reached) throw SettingError("LeafProjection::zenith", reached, "rad", "given once");
-      expect_no_hole(reached, entries[i].zenith, widest);
+      require_no_hole(reached, entries[i].zenith, widest);
     }
-    expect_no_hole(reached, pi / 2, widest);
+    require_no_hole(reached, pi / 2, widest);
     LeafAngles made;
-    made.table_ = Frozen<LeafProjection>(std::move(entries));
+    made.table_ = SharedArray<LeafProjection>(std::move(entries));
     return made;
   }
 
@@ -105,7 +105,7 @@ class LeafAngles {
   /// Intervals of zenith angle that G is kept for: linear in between, it is within 2e-7 of its integral.
   static constexpr std::size_t intervals = 2048;
 
-  static void expect_no_hole(double from, double to, double widest) {
+  static void require_no_hole(double from, double to, double widest) {
     if (to - from > widest) throw SettingError("LeafProjection::zenith", from, "rad", "followed by another within 0.1745 rad");
   }
 
@@ -123,7 +123,7 @@ class LeafAngles {
       entries[i] = {zenith, projection(density, zenith, nodes)};
     }
     LeafAngles made;
-    made.table_ = Frozen<LeafProjection>(std::move(entries));
+    made.table_ = SharedArray<LeafProjection>(std::move(entries));
     return made;
   }
 
@@ -170,7 +170,7 @@ class LeafAngles {
   }
 
   double chi_ = 1, half_surface_ = 2;  ///< of the ellipsoid; a sphere, unless there is a table
-  Frozen<LeafProjection> table_;
+  SharedArray<LeafProjection> table_;
 };
 
 }  // namespace pulsecast

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
 namespace pulsecast {
@@ -47,9 +47,9 @@ struct Material {
   std::shared_ptr<const Spectrum> spectrum{};  ///< reflectance by wavelength, for several materials perhaps; empty if it is the same at all
 
   void validate() const {
-    expect_within("Material::reflectance", reflectance, 0, 1, "");
-    expect_within("Material::specular_share", specular_share, 0, 1, "");
-    expect_not_negative("Material::specular_exponent", specular_exponent, "");
+    require_within("Material::reflectance", reflectance, 0, 1, "");
+    require_within("Material::specular_share", specular_share, 0, 1, "");
+    require_not_negative("Material::specular_exponent", specular_exponent, "");
   }
 
   /// For light of a wavelength [m]: a fraction.

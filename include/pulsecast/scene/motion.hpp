@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/frame.hpp>
-#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/geometry/box.hpp>
@@ -28,7 +28,7 @@ namespace pulsecast {
 /// along. With the velocity along the axis this is a helix; of two zeros it is a rest.
 struct SteadyMotion {
   Vec3 velocity{};               ///< [m/s]
-  Vec3 axis = up;                ///< of any length but zero
+  Vec3 axis = axis::up;          ///< of any length but zero
   double rate = 0;               ///< right-handed about the axis [rad/s]
   std::optional<Vec3> centre{};  ///< a point of the axis in the world when the motion begins [m]; empty: the centre of the body itself
   std::optional<Vec3> spin{};    ///< angular velocity of the body in the world, if other than on its way around the centre: zero for the
@@ -36,11 +36,11 @@ struct SteadyMotion {
   double duration = std::numeric_limits<double>::infinity();  ///< at least 1e-6 [s]
 
   void validate() const {
-    expect_finite("SteadyMotion::velocity (length)", length(velocity), "m/s");
-    expect_positive("SteadyMotion::axis (length)", length(axis), "");
-    expect_finite("SteadyMotion::rate", rate, "rad/s");
-    if (centre) expect_finite("SteadyMotion::centre (length)", length(*centre), "m");
-    if (spin) expect_finite("SteadyMotion::spin (length)", length(*spin), "rad/s");
+    require_finite("SteadyMotion::velocity (length)", length(velocity), "m/s");
+    require_positive("SteadyMotion::axis (length)", length(axis), "");
+    require_finite("SteadyMotion::rate", rate, "rad/s");
+    if (centre) require_finite("SteadyMotion::centre (length)", length(*centre), "m");
+    if (spin) require_finite("SteadyMotion::spin (length)", length(*spin), "rad/s");
     if (!(duration >= 1e-6)) throw SettingError("SteadyMotion::duration", duration, "s", "at least 1e-6");
   }
 };
@@ -49,14 +49,6 @@ struct SteadyMotion {
 struct MotionSequence {
   std::vector<SteadyMotion> motions{};
   std::uint64_t times = 1;
-};
-
-/// Where a body is at a time, and how it is turned. On top of its placement, it is turned about the origin of the world, and the origin
-/// goes to `position`: what was placed at the origin is there then, as the pose says.
-struct TimedPose {
-  double time = 0;                  ///< since the start of the survey [s]
-  Vec3 position{};                  ///< [m]
-  Rotation rotation = no_rotation;  ///< unit quaternion
 };
 
 /// What a body does after the last of its timed poses.
@@ -108,10 +100,10 @@ inline constexpr double wide_turn = 2;
 /// The steady motion of which `seconds` take every point p of the world to `position + rotation * p`: a screw, the shorter way around.
 /// Source: Chasles 1830; the centre of a plane displacement, Bottema & Roth 1979, Theoretical Kinematics, ch. III.
 [[nodiscard]] inline SteadyMotion steady_motion(const Pose<frame::World, frame::World>& step, double seconds) {
-  expect_positive("steady_motion (seconds)", seconds, "s");
-  expect_rotation("steady_motion (rotation)", step.rotation);
-  expect_finite("steady_motion (position, length)", length(step.position), "m");
-  const detail::AxisAngle turn(step.rotation);  // of any norm
+  require_positive("steady_motion (seconds)", seconds, "s");
+  require_rotation("steady_motion (rotation)", step.rotation);
+  require_finite("steady_motion (position, length)", length(step.position), "m");
+  const detail::RotationParts turn(step.rotation);  // of any norm
   if (turn.angle == 0) return {.velocity = step.position / seconds};
   const Vec3 along = dot(step.position, turn.axis) * turn.axis, across = step.position - along;
   return {.velocity = along / seconds,
@@ -132,7 +124,7 @@ class PartMotion {
   explicit PartMotion(const std::vector<MotionSequence>& sequences, std::optional<std::size_t> again_from = std::nullopt) {
     if (sequences.empty()) throw SettingError("PartMotion::sequences (number)", 0, "", "at least 1");
     if (again_from)
-      expect_within("PartMotion::again_from", static_cast<double>(*again_from), 0, static_cast<double>(sequences.size()) - 1, "");
+      require_within("PartMotion::again_from", static_cast<double>(*again_from), 0, static_cast<double>(sequences.size()) - 1, "");
     for (std::size_t i = sequences.size(); i-- > 0;)
       for (const SteadyMotion& m : sequences[i].motions)
         if (m.centre) reference_ = *m.centre;
@@ -146,20 +138,21 @@ class PartMotion {
   }
 
   /// Through timed poses: positions on straight lines at constant velocity, attitudes at a constant rate about one axis, the shorter way.
-  /// Before the first pose the body is there.
+  /// Before the first pose the body is there. A pose applies on top of the placement: the body is turned about the origin of the world, and
+  /// what was placed at the origin goes to `position`.
   explicit PartMotion(const std::vector<TimedPose>& poses, AfterLastPose after = AfterLastPose::rest) : from_origin_(true) {
     if (poses.empty()) throw SettingError("PartMotion::poses (number)", 0, "", "at least 1");
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const std::string field = "PartMotion::poses[" + std::to_string(i) + "]";
-      expect_within(field + ".time", poses[i].time, 0, 1e15, "s");
+      require_within(field + ".time", poses[i].time, 0, 1e15, "s");
       if (i > 0 && !(poses[i].time > poses[i - 1].time))
         throw SettingError(field + ".time", poses[i].time, "s",
-                           "later than that of the pose before, " + detail::written(poses[i - 1].time));
-      expect_finite(field + ".position (length)", length(poses[i].position), "m");
-      expect_rotation(field + ".rotation", poses[i].rotation);
+                           "later than that of the pose before, " + detail::to_text(poses[i - 1].time));
+      require_finite(field + ".position (length)", length(poses[i].position), "m");
+      require_rotation(field + ".rotation", poses[i].rotation);
     }
     const bool again = after == AfterLastPose::start_again;
-    if (again) expect_within("PartMotion::poses (time of the last)", poses.back().time, 1e-6, 1e15, "s");
+    if (again) require_within("PartMotion::poses (time of the last)", poses.back().time, 1e-6, 1e15, "s");
     if (poses.front().time > 0) add_way({0, poses.front().position, poses.front().rotation}, poses.front());
     for (std::size_t i = 1; i < poses.size(); ++i) add_way(poses[i - 1], poses[i]);
     const Tick time = Tick::of_seconds(poses.back().time);
@@ -167,12 +160,12 @@ class PartMotion {
     again ? end_cycle(time, {}) : end({time, last});  // what comes again begins where it began
   }
 
-  explicit PartMotion(Unfilled) {}
+  explicit PartMotion(DeserializeTag) {}
   template <class Archive>
   void archive(Archive& a) {
     a(runs_, pieces_, cycle_first_, cycle_start_, cycle_before_, cycle_, cycle_duration_, reference_, from_origin_);
   }
-  [[nodiscard]] bool sound() const noexcept {
+  [[nodiscard]] bool is_consistent() const noexcept {
     const auto has_pieces = [this](const Run& run) { return run.first < run.end && run.end <= pieces_.size() && run.times > 0; };
     return !runs_.empty() && cycle_first_ <= runs_.size() && std::all_of(runs_.begin(), runs_.end(), has_pieces);
   }
@@ -196,7 +189,7 @@ class PartMotion {
     Box box;
     Tick tick = std::max(from, Tick{});
     int pieces = 0;
-    for (; pieces < most_pieces; ++pieces) {
+    for (; pieces < max_pieces; ++pieces) {
       const Place place = place_of(tick);
       const double rest = std::max(0.0, detail::since(tick, to).seconds());
       const double span = std::min(rest, std::max(0.0, place.piece->duration - place.time.seconds()));
@@ -207,21 +200,21 @@ class PartMotion {
     }
     double radius = 0;
     for (const Vec3& p : points) radius = std::max(radius, length(p - centre));
-    if (pieces == most_pieces) box.extend(detail::grown(roughly(start, tick, to), radius));
+    if (pieces == max_pieces) box.extend(detail::grown(roughly(start, tick, to), radius));
     box.min = box.min + reference_, box.max = box.max + reference_;
     return detail::grown(box, 1e-12 * (max_norm(box.min) + max_norm(box.max)) + 1e-7 * radius);  // more than roundings
   }
 
  private:
-  static constexpr int most_pieces = 32;  ///< that `swept` looks at one by one; only the size of the box depends on it
+  static constexpr int max_pieces = 32;  ///< that `swept` looks at one by one; only the size of the box depends on it
 
   using Change = detail::Change;
   using Screw = detail::Screw;
 
   /// A turn at a constant rate.
   struct Turning {
-    Vec3 axis = up;   ///< unit
-    double rate = 0;  ///< [rad/s]
+    Vec3 axis = axis::up;  ///< unit
+    double rate = 0;       ///< [rad/s]
 
     [[nodiscard]] Rotation until(const Tick& time) const noexcept {
       return rate == 0 ? no_rotation : rotation_about(axis, 2 * pi * time.phase(rate / (2 * pi)));
@@ -277,13 +270,13 @@ class PartMotion {
 
   void add(const MotionSequence& sequence, const std::string& field, bool last, SoFar& so_far) {
     if (sequence.motions.empty()) throw SettingError(field + ".motions (number)", 0, "", "at least 1");
-    expect_within(field + ".times", static_cast<double>(sequence.times), 1, 1e15, "");
+    require_within(field + ".times", static_cast<double>(sequence.times), 1, 1e15, "");
     Run run{so_far.change, so_far.time, {}, 0, static_cast<std::int64_t>(sequence.times), pieces_.size(), 0};
     for (std::size_t k = 0; k < sequence.motions.size(); ++k) {
       const SteadyMotion& m = sequence.motions[k];
       m.validate();
       const bool may_be_infinite = last && k + 1 == sequence.motions.size() && sequence.times == 1;
-      if (!may_be_infinite) expect_within(field + ".motions[" + std::to_string(k) + "].duration", m.duration, 1e-6, 1e15, "s");
+      if (!may_be_infinite) require_within(field + ".motions[" + std::to_string(k) + "].duration", m.duration, 1e-6, 1e15, "s");
       const Turning orbit{normalize(m.axis), m.rate};
       Turning attitude = orbit;
       if (m.spin) attitude = length(*m.spin) > 0 ? Turning{normalize(*m.spin), length(*m.spin)} : Turning{};
@@ -304,7 +297,7 @@ class PartMotion {
     runs_.push_back(run);
     if (!std::isfinite(run.pass_duration)) return void(so_far.endless = true);
     const double duration = run.pass_duration * static_cast<double>(run.times);
-    expect_within(field + " (duration)", duration, 0, 1e15, "s");
+    require_within(field + " (duration)", duration, 0, 1e15, "s");
     so_far.time = so_far.time + Tick::of_seconds(duration);
     so_far.change = rounded(detail::then(so_far.change, detail::repeated(run.pass, run.times)));
   }
@@ -319,7 +312,7 @@ class PartMotion {
     Run& run = runs_.back();
     const double duration = to.time - from.time;
     const Rotation a = normalize(from.rotation);
-    const detail::AxisAngle turn(normalize(to.rotation) * conjugate(a));
+    const detail::RotationParts turn(normalize(to.rotation) * conjugate(a));
     pieces_.push_back({.before = {a, {no_rotation, from.position}},
                        .velocity = (to.position - from.position) / duration,
                        .attitude = {turn.axis, turn.angle / duration},
@@ -466,7 +459,7 @@ class PartMotion {
   static Box repeated_box(const Box& box, const Screw& once, std::int64_t first, std::int64_t last) noexcept {
     Box out = moved(box, detail::repeated(once, first));
     out.extend(moved(box, detail::repeated(once, last)));
-    const detail::AxisAngle turn(once.turn);
+    const detail::RotationParts turn(once.turn);
     if (turn.angle == 0 || first == last) return out;
     // about the axis of the screw, see `steady_motion`
     const Vec3 along = dot(once.shift, turn.axis) * turn.axis, across = once.shift - along;

@@ -13,19 +13,19 @@
 #include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 
 namespace pulsecast {
 
 /// The time for which an index of moving things is made, and how large it may get.
-struct TimeWindows {
-  double from = 0, to = 3600;                     ///< since the start of the survey [s]
-  std::size_t most_boxes = std::size_t{1} << 20;  ///< that are held, of about 70 bytes each
+struct MovingIndexSettings {
+  double from = 0, to = 3600;                    ///< since the start of the survey [s]
+  std::size_t boxes_max = std::size_t{1} << 20;  ///< that are held, of about 70 bytes each
 
   void validate() const {
-    expect_within("TimeWindows::from", from, -1e15, 1e15, "s");
-    if (!(to > from && to <= 1e15)) throw SettingError("TimeWindows::to", to, "s", "after `from`, at most 1e+15");
-    expect_within("TimeWindows::most_boxes", static_cast<double>(most_boxes), 1, 4294967295.0, "");
+    require_within("MovingIndexSettings::from", from, -1e15, 1e15, "s");
+    if (!(to > from && to <= 1e15)) throw SettingError("MovingIndexSettings::to", to, "s", "after `from`, at most 1e+15");
+    require_within("MovingIndexSettings::boxes_max", static_cast<double>(boxes_max), 1, 4294967295.0, "");
   }
 };
 
@@ -36,14 +36,15 @@ class MovingIndex {
  public:
   /// `swept(i, from, to)` gives the box that the thing of number i sweeps between two ticks; less than `things` in number.
   template <class Swept>
-  MovingIndex(std::size_t things, const TimeWindows& time, const Swept& swept) : time_(validated(time)), span_(time.to - time.from) {
-    std::array<std::vector<PrimitiveIndex>, deepest + 1> at_level;
+  MovingIndex(std::size_t things, const MovingIndexSettings& time, const Swept& swept)
+      : time_(validated(time)), span_(time.to - time.from) {
+    std::array<std::vector<PrimitiveIndex>, max_level + 1> at_level;
     for (std::size_t i = 0; i < things; ++i) at_level[level_of(i, swept)].push_back(static_cast<PrimitiveIndex>(i));
-    for (std::size_t level = deepest; level > 0 && boxes(at_level) > time.most_boxes; --level) {
+    for (std::size_t level = max_level; level > 0 && boxes(at_level) > time.boxes_max; --level) {
       at_level[level - 1].insert(at_level[level - 1].end(), at_level[level].begin(), at_level[level].end());
       at_level[level].clear();
     }
-    for (std::size_t level = 0; level <= deepest; ++level) {
+    for (std::size_t level = 0; level <= max_level; ++level) {
       if (at_level[level].empty()) continue;
       levels_.push_back({std::move(at_level[level]), {}});
       Level& made = levels_.back();
@@ -73,7 +74,7 @@ class MovingIndex {
 
   /// Calls `test(i)` for each thing that the bundle may meet at its tick before what it has met.
   template <class Test>
-  void closest(const RayBundle& rays, const Test& test, Nearest& nearest) const noexcept {
+  void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
     const double share = (rays.tick.seconds() - time_.from) / span_;
     if (!(share >= 0 && share <= 1)) {
       for (std::size_t i = 0; i < all_; ++i) test(static_cast<PrimitiveIndex>(i));
@@ -90,7 +91,7 @@ class MovingIndex {
   }
 
  private:
-  static constexpr std::size_t deepest = 20;
+  static constexpr std::size_t max_level = 20;
 
   /// Things that move about equally fast, and windows of the same length over all of the time.
   struct Level {
@@ -99,9 +100,9 @@ class MovingIndex {
   };
 
   /// How many boxes are held; a tree without any weighs as much as some.
-  static std::size_t boxes(const std::array<std::vector<PrimitiveIndex>, deepest + 1>& at_level) noexcept {
+  static std::size_t boxes(const std::array<std::vector<PrimitiveIndex>, max_level + 1>& at_level) noexcept {
     std::size_t sum = 0;
-    for (std::size_t level = 0; level <= deepest; ++level)
+    for (std::size_t level = 0; level <= max_level; ++level)
       if (!at_level[level].empty()) sum += (at_level[level].size() + 3) << level;
     return sum;
   }
@@ -117,11 +118,11 @@ class MovingIndex {
   /// The first level in whose windows a thing moves no more than about its own size, judged by some of them. Only speed depends on it.
   template <class Swept>
   std::size_t level_of(std::size_t i, const Swept& swept) const {
-    constexpr std::size_t most_samples = 8;
+    constexpr std::size_t max_samples = 8;
     constexpr double small = 0.5;  // whatever is smaller than that gains nothing from a box that is [m]
     const auto thing = static_cast<PrimitiveIndex>(i);
-    for (std::size_t level = 0; level < deepest; ++level) {
-      const std::size_t windows = std::size_t{1} << level, samples = std::min(windows, most_samples);
+    for (std::size_t level = 0; level < max_level; ++level) {
+      const std::size_t windows = std::size_t{1} << level, samples = std::min(windows, max_samples);
       double moving = 0, still = 0;
       for (std::size_t k = 0; k < samples; ++k) {
         const std::size_t window = (windows * k + windows / 2) / samples;
@@ -131,10 +132,10 @@ class MovingIndex {
       }
       if (moving <= 2 * still) return level;
     }
-    return deepest;
+    return max_level;
   }
 
-  TimeWindows time_;
+  MovingIndexSettings time_;
   double span_;  ///< [s]
   std::vector<Level> levels_;
   std::size_t all_ = 0;

@@ -28,7 +28,7 @@ class MovingScene {
 
   /// `time` should span the survey, and little more: the longer it is, the longer its windows get. At other times the answer is the same,
   /// but all moving parts are tested.
-  MovingScene(std::vector<Part> parts, const TimeWindows& time)
+  MovingScene(std::vector<Part> parts, const MovingIndexSettings& time)
       : scene_(std::move(parts), Scene<Shapes...>::Motions::left_out),
         movers_(movers(scene_.parts())),
         index_(movers_.size(), time, [this](PrimitiveIndex i, const Tick& from, const Tick& to) { return swept(movers_[i], from, to); }) {
@@ -61,7 +61,7 @@ class MovingScene {
 
   /// What each ray of the bundle meets first at its tick. The tie between parts goes to the first in the list, moving or not.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    Nearest nearest = scene_.nearest(rays);
+    ClosestHits nearest = scene_.nearest(rays);
     const auto test = [&](PrimitiveIndex i) noexcept { scene_.closest_in(movers_[i].part, moved(movers_[i], rays.tick), rays, nearest); };
     index_.closest(rays, test, nearest);
     scene_.describe(rays, nearest, hits, [&](std::size_t part) noexcept { return placement(part, rays.tick); });

@@ -18,7 +18,7 @@ namespace pulsecast {
 
 /// What of a part comes to the height of the ground below or above it. Points of a part are the corners of its triangles, or else those of
 /// its box.
-enum class Standing : std::uint8_t {
+enum class GroundPlacement : std::uint8_t {
   origin,        ///< its own origin, wherever its shape is: for models that are made to be stood there
   lowest_point,  ///< its lowest point (of several, their middle), whatever the ground does around it: for a tree
   touching,      ///< the point that touches first if it is let down: nothing is below the ground; for a car or a crate
@@ -50,7 +50,7 @@ void visit_points(const Shape& shape, const Similarity& placement, const Visit& 
 /// parts that carry others.
 template <Geometry Shape>
 [[nodiscard]] std::optional<double> lift_onto_ground(const Shape& shape, const Similarity& placement, const Ground auto& ground,
-                                                     Standing standing = Standing::lowest_point) {
+                                                     GroundPlacement ground_placement = GroundPlacement::lowest_point) {
   std::optional<double> lift;
   // the least or the most that any of the points asks for
   const auto ask = [&](const Vec3& p, bool most) {
@@ -59,15 +59,15 @@ template <Geometry Shape>
     const double asked = *height - p.z;
     lift = !lift ? asked : most ? std::max(*lift, asked) : std::min(*lift, asked);
   };
-  if (standing == Standing::origin) return ask(placement.translation, true), lift;
+  if (ground_placement == GroundPlacement::origin) return ask(placement.translation, true), lift;
   if (shape.bounds().empty()) return std::nullopt;
-  if (standing == Standing::touching) {
+  if (ground_placement == GroundPlacement::touching) {
     detail::visit_points(shape, placement, [&](const Vec3& p) { ask(p, true); });
     return lift;
   }
   Box box;
   detail::visit_points(shape, placement, [&](const Vec3& p) { box.extend(p); });
-  if (standing == Standing::sunk) {
+  if (ground_placement == GroundPlacement::sunk) {
     for (const double x : {box.min.x, box.max.x})
       for (const double y : {box.min.y, box.max.y}) ask({x, y, box.min.z}, false);
     return lift;
@@ -85,11 +85,11 @@ template <Geometry Shape>
 /// it starts there.
 template <Geometry... Shapes>
 [[nodiscard]] std::optional<Part<Shapes...>> on_ground(Part<Shapes...> part, const Ground auto& ground,
-                                                       Standing standing = Standing::lowest_point) {
+                                                       GroundPlacement ground_placement = GroundPlacement::lowest_point) {
   part.placement = validated(part.placement);
   const auto lift_of = [&](const auto& shape) {
     if (!shape) throw SettingError("Part::geometry (number)", 0, "", "1");
-    return lift_onto_ground(*shape, part.placement, ground, standing);
+    return lift_onto_ground(*shape, part.placement, ground, ground_placement);
   };
   const std::optional<double> lift = std::visit(lift_of, part.geometry);
   if (!lift) return std::nullopt;

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/material.hpp>
@@ -28,7 +28,7 @@ namespace detail {
 }
 
 /// What a text holds besides itself [byte].
-[[nodiscard]] inline std::size_t memory_of(const std::string& text) noexcept {
+[[nodiscard]] inline std::size_t heap_bytes(const std::string& text) noexcept {
   return text.capacity() > std::string().capacity() ? text.capacity() + 1 : 0;
 }
 
@@ -41,8 +41,8 @@ struct Similarity {
   Vec3 translation{};  ///< [m]
 
   void validate() const {
-    expect_rotation("Similarity::rotation", rotation);
-    expect_within("Similarity::scale", scale, 1e-30, 1e30, "");  // squares of lengths stay numbers in the part's own frame
+    require_rotation("Similarity::rotation", rotation);
+    require_within("Similarity::scale", scale, 1e-30, 1e30, "");  // squares of lengths stay numbers in the part's own frame
     if (!finite(translation)) throw SettingError("Similarity::translation (length)", length(translation), "m", "finite");
   }
   void normalize() noexcept { rotation = unit(rotation); }

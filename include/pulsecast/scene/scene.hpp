@@ -45,12 +45,12 @@ class Scene {
     std::size_t bytes = index_.memory() + parts_.capacity() * sizeof(Part);
     std::set<const void*> counted;
     for (const Part& part : parts_) {
-      bytes += detail::memory_of(part.name);
+      bytes += detail::heap_bytes(part.name);
       std::visit([&](const auto& shape) { bytes += counted.insert(shape.get()).second ? shape->memory() : 0; }, part.geometry);
       if (!counted.insert(part.materials.get()).second) continue;
       bytes += sizeof(*part.materials) + part.materials->capacity() * sizeof(Material);
       for (const Material& material : *part.materials) {
-        bytes += detail::memory_of(material.name);
+        bytes += detail::heap_bytes(material.name);
         if (material.spectrum && counted.insert(material.spectrum.get()).second) bytes += material.spectrum->memory();
       }
     }
@@ -66,9 +66,9 @@ class Scene {
   [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept {
     if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
     const double top = bounds().max.z + 1;
-    RayBundle down = bundle_of({.origin = {at.x, at.y, top}, .direction = -up});
+    RayBundle down = bundle_of({.origin = {at.x, at.y, top}, .direction = -axis::up});
     for (;;) {
-      const Nearest nearest = this->nearest(down);
+      const ClosestHits nearest = this->nearest(down);
       if (!nearest.met(0)) return std::nullopt;
       if (material_at(down, nearest).ground) return top - nearest.range[0];
       down.near = nearest.range[0];  // what is not ground is passed
@@ -102,7 +102,7 @@ class Scene {
           [&](const auto& shape) {
             if (!shape) throw SettingError("Part::geometry (number)", 0, "", "1");
             const double materials = part.materials ? static_cast<double>(part.materials->size()) : 0;
-            expect_within("Part::materials (number)", materials, static_cast<double>(shape->material_count()), 4294967295.0, "");
+            require_within("Part::materials (number)", materials, static_cast<double>(shape->material_count()), 4294967295.0, "");
             return part.motion ? Box{} : part.placement.box(shape->bounds());
           },
           part.geometry));
@@ -110,8 +110,8 @@ class Scene {
     return boxes;
   }
 
-  Nearest nearest(const RayBundle& rays) const noexcept {
-    Nearest nearest(rays);
+  ClosestHits nearest(const RayBundle& rays) const noexcept {
+    ClosestHits nearest(rays);
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
       for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, nearest);
     };
@@ -123,14 +123,14 @@ class Scene {
   }
 
   /// Of what the bundle's only ray met.
-  const Material& material_at(const RayBundle& rays, const Nearest& nearest) const noexcept {
+  const Material& material_at(const RayBundle& rays, const ClosestHits& nearest) const noexcept {
     const Part& part = parts_[nearest.part_of(0)];
     const RayBundle local = part.placement.to_local(rays);
     const auto material = [&](const auto& shape) noexcept { return shape->surface(nearest.primitive_of(0), local, 0).material; };
     return (*part.materials)[std::visit(material, part.geometry)];
   }
 
-  void closest_in(std::size_t part, const Similarity& placement, const RayBundle& rays, Nearest& nearest) const noexcept {
+  void closest_in(std::size_t part, const Similarity& placement, const RayBundle& rays, ClosestHits& nearest) const noexcept {
     nearest.part = std::uint64_t{part} << 32;
     const auto closest = [&](const RayBundle& local) noexcept {
       std::visit([&](const auto& shape) noexcept { shape->closest(local, nearest); }, parts_[part].geometry);
@@ -139,21 +139,21 @@ class Scene {
   }
 
   /// What there is to know of a primitive to describe how rays met it.
-  struct Sight {
-    Vec3 normal{};            ///< by the length of the directions, in the frame of its part
-    double least_cosine = 0;  ///< 1 if the surface has no direction
+  struct SurfaceSample {
+    Vec3 normal{};          ///< by the length of the directions, in the frame of its part
+    double min_cosine = 0;  ///< 1 if the surface has no direction
     Backscatter backscatter{};
     ObjectId object = 0;
     std::uint16_t classification = 0;
     bool flat = false;  ///< the same for every ray that met the primitive
   };
 
-  Sight sight(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j) const noexcept {
-    const auto look = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept -> Sight {
+  SurfaceSample sample_surface(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j) const noexcept {
+    const auto look = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept -> SurfaceSample {
       const Surface surface = shape->surface(primitive, local, j);
       const Material& material = (*part.materials)[surface.material];
       return {.normal = surface.normal / local.direction_length,
-              .least_cosine = surface.normal == Vec3{} ? 1.0 : 0.0,
+              .min_cosine = surface.normal == Vec3{} ? 1.0 : 0.0,
               .backscatter = material.backscatter(local.wavelength),
               .object = part.object,
               .classification = material.classification,
@@ -164,10 +164,10 @@ class Scene {
 
   /// `placement_of` gives where the part of a number stands.
   template <class PlacementOf>
-  void describe(const RayBundle& rays, const Nearest& nearest, std::span<Hit> hits, const PlacementOf& placement_of) const noexcept {
+  void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of) const noexcept {
     // neighbours mostly meet the same part, and often the same primitive: what is known of it need not be found again
-    std::uint64_t known = Nearest::none;
-    Sight sight;
+    std::uint64_t known = ClosestHits::none;
+    SurfaceSample sample;
     constexpr std::size_t nothing = std::size_t(-1);
     std::size_t at = nothing;  // the part whose frame `local` is in
     const RayBundle* local = &rays;
@@ -183,12 +183,12 @@ class Scene {
           const Similarity& placement = placement_of(at);
           local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
         }
-        sight = this->sight(parts_[at], nearest.primitive_of(j), *local, j);
-        known = sight.flat ? nearest.id[j] : Nearest::none;
+        sample = this->sample_surface(parts_[at], nearest.primitive_of(j), *local, j);
+        known = sample.flat ? nearest.id[j] : ClosestHits::none;
       }
-      const double projection = std::fabs(dot(sight.normal, local->direction(j)));
-      const double cosine = projection > 1 ? 1 : projection > sight.least_cosine ? projection : sight.least_cosine;
-      hits[j] = {nearest.range[j], cosine, sight.backscatter(cosine), sight.object, sight.classification};
+      const double projection = std::fabs(dot(sample.normal, local->direction(j)));
+      const double cosine = projection > 1 ? 1 : projection > sample.min_cosine ? projection : sample.min_cosine;
+      hits[j] = {nearest.range[j], cosine, sample.backscatter(cosine), sample.object, sample.classification};
     }
   }
 

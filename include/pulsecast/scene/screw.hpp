@@ -45,20 +45,20 @@ struct Screw {
 }
 
 /// The axis, of any length if there is no turn, and the angle of a rotation, in [0, pi].
-struct AxisAngle {
+struct RotationParts {
   Vec3 axis;
   double angle;
 
-  explicit AxisAngle(const Rotation& r) noexcept {
+  explicit RotationParts(const Rotation& r) noexcept {
     const Vec3 v = r.w < 0 ? Vec3{-r.x, -r.y, -r.z} : Vec3{r.x, r.y, r.z};
     const double sine = length(v);
-    axis = sine > 0 ? v / sine : up;
+    axis = sine > 0 ? v / sine : axis::up;
     angle = 2 * std::atan2(sine, std::fabs(r.w));
   }
 };
 
 /// A rotation, or none where it differs from none by roundings only [rad]: what comes back exactly need not be turned again and again.
-[[nodiscard]] inline Rotation unless_rounding(const Rotation& r) noexcept { return AxisAngle(r).angle < 1e-15 ? no_rotation : r; }
+[[nodiscard]] inline Rotation unless_rounding(const Rotation& r) noexcept { return RotationParts(r).angle < 1e-15 ? no_rotation : r; }
 
 /// An angle [rad] taken n times, less whole turns.
 [[nodiscard]] inline double multiple(double angle, std::int64_t n) noexcept { return 2 * pi * Tick{n, 0}.phase(angle / (2 * pi)); }
@@ -69,7 +69,7 @@ struct AxisAngle {
 [[nodiscard]] inline Screw repeated(const Screw& once, std::int64_t n) noexcept {
   if (n == 0) return {};
   if (once.turn == no_rotation) return {no_rotation, static_cast<double>(n) * once.shift};
-  const AxisAngle turn(once.turn);
+  const RotationParts turn(once.turn);
   if (turn.angle == 0) return {no_rotation, static_cast<double>(n) * once.shift};
   const Vec3 along = dot(once.shift, turn.axis) * turn.axis, across = once.shift - along;
   const double half = multiple(turn.angle / 2, n);

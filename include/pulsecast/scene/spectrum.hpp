@@ -10,8 +10,8 @@
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/base/expect.hpp>
-#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 
 namespace pulsecast {
 
@@ -29,21 +29,21 @@ class Spectrum {
     if (samples.empty()) throw SettingError("Spectrum::samples (number)", 0, "", "at least 1");
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::string field = "Spectrum::samples[" + std::to_string(i) + "]";
-      expect_positive(field + ".wavelength", samples[i].wavelength, "m");
-      expect_within(field + ".reflectance", samples[i].reflectance, 0, 1, "");
+      require_positive(field + ".wavelength", samples[i].wavelength, "m");
+      require_within(field + ".reflectance", samples[i].reflectance, 0, 1, "");
       if (i > 0 && !(samples[i].wavelength > samples[i - 1].wavelength))
         throw SettingError(field + ".wavelength", samples[i].wavelength, "m",
-                           "longer than that of the sample before, " + detail::written(samples[i - 1].wavelength));
+                           "longer than that of the sample before, " + detail::to_text(samples[i - 1].wavelength));
     }
     samples_ = std::move(samples);
   }
 
-  explicit Spectrum(Unfilled) {}
+  explicit Spectrum(DeserializeTag) {}
   template <class Archive>
   void archive(Archive& a) {
     a(samples_);
   }
-  [[nodiscard]] bool sound() const noexcept { return !samples_.empty(); }
+  [[nodiscard]] bool is_consistent() const noexcept { return !samples_.empty(); }
 
   [[nodiscard]] std::span<const SpectralSample> samples() const noexcept { return {samples_.data(), samples_.size()}; }
   [[nodiscard]] double shortest() const noexcept { return samples_[0].wavelength; }                   ///< [m]
@@ -62,7 +62,7 @@ class Spectrum {
   }
 
  private:
-  Frozen<SpectralSample> samples_;
+  SharedArray<SpectralSample> samples_;
 };
 
 }  // namespace pulsecast

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
-#include <pulsecast/base/expect.hpp>
-#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 
@@ -30,30 +30,30 @@ struct MeshData {
   std::vector<std::uint32_t> materials{};                 ///< one a triangle: index into the part's table; empty if all are 0
 
   void validate() const {
-    const auto refuse = [](const char* field, double value, const char* unit, std::string allowed) {
+    const auto reject = [](const char* field, double value, const char* unit, std::string allowed) {
       throw SettingError(field, value, unit, std::move(allowed));
     };
-    if (triangles.empty()) refuse("MeshData::triangles", 0, "", "at least one in number");
+    if (triangles.empty()) reject("MeshData::triangles", 0, "", "at least one in number");
     validate_counts(vertices.size(), triangles.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       for (int k = 0; k < 3; ++k)
-        if (!std::isfinite(vertices[i][k])) refuse("MeshData::vertices", vertices[i][k], "m", "finite; see vertex " + std::to_string(i));
+        if (!std::isfinite(vertices[i][k])) reject("MeshData::vertices", vertices[i][k], "m", "finite; see vertex " + std::to_string(i));
     }
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       for (const std::uint32_t corner : triangles[i])
         if (corner >= vertices.size())
-          refuse("MeshData::triangles", corner, "",
+          reject("MeshData::triangles", corner, "",
                  "less than the number of vertices, " + std::to_string(vertices.size()) + "; see triangle " + std::to_string(i));
     }
     if (!materials.empty() && materials.size() != triangles.size())
-      refuse("MeshData::materials", static_cast<double>(materials.size()), "",
+      reject("MeshData::materials", static_cast<double>(materials.size()), "",
              "as many as triangles, " + std::to_string(triangles.size()) + ", or none");
   }
 
-  /// Refuses more than can be numbered by 32 bits, before memory is asked for to index them; `Nearest::none` is no triangle.
+  /// Refuses more than can be numbered by 32 bits, before memory is asked for to index them; `ClosestHits::none` is no triangle.
   static void validate_counts(std::size_t vertices, std::size_t triangles) {
-    expect_within("MeshData::vertices (number)", static_cast<double>(vertices), 0, 4294967295.0, "");
-    expect_within("MeshData::triangles (number)", static_cast<double>(triangles), 1, 4294967294.0, "");
+    require_within("MeshData::vertices (number)", static_cast<double>(vertices), 0, 4294967295.0, "");
+    require_within("MeshData::triangles (number)", static_cast<double>(triangles), 1, 4294967294.0, "");
   }
 
   /// The triangle of a number [m].
@@ -83,15 +83,15 @@ class TriangleMesh {
       few_materials_ = std::vector<std::uint8_t>(data.materials.begin(), data.materials.end());
   }
 
-  explicit TriangleMesh(Unfilled unfilled) requires std::constructible_from<Index<Real>, Unfilled> : index_(unfilled) {}
+  explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index<Real>, DeserializeTag> : index_(tag) {}
   template <class Archive>
   void archive(Archive& a) {
     a(corners_, first_corners_, triangles_, places_, few_materials_, materials_, index_, material_count_);
   }
-  [[nodiscard]] bool sound() const {
-    if (triangles_.size() != index_.order().size() || first_corners_.size() != detail::stretches(triangles_.size())) return false;
+  [[nodiscard]] bool is_consistent() const {
+    if (triangles_.size() != index_.order().size() || first_corners_.size() != detail::chunk_count(triangles_.size())) return false;
     for (std::size_t place = 0; place < triangles_.size(); ++place) {
-      const std::uint64_t first = first_corners_[place / detail::stretch];
+      const std::uint64_t first = first_corners_[place / detail::chunk_size];
       for (const std::uint16_t corner : triangles_[place])
         if (first >= corners_.size() || corner >= corners_.size() - first) return false;
     }
@@ -101,7 +101,7 @@ class TriangleMesh {
              std::all_of(materials.begin(), materials.end(), [&](std::uint32_t m) { return m < material_count_; });
     };
     if (material_count_ == 0 || !in_table(few_materials_) || !in_table(materials_)) return false;
-    if constexpr (requires { index_.sound(size()); }) return index_.sound(size());
+    if constexpr (requires { index_.is_consistent(size()); }) return index_.is_consistent(size());
     return true;
   }
 
@@ -115,7 +115,7 @@ class TriangleMesh {
            few_materials_.memory() + materials_.memory();
   }
 
-  void closest(const RayBundle& rays, Nearest& nearest) const noexcept { index_.closest(rays, Test{*this, rays, nearest}, nearest); }
+  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept { index_.closest(rays, Test{*this, rays, nearest}, nearest); }
 
   [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
@@ -128,15 +128,15 @@ class TriangleMesh {
   struct Test {
     const TriangleMesh& mesh;
     const RayBundle& rays;
-    Nearest& nearest;
+    ClosestHits& nearest;
 
     void operator()(std::span<const PrimitiveIndex> primitives) const noexcept {
       const std::size_t place = place_of(primitives);
       const auto triangle_of = [&](std::size_t n) noexcept { return mesh.triangle_at(place + n); };
       intersect(primitives, triangle_of, rays, nearest);
     }
-    void soon(std::span<const PrimitiveIndex> primitives) const noexcept {
-      prefetch(primitives.data()), prefetch(mesh.triangles_.data() + place_of(primitives));
+    void prefetch(std::span<const PrimitiveIndex> primitives) const noexcept {
+      pulsecast::prefetch(primitives.data()), pulsecast::prefetch(mesh.triangles_.data() + place_of(primitives));
     }
 
     [[nodiscard]] std::size_t place_of(std::span<const PrimitiveIndex> primitives) const noexcept {
@@ -145,7 +145,7 @@ class TriangleMesh {
   };
 
   [[nodiscard]] Triangle triangle_at(std::size_t place) const noexcept {
-    const Vec3* const corners = corners_.data() + first_corners_[place / detail::stretch];
+    const Vec3* const corners = corners_.data() + first_corners_[place / detail::chunk_size];
     const auto& triangle = triangles_[place];
     return {corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
   }
@@ -174,7 +174,7 @@ class TriangleMesh {
   }
 
   using Corners = std::array<std::uint16_t, 3>;  ///< of a triangle: their numbers in its block
-  static_assert(3 * detail::stretch < 0xFFFF);
+  static_assert(3 * detail::chunk_size < 0xFFFF);
 
   /// The corners of a block, each once, and what finds them.
   class CornerTable {
@@ -207,11 +207,11 @@ class TriangleMesh {
   void arrange(const MeshData& data, unsigned threads) {
     const auto order = index_.order();
     if (order.size() > data.triangles.size()) threads = 1;  // a triangle may be in several blocks, of which the last will be its place
-    const Draft<std::uint32_t> places(data.triangles.size());
+    const SharedBuffer<std::uint32_t> places(data.triangles.size());
     if (order.size() < places.size()) std::fill(places.begin(), places.end(), 0);  // what the index leaves out is never met
-    const Draft<Corners> triangles(order.size());
-    std::vector<std::vector<Vec3>> parts(detail::stretches(order.size()));
-    detail::for_each_stretch(order.size(), threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    const SharedBuffer<Corners> triangles(order.size());
+    std::vector<std::vector<Vec3>> parts(detail::chunk_count(order.size()));
+    detail::for_each_chunk(order.size(), threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
       CornerTable table(end - begin);
       for (std::size_t place = begin; place < end; ++place) {
         places[order[place]] = static_cast<std::uint32_t>(place);
@@ -220,21 +220,21 @@ class TriangleMesh {
       }
       parts[block] = std::move(table).corners();
     });
-    const Draft<std::uint64_t> first_corners(parts.size());
+    const SharedBuffer<std::uint64_t> first_corners(parts.size());
     std::size_t count = 0;
     for (std::size_t block = 0; block < parts.size(); ++block) first_corners[block] = count, count += parts[block].size();
-    const Draft<Vec3> corners(count);
+    const SharedBuffer<Vec3> corners(count);
     for_each_index(parts.size(), threads,
                    [&](std::size_t block) { std::copy(parts[block].begin(), parts[block].end(), corners.data() + first_corners[block]); });
     corners_ = corners, first_corners_ = first_corners, triangles_ = triangles, places_ = places;
   }
 
-  Frozen<Vec3> corners_;
-  Frozen<std::uint64_t> first_corners_;  ///< of the blocks
-  Frozen<Corners> triangles_;            ///< in the order of the index
-  Frozen<std::uint32_t> places_;         ///< of each triangle, in that order
-  Frozen<std::uint8_t> few_materials_;   ///< empty if all are 0, or if they are
-  Frozen<std::uint32_t> materials_;      ///< numbers too large for these
+  SharedArray<Vec3> corners_;
+  SharedArray<std::uint64_t> first_corners_;  ///< of the blocks
+  SharedArray<Corners> triangles_;            ///< in the order of the index
+  SharedArray<std::uint32_t> places_;         ///< of each triangle, in that order
+  SharedArray<std::uint8_t> few_materials_;   ///< empty if all are 0, or if they are
+  SharedArray<std::uint32_t> materials_;      ///< numbers too large for these
   Index<Real> index_;
   std::size_t material_count_ = 1;
 };

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/scene/material.hpp>
 
 /// Surfaces that are alike but not the same: variants of a material, for the primitives of one shape or for its copies, which get a table
@@ -21,9 +21,10 @@ namespace pulsecast {
 /// Variants of a material, named "leaf 1", "leaf 2" and so on. The reflectance of each, or its spectrum as a whole, is shifted by an amount
 /// between minus and plus `range`, every one as likely as every other, and clipped to [0, 1]. The same seed gives the same variants, and
 /// the first ones are the same however many are asked for.
-[[nodiscard]] inline std::vector<Material> varied(const Material& material, std::size_t variants, double range, std::uint64_t seed) {
+[[nodiscard]] inline std::vector<Material> vary_reflectance(const Material& material, std::size_t variants, double range,
+                                                            std::uint64_t seed) {
   material.validate();
-  expect_within("varied (range)", range, 0, 1, "");
+  require_within("vary_reflectance (range)", range, 0, 1, "");
   std::vector<Material> all(variants, material);
   for (std::size_t i = 0; i < variants; ++i) {
     const double shift = range * (2 * uniform({.seed = seed, .pulse = i, .purpose = Purpose::scene}) - 1);
@@ -39,16 +40,16 @@ namespace pulsecast {
 }
 
 /// The materials of primitives that take their turns: 0, 1, ..., materials - 1, 0, 1, ... For `MeshData::materials` and its like.
-[[nodiscard]] inline std::vector<std::uint32_t> in_turn(std::size_t primitives, std::uint32_t materials) {
-  expect_within("in_turn (materials)", materials, 1, 4294967295.0, "");
+[[nodiscard]] inline std::vector<std::uint32_t> assign_round_robin(std::size_t primitives, std::uint32_t materials) {
+  require_within("assign_round_robin (materials)", materials, 1, 4294967295.0, "");
   std::vector<std::uint32_t> all(primitives);
   for (std::size_t i = 0; i < primitives; ++i) all[i] = static_cast<std::uint32_t>(i % materials);
   return all;
 }
 
 /// The materials of primitives that draw theirs, each one as likely as every other. The same seed gives the same draws.
-[[nodiscard]] inline std::vector<std::uint32_t> at_random(std::size_t primitives, std::uint32_t materials, std::uint64_t seed) {
-  expect_within("at_random (materials)", materials, 1, 4294967295.0, "");
+[[nodiscard]] inline std::vector<std::uint32_t> assign_randomly(std::size_t primitives, std::uint32_t materials, std::uint64_t seed) {
+  require_within("assign_randomly (materials)", materials, 1, 4294967295.0, "");
   std::vector<std::uint32_t> all(primitives);
   for (std::size_t i = 0; i < primitives; ++i) {
     const double drawn = uniform({.seed = seed, .pulse = i, .subray = 1, .purpose = Purpose::scene});

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 
 namespace pulsecast {
@@ -29,42 +29,40 @@ struct VoxelData {
   std::vector<std::uint16_t> materials{};             ///< index into the part's table
 
   /// Edge of the smallest cell that a lattice may have at a place [m]: coordinates there round by an eighth of it.
-  [[nodiscard]] static double least_edge(const Vec3& place) noexcept {
-    return 4 * std::numeric_limits<double>::epsilon() * max_norm(place);
-  }
+  [[nodiscard]] static double min_edge(const Vec3& place) noexcept { return 4 * std::numeric_limits<double>::epsilon() * max_norm(place); }
 
   /// Refuses what cannot be, but for cells that are there twice: those show when they are sorted, in the making of a grid.
   void validate() const {
-    constexpr double farthest = 1e18;
+    constexpr double max_coordinate = 1e18;
     for (int k = 0; k < 3; ++k)
-      if (!(std::fabs(corner[k]) <= farthest)) throw SettingError("VoxelData::corner", corner[k], "m", "within 1e18 m of the origin");
-    expect_positive("VoxelData::edge", edge, "m");
-    if (!(edge >= least_edge(corner)))
-      throw SettingError("VoxelData::edge", edge, "m", "at least " + detail::written(least_edge(corner)) + " so far from the origin");
+      if (!(std::fabs(corner[k]) <= max_coordinate)) throw SettingError("VoxelData::corner", corner[k], "m", "within 1e18 m of the origin");
+    require_positive("VoxelData::edge", edge, "m");
+    if (!(edge >= min_edge(corner)))
+      throw SettingError("VoxelData::edge", edge, "m", "at least " + detail::to_text(min_edge(corner)) + " so far from the origin");
     if (cells.empty()) throw SettingError("VoxelData::cells", 0, "", "at least one in number");
     if (cells.size() > 4294967294) throw SettingError("VoxelData::cells", count(cells), "", "at most 4294967294 in number");
     for (std::size_t i = 0; i < cells.size(); ++i)
       for (int k = 0; k < 3; ++k)
-        if (!(std::fabs(corner[k] + edge * (cells[i][static_cast<std::size_t>(k)] + 1.0)) <= farthest))
-          refuse("cells", cells[i][static_cast<std::size_t>(k)], "where coordinates are within 1e18 m", i);
-    expect_entries("normals", normals);
+        if (!(std::fabs(corner[k] + edge * (cells[i][static_cast<std::size_t>(k)] + 1.0)) <= max_coordinate))
+          reject("cells", cells[i][static_cast<std::size_t>(k)], "where coordinates are within 1e18 m", i);
+    require_entries("normals", normals);
     for (std::size_t i = 0; i < normals.size(); ++i) {
       const double norm = std::hypot(normals[i][0], normals[i][1], normals[i][2]);
-      if (!(norm == 0 || std::fabs(norm - 1) <= 1e-3)) refuse("normals (length)", norm, "1, or 0 where there is none", i);
+      if (!(norm == 0 || std::fabs(norm - 1) <= 1e-3)) reject("normals (length)", norm, "1, or 0 where there is none", i);
     }
-    expect_entries("densities", densities);
+    require_entries("densities", densities);
     for (std::size_t i = 0; i < densities.size(); ++i)
-      if (!(densities[i] >= 0) || !std::isfinite(densities[i])) refuse("densities", densities[i], "finite and at least 0", i);
-    expect_entries("scales", scales);
+      if (!(densities[i] >= 0) || !std::isfinite(densities[i])) reject("densities", densities[i], "finite and at least 0", i);
+    require_entries("scales", scales);
     for (std::size_t i = 0; i < scales.size(); ++i)
-      if (!(scales[i] > 0 && scales[i] <= 1)) refuse("scales", scales[i], "greater than 0 and at most 1", i);
-    expect_entries("shifts", shifts);
+      if (!(scales[i] > 0 && scales[i] <= 1)) reject("scales", scales[i], "greater than 0 and at most 1", i);
+    require_entries("shifts", shifts);
     for (std::size_t i = 0; i < shifts.size(); ++i) {
       const double room = (1 - (scales.empty() ? 1.0 : static_cast<double>(scales[i]))) / 2;
       for (const float shift : shifts[i])
-        if (!(std::fabs(shift) <= room + 1e-6)) refuse("shifts", shift, "so that the cube stays inside its cell", i);
+        if (!(std::fabs(shift) <= room + 1e-6)) reject("shifts", shift, "so that the cube stays inside its cell", i);
     }
-    expect_entries("materials", materials);
+    require_entries("materials", materials);
   }
 
  private:
@@ -73,12 +71,12 @@ struct VoxelData {
     return static_cast<double>(column.size());
   }
 
-  [[noreturn]] static void refuse(const char* field, double value, std::string allowed, std::size_t cell) {
+  [[noreturn]] static void reject(const char* field, double value, std::string allowed, std::size_t cell) {
     throw SettingError(std::string("VoxelData::") + field, value, "", std::move(allowed) + "; see entry " + std::to_string(cell));
   }
 
   template <class Column>
-  void expect_entries(const char* field, const Column& column) const {
+  void require_entries(const char* field, const Column& column) const {
     if (column.empty() || column.size() == cells.size()) return;
     throw SettingError(std::string("VoxelData::") + field, count(column), "",
                        "as many as cells, " + std::to_string(cells.size()) + ", or none");

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 #include <pulsecast/scene/leaf_angles.hpp>
@@ -55,7 +55,7 @@ class PackedVector {
 
 /// A column of the data in another order and form; empty if it was.
 template <class To, class From>
-[[nodiscard]] Frozen<To> reordered(const std::vector<From>& column, std::span<const std::uint32_t> order) {
+[[nodiscard]] SharedArray<To> reordered(const std::vector<From>& column, std::span<const std::uint32_t> order) {
   std::vector<To> kept;
   if (column.empty()) return kept;
   kept.reserve(order.size());
@@ -68,7 +68,7 @@ template <class To, class From>
 template <class Columns>
 class SolidMeeting {
  public:
-  SolidMeeting(const Columns& columns, const LatticeRay& ray, const RayBundle& rays, std::size_t j, Nearest& nearest) noexcept
+  SolidMeeting(const Columns& columns, const LatticeRay& ray, const RayBundle& rays, std::size_t j, ClosestHits& nearest) noexcept
       : columns_(columns), ray_(ray), begin_{rays.near, Crossing::begin}, j_(j), nearest_(nearest) {}
 
   double operator()(std::uint32_t number, const LatticeCell& cell, const Crossing& in, const Crossing& out) noexcept {
@@ -93,7 +93,7 @@ class SolidMeeting {
   const LatticeRay& ray_;
   Crossing begin_;
   std::size_t j_;
-  Nearest& nearest_;
+  ClosestHits& nearest_;
   double far_side_ = infinity;  ///< of the cube that the ray begins in [m]
   std::uint32_t around_ = 0;    ///< its number
 };
@@ -121,7 +121,7 @@ struct OpaqueVoxels {
 
   class Columns {
    public:
-    explicit Columns(Unfilled) {}
+    explicit Columns(DeserializeTag) {}
     Columns(const VoxelData& data, std::span<const std::uint32_t> order)
         : normals_(detail::reordered<detail::PackedVector>(data.normals, order)) {}
 
@@ -133,7 +133,7 @@ struct OpaqueVoxels {
     }
 
     [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const RayBundle& rays, std::size_t j,
-                               Nearest& nearest) const noexcept {
+                               ClosestHits& nearest) const noexcept {
       return detail::SolidMeeting(*this, ray, rays, j, nearest);
     }
 
@@ -157,7 +157,7 @@ struct OpaqueVoxels {
     }
 
    private:
-    Frozen<detail::PackedVector> normals_;
+    SharedArray<detail::PackedVector> normals_;
   };
 };
 
@@ -174,7 +174,7 @@ struct ScaledVoxels {
 
   class Columns {
    public:
-    explicit Columns(Unfilled) {}
+    explicit Columns(DeserializeTag) {}
     Columns(const VoxelData& data, std::span<const std::uint32_t> order)
         : scales_(detail::reordered<float>(data.scales, order)), shifts_(detail::reordered<detail::PackedVector>(data.shifts, order)) {
       if (scales_.empty())
@@ -196,7 +196,7 @@ struct ScaledVoxels {
     }
 
     [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const RayBundle& rays, std::size_t j,
-                               Nearest& nearest) const noexcept {
+                               ClosestHits& nearest) const noexcept {
       return detail::SolidMeeting(*this, ray, rays, j, nearest);
     }
 
@@ -213,8 +213,8 @@ struct ScaledVoxels {
     }
 
    private:
-    Frozen<float> scales_;
-    Frozen<detail::PackedVector> shifts_;
+    SharedArray<float> scales_;
+    SharedArray<detail::PackedVector> shifts_;
   };
 };
 
@@ -235,7 +235,7 @@ struct TransmissiveVoxels {
 
   class Columns {
    public:
-    explicit Columns(Unfilled) {}
+    explicit Columns(DeserializeTag) {}
     Columns(const VoxelData& data, std::span<const std::uint32_t> order) : densities_(detail::reordered<float>(data.densities, order)) {
       if (densities_.empty())
         throw SettingError("VoxelData::densities", 0, "",
@@ -246,7 +246,7 @@ struct TransmissiveVoxels {
 
     class Meeting {
      public:
-      Meeting(const Columns& columns, const LeafAngles& leaf_angles, const RayBundle& rays, std::size_t j, Nearest& nearest) noexcept
+      Meeting(const Columns& columns, const LeafAngles& leaf_angles, const RayBundle& rays, std::size_t j, ClosestHits& nearest) noexcept
           : columns_(columns), leaf_angles_(leaf_angles), rays_(rays), j_(j), nearest_(nearest) {}
 
       double operator()(std::uint32_t number, const LatticeCell&, const Crossing& in, const Crossing& out) noexcept {
@@ -280,13 +280,13 @@ struct TransmissiveVoxels {
       const LeafAngles& leaf_angles_;
       const RayBundle& rays_;
       std::size_t j_;
-      Nearest& nearest_;
+      ClosestHits& nearest_;
       double left_ = 0;         ///< optical depth that the ray may still go
       double per_density_ = 0;  ///< optical depth per range and density; 0 before the draw
     };
 
     [[nodiscard]] Meeting meeting(const TransmissiveVoxels& settings, const LatticeRay&, const RayBundle& rays, std::size_t j,
-                                  Nearest& nearest) const noexcept {
+                                  ClosestHits& nearest) const noexcept {
       return {*this, settings.leaf_angles, rays, j, nearest};
     }
 
@@ -300,7 +300,7 @@ struct TransmissiveVoxels {
     }
 
    private:
-    Frozen<float> densities_;
+    SharedArray<float> densities_;
   };
 };
 
@@ -310,7 +310,7 @@ struct TransmissiveVoxels {
 template <class Filling = OpaqueVoxels>
 class VoxelGrid {
  public:
-  explicit VoxelGrid(Unfilled unfilled) : index_(unfilled), columns_(unfilled) {}
+  explicit VoxelGrid(DeserializeTag tag) : index_(tag), columns_(tag) {}
 
   explicit VoxelGrid(const VoxelData& data, Filling filling = {}) : VoxelGrid(data, std::move(filling), {}) {}
 
@@ -328,7 +328,7 @@ class VoxelGrid {
     return {low, low + Vec3(index_.edge())};
   }
 
-  void closest(const RayBundle& rays, Nearest& nearest) const noexcept {
+  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
     const Vec3 centre = bounds().centre();
     const auto span = BundleInterval<double>(rays, bounds(), centre).inside(BoundingBox<double>::around(bounds(), centre));
     if (span.empty() || span.entry > nearest.limit(rays)) return;
@@ -367,7 +367,7 @@ class VoxelGrid {
   Filling filling_{};
   VoxelIndex index_;
   typename Filling::Columns columns_;
-  Frozen<std::uint16_t> materials_;
+  SharedArray<std::uint16_t> materials_;
   std::uint64_t material_count_ = 1;
 };
 

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
-#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/scene/lattice_ray.hpp>
@@ -32,7 +32,7 @@ class VoxelIndex {
   /// Cells along an axis that can be told apart.
   static constexpr std::uint32_t longest = 1U << 21;
 
-  explicit VoxelIndex(Unfilled) {}
+  explicit VoxelIndex(DeserializeTag) {}
 
   /// `order` is set to which cell of the data each number stands for. A template, so that only who makes grids compiles it.
   template <std::same_as<std::uint32_t> Number>
@@ -85,9 +85,9 @@ class VoxelIndex {
     hash(keys, roots * (height_ == 2 ? 8 : 5) / 4 + 1);
     make_pyramid(keys, budget > std::min(flat, deep) ? budget - std::min(flat, deep) : 0);
     size_ = static_cast<std::uint32_t>(sorted.size());
-    keys_ = Frozen<std::uint64_t>(std::move(keys));
-    brick_masks_ = Frozen<std::uint64_t>(std::move(brick.mask)), brick_first_ = Frozen<std::uint32_t>(std::move(brick.first));
-    block_masks_ = Frozen<std::uint64_t>(std::move(block.mask)), block_first_ = Frozen<std::uint32_t>(std::move(block.first));
+    keys_ = SharedArray<std::uint64_t>(std::move(keys));
+    brick_masks_ = SharedArray<std::uint64_t>(std::move(brick.mask)), brick_first_ = SharedArray<std::uint32_t>(std::move(brick.first));
+    block_masks_ = SharedArray<std::uint64_t>(std::move(block.mask)), block_first_ = SharedArray<std::uint32_t>(std::move(block.first));
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -308,7 +308,7 @@ class VoxelIndex {
   }
 
   /// The last node whose first child is not after a child.
-  static std::size_t holder(const Frozen<std::uint32_t>& first, std::uint32_t child) noexcept {
+  static std::size_t holder(const SharedArray<std::uint32_t>& first, std::uint32_t child) noexcept {
     return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), child) - first.begin()) - 1;
   }
 
@@ -330,7 +330,7 @@ class VoxelIndex {
       while (slots[s] != nothing) s = s + 1 == size ? 0 : s + 1;
       slots[s] = static_cast<std::uint32_t>(root);
     }
-    slots_ = Frozen<std::uint32_t>(std::move(slots));
+    slots_ = SharedArray<std::uint32_t>(std::move(slots));
   }
 
   std::uint32_t root(std::uint64_t key) const noexcept {
@@ -373,7 +373,7 @@ class VoxelIndex {
       else
         levels_[level_count_++] = level;
     }
-    pyramid_ = Frozen<std::uint64_t>(std::move(pyramid));
+    pyramid_ = SharedArray<std::uint64_t>(std::move(pyramid));
   }
 
   /// The least cell of a root.
@@ -434,13 +434,13 @@ class VoxelIndex {
   std::int32_t height_ = 1;  ///< 1 if the roots are bricks, 2 if they are blocks
   std::array<Level, 10> levels_{};
   std::size_t level_count_ = 0;
-  Frozen<std::uint64_t> keys_;   ///< of the roots: where they are
-  Frozen<std::uint32_t> slots_;  ///< of the hash: numbers of roots
-  Frozen<std::uint64_t> block_masks_;
-  Frozen<std::uint32_t> block_first_;
-  Frozen<std::uint64_t> brick_masks_;
-  Frozen<std::uint32_t> brick_first_;
-  Frozen<std::uint64_t> pyramid_;
+  SharedArray<std::uint64_t> keys_;   ///< of the roots: where they are
+  SharedArray<std::uint32_t> slots_;  ///< of the hash: numbers of roots
+  SharedArray<std::uint64_t> block_masks_;
+  SharedArray<std::uint32_t> block_first_;
+  SharedArray<std::uint64_t> brick_masks_;
+  SharedArray<std::uint32_t> brick_first_;
+  SharedArray<std::uint64_t> pyramid_;
 };
 
 }  // namespace pulsecast

@@ -77,8 +77,8 @@ TEST_CASE("a number serves as many pulses as it should; noise of the attitude tu
   SurveyNoise turn;
   turn.attitude[2] = NoiseSettings{.mean = pi / 2, .deviation = 0};
   const auto pulse = leg_of({ahead(1)}, turn).pulse(0);
-  CHECK(length(pulse->direction() - forward) < 1e-12);
-  CHECK(length(pulse->reported->direction(forward) + right) < 1e-12);
+  CHECK(length(pulse->direction() - axis::forward) < 1e-12);
+  CHECK(length(pulse->reported->direction(axis::forward) + axis::right) < 1e-12);
 }
 
 }  // namespace

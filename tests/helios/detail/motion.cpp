@@ -15,22 +15,22 @@ Vec3 moved(const MotionStep& step, const Vec3& place) { return step.move.positio
 constexpr Vec3 centre{10, 20, 30};
 
 TEST_CASE("a motion is relative to the centre of the scene, or to the origin of the world if it is corrected by it") {
-  const RotationMotion quarter{.axis = up, .angle = pi / 2};
+  const RotationMotion quarter{.axis = axis::up, .angle = pi / 2};
   CHECK(length(moved(motion_step({quarter}, centre), Vec3{11, 20, 5}) - Vec3{10, 21, 5}) < 1e-12);
   CHECK(length(moved(motion_step({quarter, false, 1}, centre), Vec3{1, 0, 5}) - Vec3{0, 1, 5}) < 1e-12);
   CHECK(length(moved(motion_step({quarter, true}, centre), Vec3{1, 0, 5}) - Vec3{0, 1, 5}) < 1e-12);
   CHECK(moved(motion_step({TranslationMotion{{1, 2, 3}}}, centre), Vec3{1, 1, 1}) == Vec3{2, 3, 4});
-  const RotationMotion screw{.axis = 2.0 * up, .angle = pi, .glide = 3};
+  const RotationMotion screw{.axis = 2.0 * axis::up, .angle = pi, .glide = 3};
   CHECK(length(moved(motion_step({screw, false, 1}, centre), Vec3{1, 2, 3}) - Vec3{-1, -2, 9}) < 1e-12);
 }
 
 TEST_CASE("a reflection leaves its plane where it is, and two are a way") {
-  const ReflectionMotion mirror{.normal = right};
+  const ReflectionMotion mirror{.normal = axis::right};
   CHECK(length(moved(motion_step({mirror}, centre), Vec3{12, 5, 6}) - Vec3{8, 5, 6}) < 1e-12);
   CHECK(motion_step({mirror}, centre).sign == -1);
-  const RotoreflectionMotion flip{.axis = up, .angle = pi / 2};
+  const RotoreflectionMotion flip{.axis = axis::up, .angle = pi / 2};
   CHECK(length(moved(motion_step({flip, false, 1}, centre), Vec3{1, 0, 5}) - Vec3{0, 1, -5}) < 1e-12);
-  MotionSequenceSettings twice{.motions = {{mirror}, {ReflectionMotion{.normal = right, .shift = Vec3{0, 2, 0}}}}};
+  MotionSequenceSettings twice{.motions = {{mirror}, {ReflectionMotion{.normal = axis::right, .shift = Vec3{0, 2, 0}}}}};
   const MotionSteps steps = motion_steps(twice, centre);
   REQUIRE(steps.all);
   CHECK_FALSE(steps.own);
@@ -60,7 +60,7 @@ TEST_CASE("what nothing can do has a name") {
   CHECK_FALSE(motion_problem({.motions = {mirror}}).empty());
   CHECK_FALSE(motion_problem({.motions = {mirror, own_mirror}}).empty());
   CHECK_FALSE(motion_problem({.motions = {turn, own_turn}}).empty());
-  CHECK(motion_problem({.motions = {own_turn, {TranslationMotion{right}}}}).empty());
+  CHECK(motion_problem({.motions = {own_turn, {TranslationMotion{axis::right}}}}).empty());
   CHECK(motion_problem({}).empty());
 }
 

@@ -21,7 +21,7 @@ constexpr double rate = 20e3;
 
 /// Where the beam of a slot goes, as an angle above forward [deg].
 double angle_deg(const SurveyOptic& optic, PulseIndex slot) {
-  const Vec3 d = optic.at(Tick::of(slot, rate)).direction(forward);
+  const Vec3 d = optic.at(Tick::of(slot, rate)).direction(axis::forward);
   return degrees(std::atan2(d.z, d.y));
 }
 
@@ -48,8 +48,8 @@ TEST_CASE("a polygon mirror sweeps all its facet, begins in the middle of it, an
 TEST_CASE("an optic that stands still leaves the beam where it is: sensors whose head spins") {
   const SurveyOptic optic = survey_optic(channel(RotatingOptic{}, 180), {.scan_frequency = 0, .head_speed = 1}, rate);
   CHECK(std::holds_alternative<FixedBeam>(optic.optic));
-  const Vec3 later = optic.at(Tick::of_seconds(pi / 2)).direction(forward);
-  CHECK(length(later + right) < 1e-12);  // a quarter of a turn to the left
+  const Vec3 later = optic.at(Tick::of_seconds(pi / 2)).direction(axis::forward);
+  CHECK(length(later + axis::right) < 1e-12);  // a quarter of a turn to the left
 }
 
 TEST_CASE("an oscillating mirror makes cycles of whole pulses, from its lower end") {
@@ -77,7 +77,7 @@ TEST_CASE("fibres stand at the lower ends of equal shares of the scan angle") {
 TEST_CASE("a Palmer mirror turns as often as the leg asks for, on from where the leg before left it") {
   const SurveyOptic optic =
       survey_optic(channel(ConicOptic{}, 20), {.scan_frequency = 10, .scan_angle = radians(15)}, rate, no_rotation, {0.025});
-  const Vec3 d = optic.at({}).direction(forward);  // a quarter of a turn on
+  const Vec3 d = optic.at({}).direction(axis::forward);  // a quarter of a turn on
   CHECK(d.x == relative(std::sin(radians(15)), 1e-9));
   CHECK(std::fabs(d.z) < 1e-9);
 }
@@ -140,7 +140,7 @@ TEST_CASE("formulas of errors that are no number at angles of the leg are refuse
 TEST_CASE("the beam's origin keeps to the axes of the platform, and turns with the head") {
   ChannelSettings c = channel(RotatingOptic{}, 60);
   c.beam_origin.position = {1, 0, 0.2};
-  const Rotation down = rotation_about(right, -pi / 2);
+  const Rotation down = rotation_about(axis::right, -pi / 2);
   const SurveyOptic optic = survey_optic(c, {.scan_frequency = 10}, rate, down);
   CHECK(length(down * optic.at({}).position - Vec3{1, 0, 0.2}) < 1e-12);
   const SurveyOptic turned = survey_optic(c, {.scan_frequency = 10, .head_start = pi / 2}, rate);
@@ -159,8 +159,8 @@ TEST_CASE("what warms up has moved when the first pulse leaves") {
   const LegScannerSettings leg{.scan_frequency = 20, .head_speed = 1, .warm_up = 0.01};
   LegScannerSettings at_once = leg;
   at_once.warm_up = 0;
-  const Vec3 a = survey_optic(c, leg, rate).at({}).direction(forward);
-  const Vec3 b = survey_optic(c, at_once, rate).at(Tick::of_seconds(0.01)).direction(forward);
+  const Vec3 a = survey_optic(c, leg, rate).at({}).direction(axis::forward);
+  const Vec3 b = survey_optic(c, at_once, rate).at(Tick::of_seconds(0.01)).direction(axis::forward);
   CHECK(length(a - b) < 1e-12);
 }
 
@@ -171,12 +171,12 @@ TEST_CASE("mechanical errors move the beam, and not what is reported of it") {
   CHECK(optic.errs());
   const Tick t = Tick::of(100, rate);
   CHECK(angle_deg(optic, 100) == relative(24 + degrees(0.01), 1e-9));
-  CHECK(length(optic.reported(t).direction(forward) - aimed_above(radians(24)).direction(forward)) < 1e-12);
+  CHECK(length(optic.reported(t).direction(axis::forward) - aimed_above(radians(24)).direction(axis::forward)) < 1e-12);
   CHECK(length(optic.reported(t).position) == relative(2 * radians(24), 1e-9));
   c.errors = {};
   c.errors.head = "0.1";
   const SurveyOptic head = survey_optic(c, {.scan_frequency = 20}, rate);
-  CHECK(length(head.at(t).direction(forward) - rotation_about(up, 0.1) * head.exact(t).direction(forward)) < 1e-12);
+  CHECK(length(head.at(t).direction(axis::forward) - rotation_about(axis::up, 0.1) * head.exact(t).direction(axis::forward)) < 1e-12);
 }
 
 TEST_CASE("noise of the range may depend on it by any formula that is finite where the scanner measures") {
@@ -220,12 +220,12 @@ TEST_CASE("echoes are sought in both ways of light, as documents count one") {
   ChannelSettings c;
   c.pulse_length = 4e-9, c.returns_max = 0;
   CHECK(survey_waveform(c).window == relative(2e-9, 1e-9));
-  CHECK(survey_waveform(c).max_returns == 255);
+  CHECK(survey_waveform(c).returns_max == 255);
   c.waveform.window = 3e-9, c.waveform.duration_max = 10e-9, c.returns_max = 4;
   CHECK(survey_waveform(c, 1e-6).window == relative(6e-9, 1e-9));
   CHECK(survey_waveform(c, 1e-6).record_length == relative(20e-9, 1e-9));
   CHECK(survey_waveform(c, 0).record_length == 0);
-  CHECK(survey_waveform(c).max_returns == 4);
+  CHECK(survey_waveform(c).returns_max == 4);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ ChannelReceiver<FullWaveform<>> receiver_of(const ChannelSettings& channel) {
 }
 
 auto build(const SurveySettings& survey, const Wall& wall) {
-  return survey_by_channel(survey.scanner, plan_survey(survey, no_ground).source, wall, 3, receiver_of);
+  return survey_by_channel(survey.scanner, compile_survey(survey, no_ground).source, wall, 3, receiver_of);
 }
 
 ChannelSettings ahead() {
@@ -100,12 +100,12 @@ TEST_CASE("channels that receive alike share a receiver, whatever they send, and
   const SurveySettings survey = survey_of(channels);
   const Wall wall;
   int made = 0;
-  const auto run = survey_by_channel(survey.scanner, plan_survey(survey, no_ground).source, wall, 3, [&](const ChannelSettings& c) {
+  const auto run = survey_by_channel(survey.scanner, compile_survey(survey, no_ground).source, wall, 3, [&](const ChannelSettings& c) {
     ++made;
     return receiver_of(c);
   });
   CHECK(made == 1);
-  const Survey plain(plan_survey(survey, no_ground).source, RingFootprint(3), wall, survey_receiver(channels[0]),
+  const Survey plain(compile_survey(survey, no_ground).source, RingFootprint(3), wall, survey_receiver(channels[0]),
                      FullWaveform(survey_waveform(channels[0])), 3);
   const auto collect = [](const auto& any) {
     std::vector<double> all;
@@ -127,7 +127,7 @@ TEST_CASE("channels that do not fit together are refused") {
   const SurveySettings survey = survey_of(channels);
   const Wall wall;
   CHECK_THROWS_AS((void)build(survey, wall), SettingError);
-  const auto legs = plan_survey(survey, no_ground).source;
+  const auto legs = compile_survey(survey, no_ground).source;
   CHECK_THROWS_AS((SurveyByChannel<Wall, FullWaveform<>>(legs, {receiver_of(channels[0])}, {0, 1}, wall, 0)), SettingError);
   CHECK_THROWS_AS((SurveyByChannel<Wall, FullWaveform<>>(legs, {receiver_of(channels[0])}, {}, wall, 0)), SettingError);
 }

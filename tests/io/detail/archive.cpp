@@ -33,18 +33,18 @@ struct alignas(64) Wide {
 class Leaf {
  public:
   explicit Leaf(std::vector<std::uint16_t> numbers) : numbers_(std::move(numbers)), wide_(std::vector<Wide>(2)) {}
-  explicit Leaf(Unfilled) {}
+  explicit Leaf(DeserializeTag) {}
   template <class Archive>
   void archive(Archive& a) {
     a(numbers_, wide_, even_);
   }
-  [[nodiscard]] bool sound() const { return numbers_.size() == 3; }
-  [[nodiscard]] const Frozen<std::uint16_t>& numbers() const { return numbers_; }
-  [[nodiscard]] const Frozen<Wide>& wide() const { return wide_; }
+  [[nodiscard]] bool is_consistent() const { return numbers_.size() == 3; }
+  [[nodiscard]] const SharedArray<std::uint16_t>& numbers() const { return numbers_; }
+  [[nodiscard]] const SharedArray<Wide>& wide() const { return wide_; }
 
  private:
-  Frozen<std::uint16_t> numbers_;
-  Frozen<Wide> wide_;
+  SharedArray<std::uint16_t> numbers_;
+  SharedArray<Wide> wide_;
   bool even_ = true;
 };
 
@@ -75,7 +75,7 @@ template <class... Items>
 void take(const std::shared_ptr<const MappedFile>& file, Items&... items) {
   ArchiveReader reader(file->bytes(), file);
   reader(items...);
-  reader.expect_end();
+  reader.require_end();
 }
 
 }  // namespace
@@ -83,13 +83,13 @@ void take(const std::shared_ptr<const MappedFile>& file, Items&... items) {
 TEST_CASE("every kind of item comes back, and arrays stand where the file is") {
   const auto leaf = std::make_shared<const Leaf>(std::vector<std::uint16_t>{1, 2, 3});
   const Tree tree{"oak", {"", "two"}, {7, 8, 9}, leaf, leaf};
-  const auto file = archived(tree, 3.5, true, std::array<char, 3>{'a', 'b', 'c'}, std::string(), Frozen<float>());
+  const auto file = archived(tree, 3.5, true, std::array<char, 3>{'a', 'b', 'c'}, std::string(), SharedArray<float>());
   Tree again;
   double number = 0;
   bool truth = false;
   std::array<char, 3> letters{};
   std::string nothing = "something";
-  Frozen<float> empty(std::vector<float>{1});
+  SharedArray<float> empty(std::vector<float>{1});
   take(file, again, number, truth, letters, nothing, empty);
   CHECK(again.name == "oak");
   CHECK(again.words == tree.words);
@@ -101,7 +101,7 @@ TEST_CASE("every kind of item comes back, and arrays stand where the file is") {
   CHECK(empty.empty());
   REQUIRE(again.leaf);
   CHECK(again.leaf == std::get<0>(again.fruit));
-  const Frozen<std::uint16_t>& numbers = again.leaf->numbers();
+  const SharedArray<std::uint16_t>& numbers = again.leaf->numbers();
   CHECK(std::vector<std::uint16_t>(numbers.begin(), numbers.end()) == std::vector<std::uint16_t>{1, 2, 3});
   const auto* const place = reinterpret_cast<const std::byte*>(numbers.data());
   CHECK((place >= file->bytes().data() && place < file->bytes().data() + file->bytes().size()));
@@ -109,9 +109,9 @@ TEST_CASE("every kind of item comes back, and arrays stand where the file is") {
 }
 
 TEST_CASE("an array keeps the file in memory") {
-  Frozen<int> array;
+  SharedArray<int> array;
   {
-    const auto file = archived(Frozen<int>(std::vector<int>{1, 2, 3}));
+    const auto file = archived(SharedArray<int>(std::vector<int>{1, 2, 3}));
     take(file, array);
   }
   std::filesystem::remove(folder / "archive");
@@ -137,7 +137,7 @@ TEST_CASE("an item is taken as what it was put, or not at all") {
   const auto file = archived(1.5F);
   double wider = 0;
   std::int32_t other = 0;
-  Frozen<float> array;
+  SharedArray<float> array;
   std::vector<float> list;
   float right = 0;
   CHECK_THROWS_AS(take(file, wider), ArchiveError);
@@ -147,7 +147,7 @@ TEST_CASE("an item is taken as what it was put, or not at all") {
   CHECK_THROWS_AS(take(file, right, right), ArchiveError);
   CHECK_NOTHROW(take(file, right));
   ArchiveReader reader(file->bytes(), file);
-  CHECK_THROWS_AS(reader.expect_end(), ArchiveError);
+  CHECK_THROWS_AS(reader.require_end(), ArchiveError);
 }
 
 TEST_CASE("an object that is not sound is refused") {
@@ -193,7 +193,7 @@ TEST_CASE("no claim of the bytes is believed: whichever number is changed, memor
       ArchiveReader reader({reinterpret_cast<const std::byte*>(memory->data()), forged.size()}, memory);
       Tree tree;
       reader(tree);
-      reader.expect_end();
+      reader.require_end();
     } catch (const ArchiveError&) {
       ++refused;
     }

@@ -110,7 +110,7 @@ void write_survey(const fs::path& folder, const std::string& name, PulseIndex pu
   const Laser laser{.wavelength = 1550_nm, .peak_power = 5000_W, .pulse_length = 3_ns, .divergence = 1_mrad};
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = pulses, .laser = laser};
   const Platform airplane{StraightLine{.from = {50, 10, 300}, .to = {50, 90, 300}, .speed = 80 / scanner.duration().seconds()},
-                          Mount{.boresight = fixed_axes({{right, -90_deg}, {up, -90_deg}})},
+                          Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                           Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 9_deg}, scanner}};
   LasWriter las(folder / (name + ".las"), settings);
   LazWriter laz(folder / (name + ".laz"), settings);
@@ -129,7 +129,8 @@ int main(int count, char** words) {
     write_survey(folder, "large", std::strtoull(points, nullptr, 10) * 7 / 10, {});
     return 0;
   }
-  for (const std::size_t points : {0u, 1u, 2u, 49'999u, 50'000u, 50'001u}) write_random(folder, "any_" + std::to_string(points), points, 1, 4);
+  for (const std::size_t points : {0u, 1u, 2u, 49'999u, 50'000u, 50'001u})
+    write_random(folder, "any_" + std::to_string(points), points, 1, 4);
   write_random(folder, "calm", 60'000, 0.1, 1);
   write_random(folder, "calm_channels", 60'000, 0.1, 4);
   write_random(folder, "still", 60'000, 0.001, 2);

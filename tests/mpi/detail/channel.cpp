@@ -9,31 +9,31 @@
 
 #include <doctest/doctest.h>
 
-#include "support/mpi_team.hpp"
+#include "support/mpi_group.hpp"
 
 namespace pulsecast::mpi {
 namespace {
 
-using support::mpi_team;
+using support::mpi_group;
 
 TEST_CASE("messages arrive in the order of sending, from all at all") {
-  mpi_team();
+  mpi_group();
   MpiChannel channel(MPI_COMM_WORLD);
   constexpr int each = 100;
   for (int k = 0; k < each; ++k)
     for (int to = 0; to < channel.size(); ++to) {
-      MpiParcel parcel;
-      parcel.add(k).add(std::span<const std::byte>(std::vector<std::byte>(static_cast<std::size_t>(k) * 1000)));
-      channel.send(to, 3, std::move(parcel).take());
+      MpiMessage message;
+      message.add(k).add(std::span<const std::byte>(std::vector<std::byte>(static_cast<std::size_t>(k) * 1000)));
+      channel.send(to, 3, std::move(message).take());
     }
   std::vector<int> next(static_cast<std::size_t>(channel.size()));
   int all = 0;
   while (all < each * channel.size())
     channel.poll([&](int from, int kind, MpiChannel::Bytes bytes) {
-      MpiParcel parcel(std::move(bytes));
-      const int k = parcel.next<int>();
+      MpiMessage message(std::move(bytes));
+      const int k = message.next<int>();
       CHECK(k == next[static_cast<std::size_t>(from)]++);
-      CHECK(parcel.rest().size() == static_cast<std::size_t>(k) * 1000);
+      CHECK(message.rest().size() == static_cast<std::size_t>(k) * 1000);
       CHECK(kind == 3);
       ++all;
     });
@@ -42,7 +42,7 @@ TEST_CASE("messages arrive in the order of sending, from all at all") {
 }
 
 TEST_CASE("what the first says, all say; what all say, the first hears") {
-  mpi_team();
+  mpi_group();
   MpiChannel channel(MPI_COMM_WORLD);
   CHECK(channel.from_first(channel.first() ? std::string("a folder") : std::string("another, which is longer")) == "a folder");
   CHECK(channel.from_first(channel.rank() + 5.5) == 5.5);
@@ -50,15 +50,15 @@ TEST_CASE("what the first says, all say; what all say, the first hears") {
   CHECK(ranks.size() == (channel.first() ? static_cast<std::size_t>(channel.size()) : 0));
   for (std::size_t i = 0; i < ranks.size(); ++i) CHECK(ranks[i] == static_cast<int>(i));
   int waited = 0;
-  channel.meet([&] { ++waited; });
+  channel.barrier([&] { ++waited; });
   CHECK(waited > 0);
 }
 
-TEST_CASE("parcels give back what was put into them") {
-  MpiParcel parcel;
+TEST_CASE("messages give back what was put into them") {
+  MpiMessage message;
   const std::vector<double> numbers{1, 2, 3}, none;
-  parcel.add('x').add(std::span(numbers)).add(7L).add(std::span(none));
-  MpiParcel same(std::move(parcel).take());
+  message.add('x').add(std::span(numbers)).add(7L).add(std::span(none));
+  MpiMessage same(std::move(message).take());
   std::vector<double> read;
   CHECK(same.next<char>() == 'x');
   same.next(read, 3);
@@ -69,14 +69,14 @@ TEST_CASE("parcels give back what was put into them") {
   CHECK(same.rest().empty());
 }
 
-TEST_CASE("what was added last to a parcel can be taken off it") {
-  MpiParcel parcel;
-  parcel.add('x').add(7L).add(std::uint32_t{9});
-  CHECK(parcel.last<std::uint32_t>() == 9);
-  CHECK(parcel.next<char>() == 'x');
-  CHECK(parcel.rest().size() == sizeof(long));
-  CHECK(parcel.last<long>() == 7);
-  CHECK(parcel.rest().empty());
+TEST_CASE("what was added last to a message can be taken off it") {
+  MpiMessage message;
+  message.add('x').add(7L).add(std::uint32_t{9});
+  CHECK(message.last<std::uint32_t>() == 9);
+  CHECK(message.next<char>() == 'x');
+  CHECK(message.rest().size() == sizeof(long));
+  CHECK(message.last<long>() == 7);
+  CHECK(message.rest().empty());
 }
 
 }  // namespace

@@ -8,48 +8,48 @@
 
 #include <doctest/doctest.h>
 
-#include "support/mpi_team.hpp"
+#include "support/mpi_group.hpp"
 
 namespace pulsecast::mpi {
 namespace {
 
-using support::mpi_team;
+using support::mpi_group;
 
 /// Counts what it hears.
 struct Listener final : MpiOutput {
-  explicit Listener(MpiTeam& team) : MpiOutput(team) {}
+  explicit Listener(MpiGroup& group) : MpiOutput(group) {}
   struct Piece final : MpiPiece {
     void clear() override { ++cleared; }
     void operator()(const EchoBatch&) override {}
-    [[nodiscard]] MpiClaim claim() override { return {}; }
+    [[nodiscard]] MpiExtent extent() override { return {}; }
     [[nodiscard]] std::size_t memory() const noexcept override { return 0; }
     int cleared = 0;
   };
   [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(); }
   void put(MpiPiece&, const MpiPlace&) override {}
-  [[nodiscard]] MpiPlace place(const MpiClaim&, int) override { return {}; }
-  void receive(int, MpiParcel parcel) override { heard += parcel.next<int>(); }
+  [[nodiscard]] MpiPlace place(const MpiExtent&, int) override { return {}; }
+  void receive(int, MpiMessage message) override { heard += message.next<int>(); }
   void close() override {
     work_until([&] { return heard == expected; });
   }
   void say(int number) {
-    for (int to = 0; to < team().size(); ++to) send(to, std::move(MpiParcel().add(number)));
+    for (int to = 0; to < group().size(); ++to) send(to, std::move(MpiMessage().add(number)));
   }
   int heard = 0, expected = 0;
 };
 
 TEST_CASE("what an output says is heard by the same output everywhere") {
-  Listener one(mpi_team()), other(mpi_team());
-  one.expected = 5 * mpi_team().size(), other.expected = 7 * mpi_team().size();
+  Listener one(mpi_group()), other(mpi_group());
+  one.expected = 5 * mpi_group().size(), other.expected = 7 * mpi_group().size();
   other.say(7), one.say(5);
   one.close(), other.close();
   CHECK(one.heard == one.expected);
   CHECK(other.heard == other.expected);
-  mpi_team().channel().meet([] {});
+  mpi_group().channel().barrier([] {});
 }
 
 TEST_CASE("pieces are used again") {
-  Listener output(mpi_team());
+  Listener output(mpi_group());
   std::unique_ptr<MpiPiece> piece = output.take_piece();
   const MpiPiece* const same = piece.get();
   output.give_back(std::move(piece));
@@ -63,27 +63,27 @@ TEST_CASE("what comes too early is kept for the next run") {
   struct Run {
     std::vector<int> heard;
   };
-  const auto hear = [](void* run, int, int kind, MpiParcel parcel) {
-    static_cast<Run*>(run)->heard.push_back(kind * 100 + parcel.next<int>());
+  const auto hear = [](void* run, int, int kind, MpiMessage message) {
+    static_cast<Run*>(run)->heard.push_back(kind * 100 + message.next<int>());
   };
   Run one, two;
-  mpi_team().begin(&one, hear);
-  mpi_team().send(0, 2, std::move(MpiParcel().add(mpi_team().rank())));
-  mpi_team().channel().meet([] {});  // not served
-  mpi_team().end();
-  mpi_team().begin(&two, hear);
-  mpi_team().send(0, 3, std::move(MpiParcel().add(mpi_team().rank())));
-  const std::size_t expected = mpi_team().first() ? static_cast<std::size_t>(mpi_team().size()) : 0;
-  while (two.heard.size() < expected) mpi_team().serve();
-  mpi_team().end();
+  mpi_group().begin(&one, hear);
+  mpi_group().send(0, 2, std::move(MpiMessage().add(mpi_group().rank())));
+  mpi_group().channel().barrier([] {});  // not served
+  mpi_group().end();
+  mpi_group().begin(&two, hear);
+  mpi_group().send(0, 3, std::move(MpiMessage().add(mpi_group().rank())));
+  const std::size_t expected = mpi_group().first() ? static_cast<std::size_t>(mpi_group().size()) : 0;
+  while (two.heard.size() < expected) mpi_group().serve();
+  mpi_group().end();
   CHECK(one.heard.empty());
   for (const int number : two.heard) CHECK(number / 100 == 3);
   Run three;  // takes what was for one, as none else of its kind has come
-  mpi_team().begin(&three, hear);
-  mpi_team().serve();
+  mpi_group().begin(&three, hear);
+  mpi_group().serve();
   CHECK(three.heard.size() == expected);
-  mpi_team().end();
-  mpi_team().channel().meet([] {});
+  mpi_group().end();
+  mpi_group().channel().barrier([] {});
 }
 
 }  // namespace

@@ -17,24 +17,24 @@
 namespace pulsecast::mpi {
 namespace {
 
-using support::expect_same_bytes;
-using support::mpi_team;
+using support::mpi_group;
+using support::require_same_bytes;
 using support::Showers;
 
 TEST_CASE("a stream of text is compressed by the first process, as if it had made it") {
   const Showers survey{30'000};
   const auto all = [](const std::filesystem::path& path) -> std::unique_ptr<MpiOutput> {
-    const auto file = mpi_team().first() ? std::make_shared<io::OutputFile>(io::gzip_file(path)) : nullptr;
+    const auto file = mpi_group().first() ? std::make_shared<io::OutputFile>(io::gzip_file(path)) : nullptr;
     return std::make_unique<MpiStream<io::XyzWriter>>(
-        mpi_team(), [](io::OutputFile piece) { return io::XyzWriter(std::move(piece)); },
-        [file](const MpiParcel& bytes) { file->write(bytes.rest()); }, [file] { file->commit(); });
+        mpi_group(), [](io::OutputFile piece) { return io::XyzWriter(std::move(piece)); },
+        [file](const MpiMessage& bytes) { file->write(bytes.rest()); }, [file] { file->commit(); });
   };
   const auto one = [&](const std::filesystem::path& path) {
     io::XyzWriter writer(io::gzip_file(path));
     pulsecast::run(survey, {.threads = 1}, writer);
     writer.close();
   };
-  expect_same_bytes(survey, "xyz.gz", one, all, {""});
+  require_same_bytes(survey, "xyz.gz", one, all, {""});
 }
 
 TEST_CASE("batches come out as they went in") {
@@ -48,7 +48,7 @@ TEST_CASE("batches come out as they went in") {
   writer({});
   writer.close();
   int batches = 0;
-  for_each_batch(MpiParcel(bytes), [&](const EchoBatch& batch) {
+  for_each_batch(MpiMessage(bytes), [&](const EchoBatch& batch) {
     if (++batches == 2) {
       CHECK(batch.shots.empty());
       return;

@@ -28,8 +28,7 @@ const std::string evil = "</script><img src=x onerror=\"window.hurt=1\">";
 page::PageSurvey survey() {
   page::PageSurvey out{.name = evil + "survey", .scanner = evil + "scanner", .platform = "Tripod & car"};
   out.legs.push_back(page::page_leg(evil + "leg", Tripod{.position = {0, 0, 15}}, {}, Tick{1, 0}));
-  out.legs.push_back(
-      page::page_leg("drive", StraightLine{.from = {-20, -10, 2}, .to = {20, -10, 2}, .speed = 40}, Tick{1, 0}, Tick{1, 0}));
+  out.legs.push_back(page::page_leg("drive", StraightLine{.from = {-20, -10, 2}, .to = {20, -10, 2}, .speed = 40}, Tick{1, 0}, Tick{1, 0}));
   out.objects[2] = evil + "object";
   return out;
 }
@@ -106,13 +105,13 @@ int main(int argc, char** argv) {
   const std::string folder = argv[1];
   if (argc == 3) {
     const PulseIndex all = std::strtoull(argv[2], nullptr, 10);
-    page::PageWriter writer(folder + "/page.html", survey(), {.most_points = 2 * all + 2});
+    page::PageWriter writer(folder + "/page.html", survey(), {.points_max = 2 * all + 2});
     for (PulseIndex i = 0; i < all; i += 10'000) writer(Shots(i, std::min(all, i + 10'000), all).batch());
     writer.close();
     return 0;
   }
   const Shots shots(0, 60'000, 60'000);
-  page::PageWriter writer(folder + "/page.html", survey(), {.most_points = 70'000});
+  page::PageWriter writer(folder + "/page.html", survey(), {.points_max = 70'000});
   page::PageSample sample(70'000);
   writer(shots.batch()), sample(shots.batch());
   writer.close();

@@ -134,8 +134,8 @@ TEST_CASE("keys of neighbours differ in every bit") {
 TEST_CASE("points that are not finite are passed over, and sizes that cannot be are refused") {
   PageSample sample(10);
   const double infinity = std::numeric_limits<double>::infinity();
-  const Shot shots[] = {{.origin = {infinity, 0, 0}, .direction = forward, .echoes = 1},
-                        {.index = 1, .direction = forward, .first_echo = 1, .echoes = 1}};
+  const Shot shots[] = {{.origin = {infinity, 0, 0}, .direction = axis::forward, .echoes = 1},
+                        {.index = 1, .direction = axis::forward, .first_echo = 1, .echoes = 1}};
   const Echo echoes[] = {{.range = 1}, {.range = infinity}};
   EchoBatch batch;
   batch.shots = shots, batch.echoes = echoes;

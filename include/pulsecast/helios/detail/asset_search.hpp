@@ -49,7 +49,7 @@ class AssetSearch {
     const std::size_t slash = pattern.rfind('/');
     const std::string folder = slash == std::string::npos ? "." : pattern.substr(0, slash + 1), name = pattern.substr(slash + 1);
     if (!is_simple(name))
-      return {.problem = "is no regular expression that can be matched quickly: expected at most " + std::to_string(longest_pattern) +
+      return {.problem = "is no regular expression that can be matched quickly: expected at most " + std::to_string(max_pattern_size) +
                          " letters, no back-reference, and four counts in braces, none of them after a group"};
     AssetMatch match;
     const std::vector<std::filesystem::path> places = candidates(folder);
@@ -59,7 +59,7 @@ class AssetSearch {
         std::error_code error;
         std::size_t entries = 0;
         for (std::filesystem::directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error)) {
-          if (++entries > most_entries) return {.problem = "names a folder with more than " + std::to_string(most_entries) + " files"};
+          if (++entries > max_entries) return {.problem = "names a folder with more than " + std::to_string(max_entries) + " files"};
           std::error_code ignored;
           if (!std::regex_match(entry->path().filename().string(), expression) || !entry->is_regular_file(ignored)) continue;
           match.files.push_back(normal(entry->path()));
@@ -76,8 +76,8 @@ class AssetSearch {
   }
 
  private:
-  static constexpr std::size_t longest_pattern = 200;
-  static constexpr std::size_t most_entries = 1'000'000;
+  static constexpr std::size_t max_pattern_size = 200;
+  static constexpr std::size_t max_entries = 1'000'000;
 #ifdef __GLIBCXX__  // follows all ways through the pattern at once; backtracking takes a power of the name's length
   static constexpr auto syntax = std::regex_constants::ECMAScript | std::regex_constants::__polynomial;
 #else
@@ -101,7 +101,7 @@ class AssetSearch {
         if (i > 0 && pattern[i - 1] == ')') return false;
       }
     }
-    return pattern.size() <= longest_pattern && counts <= 4;
+    return pattern.size() <= max_pattern_size && counts <= 4;
   }
 
   /// Where a name may be: inside the folders, and then outside.

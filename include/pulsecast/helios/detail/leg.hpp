@@ -80,7 +80,7 @@ class SurveyLeg {
  public:
   SurveyLeg(SurveyPath path, Mount mount, std::vector<SurveyChannel> channels, Tick duration, SurveyNoise noise)
       : path_(std::move(path)), mount_(validated(mount)), channels_(std::move(channels)), duration_(duration), noise_(std::move(noise)) {
-    expect_within("SurveyLeg::channels (number)", static_cast<double>(channels_.size()), 1, 256, "");
+    require_within("SurveyLeg::channels (number)", static_cast<double>(channels_.size()), 1, 256, "");
     noisy_ = !noise_.none();
   }
 
@@ -103,8 +103,8 @@ class SurveyLeg {
       const Vec3 turn = noise_.draw(noise_.attitude, slot, Purpose::attitude_noise);
       if (!out->reported) out->reported = out->pose;
       out->reported->position += noise_.draw(noise_.position, slot, Purpose::position_noise);
-      out->reported->rotation =
-          out->reported->rotation * rotation_about(right, turn.x) * rotation_about(forward, turn.y) * rotation_about(up, turn.z);
+      out->reported->rotation = out->reported->rotation * rotation_about(axis::right, turn.x) * rotation_about(axis::forward, turn.y) *
+                                rotation_about(axis::up, turn.z);
     }
     return out;
   }

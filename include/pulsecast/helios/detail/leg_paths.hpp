@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/passing.hpp>
 #include <pulsecast/helios/detail/trajectory_format.hpp>
@@ -39,23 +39,23 @@ struct SurveyBuildOptions {
 };
 
 /// Where a leg begins and how it moves; what remains is its duration.
-struct SurveyWay {
+struct LegPath {
   SurveyPath path{};
   double duration = 0;  ///< until it is there [s]
 };
 
 /// The ways of all legs of a survey. `ground` gives the height of the scene's ground. Throws a `SettingError` that names leg and attribute,
 /// or a `FileError` of a trajectory. Settings and options must outlive it.
-class SurveyWays {
+class LegPaths {
  public:
-  SurveyWays(const SurveySettings& survey, const Ground auto& ground, const SurveyBuildOptions& options)
+  LegPaths(const SurveySettings& survey, const Ground auto& ground, const SurveyBuildOptions& options)
       : survey_(survey), options_(options) {
     if (survey_.legs.empty()) throw SettingError("legs (number)", 0, "", "at least 1");
     place(ground);
-    ways(ground);
+    plan_paths(ground);
   }
 
-  [[nodiscard]] const SurveyWay& operator[](std::size_t k) const noexcept { return ways_[k]; }
+  [[nodiscard]] const LegPath& operator[](std::size_t k) const noexcept { return paths_[k]; }
   [[nodiscard]] std::optional<double> clock_start() const noexcept { return clock_start_; }  ///< if a trajectory says so [s]
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
@@ -71,7 +71,7 @@ class SurveyWays {
   }
 
   /// Whether a platform that moves does not in this leg.
-  [[nodiscard]] bool rests(std::size_t k) const { return helios::rests(survey_, k); }
+  [[nodiscard]] bool is_stationary(std::size_t k) const { return helios::is_stationary(survey_, k); }
 
  private:
   void place(const Ground auto& ground) {
@@ -81,27 +81,27 @@ class SurveyWays {
       if (p.on_ground && survey_.platform.kind != PlatformKind::interpolated) {
         const std::optional<double> height = ground(Vec2{at.x, at.y});
         if (!height)
-          throw SettingError(leg_name(k) + ": onGround at x = " + pulsecast::detail::written(at.x) + ", y", at.y, "m",
+          throw SettingError(leg_name(k) + ": onGround at x = " + pulsecast::detail::to_text(at.x) + ", y", at.y, "m",
                              "where the scene has ground: a material with helios_isGround");
         at.z = *height;
       }
-      expect_finite(leg_name(k) + ": position (length)", length(at), "m");
+      require_finite(leg_name(k) + ": position (length)", length(at), "m");
       if (survey_.leg_offset && options_.leg_noise)
         for (int axis = 0; axis < 3; ++axis)
           at[axis] += survey_.leg_offset->mean + survey_.leg_offset->deviation * normal({.seed = options_.seed + 1,
                                                                                          .pulse = k,
                                                                                          .subray = static_cast<std::uint32_t>(axis),
                                                                                          .purpose = Purpose::position_noise});
-      places_.push_back(k > 0 && rests(k - 1) ? places_.back() : at);
+      places_.push_back(k > 0 && is_stationary(k - 1) ? places_.back() : at);
     }
   }
 
-  void ways(const Ground auto& ground) {
+  void plan_paths(const Ground auto& ground) {
     const std::size_t n = survey_.legs.size();
-    ways_.resize(n);
+    paths_.resize(n);
     switch (survey_.platform.kind) {
       case PlatformKind::stationary:
-        for (std::size_t k = 0; k < n; ++k) ways_[k].path.path = Tripod{places_[k]};
+        for (std::size_t k = 0; k < n; ++k) paths_[k].path.path = Tripod{places_[k]};
         break;
       case PlatformKind::linear_path:
         fly_straight();
@@ -121,29 +121,29 @@ class SurveyWays {
   [[nodiscard]] double speed_of(std::size_t k) const {
     const double speed = survey_.legs[k].platform.speed;
     if (!(speed > 0)) throw SettingError(leg_name(k) + ": movePerSec_m", speed, "m/s", "greater than 0, or the leg would never end");
-    if (survey_.platform.kind != PlatformKind::linear_path) expect_within(leg_name(k) + ": movePerSec_m", speed, 1e-3, 1e3, "m/s");
+    if (survey_.platform.kind != PlatformKind::linear_path) require_within(leg_name(k) + ": movePerSec_m", speed, 1e-3, 1e3, "m/s");
     return speed;
   }
 
-  static constexpr double longest = 1e15;  ///< as a Tick counts [s]
+  static constexpr double max_duration = 1e15;  ///< as a Tick counts [s]
 
   void fly_straight() {
     double heading = heading_from(0, 0);
     for (std::size_t k = 0; k + 1 < places_.size(); ++k) {
       const Vec3 way = places_[k + 1] - places_[k];
       if (length(way) == 0) {
-        ways_[k].path.path = Tripod{places_[k], heading};
+        paths_[k].path.path = Tripod{places_[k], heading};
         continue;
       }
       const StraightLine line{places_[k], places_[k + 1], speed_of(k)};
-      const double least = length(way) / longest;
+      const double least = length(way) / max_duration;
       if (line.speed < least)
         throw SettingError(leg_name(k) + ": movePerSec_m", line.speed, "m/s",
-                           "at least " + pulsecast::detail::written(least) + ", for a leg that ends within 1e15 s");
+                           "at least " + pulsecast::detail::to_text(least) + ", for a leg that ends within 1e15 s");
       heading = heading_of(way, heading);
-      ways_[k] = {{line, {}}, line.duration().seconds()};
+      paths_[k] = {{line, {}}, line.duration().seconds()};
     }
-    ways_.back().path.path = Tripod{places_.back(), heading};
+    paths_.back().path.path = Tripod{places_.back(), heading};
   }
 
   [[nodiscard]] bool stops_after(std::size_t k) const {
@@ -169,13 +169,13 @@ class SurveyWays {
     double heading = departure_of(0, heading_from(0, 0));
     for (std::size_t k = 0; k < last;) {
       heading = departure_of(k, heading);
-      if (rests(k)) {
-        ways_[k].path.path = Tripod{places_[k], heading};
+      if (is_stationary(k)) {
+        paths_[k].path.path = Tripod{places_[k], heading};
         ++k;
         continue;
       }
       std::size_t end = k + 1;
-      while (end < last && !stops_after(end - 1) && !rests(end)) ++end;
+      while (end < last && !stops_after(end - 1) && !is_stationary(end)) ++end;
       std::vector<FlightPoint> points;
       for (std::size_t i = k; i <= end; ++i) points.push_back({places_[i], 0});
       const LegPlatformSettings& p = survey_.legs[k].platform;
@@ -193,7 +193,7 @@ class SurveyWays {
       heading = *s.arrival_heading;
       k = end;
     }
-    ways_.back().path.path = Tripod{places_.back(), heading};
+    paths_.back().path.path = Tripod{places_.back(), heading};
   }
 
   /// A flight over its waypoints: as smooth turns cut corners, these are moved outwards until the way passes where it should.
@@ -218,13 +218,13 @@ class SurveyWays {
   void drive(const Ground auto& ground) {
     const std::size_t last = places_.size() - 1;
     for (std::size_t k = 0; k < last;) {
-      if (rests(k)) {
+      if (is_stationary(k)) {
         ++k;
         continue;
       }
       std::size_t end = k + 1;
-      while (end < last && !rests(end) && survey_.legs[end - 1].platform.speed == survey_.legs[end].platform.speed) ++end;
-      if (end == last - 1 && !rests(end)) end = last;  // the last leg only says where the way ends
+      while (end < last && !is_stationary(end) && survey_.legs[end - 1].platform.speed == survey_.legs[end].platform.speed) ++end;
+      if (end == last - 1 && !is_stationary(end)) end = last;  // the last leg only says where the way ends
       std::vector<Vec2> points;
       for (std::size_t i = k; i <= end; ++i) points.push_back({places_[i].x, places_[i].y});
       const auto solid = [&](const Vec2& at) -> std::optional<double> {
@@ -237,23 +237,23 @@ class SurveyWays {
     }
     park(ground);
     if (last == 0) return;
-    const auto& before = ways_[last - 1];
-    ways_.back().path = {before.path.path, before.path.start + Tick::of_seconds(before.duration)};
+    const auto& before = paths_[last - 1];
+    paths_.back().path = {before.path.path, before.path.start + Tick::of_seconds(before.duration)};
   }
 
   /// A vehicle that rests stands as it came, or as it will leave.
   void park(const Ground auto& ground) {
-    for (std::size_t k = 0; k < ways_.size(); ++k) {
-      if (!rests(k)) continue;
+    for (std::size_t k = 0; k < paths_.size(); ++k) {
+      if (!is_stationary(k)) continue;
       std::size_t next = k;
-      while (next + 1 < ways_.size() && rests(next)) ++next;
+      while (next + 1 < paths_.size() && is_stationary(next)) ++next;
       Vec3 at = places_[k];
       at.z = ground(Vec2{at.x, at.y}).value_or(at.z);
-      const bool ever_drives = k > 0 || next + 1 < ways_.size();
+      const bool ever_drives = k > 0 || next + 1 < paths_.size();
       const auto pose = !ever_drives ? Tripod{at}.at({})
-                        : k > 0      ? ways_[k - 1].path.at(Tick::of_seconds(ways_[k - 1].duration))
-                                     : ways_[next].path.at({});
-      ways_[k].path.path = std::make_shared<const Waypoints>(std::vector<Waypoint>{{0, pose.position, pose.rotation}});
+                        : k > 0      ? paths_[k - 1].path.at(Tick::of_seconds(paths_[k - 1].duration))
+                                     : paths_[next].path.at({});
+      paths_[k].path.path = std::make_shared<const Waypoints>(std::vector<TimedPose>{{0, pose.position, pose.rotation}});
     }
   }
 
@@ -266,7 +266,7 @@ class SurveyWays {
       double to = i + 1 == end ? whole : detail::nearest_moment(*plan, i + 1 - k, places_[i + 1], from, whole);
       if constexpr (std::same_as<Plan, MulticopterFlight>)
         if (i + 1 < end) to = detail::end_of_turn(*plan, to, places_[i + 2], plan->passes()[i + 2 - k].seconds());
-      ways_[i] = {{plan, Tick::of_seconds(from)}, to - from};
+      paths_[i] = {{plan, Tick::of_seconds(from)}, to - from};
       from = to;
     }
   }
@@ -297,7 +297,7 @@ class SurveyWays {
       const io::TrajectoryTable& table = tables.at(key);
       if (k == 0 && t->sync_clock) clock_start_ = table.start_time;
       const auto path = std::make_shared<const Waypoints>(table.poses);
-      ways_[k] = {{path, {}}, path->duration().seconds()};
+      paths_[k] = {{path, {}}, path->duration().seconds()};
     }
   }
 
@@ -308,7 +308,7 @@ class SurveyWays {
   const SurveySettings& survey_;
   const SurveyBuildOptions& options_;
   std::vector<Vec3> places_;  // where legs begin
-  std::vector<SurveyWay> ways_;
+  std::vector<LegPath> paths_;
   std::optional<double> clock_start_;
   std::vector<std::string> warnings_;
 };

@@ -96,7 +96,7 @@ struct SurveyOptic {
   /// The exact pose, so moved along the beam that ranges seem to err.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> reported(Tick t) const noexcept {
     Pose<frame::Beam, frame::Instrument> pose = exact(t);
-    if (range_error) pose.position += (*range_error)(deflection(t)) * pose.direction(forward);
+    if (range_error) pose.position += (*range_error)(deflection(t)) * pose.direction(axis::forward);
     return pose;
   }
 };
@@ -146,12 +146,12 @@ struct MirrorGate {
   return channel.scan_frequency_max > 0 && leg.scan_frequency > channel.scan_frequency_max;
 }
 
-inline void expect_scan_frequency(const ChannelSettings& channel, const LegScannerSettings& leg) {
+inline void require_scan_frequency(const ChannelSettings& channel, const LegScannerSettings& leg) {
   const double f = leg.scan_frequency, most = channel.scan_frequency_max;
   if (scans_too_slowly(channel, leg) || scans_too_fast(channel, leg))
     throw SettingError("scanFreq_hz", f, "Hz",
-                       "within what the device can: " + pulsecast::detail::written(channel.scan_frequency_min) + " to " +
-                           (most > 0 ? pulsecast::detail::written(most) : "any") + " Hz");
+                       "within what the device can: " + pulsecast::detail::to_text(channel.scan_frequency_min) + " to " +
+                           (most > 0 ? pulsecast::detail::to_text(most) : "any") + " Hz");
 }
 
 /// Makes the optic of a channel; `tilt` is what it adds to the mount of the channel.
@@ -222,14 +222,14 @@ struct OpticBuilder {
 }
 
 /// Refuses an error that is no number over a stretch of the angles that it is of. A pole in between is none that a beam meets.
-inline void expect_finite(const char* field, const Formula& error, const std::pair<double, double>& angles) {
+inline void require_finite(const char* field, const Formula& error, const std::pair<double, double>& angles) {
   constexpr int places = 64;
   for (int i = 0; i < places; ++i) {
     const double angle = angles.first + (angles.second - angles.first) * (i + 0.518) / places;
     const double value = error(angle);
     if (!std::isfinite(value))  // without the sign that some give what is no number
       throw SettingError(field, std::isnan(value) ? std::fabs(value) : value, "",
-                         "a formula with a finite value, also for a THETA of " + pulsecast::detail::written(angle));
+                         "a formula with a finite value, also for a THETA of " + pulsecast::detail::to_text(angle));
   }
 }
 
@@ -255,7 +255,7 @@ inline void expect_finite(const char* field, const Formula& error, const std::pa
 /// Throws a `SettingError` that names the attribute at fault.
 [[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg, double pulse_rate,
                                               const Rotation& boresight = no_rotation, const OpticClock& clock = {}) {
-  if (leg.active) detail::expect_scan_frequency(channel, leg);
+  if (leg.active) detail::require_scan_frequency(channel, leg);
   detail::OpticBuilder build{channel, leg, pulse_rate, clock.active};
   SurveyOptic out{.optic = std::visit(build, channel.optic)};
   out.ahead = Tick::of_seconds(build.ahead + leg.warm_up);
@@ -267,9 +267,9 @@ inline void expect_finite(const char* field, const Formula& error, const std::pa
   out.deflection_error = formula(channel.errors.deflection), out.head_error = formula(channel.errors.head);
   out.range_error = formula(channel.errors.range), out.head_zero_threshold = channel.errors.head_zero_threshold;
   const std::pair<double, double> angles = detail::deflections(out.optic);
-  if (out.deflection_error) detail::expect_finite("deflectionError", *out.deflection_error, angles);
-  if (out.head_error) detail::expect_finite("headError", *out.head_error, angles);
-  if (out.range_error) detail::expect_finite("rangeError", *out.range_error, angles);
+  if (out.deflection_error) detail::require_finite("deflectionError", *out.deflection_error, angles);
+  if (out.head_error) detail::require_finite("headError", *out.head_error, angles);
+  if (out.range_error) detail::require_finite("rangeError", *out.range_error, angles);
   return out;
 }
 
@@ -326,7 +326,7 @@ namespace detail {
   out.sample_interval = s.bin_size;
   out.threshold = channel.received_power_min;
   out.window = 2 * s.window.value_or(channel.pulse_length / 4);
-  out.max_returns = channel.returns_max > 0 ? static_cast<std::size_t>(std::min(channel.returns_max, 255)) : 255;
+  out.returns_max = channel.returns_max > 0 ? static_cast<std::size_t>(std::min(channel.returns_max, 255)) : 255;
   out.record_length = s.duration_max > 0 ? std::min(record_length, 2 * s.duration_max) : record_length;
   return out;
 }

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/settings.hpp>
@@ -51,9 +51,9 @@ class SurveyByChannel {
   SurveyByChannel(Legs<SurveyLeg> legs, std::vector<ChannelReceiver<Instrument>> receivers, std::vector<std::size_t> of_channel,
                   const Map& map, std::uint64_t seed)
       : of_channel_(std::move(of_channel)) {
-    expect_within("SurveyByChannel::of_channel (number)", static_cast<double>(of_channel_.size()), 1, 256, "");
+    require_within("SurveyByChannel::of_channel (number)", static_cast<double>(of_channel_.size()), 1, 256, "");
     for (const std::size_t place : of_channel_)
-      expect_within("SurveyByChannel::of_channel", static_cast<double>(place), 0, static_cast<double>(receivers.size()) - 1, "");
+      require_within("SurveyByChannel::of_channel", static_cast<double>(place), 0, static_cast<double>(receivers.size()) - 1, "");
     const SharedLegs source{std::make_shared<const Legs<SurveyLeg>>(std::move(legs))};
     for (ChannelReceiver<Instrument>& r : receivers)
       all_.emplace_back(source, std::move(r.footprint), map, r.receiver, std::move(r.detector), seed);

@@ -19,7 +19,7 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/base/frozen.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/digest.hpp>
 #include <pulsecast/io/output_file.hpp>
 
@@ -43,23 +43,23 @@ struct ArchiveArchetype {
 
 /// Something that shows its members to an archive.
 template <class T>
-concept Shown = requires(T& object, ArchiveArchetype& archive) {
+concept Archivable = requires(T& object, ArchiveArchetype& archive) {
   object.archive(archive);
 };
 
 /// Something that is made empty, and then filled by an archive.
 template <class T>
-concept Fillable = std::constructible_from<T, Unfilled> && Shown<T>;
+concept Restorable = std::constructible_from<T, DeserializeTag> && Archivable<T>;
 
 /// Something whose members someone else lists: `list_members(archive, object)`, in the namespace of the archives.
 template <class T, class Archive>
-concept Listed = requires(T& object, Archive& archive) {
+concept ExternallyArchivable = requires(T& object, Archive& archive) {
   list_members(archive, object);
 };
 
 /// Plain values: their bytes are all that they are. That a struct has no pointer inside, nobody can see from here.
 template <class T>
-concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !Shown<T>;
+concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !Archivable<T>;
 
 /// Where the arrays begin that stay in place, in multiples [byte]: the strictest alignment that an element may have.
 inline constexpr std::size_t array_alignment = 64;
@@ -90,7 +90,7 @@ inline constexpr std::uint64_t shares_nothing = ~std::uint64_t{0};
 }  // namespace detail
 
 /// Writes objects into a file, one after the other, from where it is on; that must be a multiple of 64 bytes. Objects are plain values,
-/// `Frozen` arrays, strings, vectors, variants, shared pointers (what is shared is written once), and what shows its members by
+/// `SharedArray` arrays, strings, vectors, variants, shared pointers (what is shared is written once), and what shows its members by
 /// `template <class Archive> void archive(Archive& a) { a(member1_, member2_, ...); }`.
 class ArchiveWriter {
  public:
@@ -123,9 +123,9 @@ class ArchiveWriter {
     put_elements<T, T>({&value, 1});
   }
   template <class T>
-  void put(const Frozen<T>& array) {
+  void put(const SharedArray<T>& array) {
     static_assert(alignof(T) <= detail::array_alignment);
-    put_elements<Frozen<T>, T>({array.data(), array.size()}, detail::array_alignment);
+    put_elements<SharedArray<T>, T>({array.data(), array.size()}, detail::array_alignment);
   }
   void put(const std::string& text) { put_elements<std::string, char>(text); }
   template <class T>
@@ -150,11 +150,11 @@ class ArchiveWriter {
     if (is_new) put(*shared);
   }
   // Objects name their members to an archive that fills them and to one that only looks: the latter takes them from a constant.
-  template <detail::Shown T>
+  template <detail::Archivable T>
   void put(const T& object) {
     const_cast<T&>(object).archive(*this);
   }
-  template <detail::Listed<ArchiveWriter> T>
+  template <detail::ExternallyArchivable<ArchiveWriter> T>
   void put(const T& object) {
     list_members(*this, const_cast<T&>(object));
   }
@@ -165,8 +165,8 @@ class ArchiveWriter {
 };
 
 /// Takes objects out of such bytes, in the order in which they were put. Nothing is believed: what does not fit is an `ArchiveError`, and
-/// no memory is asked for but for what is there. What is filled may check itself: by `bool sound() const`, whether every number in its
-/// arrays can be followed without leaving them, and by `void validate() const`.
+/// no memory is asked for but for what is there. What is filled may check itself: by `bool is_consistent() const`, whether every number in
+/// its arrays can be followed without leaving them, and by `void validate() const`.
 class ArchiveReader {
  public:
   /// `owner` keeps the bytes where they are, at a multiple of 64.
@@ -178,10 +178,10 @@ class ArchiveReader {
   }
 
   /// To be called at last: nothing may be left.
-  void expect_end() const { expect(position_ == bytes_.size()); }
+  void require_end() const { require(position_ == bytes_.size()); }
 
  private:
-  static void expect(bool fulfilled) {
+  static void require(bool fulfilled) {
     if (!fulfilled) throw ArchiveError("what it holds does not fit together");
   }
 
@@ -189,13 +189,13 @@ class ArchiveReader {
   [[nodiscard]] std::span<const std::byte> take_elements(std::size_t alignment = detail::item_alignment) {
     detail::ItemHead head;
     std::memcpy(&head, take_bytes(1, sizeof head, detail::item_alignment).data(), sizeof head);
-    expect(head.type == (detail::type_mark<Item, Element>()));
+    require(head.type == (detail::type_mark<Item, Element>()));
     return head.count == 0 ? std::span<const std::byte>{} : take_bytes(head.count, sizeof(Element), alignment);
   }
 
   [[nodiscard]] std::span<const std::byte> take_bytes(std::uint64_t count, std::size_t each, std::size_t alignment) {
     const std::uint64_t begin = detail::aligned(position_, alignment);
-    expect(begin <= bytes_.size() && count <= (bytes_.size() - begin) / each);
+    require(begin <= bytes_.size() && count <= (bytes_.size() - begin) / each);
     position_ = begin + count * each;
     return bytes_.subspan(begin, count * each);
   }
@@ -203,14 +203,14 @@ class ArchiveReader {
   template <detail::Plain T>
   void take(T& value) {
     const auto bytes = take_elements<T, T>();
-    expect(bytes.size() == sizeof value);
-    if constexpr (std::same_as<T, bool>) expect(bytes[0] <= std::byte{1});
+    require(bytes.size() == sizeof value);
+    if constexpr (std::same_as<T, bool>) require(bytes[0] <= std::byte{1});
     std::memcpy(&value, bytes.data(), sizeof value);
   }
   template <class T>
-  void take(Frozen<T>& array) {
-    const auto bytes = take_elements<Frozen<T>, T>(detail::array_alignment);
-    array = Frozen<T>({reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)}, owner_);
+  void take(SharedArray<T>& array) {
+    const auto bytes = take_elements<SharedArray<T>, T>(detail::array_alignment);
+    array = SharedArray<T>({reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)}, owner_);
   }
   void take(std::string& text) {
     const auto bytes = take_elements<std::string, char>();
@@ -232,7 +232,7 @@ class ArchiveReader {
   void take(std::variant<Options...>& choice) {
     std::uint64_t index = 0;
     take(index);
-    expect(index < sizeof...(Options));
+    require(index < sizeof...(Options));
     take_option(choice, index, std::index_sequence_for<Options...>{});
   }
   template <class Choice, std::size_t... I>
@@ -245,22 +245,22 @@ class ArchiveReader {
     take(number);
     shared.reset();
     if (number == detail::shares_nothing) return;
-    expect(number <= shared_.size());
+    require(number <= shared_.size());
     if (number == shared_.size()) {
       shared_.push_back({nullptr, detail::type_mark<T, T>()});
       const auto object = made<T>();
       take(*object);
       shared_[number].object = object;
     }
-    expect(shared_[number].object && (shared_[number].type == detail::type_mark<T, T>()));
+    require(shared_[number].object && (shared_[number].type == detail::type_mark<T, T>()));
     shared = std::static_pointer_cast<const T>(shared_[number].object);
   }
-  template <detail::Shown T>
+  template <detail::Archivable T>
   void take(T& object) {
     object.archive(*this);
     check(object);
   }
-  template <detail::Listed<ArchiveReader> T>
+  template <detail::ExternallyArchivable<ArchiveReader> T>
   void take(T& object) {
     list_members(*this, object);
     check(object);
@@ -268,8 +268,8 @@ class ArchiveReader {
 
   template <class T>
   [[nodiscard]] static std::shared_ptr<T> made() {
-    if constexpr (detail::Fillable<T>) {
-      return std::make_shared<T>(Unfilled{});
+    if constexpr (detail::Restorable<T>) {
+      return std::make_shared<T>(DeserializeTag{});
     } else {
       return std::make_shared<T>();
     }
@@ -277,7 +277,7 @@ class ArchiveReader {
 
   template <class T>
   static void check(const T& object) {
-    if constexpr (requires { object.sound(); }) expect(object.sound());
+    if constexpr (requires { object.is_consistent(); }) require(object.is_consistent());
     if constexpr (requires { object.validate(); }) object.validate();
   }
 

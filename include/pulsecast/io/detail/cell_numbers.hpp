@@ -17,11 +17,11 @@ namespace pulsecast::io {
 class CellNumbers {
  public:
   using Cell = std::array<std::uint32_t, 3>;
-  static constexpr std::size_t most = 4294967294;  ///< cells, as in a grid of voxels
+  static constexpr std::size_t max_size = 4294967294;  ///< cells, as in a grid of voxels
 
   [[nodiscard]] std::size_t size() const noexcept { return cells_.size(); }
 
-  /// The number of a cell; one that was not met before gets the next. The caller sees to it that there are fewer than `most` before.
+  /// The number of a cell; one that was not met before gets the next. The caller sees to it that there are fewer than `max_size` before.
   [[nodiscard]] std::uint32_t number(const Cell& cell) {
     if (2 * (cells_.size() + 1) > slots_.size()) grow();
     std::uint32_t& slot = slots_[slot_of(cell)];

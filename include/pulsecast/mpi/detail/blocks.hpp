@@ -23,7 +23,7 @@ struct MpiBlock {
 };
 
 /// What a block leaves for an output: how much, in one or two counts, and its first point if there is one.
-struct MpiClaim {
+struct MpiExtent {
   std::uint64_t amounts[2] = {};
   Vec3 first{};  ///< point
 };
@@ -44,15 +44,15 @@ struct MpiCost {
 
 /// Who does what of a run, as the first process knows it: blocks are handed out in order, and come back in any. They become smaller towards
 /// the end, so that all processes end together, and are never so large that they take much memory or time.
-class MpiLedger {
+class MpiBlockScheduler {
  public:
-  MpiLedger(PulseIndex slots, unsigned processes) : slots_(slots), processes_(std::max(1U, processes)) {}
+  MpiBlockScheduler(PulseIndex slots, unsigned processes) : slots_(slots), processes_(std::max(1U, processes)) {}
 
   /// The next block for a process; none at the end.
   [[nodiscard]] std::optional<MpiBlock> next(int owner) {
     if (handed_out_ == slots_) return std::nullopt;
     const PulseIndex left = slots_ - handed_out_;
-    const PulseIndex size = std::min(left, std::clamp(left / (4 * processes_), least, most()) / least * least);
+    const PulseIndex size = std::min(left, std::clamp(left / (4 * processes_), min_slots, most()) / min_slots * min_slots);
     const MpiBlock block{next_, handed_out_, handed_out_ + size};
     owners_.emplace(next_++, owner);
     handed_out_ += size;
@@ -62,12 +62,12 @@ class MpiLedger {
   /// No more blocks are handed out.
   void stop() noexcept { slots_ = handed_out_; }
 
-  void finish(std::uint64_t number, std::vector<MpiClaim> claims, const MpiCost& cost) {
-    finished_.emplace(number, std::move(claims));
-    spent_.slots += cost.slots, spent_.echoes += cost.echoes, spent_.bytes += cost.bytes, spent_.seconds += cost.seconds;
+  void finish(std::uint64_t number, std::vector<MpiExtent> extents, const MpiCost& cost) {
+    finished_.emplace(number, std::move(extents));
+    cost_.slots += cost.slots, cost_.echoes += cost.echoes, cost_.bytes += cost.bytes, cost_.seconds += cost.seconds;
   }
 
-  /// Calls place(number, owner, claims) for every block that is finished and before which all are, in order, while may() says so.
+  /// Calls place(number, owner, extents) for every block that is finished and before which all are, in order, while may() says so.
   template <class May, class Place>
   void settle(const May& may, const Place& place) {
     for (auto due = finished_.find(placed_); due != finished_.end() && may(); due = finished_.find(placed_)) {
@@ -78,30 +78,29 @@ class MpiLedger {
     }
   }
 
-  [[nodiscard]] const MpiCost& spent() const noexcept { return spent_; }
+  [[nodiscard]] const MpiCost& cost() const noexcept { return cost_; }
 
-  static constexpr PulseIndex least = 2048;  ///< slots of a block, but for the last
+  static constexpr PulseIndex min_slots = 2048;  ///< slots of a block, but for the last
 
  private:
-  static constexpr double most_bytes = 16 << 20, most_seconds = 0.5;  // of a block
-  static constexpr PulseIndex most_slots = PulseIndex{1} << 18, first_slots = PulseIndex{1} << 13;
+  static constexpr double max_bytes = 16 << 20, max_seconds = 0.5;  // of a block
+  static constexpr PulseIndex max_slots = PulseIndex{1} << 18, first_slots = PulseIndex{1} << 13;
 
   /// As long as nobody knows what slots take, blocks are small.
   [[nodiscard]] PulseIndex most() const noexcept {
-    if (spent_.slots == 0) return first_slots;
-    const double slots = static_cast<double>(spent_.slots),
-                 by_bytes = most_bytes / std::max(1.0, static_cast<double>(spent_.bytes)) * slots,
-                 by_seconds = most_seconds / std::max(1e-9, spent_.seconds) * slots;
-    const double allowed = std::min({by_bytes, by_seconds, static_cast<double>(most_slots)});
-    return std::max(least, static_cast<PulseIndex>(allowed));
+    if (cost_.slots == 0) return first_slots;
+    const double slots = static_cast<double>(cost_.slots), by_bytes = max_bytes / std::max(1.0, static_cast<double>(cost_.bytes)) * slots,
+                 by_seconds = max_seconds / std::max(1e-9, cost_.seconds) * slots;
+    const double allowed = std::min({by_bytes, by_seconds, static_cast<double>(max_slots)});
+    return std::max(min_slots, static_cast<PulseIndex>(allowed));
   }
 
   PulseIndex slots_, handed_out_ = 0;
   PulseIndex processes_;
   std::uint64_t next_ = 0, placed_ = 0;
   std::map<std::uint64_t, int> owners_;
-  std::map<std::uint64_t, std::vector<MpiClaim>> finished_;  // and not placed
-  MpiCost spent_;
+  std::map<std::uint64_t, std::vector<MpiExtent>> finished_;  // and not placed
+  MpiCost cost_;
 };
 
 }  // namespace pulsecast::mpi

@@ -19,7 +19,7 @@
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 
 namespace pulsecast::mpi {
 
@@ -78,7 +78,7 @@ class MpiChannel {
 
   /// At most 2 GiB.
   void send(int to, int kind, Bytes bytes) {
-    expect_within("MPI message size", static_cast<double>(bytes.size()), 0, std::numeric_limits<int>::max(), "bytes");
+    require_within("MPI message size", static_cast<double>(bytes.size()), 0, std::numeric_limits<int>::max(), "bytes");
     if (to == rank_) return void(to_itself_.push_back({rank_, kind, std::move(bytes)}));
     ++traffic_.messages, traffic_.bytes += bytes.size();
     Sent& sent = sent_.emplace_back(Sent{std::move(bytes), MPI_REQUEST_NULL});
@@ -113,7 +113,7 @@ class MpiChannel {
 
   /// Calls `meanwhile` again and again, until all processes have come here.
   template <class Meanwhile>
-  void meet(const Meanwhile& meanwhile) {
+  void barrier(const Meanwhile& meanwhile) {
     MPI_Request request;
     MPI_Ibarrier(communicator_, &request);
     for (int done = 0; done == 0;) {
@@ -165,15 +165,15 @@ class MpiChannel {
 };
 
 /// Puts values and bytes after one another into a message, and takes them out again in the same order.
-class MpiParcel {
+class MpiMessage {
  public:
-  MpiParcel() = default;
-  explicit MpiParcel(MpiChannel::Bytes bytes) : bytes_(std::move(bytes)) {}
+  MpiMessage() = default;
+  explicit MpiMessage(MpiChannel::Bytes bytes) : bytes_(std::move(bytes)) {}
 
   template <class Value>
-  requires std::is_trivially_copyable_v<Value> MpiParcel& add(const Value& value) { return add(std::span(&value, 1)); }
+  requires std::is_trivially_copyable_v<Value> MpiMessage& add(const Value& value) { return add(std::span(&value, 1)); }
   template <class Value, std::size_t Extent>
-  requires std::is_trivially_copyable_v<Value> MpiParcel& add(std::span<Value, Extent> values) {
+  requires std::is_trivially_copyable_v<Value> MpiMessage& add(std::span<Value, Extent> values) {
     const auto added = std::as_bytes(values);
     bytes_.insert(bytes_.end(), added.begin(), added.end());
     return *this;
@@ -184,7 +184,7 @@ class MpiParcel {
   requires std::is_trivially_copyable_v<Value>
   [[nodiscard]] Value next() {
     Value value{};
-    PULSECAST_EXPECT(at_ + sizeof value <= bytes_.size());
+    PULSECAST_ASSERT(at_ + sizeof value <= bytes_.size());
     std::memcpy(&value, bytes_.data() + at_, sizeof value);
     at_ += sizeof value;
     return value;
@@ -193,7 +193,7 @@ class MpiParcel {
   requires std::is_trivially_copyable_v<Value>
   void next(std::vector<Value>& values, std::size_t count) {
     values.resize(count);
-    PULSECAST_EXPECT(at_ + count * sizeof(Value) <= bytes_.size());
+    PULSECAST_ASSERT(at_ + count * sizeof(Value) <= bytes_.size());
     if (count > 0) std::memcpy(values.data(), bytes_.data() + at_, count * sizeof(Value));
     at_ += count * sizeof(Value);
   }
@@ -202,7 +202,7 @@ class MpiParcel {
   requires std::is_trivially_copyable_v<Value>
   [[nodiscard]] Value last() {
     Value value{};
-    PULSECAST_EXPECT(at_ + sizeof value <= bytes_.size());
+    PULSECAST_ASSERT(at_ + sizeof value <= bytes_.size());
     std::memcpy(&value, bytes_.data() + bytes_.size() - sizeof value, sizeof value);
     bytes_.resize(bytes_.size() - sizeof value);
     return value;

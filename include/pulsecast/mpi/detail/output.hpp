@@ -12,7 +12,7 @@
 
 #include <unistd.h>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/mpi/detail/blocks.hpp>
 #include <pulsecast/mpi/detail/channel.hpp>
@@ -22,9 +22,9 @@ namespace pulsecast::mpi {
 class MpiOutput;
 
 /// The processes of a communicator that run surveys together, and the outputs that they share. Made and destroyed by all of them.
-class MpiTeam {
+class MpiGroup {
  public:
-  explicit MpiTeam(MPI_Comm communicator = MPI_COMM_WORLD) : channel_(communicator) {}
+  explicit MpiGroup(MPI_Comm communicator = MPI_COMM_WORLD) : channel_(communicator) {}
 
   [[nodiscard]] MpiChannel& channel() noexcept { return channel_; }
   [[nodiscard]] int rank() const noexcept { return channel_.rank(); }
@@ -32,11 +32,11 @@ class MpiTeam {
   [[nodiscard]] bool first() const noexcept { return channel_.first(); }
 
   /// A run begins, and takes its messages with `handler`. Other processes may be in the next run already: what they say is kept for it.
-  using Handler = void (*)(void* run, int from, int kind, MpiParcel parcel);
+  using Handler = void (*)(void* run, int from, int kind, MpiMessage message);
   void begin(void* run, Handler handler);
   void end() noexcept { handler_ = nullptr; }
   /// Sends something to the same run elsewhere; `kind` is from 0 to 7.
-  void send(int to, int kind, MpiParcel parcel) { channel_.send(to, 2 + 8 * parity_ + kind, std::move(parcel).take()); }
+  void send(int to, int kind, MpiMessage message) { channel_.send(to, 2 + 8 * parity_ + kind, std::move(message).take()); }
 
   /// Takes all messages that are there, and says whether there was one.
   bool serve();
@@ -45,8 +45,8 @@ class MpiTeam {
   static void pause() noexcept { ::usleep(50); }
 
   /// Sends something to an output on another process, or on this one.
-  void send_to_output(int to, std::uint32_t output, MpiParcel parcel) {
-    channel_.send(to, to_output, std::move(parcel.add(output)).take());
+  void send_to_output(int to, std::uint32_t output, MpiMessage message) {
+    channel_.send(to, to_output, std::move(message.add(output)).take());
   }
 
   [[nodiscard]] std::uint32_t enter(MpiOutput& output) {
@@ -58,7 +58,7 @@ class MpiTeam {
  private:
   static constexpr int to_output = 1;  // kind of message; from 2 on, those of runs
 
-  void hand_over(int from, int kind, MpiChannel::Bytes bytes) { handler_(run_, from, (kind - 2) % 8, MpiParcel(std::move(bytes))); }
+  void hand_over(int from, int kind, MpiChannel::Bytes bytes) { handler_(run_, from, (kind - 2) % 8, MpiMessage(std::move(bytes))); }
 
   struct Early {
     int from, kind;
@@ -81,7 +81,7 @@ class MpiPiece {
   virtual void clear() = 0;
   virtual void operator()(const EchoBatch& batch) = 0;
   /// After the last batch: how much it is.
-  [[nodiscard]] virtual MpiClaim claim() = 0;
+  [[nodiscard]] virtual MpiExtent extent() = 0;
   [[nodiscard]] virtual std::size_t memory() const noexcept = 0;  ///< [byte]
 };
 
@@ -89,10 +89,10 @@ class MpiPiece {
 /// first process says that they belong, when all that comes before is known. Made, and closed, by all processes in the same order.
 class MpiOutput {
  public:
-  explicit MpiOutput(MpiTeam& team) : team_(team), number_(team.enter(*this)) {}
+  explicit MpiOutput(MpiGroup& group) : group_(group), number_(group.enter(*this)) {}
   MpiOutput(const MpiOutput&) = delete;
   MpiOutput& operator=(const MpiOutput&) = delete;
-  virtual ~MpiOutput() { team_.leave(number_); }
+  virtual ~MpiOutput() { group_.leave(number_); }
 
   /// A piece for the next block: a new one, or one that was given back.
   [[nodiscard]] std::unique_ptr<MpiPiece> take_piece() {
@@ -108,11 +108,11 @@ class MpiOutput {
   virtual void put(MpiPiece& piece, const MpiPlace& place) = 0;
 
   /// On the first process, in the order of blocks: where a piece belongs. It is asked only while it may be.
-  [[nodiscard]] virtual MpiPlace place(const MpiClaim& claim, int owner) = 0;
+  [[nodiscard]] virtual MpiPlace place(const MpiExtent& extent, int owner) = 0;
   [[nodiscard]] virtual bool may_place() const noexcept { return true; }
 
   /// Takes what another process has sent to this output. It should not take long.
-  virtual void receive(int /*from*/, MpiParcel /*parcel*/) {}
+  virtual void receive(int /*from*/, MpiMessage /*message*/) {}
   /// Does some of what there is to do; false if there is nothing.
   virtual bool work() { return false; }
   /// So much is waiting that no more should be made.
@@ -124,39 +124,39 @@ class MpiOutput {
   std::optional<std::uint8_t> channel{};  ///< the only one that it wants to know of
 
  protected:
-  [[nodiscard]] MpiTeam& team() const noexcept { return team_; }
-  void send(int to, MpiParcel parcel) { team_.send_to_output(to, number_, std::move(parcel)); }
+  [[nodiscard]] MpiGroup& group() const noexcept { return group_; }
+  void send(int to, MpiMessage message) { group_.send_to_output(to, number_, std::move(message)); }
 
   /// Serves and works until done() says so.
   template <class Done>
   void work_until(const Done& done) {
     while (!done()) {
-      const bool served = team_.serve(), worked = work();
-      if (!served && !worked && !done()) MpiTeam::pause();
+      const bool served = group_.serve(), worked = work();
+      if (!served && !worked && !done()) MpiGroup::pause();
     }
   }
 
  private:
-  MpiTeam& team_;
+  MpiGroup& group_;
   std::uint32_t number_;
   std::vector<std::unique_ptr<MpiPiece>> spare_;
 };
 
-inline void MpiTeam::begin(void* run, Handler handler) {
+inline void MpiGroup::begin(void* run, Handler handler) {
   run_ = run, handler_ = handler, parity_ = 1 - parity_;
   for (Early& message : std::exchange(early_, {})) hand_over(message.from, message.kind, std::move(message.bytes));
 }
 
-inline bool MpiTeam::serve() {
+inline bool MpiGroup::serve() {
   return channel_.poll([this](int from, int kind, MpiChannel::Bytes bytes) {
     if (kind != to_output) {
       if (handler_ == nullptr || (kind - 2) / 8 != parity_) return void(early_.push_back({from, kind, std::move(bytes)}));
       return hand_over(from, kind, std::move(bytes));
     }
-    MpiParcel parcel(std::move(bytes));
-    const auto found = outputs_.find(parcel.last<std::uint32_t>());
-    PULSECAST_EXPECT(found != outputs_.end());
-    found->second->receive(from, std::move(parcel));
+    MpiMessage message(std::move(bytes));
+    const auto found = outputs_.find(message.last<std::uint32_t>());
+    PULSECAST_ASSERT(found != outputs_.end());
+    found->second->receive(from, std::move(message));
   });
 }
 

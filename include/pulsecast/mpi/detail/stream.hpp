@@ -44,7 +44,7 @@ class MpiBatchWriter {
 };
 
 template <class Sink>
-void for_each_batch(MpiParcel bytes, Sink&& sink) {
+void for_each_batch(MpiMessage bytes, Sink&& sink) {
   std::vector<Shot> shots;
   std::vector<Echo> echoes;
   std::vector<float> samples;
@@ -62,36 +62,36 @@ template <class Writer>
 class MpiStream final : public MpiOutput {
  public:
   using Make = std::function<Writer(io::OutputFile piece)>;
-  using Take = std::function<void(MpiParcel bytes)>;
+  using Take = std::function<void(MpiMessage bytes)>;
 
-  MpiStream(MpiTeam& team, Make make, Take take, std::function<void()> close)
-      : MpiOutput(team), make_(std::move(make)), take_(std::move(take)), close_(std::move(close)) {}
+  MpiStream(MpiGroup& group, Make make, Take take, std::function<void()> close)
+      : MpiOutput(group), make_(std::move(make)), take_(std::move(take)), close_(std::move(close)) {}
 
   [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<Piece>(make_); }
 
   void put(MpiPiece& piece, const MpiPlace& place) override {
-    MpiParcel parcel(std::move(static_cast<Piece&>(piece).bytes));
-    send(0, std::move(parcel.add(place.starts[0])));
+    MpiMessage message(std::move(static_cast<Piece&>(piece).bytes));
+    send(0, std::move(message.add(place.starts[0])));
   }
 
-  [[nodiscard]] MpiPlace place(const MpiClaim& /*claim*/, int /*owner*/) override {
+  [[nodiscard]] MpiPlace place(const MpiExtent& /*extent*/, int /*owner*/) override {
     MpiPlace place;
     place.starts[0] = placed_++;
     return place;
   }
   [[nodiscard]] bool may_place() const noexcept override {
-    return placed_ - taken_ < std::min(16U, 2U * static_cast<unsigned>(team().size()) + 2);
+    return placed_ - taken_ < std::min(16U, 2U * static_cast<unsigned>(group().size()) + 2);
   }
 
-  void receive(int /*from*/, MpiParcel parcel) override {
-    const auto number = parcel.last<std::uint64_t>();
-    waiting_.emplace(number, std::move(parcel));
+  void receive(int /*from*/, MpiMessage message) override {
+    const auto number = message.last<std::uint64_t>();
+    waiting_.emplace(number, std::move(message));
   }
 
   bool work() override {
     const auto next = waiting_.find(taken_);
     if (next == waiting_.end()) return false;
-    MpiParcel bytes = std::move(next->second);
+    MpiMessage bytes = std::move(next->second);
     waiting_.erase(next);
     take_(std::move(bytes));
     ++taken_;
@@ -99,7 +99,7 @@ class MpiStream final : public MpiOutput {
   }
 
   void close() override {
-    if (!team().first()) return;
+    if (!group().first()) return;
     work_until([&] { return taken_ == placed_; });
     close_();
   }
@@ -112,7 +112,7 @@ class MpiStream final : public MpiOutput {
       writer.emplace(make(io::OutputFile("piece", bytes)));
     }
     void operator()(const EchoBatch& batch) override { (*writer)(batch); }
-    [[nodiscard]] MpiClaim claim() override {
+    [[nodiscard]] MpiExtent extent() override {
       writer->close();
       return {};
     }
@@ -127,7 +127,7 @@ class MpiStream final : public MpiOutput {
   Take take_;
   std::function<void()> close_;
   std::uint64_t placed_ = 0, taken_ = 0;  // pieces, on the first process
-  std::map<std::uint64_t, MpiParcel> waiting_;
+  std::map<std::uint64_t, MpiMessage> waiting_;
 };
 
 }  // namespace pulsecast::mpi

@@ -41,7 +41,7 @@ namespace pulsecast::page {
 }
 
 /// A number as JSON has it; what is not finite is `null`.
-[[nodiscard]] inline std::string json_number(double value) { return std::isfinite(value) ? pulsecast::detail::written(value) : "null"; }
+[[nodiscard]] inline std::string json_number(double value) { return std::isfinite(value) ? pulsecast::detail::to_text(value) : "null"; }
 
 /// How the points of a page are written.
 struct PageColumnSettings {
@@ -50,8 +50,8 @@ struct PageColumnSettings {
   int effort = 6;            ///< of compression, from 1 to 9
 
   void validate() const {
-    expect_not_negative("PageColumnSettings::position_step", position_step, "m");
-    expect_within("PageColumnSettings::effort", effort, 1, 9, "");
+    require_not_negative("PageColumnSettings::position_step", position_step, "m");
+    require_within("PageColumnSettings::effort", effort, 1, 9, "");
   }
 };
 
@@ -73,7 +73,7 @@ struct PageCodes {
   bool differences = true;  ///< whether neighbours are alike
 };
 
-inline constexpr double largest_page_code = 0x1p52;  // which a double of the page can tell from its neighbours
+inline constexpr double max_page_code = 0x1p52;  // which a double of the page can tell from its neighbours
 
 /// Values that are 1 + code times a step above their least.
 template <class Value>
@@ -86,7 +86,7 @@ PageCodes linear_codes(std::string_view name, std::span<const PagePoint> points,
   out.codes.reserve(points.size());
   for (const PagePoint& p : points) {
     const double code = 1 + std::round((static_cast<double>(value(p)) - offset) / step);
-    out.codes.push_back(std::isfinite(code) ? static_cast<std::uint64_t>(std::clamp(code, 1.0, largest_page_code)) : 0);
+    out.codes.push_back(std::isfinite(code) ? static_cast<std::uint64_t>(std::clamp(code, 1.0, max_page_code)) : 0);
   }
   out.text = "\"name\":" + json_text(name) + ",\"kind\":\"linear\",\"offset\":" + json_number(offset) + ",\"step\":" + json_number(step);
   return out;

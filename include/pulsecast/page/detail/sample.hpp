@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/echo.hpp>
 
@@ -47,7 +47,7 @@ struct PagePoint {
 class PageSample {
  public:
   /// `most` is from 2 to 2^27.
-  explicit PageSample(std::size_t most) : most_(most) { expect_within("PageSample::most", static_cast<double>(most), 2, 134'217'728, ""); }
+  explicit PageSample(std::size_t most) : most_(most) { require_within("PageSample::most", static_cast<double>(most), 2, 134'217'728, ""); }
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)

@@ -62,10 +62,10 @@ TEST_CASE("what is no XML, or no honest one, is refused with its place") {
   CHECK(contains(fault("<a>\n<b x=\"1\" y=\"2\" x=\"3\"/></a>"), "a.xml:2:16: attribute 'x' is given twice"));
   CHECK(contains(fault("<a/>\n<b/>"), "a.xml:2:2: a second root element"));
   CHECK(contains(fault("<!DOCTYPE a [<!ENTITY x \"y\">]><a/>"), "declares entities"));
-  CHECK(contains(fault("<a x=\"" + std::string(XmlDocument::longest_attribute, 'x') + "\"/>"), "is longer than"));
+  CHECK(contains(fault("<a x=\"" + std::string(XmlDocument::max_attribute_size, 'x') + "\"/>"), "is longer than"));
   CHECK(contains(fault(std::string("<a>\0</a>", 8)), "a.xml:1:4: holds binary data"));
   std::string many = "<a";
-  for (std::size_t i = 0; i <= XmlDocument::most_attributes; ++i) many += " a" + std::to_string(i) + "=\"\"";
+  for (std::size_t i = 0; i <= XmlDocument::max_attributes; ++i) many += " a" + std::to_string(i) + "=\"\"";
   CHECK(contains(fault(many + "/>"), "one of too many"));
   CHECK(fault("<!DOCTYPE a SYSTEM \"a.dtd\"><a x=\"&unknown; &lt;\">&amp;</a>").empty());
 }
@@ -94,14 +94,14 @@ TEST_CASE("the nearest name is suggested, or all if none is near") {
 TEST_CASE("all faults are told, each once, and no more than can be read") {
   XmlReport report;
   CHECK(report.is_clean());
-  CHECK_NOTHROW(report.expect_clean());
+  CHECK_NOTHROW(report.require_clean());
   report.warn({"a.xml", 1, 2}, "odd");
   report.warn({"a.xml", 1, 2}, "odd");
   CHECK(report.warnings() == std::vector<std::string>{"a.xml:1:2: odd"});
   for (int i = 0; i < 2; ++i) report.fault({"a.xml", 3, 4}, "wrong");
   report.fault({"b.xml"}, "missing");
   try {
-    report.expect_clean();
+    report.require_clean();
     FAIL("is not clean");
   } catch (const FileError& error) {
     CHECK(error.what() == std::string("a.xml:3:4: wrong\nb.xml: missing"));
@@ -109,11 +109,11 @@ TEST_CASE("all faults are told, each once, and no more than can be read") {
     CHECK(error.place() == "line 3, column 4");
     CHECK(error.problem() == "wrong");
   }
-  for (std::size_t i = 0; i < 2 * XmlReport::most; ++i) report.fault({"a.xml", i + 10, 1}, "wrong");
+  for (std::size_t i = 0; i < 2 * XmlReport::max_told; ++i) report.fault({"a.xml", i + 10, 1}, "wrong");
   try {
-    report.expect_clean();
+    report.require_clean();
   } catch (const XmlFaults& faults) {
-    CHECK(faults.faults().size() == XmlReport::most);
+    CHECK(faults.faults().size() == XmlReport::max_told);
     CHECK(contains(faults.what(), "\nand 900 more"));
   }
 }

@@ -38,7 +38,7 @@ struct Reading {
   std::string faults() {
     io.finish();
     try {
-      report.expect_clean();
+      report.require_clean();
     } catch (const XmlFaults& faults) {
       return faults.what();
     }

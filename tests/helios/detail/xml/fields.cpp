@@ -57,10 +57,10 @@ TEST_CASE("of a turn, what cannot be is told") {
 }
 
 TEST_CASE("a direction needs a length") {
-  Vec3 v = up;
+  Vec3 v = axis::up;
   const auto read = [&](const char* text) { return support::xml_told(text, [&](XmlInput& io) { xml::direction(io, "d", v); }); };
   CHECK(read(R"(<a><d x="1"/></a>)").empty());
-  CHECK(v == right);
+  CHECK(v == axis::right);
   CHECK(contains(read(R"(<a><d x="0" y="0.1"/></a>)"), "shorter than 0.1 and has no effect"));
-  CHECK(v == right);
+  CHECK(v == axis::right);
 }

@@ -37,7 +37,7 @@ struct Library {
       return std::filesystem::path(reference.document->document().path()).filename().string() + " " + reference.node.name() + " " +
              reference.node.attribute("id").value();
     try {
-      report.expect_clean();
+      report.require_clean();
     } catch (const XmlFaults& faults) {
       return faults.what();
     }

@@ -39,7 +39,7 @@ TEST_CASE("every type of motion is read") {
   const MotionSettings turn = from(R"(<motion type="rotation" axis="0;0;2" angle="90" center="1;1;1" selfMode="true" autoCRS="1"/>)");
   CHECK(turn == MotionSettings{RotationMotion{Vec3(0, 0, 2), radians(90), Vec3(1), {}}, true, 1});
   CHECK(std::get<RotationMotion>(from(R"(<motion type="helical" axis="0;0;1" angle="9" glide="0.5"/>)").kind).glide == 0.5);
-  CHECK(std::get<ReflectionMotion>(from(R"(<motion type="reflection" ortho="0;1;0"/>)").kind) == ReflectionMotion{forward, {}});
+  CHECK(std::get<ReflectionMotion>(from(R"(<motion type="reflection" ortho="0;1;0"/>)").kind) == ReflectionMotion{axis::forward, {}});
   CHECK(std::get<ReflectionMotion>(from(R"(<motion type="glideplane" ortho="0;1;0" shift="3;0;0"/>)").kind).shift == Vec3(3, 0, 0));
   CHECK(std::get<RotoreflectionMotion>(from(R"(<motion type="rotsym" axis="0;1;0" angle="180"/>)").kind).angle == radians(180));
 }

@@ -17,11 +17,11 @@
 namespace pulsecast::io {
 namespace {
 
-constexpr Vec3 north = forward, east = right, west = -right, south = -forward, down = -up;
+constexpr Vec3 north = axis::forward, east = axis::right, west = -axis::right, south = -axis::forward, down = -axis::up;
 constexpr double tight = 1e-14;
 
 /// Where the body's forward, right and up point in the world.
-std::array<Vec3, 3> faces(const Rotation& rotation) { return {rotation * forward, rotation * right, rotation * up}; }
+std::array<Vec3, 3> faces(const Rotation& rotation) { return {rotation * axis::forward, rotation * axis::right, rotation * axis::up}; }
 
 bool same(const Vec3& a, const Vec3& b, double allowed = tight) { return max_norm(a - b) < allowed; }
 
@@ -39,7 +39,7 @@ Rotation of(double roll_deg, double pitch_deg, double yaw_deg, const AngleConven
 std::vector<AngleConvention> every_convention() {
   std::vector<AngleConvention> all{heading_pitch_roll, helios_arinc_705, helios_canonical, mathematical, ros_roll_pitch_yaw};
   std::array<int, 3> order{0, 1, 2};
-  const std::array<Vec3, 3> axes{right, forward, up};
+  const std::array<Vec3, 3> axes{axis::right, axis::forward, axis::up};
   const std::array<double RollPitchYaw::*, 3> angles{&RollPitchYaw::roll, &RollPitchYaw::pitch, &RollPitchYaw::yaw};
   do {
     for (std::size_t first = 0; first < 3; ++first)
@@ -57,53 +57,53 @@ std::vector<AngleConvention> every_convention() {
 
 TEST_CASE("a heading counts clockwise from north") {
   for (const AngleConvention& c : {heading_pitch_roll, helios_arinc_705}) {
-    CHECK(same(of(0, 0, 0, c) * forward, north));
-    CHECK(same(of(0, 0, 90, c) * forward, east));
-    CHECK(same(of(0, 0, 90, c) * right, south));
-    CHECK(same(of(0, 0, 180, c) * forward, south));
-    CHECK(same(of(0, 0, 270, c) * forward, west));
+    CHECK(same(of(0, 0, 0, c) * axis::forward, north));
+    CHECK(same(of(0, 0, 90, c) * axis::forward, east));
+    CHECK(same(of(0, 0, 90, c) * axis::right, south));
+    CHECK(same(of(0, 0, 180, c) * axis::forward, south));
+    CHECK(same(of(0, 0, 270, c) * axis::forward, west));
   }
 }
 
 TEST_CASE("a mathematical yaw counts counter-clockwise from east, and HELIOS++'s from north") {
   for (const AngleConvention& c : {mathematical, ros_roll_pitch_yaw}) {
-    CHECK(same(of(0, 0, 0, c) * forward, east));
-    CHECK(same(of(0, 0, 90, c) * forward, north));
-    CHECK(same(of(0, 0, 180, c) * forward, west));
-    CHECK(same(of(0, 0, 90, c) * up, up));
+    CHECK(same(of(0, 0, 0, c) * axis::forward, east));
+    CHECK(same(of(0, 0, 90, c) * axis::forward, north));
+    CHECK(same(of(0, 0, 180, c) * axis::forward, west));
+    CHECK(same(of(0, 0, 90, c) * axis::up, axis::up));
   }
-  CHECK(same(of(0, 0, 0, helios_canonical) * forward, north));
-  CHECK(same(of(0, 0, 90, helios_canonical) * forward, west));
+  CHECK(same(of(0, 0, 0, helios_canonical) * axis::forward, north));
+  CHECK(same(of(0, 0, 90, helios_canonical) * axis::forward, west));
 }
 
 TEST_CASE("a positive pitch lifts the nose, and a robot's lowers it") {
   const double lift = std::sin(radians(10));
   for (const AngleConvention& c : {heading_pitch_roll, helios_arinc_705, mathematical}) {
-    CHECK((of(0, 10, 123, c) * forward).z == doctest::Approx(lift));
-    CHECK((of(0, 10, 123, c) * right).z == doctest::Approx(0));
+    CHECK((of(0, 10, 123, c) * axis::forward).z == doctest::Approx(lift));
+    CHECK((of(0, 10, 123, c) * axis::right).z == doctest::Approx(0));
   }
-  CHECK((of(0, 10, 123, ros_roll_pitch_yaw) * forward).z == doctest::Approx(-lift));
-  CHECK((of(10, 0, 0, helios_canonical) * forward).z == doctest::Approx(lift));  // its roll is about right
+  CHECK((of(0, 10, 123, ros_roll_pitch_yaw) * axis::forward).z == doctest::Approx(-lift));
+  CHECK((of(10, 0, 0, helios_canonical) * axis::forward).z == doctest::Approx(lift));  // its roll is about right
 }
 
 TEST_CASE("a positive roll lowers the right wing") {
   const double lift = std::sin(radians(10));
   for (const AngleConvention& c : {heading_pitch_roll, helios_arinc_705, mathematical, ros_roll_pitch_yaw}) {
-    CHECK((of(10, 0, 123, c) * right).z == doctest::Approx(-lift));
-    CHECK((of(10, 0, 123, c) * forward).z == doctest::Approx(0));
+    CHECK((of(10, 0, 123, c) * axis::right).z == doctest::Approx(-lift));
+    CHECK((of(10, 0, 123, c) * axis::forward).z == doctest::Approx(0));
   }
-  CHECK((of(0, 10, 0, helios_canonical) * right).z == doctest::Approx(-lift));  // its pitch is about forward
+  CHECK((of(0, 10, 0, helios_canonical) * axis::right).z == doctest::Approx(-lift));  // its pitch is about forward
 }
 
 TEST_CASE("turns are about axes that the turns before have moved") {
   // heading east, then nose up until it points at the zenith, then a quarter roll: the right wing, which was south, points east
   const auto [nose, wing, top] = faces(of(90, 90, 90, heading_pitch_roll));
-  CHECK(same(nose, up));
+  CHECK(same(nose, axis::up));
   CHECK(same(wing, east));
   CHECK(same(top, south));
   // roll before pitch: on its side, heading east, pitch turns about the right wing, which points down
-  CHECK(same(of(90, 90, 90, helios_arinc_705) * right, down));
-  CHECK(same(of(90, 90, 90, helios_arinc_705) * forward, south));
+  CHECK(same(of(90, 90, 90, helios_arinc_705) * axis::right, down));
+  CHECK(same(of(90, 90, 90, helios_arinc_705) * axis::forward, south));
 }
 
 TEST_CASE("aviation's convention is the one of forward, right, down in north, east, down") {
@@ -136,11 +136,11 @@ TEST_CASE("axes are what they are called") {
       CHECK(axes.swapped(axes.swapped(p)) == p);
     }
   };
-  for (const auto& [world, directions] : {std::pair{WorldAxes::east_north_up, std::array<Vec3, 3>{east, north, up}},
+  for (const auto& [world, directions] : {std::pair{WorldAxes::east_north_up, std::array<Vec3, 3>{east, north, axis::up}},
                                           {WorldAxes::north_east_down, std::array<Vec3, 3>{north, east, down}}}) {
-    agree({BodyAxes::right_forward_up, world}, {right, forward, up}, directions);
-    agree({BodyAxes::forward_right_down, world}, {forward, right, down}, directions);
-    agree({BodyAxes::forward_left_up, world}, {forward, -right, up}, directions);
+    agree({BodyAxes::right_forward_up, world}, {axis::right, axis::forward, axis::up}, directions);
+    agree({BodyAxes::forward_right_down, world}, {axis::forward, axis::right, down}, directions);
+    agree({BodyAxes::forward_left_up, world}, {axis::forward, -axis::right, axis::up}, directions);
   }
 }
 
@@ -206,7 +206,7 @@ TEST_CASE("conventions that say nothing definite are refused") {
   c.zero_heading = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(c.validate(), SettingError);
   c = {};
-  c.turns[2].axis = right;  // as the pitch's
+  c.turns[2].axis = axis::right;  // as the pitch's
   CHECK_THROWS_AS(c.validate(), SettingError);
   c.turns[2].axis = {0, 2, 0};
   CHECK_THROWS_AS(c.validate(), SettingError);

@@ -19,7 +19,7 @@ TEST_CASE("impossible formats are refused") {
   format.separator = '.';
   CHECK_THROWS_AS(format.validate(), SettingError);
   format = {};
-  format.angles.turns[0].axis = right;
+  format.angles.turns[0].axis = axis::right;
   CHECK_THROWS_AS(format.validate(), SettingError);
   format = {};
   format.columns.clear();

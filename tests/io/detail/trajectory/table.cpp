@@ -45,7 +45,7 @@ FileError error(const std::string& text, const TrajectoryFormat& format = csv_fo
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 bool same(const Rotation& a, const Rotation& b, double allowed = 1e-14) {
-  return max_norm(a * forward - b * forward) < allowed && max_norm(a * up - b * up) < allowed;
+  return max_norm(a * axis::forward - b * axis::forward) < allowed && max_norm(a * axis::up - b * axis::up) < allowed;
 }
 
 const std::string head = "time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg\n";
@@ -57,10 +57,10 @@ TEST_CASE("a table with named columns is read as it stands") {
   REQUIRE(table.poses.size() == 2);
   CHECK(table.poses[0].time == 0);
   CHECK(table.poses[0].position == Vec3{1, 2, 3});
-  CHECK(same(table.poses[0].rotation, rotation_about(-up, radians(90))));
+  CHECK(same(table.poses[0].rotation, rotation_about(-axis::up, radians(90))));
   CHECK(table.poses[1].time == 0.5);
   CHECK(table.poses[1].position == Vec3{1.5, -2, 100});
-  CHECK(same(table.poses[1].rotation, rotation_about(right, radians(20))));
+  CHECK(same(table.poses[1].rotation, rotation_about(axis::right, radians(20))));
 }
 
 TEST_CASE("the order of columns, the separator, the units and the line ends do not matter") {
@@ -106,7 +106,7 @@ TEST_CASE("a convention of angles and of axes is heeded") {
   CHECK(same(read("t,x,y,z,qx,qy,qz,qw\n0,1,2,3,0,0,0,1\n", format).poses[0].rotation, no_rotation));
   // 90 degrees about down: heads east
   CHECK(same(read("t,x,y,z,qx,qy,qz,qw\n0,1,2,3,0,0,0.7071067811865476,0.7071067811865476\n", format).poses[0].rotation,
-             rotation_about(up, radians(-90))));
+             rotation_about(axis::up, radians(-90))));
 }
 
 TEST_CASE("names and the place of the time may stand in comments") {
@@ -117,13 +117,13 @@ TEST_CASE("names and the place of the time may stand in comments") {
   REQUIRE(table.poses.size() == 6);
   CHECK(table.poses[1].time == 0.2);
   CHECK(table.poses[1].position == Vec3{476212, 5474301.1993, 600.5960});
-  const Rotation expected =
-      rotation_about(-up, radians(270.4992)) * rotation_about(forward, radians(0.596)) * rotation_about(right, radians(1.9804));
+  const Rotation expected = rotation_about(-axis::up, radians(270.4992)) * rotation_about(axis::forward, radians(0.596)) *
+                            rotation_about(axis::right, radians(1.9804));
   CHECK(same(table.poses[1].rotation, expected));
   TrajectoryFormat other = helios_format();
   other.angles = helios_canonical;
-  const Rotation canonical =
-      rotation_about(right, radians(0.596)) * rotation_about(forward, radians(1.9804)) * rotation_about(up, radians(270.4992));
+  const Rotation canonical = rotation_about(axis::right, radians(0.596)) * rotation_about(axis::forward, radians(1.9804)) *
+                             rotation_about(axis::up, radians(270.4992));
   CHECK(same(read_trajectory(data, other).poses[1].rotation, canonical));
 }
 
@@ -173,8 +173,8 @@ TEST_CASE("time, position and quaternion of a robot: its x is forward") {
   CHECK(table.start_time == 1305031102.1758);
   REQUIRE(table.poses.size() == 2);
   CHECK(table.poses[0].position == Vec3{1.5, 2.5, 3.5});
-  CHECK(max_norm(table.poses[0].rotation * forward - right) < 1e-14);  // along the world's x, which is east
-  CHECK(max_norm(table.poses[1].rotation * forward - forward) < 1e-14);
+  CHECK(max_norm(table.poses[0].rotation * axis::forward - axis::right) < 1e-14);  // along the world's x, which is east
+  CHECK(max_norm(table.poses[1].rotation * axis::forward - axis::forward) < 1e-14);
   CHECK(table.poses[1].time == doctest::Approx(0.8242).epsilon(1e-6));
 }
 
@@ -249,7 +249,7 @@ TEST_CASE("a window begins and ends at its times") {
     CHECK(table.poses[i].time == times[i]);
     const double passed = 0.25 + times[i];
     CHECK(table.poses[i].position.x == doctest::Approx(10 * passed));
-    CHECK(same(table.poses[i].rotation, rotation_about(-up, radians(20 * passed)), 1e-12));
+    CHECK(same(table.poses[i].rotation, rotation_about(-axis::up, radians(20 * passed)), 1e-12));
   }
   CHECK(read(text, csv_format(), {.start = 11, .end = 12}).poses.size() == 2);
   CHECK(read(text, csv_format(), {.start = 11.5, .end = 11.5}).poses.size() == 1);
@@ -266,7 +266,7 @@ TEST_CASE("a window begins and ends at its times") {
 TEST_CASE("one pose is a trajectory, and angles that no column gives are 0, with a warning") {
   const TrajectoryTable table = read("time_s,x,y,z,heading_deg\n7,1,2,3,90");
   REQUIRE(table.poses.size() == 1);
-  CHECK(same(table.poses[0].rotation, rotation_about(-up, radians(90))));
+  CHECK(same(table.poses[0].rotation, rotation_about(-axis::up, radians(90))));
   REQUIRE(table.warnings.size() == 3);
   CHECK(contains(table.warnings[0], "line 2: has no line end"));
   CHECK(contains(table.warnings[1], "no column holds the roll"));

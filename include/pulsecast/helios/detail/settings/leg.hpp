@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
@@ -70,11 +70,11 @@ struct LegScannerSettings {
   double warm_up = 0;                          ///< for which head and optic run before the first pulse; `opticsWarmupPhase_s` [s]
 
   void validate() const {
-    expect_not_negative("pulseFreq_hz", pulse_rate, "Hz");
-    expect_not_negative("scanFreq_hz", scan_frequency, "Hz");
-    if (scan_angle) expect_not_negative("scanAngle_deg", degrees(*scan_angle), "deg");
-    expect_not_negative("trajectoryTimeInterval_s", trajectory_interval, "s");
-    expect_not_negative("opticsWarmupPhase_s", warm_up, "s");
+    require_not_negative("pulseFreq_hz", pulse_rate, "Hz");
+    require_not_negative("scanFreq_hz", scan_frequency, "Hz");
+    if (scan_angle) require_not_negative("scanAngle_deg", degrees(*scan_angle), "deg");
+    require_not_negative("trajectoryTimeInterval_s", trajectory_interval, "s");
+    require_not_negative("opticsWarmupPhase_s", warm_up, "s");
   }
 
   bool operator==(const LegScannerSettings&) const = default;
@@ -88,7 +88,7 @@ struct LegSettings {
   LegScannerSettings scanner{};
 
   void validate() const {
-    if (duration_max) expect_not_negative("maxDuration_s", *duration_max, "s");
+    if (duration_max) require_not_negative("maxDuration_s", *duration_max, "s");
     scanner.validate();
   }
 
@@ -96,7 +96,7 @@ struct LegSettings {
 };
 
 /// Whether a leg of a platform that moves stays where it begins: the next one begins there, too, or there is none.
-[[nodiscard]] inline bool hovers(const std::vector<LegSettings>& legs, std::size_t k) {
+[[nodiscard]] inline bool stays_in_place(const std::vector<LegSettings>& legs, std::size_t k) {
   if (k + 1 >= legs.size()) return legs.size() == 1;
   const LegPlatformSettings &here = legs[k].platform, &next = legs[k + 1].platform;
   const bool is_above = here.position.x == next.position.x && here.position.y == next.position.y;

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/rotation_list.hpp>
 #include <pulsecast/base/vector.hpp>
 
@@ -16,8 +16,8 @@ namespace pulsecast::helios {
 namespace detail {
 
 /// Refuses a whole number less than `least`.
-inline void expect_at_least(int least, std::string_view field, int value) {
-  expect_within(field, value, least, std::numeric_limits<int>::max(), "");
+inline void require_at_least(int least, std::string_view field, int value) {
+  require_within(field, value, least, std::numeric_limits<int>::max(), "");
 }
 
 }  // namespace detail
@@ -39,9 +39,10 @@ struct RotationList {
 
   /// All turns in one.
   [[nodiscard]] Rotation rotation() const {
-    std::vector<Turn> all;
-    for (const AxisTurn& turn : turns) all.push_back({turn.axis == Axis::x ? right : turn.axis == Axis::y ? forward : up, turn.angle});
-    return local ? moving_axes(all) : fixed_axes(all);
+    std::vector<AxisAngle> all;
+    for (const AxisTurn& turn : turns)
+      all.push_back({turn.axis == Axis::x ? axis::right : turn.axis == Axis::y ? axis::forward : axis::up, turn.angle});
+    return local ? intrinsic(all) : extrinsic(all);
   }
 
   bool operator==(const RotationList&) const = default;

@@ -51,7 +51,7 @@ struct NoiseSettings {
   double clip_high = 1;                                        ///< `clipMax` [m] or [rad]
   int lifespan = 1;                                            ///< for how many pulses each number is used, 0 for all; `fixedLifespan`
 
-  void validate() const { detail::expect_at_least(0, "fixedLifespan", lifespan); }
+  void validate() const { detail::require_at_least(0, "fixedLifespan", lifespan); }
 
   bool operator==(const NoiseSettings&) const = default;
 };

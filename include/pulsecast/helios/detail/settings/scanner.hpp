@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
@@ -56,7 +56,7 @@ struct RisleyPrism {
 struct RisleyOptic {
   std::array<RisleyPrism, 3> prisms{};  ///< those without an angle are not there
   double air_refractive_index = 1;      ///< `refrIndex_air`
-  Vec3 incident_beam = forward;         ///< of any length but zero; `<incidentBeam>`
+  Vec3 incident_beam = axis::forward;   ///< of any length but zero; `<incidentBeam>`
 
   bool operator==(const RisleyOptic&) const = default;
 };
@@ -71,8 +71,8 @@ struct FullWaveformSettings {
   double duration_max = 0;         ///< 0 stands for no limit; `maxFullwaveRange_ns` [s]
 
   void validate() const {
-    detail::expect_at_least(1, "beamSampleQuality", rings);
-    expect_not_negative("maxFullwaveRange_ns", duration_max * 1e9, "ns");
+    detail::require_at_least(1, "beamSampleQuality", rings);
+    require_not_negative("maxFullwaveRange_ns", duration_max * 1e9, "ns");
   }
 
   bool operator==(const FullWaveformSettings&) const = default;
@@ -98,7 +98,7 @@ struct ChannelSettings {
   double scan_frequency_min = 0;                               ///< `scanFreqMin_Hz` [Hz]
   double scan_frequency_max = 0;                               ///< 0 stands for no limit; `scanFreqMax_Hz` [Hz]
   MountSettings beam_origin{};                                 ///< rotated in the frame of the instrument; `<beamOrigin>`
-  Vec3 head_axis = up;                                         ///< of any length but zero; `<headRotateAxis>`
+  Vec3 head_axis = axis::up;                                   ///< of any length but zero; `<headRotateAxis>`
   double head_speed_max = 0;                                   ///< 0: it cannot turn; `headRotatePerSecMax_deg` [rad/s]
   double divergence = 0.3e-3;                                  ///< full angle at 1/e^2 of the peak; `beamDivergence_rad` [rad]
   double pulse_length = 4e-9;                                  ///< full width at half maximum; `pulseLength_ns` [s]
@@ -117,11 +117,11 @@ struct ChannelSettings {
   ErrorFormulas errors{};                                      ///< `<deflectionError>`...
 
   void validate() const {
-    expect_not_negative("scanAngleMax_deg", degrees(scan_angle_max), "deg");
-    expect_not_negative("scanFreqMin_Hz", scan_frequency_min, "Hz");
-    expect_not_negative("scanFreqMax_Hz", scan_frequency_max, "Hz");
-    expect_not_negative("headRotatePerSecMax_deg", degrees(head_speed_max), "deg/s");
-    detail::expect_at_least(0, "maxNOR", returns_max);
+    require_not_negative("scanAngleMax_deg", degrees(scan_angle_max), "deg");
+    require_not_negative("scanFreqMin_Hz", scan_frequency_min, "Hz");
+    require_not_negative("scanFreqMax_Hz", scan_frequency_max, "Hz");
+    require_not_negative("headRotatePerSecMax_deg", degrees(head_speed_max), "deg/s");
+    detail::require_at_least(0, "maxNOR", returns_max);
     waveform.validate();
   }
 

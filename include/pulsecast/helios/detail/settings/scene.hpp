@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 
@@ -25,8 +25,8 @@ struct MaterialSource {
   double random_range = 1;            ///< by which colours of variants differ at most; `randomRange`
 
   void validate() const {
-    detail::expect_at_least(0, "randomMaterials", random);
-    expect_not_negative("randomRange", random_range, "");
+    detail::require_at_least(0, "randomMaterials", random);
+    require_not_negative("randomRange", random_range, "");
   }
 
   bool operator==(const MaterialSource&) const = default;
@@ -63,7 +63,7 @@ struct XyzSource {
 
   void validate() const {
     material.validate();
-    detail::expect_at_least(0, "estimateNormals", estimate_normals);
+    detail::require_at_least(0, "estimateNormals", estimate_normals);
   }
 
   bool operator==(const XyzSource&) const = default;
@@ -123,7 +123,7 @@ struct TranslationMotion {
 
 /// `<motion type="rotation">` and, with `glide`, `<motion type="helical">`
 struct RotationMotion {
-  Vec3 axis = up;                 ///< of any length but zero; `axis`
+  Vec3 axis = axis::up;           ///< of any length but zero; `axis`
   double angle = 0;               ///< right-handed; `angle` in degrees [rad]
   std::optional<Vec3> center{};   ///< through which the axis goes; the origin unless given. `center` [m]
   std::optional<double> glide{};  ///< along the axis, in its lengths: helical only. `glide`
@@ -133,7 +133,7 @@ struct RotationMotion {
 
 /// `<motion type="reflection">` and, with `shift`, `<motion type="glideplane">`
 struct ReflectionMotion {
-  Vec3 normal = up;             ///< of a plane through the origin, of any length but zero; `ortho`
+  Vec3 normal = axis::up;       ///< of a plane through the origin, of any length but zero; `ortho`
   std::optional<Vec3> shift{};  ///< along the plane: glide plane only. `shift` [m]
 
   bool operator==(const ReflectionMotion&) const = default;
@@ -141,7 +141,7 @@ struct ReflectionMotion {
 
 /// `<motion type="rotsym">`: a rotation, and then a reflection at the plane across the axis.
 struct RotoreflectionMotion {
-  Vec3 axis = up;                ///< of any length but zero; `axis`
+  Vec3 axis = axis::up;          ///< of any length but zero; `axis`
   double angle = 0;              ///< right-handed; `angle` in degrees [rad]
   std::optional<Vec3> center{};  ///< `center` [m]
 
@@ -164,7 +164,7 @@ struct MotionSequenceSettings {
   std::optional<std::string> next{};      ///< the sequence that follows; it stops unless given. `next`
   std::vector<MotionSettings> motions{};  ///< all of them in each step, one after the other
 
-  void validate() const { detail::expect_at_least(0, "loop", loop); }
+  void validate() const { detail::require_at_least(0, "loop", loop); }
 
   bool operator==(const MotionSequenceSettings&) const = default;
 };
@@ -177,7 +177,7 @@ struct SwapSettings {
   TransformSettings transform{};
 
   void validate() const {
-    detail::expect_at_least(1, "swapStep", step);
+    detail::require_at_least(1, "swapStep", step);
     if (source) detail::validate_source(*source);
   }
 
@@ -196,8 +196,8 @@ struct PartSettings {
 
   void validate() const {
     detail::validate_source(source);
-    detail::expect_at_least(1, "dynStep", dynamic_step);
-    if (dynamic_interval) expect_positive("dynTimeStep", *dynamic_interval, "s");
+    detail::require_at_least(1, "dynStep", dynamic_step);
+    if (dynamic_interval) require_positive("dynTimeStep", *dynamic_interval, "s");
     for (const MotionSequenceSettings& sequence : motions) sequence.validate();
     for (const SwapSettings& swap : swaps) swap.validate();
   }
@@ -214,8 +214,8 @@ struct SceneSettings {
   std::vector<PartSettings> parts{};
 
   void validate() const {
-    detail::expect_at_least(1, "dynStep", dynamic_step);
-    if (dynamic_interval) expect_positive("dynTimeStep", *dynamic_interval, "s");
+    detail::require_at_least(1, "dynStep", dynamic_step);
+    if (dynamic_interval) require_positive("dynTimeStep", *dynamic_interval, "s");
     for (const PartSettings& part : parts) naming("part '" + part.id + "'", [&] { part.validate(); });
   }
 

@@ -41,16 +41,16 @@ struct XmlFault {
 /// `FileError` it is about the first of them. What was odd beside that stands in `warnings`.
 class XmlFaults : public FileError {
  public:
-  static constexpr std::size_t most = 100;  ///< that are told
+  static constexpr std::size_t max_told = 100;  ///< that are told
 
   /// `faults` must not be empty.
   explicit XmlFaults(std::vector<XmlFault> faults, std::vector<std::string> warnings = {})
       : FileError(faults.front().place.path, place_in_words(faults.front().place), faults.front().problem),
         faults_(std::move(faults)),
         warnings_(std::move(warnings)) {
-    for (std::size_t i = 0; i < std::min(faults_.size(), most); ++i)
+    for (std::size_t i = 0; i < std::min(faults_.size(), max_told); ++i)
       text_ += (i == 0 ? "" : "\n") + faults_[i].place.text() + ": " + faults_[i].problem;
-    if (faults_.size() > most) text_ += "\nand " + std::to_string(faults_.size() - most) + " more";
+    if (faults_.size() > max_told) text_ += "\nand " + std::to_string(faults_.size() - max_told) + " more";
   }
 
   [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
@@ -70,7 +70,7 @@ class XmlFaults : public FileError {
 /// Gathers what is wrong and what is odd, each once.
 class XmlReport {
  public:
-  static constexpr std::size_t most = 1000;  ///< of either; beyond, they are not kept
+  static constexpr std::size_t max_told = 1000;  ///< of either; beyond, they are not kept
 
   void fault(XmlPlace place, std::string problem) {
     if (is_full()) return;
@@ -84,7 +84,7 @@ class XmlReport {
     if (is_full_of_warnings()) return;
     std::string text = place.text() + ": " + problem;
     if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
-    if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(most) + " are not told";
+    if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(max_told) + " are not told";
   }
 
   /// Calls `read()`, with the faults of what nobody uses as warnings.
@@ -96,15 +96,15 @@ class XmlReport {
   }
 
   /// Whether no more faults are kept: it is not worth looking for them.
-  [[nodiscard]] bool is_full() const noexcept { return faults_.size() == most; }
+  [[nodiscard]] bool is_full() const noexcept { return faults_.size() == max_told; }
 
-  [[nodiscard]] bool is_full_of_warnings() const noexcept { return warnings_.size() == most; }
+  [[nodiscard]] bool is_full_of_warnings() const noexcept { return warnings_.size() == max_told; }
 
   [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< how many there are
   [[nodiscard]] bool is_clean() const noexcept { return faults_.empty(); }
 
   /// Throws if anything is wrong.
-  void expect_clean() const {
+  void require_clean() const {
     if (!faults_.empty()) throw XmlFaults(faults_, warnings_);
   }
 
@@ -164,14 +164,14 @@ class XmlReport {
 /// are not known: a document that declares any is refused.
 class XmlDocument {
  public:
-  static constexpr std::size_t longest_file = std::size_t{64} << 20;      ///< [byte]
-  static constexpr std::size_t longest_attribute = std::size_t{1} << 16;  ///< [byte]
-  static constexpr std::size_t most_attributes = 100;                     ///< of one element
+  static constexpr std::size_t max_file_size = std::size_t{64} << 20;      ///< [byte]
+  static constexpr std::size_t max_attribute_size = std::size_t{1} << 16;  ///< [byte]
+  static constexpr std::size_t max_attributes = 100;                       ///< of one element
 
   /// Throws `XmlFaults` if it is not XML.
   explicit XmlDocument(const std::filesystem::path& path) : path_(path.string()) {
     io::InputFile file(path, "an XML document");
-    if (file.size() > longest_file) file.fail("is longer than " + std::to_string(longest_file) + " bytes: expected an XML document");
+    if (file.size() > max_file_size) file.fail("is longer than " + std::to_string(max_file_size) + " bytes: expected an XML document");
     while (file.position() < file.size()) {
       const std::string_view bytes = file.take(io::InputFile::block_size);
       if (bytes.empty()) break;
@@ -267,10 +267,10 @@ class XmlDocument {
     for (pugi::xml_node node = root_; node; node = next(node)) {
       std::vector<std::string_view> names;
       each_attribute(offset(node), [&](std::size_t at, std::string_view name, std::string_view value) {
-        if (name.size() + value.size() > longest_attribute)
-          fail_at(at, "an attribute is longer than " + std::to_string(longest_attribute) + " bytes: " + xml_quoted(name));
-        if (std::find(names.begin(), names.end(), name) != names.end() || names.size() == most_attributes)
-          fail_at(at, "attribute " + xml_quoted(name) + (names.size() == most_attributes ? " is one of too many" : " is given twice"));
+        if (name.size() + value.size() > max_attribute_size)
+          fail_at(at, "an attribute is longer than " + std::to_string(max_attribute_size) + " bytes: " + xml_quoted(name));
+        if (std::find(names.begin(), names.end(), name) != names.end() || names.size() == max_attributes)
+          fail_at(at, "attribute " + xml_quoted(name) + (names.size() == max_attributes ? " is one of too many" : " is given twice"));
         names.push_back(name);
         return true;
       });

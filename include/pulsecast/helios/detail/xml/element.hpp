@@ -276,7 +276,7 @@ class XmlInput {
   }
 
  private:
-  static constexpr std::size_t most_params = 100;
+  static constexpr std::size_t max_params = 100;
 
   /// Whether two words are the same, but for capitals.
   [[nodiscard]] static bool is_same_word(std::string_view a, std::string_view b) {
@@ -291,7 +291,7 @@ class XmlInput {
     check_filter();
     std::vector<std::string_view> keys;
     for (const pugi::xml_node child : node_.children()) {
-      if (report_.is_full() || report_.is_full_of_warnings() || keys.size() == most_params) return;
+      if (report_.is_full() || report_.is_full_of_warnings() || keys.size() == max_params) return;
       if (child.type() != pugi::node_element) continue;
       if (std::string_view(child.name()) != "param") {
         report_.warn(document_.place(child),
@@ -308,7 +308,7 @@ class XmlInput {
           report_.fault(document_.place(child, "key"), "param " + xml_quoted(key) + " is given twice, with another value");
       }
       keys.push_back(key);
-      if (keys.size() == most_params) report_.fault(document_.place(child), "one of too many <param> in a filter");
+      if (keys.size() == max_params) report_.fault(document_.place(child), "one of too many <param> in a filter");
       if (!is_among(known_, key) || key == "type")
         report_.warn(document_.place(child, "key"), "param " + xml_quoted(key) + " of filter " +
                                                         xml_quoted(node_.attribute("type").value()) + " is not known" +

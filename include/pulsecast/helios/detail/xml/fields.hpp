@@ -19,11 +19,11 @@ template <class Io, class Settings>
 using Of = std::conditional_t<Io::reads, Settings, const Settings>;
 
 inline constexpr double any = std::numeric_limits<double>::infinity();
-inline constexpr double farthest = 1e9;  ///< coordinate that makes sense [m]
+inline constexpr double max_coordinate = 1e9;  ///< coordinate that makes sense [m]
 
 /// Attributes `x`, `y` and `z`.
 template <class Io>
-void components(Io& io, Of<Io, Vec3>& v, double largest = farthest) {
+void components(Io& io, Of<Io, Vec3>& v, double largest = max_coordinate) {
   io.number("x", v.x, units::metre, -largest, largest);
   io.number("y", v.y, units::metre, -largest, largest);
   io.number("z", v.z, units::metre, -largest, largest);

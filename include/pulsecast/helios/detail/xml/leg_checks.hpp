@@ -35,7 +35,7 @@ class LegChecks {
 
  private:
   /// Whether the platform stays where it is for as long as a leg lasts.
-  [[nodiscard]] bool stays(std::size_t i) const { return survey_.platform.kind == PlatformKind::stationary || rests(survey_, i); }
+  [[nodiscard]] bool stays(std::size_t i) const { return survey_.platform.kind == PlatformKind::stationary || is_stationary(survey_, i); }
 
   /// A number that was computed, to six decimals.
   [[nodiscard]] static std::string brief(double value) { return xml_number(std::round(value * 1e6) / 1e6); }
@@ -57,7 +57,7 @@ class LegChecks {
       if (platform.smooth_turn) io.warn("smoothTurn", std::string("a smooth turn") + why);
       if (platform.yaw_at_departure) io.warn("yawAtDeparture_deg", std::string("yawAtDeparture_deg") + why);
     }
-    if (!goes_on(survey_.platform.kind)) return;
+    if (!legs_connect(survey_.platform.kind)) return;
     const std::size_t legs = survey_.legs.size();
     const bool turns = settings.scanner.head_stop != settings.scanner.head_start;
     if (legs == 1 && !settings.duration_max && !turns)
@@ -69,7 +69,7 @@ class LegChecks {
                        "the last leg of a platform that moves says where the way ends, and has no pulses: to stay there for "
                        "maxDuration_s, expected another <leg> at the same place");
     if (i + 1 == legs) return;
-    if (hovers(survey_.legs, i)) {
+    if (stays_in_place(survey_.legs, i)) {
       if (!settings.duration_max && !turns)
         io.warn("x",
                 "the leg begins where the next one does, and ends at once: expected maxDuration_s for which it stays here, if it should");
@@ -156,7 +156,7 @@ class LegChecks {
                                          "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
                                          "maxDuration_s");
     if (!stays(i) || s.head_stop != s.head_start) return;
-    if (speed == 0 && goes_on(survey_.platform.kind)) return;  // has been told of already
+    if (speed == 0 && legs_connect(survey_.platform.kind)) return;  // has been told of already
     if (speed == 0)
       io.report().fault(io.place(), "the leg could never end: neither platform nor head moves; expected maxDuration_s" +
                                         std::string(i == 0 ? "" : " for each leg"));

@@ -86,7 +86,7 @@ struct XmlReference {
 /// The documents that a survey refers to. Each is read once.
 class XmlLibrary {
  public:
-  static constexpr std::size_t most_documents = 256;
+  static constexpr std::size_t max_documents = 256;
 
   XmlLibrary(std::vector<std::filesystem::path> folders, XmlReport& report) : folders_(std::move(folders)), report_(report) {}
 
@@ -123,8 +123,8 @@ class XmlLibrary {
       if (!known->second) io.fault(attribute, XmlInput::said(attribute, text) + " cannot be read");
       return known->second.get();
     }
-    if (documents_.size() == most_documents) {
-      io.fault(attribute, XmlInput::said(attribute, text) + " is one of more than " + std::to_string(most_documents) + " documents");
+    if (documents_.size() == max_documents) {
+      io.fault(attribute, XmlInput::said(attribute, text) + " is one of more than " + std::to_string(max_documents) + " documents");
       return nullptr;
     }
     try {

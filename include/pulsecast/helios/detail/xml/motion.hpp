@@ -53,7 +53,7 @@ bool rotation_fields(Io& io, Of<Io, RotationMotion>& rotation, MotionKind kind) 
   axis(io, "axis", rotation.axis);
   io.require({"angle"});
   io.number("angle", rotation.angle, units::degree, -36000, 36000);
-  if (kind == MotionKind::rotation) io.vector("center", rotation.center, farthest);
+  if (kind == MotionKind::rotation) io.vector("center", rotation.center, max_coordinate);
   if (kind == MotionKind::helical) {
     io.require({"glide"});
     if constexpr (Io::reads) rotation.glide = 0;
@@ -76,7 +76,7 @@ void reflection_fields(Io& io, Of<Io, ReflectionMotion>& plane, MotionKind kind)
   if (kind != MotionKind::glide_plane) return;
   io.require({"shift"});
   if constexpr (Io::reads) plane.shift = Vec3{};
-  io.vector("shift", *plane.shift, farthest);
+  io.vector("shift", *plane.shift, max_coordinate);
   if constexpr (Io::reads)
     if (std::abs(dot(*plane.shift, plane.normal)) > 1e-6 * length(*plane.shift) * length(plane.normal))
       io.fault("shift", "shift is not along the plane: expected it at right angles to ortho");
@@ -97,7 +97,7 @@ void fields(Io& io, Of<Io, MotionSettings>& motion) {
   if constexpr (Io::reads) set_kind(motion, kind);
   if (auto* m = std::get_if<TranslationMotion>(&motion.kind)) {
     io.require({"vec"});
-    io.vector("vec", m->by, farthest);
+    io.vector("vec", m->by, max_coordinate);
   } else if (auto* r = std::get_if<RotationMotion>(&motion.kind)) {
     const bool does_something = rotation_fields(io, *r, kind);
     if constexpr (Io::reads)
@@ -109,7 +109,7 @@ void fields(Io& io, Of<Io, MotionSettings>& motion) {
     if constexpr (Io::reads) check_axis(io, "axis", s->axis);
     io.require({"angle"});
     io.number("angle", s->angle, units::degree, -36000, 36000);
-    io.vector("center", s->center, farthest);
+    io.vector("center", s->center, max_coordinate);
   }
   io.flag("selfMode", motion.about_itself);
   io.number("autoCRS", motion.shift_factor, units::one, -1e6, 1e6);

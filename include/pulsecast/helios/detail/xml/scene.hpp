@@ -47,7 +47,7 @@ inline void filters(XmlOutput& io, const PartSource* source, const TransformSett
   }
   if (transform.translation == Vec3{} && transform.on_ground == 0) return;
   XmlOutput translate = filter("translate");
-  translate.vector("offset", transform.translation, farthest);
+  translate.vector("offset", transform.translation, max_coordinate);
   translate.whole("onGround", transform.on_ground, 0, 0);
 }
 
@@ -99,7 +99,7 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       filter.require({"offset"});
       transform.translation = {};
       transform.on_ground = 0;
-      filter.vector("offset", transform.translation, farthest);
+      filter.vector("offset", transform.translation, max_coordinate);
       filter.whole("onGround", transform.on_ground, -1'000'000, 1'000'000);
     } else {
       io.report().fault(io.document().place(node, "type"),

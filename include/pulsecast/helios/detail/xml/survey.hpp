@@ -52,7 +52,7 @@ class SurveyReader {
       io.finish();
       legs_.read_unused_templates();
     }
-    report_.expect_clean();
+    report_.require_clean();
     place_ = document.place(node).text();
     return survey_;
   }
@@ -210,7 +210,7 @@ class SurveyReader {
 
   /// A pulse would fall between bins that are longer, and `FullWaveform` takes no more than so many in one.
   void limit_bins(const XmlInput& io) {
-    constexpr double most = WaveformSettings::most_samples;
+    constexpr double most = WaveformSettings::max_samples;
     const pugi::xml_node own = io.node().child("FWFSettings");
     for (ChannelSettings& channel : survey_.scanner.channels) {
       const double bin = channel.waveform.bin_size, length = channel.pulse_length;

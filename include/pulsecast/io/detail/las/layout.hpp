@@ -45,8 +45,8 @@ struct LasLayout {
         start_signature(minor == 0 ? 2 : 0),
         packet(legacy ? 28 : 30),
         extras(packet + (with_waveforms ? las_packet_size : 0)),
-        most_returns(legacy ? 5 : 15),
-        most_class(legacy ? 31 : 255) {}
+        max_returns(legacy ? 5 : 15),
+        max_class(legacy ? 31 : 255) {}
 
   [[nodiscard]] std::size_t record() const noexcept { return extras + las_extras_size; }  ///< size of a point [byte]
 
@@ -55,7 +55,7 @@ struct LasLayout {
   std::size_t header;           ///< its size [byte]
   std::size_t start_signature;  ///< between the last record and the first point [byte]
   std::size_t packet, extras;   ///< in a point: where the wave packet and the extra bytes are, if there are any [byte]
-  std::uint32_t most_returns, most_class;
+  std::uint32_t max_returns, max_class;
 };
 
 }  // namespace pulsecast::io::detail

@@ -61,12 +61,12 @@ class LasPoints {
   [[nodiscard]] Vec3 normal() const noexcept { return {}; }
   [[nodiscard]] bool has_colours() const noexcept { return colour_at_ != 0; }
 
-  /// Red, green and blue of the point at hand, from 0 to `largest_colour`.
+  /// Red, green and blue of the point at hand, from 0 to `max_colour`.
   [[nodiscard]] Vec3 colour() const noexcept {
     return {number<std::uint16_t>(record_, colour_at_), number<std::uint16_t>(record_, colour_at_ + 2),
             number<std::uint16_t>(record_, colour_at_ + 4)};
   }
-  static constexpr double largest_colour = 65535;
+  static constexpr double max_colour = 65535;
 
   /// What was odd, but could be read; to be asked for after the last point.
   [[nodiscard]] std::vector<std::string> warnings() const {
@@ -130,9 +130,9 @@ class LasPoints {
       scale_[axis] = number<double>(bytes, 131 + 8 * axis);
       offset_[axis] = number<double>(bytes, 155 + 8 * axis);
       if (!(scale_[axis] > 0) || !std::isfinite(scale_[axis]))
-        file_.fail_at_byte(131 + 8 * axis, "the scale is " + pulsecast::detail::written(scale_[axis]) + ": expected one above 0");
+        file_.fail_at_byte(131 + 8 * axis, "the scale is " + pulsecast::detail::to_text(scale_[axis]) + ": expected one above 0");
       if (!std::isfinite(offset_[axis]))
-        file_.fail_at_byte(155 + 8 * axis, "the offset is " + pulsecast::detail::written(offset_[axis]) + ": expected a finite one");
+        file_.fail_at_byte(155 + 8 * axis, "the offset is " + pulsecast::detail::to_text(offset_[axis]) + ": expected a finite one");
     }
     file_.seek(begin);
   }

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 
 /// The arithmetic coder of LAZ. Source of the algorithm: Said 2004, Introduction to Arithmetic Coding - Theory and Practice, 2.2 and 3;
 /// of the constants: Isenburg 2013, LASzip: lossless compression of lidar data, and the LAZ files that LASzip writes.
@@ -24,7 +24,7 @@ class LazModel {
   static constexpr unsigned share_bits = 15;
 
   explicit LazModel(std::size_t symbols = Capacity) noexcept : symbols_(static_cast<std::uint32_t>(symbols)), cycle_(symbols_) {
-    PULSECAST_EXPECT(symbols >= 2 && symbols <= Capacity);
+    PULSECAST_ASSERT(symbols >= 2 && symbols <= Capacity);
     std::fill_n(count_.begin(), symbols, std::uint16_t{1});
     renew();
     until_renewal_ = cycle_ = (symbols_ + 6) / 2;

@@ -25,7 +25,7 @@ class TextOutput {
 
   /// A place or a direction. One that is not finite ends the table with a `FileError`; `what` says in it whose it is.
   TextOutput& vector(std::string_view what, const Vec3& v, int decimals) {
-    if (!finite(v)) refuse(what);
+    if (!finite(v)) reject(what);
     return reals(decimals, v.x, v.y, v.z);
   }
 
@@ -66,7 +66,7 @@ class TextOutput {
   void close() { file_.commit(); }
 
  private:
-  [[noreturn]] void refuse(std::string_view what) {
+  [[noreturn]] void reject(std::string_view what) {
     file_.discard();
     throw FileError(file_.path().string(), "line " + std::to_string(rows_ + 1),
                     "cannot be written: " + std::string(what) + " is not finite; expected finite coordinates");

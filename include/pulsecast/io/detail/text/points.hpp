@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/input_file.hpp>
@@ -23,11 +23,11 @@ namespace pulsecast::io {
 struct PointColumns {
   using Columns = std::array<std::size_t, 3>;
 
-  std::string separators = {};                        ///< any of these; if none are given, what the first row has: see `TextPoints`
-  Columns position{0, 1, 2};                          ///< x, y and z
-  std::optional<Columns> normal = Columns{3, 4, 5};   ///< its x, y and z
-  std::optional<Columns> colour = Columns{6, 7, 8};   ///< red, green and blue
-  static constexpr std::size_t largest_column = 999;  ///< that may be asked for
+  std::string separators = {};                       ///< any of these; if none are given, what the first row has: see `TextPoints`
+  Columns position{0, 1, 2};                         ///< x, y and z
+  std::optional<Columns> normal = Columns{3, 4, 5};  ///< its x, y and z
+  std::optional<Columns> colour = Columns{6, 7, 8};  ///< red, green and blue
+  static constexpr std::size_t max_column = 999;     ///< that may be asked for
 
   void validate() const {
     for (const char c : separators)
@@ -37,7 +37,7 @@ struct PointColumns {
                            "one that no number, comment or line end has");
     for (const Columns& columns : {position, normal.value_or(position), colour.value_or(position)})
       for (const std::size_t column : columns)
-        expect_within("PointColumns::column", static_cast<double>(column), 0, static_cast<double>(largest_column), "");
+        require_within("PointColumns::column", static_cast<double>(column), 0, static_cast<double>(max_column), "");
   }
 };
 
@@ -73,7 +73,7 @@ class TextPoints {
   [[nodiscard]] Vec3 normal() const { return vector(*columns_.normal); }
   [[nodiscard]] bool has_colours() const noexcept { return columns_.colour.has_value(); }
   [[nodiscard]] Vec3 colour() const { return vector(*columns_.colour); }
-  static constexpr double largest_colour = 255;  ///< if nobody says otherwise
+  static constexpr double max_colour = 255;  ///< if nobody says otherwise
 
   /// What was odd, but could be read; to be asked for after the last point.
   [[nodiscard]] std::vector<std::string> warnings() const {
@@ -99,7 +99,7 @@ class TextPoints {
     }
     for (const char c : separators) separates_[static_cast<unsigned char>(c)] = true;
     const auto last = [](const Columns& columns) { return *std::max_element(columns.begin(), columns.end()) + 1; };
-    needed_ = PointColumns::largest_column + 1;
+    needed_ = PointColumns::max_column + 1;
     split(text);
     needed_ = last(columns_.position);
     if (cells_.size() < needed_) too_few();

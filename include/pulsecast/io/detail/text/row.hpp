@@ -22,7 +22,7 @@ class TextRow {
   explicit TextRow(char separator = ' ') noexcept : separator_(separator) {}
 
   /// A number as short as it can be so that it reads back the same; a zero has no sign.
-  TextRow& add(double value) { return append(pulsecast::detail::written(value == 0 ? 0 : value)); }
+  TextRow& add(double value) { return append(pulsecast::detail::to_text(value == 0 ? 0 : value)); }
 
   /// A number in fixed notation, rounded to nearest; neither a zero nor what is not a number has a sign.
   TextRow& add(double value, int decimals) {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
@@ -22,7 +22,7 @@ struct RollPitchYaw {
 };
 
 /// One of the three turns that make an attitude: which angle is about which axis.
-struct AngleAxis {
+struct ElementalRotation {
   double RollPitchYaw::*angle;  ///< by how much: `&RollPitchYaw::yaw`
   Vec3 axis;                    ///< of the body, unit; the right-handed sense about it is positive
 };
@@ -31,16 +31,17 @@ struct AngleAxis {
 /// order of the list. Each axis is perpendicular to the others.
 struct AngleConvention {
   /// Each about an axis that the turns before it have moved; read from its end, the list is that of turns about axes that stay.
-  std::array<AngleAxis, 3> turns{{{&RollPitchYaw::yaw, -up}, {&RollPitchYaw::pitch, right}, {&RollPitchYaw::roll, forward}}};
+  std::array<ElementalRotation, 3> turns{
+      {{&RollPitchYaw::yaw, -axis::up}, {&RollPitchYaw::pitch, axis::right}, {&RollPitchYaw::roll, axis::forward}}};
   double zero_heading = 0;  ///< which way the body faces when all angles are 0, clockwise from north [rad]
 
   void validate() const {
-    expect_finite("AngleConvention::zero_heading", zero_heading, "rad");
+    require_finite("AngleConvention::zero_heading", zero_heading, "rad");
     constexpr double rounding = 1e-9;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t next = (i + 1) % 3;
-      expect_within("AngleConvention::turns axis (length)", length(turns[i].axis), 1 - rounding, 1 + rounding, "");
-      expect_within("AngleConvention::turns axes (cosine between)", dot(turns[i].axis, turns[next].axis), -rounding, rounding, "");
+      require_within("AngleConvention::turns axis (length)", length(turns[i].axis), 1 - rounding, 1 + rounding, "");
+      require_within("AngleConvention::turns axes (cosine between)", dot(turns[i].axis, turns[next].axis), -rounding, rounding, "");
       if (turns[i].angle == turns[next].angle || turns[i].angle == nullptr)
         throw SettingError("AngleConvention::turns angle (place)", static_cast<double>(i), "", "roll, pitch and yaw, each once");
     }
@@ -53,25 +54,27 @@ inline const AngleConvention heading_pitch_roll{};
 
 /// As `heading_pitch_roll`, but roll comes before pitch. HELIOS++ calls this "ARINC 705".
 inline const AngleConvention helios_arinc_705{
-    .turns = {{{&RollPitchYaw::yaw, -up}, {&RollPitchYaw::roll, forward}, {&RollPitchYaw::pitch, right}}}};
+    .turns = {{{&RollPitchYaw::yaw, -axis::up}, {&RollPitchYaw::roll, axis::forward}, {&RollPitchYaw::pitch, axis::right}}}};
 
 /// Roll about right, pitch about forward, yaw counter-clockwise from north. HELIOS++ calls this "CANONICAL" and writes it.
 inline const AngleConvention helios_canonical{
-    .turns = {{{&RollPitchYaw::roll, right}, {&RollPitchYaw::pitch, forward}, {&RollPitchYaw::yaw, up}}}};
+    .turns = {{{&RollPitchYaw::roll, axis::right}, {&RollPitchYaw::pitch, axis::forward}, {&RollPitchYaw::yaw, axis::up}}}};
 
 /// Yaw counter-clockwise from east, then pitch, nose up, then roll, right wing down.
 inline const AngleConvention mathematical{
-    .turns = {{{&RollPitchYaw::yaw, up}, {&RollPitchYaw::pitch, right}, {&RollPitchYaw::roll, forward}}}, .zero_heading = pi / 2};
+    .turns = {{{&RollPitchYaw::yaw, axis::up}, {&RollPitchYaw::pitch, axis::right}, {&RollPitchYaw::roll, axis::forward}}},
+    .zero_heading = pi / 2};
 
 /// Yaw counter-clockwise from east, then pitch, nose down, then roll, right wing down: the body axes forward, left, up in the world of
 /// east, north, up. Source: ROS REP 103.
 inline const AngleConvention ros_roll_pitch_yaw{
-    .turns = {{{&RollPitchYaw::yaw, up}, {&RollPitchYaw::pitch, -right}, {&RollPitchYaw::roll, forward}}}, .zero_heading = pi / 2};
+    .turns = {{{&RollPitchYaw::yaw, axis::up}, {&RollPitchYaw::pitch, -axis::right}, {&RollPitchYaw::roll, axis::forward}}},
+    .zero_heading = pi / 2};
 
 /// The attitude, from the body to the world, of angles in a convention.
 [[nodiscard]] inline Rotation rotation_of(const RollPitchYaw& angles, const AngleConvention& convention) noexcept {
-  Rotation rotation = rotation_about(up, -convention.zero_heading);
-  for (const AngleAxis& turn : convention.turns) rotation = rotation * rotation_about(turn.axis, angles.*turn.angle);
+  Rotation rotation = rotation_about(axis::up, -convention.zero_heading);
+  for (const ElementalRotation& turn : convention.turns) rotation = rotation * rotation_about(turn.axis, angles.*turn.angle);
   return normalize(rotation);
 }
 
@@ -81,7 +84,7 @@ inline const AngleConvention ros_roll_pitch_yaw{
 /// Source: half-angle sums of the product of three quaternions, as in Bernardes & Viollet 2022, PLoS ONE 17(11), e0276302.
 [[nodiscard]] inline RollPitchYaw roll_pitch_yaw(const Rotation& rotation, const AngleConvention& convention) noexcept {
   const auto& [first, middle, last] = convention.turns;
-  const Rotation q = rotation_about(up, convention.zero_heading) * rotation;
+  const Rotation q = rotation_about(axis::up, convention.zero_heading) * rotation;
   const Vec3 v{q.x, q.y, q.z};
   const double sense = dot(cross(first.axis, middle.axis), last.axis) < 0 ? -1 : 1;  // of the three axes, as a frame
   const double a = dot(v, first.axis), b = sense * dot(v, middle.axis), c = dot(v, last.axis);
@@ -136,12 +139,12 @@ struct Axes {
   [[nodiscard]] Rotation to_file(const Rotation& rotation) const noexcept { return conjugate(of_world()) * rotation * of_body(); }
 
  private:
-  static Rotation down_from_up() noexcept { return rotation_about(right + forward, pi); }  // swaps x and y, and negates z
+  static Rotation down_from_up() noexcept { return rotation_about(axis::right + axis::forward, pi); }  // swaps x and y, and negates z
 
   [[nodiscard]] Rotation of_world() const noexcept { return world == WorldAxes::east_north_up ? no_rotation : down_from_up(); }
   [[nodiscard]] Rotation of_body() const noexcept {
     if (body == BodyAxes::right_forward_up) return no_rotation;
-    return body == BodyAxes::forward_right_down ? down_from_up() : rotation_about(up, pi / 2);
+    return body == BodyAxes::forward_right_down ? down_from_up() : rotation_about(axis::up, pi / 2);
   }
 };
 

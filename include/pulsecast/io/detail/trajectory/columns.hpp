@@ -160,7 +160,7 @@ class TrajectoryColumns {
         problem_ = "is no known column: expected perhaps '" + nearest_trajectory_column(names[i]) + "', or that it is to be left out",
         culprit_ = i;
     }
-    if (problem_.empty()) expect_whole();
+    if (problem_.empty()) require_whole();
   }
 
   /// What is wrong with them; empty if nothing is.
@@ -184,7 +184,7 @@ class TrajectoryColumns {
   }
 
   /// Times, all of a position, and not two attitudes.
-  void expect_whole() {
+  void require_whole() {
     using enum Quantity;
     const int xyz = count({x, y, z}), directions = count({east, north}), vertical = count({up, down}), angles = count({roll, pitch, yaw}),
               quaternion = count({qx, qy, qz, qw});

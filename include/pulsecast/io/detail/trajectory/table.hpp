@@ -27,17 +27,17 @@ struct TimeWindow {
   std::optional<double> end{};    ///< the last pose, if not given [s]
 
   void validate() const {
-    if (start) expect_finite("TimeWindow::start", *start, "s");
-    if (end) expect_finite("TimeWindow::end", *end, "s");
+    if (start) require_finite("TimeWindow::start", *start, "s");
+    if (end) require_finite("TimeWindow::end", *end, "s");
     if (start && end && *start > *end)
-      throw SettingError("TimeWindow::start", *start, "s", "no later than the end, " + pulsecast::detail::written(*end));
+      throw SettingError("TimeWindow::start", *start, "s", "no later than the end, " + pulsecast::detail::to_text(*end));
   }
 };
 
 /// What a trajectory file holds: `Waypoints(table.poses)` moves along it.
 struct TrajectoryTable {
   double start_time = 0;              ///< what the clock of the file shows at the first pose [s]
-  std::vector<Waypoint> poses;        ///< in order of time, from 0; where the platform jumps, a time stands twice
+  std::vector<TimedPose> poses;       ///< in order of time, from 0; where the platform jumps, a time stands twice
   std::vector<std::string> warnings;  ///< what was odd, but could be read
 };
 
@@ -52,7 +52,7 @@ struct TrajectoryTable {
 
 namespace detail {
 
-inline constexpr double largest_in_trajectory = 1e12;  ///< s, m or rad; where double still resolves 0.1 mm
+inline constexpr double max_in_trajectory = 1e12;  ///< s, m or rad; where double still resolves 0.1 mm
 
 class TrajectoryReader {
  public:
@@ -84,7 +84,7 @@ class TrajectoryReader {
 
  private:
   struct Row {
-    Waypoint pose;
+    TimedPose pose;
     std::size_t line = 0;
   };
 
@@ -180,7 +180,7 @@ class TrajectoryReader {
       const std::optional<TrajectoryColumn>& column = columns_->all()[i];
       if (!column) continue;
       const std::optional<double> number = TextTable::number_in(cells[i]);
-      if (!number || std::fabs(*number / column->per_si) > largest_in_trajectory)
+      if (!number || std::fabs(*number / column->per_si) > max_in_trajectory)
         table_.fail_here(i, TextTable::quoted(cells[i]) + " is no " + names_[i] +
                                 ": expected a finite number, with a decimal point, within 1e12 s, m or rad");
       values[column->quantity] = *number / column->per_si;
@@ -200,7 +200,7 @@ class TrajectoryReader {
     const Rotation given(values[qw], values[qx], values[qy], values[qz]);
     const double error = std::fabs(length(given) - 1);
     if (!(error <= 1e-3))
-      table_.fail_here("the quaternion has the length " + pulsecast::detail::written(length(given)) + ": expected 1, within 1e-3");
+      table_.fail_here("the quaternion has the length " + pulsecast::detail::to_text(length(given)) + ": expected 1, within 1e-3");
     if (error > 2e-6) not_unit_.at(table_.line());  // more than six decimals leave
     return format_.axes.from_file(normalize(given));
   }
@@ -211,7 +211,7 @@ class TrajectoryReader {
       if (earlier(rows_[i], rows_[i - 1])) unsorted_.at(rows_[i].line);
     if (unsorted_.count > 0) std::stable_sort(rows_.begin(), rows_.end(), earlier);
     const auto repeats = [this](const Row& before, const Row& row) {
-      const Waypoint &a = before.pose, &b = row.pose;
+      const TimedPose &a = before.pose, &b = row.pose;
       if (a.time != b.time || a.position != b.position || a.rotation != b.rotation) return false;
       repeated_.at(row.line);
       return true;
@@ -250,21 +250,21 @@ class TrajectoryReader {
       result_.poses.push_back(row->pose);
     }
     if (end > start) result_.poses.push_back(behind->pose.time == end ? behind->pose : between(behind, end));
-    for (Waypoint& pose : result_.poses) pose.time -= start;
+    for (TimedPose& pose : result_.poses) pose.time -= start;
     if (jumps.count > 0)
       warn(jumps.first, "has the time of the pose before it, but another pose, the first of " + std::to_string(jumps.count) +
                             ": the platform jumps there");
   }
 
   /// At a time between a row and the one before it.
-  [[nodiscard]] static Waypoint between(std::vector<Row>::const_iterator row, double time) {
-    const Waypoint &before = (row - 1)->pose, &after = row->pose;
+  [[nodiscard]] static TimedPose between(std::vector<Row>::const_iterator row, double time) {
+    const TimedPose &before = (row - 1)->pose, &after = row->pose;
     const auto pose = Waypoints({{0, before.position, before.rotation}, {after.time - before.time, after.position, after.rotation}})
                           .at(Tick::of_seconds(time - before.time));
     return {time, pose.position, pose.rotation};
   }
 
-  [[nodiscard]] static std::string seconds(double time) { return pulsecast::detail::written(time) + " s"; }
+  [[nodiscard]] static std::string seconds(double time) { return pulsecast::detail::to_text(time) + " s"; }
 
   void warn(std::size_t line, const std::string& text) {
     result_.warnings.push_back(table_.path() + ", " + TextTable::place(line) + ": " + text);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-#include "plan.hpp"
+#include "forecast_report.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -56,10 +56,10 @@ std::string told(const Estimate& e, const Unit& unit) {
 }
 
 /// Chooses settings, and says why.
-class Planner {
+class SettingsChooser {
  public:
-  Planner(const Options& options, const pulsecast::helios::SurveySettings& survey, const Forecasts& found)
-      : options_(options), asked_(options.plan), survey_(survey), found_(found) {}
+  SettingsChooser(const Options& options, const pulsecast::helios::SurveySettings& survey, const Forecasts& found)
+      : options_(options), asked_(options.forecast), survey_(survey), found_(found) {}
 
   [[nodiscard]] const Forecast* choose() const {
     std::vector<const Forecast*> able;
@@ -159,54 +159,54 @@ class Planner {
   [[nodiscard]] std::vector<const Forecast*> table() const {
     std::vector<const Forecast*> rows;
     for (const Forecast& f : found_.all) {
-      const bool outdone = std::any_of(found_.all.begin(), found_.all.end(), [&](const Forecast& other) {
+      const bool dominated = std::any_of(found_.all.begin(), found_.all.end(), [&](const Forecast& other) {
         return other.seconds.value < f.seconds.value && other.range_error.value <= f.range_error.value &&
                other.intensity_error.value <= f.intensity_error.value;
       });
-      if (!outdone || options_.verbose || &f == &found_.all.front()) rows.push_back(&f);
+      if (!dominated || options_.verbose || &f == &found_.all.front()) rows.push_back(&f);
     }
     std::sort(rows.begin(), rows.end(), [](const Forecast* a, const Forecast* b) { return a->seconds.value < b->seconds.value; });
     return rows;
   }
 
   const Options& options_;
-  const PlanOptions& asked_;
+  const ForecastOptions& asked_;
   const pulsecast::helios::SurveySettings& survey_;
   const Forecasts& found_;
 };
 
 }  // namespace
 
-bool plan(const Options& options, const SurveyFile& file, const Loading& how, Notes& notes) {
+bool forecast(const Options& options, const SurveyFile& file, const Loading& how, Notes& notes) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::string> scene_notes;
   const std::unique_ptr<pulsecast::helios::Simulation> simulation = load(file.survey, how, scene_notes);
   const double loading = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   notes.odd(simulation->warnings());
-  notes.expect_none();
-  if (simulation->plan().source.size() == 0) {
+  notes.require_none();
+  if (simulation->compiled().source.size() == 0) {
     std::cerr << "error: no leg is active: there is nothing to plan\n";
     return false;
   }
   const Forecasts found = forecasts_of(*simulation, file.survey, options, how.settings.seed, loading);
-  const Planner planner(options, file.survey, found);
-  planner.print();
+  const SettingsChooser chooser(options, file.survey, found);
+  chooser.print();
   if (options.verbose)
     std::cout << "planned in " << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading)
               << " s\n";
-  if (!options.plan.asks()) return true;
+  if (!options.forecast.asks()) return true;
 
   std::cout << '\n';
-  const Forecast* const chosen = planner.choose();
+  const Forecast* const chosen = chooser.choose();
   if (chosen == nullptr) {
-    planner.print("nearest: ", planner.nearest());
-    std::cerr << "error: no settings meet what was asked, " << planner.demands() << '\n';
+    chooser.print("nearest: ", chooser.nearest());
+    std::cerr << "error: no settings meet what was asked, " << chooser.demands() << '\n';
     return false;
   }
-  planner.print("best for what was asked: ", *chosen);
-  if (options.plan.apply) {
-    const std::filesystem::path& to = options.plan.apply_to.empty() ? options.survey : options.plan.apply_to;
-    write_survey_file(options, file, {planner.rings(*chosen), planner.bin_size(*chosen)}, to);
+  chooser.print("best for what was asked: ", *chosen);
+  if (options.forecast.apply) {
+    const std::filesystem::path& to = options.forecast.apply_to.empty() ? options.survey : options.forecast.apply_to;
+    write_survey_file(options, file, {chooser.rings(*chosen), chooser.bin_size(*chosen)}, to);
     if (!options.quiet) std::cout << "written to " << to.string() << '\n';
   }
   return true;

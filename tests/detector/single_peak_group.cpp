@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/detector/pulse_bunch.hpp>
+#include <pulsecast/detector/single_peak_group.hpp>
 
 #include <cmath>
 #include <limits>
@@ -26,7 +26,7 @@ double received(const std::vector<Reflection>& reflections, double time) {
   return sum;
 }
 
-double at(const PulseBunch& bunch, double x) { return bunch.power(Lanes{} + x)[0]; }
+double at(const SinglePeakGroup& group, double x) { return group.power(Lanes{} + x)[0]; }
 
 std::vector<Reflection> close_together(support::Generator& any) {
   std::vector<Reflection> reflections(1 + any.whole(40));
@@ -37,71 +37,71 @@ std::vector<Reflection> close_together(support::Generator& any) {
 }
 
 bool one(const std::vector<Reflection>& reflections, std::size_t room = 10) {
-  PulseBunch::Workspace w(room);
-  return PulseBunch(reflections, shape, interval, w).one();
+  SinglePeakGroup::Workspace w(room);
+  return SinglePeakGroup(reflections, shape, interval, w).one();
 }
 
 }  // namespace
 
-TEST_CASE("the sum of a bunch is that of its pulses from the last edge on, and highest at its peak") {
+TEST_CASE("the sum of a group is that of its pulses from the last edge on, and highest at its peak") {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
     const auto reflections = close_together(any);
-    PulseBunch::Workspace w(reflections.size());
-    const PulseBunch bunch(reflections, shape, interval, w);
-    REQUIRE(bunch.one());
+    SinglePeakGroup::Workspace w(reflections.size());
+    const SinglePeakGroup group(reflections, shape, interval, w);
+    REQUIRE(group.one());
     double farthest = 0;
     for (const Reflection& r : reflections) farthest = std::fmax(farthest, r.range);
-    CHECK(bunch.last_edge() == support::relative(2 * farthest / speed_of_light - 2 * shape.tau, 1e-14));
-    const double peak = bunch.peak(), top = at(bunch, peak);
+    CHECK(group.last_edge() == support::relative(2 * farthest / speed_of_light - 2 * shape.tau, 1e-14));
+    const double peak = group.peak(), top = at(group, peak);
     CHECK(peak > 0);
     CHECK(peak <= 2 + 1e-9);
     for (double x = 0; x < 10; x += 0.01) {
-      REQUIRE(at(bunch, x) <= top * (1 + 1e-14));
-      REQUIRE(std::fabs(at(bunch, x) - received(reflections, bunch.last_edge() + x * shape.tau)) < 1e-9 * top);
+      REQUIRE(at(group, x) <= top * (1 + 1e-14));
+      REQUIRE(std::fabs(at(group, x) - received(reflections, group.last_edge() + x * shape.tau)) < 1e-9 * top);
     }
   }
 }
 
-TEST_CASE("a bunch rises until its last edge has come in, so that nothing else is a peak") {
+TEST_CASE("a group rises until its last edge has come in, so that nothing else is a peak") {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
     const auto reflections = close_together(any);
-    PulseBunch::Workspace w(reflections.size());
-    const PulseBunch bunch(reflections, shape, interval, w);
+    SinglePeakGroup::Workspace w(reflections.size());
+    const SinglePeakGroup group(reflections, shape, interval, w);
     double before = 0;
     for (double x = -2; x < 0; x += 0.01) {
-      const double now = received(reflections, bunch.last_edge() + x * shape.tau);
+      const double now = received(reflections, group.last_edge() + x * shape.tau);
       REQUIRE(now >= before);
       before = now;
     }
   }
 }
 
-TEST_CASE("the range of a bunch is the mean by power, and its strongest reflection is that whose pulse is highest at the time") {
+TEST_CASE("the range of a group is the mean by power, and its strongest reflection is that whose pulse is highest at the time") {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
     const auto reflections = close_together(any);
-    PulseBunch::Workspace w(reflections.size());
-    const PulseBunch bunch(reflections, shape, interval, w);
+    SinglePeakGroup::Workspace w(reflections.size());
+    const SinglePeakGroup group(reflections, shape, interval, w);
     double power = 0, weighted = 0;
     for (const Reflection& r : reflections) power += r.power, weighted += r.power * (r.range - reflections[0].range);
-    CHECK(std::fabs(bunch.mean_range() - (reflections[0].range + weighted / power)) < 1e-12 * bunch.mean_range());
-    const double x = any.uniform(0, 4), time = bunch.last_edge() + x * shape.tau;
+    CHECK(std::fabs(group.mean_range() - (reflections[0].range + weighted / power)) < 1e-12 * group.mean_range());
+    const double x = any.uniform(0, 4), time = group.last_edge() + x * shape.tau;
     const auto share = [&](const Reflection& r) { return r.power * shape(time - arrival(r)); };
-    const double strongest = share(bunch.strongest(x));
+    const double strongest = share(group.strongest(x));
     for (const Reflection& r : reflections) REQUIRE(share(r) <= strongest * (1 + 1e-9));
   }
   // of equal ones, the first
   const std::vector<Reflection> equal{{10, 1, 5}, {10, 2, 6}, {10, 2, 7}, {10, 1, 8}, {10, 2, 9}, {10, 2, 10}};
-  PulseBunch::Workspace w(equal.size());
-  CHECK(PulseBunch(equal, shape, interval, w).strongest(2).object == 6);
+  SinglePeakGroup::Workspace w(equal.size());
+  CHECK(SinglePeakGroup(equal, shape, interval, w).strongest(2).object == 6);
 }
 
-TEST_CASE("what is no bunch is told from one") {
+TEST_CASE("what is no group is told from one") {
   CHECK(one({{50, 1}}));
   CHECK(one({{50, 1}, {50 + 1.999 * metres_per_tau, 1}}));
   CHECK_FALSE(one({{50, 1}, {50 + 2.001 * metres_per_tau, 1}}));

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include <pulsecast/accel/sah.hpp>
-#include <pulsecast/base/frozen.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/shared_array.hpp>
 
 namespace pulsecast::detail {
 
@@ -24,7 +24,7 @@ namespace pulsecast::detail {
 /// in sum. The primitives are brought into the order of its leaves.
 /// Source: Wald 2007 (bins); Ylitie, Karras & Laine 2017, sec. 3.2 (plan).
 template <std::floating_point Real>
-class TwoTree {
+class BinarySahTree {
  public:
   static constexpr std::size_t places = 8;  ///< of the nodes that are planned
 
@@ -35,7 +35,7 @@ class TwoTree {
   };
 
   /// At least one primitive, which must outlive the tree; up to so many a leaf.
-  TwoTree(std::span<Boxed<Real>> primitives, std::uint32_t leaf_size, unsigned threads)
+  BinarySahTree(std::span<Boxed<Real>> primitives, std::uint32_t leaf_size, unsigned threads)
       : primitives_(primitives), leaf_size_(leaf_size), spare_(primitives.size()), nodes_(primitives.size()) {
     // the upper levels node by node, each on all threads; then what is below them side by side
     struct Step {
@@ -47,7 +47,7 @@ class TwoTree {
     const std::size_t grain = threads == 1 ? primitives.size() : std::max<std::size_t>(primitives.size() / (8 * threads), 4096);
     std::vector<Step> steps{{{0, static_cast<std::uint32_t>(primitives.size()), 0, false, &root_, bounds(threads)}}};
     std::vector<std::size_t> subtrees;
-    std::vector<Stretch> space(1);
+    std::vector<Chunk> space(1);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (steps[i].task.size() <= grain) {
         const auto larger = [&](std::size_t a, std::size_t b) { return steps[a].task.size() > steps[b].task.size(); };
@@ -60,7 +60,7 @@ class TwoTree {
     }
     for_each_index(subtrees.size(), threads, [&](std::size_t i) {
       Step& step = steps[subtrees[i]];
-      std::vector<Stretch> own(1);
+      std::vector<Chunk> own(1);
       step.sums = build(step.task, own);
     });
     for (std::size_t i = steps.size(); i-- > 0;)
@@ -89,7 +89,7 @@ class TwoTree {
   }
 
  private:
-  static constexpr std::size_t most_slices = 16;
+  static constexpr std::size_t max_slices = 16;
   static constexpr std::size_t few =
       4096;  ///< primitives: a tree of so few is built at once, and these may be shapes with trees of their own
   static constexpr double leaf_cost = 1;  ///< of the tests in a leaf, where a step of the traversal costs 1
@@ -129,8 +129,8 @@ class TwoTree {
 
   /// What is in the slices along each axis.
   struct Bins {
-    Growing boxes[3][most_slices];
-    std::uint32_t counts[3][most_slices];
+    Growing boxes[3][max_slices];
+    std::uint32_t counts[3][max_slices];
 
     void clear(std::size_t slices) noexcept {
       for (std::size_t k = 0; k < 3; ++k) std::fill_n(boxes[k], slices, Growing()), std::fill_n(counts[k], slices, 0U);
@@ -141,8 +141,8 @@ class TwoTree {
     }
   };
 
-  /// A stretch of the primitives of a node, as a thread splits it.
-  struct Stretch {
+  /// A chunk of the primitives of a node, as a thread splits it.
+  struct Chunk {
     Bins bins;
     std::uint32_t to[2];  ///< where its primitives of either half go
     Growing centres[2];   ///< of these, doubled
@@ -154,8 +154,8 @@ class TwoTree {
   };
 
   [[nodiscard]] Bounds bounds(unsigned threads) const {
-    std::vector<Bounds> all(stretches(primitives_.size()));
-    for_each_stretch(primitives_.size(), threads, [&](std::size_t i, std::size_t begin, std::size_t end) {
+    std::vector<Bounds> all(chunk_count(primitives_.size()));
+    for_each_chunk(primitives_.size(), threads, [&](std::size_t i, std::size_t begin, std::size_t end) {
       Bounds own;
       for (std::size_t at = begin; at < end; ++at) own.extend(primitives_[at]);
       all[i] = own;
@@ -169,7 +169,7 @@ class TwoTree {
   [[nodiscard]] Boxed<Real>* array(bool spare) const noexcept { return spare ? spare_.data() : primitives_.data(); }
 
   /// Makes a node and all that is below it, and plans them.
-  Sums build(const Task& task, std::vector<Stretch>& space) {
+  Sums build(const Task& task, std::vector<Chunk>& space) {
     if (task.size() > 2) {
       const auto [first, second] = split(task, space, 1);
       const Sums of_first = build(first, space), of_second = build(second, space);
@@ -189,20 +189,19 @@ class TwoTree {
   }
 
   /// Makes a node of three primitives or more, and divides them. Both parts are left with levels enough to be halved down to single ones.
-  std::array<Task, 2> split(const Task& task, std::vector<Stretch>& space, unsigned threads) {
+  std::array<Task, 2> split(const Task& task, std::vector<Chunk>& space, unsigned threads) {
     const Boxed<Real>* const from = array(task.spare) + task.begin;
-    if (threads == 1 || task.size() <= 2 * stretch) threads = 1;
-    const std::size_t parts = threads == 1 ? 1 : stretches(task.size());
+    if (threads == 1 || task.size() <= 2 * chunk_size) threads = 1;
+    const std::size_t parts = threads == 1 ? 1 : chunk_count(task.size());
     space.resize(std::max(space.size(), parts));
     const auto each_part = [&](const auto& act) {
       if (threads == 1) return act(space[0], from, from + task.size());
-      for_each_stretch(task.size(), threads,
-                       [&](std::size_t i, std::size_t begin, std::size_t end) { act(space[i], from + begin, from + end); });
+      for_each_chunk(task.size(), threads,
+                     [&](std::size_t i, std::size_t begin, std::size_t end) { act(space[i], from + begin, from + end); });
     };
-    const std::size_t count = primitives_.size() <= few ? most_slices : std::min<std::size_t>(most_slices, 4 + task.size() / 16);
+    const std::size_t count = primitives_.size() <= few ? max_slices : std::min<std::size_t>(max_slices, 4 + task.size() / 16);
     const Slices<Real> slices(task.bounds.centres.min, task.bounds.centres.max, count);
-    each_part(
-        [&](Stretch& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept { put_in_bins(part.bins, slices, begin, end); });
+    each_part([&](Chunk& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept { put_in_bins(part.bins, slices, begin, end); });
     Bins together;
     const Bins* all = &space[0].bins;
     if (parts > 1) {
@@ -218,15 +217,15 @@ class TwoTree {
       (i < split.slice ? first : second).bounds.boxes.extend(all->boxes[split.axis][i]);
       if (i < split.slice) left += all->counts[split.axis][i];
     }
-    if (task.depth + 1 + levels_of_halving(std::max(left, task.size() - left)) > deepest) return halve(task);
+    if (task.depth + 1 + levels_of_halving(std::max(left, task.size() - left)) > max_depth) return halve(task);
     const std::uint32_t middle = first.end = second.begin = task.begin + left;
     std::uint32_t to[2] = {task.begin, middle};
     for (std::size_t i = 0; i < parts; ++i) {
-      Stretch& part = space[i];
+      Chunk& part = space[i];
       std::copy_n(to, 2, part.to);
       for (std::size_t s = 0; s < slices.count(); ++s) to[s < split.slice ? 0 : 1] += part.bins.counts[split.axis][s];
     }
-    each_part([&](Stretch& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
+    each_part([&](Chunk& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
       scatter(part, slices, split, array(!task.spare), begin, end);
     });
     for (std::size_t i = 0; i < parts; ++i)
@@ -258,7 +257,7 @@ class TwoTree {
   }
 
   /// Brings primitives to their halves, in the order in which they are.
-  static void scatter(Stretch& part, const Slices<Real>& slices, const Split& split, Boxed<Real>* to, const Boxed<Real>* begin,
+  static void scatter(Chunk& part, const Slices<Real>& slices, const Split& split, Boxed<Real>* to, const Boxed<Real>* begin,
                       const Boxed<Real>* end) noexcept {
     part.centres[0] = part.centres[1] = Growing();
     for (; begin != end; ++begin) {
@@ -291,7 +290,7 @@ class TwoTree {
     Split best;
     for (std::size_t k = 0; k < 3; ++k) {
       if (!slices.valid(k)) continue;
-      std::array<double, most_slices> second_cost;
+      std::array<double, max_slices> second_cost;
       Growing box;
       std::uint32_t count = 0;
       for (std::size_t i = slices.count(); i-- > 1;) {
@@ -338,8 +337,8 @@ class TwoTree {
 
   std::span<Boxed<Real>> primitives_;
   std::uint32_t leaf_size_;
-  Draft<Boxed<Real>> spare_;  ///< while it is built
-  Draft<Node> nodes_;
+  SharedBuffer<Boxed<Real>> spare_;  ///< while it is built
+  SharedBuffer<Node> nodes_;
   std::uint32_t root_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/scanner/one_of.hpp>
+#include <pulsecast/scanner/any_source.hpp>
 
 #include <type_traits>
 #include <vector>
@@ -22,7 +22,7 @@ using namespace pulsecast;
 namespace {
 using Fixed = Deflector<FixedBeam, Scanner>;
 using Swinging = Deflector<OscillatingMirror, Scanner>;
-using Emitter = OneOf<Fixed, Swinging>;
+using Emitter = AnySource<Fixed, Swinging>;
 static_assert(InstrumentSource<Emitter> && !WorldSource<Emitter>);
 
 const Scanner scanner{.pulse_rate = 1000, .pulses = 50};
@@ -47,11 +47,11 @@ TEST_CASE("legs of different platforms follow each other") {
   const Fixed device{FixedBeam{}, scanner};
   const Platform standing{Tripod{.position = {1, 2, 3}}, Mount{}, device};
   const Platform flying{StraightLine{.from = {0, 0, 100}, .to = {100, 0, 100}, .speed = 50}, Mount{}, device};
-  const Legs legs{std::vector<OneOf<std::decay_t<decltype(standing)>, std::decay_t<decltype(flying)>>>{standing, flying}};
+  const Legs legs{std::vector<AnySource<std::decay_t<decltype(standing)>, std::decay_t<decltype(flying)>>>{standing, flying}};
   CHECK(legs.pulse(3)->origin() == standing.pulse(3)->origin());
   CHECK(legs.pulse(53)->origin() == flying.pulse(3)->origin());
 }
 
 TEST_CASE("one of several refuses what it refuses alone") {
-  CHECK_THROWS_AS((OneOf<Scanner, Fixed>(Scanner{.pulse_rate = -1})), SettingError);
+  CHECK_THROWS_AS((AnySource<Scanner, Fixed>(Scanner{.pulse_rate = -1})), SettingError);
 }

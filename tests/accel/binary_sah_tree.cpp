@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/accel/two_tree.hpp>
+#include <pulsecast/accel/binary_sah_tree.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -17,7 +17,7 @@ using namespace pulsecast::support;
 namespace {
 
 template <class Real>
-using Tree = pulsecast::detail::TwoTree<Real>;
+using Tree = pulsecast::detail::BinarySahTree<Real>;
 
 std::vector<Box> random_boxes(std::uint64_t seed, std::size_t count) {
   Generator random(seed);
@@ -33,9 +33,9 @@ bool holds(const BoundingBox<Real>& outer, const BoundingBox<Real>& inner) {
   return true;
 }
 
-/// What becomes of a tree of twos as a tree of eights: sizes of leaves, and how many nodes do not hold all that is below them.
+/// What becomes of a binary tree as an 8-wide tree: sizes of leaves, and how many nodes do not hold all that is below them.
 struct Shape {
-  std::size_t nodes = 0, primitives = 0, largest_leaf = 0, most_children = 0, torn = 0;
+  std::size_t nodes = 0, primitives = 0, largest_leaf = 0, max_children = 0, torn = 0;
   std::vector<std::uint32_t> leaves{};  ///< where each begins, in the order in which they are met
 };
 
@@ -47,7 +47,7 @@ Shape shape_of(const Tree<Real>& tree) {
     const auto range = open.back();
     open.pop_back(), children.clear(), ++shape.nodes;
     tree.gather(range, 8, children);
-    shape.most_children = std::max(shape.most_children, children.size());
+    shape.max_children = std::max(shape.max_children, children.size());
     std::uint32_t at = range.begin;
     for (const auto& child : children) {
       if (child.begin != at || !holds(tree.box(range), tree.box(child))) ++shape.torn;
@@ -68,7 +68,7 @@ Shape shape_of(const Tree<Real>& tree) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a tree of twos holds every primitive once, in boxes that hold what is below", Real, float, double) {
+TEST_CASE_TEMPLATE("a binary tree holds every primitive once, in boxes that hold what is below", Real, float, double) {
   for (const std::size_t count : {1U, 2U, 3U, 4U, 5U, 9U, 100U, 5000U}) {
     CAPTURE(count);
     pulsecast::detail::BuildInput<Real> input(random_boxes(60 + count, count));
@@ -77,15 +77,15 @@ TEST_CASE_TEMPLATE("a tree of twos holds every primitive once, in boxes that hol
     CHECK(shape.torn == 0);
     CHECK(shape.primitives == count);
     CHECK(shape.largest_leaf <= 4);
-    CHECK(shape.most_children <= 8);
+    CHECK(shape.max_children <= 8);
     std::vector<int> seen(count);
     for (const auto& boxed : tree.primitives()) ++seen[boxed.primitive];
     CHECK(seen == std::vector<int>(count, 1));
   }
 }
 
-TEST_CASE("a tree of twos is the same on any number of threads") {
-  const std::vector<Box> boxes = random_boxes(61, 200'000);  // more than one stretch, and subtrees enough for all
+TEST_CASE("a binary tree is the same on any number of threads") {
+  const std::vector<Box> boxes = random_boxes(61, 200'000);  // more than one chunk, and subtrees enough for all
   pulsecast::detail::BuildInput<float> input(boxes);
   std::vector<pulsecast::detail::Boxed<float>> alone(input.primitives.begin(), input.primitives.end());
   const Tree<float> tree(alone, 4, 1);

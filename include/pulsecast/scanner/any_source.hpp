@@ -6,20 +6,20 @@
 #include <utility>
 #include <variant>
 
-#include <pulsecast/base/expect.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
 
 /// A source of one of several types, for where all must be of one: emitters of one device behind different optics,
-/// `Channels{std::vector<OneOf<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`, or platforms of different kinds
-/// one after another in `Legs`.
+/// `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`, or platforms of different
+/// kinds one after another in `Legs`.
 template <class First, class... Others>
-class OneOf {
+class AnySource {
  public:
   template <class Source>
-  requires std::constructible_from<std::variant<First, Others...>, Source>
-  OneOf(Source source) : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor): that is what it is for
+  requires std::constructible_from<std::variant<First, Others...>, Source> AnySource(Source source)
+      : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor): that is what it is for
 
   [[nodiscard]] PulseIndex size() const noexcept {
     return std::visit([](const auto& s) noexcept { return s.size(); }, source_);
@@ -30,9 +30,7 @@ class OneOf {
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const First&>().pulse(i)) {
     return std::visit([i](const auto& s) noexcept { return s.pulse(i); }, source_);
   }
-  void draw_for_leg(std::uint32_t leg)
-  requires DrawsByLeg<First> || (DrawsByLeg<Others> || ...)
-  {
+  void draw_for_leg(std::uint32_t leg) requires DrawsByLeg<First> ||(DrawsByLeg<Others> || ...) {
     const auto tell = [leg]<class Source>(Source& s) {
       if constexpr (DrawsByLeg<Source>) s.draw_for_leg(leg);
     };

@@ -14,20 +14,20 @@
 namespace pulsecast::support {
 
 /// All processes of a test: one, or those that mpirun has started.
-inline mpi::MpiTeam& mpi_team() {
+inline mpi::MpiGroup& mpi_group() {
   static mpi::MpiSession session;
-  static mpi::MpiTeam team;
-  return team;
+  static mpi::MpiGroup group;
+  return group;
 }
 
 /// A temporary folder of all of them.
 class SharedFolder {
  public:
   SharedFolder() {
-    if (mpi_team().first()) own_.emplace();
-    path_ = mpi_team().channel().from_first(own_ ? own_->path().string() : std::string());
+    if (mpi_group().first()) own_.emplace();
+    path_ = mpi_group().channel().from_first(own_ ? own_->path().string() : std::string());
   }
-  ~SharedFolder() { (void)mpi_team().channel().gather(0); }
+  ~SharedFolder() { (void)mpi_group().channel().gather(0); }
 
   [[nodiscard]] friend std::filesystem::path operator/(const SharedFolder& folder, std::string_view name) { return folder.path_ / name; }
 

@@ -22,7 +22,7 @@ namespace detail {
 
 /// Asks the system for pages of 2 MiB, where it has them, under memory that nothing has been written to: rays go anywhere, and looking
 /// up where a small page is takes longer than reading what is there.
-inline void wish_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t size) noexcept {
+inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t size) noexcept {
 #if defined(__linux__)
   constexpr std::size_t small = 4096, large = std::size_t{1} << 21;
   const std::size_t skipped = (small - reinterpret_cast<std::uintptr_t>(memory) % small) % small;
@@ -31,9 +31,9 @@ inline void wish_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]]
 }
 
 /// Memory of its own, so many bytes that nothing has been written to. Not a template, as compilers work hard on those for every type.
-[[nodiscard]] inline std::shared_ptr<void> memory_of(std::size_t size, std::align_val_t alignment) {
+[[nodiscard]] inline std::shared_ptr<void> allocate_shared(std::size_t size, std::align_val_t alignment) {
   std::shared_ptr<void> memory(::operator new(size, alignment), [=](void* bytes) { ::operator delete(bytes, alignment); });
-  wish_for_large_pages(memory.get(), size);
+  advise_huge_pages(memory.get(), size);
   return memory;
 }
 
@@ -42,11 +42,11 @@ inline void wish_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]]
 /// An array in the making: as made, its elements hold anything. Several threads may write to it, each where no other does. Copies share it.
 template <class T>
 requires std::is_trivially_copyable_v<T>
-class Draft {
+class SharedBuffer {
  public:
-  Draft() = default;
-  explicit Draft(std::size_t size)
-      : memory_(detail::memory_of(size * sizeof(T), std::align_val_t{alignof(T)})),
+  SharedBuffer() = default;
+  explicit SharedBuffer(std::size_t size)
+      : memory_(detail::allocate_shared(size * sizeof(T), std::align_val_t{alignof(T)})),
         elements_(static_cast<T*>(memory_.get())),
         size_(size) {}
 
@@ -68,29 +68,29 @@ class Draft {
 /// memory. Copies share it.
 template <class T>
 requires std::is_trivially_copyable_v<T>
-class Frozen {
+class SharedArray {
  public:
   using value_type = T;
 
-  Frozen() = default;
+  SharedArray() = default;
 
   /// Takes over what a build has made, and gives back what memory it had to spare.
-  Frozen(std::vector<T> made) {  // NOLINT(google-explicit-constructor): a vector that is done is one
+  SharedArray(std::vector<T> made) {  // NOLINT(google-explicit-constructor): a vector that is done is one
     size_ = made.size();
     if (size_ == made.capacity()) {
       elements_ = made.data();
       owner_ = std::shared_ptr<const void>(new std::vector<T>(std::move(made)));
     } else {
-      const Draft<T> copy(size_);
+      const SharedBuffer<T> copy(size_);
       std::copy(made.begin(), made.end(), copy.data());
       elements_ = copy.data(), owner_ = copy.memory();
     }
   }
-  Frozen(const Draft<T>& made)  // NOLINT(google-explicit-constructor): so is a draft
+  SharedArray(const SharedBuffer<T>& made)  // NOLINT(google-explicit-constructor): so is a buffer
       : elements_(made.data()), size_(made.size()), owner_(made.memory()) {}
 
   /// Elements that live as long as their owner does.
-  Frozen(std::span<const T> elements, std::shared_ptr<const void> owner)
+  SharedArray(std::span<const T> elements, std::shared_ptr<const void> owner)
       : elements_(elements.data()), size_(elements.size()), owner_(std::move(owner)) {}
 
   [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return elements_[i]; }
@@ -110,8 +110,8 @@ class Frozen {
 };
 
 /// Says that an object is made empty, to be filled by `archive` from what was kept of one that was built.
-struct Unfilled {
-  explicit Unfilled() = default;
+struct DeserializeTag {
+  explicit DeserializeTag() = default;
 };
 
 }  // namespace pulsecast

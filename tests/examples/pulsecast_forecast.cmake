@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 
 # Plans surveys with the survey program, and holds the plans against what comes of running them:
-# cmake -DPROGRAM=... -DFOLDER=... -DSURVEY=tests/examples/pulsecast/survey.xml -P pulsecast_plan.cmake
+# cmake -DPROGRAM=... -DFOLDER=... -DSURVEY=tests/examples/pulsecast/survey.xml -P pulsecast_forecast.cmake
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER})
 set(ENV{XDG_CACHE_HOME} ${FOLDER}/cache)
@@ -11,32 +11,32 @@ include(${CMAKE_CURRENT_LIST_DIR}/expect.cmake)
 
 # quantities and their units
 foreach(range 5 0mm -5mm 5s 5mm2 mm nan 1e999mm)
-  expect(2 "range-error.*'${range}': expected a length" plan ${SURVEY} --range-error=${range})
+  expect(2 "range-error.*'${range}': expected a length" forecast ${SURVEY} --range-error=${range})
 endforeach()
 foreach(intensity 2x 0 0% %)
-  expect(2 "intensity-error.*expected a share" plan ${SURVEY} --intensity-error ${intensity})
+  expect(2 "intensity-error.*expected a share" forecast ${SURVEY} --intensity-error ${intensity})
 endforeach()
 foreach(time 10 5m 1d 0s)
-  expect(2 "time.*'${time}': expected a duration" plan ${SURVEY} --time ${time})
+  expect(2 "time.*'${time}': expected a duration" forecast ${SURVEY} --time ${time})
 endforeach()
 foreach(memory 4 4G 4Gbit 0GB)
-  expect(2 "memory.*'${memory}': expected a size" plan ${SURVEY} --memory ${memory})
+  expect(2 "memory.*'${memory}': expected a size" forecast ${SURVEY} --memory ${memory})
 endforeach()
 foreach(asked "--range-error;5mm" "--time;10min" "--apply")
-  expect(2 "is for plan only" ${SURVEY} ${asked})
+  expect(2 "is for forecast only" ${SURVEY} ${asked})
 endforeach()
-expect(2 "--apply must know what for" plan ${SURVEY} --apply)
-expect(2 "expected SURVEY.xml" plan)
-expect(1 "missing.xml" plan missing.xml)
+expect(2 "--apply must know what for" forecast ${SURVEY} --apply)
+expect(2 "expected SURVEY.xml" forecast)
+expect(1 "missing.xml" forecast missing.xml)
 
 # what fits and what does not, of each kind and in any unit
-expect(0 "as it is: beamSampleQuality 2 .7 subrays., binSize_ns 0.25.*run time.*memory.*points.*files.*range error.*intensity error" plan ${SURVEY})
+expect(0 "as it is: beamSampleQuality 2 .7 subrays., binSize_ns 0.25.*run time.*memory.*points.*files.*range error.*intensity error" forecast ${SURVEY})
 foreach(able "--time;2h" "--time;600MIN" "--memory;900 GB" "--memory;500GiB" "--range-error;10m" "--range-error;1000cm" "--intensity-error;900%"
              "--intensity-error;9" "--time;2h;--memory;900GB;--range-error;10m;--intensity-error;9")
-  expect(0 "best for what was asked: beamSampleQuality" plan ${SURVEY} ${able})
+  expect(0 "best for what was asked: beamSampleQuality" forecast ${SURVEY} ${able})
 endforeach()
 foreach(unable "--time;0.001ms" "--memory;0.001kB" "--range-error;1e-9um" "--intensity-error;1e-12%" "--range-error;10m;--memory;1kB")
-  expect(1 "nearest: beamSampleQuality.*error: no settings meet what was asked" plan ${SURVEY} ${unable} --apply untouched.xml)
+  expect(1 "nearest: beamSampleQuality.*error: no settings meet what was asked" forecast ${SURVEY} ${unable} --apply untouched.xml)
 endforeach()
 if(EXISTS ${FOLDER}/untouched.xml)
   message(SEND_ERROR "a survey was written although no settings meet what was asked")
@@ -44,9 +44,9 @@ endif()
 
 # Sets `out` to the points that a survey is said to have as it is, and `low` and `high` to the ends of the interval.
 function(planned out low high)
-  execute_process(COMMAND ${PROGRAM} plan ${ARGN} WORKING_DIRECTORY ${FOLDER} OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  execute_process(COMMAND ${PROGRAM} forecast ${ARGN} WORKING_DIRECTORY ${FOLDER} OUTPUT_VARIABLE text ERROR_VARIABLE text)
   if(NOT text MATCHES "  points +([0-9]+) .([0-9]+) to ([0-9]+)")
-    message(SEND_ERROR "`plan ${ARGN}` says nothing of points:\n${text}")
+    message(SEND_ERROR "`forecast ${ARGN}` says nothing of points:\n${text}")
   endif()
   set(${out} ${CMAKE_MATCH_1} PARENT_SCOPE)
   set(${low} ${CMAKE_MATCH_2} PARENT_SCOPE)
@@ -87,7 +87,7 @@ endif()
 
 # Applies the cheapest settings there are, and sets `out` to the rings of subrays that were chosen: by time, so it may be others each time.
 function(applied out)
-  execute_process(COMMAND ${PROGRAM} plan ${ARGN} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  execute_process(COMMAND ${PROGRAM} forecast ${ARGN} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
   if(NOT result EQUAL 0 OR NOT text MATCHES "asked: beamSampleQuality ([0-9]+) .[0-9]+ subrays?., binSize_ns ([0-9.]+).*written to own/[a-z]+.xml")
     message(SEND_ERROR "nothing was applied: ${text}")
   endif()
@@ -108,7 +108,7 @@ if(NOT rest STREQUAL before)
   message(SEND_ERROR "more was changed than should be:\n${rest}\n${before}")
 endif()
 expect(0 "nothing is wrong" check own/new.xml)
-expect(0 "as it is: beamSampleQuality ${rings} " plan own/new.xml)
+expect(0 "as it is: beamSampleQuality ${rings} " forecast own/new.xml)
 file(READ ${folder}/survey.xml now)
 if(NOT now STREQUAL before)
   message(SEND_ERROR "the survey itself was changed")
@@ -117,7 +117,7 @@ file(READ ${FOLDER}/own/new.xml text)  # what stands there is replaced, however 
 string(REGEX REPLACE "beamSampleQuality=.${rings}. binSize_ns=\"[0-9.]+\"" "\n  winSize_ns='1' beamSampleQuality\n = '100'" text "${text}")
 file(WRITE ${FOLDER}/own/new.xml "${text}")
 applied(rings own/survey.xml --range-error 10m --apply)
-expect(0 "as it is: beamSampleQuality ${rings} " plan own/survey.xml)
+expect(0 "as it is: beamSampleQuality ${rings} " forecast own/survey.xml)
 applied(rings own/new.xml --range-error 10m --apply)
 file(READ ${FOLDER}/own/new.xml text)
 if(NOT text MATCHES "<FWFSettings binSize_ns=\"[0-9.]+\" *\n  winSize_ns='1' beamSampleQuality\n = '${rings}'/>")
@@ -142,8 +142,8 @@ if(left MATCHES "part")
   message(SEND_ERROR "a trial is left: ${left}")
 endif()
 
-expect(1 "error" plan own/survey.xml --range-error 10m --apply nowhere/new.xml)  # there is no such folder
-expect(1 "plane.obj" plan own/survey.xml --range-error 10m --apply astray.xml)  # its files would not be found from there
+expect(1 "error" forecast own/survey.xml --range-error 10m --apply nowhere/new.xml)  # there is no such folder
+expect(1 "plane.obj" forecast own/survey.xml --range-error 10m --apply astray.xml)  # its files would not be found from there
 if(EXISTS ${FOLDER}/astray.xml OR EXISTS ${FOLDER}/astray.xml.part)
   message(SEND_ERROR "a survey was written that cannot be read")
 endif()

@@ -25,7 +25,7 @@ namespace pulsecast {
 /// An edge that passed an age u before the last one, in tau, gives P (u + x)^2 e^-(u + x) a time x after it. Weigh each by P e^-u: with
 /// the sums M0, M1 and M2 of the weights times u^0, u and u^2, the sum of pulses is e^-x (M2 + 2 M1 x + M0 x^2), and its slope is zero at
 /// x = 1 + sqrt(1 - v) - m, with the mean m = M1 / M0 and the variance v = M2 / M0 - m^2 of the ages. Derived from `PulseShape`.
-class PulseBunch {
+class SinglePeakGroup {
  public:
   /// A number a reflection, and lanes to spare.
   struct Workspace {
@@ -33,9 +33,9 @@ class PulseBunch {
     explicit Workspace(std::size_t reflections) : ages(reflections + lane_count), weights(reflections + lane_count) {}
   };
 
-  /// Looks at reflections, and notes their ages and weights in a workspace, which is to be there as long as the bunch is. If they are none
+  /// Looks at reflections, and notes their ages and weights in a workspace, which is to be there as long as the group is. If they are none
   /// (`!one()`), for being too far apart, too many for the workspace, without power, or of no range, nothing else is to be asked.
-  PulseBunch(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval, Workspace& w) noexcept
+  SinglePeakGroup(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval, Workspace& w) noexcept
       : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()), per_tau_(1 / shape.tau) {
     if (reflections.empty() || reflections.size() + lane_count > w.ages.size()) return;
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
@@ -106,7 +106,7 @@ class PulseBunch {
     return reflections_[static_cast<std::size_t>(best[first])];
   }
 
-  /// The only echo of the bunch, whose peak is at a time, two-way [s], and of a height [W].
+  /// The only echo of the group, whose peak is at a time, two-way [s], and of a height [W].
   [[nodiscard]] Echo echo(double time, double height, EchoTiming timing) const noexcept {
     const Reflection& most = strongest((time - last_edge_) * per_tau_);
     return {.range = timing == EchoTiming::energy ? mean_range_ : 0.5 * speed_of_light * time,

@@ -1,0 +1,28 @@
+# SPDX-FileCopyrightText: 2026 the pulsecast contributors
+# SPDX-License-Identifier: MIT
+
+# Turns docs/cookbook.md into a test program. The first block of C++ is common to all recipes; each further block is a test case, named by
+# its heading. The expression in a comment `<!-- check: ... -->` after a block must be true at its end.
+function finish() {
+  if (body != "") cases = cases "\nTEST_CASE(\"" heading "\") {\n  const support::Kitchen kitchen;\n" body "}\n"
+  body = ""
+}
+/^#+ / { finish(); heading = $0; sub(/^#+ /, "", heading) }
+/^```cpp$/ { inside = 1; lines = 0; if (++blocks > 1) body = "#line " FNR + 1 " \"" FILENAME "\"\n"; next }
+/^```$/ && inside {
+  inside = 0
+  if (blocks > 1 && lines > 15) { print FILENAME ":" FNR ": " lines " lines; a recipe has at most 15" > "/dev/stderr"; failed = 1; exit 1 }
+  next
+}
+inside && /^#include / { includes = includes $0 "\n"; if (blocks > 1) body = body "\n"; next }
+inside && blocks == 1 { common = common $0 "\n"; next }
+inside { body = body $0 "\n"; if ($0 != "") ++lines; next }
+/^<!-- check: .* -->$/ {
+  sub(/^<!-- check: /, ""); sub(/ -->$/, "")
+  body = body "#line " FNR " \"" FILENAME "\"\n  CHECK((" $0 "));\n"
+}
+END {
+  if (failed) exit 1
+  finish()
+  printf "#include <doctest/doctest.h>\n#include \"cookbook/kitchen.hpp\"\n%s\n%s%s", includes, common, cases
+}
