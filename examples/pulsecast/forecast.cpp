@@ -28,6 +28,11 @@
 namespace fs = std::filesystem;
 using namespace pulsecast;
 using helios::CompiledSurvey;
+using helios::Receiving;
+using helios::Sample;
+using helios::SampleBlock;
+using helios::Simulation;
+using helios::SlotCount;
 using helios::SurveySettings;
 
 namespace {

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/helios/simulation.hpp>
+
 #include "options.hpp"
-#include "simulation.hpp"
 
 /// A figure that is expected, and two between which it will be 19 times in 20.
 struct Estimate {
@@ -17,7 +18,7 @@ struct Estimate {
 
 /// What a survey would come to with some settings.
 struct Forecast {
-  Receiving how{};
+  pulsecast::helios::Receiving how{};
   std::size_t subrays = 0;        ///< of a pulse
   Estimate seconds{};             ///< from start to end [s]
   Estimate memory{};              ///< at most, at a time [byte]
@@ -38,5 +39,5 @@ struct Forecasts {
 };
 
 /// Simulates samples of a survey at several settings. The simulation must be as made; `loading` is what that took [s].
-Forecasts forecasts_of(Simulation& simulation, const pulsecast::helios::SurveySettings& survey, const Options& options,
+Forecasts forecasts_of(pulsecast::helios::Simulation& simulation, const pulsecast::helios::SurveySettings& survey, const Options& options,
                        std::uint64_t seed, double loading);

@@ -10,6 +10,7 @@
 #include <iomanip>
 #include <iostream>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -176,17 +177,18 @@ class SettingsChooser {
 
 }  // namespace
 
-bool forecast(const Options& options, const SurveyFile& file, const Simulation::Settings& settings, Notes& notes) {
+bool forecast(const Options& options, const SurveyFile& file, const Loading& how, Notes& notes) {
   const auto start = std::chrono::steady_clock::now();
-  Simulation simulation(file.survey, settings);
+  std::vector<std::string> scene_notes;
+  const std::unique_ptr<pulsecast::helios::Simulation> simulation = load(file.survey, how, scene_notes);
   const double loading = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  notes.odd(simulation.warnings());
+  notes.odd(simulation->warnings());
   notes.require_none();
-  if (simulation.compiled().source.size() == 0) {
+  if (simulation->compiled().source.size() == 0) {
     std::cerr << "error: no leg is active: there is nothing to plan\n";
     return false;
   }
-  const Forecasts found = forecasts_of(simulation, file.survey, options, settings.seed, loading);
+  const Forecasts found = forecasts_of(*simulation, file.survey, options, how.settings.seed, loading);
   const SettingsChooser chooser(options, file.survey, found);
   chooser.print();
   if (options.verbose)

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "loading.hpp"
+#include "notes.hpp"
 #include "options.hpp"
-#include "simulation.hpp"
 #include "survey_files.hpp"
 
 /// The command `forecast`: says what a run would come to, and the cheapest settings that meet what is asked. False if none does.
-bool forecast(const Options& options, const SurveyFile& file, const Simulation::Settings& settings, Notes& notes);
+bool forecast(const Options& options, const SurveyFile& file, const Loading& loading, Notes& notes);

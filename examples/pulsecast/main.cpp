@@ -23,24 +23,27 @@
 #include <stop_token>
 #include <utility>
 
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/helios/simulation.hpp>
 #include <pulsecast/io/digest.hpp>
 #include <pulsecast/version.hpp>
 
 #include "../summary.hpp"
 #include "forecast_report.hpp"
+#include "loading.hpp"
 #include "notes.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "pages.hpp"
 #include "ranks.hpp"
 #include "run_folder.hpp"
-#include "simulation.hpp"
 #include "survey_files.hpp"
 #include "survey_inputs.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
 using helios::CompiledSurvey;
+using helios::Simulation;
 using helios::SurveySettings;
 
 namespace {
@@ -89,21 +92,21 @@ std::string prefix_of(const CompiledSurvey::Leg& leg) {
   return "leg" + std::string(3 - std::min<std::size_t>(3, number.size()), '0') + number;
 }
 
-Simulation::Settings settings_of(const Options& o, const SurveyFile& file, std::uint64_t seed) {
-  return {.seed = seed,
-          .echo_width = o.echo_width,
-          .waveforms = o.write_waveform,
-          .waveform_noise = o.waveform_noise,
-          .fixed_incidence = o.fixed_incidence,
-          .platform_noise = o.platform_noise,
-          .leg_noise = o.leg_noise,
-          .assets = o.assets,
+Loading loading_of(const Options& o, const SurveyFile& file, std::uint64_t seed) {
+  return {.settings = {.seed = seed,
+                       .echo_width = o.echo_width,
+                       .waveforms = o.write_waveform,
+                       .las_waveforms = o.format == "las" && o.write_waveform && !o.las_1_0,
+                       .waveform_noise = o.waveform_noise,
+                       .fixed_incidence = o.fixed_incidence,
+                       .platform_noise = o.platform_noise,
+                       .leg_noise = o.leg_noise,
+                       .assets = o.assets,
+                       .leg_places = file.leg_places,
+                       .place = file.place,
+                       .threads = o.threads},
           .scene_text = file.scene_text,
-          .leg_places = file.leg_places,
-          .place = file.place,
-          .las_waveforms = o.format == "las" && o.write_waveform && !o.las_1_0,
-          .store = o.store,
-          .threads = o.threads};
+          .store = o.store};
 }
 
 /// The command `run`.
@@ -122,18 +125,8 @@ class Session {
 
   int run() {
     const fs::path parent = options_.output / survey_.name;
-    std::optional<fs::path> again;
-    if (options_.resume) {
-      const RunFolders found = ranks_.first() ? lock_unfinished(parent, lock_) : RunFolders{};
-      const fs::path unfinished = ranks_.from_first(found.unfinished.value_or(fs::path()).string());
-      if (!unfinished.empty()) again = unfinished;
-      const fs::path newest = ranks_.from_first(found.newest.value_or(fs::path()).string());
-      if (!again && !newest.empty()) {
-        notes_.say("there is nothing to resume: the newest run, " + newest.string() + ", is complete");
-        return success;
-      }
-      if (!again) notes_.say("there is nothing to resume in " + parent.string() + ": this is a new run");
-    }
+    const auto [again, is_complete] = options_.resume ? run_to_resume(parent) : RunToResume{};
+    if (is_complete) return success;
     const double start_time = gps_week_seconds(std::stoll(ranks_.from_first(std::to_string(unix_time_of(options_.gps_start_time)))));
     const auto inputs = std::make_shared<SurveyInputs>(survey_, options_.assets);
     log_.how = how();
@@ -143,55 +136,104 @@ class Session {
       go_on_from(*again);
     else
       log_.start_time = start_time;
-    Simulation::Settings settings = settings_of(options_, file_, log_.seed);
-    settings.inputs = inputs;
-    settings.sharing = &ranks_;
-    settings.store.write = settings.store.write && ranks_.first();
-    Simulation simulation(survey_, settings);
-    if (again && log_.run >= simulation.runs())
-      throw FileError((*again / RunLog::name).string(), "line 3",
-                      "'run " + std::to_string(log_.run) + "': there are " + std::to_string(simulation.runs()) + ", from 0");
-    const bool has_clock = simulation.compiled().clock_start.has_value();
-    if (again && !has_clock && !options_.gps_start_time.empty())
-      require_same(*again, second_of_week(log_.start_time), second_of_week(start_time));
-    if (!again && has_clock) log_.start_time = *simulation.compiled().clock_start;
-    if (again && ranks_.first() && !log_.before.empty() && fs::exists(parent / log_.before)) {
-      const RunLock lock(parent / log_.before);  // whose file may have been left
-      RunLog::remove(parent / log_.before);
-    }
-    tell_notes(simulation);
+    const std::unique_ptr<Simulation> simulation = loaded(inputs);
+    if (again) require_run(*again, simulation->runs());
+    settle_start_time(*simulation, again, start_time);
+    if (again) forget_run_before(parent);
+    tell_notes(*simulation);
     if (!pages_.address().empty()) std::cout << "watch this run at " << pages_.address() << std::endl;
-    RunSummary all;
-    fs::path folder = again ? *again : new_folder(parent);
-    for (int r = log_.run; r < simulation.runs() && all.complete; ++r) {
-      log_.run = r;
-      if (r > 0) simulation.begin(r), tell_notes(simulation);
-      all.add(play(simulation, folder, std::exchange(again, std::nullopt).has_value()));
-      const fs::path done = folder;
-      if (!all.complete) break;
-      const std::optional<RunLock> lock_of_done = std::exchange(lock_, std::nullopt);  // until its log is gone
-      log_.run = r + 1, log_.files.clear(), log_.before = done.filename().string();
-      if (r + 1 < simulation.runs()) folder = new_folder(parent);  // so that there is always one that is not finished
-      if (ranks_.first()) RunLog::remove(done);
-    }
+    const RunSummary all = play_all(*simulation, parent, again);
     pages_.finish(all.complete);
-    if (all.complete && all.echoes == 0 && all.pulses() > 0) tell_of_nothing(simulation);
+    if (all.complete && all.echoes == 0 && all.pulses() > 0) tell_of_nothing(*simulation);
     const std::string traffic = ranks_.traffic();
-    if (!options_.quiet) {
-      print(all);
-      if (!traffic.empty()) std::cout << "  messages     " << traffic << '\n';
-      const auto fate = [&](const char* name, Fate f) {
-        if (all.count(f) > 0)
-          std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << all.count(f) << " pulses\n";
-      };
-      fate("with echoes", Fate::returned), fate("blocked", Fate::blocked);
-      for (const std::string& written : folders_) std::cout << "  " << written << '\n';
-    }
+    if (!options_.quiet) tell_summary(all, traffic);
     notes_.require_none();
     return all.complete ? success : interrupted;
   }
 
  private:
+  struct RunToResume {
+    std::optional<fs::path> folder{};
+    bool is_complete = false;  ///< there is none, as the newest run is complete
+  };
+
+  /// The run that is to go on, if there is one. Says so if there is not.
+  [[nodiscard]] RunToResume run_to_resume(const fs::path& parent) {
+    const RunFolders found = ranks_.first() ? lock_unfinished(parent, lock_) : RunFolders{};
+    const fs::path unfinished = ranks_.from_first(found.unfinished.value_or(fs::path()).string());
+    if (!unfinished.empty()) return {.folder = unfinished};
+    const fs::path newest = ranks_.from_first(found.newest.value_or(fs::path()).string());
+    if (newest.empty())
+      notes_.say("there is nothing to resume in " + parent.string() + ": this is a new run");
+    else
+      notes_.say("there is nothing to resume: the newest run, " + newest.string() + ", is complete");
+    return {.is_complete = !newest.empty()};
+  }
+
+  [[nodiscard]] std::unique_ptr<Simulation> loaded(const std::shared_ptr<SurveyInputs>& inputs) {
+    Loading loading = loading_of(options_, file_, log_.seed);
+    loading.inputs = inputs;
+    loading.sharing = &ranks_;
+    loading.store.write = loading.store.write && ranks_.first();
+    return load(survey_, loading, scene_notes_);
+  }
+
+  /// Throws unless the run that goes on is one of the survey's.
+  void require_run(const fs::path& folder, int runs) const {
+    if (log_.run >= runs)
+      throw FileError((folder / RunLog::name).string(), "line 3",
+                      "'run " + std::to_string(log_.run) + "': there are " + std::to_string(runs) + ", from 0");
+  }
+
+  /// The clock of a trajectory counts before the time that was asked for; of a run that goes on, its own time does.
+  void settle_start_time(const Simulation& simulation, const std::optional<fs::path>& again, double asked) {
+    const std::optional<double> clock = simulation.compiled().clock_start;
+    if (again && !clock && !options_.gps_start_time.empty()) require_same(*again, second_of_week(log_.start_time), second_of_week(asked));
+    if (!again && clock) log_.start_time = *clock;
+  }
+
+  /// Removes the log of the repetition before, which an interrupted run may have left.
+  void forget_run_before(const fs::path& parent) const {
+    if (!ranks_.first() || log_.before.empty() || !fs::exists(parent / log_.before)) return;
+    const RunLock lock(parent / log_.before);
+    RunLog::remove(parent / log_.before);
+  }
+
+  /// Simulates all repetitions that are left, each into a folder of its own.
+  RunSummary play_all(Simulation& simulation, const fs::path& parent, std::optional<fs::path> again) {
+    RunSummary all;
+    fs::path folder = again ? *again : new_folder(parent);
+    for (int r = log_.run; r < simulation.runs() && all.complete; ++r) {
+      log_.run = r;
+      if (r > 0) {
+        simulation.begin(r);
+        tell_notes(simulation);
+      }
+      all.add(play(simulation, folder, std::exchange(again, std::nullopt).has_value()));
+      const fs::path done = folder;
+      if (!all.complete) break;
+      const std::optional<RunLock> lock_of_done = std::exchange(lock_, std::nullopt);  // until its log is gone
+      log_.run = r + 1;
+      log_.files.clear();
+      log_.before = done.filename().string();
+      if (r + 1 < simulation.runs()) folder = new_folder(parent);  // so that there is always one that is not finished
+      if (ranks_.first()) RunLog::remove(done);
+    }
+    return all;
+  }
+
+  void tell_summary(const RunSummary& all, const std::string& traffic) const {
+    print(all);
+    if (!traffic.empty()) std::cout << "  messages     " << traffic << '\n';
+    const auto fate = [&](const char* name, Fate f) {
+      if (all.count(f) > 0)
+        std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << all.count(f) << " pulses\n";
+    };
+    fate("with echoes", Fate::returned);
+    fate("blocked", Fate::blocked);
+    for (const std::string& written : folders_) std::cout << "  " << written << '\n';
+  }
+
   [[nodiscard]] fs::path new_folder(const fs::path& parent) {
     fs::path folder;
     simulating = true;  // from here on, whoever is interrupted has a folder to leave in order
@@ -205,7 +247,7 @@ class Session {
 
   void tell_notes(const Simulation& simulation) {
     notes_.odd(simulation.warnings());
-    notes_.say(simulation.notes());
+    notes_.say(scene_notes_);
     notes_.require_none();
   }
 
@@ -345,15 +387,17 @@ class Session {
   Pages pages_;
   RunLog log_;
   std::optional<RunLock> lock_;  // of the folder that is written to, on the first process
-  std::vector<std::string> folders_;
+  std::vector<std::string> folders_, scene_notes_;
   Notes& notes_;
 };
 
 void tell(const Options& options, const SurveyFile& file, std::uint64_t seed, Notes& notes) {
   const SurveySettings& survey = file.survey;
-  const Simulation simulation(survey, settings_of(options, file, seed));
+  std::vector<std::string> scene_notes;
+  const std::unique_ptr<Simulation> loaded = load(survey, loading_of(options, file, seed), scene_notes);
+  const Simulation& simulation = *loaded;
   notes.odd(simulation.warnings());
-  notes.say(simulation.notes());
+  notes.say(scene_notes);
   notes.require_none();
   const CompiledSurvey& compiled = simulation.compiled();
   const Simulation::Scene scene = simulation.scene();
@@ -377,7 +421,9 @@ void tell(const Options& options, const SurveyFile& file, std::uint64_t seed, No
 }
 
 void preview(const Options& options, const SurveyFile& file, std::uint64_t seed, Notes& notes) {
-  const Simulation simulation(file.survey, settings_of(options, file, seed));
+  std::vector<std::string> scene_notes;
+  const std::unique_ptr<Simulation> loaded = load(file.survey, loading_of(options, file, seed), scene_notes);
+  const Simulation& simulation = *loaded;
   notes.odd(simulation.warnings());
   notes.require_none();
   std::error_code error;
@@ -396,7 +442,7 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
     std::cout << "1 pulse in " << stride << " of " << slots << ", " << summary.echoes << " points: " << path.string() << '\n';
 }
 
-int work(const Options& options, Ranks& ranks) try {
+int work(const Options& options, Ranks& ranks) {
   if (options.command != "run" && !ranks.first()) return success;  // which are for one
   Notes notes(options);
   notes.say(options.notes);
@@ -409,7 +455,7 @@ int work(const Options& options, Ranks& ranks) try {
   else if (!seed)
     seed = std::random_device{}();
   if (options.command == "check") {
-    notes.odd(check_without_scene(file.survey, file.leg_places));
+    notes.odd(helios::check_without_scene(file.survey, file.leg_places));
     notes.require_none();
     if (!options.quiet) std::cout << options.survey.string() << ": nothing is wrong\n";
   } else if (options.command == "info") {
@@ -417,10 +463,10 @@ int work(const Options& options, Ranks& ranks) try {
   } else if (options.command == "preview") {
     preview(options, file, *seed, notes);
   } else if (options.command == "forecast") {
-    (void)check_without_scene(file.survey, file.leg_places);
-    return forecast(options, file, settings_of(options, file, *seed), notes) ? success : bad_input;
+    (void)helios::check_without_scene(file.survey, file.leg_places);
+    return forecast(options, file, loading_of(options, file, *seed), notes) ? success : bad_input;
   } else {
-    (void)check_without_scene(file.survey, file.leg_places);  // before anything expensive
+    (void)helios::check_without_scene(file.survey, file.leg_places);  // before anything expensive
     Options settled = options;
     if (!options.epsg && options.format.starts_with("la")) settled.epsg = reference_system_of(file.survey.scene);
     if (ranks.count() > 1 && (options.page || options.live)) {
@@ -430,9 +476,6 @@ int work(const Options& options, Ranks& ranks) try {
     return Session(settled, file, *seed, ranks, notes).run();
   }
   return success;
-} catch (const SettingError& error) {  // of the survey: what the options say is checked where they are read
-  if (error.field().starts_with(options.survey.string())) throw;
-  throw error.of(options.survey.string());
 }
 
 }  // namespace
@@ -450,7 +493,7 @@ int main(int argc, char** argv) {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
     std::signal(SIGXFSZ, SIG_IGN);  // a file that would exceed the limit is an error then, which is told
-    return work(*options, *ranks);
+    return naming(options->survey.string(), [&] { return work(*options, *ranks); });  // of what the survey says
   } catch (const std::exception& error) {
     if (ranks) ranks->complain();
     std::cerr << (options && simulating && !options->quiet && isatty(STDERR_FILENO) != 0 ? "\n" : "") << "error: " << error.what() << '\n';

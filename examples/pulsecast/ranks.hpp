@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/helios/simulation.hpp>
 #include <pulsecast/run.hpp>
 
 #include "options.hpp"
-#include "scene_store.hpp"
-#include "simulation.hpp"
+#include "scene_sharing.hpp"
 
 /// What becomes of one leg, or of all legs of a strip: they are simulated, and written as `LegFiles` says.
 class LegRun {
@@ -20,7 +20,7 @@ class LegRun {
   virtual ~LegRun() = default;
   std::function<void(const pulsecast::EchoBatch&)> watch{};  ///< sees what is written; only where there is one process
   virtual void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval) = 0;
-  virtual pulsecast::RunSummary run(const Simulation& simulation, const pulsecast::RunOptions& options) = 0;
+  virtual pulsecast::RunSummary run(const pulsecast::helios::Simulation& simulation, const pulsecast::RunOptions& options) = 0;
   virtual void close() = 0;
 };
 

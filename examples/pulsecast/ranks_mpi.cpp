@@ -66,7 +66,7 @@ class SharedLegRun final : public LegRun {
     if (trajectory_ && interval > 0) trajectory_->add(leg.path(), start, leg.duration(), interval);
   }
 
-  RunSummary run(const Simulation& simulation, const RunOptions& options) override {
+  RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override {
     std::vector<MpiOutput*> outputs;
     for (const auto& output : outputs_) outputs.push_back(output.get());
     const auto simulate = [&](const RunOptions& part, const std::function<void(const EchoBatch&)>& sink) {

@@ -22,7 +22,7 @@ class OneLegRun final : public LegRun {
             const std::vector<std::string>& channels)
       : files_(folder, prefix, options, start_time, channels) {}
   void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override { files_.add_trajectory(leg, start, interval); }
-  RunSummary run(const Simulation& simulation, const RunOptions& options) override {
+  RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override {
     return simulation.run(options, [this](const EchoBatch& batch) {
       files_(batch);
       if (watch) watch(batch);

@@ -21,6 +21,7 @@
 #include <system_error>
 #include <thread>
 #include <tuple>
+#include <utility>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/io/input_file.hpp>
@@ -88,71 +89,98 @@ std::string RunLog::text() const {
   return text.str();
 }
 
+namespace {
+
+/// One line of a log: a key and its value.
+class LogLine {
+ public:
+  LogLine(std::string_view line, std::size_t number, const std::string& path) : line_(line), number_(number), path_(path) {
+    const std::size_t blank = std::min(line.find(' '), line.size());
+    key = line.substr(0, blank);
+    value = line.substr(std::min(blank + 1, line.size()));
+  }
+
+  void expect(bool holds) const {
+    if (holds) return;
+    const std::string shown = written_name(std::string(line_.substr(0, 80))) + (line_.size() > 80 ? "..." : "");
+    throw FileError(path_, "line " + std::to_string(number_), "'" + shown + "': it is not what a run left; this one cannot be resumed");
+  }
+
+  [[nodiscard]] bool is_end() const { return line_ == "end"; }
+
+  void read(std::string_view digits, auto& to) const {
+    const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), to);
+    expect(error == std::errc{} && rest == digits.data() + digits.size());
+  }
+
+  /// A number or fingerprint, and a name after it.
+  [[nodiscard]] std::pair<std::string_view, std::string> split() const {
+    const std::size_t at = std::min(value.find(' '), value.size());
+    const std::string_view name = value.substr(std::min(at + 1, value.size()));
+    expect(at > 0 && !name.empty() && std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }));
+    return {value.substr(0, at), std::string(name)};
+  }
+
+  std::string_view key, value;
+
+ private:
+  std::string_view line_;
+  std::size_t number_;
+  const std::string& path_;
+};
+
+constexpr std::array<std::string_view, 6> log_keys{"seed", "start_time", "run", "how", "input", "before"};  // in their order
+
+/// Reads the value of a key, by its place among them.
+void read_value(const LogLine& line, std::size_t key, RunLog& log) {
+  switch (key) {
+    case 0:
+      line.read(line.value, log.seed);
+      break;
+    case 1:
+      line.read(line.value, log.start_time);
+      line.expect(std::isfinite(log.start_time));
+      break;
+    case 2:
+      line.read(line.value, log.run);
+      line.expect(log.run >= 0);
+      break;
+    case 3:
+      log.how = line.value;
+      break;
+    case 4: {
+      const auto [fingerprint, file] = line.split();
+      line.expect(fingerprint.size() == 32 && fingerprint.find_first_not_of("0123456789abcdef") == fingerprint.npos);
+      line.expect(log.inputs.emplace(file, fingerprint).second);
+      break;
+    }
+    default:
+      line.expect(is_run_name(line.value));
+      log.before = line.value;
+  }
+}
+
+}  // namespace
+
 RunLog RunLog::parse(std::string_view text, const std::string& path) {
-  static constexpr std::array<std::string_view, 6> order{"seed", "start_time", "run", "how", "input", "before"};  // of the keys
   RunLog log;
   std::size_t number = 0, next = 0;  // of the line; of the key that may come next
   bool complete = false;
   for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n')) {
-    const std::string_view line = text.substr(0, end);
+    const LogLine line(text.substr(0, end), ++number, path);
     text.remove_prefix(end + 1);
-    ++number;
-    const std::size_t blank = std::min(line.find(' '), line.size());
-    const std::string_view key = line.substr(0, blank), value = line.substr(std::min(blank + 1, line.size()));
-    const auto expect = [&](bool holds) {
-      if (holds) return;
-      const std::string shown = written_name(std::string(line.substr(0, 80))) + (line.size() > 80 ? "..." : "");
-      throw FileError(path, "line " + std::to_string(number), "'" + shown + "': it is not what a run left; this one cannot be resumed");
-    };
-    const auto read = [&](std::string_view digits, auto& to) {
-      const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), to);
-      expect(error == std::errc{} && rest == digits.data() + digits.size());
-    };
-    /// A number or fingerprint, and a name after it.
-    const auto split = [&] {
-      const std::size_t at = std::min(value.find(' '), value.size());
-      const std::string_view name = value.substr(std::min(at + 1, value.size()));
-      expect(at > 0 && !name.empty() && std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }));
-      return std::pair(value.substr(0, at), std::string(name));
-    };
     if (complete) {
-      const auto [size, file] = split();
-      expect(key == "file" && file.find('/') == file.npos);
-      read(size, log.files[file]);
-      continue;
-    }
-    if (line == "end") {
-      expect(next >= 4);
+      const auto [size, file] = line.split();
+      line.expect(line.key == "file" && file.find('/') == file.npos);
+      line.read(size, log.files[file]);
+    } else if (line.is_end()) {
+      line.expect(next >= 4);
       complete = true;
-      continue;
-    }
-    const auto place = static_cast<std::size_t>(std::find(order.begin(), order.end(), key) - order.begin());
-    expect(place < order.size() && (place == next || (next >= 4 && place >= next)));
-    next = place == 4 ? 4 : place + 1;
-    switch (place) {
-      case 0:
-        read(value, log.seed);
-        break;
-      case 1:
-        read(value, log.start_time);
-        expect(std::isfinite(log.start_time));
-        break;
-      case 2:
-        read(value, log.run);
-        expect(log.run >= 0);
-        break;
-      case 3:
-        log.how = value;
-        break;
-      case 4: {
-        const auto [fingerprint, file] = split();
-        expect(fingerprint.size() == 32 && fingerprint.find_first_not_of("0123456789abcdef") == fingerprint.npos);
-        expect(log.inputs.emplace(file, fingerprint).second);
-        break;
-      }
-      default:
-        expect(is_run_name(value));
-        log.before = value;
+    } else {
+      const auto key = static_cast<std::size_t>(std::find(log_keys.begin(), log_keys.end(), line.key) - log_keys.begin());
+      line.expect(key < log_keys.size() && (key == next || (next >= 4 && key >= next)));
+      next = key == 4 ? 4 : key + 1;
+      read_value(line, key, log);
     }
   }
   if (!complete) throw FileError(path, "", "is cut short: the run cannot be resumed");

@@ -104,15 +104,14 @@ void tidy(const fs::path& folder, const fs::path& newest) {
 
 }  // namespace
 
-BuiltParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const std::function<BuiltParts()>& build,
-                        std::vector<std::string>& notes) {
+KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const BuildParts& build, std::vector<std::string>& notes) {
   std::uintmax_t size = 0;
   for (const fs::path& file : inputs.files) {
     std::error_code error;
     const std::uintmax_t one = fs::file_size(file, error);
     size += error ? 0 : one;
   }
-  if (store.folder.empty() || (!store.read && !store.write) || size < worth_keeping) return build();
+  if (store.folder.empty() || (!store.read && !store.write) || size < worth_keeping) return {.built = build()};
 
   const fs::path path = store.folder / (place_of(inputs) + ".scene"), warnings_path = fs::path(path).replace_extension(".notes");
   io::SceneSources sources{inputs.files, inputs.settings + this_program()};
@@ -121,7 +120,7 @@ BuiltParts stored_parts(const SceneStore& store, const SceneInputs& inputs, cons
   try {
     key = io::scene_key(sources, inputs.content);
   } catch (const FileError&) {  // whoever builds the scene will say so
-    return build();
+    return {.built = build()};
   }
   if (store.read) {
     auto warnings = read_warnings(warnings_path, key);
@@ -130,51 +129,52 @@ BuiltParts stored_parts(const SceneStore& store, const SceneInputs& inputs, cons
       std::error_code ignored;
       for (const fs::path& used : {path, warnings_path}) fs::last_write_time(used, fs::file_time_type::clock::now(), ignored);
       notes.push_back("the scene was built before, and comes from " + path.string());
-      return {{opened.scene->parts().begin(), opened.scene->parts().end()}, *std::move(warnings), path, key};
+      return {{{opened.scene->parts().begin(), opened.scene->parts().end()}, *std::move(warnings)}, path, key};
     }
   }
-  BuiltParts built = build();
-  if (!store.write) return built;
+  KeptParts made{.built = build()};
+  if (!store.write) return made;
   try {
     std::error_code error;
     fs::create_directories(store.folder, error);
     if (error) throw FileError(store.folder.string(), "", "the folder cannot be made: " + error.message());
-    const SurveyScene scene(built.parts, MovingIndexSettings{.to = 1});
+    const SurveyScene scene(made.built.parts, MovingIndexSettings{.to = 1});
     const std::uintmax_t room = fs::space(store.folder, error).available;
     if (scene.memory() > (error ? max_kept : std::min(max_kept, room)) / 2)
       throw FileError(store.folder.string(), "", "it is too large for there");
     replace(warnings_path, [&](const fs::path& own) {
       io::OutputFile file(own);
       file.write(hex(key) + '\n');
-      for (const std::string& warning : built.warnings) file.write(warning + '\n');
+      for (const std::string& warning : made.built.warnings) file.write(warning + '\n');
       file.write(std::string_view("end\n"));
       file.commit();
     });
     replace(path, [&](const fs::path& own) { io::save_scene(own, scene, key); });
     tidy(store.folder, path);
     notes.push_back("the scene is kept for the next run, in " + path.string());
-    built.kept = path, built.key = key;
+    made.file = path;
+    made.key = key;
   } catch (const FileError& error) {
     notes.push_back(std::string("the scene is not kept for the next run: ") + error.what());
   }
-  return built;
+  return made;
 }
 
 namespace {
 
 /// Puts a scene into a file for a while, in memory if there is room. No file if there is none anywhere.
-void keep_for_now(BuiltParts& built) {
+void keep_for_now(KeptParts& kept) {
   const std::uint64_t mark = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
   std::error_code ignored;
   for (const fs::path& folder : {fs::path("/dev/shm"), fs::temp_directory_path(ignored)}) try {
-      const SurveyScene scene(built.parts, MovingIndexSettings{.to = 1});
+      const SurveyScene scene(kept.built.parts, MovingIndexSettings{.to = 1});
       std::error_code error;
       const std::uintmax_t room = fs::space(folder, error).available;
       if (error || room < scene.memory() + (scene.memory() >> 3)) continue;
       const fs::path path = folder / ("pulsecast-" + hex(mark) + ".scene");
-      built.key = {mark, ~mark};
-      io::save_scene(path, scene, built.key);
-      built.kept = path;
+      kept.key = {mark, ~mark};
+      io::save_scene(path, scene, kept.key);
+      kept.file = path;
       return;
     } catch (const FileError&) {  // there may be room elsewhere
     }
@@ -189,36 +189,36 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 }  // namespace
 
-BuiltParts shared_parts(SceneSharing& sharing, const SceneStore& store, const SceneInputs& inputs, const std::function<BuiltParts()>& build,
-                        std::vector<std::string>& notes) {
-  BuiltParts built;
-  if (sharing.builds()) built = stored_parts(store, inputs, build, notes);
-  if (!sharing.shared()) return built;
+KeptParts shared_parts(SceneSharing& sharing, const SceneStore& store, const SceneInputs& inputs, const BuildParts& build,
+                       std::vector<std::string>& notes) {
+  KeptParts kept;
+  if (sharing.builds()) kept = stored_parts(store, inputs, build, notes);
+  if (!sharing.shared()) return kept;
   bool for_now = false;
-  if (sharing.builds() && built.kept.empty()) {
-    keep_for_now(built);
-    for_now = !built.kept.empty();
+  if (sharing.builds() && kept.file.empty()) {
+    keep_for_now(kept);
+    for_now = !kept.file.empty();
   }
-  const std::string path = sharing.from_builder(built.kept.string());
-  const std::string key = sharing.from_builder(std::string(reinterpret_cast<const char*>(&built.key), sizeof built.key));
+  const std::string path = sharing.from_builder(kept.file.string());
+  const std::string key = sharing.from_builder(std::string(reinterpret_cast<const char*>(&kept.key), sizeof kept.key));
   std::string warnings;
-  for (const std::string& warning : built.warnings) warnings += warning + '\n';
+  for (const std::string& warning : kept.built.warnings) warnings += warning + '\n';
   warnings = sharing.from_builder(std::move(warnings));
 
-  std::memcpy(&built.key, key.data(), sizeof built.key);
+  std::memcpy(&kept.key, key.data(), sizeof kept.key);
   std::string reason = "there is no room for it in a file";
   if (!path.empty()) {  // whoever has built it lets its own copy go for this one
-    auto opened = io::open_scene<SurveyScene>(path, built.key, MovingIndexSettings{.to = 1});
+    auto opened = io::open_scene<SurveyScene>(path, kept.key, MovingIndexSettings{.to = 1});
     reason = opened.reason;
-    if (opened.scene) built.parts.assign(opened.scene->parts().begin(), opened.scene->parts().end());
+    if (opened.scene) kept.built.parts.assign(opened.scene->parts().begin(), opened.scene->parts().end());
   }
-  if (built.parts.empty()) built = build();
-  built.warnings = lines_of(warnings);
+  if (kept.built.parts.empty()) kept = {.built = build()};
+  kept.built.warnings = lines_of(warnings);
   if (!reason.empty()) notes.push_back("each process has a scene of its own: " + reason);
   sharing.barrier();
   if (for_now) {
     std::error_code ignored;
     fs::remove(path, ignored);
   }
-  return built;
+  return kept;
 }

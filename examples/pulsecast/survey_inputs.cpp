@@ -18,11 +18,7 @@ using namespace pulsecast;
 using io::Fingerprint;
 
 SurveyInputs::SurveyInputs(const helios::SurveySettings& survey, const std::vector<fs::path>& assets)
-    : scene_(helios::scene_files(survey.scene)) {
-  for (const fs::path& folder : assets) {
-    std::error_code error;
-    if (fs::is_directory(folder / "spectra", error)) spectra_.push_back(folder / "spectra");
-  }
+    : scene_(helios::scene_files(survey.scene)), spectra_(helios::spectra_folders(assets)) {
   for (const helios::LegSettings& leg : survey.legs)
     if (leg.platform.trajectory) trajectories_.push_back(leg.platform.trajectory->file);
 }

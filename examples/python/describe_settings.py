@@ -3,11 +3,11 @@
 """Writes what C++ cannot ask of its own structs: the names of their members, their types as Python writes them, and what the comments
 beside them say.
 
-    describe_settings.py survey_settings.hpp OUT.inc STUBS.pyi.in OUT.pyi
+    describe_settings.py OUT.inc STUBS.pyi.in OUT.pyi HEADER...
 
 A struct becomes a specialisation of `Described` with its name, doc and members; an enum one with the names of its values. So the
-classes of the Python module have the members and docstrings of the header, and a new member needs to be written in one place only. The
-type stubs get the same classes, in place of the line `# settings`. Fails at a line of the header that it does not understand.
+classes of the Python module have the members and docstrings of the headers, and a new member needs to be written in one place only. The
+type stubs get the same classes, in place of the line `# settings`. Fails at a line of a header that it does not understand.
 """
 
 import re
@@ -48,7 +48,7 @@ def describe(lines):
 def parse(lines, known):
     """As `describe`, with types as C++ writes them. Adds to `known` what they are called besides."""
     comment, at, inside_function = [], None, False
-    for number, line in enumerate(lines, 1):
+    for line in lines:
         if line.startswith("///"):
             comment.append(line[3:].strip())
         elif match := re.match(r"(?:enum class|struct) (\w+)(?: : [\w:]+)? \{(.*)$", line):
@@ -78,7 +78,7 @@ def parse(lines, known):
             at[3].append((match["name"], match["type"], " ".join(above) or match["doc"] or ""))
             above = []
         elif line.strip():
-            sys.exit(f"line {number} is not understood: {line}")
+            sys.exit(f"this line is not understood: {line}")
 
 
 def cpp_of(described):
@@ -113,9 +113,12 @@ def docstring(text):
     return '"""' + text.replace("\\", "\\\\") + '"""'
 
 
-def main(header, cpp_file, stub_template, stub_file):
-    with open(header, encoding="utf-8") as file:
-        described = list(describe(file.read().splitlines()))
+def main(cpp_file, stub_template, stub_file, *headers):
+    lines = []
+    for header in headers:  # each after those whose types it names
+        with open(header, encoding="utf-8") as file:
+            lines += file.read().splitlines()
+    described = list(describe(lines))
     with open(cpp_file, "w", encoding="utf-8") as file:
         file.writelines(cpp_of(described))
     with open(stub_template, encoding="utf-8") as file:

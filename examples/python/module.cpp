@@ -21,13 +21,14 @@
 #include <pulsecast/python/bind.hpp>
 #include <pulsecast/version.hpp>
 
-#include "../pulsecast/simulation.hpp"
+#include "../pulsecast/loading.hpp"
 #include "settings.hpp"
 
 namespace py = pybind11;
 using namespace pulsecast;
 using namespace py::literals;
 using helios::CompiledSurvey;
+using helios::Simulation;
 using Paths = std::vector<std::filesystem::path>;
 
 namespace {
@@ -92,17 +93,17 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
   std::unique_ptr<Simulation> simulation;
   {
     const py::gil_scoped_release free;
-    check_without_scene(settings);
-    simulation = std::make_unique<Simulation>(settings, Simulation::Settings{.seed = seed ? *seed : settings.seed.value_or(0),
-                                                                             .echo_width = echo_width,
-                                                                             .waveforms = waveforms,
-                                                                             .waveform_noise = waveform_noise,
-                                                                             .fixed_incidence = fixed_incidence,
-                                                                             .platform_noise = platform_noise,
-                                                                             .leg_noise = leg_noise,
-                                                                             .assets = std::move(assets),
-                                                                             .meshes = std::move(meshes),
-                                                                             .threads = threads});
+    (void)helios::check_without_scene(settings);
+    simulation = load(settings, {.seed = seed ? *seed : settings.seed.value_or(0),
+                                 .echo_width = echo_width,
+                                 .waveforms = waveforms,
+                                 .waveform_noise = waveform_noise,
+                                 .fixed_incidence = fixed_incidence,
+                                 .platform_noise = platform_noise,
+                                 .leg_noise = leg_noise,
+                                 .assets = std::move(assets),
+                                 .meshes = std::move(meshes),
+                                 .threads = threads});
     if (run > 0) simulation->begin(run);
   }
   warn(simulation->warnings());

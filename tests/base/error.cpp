@@ -44,3 +44,12 @@ TEST_CASE("errors survive being copied") {
   CHECK(std::string(copy.what()) == original.what());
   CHECK(copy.field() == "a");
 }
+
+TEST_CASE("a setting error gets the name of what the setting belongs to, once") {
+  const auto refused = [] { return naming("leg 3", []() -> int { throw SettingError("Scanner::pulse_rate", -5, "Hz", "at least 0"); }); };
+  CHECK_THROWS_WITH_AS(refused(), "leg 3: Scanner::pulse_rate is -5 Hz, but must be at least 0", SettingError);
+  CHECK_THROWS_WITH_AS(naming("leg 3", refused), "leg 3: Scanner::pulse_rate is -5 Hz, but must be at least 0", SettingError);
+  CHECK_THROWS_WITH_AS(naming("a.xml", refused), "a.xml: leg 3: Scanner::pulse_rate is -5 Hz, but must be at least 0", SettingError);
+  CHECK_THROWS_WITH_AS(naming("a.xml", [] { throw FileError("b.obj", "", "no such file"); }), "b.obj: no such file", FileError);
+  CHECK(naming("leg 3", [] { return 7; }) == 7);
+}

@@ -35,7 +35,8 @@ version
 xmlns
 END
 code=$work/code
-cat include/pulsecast/helios/document.hpp include/pulsecast/helios/detail/xml/*.hpp | grep -v '^#include' | sed 's|//.*||' > "$code"
+xml=include/pulsecast/helios/detail/xml  # its number.hpp first, which has the units
+cat $xml/number.hpp include/pulsecast/helios/document.hpp $xml/*.hpp | grep -v '^#include' | sed 's|//.*||' > "$code"
 grep -o '"[A-Za-z][A-Za-z0-9_]*"' "$code" | tr -d '"' | sort -u > "$work/literals"
 grep -vxF -f "$work/others" "$work/literals" > "$work/names"
 grep -vxF -f "$work/literals" "$work/others" | sed 's|^|tests/examples/check_surveys_page.sh: this is no literal any more: |' >> "$faults"
@@ -52,7 +53,7 @@ awk '/^```/ { inside = !inside; next }
 grep -vxF -f "$work/words" "$work/names" | sed "s|^|$page does not name, in backticks: |" >> "$faults"
 
 # Options are the names in the calls that add them, and in the list of those without effect.
-grep -E 'add_(option|flag)\(|^ *(static .*)?\{+"[A-Za-z]+", (true|false), "' examples/pulsecast/options.cpp |
+grep -E 'add_(option|flag)\(|^ *(constexpr .*)?\{+"[A-Za-z]+", (true|false), "' examples/pulsecast/options.cpp |
   sed 's|type_name([^)]*)||' | grep -oE '"[-A-Za-z0-9,]+"' | tr -d '"' | tr ',' '\n' | sed 's|^-*||' | grep -vx survey |
   sort -u > "$work/options"
 [ "$(wc -l < "$work/options")" -gt 30 ] || echo "examples/pulsecast/options.cpp: the options cannot be found" >> "$faults"

@@ -48,6 +48,17 @@ class SettingError : public std::invalid_argument {
   double value_;
 };
 
+/// Calls a function. A setting that it refuses is told as one of `name`, unless it is already.
+template <class Function>
+decltype(auto) naming(const std::string& name, const Function& function) {
+  try {
+    return function();
+  } catch (const SettingError& error) {
+    if (error.field().starts_with(name)) throw;
+    throw error.of(name);
+  }
+}
+
 /// A file that is missing, malformed, truncated or cannot be written. Thrown by the rooms beside the core only.
 class FileError : public std::runtime_error {
  public:

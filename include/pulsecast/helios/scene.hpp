@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
 #include <system_error>
@@ -18,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-#include <pulsecast/helios/detail/motion.hpp>
+#include <pulsecast/helios/detail/part_motion.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/leaf_angles.hpp>
@@ -258,11 +257,7 @@ class SceneBuilder {
     Similarity placement{.scale = transform.scale, .translation = transform.translation};
     for (const RotationList& turns : transform.rotations) placement.rotation = turns.rotation() * placement.rotation;
     placement.rotation = normalize(placement.rotation);
-    try {
-      placement.validate();
-    } catch (const SettingError& error) {
-      throw error.of("part '" + part.id + "'");
-    }
+    naming("part '" + part.id + "'", [&] { placement.validate(); });
     ObjectId object = 0;
     const auto [end, error] = std::from_chars(part.id.data(), part.id.data() + part.id.size(), object);
     const bool is_number = error == std::errc{} && end == part.id.data() + part.id.size();
@@ -316,7 +311,7 @@ class SceneBuilder {
     Box box;
     for (const SurveyPart& part : all) box.extend(box_of(part));
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (!settings_of_[i]->motions.empty()) all[i].motion = motion(*settings_of_[i], box.centre());
+      if (!settings_of_[i]->motions.empty()) all[i].motion = detail::part_motion(*settings_of_[i], box.centre(), step_of(*settings_of_[i]));
   }
 
   /// The time from one step of a part to the next [s].
@@ -326,41 +321,6 @@ class SceneBuilder {
       return part.dynamic_interval ? scene * std::max(1.0, std::floor(*part.dynamic_interval / scene)) : scene;
     }
     return settings_.dynamic_step * part.dynamic_step / options_.pulse_rate;
-  }
-
-  std::shared_ptr<const PartMotion> motion(const PartSettings& part, const Vec3& scene_centre) const {
-    const double step = step_of(part);
-    std::vector<MotionSequence> sequences;
-    std::optional<std::size_t> again;
-    std::map<std::string, std::size_t> seen;
-    for (const MotionSequenceSettings* s = &part.motions.front(); s != nullptr;) {
-      seen.emplace(s->id, sequences.size());
-      SteadyMotion steady = steady_of(part, *s, scene_centre, step);
-      if (s->loop > 0) steady.duration = step * s->loop;
-      sequences.push_back({.motions = {steady}});
-      if (s->loop == 0 || !s->next) break;
-      const auto next = std::find_if(part.motions.begin(), part.motions.end(), [&](const auto& m) { return m.id == *s->next; });
-      if (next == part.motions.end()) break;
-      if (const auto back = seen.find(next->id); back != seen.end()) {
-        again = back->second;
-        break;
-      }
-      s = &*next;
-    }
-    return std::make_shared<const PartMotion>(sequences, again);
-  }
-
-  /// What all motions of a sequence do in one step.
-  SteadyMotion steady_of(const PartSettings& part, const MotionSequenceSettings& sequence, const Vec3& scene_centre, double step) const {
-    if (const std::string problem = motion_problem(sequence); !problem.empty())
-      throw SettingError("part '" + part.id + "', dmotion '" + sequence.id + "': motions (number)",
-                         static_cast<double>(sequence.motions.size()), "", problem);
-    const MotionSteps steps = motion_steps(sequence, scene_centre);
-    const auto all = steps.all.value_or(MotionStep{}).settled();
-    if (!steps.own) return steady_motion(all, step);
-    const auto own = steps.own->settled();
-    const SteadyMotion turn = steady_motion({own.rotation, {}}, step);
-    return {.velocity = (own.position + all.position) / step, .axis = turn.axis, .rate = turn.rate};
   }
 
   SceneSettings settings_;

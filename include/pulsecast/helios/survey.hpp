@@ -128,13 +128,13 @@ class SurveyCompiler {
     const double turn = s.head_stop - s.head_start, speed = head_rate(survey_.scanner.channels.front(), s);
     const bool stands = paths_[k].duration == 0;
     double duration = paths_[k].duration;
-    if (paths_.legs_connect() && k > 0 && k + 1 == survey_.legs.size()) return 0;  // it only says where the way ends
+    if (only_ends(survey_, k)) return 0;
     if (speed != 0 && turn / speed > 0)
       duration = std::max(duration, turn / speed - s.warm_up);
-    else if (turn * s.head_speed < 0)
+    else if (turns_away(s))
       throw SettingError(paths_.leg_name(k) + ": headRotateStop_deg", degrees(s.head_stop), "deg",
                          "on the side of headRotateStart_deg to which the head turns");
-    else if (turn != 0 && !leg.duration_max && s.active)
+    else if (head_never_stops(survey_.scanner.channels.front(), leg) && s.active)
       throw SettingError(paths_.leg_name(k) + ": headRotatePerSec_deg", degrees(s.head_speed), "deg/s",
                          "other than 0, for a scanner whose headRotatePerSecMax_deg is, or the leg would never end");
     if (leg.duration_max) {

@@ -13,13 +13,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
 #include <pulsecast/cloud.hpp>
 #include <pulsecast/helios/document.hpp>
 
-#include "../../../examples/pulsecast/simulation.hpp"
+#include "../../../examples/pulsecast/loading.hpp"
 
 using namespace pulsecast;
 
@@ -47,10 +48,10 @@ int main(int count, char** arguments) try {
   const auto threads = static_cast<unsigned>(std::atoi(arguments[3]));
   const auto seed = static_cast<std::uint64_t>(std::atoll(arguments[2]));
   const helios::SurveyDocument document = helios::read_survey(arguments[1], {.assets = assets});
-  const Simulation simulation(document.survey, {.seed = seed, .assets = assets, .threads = threads});
+  const std::unique_ptr<helios::Simulation> simulation = load(document.survey, {.seed = seed, .assets = assets, .threads = threads});
   Cloud cloud;
   const double start = user_seconds();
-  simulation.run({.threads = threads}, [&](const EchoBatch& batch) { cloud(batch); });
+  simulation->run({.threads = threads}, [&](const EchoBatch& batch) { cloud(batch); });
   std::cout << user_seconds() - start << '\n';
 
   if (*arguments[4] == '\0') return 0;

@@ -17,6 +17,8 @@
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
+#include <pulsecast/helios/detail/passing.hpp>
+#include <pulsecast/helios/detail/trajectory_format.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
@@ -65,20 +67,11 @@ class LegPaths {
   /// Calls a function; a setting that it refuses is told as one of a leg.
   template <class Function>
   auto of_leg(std::size_t k, const Function& function) const {
-    try {
-      return function();
-    } catch (const SettingError& error) {
-      throw error.of(leg_name(k));
-    }
-  }
-
-  /// Whether legs go to where the next one begins.
-  [[nodiscard]] bool legs_connect() const {
-    return survey_.platform.kind != PlatformKind::stationary && survey_.platform.kind != PlatformKind::interpolated;
+    return naming(leg_name(k), function);
   }
 
   /// Whether a platform that moves does not in this leg.
-  [[nodiscard]] bool is_stationary(std::size_t k) const { return legs_connect() && stays_in_place(survey_.legs, k); }
+  [[nodiscard]] bool is_stationary(std::size_t k) const { return helios::is_stationary(survey_, k); }
 
  private:
   void place(const Ground auto& ground) {
@@ -212,7 +205,7 @@ class LegPaths {
       double from = 0, most = 0;
       const double whole = flight.duration().seconds();
       for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-        from = nearest_moment(flight, i, wanted[i].position, from, whole);
+        from = detail::nearest_moment(flight, i, wanted[i].position, from, whole);
         const Vec3 miss = wanted[i].position - flight.at(Tick::of_seconds(from)).position;
         points[i].position += miss, most = std::max(most, length(miss));
       }
@@ -270,62 +263,12 @@ class LegPaths {
   void split(std::size_t k, std::size_t end, const std::shared_ptr<const Plan>& plan, double whole) {
     double from = 0;
     for (std::size_t i = k; i < end; ++i) {
-      double to = i + 1 == end ? whole : nearest_moment(*plan, i + 1 - k, places_[i + 1], from, whole);
+      double to = i + 1 == end ? whole : detail::nearest_moment(*plan, i + 1 - k, places_[i + 1], from, whole);
       if constexpr (std::same_as<Plan, MulticopterFlight>)
-        if (i + 1 < end) to = end_of_turn(*plan, to, places_[i + 2], plan->passes()[i + 2 - k].seconds());
+        if (i + 1 < end) to = detail::end_of_turn(*plan, to, places_[i + 2], plan->passes()[i + 2 - k].seconds());
       paths_[i] = {{plan, Tick::of_seconds(from)}, to - from};
       from = to;
     }
-  }
-
-  /// When a plan passes its waypoint of a number, at a place, after a time: when it is nearest.
-  template <class Plan>
-  [[nodiscard]] static double nearest_moment(const Plan& plan, std::size_t number, const Vec3& place, double from, double whole) {
-    const auto distance = [&](double t) {
-      const Tick tick = Tick::of_seconds(t);
-      Vec3 off = -place;
-      if constexpr (std::same_as<Plan, MulticopterFlight>)
-        off += plan.motion().at(tick).position;
-      else
-        off += plan.at(tick).position;
-      return std::hypot(off.x, off.y);
-    };
-    constexpr int steps = 20'000;
-    const double step = (whole - from) / steps;
-    const auto after = [&](int i) { return distance(from + i * step); };
-    int nearest = steps;
-    if constexpr (std::same_as<Plan, MulticopterFlight>) {  // which says about when
-      const double begun = (plan.passes()[number].seconds() - from) / step;
-      nearest = begun > 0 ? static_cast<int>(std::min(begun, static_cast<double>(steps))) : 0;
-      while (nearest > 0 && after(nearest - 1) < after(nearest)) --nearest;
-      while (nearest < steps && after(nearest + 1) <= after(nearest)) ++nearest;
-    } else {  // the first of its nearest approaches that is no farther than any other by more than a metre
-      double least = after(0), before = least;
-      for (int i = 1; i <= steps; ++i) least = std::min(least, after(i));
-      for (int i = 1; i <= steps && nearest == steps; ++i) {
-        const double now = after(i);
-        if (now > before && before <= least + 1) nearest = i - 1;
-        before = now;
-      }
-    }
-    const double best = nearest < steps ? from + nearest * step : whole;
-    double low = std::max(from, best - step), high = std::min(whole, best + step);  // golden-section search would do no better
-    for (int i = 0; i < 60; ++i) {
-      const double a = low + (high - low) / 3, b = high - (high - low) / 3;
-      const bool first_is_nearer = distance(a) < distance(b);
-      (first_is_nearer ? high : low) = first_is_nearer ? b : a;
-    }
-    return 0.5 * (low + high);
-  }
-
-  /// When a flight, from a time until another, first goes straight at a place, within a degree.
-  [[nodiscard]] static double end_of_turn(const MulticopterFlight& flight, double from, const Vec3& place, double until) {
-    for (double t = from; t < until; t += 0.01) {
-      const auto state = flight.motion().at(Tick::of_seconds(t));
-      const Vec3 way = place - state.position;
-      if (dot(state.velocity, way) >= std::cos(radians(1)) * length(state.velocity) * length(way)) return t;
-    }
-    return from;
   }
 
   void follow() {
@@ -343,12 +286,7 @@ class LegPaths {
       if (!of_file.columns) of_file.columns = t->columns;
       if (!of_file.separator) of_file.separator = t->separator;
       t->columns = of_file.columns, t->separator = of_file.separator;
-      io::TrajectoryFormat format = io::helios_format();
-      format.angles = survey_.platform.rotation_spec == RotationSpec::canonical ? io::helios_canonical : io::helios_arinc_705;
-      format.separator = t->separator.value_or(format.separator), format.fixed_separator = t->separator.has_value();
-      format.angle_unit = t->angles_in_degrees ? io::AngleUnit::degree : io::AngleUnit::radian;
-      if (t->position_only) format.columns = {"t", "x", "y", "z"};
-      if (t->columns) columns_of(*t, format);
+      const io::TrajectoryFormat format = detail::trajectory_format(*t, survey_.platform.rotation_spec);
       const Key key{t->file.string(), t->start, t->end};
       if (!tables.contains(key)) {
         io::TrajectoryTable table = of_leg(k, [&] { return io::read_trajectory(t->file, format, {t->start, t->end}); });
@@ -361,21 +299,6 @@ class LegPaths {
       const auto path = std::make_shared<const Waypoints>(table.poses);
       paths_[k] = {{path, {}}, path->duration().seconds()};
     }
-  }
-
-  static void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format) {
-    std::vector<std::pair<int, const char*>> columns{{t.columns->time, "t"}, {t.columns->x, "x"}, {t.columns->y, "y"}, {t.columns->z, "z"}};
-    if (!t.position_only) columns.insert(columns.end(), {{t.columns->roll, "roll"}, {t.columns->pitch, "pitch"}, {t.columns->yaw, "yaw"}});
-    int most = 0;
-    for (const auto& [place, name] : columns) most = std::max(most, place);
-    format.names = io::ColumnNames::nowhere;
-    format.columns.clear();
-    for (int i = 0; i <= most; ++i) format.columns.push_back("column " + std::to_string(i));
-    for (std::string& c : format.columns) std::replace(c.begin(), c.end(), ' ', '_');
-    format.left_out = format.columns;
-    for (const auto& [place, name] : columns) format.columns[static_cast<std::size_t>(place)] = name;
-    std::erase_if(format.left_out,
-                  [&](const std::string& c) { return std::find(format.columns.begin(), format.columns.end(), c) == format.columns.end(); });
   }
 
   void warn(std::string text) {

@@ -138,9 +138,17 @@ struct MirrorGate {
   return gate;
 }
 
+[[nodiscard]] inline bool scans_too_slowly(const ChannelSettings& channel, const LegScannerSettings& leg) {
+  return leg.scan_frequency < channel.scan_frequency_min;
+}
+
+[[nodiscard]] inline bool scans_too_fast(const ChannelSettings& channel, const LegScannerSettings& leg) {
+  return channel.scan_frequency_max > 0 && leg.scan_frequency > channel.scan_frequency_max;
+}
+
 inline void require_scan_frequency(const ChannelSettings& channel, const LegScannerSettings& leg) {
   const double f = leg.scan_frequency, most = channel.scan_frequency_max;
-  if (f < channel.scan_frequency_min || (most > 0 && f > most))
+  if (scans_too_slowly(channel, leg) || scans_too_fast(channel, leg))
     throw SettingError("scanFreq_hz", f, "Hz",
                        "within what the device can: " + pulsecast::detail::to_text(channel.scan_frequency_min) + " to " +
                            (most > 0 ? pulsecast::detail::to_text(most) : "any") + " Hz");
@@ -207,10 +215,6 @@ struct OpticBuilder {
   }
 };
 
-}  // namespace detail
-
-namespace detail {
-
 /// By how much an optic turns the beam up at least and at most in a leg; 0 for those that do otherwise [rad].
 [[nodiscard]] inline std::pair<double, double> deflections(const SurveyOptic::AnyOptic& optic) {
   const auto* const mirror = std::get_if<PolygonMirror>(&optic);
@@ -234,6 +238,16 @@ inline void require_finite(const char* field, const Formula& error, const std::p
 /// The rate at which the head turns in a leg [rad/s].
 [[nodiscard]] inline double head_rate(const ChannelSettings& channel, const LegScannerSettings& leg) noexcept {
   return std::clamp(leg.head_speed, -channel.head_speed_max, channel.head_speed_max);
+}
+
+/// Whether the head turns away from where it is to stop.
+[[nodiscard]] inline bool turns_away(const LegScannerSettings& leg) noexcept {
+  return (leg.head_speed > 0 && leg.head_stop < leg.head_start) || (leg.head_speed < 0 && leg.head_stop > leg.head_start);
+}
+
+/// Whether a leg waits for a head that does not turn.
+[[nodiscard]] inline bool head_never_stops(const ChannelSettings& channel, const LegSettings& leg) noexcept {
+  return !leg.duration_max && head_rate(channel, leg.scanner) == 0 && leg.scanner.head_stop != leg.scanner.head_start;
 }
 
 /// The optic of a channel in a leg. Documents give the beam's origin along the axes of the platform, as they do the mount's, so that the

@@ -27,6 +27,9 @@ namespace pulsecast::helios {
 /// Whether any material is ground, in any run, as far as the MTL files say: a scene without cannot answer for `onGround`.
 [[nodiscard]] bool has_ground(const SceneSettings& scene);
 
+/// The folders of spectra in folders of assets: `spectra` in each that has it.
+[[nodiscard]] std::vector<std::filesystem::path> spectra_folders(const std::vector<std::filesystem::path>& assets);
+
 namespace detail {
 
 class SceneFiles {
@@ -116,6 +119,15 @@ inline bool says_ground(const std::string& line) {
 }  // namespace detail
 
 inline std::vector<std::filesystem::path> scene_files(const SceneSettings& scene) { return detail::files_of(scene).take(); }
+
+inline std::vector<std::filesystem::path> spectra_folders(const std::vector<std::filesystem::path>& assets) {
+  std::vector<std::filesystem::path> folders;
+  for (const std::filesystem::path& folder : assets) {
+    std::error_code error;
+    if (std::filesystem::is_directory(folder / "spectra", error)) folders.push_back(folder / "spectra");
+  }
+  return folders;
+}
 
 inline bool has_ground(const SceneSettings& scene) {
   const detail::SceneFiles files = detail::files_of(scene);

@@ -4,92 +4,30 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <pugixml.hpp>
 
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/asset_search.hpp>
 #include <pulsecast/helios/detail/xml/document.hpp>
+#include <pulsecast/helios/detail/xml/number.hpp>
+#include <pulsecast/helios/detail/xml/output.hpp>
 
 /// An element is described once, by a function `fields(io, settings)` that names its attributes and children in turn. With an `XmlInput`
 /// it reads them, with an `XmlOutput` it writes them. What a document does not say stays as it was: to inherit is to read twice.
 namespace pulsecast::helios {
-
-/// A unit that documents speak: so much times its number is SI, divided by so much.
-struct XmlUnit {
-  const char* symbol = "";  ///< for messages
-  double factor = 1;
-  double divisor = 1;  ///< so that 0.25 ns is the number nearest to 0.25e-9 s
-
-  [[nodiscard]] double si(double number) const noexcept { return number * factor / divisor; }
-
-  /// The number, as short as it can be so that `si` of it is the value again; the nearest if there is none.
-  [[nodiscard]] double number(double value) const noexcept {
-    const double about = value * divisor / factor;
-    if (factor == 1 && divisor == 1) return value;
-    for (const int digits : {15, 16, 17}) {
-      std::array<char, 40> text;
-      const char* const end = std::to_chars(text.data(), text.data() + text.size(), about, std::chars_format::general, digits).ptr;
-      double rounded = 0;
-      std::from_chars(text.data(), end, rounded);
-      if (si(rounded) == value) return rounded;
-    }
-    double below = about, above = about;
-    for (int step = 0; step < 4; ++step) {
-      below = std::nextafter(below, -std::numeric_limits<double>::infinity());
-      above = std::nextafter(above, std::numeric_limits<double>::infinity());
-      if (si(below) == value) return below;
-      if (si(above) == value) return above;
-    }
-    return about;
-  }
-};
-
-namespace units {
-inline constexpr XmlUnit one{}, metre{"m"}, second{"s"}, hertz{"Hz"}, radian{"rad"}, watt{"W"}, metre_per_second{"m/s"};
-inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 1e3}, nanosecond{"ns", 1, 1e9}, nanometre{"nm", 1, 1e9},
-    nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", std::numbers::pi / 180};
-}  // namespace units
-
-/// A number as a text; without an exponent where that is legible.
-[[nodiscard]] inline std::string xml_number(double value) {
-  if (value == 0) return "0";
-  const double size = std::abs(value);
-  if (!(size >= 1e-6 && size < 1e15)) return pulsecast::detail::to_text(value);
-  std::array<char, 64> digits;
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};
-}
-
-/// The number that a text is, all of it, but for blanks around it.
-[[nodiscard]] inline std::optional<double> number_of(std::string_view text) noexcept {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || std::isnan(value)) return std::nullopt;
-  return value;
-}
-
-/// Words and what they stand for.
-template <class Value>
-using XmlWords = std::initializer_list<std::pair<std::string_view, Value>>;
 
 /// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. Everything that was asked for is known; `finish`
 /// reports the rest.
@@ -345,20 +283,6 @@ class XmlInput {
     return a.size() == b.size() && edit_distance(a, b) == 0;
   }
 
-  /// Three numbers with a separator between them; blanks may be several.
-  [[nodiscard]] static std::optional<Vec3> vector_of(std::string_view text, char separator, double size_max) {
-    Vec3 found{};
-    for (int i = 0; i < 3; ++i) {
-      text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-      const std::size_t end = i < 2 ? text.find(separator) : text.size();
-      const auto component = end == std::string_view::npos ? std::nullopt : number_of(text.substr(0, end));
-      if (!component || !(std::abs(*component) <= size_max)) return std::nullopt;
-      found[i] = *component;
-      text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return found;
-  }
-
   [[nodiscard]] static bool is_among(const std::vector<std::string>& known, std::string_view name) {
     return std::find(known.begin(), known.end(), name) != known.end();
   }
@@ -416,82 +340,6 @@ class XmlInput {
   const AssetSearch& search_;
   std::vector<std::string> known_{}, known_children_{}, required_{};
   bool params_, takes_text_ = false;
-};
-
-/// Writes an element: the same calls as `XmlInput`, the other way around.
-class XmlOutput {
- public:
-  static constexpr bool reads = false;
-
-  explicit XmlOutput(pugi::xml_node node, bool params = false) : node_(node), params_(params) {}
-
-  [[nodiscard]] pugi::xml_node node() const noexcept { return node_; }
-
-  /// Infinity is not written: it stands for no limit, which is what a document says by silence.
-  void number(const char* name, const double& value, const XmlUnit& unit, double /*low*/, double /*high*/) {
-    if (std::isfinite(value)) put(name, "double", xml_number(unit.number(value)));
-  }
-  void number(const char* name, const std::optional<double>& value, const XmlUnit& unit, double low, double high) {
-    if (value) number(name, *value, unit, low, high);
-  }
-  void whole(const char* name, const int& value, int /*low*/, int /*high*/) { put(name, "integer", std::to_string(value)); }
-  void flag(const char* name, const bool& value) { put(name, "boolean", value ? "true" : "false"); }
-  void text(const char* name, const std::string& value) { put(name, "string", value); }
-  void text(const char* name, const std::optional<std::string>& value) {
-    if (value) put(name, "string", *value);
-  }
-
-  template <class Value>
-  void choice(const char* name, const Value& value, XmlWords<Value> words) {
-    for (const auto& [word, meaning] : words) {
-      if (meaning != value) continue;
-      put(name, "string", std::string(word));
-      return;
-    }
-  }
-
-  void vector(const char* name, const Vec3& value, double /*size_max*/) {
-    put(name, "vec3", xml_number(value.x) + ";" + xml_number(value.y) + ";" + xml_number(value.z));
-  }
-  void vector(const char* name, const std::optional<Vec3>& value, double size_max) {
-    if (value) vector(name, *value, size_max);
-  }
-
-  void file(const char* name, const std::filesystem::path& value) {
-    if (!value.empty()) put(name, "string", std::filesystem::absolute(value).string());
-  }
-
-  template <class Write>
-  void child(const char* name, Write write) {
-    XmlOutput inner(node_.append_child(name));
-    write(inner);
-  }
-
-  template <class Value, class Fields>
-  void children(const char* name, const std::vector<Value>& values, Fields fields) {
-    for (const Value& value : values) {
-      XmlOutput inner(node_.append_child(name));
-      fields(inner, value);
-    }
-  }
-
-  void without_effect(std::initializer_list<const char*> /*names*/, const char* /*why*/ = "") {}
-  void require(std::initializer_list<const char*> /*names*/) {}
-
- private:
-  void put(const char* name, const char* type, const std::string& value) {
-    if (!params_) {
-      node_.append_attribute(name).set_value(value.c_str());
-      return;
-    }
-    pugi::xml_node param = node_.append_child("param");
-    param.append_attribute("type").set_value(type);
-    param.append_attribute("key").set_value(name);
-    param.append_attribute("value").set_value(value.c_str());
-  }
-
-  pugi::xml_node node_;
-  bool params_;
 };
 
 }  // namespace pulsecast::helios

@@ -30,21 +30,12 @@ class LegChecks {
   /// Checks one leg and where it leads; `leg` is its element, and `resolution` its `verticalResolution_deg` [rad], if it has one.
   void check(pugi::xml_node leg, std::size_t i, double resolution = 0) const {
     check_platform(leg, i);
-    const bool is_end =
-        legs_connect() && survey_.legs.size() > 1 && i + 1 == survey_.legs.size();  // says where the way ends, and scans nothing
-    if (!is_end) check_scanner(leg, i, resolution);
+    if (!only_ends(survey_, i)) check_scanner(leg, i, resolution);
   }
 
  private:
-  /// Whether legs go to where the next one begins.
-  [[nodiscard]] bool legs_connect() const {
-    return survey_.platform.kind != PlatformKind::stationary && survey_.platform.kind != PlatformKind::interpolated;
-  }
-
   /// Whether the platform stays where it is for as long as a leg lasts.
-  [[nodiscard]] bool stays(std::size_t i) const {
-    return survey_.platform.kind == PlatformKind::stationary || (legs_connect() && stays_in_place(survey_.legs, i));
-  }
+  [[nodiscard]] bool stays(std::size_t i) const { return survey_.platform.kind == PlatformKind::stationary || is_stationary(survey_, i); }
 
   /// A number that was computed, to six decimals.
   [[nodiscard]] static std::string brief(double value) { return xml_number(std::round(value * 1e6) / 1e6); }
@@ -66,14 +57,14 @@ class LegChecks {
       if (platform.smooth_turn) io.warn("smoothTurn", std::string("a smooth turn") + why);
       if (platform.yaw_at_departure) io.warn("yawAtDeparture_deg", std::string("yawAtDeparture_deg") + why);
     }
-    if (!legs_connect()) return;
+    if (!legs_connect(survey_.platform.kind)) return;
     const std::size_t legs = survey_.legs.size();
     const bool turns = settings.scanner.head_stop != settings.scanner.head_start;
     if (legs == 1 && !settings.duration_max && !turns)
       io.report().fault(io.place(),
                         "a single leg of a platform that moves: expected another <leg> that says where it goes, or maxDuration_s "
                         "for which it stays here");
-    if (legs > 1 && i + 1 == legs && settings.duration_max && settings.scanner.active)
+    if (only_ends(survey_, i) && settings.duration_max && settings.scanner.active)
       io.report().warn(io.place(),
                        "the last leg of a platform that moves says where the way ends, and has no pulses: to stay there for "
                        "maxDuration_s, expected another <leg> at the same place");
@@ -114,9 +105,8 @@ class LegChecks {
                                              brief(degrees(resolution) * frequency / s.scan_frequency) + ", for the scanner's " + name +
                                              " is " + hertz(frequency));
     };
-    if (s.scan_frequency < device.scan_frequency_min) limit("at least", "scanFreqMin_Hz", device.scan_frequency_min);
-    if (device.scan_frequency_max > 0 && s.scan_frequency > device.scan_frequency_max)
-      limit("at most", "scanFreqMax_Hz", device.scan_frequency_max);
+    if (detail::scans_too_slowly(device, s)) limit("at least", "scanFreqMin_Hz", device.scan_frequency_min);
+    if (detail::scans_too_fast(device, s)) limit("at most", "scanFreqMax_Hz", device.scan_frequency_max);
     if (s.scan_frequency == 0 && std::holds_alternative<OscillatingOptic>(device.optic))
       io.fault("scanFreq_hz", "scanFreq_hz is 0, so the mirror does not swing: expected a frequency");
     if (s.scan_frequency >= s.pulse_rate)
@@ -124,7 +114,7 @@ class LegChecks {
     const std::vector<double>& rates = survey_.scanner.pulse_rates;
     if (std::find(rates.begin(), rates.end(), s.pulse_rate) == rates.end())
       io.warn("pulseFreq_hz", "pulseFreq_hz of " + hertz(s.pulse_rate) + " is none that the scanner is made for");
-    if (s.scan_angle && device.scan_angle_max > 0 && *s.scan_angle > device.scan_angle_max)
+    if (s.scan_angle && detail::scan_angle_of(device, s) < *s.scan_angle)
       io.warn("scanAngle_deg",
               "scanAngle_deg is more than the scanner can: it is limited to " + xml_number(units::degree.number(device.scan_angle_max)));
     check_gate(io, device, s);
@@ -151,22 +141,22 @@ class LegChecks {
 
   void check_head(const XmlInput& io, const ChannelSettings& device, const LegSettings& settings, std::size_t i) const {
     const LegScannerSettings& s = settings.scanner;
-    const double speed = std::clamp(s.head_speed, -device.head_speed_max, device.head_speed_max);
+    const double speed = head_rate(device, s);
     if (s.head_speed != speed)
       io.warn("headRotatePerSec_deg", device.head_speed_max == 0
                                           ? "headRotatePerSec_deg has no effect: the scanner's headRotatePerSecMax_deg is 0"
                                           : "headRotatePerSec_deg is more than the scanner can: it is limited to " +
                                                 xml_number(units::degree.number(device.head_speed_max)));
-    if ((s.head_speed > 0 && s.head_stop < s.head_start) || (s.head_speed < 0 && s.head_stop > s.head_start))
+    if (turns_away(s))
       io.fault("headRotateStop_deg", "the head turns away from headRotateStop_deg: expected headRotatePerSec_deg of the other sign");
     if (settings.duration_max) return;
-    if (speed == 0 && s.head_stop != s.head_start)
+    if (head_never_stops(device, settings))
       io.fault("headRotateStop_deg", "the leg could never end: the head does not turn" +
                                          std::string(device.head_speed_max == 0 ? ", as the scanner's headRotatePerSecMax_deg is 0" : "") +
                                          "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
                                          "maxDuration_s");
     if (!stays(i) || s.head_stop != s.head_start) return;
-    if (speed == 0 && legs_connect()) return;  // has been told of already
+    if (speed == 0 && legs_connect(survey_.platform.kind)) return;  // has been told of already
     if (speed == 0)
       io.report().fault(io.place(), "the leg could never end: neither platform nor head moves; expected maxDuration_s" +
                                         std::string(i == 0 ? "" : " for each leg"));

@@ -30,61 +30,80 @@ inline void check_axis(const XmlInput& io, const char* name, const Vec3& v) {
   if (!has_direction(v)) io.fault(name, std::string(name) + " is too short to have a direction");
 }
 
+enum class MotionKind { identity, translation, rotation, helical, reflection, glide_plane, rotoreflection };
+
+inline MotionKind kind_of(const MotionSettings& motion) {
+  if (std::holds_alternative<TranslationMotion>(motion.kind)) return MotionKind::translation;
+  if (const auto* r = std::get_if<RotationMotion>(&motion.kind)) return r->glide ? MotionKind::helical : MotionKind::rotation;
+  if (const auto* r = std::get_if<ReflectionMotion>(&motion.kind)) return r->shift ? MotionKind::glide_plane : MotionKind::reflection;
+  return std::holds_alternative<RotoreflectionMotion>(motion.kind) ? MotionKind::rotoreflection : MotionKind::identity;
+}
+
+/// Makes a motion that is to be read one of a kind. Those that are identities stay what they were.
+inline void set_kind(MotionSettings& motion, MotionKind kind) {
+  if (kind == MotionKind::translation) motion.kind = TranslationMotion{};
+  if (kind == MotionKind::rotation || kind == MotionKind::helical) motion.kind = RotationMotion{};
+  if (kind == MotionKind::reflection || kind == MotionKind::glide_plane) motion.kind = ReflectionMotion{};
+  if (kind == MotionKind::rotoreflection) motion.kind = RotoreflectionMotion{};
+}
+
+/// A rotation; false if it does nothing, as its axis has no direction and its angle is 0.
+template <class Io>
+bool rotation_fields(Io& io, Of<Io, RotationMotion>& rotation, MotionKind kind) {
+  axis(io, "axis", rotation.axis);
+  io.require({"angle"});
+  io.number("angle", rotation.angle, units::degree, -36000, 36000);
+  if (kind == MotionKind::rotation) io.vector("center", rotation.center, max_coordinate);
+  if (kind == MotionKind::helical) {
+    io.require({"glide"});
+    if constexpr (Io::reads) rotation.glide = 0;
+    io.number("glide", *rotation.glide, units::one, -1e9, 1e9);
+  }
+  if constexpr (Io::reads) {
+    if (!has_direction(rotation.axis) && rotation.angle == 0) {
+      io.warn("axis", "axis is too short to have a direction, and angle is 0: the motion does nothing");
+      return false;
+    }
+    check_axis(io, "axis", rotation.axis);
+  }
+  return true;
+}
+
+template <class Io>
+void reflection_fields(Io& io, Of<Io, ReflectionMotion>& plane, MotionKind kind) {
+  axis(io, "ortho", plane.normal);
+  if constexpr (Io::reads) check_axis(io, "ortho", plane.normal);
+  if (kind != MotionKind::glide_plane) return;
+  io.require({"shift"});
+  if constexpr (Io::reads) plane.shift = Vec3{};
+  io.vector("shift", *plane.shift, max_coordinate);
+  if constexpr (Io::reads)
+    if (std::abs(dot(*plane.shift, plane.normal)) > 1e-6 * length(*plane.shift) * length(plane.normal))
+      io.fault("shift", "shift is not along the plane: expected it at right angles to ortho");
+}
+
 template <class Io>
 void fields(Io& io, Of<Io, MotionSettings>& motion) {
-  enum class Kind { identity, translation, rotation, helical, reflection, glide_plane, rotoreflection };
-  Kind kind = Kind::identity;
-  if (std::holds_alternative<TranslationMotion>(motion.kind)) kind = Kind::translation;
-  if (const auto* r = std::get_if<RotationMotion>(&motion.kind)) kind = r->glide ? Kind::helical : Kind::rotation;
-  if (const auto* r = std::get_if<ReflectionMotion>(&motion.kind)) kind = r->shift ? Kind::glide_plane : Kind::reflection;
-  if (std::holds_alternative<RotoreflectionMotion>(motion.kind)) kind = Kind::rotoreflection;
+  MotionKind kind = kind_of(motion);
   io.require({"type"});
   io.choice("type", kind,
-            {{"identity", Kind::identity},
-             {"translation", Kind::translation},
-             {"rotation", Kind::rotation},
-             {"helical", Kind::helical},
-             {"reflection", Kind::reflection},
-             {"glideplane", Kind::glide_plane},
-             {"rotsym", Kind::rotoreflection}});
-  if constexpr (Io::reads) {
-    if (kind == Kind::translation) motion.kind = TranslationMotion{};
-    if (kind == Kind::rotation || kind == Kind::helical) motion.kind = RotationMotion{};
-    if (kind == Kind::reflection || kind == Kind::glide_plane) motion.kind = ReflectionMotion{};
-    if (kind == Kind::rotoreflection) motion.kind = RotoreflectionMotion{};
-  }
+            {{"identity", MotionKind::identity},
+             {"translation", MotionKind::translation},
+             {"rotation", MotionKind::rotation},
+             {"helical", MotionKind::helical},
+             {"reflection", MotionKind::reflection},
+             {"glideplane", MotionKind::glide_plane},
+             {"rotsym", MotionKind::rotoreflection}});
+  if constexpr (Io::reads) set_kind(motion, kind);
   if (auto* m = std::get_if<TranslationMotion>(&motion.kind)) {
     io.require({"vec"});
     io.vector("vec", m->by, max_coordinate);
   } else if (auto* r = std::get_if<RotationMotion>(&motion.kind)) {
-    axis(io, "axis", r->axis);
-    io.require({"angle"});
-    io.number("angle", r->angle, units::degree, -36000, 36000);
-    if (kind == Kind::rotation) io.vector("center", r->center, max_coordinate);
-    if (kind == Kind::helical) {
-      io.require({"glide"});
-      if constexpr (Io::reads) r->glide = 0;
-      io.number("glide", *r->glide, units::one, -1e9, 1e9);
-    }
-    if constexpr (Io::reads) {
-      if (!has_direction(r->axis) && r->angle == 0) {
-        io.warn("axis", "axis is too short to have a direction, and angle is 0: the motion does nothing");
-        motion.kind = NoMotion{};
-      } else {
-        check_axis(io, "axis", r->axis);
-      }
-    }
+    const bool does_something = rotation_fields(io, *r, kind);
+    if constexpr (Io::reads)
+      if (!does_something) motion.kind = NoMotion{};
   } else if (auto* p = std::get_if<ReflectionMotion>(&motion.kind)) {
-    axis(io, "ortho", p->normal);
-    if constexpr (Io::reads) check_axis(io, "ortho", p->normal);
-    if (kind == Kind::glide_plane) {
-      io.require({"shift"});
-      if constexpr (Io::reads) p->shift = Vec3{};
-      io.vector("shift", *p->shift, max_coordinate);
-      if constexpr (Io::reads)
-        if (std::abs(dot(*p->shift, p->normal)) > 1e-6 * length(*p->shift) * length(p->normal))
-          io.fault("shift", "shift is not along the plane: expected it at right angles to ortho");
-    }
+    reflection_fields(io, *p, kind);
   } else if (auto* s = std::get_if<RotoreflectionMotion>(&motion.kind)) {
     axis(io, "axis", s->axis);
     if constexpr (Io::reads) check_axis(io, "axis", s->axis);

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+#include "loading.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <iomanip>
+#include <sstream>
+#include <variant>
+
+#include <pulsecast/helios/make_simulation.hpp>
+
+#include "scene_store.hpp"
+#include "survey_inputs.hpp"
+
+using namespace pulsecast;
+using helios::Simulation;
+using helios::SurveySettings;
+
+namespace {
+
+bool is_random(const helios::PartSource& source) {
+  return std::visit(
+      [](const auto& s) {
+        bool random = false;
+        if constexpr (requires { s.material; }) random = s.material.random > 0;
+        if constexpr (requires { s.random_shift; }) random = random || s.random_shift;
+        return random;
+      },
+      source);
+}
+
+/// All that a scene depends on in a run.
+SceneInputs inputs_of(const SurveySettings& survey, const Loading& how, int run) {
+  SceneInputs inputs{.files = how.inputs->scene(), .more = how.inputs->spectra(), .name = survey.scene.id};
+  inputs.content = [&all = *how.inputs](const std::filesystem::path& path) { return all.fingerprint(path); };
+  bool random = false, moves = false;
+  for (const helios::PartSettings& part : survey.scene.parts) {
+    random = random || is_random(part.source);
+    moves = moves || !part.motions.empty();
+    for (const helios::SwapSettings& swap : part.swaps) random = random || (swap.source && is_random(*swap.source));
+  }
+  std::ostringstream all;
+  all << std::setprecision(17) << how.scene_text << "\nrun " << run << " fixed_incidence " << how.settings.fixed_incidence;
+  if (random) all << " seed " << how.settings.seed;
+  if (moves) all << " rate " << helios::first_pulse_rate(survey);
+  for (const auto& channel : survey.scanner.channels) all << ' ' << channel.wavelength;
+  inputs.settings = all.str();
+  return inputs;
+}
+
+}  // namespace
+
+std::unique_ptr<Simulation> load(const SurveySettings& survey, const Simulation::Settings& settings) {
+  return helios::make_simulation(survey, settings);
+}
+
+std::unique_ptr<Simulation> load(const SurveySettings& survey, const Loading& how, std::vector<std::string>& notes) {
+  Loading known = how;
+  if (!known.inputs) known.inputs = std::make_shared<SurveyInputs>(survey, how.settings.assets);
+  const auto parts = [survey, known, &notes](int run, const std::function<helios::BuiltParts()>& build) {
+    const SceneInputs inputs = inputs_of(survey, known, run);
+    KeptParts kept =
+        known.sharing ? shared_parts(*known.sharing, known.store, inputs, build, notes) : stored_parts(known.store, inputs, build, notes);
+    return std::move(kept.built);
+  };
+  return helios::make_simulation(survey, known.settings, parts);
+}

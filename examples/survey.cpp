@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+
+// Runs the survey of an XML document. Leaves cloud.las.
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pulsecast/helios/document.hpp>
+#include <pulsecast/helios/make_simulation.hpp>
+#include <pulsecast/io/las.hpp>
+
+#include "command_line.hpp"
+#include "summary.hpp"
+
+using namespace pulsecast;
+
+int main(int argc, char** argv) {
+  CommandLine line("Runs the survey of an XML document.");
+  std::filesystem::path path = "survey.xml";
+  std::vector<std::filesystem::path> assets;
+  line.app.add_option("survey", path, "The document")->type_name("SURVEY.xml");
+  line.app.add_option("--assets", assets, "Folder of what the document names; may be given again")
+      ->type_name("DIR")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+
+  return line.run(argc, argv, [&] {
+    const helios::SurveyDocument document = helios::read_survey(path, {.assets = assets});
+    const std::unique_ptr<helios::Simulation> simulation =
+        helios::make_simulation(document.survey, {.seed = line.seed, .assets = assets, .threads = line.threads});
+    io::LasWriter las(line.output / "cloud.las", {.gps_time = io::GpsTime::week});
+    const RunOptions options{.threads = line.threads, .progress = ProgressLine{}};
+    const RunSummary summary = simulation->run(options, [&](const EchoBatch& batch) { las(batch); });
+    las.close();
+    for (const std::string& warning : simulation->warnings()) std::cerr << "note: " << warning << '\n';
+    print(summary);
+  });
+}

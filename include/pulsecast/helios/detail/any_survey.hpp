@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+#include <pulsecast/pulse.hpp>
+#include <pulsecast/survey.hpp>
+
+namespace pulsecast::helios::detail {
+
+/// A survey of any kind of receiver, so that what runs and samples it is compiled once, and the pipeline of each kind in one place.
+class AnySurvey {
+ public:
+  struct Scratch {
+    virtual ~Scratch() = default;
+  };
+  using Workspace = std::unique_ptr<Scratch>;
+
+  AnySurvey() = default;
+  AnySurvey(const AnySurvey&) = delete;
+  AnySurvey& operator=(const AnySurvey&) = delete;
+  virtual ~AnySurvey() = default;
+  [[nodiscard]] virtual Workspace workspace() const = 0;
+  [[nodiscard]] virtual PulseIndex size() const noexcept = 0;
+  [[nodiscard]] virtual std::size_t subrays() const noexcept = 0;
+  [[nodiscard]] virtual std::size_t recorded_subrays() const noexcept = 0;
+  [[nodiscard]] virtual double sample_interval() const noexcept = 0;
+  [[nodiscard]] virtual Outcome operator()(PulseIndex i, Workspace& w) const noexcept = 0;
+};
+
+template <class Survey>
+class SurveyOf final : public AnySurvey {
+ public:
+  explicit SurveyOf(Survey survey) : survey_(std::move(survey)) {}
+  [[nodiscard]] Workspace workspace() const override { return std::make_unique<Own>(survey_.workspace()); }
+  [[nodiscard]] PulseIndex size() const noexcept override { return survey_.size(); }
+  [[nodiscard]] std::size_t subrays() const noexcept override { return survey_.subrays(); }
+  [[nodiscard]] std::size_t recorded_subrays() const noexcept override { return survey_.recorded_subrays(); }
+  [[nodiscard]] double sample_interval() const noexcept override { return survey_.sample_interval(); }
+  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept override { return survey_(i, static_cast<Own&>(*w).own); }
+
+ private:
+  struct Own : Scratch {
+    explicit Own(typename Survey::Workspace w) : own(std::move(w)) {}
+    typename Survey::Workspace own;
+  };
+  Survey survey_;
+};
+
+}  // namespace pulsecast::helios::detail

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+
+#include <pulsecast/base/tick.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/platform/ground_vehicle.hpp>
+#include <pulsecast/platform/multicopter.hpp>
+
+/// Moments at which a planned path passes its waypoints.
+namespace pulsecast::helios::detail {
+
+/// When a plan passes its waypoint of a number, at a place, after a time: when it is nearest.
+template <class Plan>
+[[nodiscard]] double nearest_moment(const Plan& plan, std::size_t number, const Vec3& place, double from, double whole) {
+  const auto distance = [&](double t) {
+    const Tick tick = Tick::of_seconds(t);
+    Vec3 off = -place;
+    if constexpr (std::same_as<Plan, MulticopterFlight>)
+      off += plan.motion().at(tick).position;
+    else
+      off += plan.at(tick).position;
+    return std::hypot(off.x, off.y);
+  };
+  constexpr int steps = 20'000;
+  const double step = (whole - from) / steps;
+  const auto after = [&](int i) { return distance(from + i * step); };
+  int nearest = steps;
+  if constexpr (std::same_as<Plan, MulticopterFlight>) {  // which says about when
+    const double begun = (plan.passes()[number].seconds() - from) / step;
+    nearest = begun > 0 ? static_cast<int>(std::min(begun, static_cast<double>(steps))) : 0;
+    while (nearest > 0 && after(nearest - 1) < after(nearest)) --nearest;
+    while (nearest < steps && after(nearest + 1) <= after(nearest)) ++nearest;
+  } else {  // the first of its nearest approaches that is no farther than any other by more than a metre
+    double least = after(0), before = least;
+    for (int i = 1; i <= steps; ++i) least = std::min(least, after(i));
+    for (int i = 1; i <= steps && nearest == steps; ++i) {
+      const double now = after(i);
+      if (now > before && before <= least + 1) nearest = i - 1;
+      before = now;
+    }
+  }
+  const double best = nearest < steps ? from + nearest * step : whole;
+  // Ternary search: slower than a golden-section search, and as exact.
+  double low = std::max(from, best - step), high = std::min(whole, best + step);
+  for (int i = 0; i < 60; ++i) {
+    const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+    const bool first_is_nearer = distance(a) < distance(b);
+    (first_is_nearer ? high : low) = first_is_nearer ? b : a;
+  }
+  return 0.5 * (low + high);
+}
+
+/// When a flight, from a time until another, first goes straight at a place, within a degree.
+[[nodiscard]] inline double end_of_turn(const MulticopterFlight& flight, double from, const Vec3& place, double until) {
+  for (double t = from; t < until; t += 0.01) {
+    const auto state = flight.motion().at(Tick::of_seconds(t));
+    const Vec3 way = place - state.position;
+    if (dot(state.velocity, way) >= std::cos(radians(1)) * length(state.velocity) * length(way)) return t;
+  }
+  return from;
+}
+
+}  // namespace pulsecast::helios::detail

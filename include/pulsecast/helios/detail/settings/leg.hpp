@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector.hpp>
+
+namespace pulsecast::helios {
+
+/// The column of each quantity, from 0.
+struct TrajectoryIndices {
+  int time = 0;   ///< `tIndex`
+  int roll = 1;   ///< `rollIndex`
+  int pitch = 2;  ///< `pitchIndex`
+  int yaw = 3;    ///< `yawIndex`
+  int x = 4;      ///< `xIndex`
+  int y = 5;      ///< `yIndex`
+  int z = 6;      ///< `zIndex`
+
+  bool operator==(const TrajectoryIndices&) const = default;
+};
+
+/// What an interpolated platform follows: attributes of `<platformSettings>`.
+struct TrajectorySettings {
+  std::filesystem::path file{};                ///< `trajectory`
+  std::optional<char> separator{};             ///< found unless given; `trajectory_separator`, or `trajectory_seperator`
+  std::optional<TrajectoryIndices> columns{};  ///< the file's own head says it unless given; `tIndex`...
+  bool position_only = false;                  ///< `interpolationDomain="position"`
+  bool angles_in_degrees = true;               ///< of the file; `toRadians`
+  bool sync_clock = false;                     ///< the clock begins at the time in the file; `syncGPSTime`
+  bool teleports = false;                      ///< a jump comes before, as a leg without pulses: the optic starts anew. `teleportToStart`
+  std::optional<double> start{};               ///< by the clock of the file, its first sample unless given; `tStart` [s]
+  std::optional<double> end{};                 ///< by the clock of the file, its last sample unless given; `tEnd` [s]
+
+  bool operator==(const TrajectorySettings&) const = default;
+};
+
+/// `<platformSettings>` of a leg
+struct LegPlatformSettings {
+  Vec3 position{};                                 ///< where the leg begins, in the scene's own coordinates; `x`, `y`, `z` [m]
+  bool on_ground = false;                          ///< z is that of the ground; `onGround`
+  double speed = 70;                               ///< `movePerSec_m` [m/s]
+  bool smooth_turn = false;                        ///< multicopter: turns as it flies on; `smoothTurn`, or `stopAndTurn="false"`
+  std::optional<double> yaw_at_departure{};        ///< multicopter; counter-clockwise from +y. `yawAtDeparture_deg` [rad]
+  std::optional<TrajectorySettings> trajectory{};  ///< interpolated only
+
+  bool operator==(const LegPlatformSettings&) const = default;
+};
+
+/// `<scannerSettings>` of a leg
+struct LegScannerSettings {
+  bool active = true;                          ///< `active`
+  double pulse_rate = 0;                       ///< the scanner's first unless given; `pulseFreq_hz` [Hz]
+  double scan_frequency = 0;                   ///< `scanFreq_hz` [Hz]
+  std::optional<double> scan_angle{};          ///< to either side; as far as the device can unless given. `scanAngle_deg` [rad]
+  std::optional<double> vertical_angle_min{};  ///< rotating only; `verticalAngleMin_deg` [rad]
+  std::optional<double> vertical_angle_max{};  ///< rotating only; `verticalAngleMax_deg` [rad]
+  double head_speed = 0;                       ///< `headRotatePerSec_deg` [rad/s]
+  double head_start = 0;                       ///< `headRotateStart_deg` [rad]
+  double head_stop = 0;                        ///< `headRotateStop_deg` [rad]
+  std::optional<double> divergence{};          ///< of all channels; each one's own unless given. `beamDivergence_rad` [rad]
+  double trajectory_interval = 0;              ///< between records of the trajectory; 0: none. `trajectoryTimeInterval_s` [s]
+  double warm_up = 0;                          ///< for which head and optic run before the first pulse; `opticsWarmupPhase_s` [s]
+
+  void validate() const {
+    require_not_negative("pulseFreq_hz", pulse_rate, "Hz");
+    require_not_negative("scanFreq_hz", scan_frequency, "Hz");
+    if (scan_angle) require_not_negative("scanAngle_deg", degrees(*scan_angle), "deg");
+    require_not_negative("trajectoryTimeInterval_s", trajectory_interval, "s");
+    require_not_negative("opticsWarmupPhase_s", warm_up, "s");
+  }
+
+  bool operator==(const LegScannerSettings&) const = default;
+};
+
+/// `<leg>`
+struct LegSettings {
+  std::optional<std::string> strip{};    ///< legs of one strip share their files; `stripId`
+  std::optional<double> duration_max{};  ///< after which the leg ends in any case; `maxDuration_s` of leg or scannerSettings [s]
+  LegPlatformSettings platform{};
+  LegScannerSettings scanner{};
+
+  void validate() const {
+    if (duration_max) require_not_negative("maxDuration_s", *duration_max, "s");
+    scanner.validate();
+  }
+
+  bool operator==(const LegSettings&) const = default;
+};
+
+/// Whether a leg of a platform that moves stays where it begins: the next one begins there, too, or there is none.
+[[nodiscard]] inline bool stays_in_place(const std::vector<LegSettings>& legs, std::size_t k) {
+  if (k + 1 >= legs.size()) return legs.size() == 1;
+  const LegPlatformSettings &here = legs[k].platform, &next = legs[k + 1].platform;
+  const bool is_above = here.position.x == next.position.x && here.position.y == next.position.y;
+  return is_above && here.on_ground == next.on_ground && (here.on_ground || here.position.z == next.position.z);
+}
+
+}  // namespace pulsecast::helios

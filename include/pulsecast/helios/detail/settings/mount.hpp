@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/rotation_list.hpp>
+#include <pulsecast/base/vector.hpp>
+
+namespace pulsecast::helios {
+
+namespace detail {
+
+/// Refuses a whole number less than `least`.
+inline void require_at_least(int least, std::string_view field, int value) {
+  require_within(field, value, least, std::numeric_limits<int>::max(), "");
+}
+
+}  // namespace detail
+
+enum class Axis : std::uint8_t { x, y, z };
+
+/// One turn of a list: `<rot>`.
+struct AxisTurn {
+  Axis axis = Axis::z;  ///< `axis`
+  double angle = 0;     ///< right-handed; `angle_deg` [rad]
+
+  bool operator==(const AxisTurn&) const = default;
+};
+
+/// Turns, one after the other: the `<rot>` children of an element.
+struct RotationList {
+  std::vector<AxisTurn> turns{};
+  bool local = false;  ///< about the axes of what is turned, rather than the fixed ones outside; `rotations="local"`
+
+  /// All turns in one.
+  [[nodiscard]] Rotation rotation() const {
+    std::vector<AxisAngle> all;
+    for (const AxisTurn& turn : turns)
+      all.push_back({turn.axis == Axis::x ? axis::right : turn.axis == Axis::y ? axis::forward : axis::up, turn.angle});
+    return local ? intrinsic(all) : extrinsic(all);
+  }
+
+  bool operator==(const RotationList&) const = default;
+};
+
+/// Where and how a thing sits on another: `<scannerMount>`, `<beamOrigin>`.
+struct MountSettings {
+  Vec3 position{};          ///< in the frame of what carries it; `x`, `y`, `z` [m]
+  RotationList rotation{};  ///< from the frame of what is carried to that of what carries it
+
+  bool operator==(const MountSettings&) const = default;
+};
+
+}  // namespace pulsecast::helios

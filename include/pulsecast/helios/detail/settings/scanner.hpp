@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/helios/detail/settings/mount.hpp>
+
+namespace pulsecast::helios {
+
+/// A mirror that swings to and fro: `optics="oscillating"`.
+struct OscillatingOptic {
+  double scan_product_max = radians(1e6);  ///< of half the scan angle and the scan frequency; `scanProduct` in deg Hz [rad/s]
+
+  bool operator==(const OscillatingOptic&) const = default;
+};
+
+/// A polygon mirror that rotates: `optics="rotating"`. It sweeps `scan_angle_max` to either side and measures in part of that.
+struct RotatingOptic {
+  /// To either side, where it measures at most; all of `scan_angle_max` unless given. `scanAngleEffectiveMax_deg` [rad]
+  std::optional<double> effective_angle_max{};
+
+  bool operator==(const RotatingOptic&) const = default;
+};
+
+/// A Palmer mirror, whose beam goes round a cone: `optics="conic"`.
+struct ConicOptic {
+  bool operator==(const ConicOptic&) const = default;
+};
+
+/// An array of fibres, side by side: `optics="line"`.
+struct LineOptic {
+  int fibers = 1;  ///< `numFibers`
+
+  bool operator==(const LineOptic&) const = default;
+};
+
+/// One wedge of glass that rotates.
+struct RisleyPrism {
+  double angle = 0;             ///< of the wedge; inclined where light enters if positive, else where it leaves. `angle1_deg`... [rad]
+  double rotor_frequency = 0;   ///< right-handed if positive; `rotorFreq1_Hz`... [Hz]
+  double refractive_index = 1;  ///< `refrIndex1`...
+
+  bool operator==(const RisleyPrism&) const = default;
+};
+
+/// Risley prisms: `optics="risley"`.
+struct RisleyOptic {
+  std::array<RisleyPrism, 3> prisms{};  ///< those without an angle are not there
+  double air_refractive_index = 1;      ///< `refrIndex_air`
+  Vec3 incident_beam = axis::forward;   ///< of any length but zero; `<incidentBeam>`
+
+  bool operator==(const RisleyOptic&) const = default;
+};
+
+using OpticSettings = std::variant<OscillatingOptic, RotatingOptic, ConicOptic, LineOptic, RisleyOptic>;
+
+/// How waveforms are sampled: `<FWFSettings>`.
+struct FullWaveformSettings {
+  double bin_size = 0.25e-9;       ///< `binSize_ns` [s]
+  std::optional<double> window{};  ///< to either side of a peak; a quarter of the pulse length unless given. `winSize_ns` [s]
+  int rings = 3;                   ///< of subrays, with the centre as the first; `beamSampleQuality`
+  double duration_max = 0;         ///< 0 stands for no limit; `maxFullwaveRange_ns` [s]
+
+  void validate() const {
+    detail::require_at_least(1, "beamSampleQuality", rings);
+    require_not_negative("maxFullwaveRange_ns", duration_max * 1e9, "ns");
+  }
+
+  bool operator==(const FullWaveformSettings&) const = default;
+};
+
+/// How a scanner errs, as formulas of an angle or range: `<deflectionError>`, `<headError>`, `<rangeError>`.
+struct ErrorFormulas {
+  std::string deflection{};        ///< added to the deflection, of it [rad]; `expr` in THETA
+  std::string head{};              ///< added to the angle of the head, of the deflection [rad]; `expr` in THETA
+  double head_zero_threshold = 0;  ///< by which the argument is kept off 0 and pi; `zeroSinThreshold_deg` [rad]
+  std::string range{};             ///< added to the range, of the deflection [m]; `expr` in THETA
+  std::string range_noise{};       ///< by which noise of the range is multiplied, of it [m]; `distanceMeasurementError` in t
+
+  bool operator==(const ErrorFormulas&) const = default;
+};
+
+/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements. The position of its `beam_origin` counts along
+/// the axes of the platform, as that of the mount: the rotation of the mount does not turn it, but heading and head do.
+struct ChannelSettings {
+  std::string id{};                                            ///< `id` of the channel; empty if the scanner has but one
+  OpticSettings optic{};                                       ///< `optics` and what belongs to it
+  double scan_angle_max = 0;                                   ///< to either side; `scanAngleMax_deg` [rad]
+  double scan_frequency_min = 0;                               ///< `scanFreqMin_Hz` [Hz]
+  double scan_frequency_max = 0;                               ///< 0 stands for no limit; `scanFreqMax_Hz` [Hz]
+  MountSettings beam_origin{};                                 ///< rotated in the frame of the instrument; `<beamOrigin>`
+  Vec3 head_axis = axis::up;                                   ///< of any length but zero; `<headRotateAxis>`
+  double head_speed_max = 0;                                   ///< 0: it cannot turn; `headRotatePerSecMax_deg` [rad/s]
+  double divergence = 0.3e-3;                                  ///< full angle at 1/e^2 of the peak; `beamDivergence_rad` [rad]
+  double pulse_length = 4e-9;                                  ///< full width at half maximum; `pulseLength_ns` [s]
+  double average_power = 4;                                    ///< `averagePower_w` [W]
+  std::optional<double> beam_quality{};                        ///< M^2; comes from a point unless given. `beamQualityFactor` but for 1
+  double wavelength = 1064e-9;                                 ///< `wavelength_nm` [m]
+  double efficiency = 0.99;                                    ///< `opticalEfficiency`
+  double receiver_diameter = 0.15;                             ///< `receiverDiameter_m` [m]
+  double visibility = 23e3;                                    ///< of the atmosphere; `atmosphericVisibility_km` [m]
+  double accuracy = 0;                                         ///< standard deviation of the range; `accuracy_m` [m]
+  double range_min = 0;                                        ///< `rangeMin_m` [m]
+  double range_max = std::numeric_limits<double>::infinity();  ///< `rangeMax_m` [m]
+  int returns_max = 0;                                         ///< of one pulse; 0 stands for no limit; `maxNOR`
+  double received_power_min = 1e-4 / 1e9;                      ///< of an echo; `receivedEnergyMin_W`, which is in nW [W]
+  FullWaveformSettings waveform{};                             ///< `<FWFSettings>`
+  ErrorFormulas errors{};                                      ///< `<deflectionError>`...
+
+  void validate() const {
+    require_not_negative("scanAngleMax_deg", degrees(scan_angle_max), "deg");
+    require_not_negative("scanFreqMin_Hz", scan_frequency_min, "Hz");
+    require_not_negative("scanFreqMax_Hz", scan_frequency_max, "Hz");
+    require_not_negative("headRotatePerSecMax_deg", degrees(head_speed_max), "deg/s");
+    detail::require_at_least(0, "maxNOR", returns_max);
+    waveform.validate();
+  }
+
+  bool operator==(const ChannelSettings&) const = default;
+};
+
+/// `<scanner>`, with what the survey sets of it.
+struct ScannerSettings {
+  std::string id{};                         ///< `id`
+  std::string name{};                       ///< `name`
+  std::vector<double> pulse_rates{};        ///< that it is made for, the usual one first; `pulseFreqs_Hz` [Hz]
+  std::vector<ChannelSettings> channels{};  ///< at least one; they fire at the same time, in this order
+
+  void validate() const {
+    for (const ChannelSettings& channel : channels) channel.validate();
+  }
+
+  bool operator==(const ScannerSettings&) const = default;
+};
+
+}  // namespace pulsecast::helios

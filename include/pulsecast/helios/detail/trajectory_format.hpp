@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/helios/settings.hpp>
+#include <pulsecast/io/trajectory.hpp>
+
+namespace pulsecast::helios::detail {
+
+inline void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format) {
+  std::vector<std::pair<int, const char*>> columns{{t.columns->time, "t"}, {t.columns->x, "x"}, {t.columns->y, "y"}, {t.columns->z, "z"}};
+  if (!t.position_only) columns.insert(columns.end(), {{t.columns->roll, "roll"}, {t.columns->pitch, "pitch"}, {t.columns->yaw, "yaw"}});
+  int most = 0;
+  for (const auto& [place, name] : columns) most = std::max(most, place);
+  format.names = io::ColumnNames::nowhere;
+  format.columns.clear();
+  for (int i = 0; i <= most; ++i) format.columns.push_back("column " + std::to_string(i));
+  for (std::string& c : format.columns) std::replace(c.begin(), c.end(), ' ', '_');
+  format.left_out = format.columns;
+  for (const auto& [place, name] : columns) format.columns[static_cast<std::size_t>(place)] = name;
+  std::erase_if(format.left_out,
+                [&](const std::string& c) { return std::find(format.columns.begin(), format.columns.end(), c) == format.columns.end(); });
+}
+
+/// The format of the file that a leg follows.
+[[nodiscard]] inline io::TrajectoryFormat trajectory_format(const TrajectorySettings& t, RotationSpec spec) {
+  io::TrajectoryFormat format = io::helios_format();
+  format.angles = spec == RotationSpec::canonical ? io::helios_canonical : io::helios_arinc_705;
+  format.separator = t.separator.value_or(format.separator);
+  format.fixed_separator = t.separator.has_value();
+  format.angle_unit = t.angles_in_degrees ? io::AngleUnit::degree : io::AngleUnit::radian;
+  if (t.position_only) format.columns = {"t", "x", "y", "z"};
+  if (t.columns) columns_of(t, format);
+  return format;
+}
+
+}  // namespace pulsecast::helios::detail

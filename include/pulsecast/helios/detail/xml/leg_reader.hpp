@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/helios/detail/xml/document.hpp>
+#include <pulsecast/helios/detail/xml/element.hpp>
+#include <pulsecast/helios/detail/xml/file_name.hpp>
+#include <pulsecast/helios/detail/xml/leg.hpp>
+#include <pulsecast/helios/detail/xml/leg_checks.hpp>
+#include <pulsecast/helios/detail/xml/library.hpp>
+#include <pulsecast/helios/settings.hpp>
+
+namespace pulsecast::helios::detail {
+
+/// Reads the legs of one survey, whose scanner and platform have been read.
+class LegReader {
+ public:
+  LegReader(XmlLibrary& library, const XmlLibraryDocument& document, XmlReport& report, SurveySettings& survey)
+      : library_(library), document_(document), report_(report), survey_(survey) {}
+
+  /// Reads and checks all legs. Returns their places.
+  std::vector<std::string> read(XmlInput& io) {
+    const XmlDocument& document = document_.document();
+    io.know({}, {"leg"});
+    std::vector<pugi::xml_node> nodes;
+    std::vector<double> resolutions;  // of each leg, or 0
+    std::vector<std::string> places;
+    for (pugi::xml_node node = io.node().child("leg"); node; node = node.next_sibling("leg")) {
+      XmlInput leg(document, node, report_, document_.search());
+      resolutions.push_back(read_leg(leg, survey_.legs.emplace_back()));
+      leg.finish();
+      nodes.push_back(node);
+      places.push_back(leg.place().text());
+    }
+    if (nodes.empty()) report_.fault(io.place(), "<survey> holds no <leg>: nothing would be scanned");
+    if (!report_.is_clean()) return places;
+    const LegChecks checks(document_, survey_, report_);
+    bool is_active = false;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      checks.check(nodes[i], i, resolutions[i]);
+      if (survey_.platform.kind != PlatformKind::interpolated) survey_.legs[i].platform.trajectory.reset();
+      is_active = is_active || survey_.legs[i].scanner.active;
+    }
+    if (!is_active) report_.warn(io.place(), "no leg is active: there will be no pulses");
+    return places;
+  }
+
+  /// Templates of the survey's own document that no leg names: what is wrong there is odd, as it changes nothing.
+  void read_unused_templates() {
+    const auto all = [&](const char* element, const auto& read) {
+      for (pugi::xml_node node = document_.document().root().child(element); node; node = node.next_sibling(element)) {
+        XmlInput io(document_.document(), node, report_, document_.search());
+        io.require({"id"});
+        io.know({"id", "name"});
+        read(io);
+        io.finish();
+      }
+    };
+    report_.leniently([&] {
+      all("platformSettings", [&](XmlInput& io) {
+        LegPlatformSettings ignored;
+        read_leg_platform(io, ignored);
+      });
+      all("scannerSettings", [&](XmlInput& io) {
+        LegScanner ignored{.settings = {.pulse_rate = 1}};
+        read_leg_scanner(io, ignored);
+      });
+    });
+  }
+
+ private:
+  /// `<scannerSettings>`, with what goes elsewhere in the end.
+  struct LegScanner {
+    LegScannerSettings settings{};
+    std::optional<double> duration_max{};
+    double vertical_resolution = 0, horizontal_resolution = 0;  // [rad]
+  };
+
+  /// Returns its vertical resolution [rad].
+  double read_leg(XmlInput& leg, LegSettings& settings) {
+    std::optional<double> duration_max;
+    leg.text("stripId", settings.strip);
+    if (settings.strip) fit_for_name(leg, "stripId", *settings.strip);
+    leg.number("maxDuration_s", duration_max, units::second, -1, 1e9);
+    const bool has_platform = leg.child("platformSettings", [&](XmlInput& inner) { read_leg_platform(inner, settings.platform); });
+    if (!has_platform) report_.fault(leg.place(), "<leg> holds no <platformSettings>");
+    LegScanner scanner;
+    if (!survey_.scanner.pulse_rates.empty()) scanner.settings.pulse_rate = survey_.scanner.pulse_rates.front();
+    leg.child("scannerSettings", [&](XmlInput& inner) { read_leg_scanner(inner, scanner); });
+    if (duration_max && *duration_max <= 0) duration_max.reset();
+    if (!duration_max && scanner.duration_max && *scanner.duration_max > 0) duration_max = scanner.duration_max;
+    settings.scanner = scanner.settings;
+    settings.duration_max = duration_max;
+    return scanner.vertical_resolution;
+  }
+
+  /// Reads the template of an element, if it has one, and then the element: `read(XmlInput&)`.
+  template <class Read>
+  void with_template(XmlInput& io, const XmlLibraryDocument& from, std::vector<pugi::xml_node> before, const Read& read) {
+    const bool is_leg = before.empty();
+    if (const auto text = io.given("template")) {
+      const std::string element = io.node().name();
+      const XmlReference found = library_.find(io, from, "template", *text, element.c_str());
+      before.push_back(io.node());
+      if (found && std::find(before.begin(), before.end(), found.node) != before.end()) {
+        io.fault("template", XmlInput::said("template", *text) + " is a template of itself");
+      } else if (found && before.size() > 16) {
+        io.fault("template", XmlInput::said("template", *text) + " is the last of too many templates");
+      } else if (found) {
+        XmlInput inner(found.document->document(), found.node, report_, found.document->search());
+        inner.know({"id", "name"});
+        with_template(inner, *found.document, before, read);
+        inner.finish();
+      }
+    }
+    read(io, is_leg);
+  }
+
+  void read_leg_platform(XmlInput& io, LegPlatformSettings& settings) {
+    with_template(io, document_, {}, [&](XmlInput& inner, bool is_leg) {
+      if (is_leg) settings.yaw_at_departure.reset();  // is not inherited
+      xml::fields(inner, settings);
+    });
+  }
+
+  void read_leg_scanner(XmlInput& io, LegScanner& scanner) {
+    const double usual_rate = scanner.settings.pulse_rate;
+    with_template(io, document_, {}, [&](XmlInput& inner, bool) {
+      xml::fields(inner, scanner.settings);
+      inner.number("maxDuration_s", scanner.duration_max, units::second, -1, 1e9);
+      inner.child("maxDuration_s", [&](XmlInput& text) {
+        const std::string content = text.content();
+        if (content.find_first_not_of(" \t\r\n") == std::string::npos) {
+          report_.warn(text.place(), "<maxDuration_s> is empty: it counts as not given");
+          return;
+        }
+        const auto seconds = number_of(content);
+        if (!seconds || !(*seconds >= -1 && *seconds <= 1e9))
+          report_.fault(text.place(), "<maxDuration_s> holds " + xml_quoted(content) + ": expected a number of seconds");
+        scanner.duration_max = seconds;
+      });
+      inner.number("verticalResolution_deg", scanner.vertical_resolution, units::degree, 0, 180);
+      inner.number("horizontalResolution_deg", scanner.horizontal_resolution, units::degree, 0, 360);
+    });
+    LegScannerSettings& s = scanner.settings;
+    if (s.pulse_rate == 0 && usual_rate > 0) {
+      s.pulse_rate = usual_rate;
+      io.warn("pulseFreq_hz", "pulseFreq_hz of 0 stands for the usual one of the scanner, " + xml_number(usual_rate) + " Hz");
+    }
+    const ChannelSettings* const device = survey_.scanner.channels.empty() ? nullptr : &survey_.scanner.channels.front();
+    if (s.scan_angle == 0.0 && device && device->scan_angle_max > 0) {
+      s.scan_angle.reset();
+      io.warn("scanAngle_deg", "scanAngle_deg of 0 stands for the largest one of the scanner, " +
+                                   xml_number(units::degree.number(device->scan_angle_max)) + " deg");
+    }
+    if (scanner.vertical_resolution == 0 && scanner.horizontal_resolution == 0) return;
+    if (!device || !std::holds_alternative<RotatingOptic>(device->optic)) {
+      io.warn("verticalResolution_deg", "resolutions have no effect with these optics");
+    } else if (device->scan_angle_max > 0) {
+      const auto rounded = [](double value, double limit) { return std::fabs(value - limit) < 1e-12 * limit ? limit : value; };
+      s.scan_frequency = rounded(s.pulse_rate * scanner.vertical_resolution / (2 * device->scan_angle_max), device->scan_frequency_max);
+      s.scan_frequency = rounded(s.scan_frequency, device->scan_frequency_min);
+      s.head_speed = rounded(scanner.horizontal_resolution * s.scan_frequency, device->head_speed_max);
+      if (!(s.scan_frequency <= 1e6 && s.head_speed <= radians(1e6)))
+        io.fault("verticalResolution_deg", "no scanner is as fast as these resolutions need: expected a finer one");
+    }
+  }
+
+  XmlLibrary& library_;
+  const XmlLibraryDocument& document_;
+  XmlReport& report_;
+  SurveySettings& survey_;
+};
+
+}  // namespace pulsecast::helios::detail

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/vector.hpp>
+
+/// Numbers and units as documents have them.
+namespace pulsecast::helios {
+
+/// A unit that documents speak: so much times its number is SI, divided by so much.
+struct XmlUnit {
+  const char* symbol = "";  ///< for messages
+  double factor = 1;
+  double divisor = 1;  ///< so that 0.25 ns is the number nearest to 0.25e-9 s
+
+  [[nodiscard]] double si(double number) const noexcept { return number * factor / divisor; }
+
+  /// The number, as short as it can be so that `si` of it is the value again; the nearest if there is none.
+  [[nodiscard]] double number(double value) const noexcept {
+    const double about = value * divisor / factor;
+    if (factor == 1 && divisor == 1) return value;
+    for (const int digits : {15, 16, 17}) {
+      std::array<char, 40> text;
+      const char* const end = std::to_chars(text.data(), text.data() + text.size(), about, std::chars_format::general, digits).ptr;
+      double rounded = 0;
+      std::from_chars(text.data(), end, rounded);
+      if (si(rounded) == value) return rounded;
+    }
+    double below = about, above = about;
+    for (int step = 0; step < 4; ++step) {
+      below = std::nextafter(below, -std::numeric_limits<double>::infinity());
+      above = std::nextafter(above, std::numeric_limits<double>::infinity());
+      if (si(below) == value) return below;
+      if (si(above) == value) return above;
+    }
+    return about;
+  }
+};
+
+namespace units {
+inline constexpr XmlUnit one{}, metre{"m"}, second{"s"}, hertz{"Hz"}, radian{"rad"}, watt{"W"}, metre_per_second{"m/s"};
+inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 1e3}, nanosecond{"ns", 1, 1e9}, nanometre{"nm", 1, 1e9},
+    nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", std::numbers::pi / 180};
+}  // namespace units
+
+/// A number as a text; without an exponent where that is legible.
+[[nodiscard]] inline std::string xml_number(double value) {
+  if (value == 0) return "0";
+  const double size = std::abs(value);
+  if (!(size >= 1e-6 && size < 1e15)) return pulsecast::detail::to_text(value);
+  std::array<char, 64> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};
+}
+
+/// The number that a text is, all of it, but for blanks around it.
+[[nodiscard]] inline std::optional<double> number_of(std::string_view text) noexcept {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || std::isnan(value)) return std::nullopt;
+  return value;
+}
+
+/// Three numbers with a separator between them; blanks may be several.
+[[nodiscard]] inline std::optional<Vec3> vector_of(std::string_view text, char separator, double size_max) {
+  Vec3 found{};
+  for (int i = 0; i < 3; ++i) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    const std::size_t end = i < 2 ? text.find(separator) : text.size();
+    const auto component = end == std::string_view::npos ? std::nullopt : number_of(text.substr(0, end));
+    if (!component || !(std::abs(*component) <= size_max)) return std::nullopt;
+    found[i] = *component;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return found;
+}
+
+}  // namespace pulsecast::helios

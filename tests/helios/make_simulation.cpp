@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/helios/make_simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/cloud.hpp>
+
+#include "support/temporary_folder.hpp"
+
+namespace pulsecast::helios {
+namespace {
+
+constexpr double height = 10;  // of the instrument above the plane [m]
+
+/// A tripod, whose mirror sweeps to 50 degrees on either side of straight down, for two seconds at 1 kHz.
+SurveySettings survey() {
+  SurveySettings s;
+  s.name = "plane";
+  s.scanner.id = "mirror";
+  s.scanner.pulse_rates = {1000};
+  s.scanner.channels = {{.optic = RotatingOptic{}, .scan_angle_max = radians(50), .head_speed_max = radians(360)}};
+  s.platform.mount.rotation = {{{Axis::x, radians(-90)}}};
+  LegSettings leg;
+  leg.platform.position = {0, 0, height};
+  leg.scanner.scan_frequency = 10;
+  leg.duration_max = 2;
+  s.legs = {leg};
+  return s;
+}
+
+/// A square of 200 m at z = 0.
+Simulation::Mesh plane() {
+  return {.data = {.vertices = {{-100, -100, 0}, {100, -100, 0}, {100, 100, 0}, {-100, 100, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}},
+          .object = 7};
+}
+
+Cloud run(const Simulation& simulation, unsigned threads = 1) {
+  Cloud cloud;
+  simulation.run({.threads = threads}, [&](const EchoBatch& batch) { cloud(batch); });
+  return cloud;
+}
+
+double farthest_from_plane(const Cloud& cloud) {
+  double most = 0;
+  for (const Vec3& p : cloud.points) most = std::max(most, std::fabs(p.z));
+  return most;
+}
+
+TEST_CASE("each pulse that points down at a plane has one echo on it, on any number of threads") {
+  const auto simulation = make_simulation(survey(), {.meshes = {plane()}});
+  REQUIRE(simulation->compiled().source.size() == 2000);
+  CHECK(simulation->runs() == 1);
+  CHECK(simulation->warnings().empty());
+  const Simulation::Scene scene = simulation->scene();
+  CHECK_FALSE(scene.empty);
+  CHECK(scene.parts == 1);
+  CHECK(scene.moving == 0);
+  CHECK(scene.triangles == 2);
+  CHECK(scene.most == Vec3{100, 100, 0});
+  const Cloud cloud = run(*simulation);
+  CHECK(cloud.size() == 2000);
+  CHECK(farthest_from_plane(cloud) < 0.05);  // obliquely, the echo of a footprint comes from before its middle
+  CHECK(std::all_of(cloud.echoes.begin(), cloud.echoes.end(), [](const Echo& e) { return e.object == 7; }));
+  const Cloud same = run(*simulation, 3);
+  CHECK(same.points == cloud.points);
+}
+
+TEST_CASE("samples and counts are those of a run") {
+  SurveySettings s = survey();
+  s.scanner.channels[0].accuracy = 0.1;
+  const auto simulation = make_simulation(s, {.seed = 3, .meshes = {plane()}});
+  const Cloud cloud = run(*simulation);
+  const std::vector<PulseIndex> slots{3, 1999, 700};
+  for (const SlotCount& count : simulation->count(slots, 2)) {
+    CHECK(count.fate == Fate::returned);
+    CHECK(count.echoes == 1);
+  }
+  const std::vector<SampleBlock> blocks{{0, 10, 20}, {990, 1000, 1500}};
+  const std::vector<Sample> samples = simulation->sample(blocks, 2);
+  REQUIRE(samples.size() == 2);
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const EchoBatch batch = samples[k].batch();
+    REQUIRE(batch.echoes.size() == blocks[k].end - blocks[k].from);
+    for (std::size_t i = 0; i < batch.echoes.size(); ++i) CHECK(batch.echoes[i].range == cloud.echoes[blocks[k].from + i].range);
+  }
+}
+
+TEST_CASE("ideal receivers take the noise away, and those of the survey bring it back") {
+  SurveySettings s = survey();
+  s.scanner.channels[0].accuracy = 1;
+  const auto simulation = make_simulation(s, {.seed = 3, .meshes = {plane()}});
+  const Cloud noisy = run(*simulation);
+  CHECK(farthest_from_plane(noisy) > 1);
+  simulation->receive({.rings = 1, .ideal = true});
+  CHECK(farthest_from_plane(run(*simulation)) < 0.05);
+  simulation->receive({});
+  CHECK(run(*simulation).points == noisy.points);
+}
+
+TEST_CASE("waveforms are sampled and cut as LAS can hold them, with a warning for each") {
+  SurveySettings s = survey();
+  s.scanner.channels[0].waveform.bin_size = 0.2505e-9;
+  const auto odd = [&](const Simulation::Settings& settings) { return make_simulation(s, settings)->warnings(); };
+  CHECK(odd({.waveforms = true, .meshes = {plane()}}).empty());
+  REQUIRE(odd({.waveforms = true, .las_waveforms = true, .meshes = {plane()}}).size() == 1);
+  CHECK(odd({.waveforms = true, .las_waveforms = true, .meshes = {plane()}})[0] ==
+        "survey 'plane': binSize_ns is 0.2505, and samples in LAS are whole picoseconds apart: it is taken as 0.25");
+  s.scanner.channels[0].waveform.bin_size = 0.01e-9;
+  const std::vector<std::string> cut = odd({.waveforms = true, .las_waveforms = true, .meshes = {plane()}, .place = "a.xml:9:3"});
+  REQUIRE(cut.size() == 1);
+  CHECK(cut[0].starts_with("a.xml:9:3: waveforms are cut after "));
+  CHECK(cut[0].find("which is all that LAS takes") != std::string::npos);
+}
+
+TEST_CASE("channels of different bins are sampled by the smallest") {
+  SurveySettings s = survey();
+  s.scanner.channels.push_back(s.scanner.channels[0]);
+  s.scanner.channels[1].waveform.bin_size = 0.5e-9;
+  const auto simulation = make_simulation(s, {.meshes = {plane()}});
+  REQUIRE(simulation->warnings().size() == 1);
+  CHECK(simulation->warnings()[0] == "scanner 'mirror': its channels have bins of different size; all are sampled by the smallest");
+  CHECK(run(*simulation).size() == 4000);
+}
+
+TEST_CASE("a provider may give parts that were made before, and what it gives counts") {
+  const support::TemporaryFolder folder;
+  std::ofstream(folder / "wall.obj") << "v -5 0 0\nv 5 0 0\nv 0 0 9\nf 1 2 3\n";
+  SurveySettings s = survey();
+  PartSettings part{.id = "1", .source = ObjSource{.files = {folder / "wall.obj"}}};
+  part.swaps.push_back({.removes = true});
+  s.scene.parts = {part};
+  std::vector<int> runs;
+  std::size_t built = 0;
+  const PartProvider provider = [&](int run, const std::function<BuiltParts()>& build) {
+    runs.push_back(run);
+    BuiltParts parts = build();
+    built = parts.parts.size();
+    parts.warnings = {"odd"};
+    return run == 0 ? parts : BuiltParts{};
+  };
+  const auto simulation = make_simulation(s, {.meshes = {plane()}}, provider);
+  CHECK(simulation->runs() == 2);
+  CHECK(built == 1);
+  CHECK(simulation->scene().parts == 2);
+  CHECK(simulation->warnings() == std::vector<std::string>{"odd"});
+  simulation->begin(1);
+  CHECK(runs == std::vector<int>{0, 1});
+  CHECK(built == 0);
+  CHECK(simulation->scene().parts == 1);
+  CHECK(simulation->warnings() == std::vector<std::string>{"odd"});
+}
+
+}  // namespace
+}  // namespace pulsecast::helios
