@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/scanner/footprint.hpp>
@@ -262,12 +262,12 @@ class Survey {
   /// Sets the directions of a bundle to those of subrays from a number on.
   static void to_world(const Matrix3& world_from_beam, const SubrayDirections& directions, std::size_t first, RayBundle& rays) noexcept {
     const Vec3 across = world_from_beam[0], ahead = world_from_beam[1], above = world_from_beam[2];
-    for (std::size_t j = 0; j < rays.size; j += lane_count) {
-      const Lanes x = load<Lanes>(directions.x[first + j]), y = load<Lanes>(directions.y[first + j]),
-                  z = load<Lanes>(directions.z[first + j]);
-      store(Lanes(x * across.x + y * ahead.x + z * above.x), rays.x[j]);
-      store(Lanes(x * across.y + y * ahead.y + z * above.y), rays.y[j]);
-      store(Lanes(x * across.z + y * ahead.z + z * above.z), rays.z[j]);
+    for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
+      const simd::Doubles x = simd::load<simd::Doubles>(directions.x[first + j]), y = simd::load<simd::Doubles>(directions.y[first + j]),
+                          z = simd::load<simd::Doubles>(directions.z[first + j]);
+      simd::store(simd::Doubles(x * across.x + y * ahead.x + z * above.x), rays.x[j]);
+      simd::store(simd::Doubles(x * across.y + y * ahead.y + z * above.y), rays.y[j]);
+      simd::store(simd::Doubles(x * across.z + y * ahead.z + z * above.z), rays.z[j]);
     }
     rays.pad();
   }
@@ -284,10 +284,10 @@ class Survey {
       power[0] = w.directions.shares[first] * w.hits[0].backscatter * white_target_power(w, w.hits[0].range);
       return;
     }
-    for (std::size_t j = 0; j < size; j += lane_count) {
-      const Lanes range = lanes_of([&](std::size_t lane) { return w.hits[j + lane].range; });
-      const Lanes backscatter = lanes_of([&](std::size_t lane) { return w.hits[j + lane].backscatter; });
-      store(w.budget.power(load<Lanes>(w.directions.shares[first + j]), backscatter, range), power[j]);
+    for (std::size_t j = 0; j < size; j += simd::lane_count) {
+      const simd::Doubles range = simd::generate([&](std::size_t lane) { return w.hits[j + lane].range; });
+      const simd::Doubles backscatter = simd::generate([&](std::size_t lane) { return w.hits[j + lane].backscatter; });
+      simd::store(w.budget.power(simd::load<simd::Doubles>(w.directions.shares[first + j]), backscatter, range), power[j]);
     }
   }
 

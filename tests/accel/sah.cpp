@@ -20,9 +20,9 @@ namespace {
 
 /// A corner of a box; the fourth lane means nothing.
 template <class Real>
-pulsecast::Four<Real> corner(Real x, Real y, Real z) {
+simd::Vec4<Real> corner(Real x, Real y, Real z) {
   const Real all[4] = {x, y, z, std::numeric_limits<Real>::quiet_NaN()};
-  return pulsecast::Four<Real>::from(all[0]);
+  return simd::Vec4<Real>::from(all[0]);
 }
 
 /// Slices along the second axis alone.

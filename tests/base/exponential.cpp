@@ -21,10 +21,10 @@ TEST_CASE("the exponential errs by less than 4e-16 of its value, for a number an
     CAPTURE(seed);
     support::Generator any(seed);
     const double reach = any.log_uniform(1e-9, 708);
-    Lanes x{};
-    for (std::size_t k = 0; k < lane_count; ++k) x[k] = any.uniform(-reach, reach);
-    const Lanes y = exponential(x);
-    for (std::size_t k = 0; k < lane_count; ++k) {
+    simd::Doubles x{};
+    for (std::size_t k = 0; k < simd::lane_count; ++k) x[k] = any.uniform(-reach, reach);
+    const simd::Doubles y = exponential(x);
+    for (std::size_t k = 0; k < simd::lane_count; ++k) {
       const double expected = std::exp(x[k]);
       CAPTURE(x[k]);
       REQUIRE(std::fabs(y[k] - expected) <= 4e-16 * expected);
@@ -39,6 +39,6 @@ TEST_CASE("the exponential of 0 is 1, of what is far below 0 it is 0, and nothin
   CHECK(exponential(1e-300) == 1);
   for (const double x : {-708.1, -1e5, -1e300, -infinity}) CHECK(exponential(x) == 0);
   CHECK(std::isnan(exponential(std::numeric_limits<double>::quiet_NaN())));
-  const Lanes far = exponential(Lanes{} - infinity);
-  for (std::size_t k = 0; k < lane_count; ++k) CHECK(far[k] == 0);
+  const simd::Doubles far = exponential(simd::Doubles{} - infinity);
+  for (std::size_t k = 0; k < simd::lane_count; ++k) CHECK(far[k] == 0);
 }

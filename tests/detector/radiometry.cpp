@@ -58,13 +58,13 @@ TEST_CASE("received power is proportional to share and backscatter, so that shar
 TEST_CASE("several subrays at once bring back what each brings back alone") {
   const LinkBudget budget(Receiver{.visibility = 5e3}, Laser{});
   for (const double range : {0.01, 1.0, 100.0, 3000.0, 1e6}) {
-    Lanes share{}, backscatter{}, ranges{};
-    for (std::size_t k = 0; k < lane_count; ++k) {
+    simd::Doubles share{}, backscatter{}, ranges{};
+    for (std::size_t k = 0; k < simd::lane_count; ++k) {
       const double n = static_cast<double>(k);
       share[k] = 0.1 + 0.01 * n, backscatter[k] = 0.3 * n, ranges[k] = range * (1 + 0.1 * n);
     }
-    const Lanes power = budget.power(share, backscatter, ranges);
-    for (std::size_t k = 0; k < lane_count; ++k) {
+    const simd::Doubles power = budget.power(share, backscatter, ranges);
+    for (std::size_t k = 0; k < simd::lane_count; ++k) {
       const double alone = budget.power(share[k], backscatter[k], ranges[k]);
       CHECK(std::fabs(power[k] - alone) <= 2e-15 * alone);
     }

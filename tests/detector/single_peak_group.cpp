@@ -26,7 +26,7 @@ double received(const std::vector<Reflection>& reflections, double time) {
   return sum;
 }
 
-double at(const SinglePeakGroup& group, double x) { return group.power(Lanes{} + x)[0]; }
+double at(const SinglePeakGroup& group, double x) { return group.power(simd::Doubles{} + x)[0]; }
 
 std::vector<Reflection> close_together(support::Generator& any) {
   std::vector<Reflection> reflections(1 + any.whole(40));

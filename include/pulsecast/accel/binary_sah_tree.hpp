@@ -13,9 +13,9 @@
 #include <vector>
 
 #include <pulsecast/accel/sah.hpp>
-#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/simd.hpp>
 
 namespace pulsecast::detail {
 
@@ -105,7 +105,7 @@ class BinarySahTree {
     bool leaf;
   };
 
-  using Corner = Four<Real>;
+  using Corner = simd::Vec4<Real>;
   using Growing = GrowingBox<Real>;
 
   struct Bounds {

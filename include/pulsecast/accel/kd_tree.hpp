@@ -203,7 +203,7 @@ class KdTree {
     double best_cost = detail::test_cost * n;
     const detail::GrowingBox<Real> filled = box_of(part);
     const Boxed within{cell, 0};
-    const auto low = greater(filled.min, within.low()), high = smaller(filled.max, within.high());
+    const auto low = simd::max(filled.min, within.low()), high = simd::min(filled.max, within.high());
     const detail::Slices<Real> slices(low, high, slice_count);
     std::array<std::uint32_t, slice_count> begun[3] = {}, ended[3] = {};
     for (const Boxed& boxed : part) {

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 
 /// What the builds by the surface-area heuristic share: the cost of a node is that of the tests which a ray that meets it must expect,
@@ -48,24 +48,24 @@ struct Boxed {
   PrimitiveIndex primitive;
 
   /// The corners of its box; the fourth lane means nothing.
-  [[nodiscard]] Four<Real> low() const noexcept { return Four<Real>::from(box.min[0]); }
-  [[nodiscard]] Four<Real> high() const noexcept {
+  [[nodiscard]] simd::Vec4<Real> low() const noexcept { return simd::Vec4<Real>::from(box.min[0]); }
+  [[nodiscard]] simd::Vec4<Real> high() const noexcept {
     static_assert(sizeof(Boxed) >= 7 * sizeof(Real), "one lane beyond the box is read");
-    return Four<Real>::from(box.max[0]);
+    return simd::Vec4<Real>::from(box.max[0]);
   }
 };
 
 /// A box as it grows; as made, the one that nothing is inside of.
 template <std::floating_point Real>
 struct GrowingBox {
-  Four<Real> min{std::numeric_limits<Real>::max()}, max{-std::numeric_limits<Real>::max()};
+  simd::Vec4<Real> min{std::numeric_limits<Real>::max()}, max{-std::numeric_limits<Real>::max()};
 
-  void extend(const Four<Real>& low, const Four<Real>& high) noexcept { min = smaller(low, min), max = greater(high, max); }
+  void extend(const simd::Vec4<Real>& low, const simd::Vec4<Real>& high) noexcept { min = simd::min(low, min), max = simd::max(high, max); }
   void extend(const GrowingBox& by) noexcept { extend(by.min, by.max); }
   [[nodiscard]] BoundingBox<Real> box() const noexcept { return {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}}; }
   /// The same as of `box()`, give or take rounding [m^2].
   [[nodiscard]] double half_area() const noexcept {
-    const Four<Real> size = max - min;
+    const simd::Vec4<Real> size = max - min;
     const auto x = static_cast<double>(size[0]), y = static_cast<double>(size[1]), z = static_cast<double>(size[2]);
     return x * y + y * z + z * x;
   }
@@ -75,7 +75,7 @@ struct GrowingBox {
 template <std::floating_point Real>
 class Slices {
  public:
-  Slices(const Four<Real>& low, const Four<Real>& high, std::size_t count) noexcept
+  Slices(const simd::Vec4<Real>& low, const simd::Vec4<Real>& high, std::size_t count) noexcept
       : count_(count), low_(low), last_(static_cast<Real>(count - 1)) {
     Real per_width[4] = {};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -83,7 +83,7 @@ class Slices {
       valid_[k] = extent > 0 && slices <= std::numeric_limits<Real>::max();
       width_[k] = extent / static_cast<Real>(count), per_width[k] = valid_[k] ? slices : 0;
     }
-    per_width_ = Four<Real>::from(per_width[0]);
+    per_width_ = simd::Vec4<Real>::from(per_width[0]);
   }
 
   /// How many along an axis.
@@ -93,8 +93,8 @@ class Slices {
   [[nodiscard]] bool valid(std::size_t k) const noexcept { return valid_[k]; }
 
   /// The slice along each axis that holds a point, or the one next to it; 0 along those that are not sliced.
-  [[nodiscard]] std::array<std::uint32_t, 3> of(const Four<Real>& point) const noexcept {
-    const Four<Real> slice = smaller(greater((point - low_) * per_width_, Four<Real>(0)), last_);
+  [[nodiscard]] std::array<std::uint32_t, 3> of(const simd::Vec4<Real>& point) const noexcept {
+    const simd::Vec4<Real> slice = simd::min(simd::max((point - low_) * per_width_, simd::Vec4<Real>(0)), last_);
     const auto whole = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(slice[k])); };
     return {whole(0), whole(1), whole(2)};
   }
@@ -109,7 +109,7 @@ class Slices {
 
  private:
   std::size_t count_;
-  Four<Real> low_, last_, per_width_;
+  simd::Vec4<Real> low_, last_, per_width_;
   Real width_[3];
   bool valid_[3];
 };

@@ -7,16 +7,16 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/simd.hpp>
 
 namespace pulsecast {
 
 /// e^x, for a number or for a register of them at once; 0 for x below -708. Relative error at most 4e-16 for |x| up to 708.
 /// Source: Cody & Waite 1980: x = n ln 2 + r, with ln 2 in two parts; Taylor's series for r, whose rest is 4e-18.
 template <class Number>
-requires std::same_as<Number, double> || std::same_as<Number, Lanes>
+requires std::same_as<Number, double> || std::same_as<Number, simd::Doubles>
 [[nodiscard]] inline Number exponential(const Number& x) noexcept {
-  using Bits = std::conditional_t<std::same_as<Number, double>, std::uint64_t, LaneIds>;
+  using Bits = std::conditional_t<std::same_as<Number, double>, std::uint64_t, simd::Ids>;
   constexpr double per_ln2 = 1.4426950408889634, ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
   constexpr double whole = 0x1.8p52;  // added to a number, it leaves no fraction, and n in the lowest bits
   constexpr double least = -708;

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/echo_width.hpp>
@@ -158,7 +158,7 @@ class AnalyticWaveform {
 
   /// Enters the only echo of a group, if it reaches the threshold.
   void detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
-    const double peak = group.peak(), height = group.power(Lanes{} + peak)[0];
+    const double peak = group.peak(), height = group.power(simd::Doubles{} + peak)[0];
     if (height < s_.threshold) return;
     echoes.push_back(group.echo(group.last_edge() + peak * shape.tau, height, s_.timing));
     if constexpr (by_moments) echoes.back().width = shape.tau * width_.width(group.moments());

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/echo_width.hpp>
@@ -137,8 +137,8 @@ class FullWaveform {
     const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau, step = s_.sample_interval * per_tau;
     if (!(first >= 0)) return false;
     std::array<double, 8> y;  // from two samples before that one on
-    for (std::size_t j = 0; j < y.size(); j += lane_count)
-      store(group.power(lanes_of([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), y[j]);
+    for (std::size_t j = 0; j < y.size(); j += simd::lane_count)
+      simd::store(group.power(simd::generate([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), y[j]);
     const std::size_t top = y[3] > y[2] ? 3 : 2;
     const auto [offset, height] = vertex(&y[top]);
     if (height < s_.threshold) return true;

@@ -9,8 +9,8 @@
 #include <span>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
 
@@ -109,34 +109,29 @@ struct GaussianFit {
 
   static Equations equations(std::span<const double> samples, const Gaussian& g) noexcept {
     // exp(-x^2/2) at every so many-th sample: each step multiplies by a ratio, and the ratio by a constant
-    const double h = 1 / g.width, step = lane_count * h;
-    Lanes x = (lanes_of([](std::size_t lane) { return static_cast<double>(lane); }) - g.position) * h;
-    const Lanes growth = -step * (x + 0.5 * step), none = Lanes{} + std::numeric_limits<double>::infinity();
-    Lanes value = exponential(Lanes(-0.5 * x * x)), ratio = growth < 700 ? exponential(growth) : none;
+    const double h = 1 / g.width, step = simd::lane_count * h;
+    simd::Doubles x = (simd::generate([](std::size_t lane) { return static_cast<double>(lane); }) - g.position) * h;
+    const simd::Doubles growth = -step * (x + 0.5 * step), none = simd::Doubles{} + std::numeric_limits<double>::infinity();
+    simd::Doubles value = exponential(simd::Doubles(-0.5 * x * x)), ratio = growth < 700 ? exponential(growth) : none;
     const double decay = exponential(-step * step);
     // the derivatives are value, value x k and value x^2 k, with k = amplitude / width: what is needed are sums over powers of x
-    Lanes s0{}, s1{}, s2{}, s3{}, s4{}, r0{}, r1{}, r2{}, squares{};
-    for (std::size_t i = 0; i < samples.size(); i += lane_count) {
-      Lanes y{};
-      if (i + lane_count <= samples.size())
-        fill(y, samples[i]);
+    simd::Doubles s0{}, s1{}, s2{}, s3{}, s4{}, r0{}, r1{}, r2{}, squares{};
+    for (std::size_t i = 0; i < samples.size(); i += simd::lane_count) {
+      simd::Doubles y{};
+      if (i + simd::lane_count <= samples.size())
+        simd::fill(y, samples[i]);
       else
         for (std::size_t k = i; k < samples.size(); ++k) y[k - i] = samples[k];
-      const Lanes residual = y - g.amplitude * value, weighted = y * value, xx = x * x;
-      const Lanes s = weighted * value, r = weighted * residual, sx = s * x, sxx = s * xx;
+      const simd::Doubles residual = y - g.amplitude * value, weighted = y * value, xx = x * x;
+      const simd::Doubles s = weighted * value, r = weighted * residual, sx = s * x, sxx = s * xx;
       s0 += s, s1 += sx, s2 += sxx, s3 += sx * xx, s4 += sxx * xx;
       r0 += r, r1 += r * x, r2 += r * xx;
       squares += y * residual * residual;
       x += step, value *= ratio, ratio *= decay;
     }
-    const auto total = [](const Lanes& lanes) {
-      double sum = 0;
-      for (std::size_t k = 0; k < lane_count; ++k) sum += lanes[k];
-      return sum;
-    };
     const double k = g.amplitude * h;
-    return {total(s0),         total(s1) * k, total(s2) * k, total(s2) * k * k, total(s3) * k * k,
-            total(s4) * k * k, total(r0),     total(r1) * k, total(r2) * k,     total(squares)};
+    return {simd::sum(s0),         simd::sum(s1) * k, simd::sum(s2) * k, simd::sum(s2) * k * k, simd::sum(s3) * k * k,
+            simd::sum(s4) * k * k, simd::sum(r0),     simd::sum(r1) * k, simd::sum(r2) * k,     simd::sum(squares)};
   }
 
   /// The step that the damped normal equations give, by Cholesky's decomposition; not finite if there is none.

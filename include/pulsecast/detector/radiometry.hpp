@@ -7,10 +7,10 @@
 #include <limits>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/pulse.hpp>
 
@@ -108,7 +108,8 @@ class LinkBudget {
   [[nodiscard]] double power(double share, double backscatter, double range) const noexcept { return of(share, backscatter, range); }
 
   /// The same of several subrays.
-  [[nodiscard]] Lanes power(const Lanes& share, const Lanes& backscatter, const Lanes& range) const noexcept {
+  [[nodiscard]] simd::Doubles power(const simd::Doubles& share, const simd::Doubles& backscatter,
+                                    const simd::Doubles& range) const noexcept {
     return of(share, backscatter, range);
   }
 

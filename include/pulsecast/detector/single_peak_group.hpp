@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <pulsecast/base/exponential.hpp>
-#include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/echo_width.hpp>
@@ -30,14 +30,14 @@ class SinglePeakGroup {
   /// A number a reflection, and lanes to spare.
   struct Workspace {
     std::vector<double> ages, weights;
-    explicit Workspace(std::size_t reflections) : ages(reflections + lane_count), weights(reflections + lane_count) {}
+    explicit Workspace(std::size_t reflections) : ages(reflections + simd::lane_count), weights(reflections + simd::lane_count) {}
   };
 
   /// Looks at reflections, and notes their ages and weights in a workspace, which is to be there as long as the group is. If they are none
   /// (`!one()`), for being too far apart, too many for the workspace, without power, or of no range, nothing else is to be asked.
   SinglePeakGroup(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval, Workspace& w) noexcept
       : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()), per_tau_(1 / shape.tau) {
-    if (reflections.empty() || reflections.size() + lane_count > w.ages.size()) return;
+    if (reflections.empty() || reflections.size() + simd::lane_count > w.ages.size()) return;
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
     bool useful = true;
     for (const Reflection& r : reflections) {
@@ -51,17 +51,17 @@ class SinglePeakGroup {
 
     const std::size_t n = reflections.size();
     for (std::size_t j = 0; j < n; ++j) ages_[j] = farthest - reflections[j].range, weights_[j] = reflections[j].power;
-    for (std::size_t j = n; j < n + lane_count; ++j) ages_[j] = 0, weights_[j] = 0;
-    Lanes power{}, before{}, zeroth{}, first{}, second{};
-    for (std::size_t j = 0; j < n; j += lane_count) {
-      const Lanes distance = load<Lanes>(ages_[j]), p = load<Lanes>(weights_[j]);
-      const Lanes age = distance * per_metre, weight = p * exponential(Lanes(-age));
+    for (std::size_t j = n; j < n + simd::lane_count; ++j) ages_[j] = 0, weights_[j] = 0;
+    simd::Doubles power{}, before{}, zeroth{}, first{}, second{};
+    for (std::size_t j = 0; j < n; j += simd::lane_count) {
+      const simd::Doubles distance = simd::load<simd::Doubles>(ages_[j]), p = simd::load<simd::Doubles>(weights_[j]);
+      const simd::Doubles age = distance * per_metre, weight = p * exponential(simd::Doubles(-age));
       power += p, before += p * distance;
       zeroth += weight, first += weight * age, second += weight * age * age;
-      store(age, ages_[j]), store(weight, weights_[j]);
+      simd::store(age, ages_[j]), simd::store(weight, weights_[j]);
     }
-    zeroth_ = sum(zeroth), first_ = sum(first), second_ = sum(second);
-    mean_range_ = farthest - sum(before) / sum(power);
+    zeroth_ = simd::sum(zeroth), first_ = simd::sum(first), second_ = simd::sum(second);
+    mean_range_ = farthest - simd::sum(before) / simd::sum(power);
   }
 
   [[nodiscard]] bool one() const noexcept { return one_; }
@@ -75,8 +75,8 @@ class SinglePeakGroup {
   }
 
   /// The sum at times [tau] from the last edge on [W].
-  [[nodiscard]] Lanes power(const Lanes& x) const noexcept {
-    return PulseShape::to_unit_peak * exponential(Lanes(-x)) * (second_ + x * (2 * first_ + x * zeroth_));
+  [[nodiscard]] simd::Doubles power(const simd::Doubles& x) const noexcept {
+    return PulseShape::to_unit_peak * exponential(simd::Doubles(-x)) * (second_ + x * (2 * first_ + x * zeroth_));
   }
 
   /// Integrals over all of the sum, times counted from the last edge on [tau].
@@ -93,15 +93,15 @@ class SinglePeakGroup {
 
   /// What has the greatest share of the sum at a time from the last edge on [tau]; the first of several.
   [[nodiscard]] const Reflection& strongest(double x) const noexcept {
-    Lanes most{}, number{}, best{};
-    for (std::size_t lane = 0; lane < lane_count; ++lane) number[lane] = static_cast<double>(lane);
-    for (std::size_t j = 0; j < reflections_.size(); j += lane_count) {
-      const Lanes u = load<Lanes>(ages_[j]) + x, power = load<Lanes>(weights_[j]) * u * u;
-      best = power > most ? number : best, most = greater(power, most);
-      number += lane_count;
+    simd::Doubles most{}, number{}, best{};
+    for (std::size_t lane = 0; lane < simd::lane_count; ++lane) number[lane] = static_cast<double>(lane);
+    for (std::size_t j = 0; j < reflections_.size(); j += simd::lane_count) {
+      const simd::Doubles u = simd::load<simd::Doubles>(ages_[j]) + x, power = simd::load<simd::Doubles>(weights_[j]) * u * u;
+      best = power > most ? number : best, most = simd::max(power, most);
+      number += simd::lane_count;
     }
     std::size_t first = 0;
-    for (std::size_t lane = 1; lane < lane_count; ++lane)
+    for (std::size_t lane = 1; lane < simd::lane_count; ++lane)
       if (most[lane] > most[first] || (most[lane] == most[first] && best[lane] < best[first])) first = lane;
     return reflections_[static_cast<std::size_t>(best[first])];
   }
@@ -117,12 +117,6 @@ class SinglePeakGroup {
   }
 
  private:
-  static double sum(const Lanes& lanes) noexcept {
-    double all = 0;
-    for (std::size_t k = 0; k < lane_count; ++k) all += lanes[k];
-    return all;
-  }
-
   std::span<const Reflection> reflections_;
   double *ages_, *weights_;
   bool one_ = false;

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <limits>
 
-#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/ray.hpp>
 
 namespace pulsecast {
@@ -37,7 +37,7 @@ struct BundleOrigin {
 /// All directions have the same length: 1 in the world, 1/scale inside an instance, so that a range means metres of the world everywhere.
 struct RayBundle : BundleOrigin {
   static constexpr std::size_t capacity = 64;
-  static constexpr std::size_t lanes = lane_count;
+  static constexpr std::size_t lanes = simd::lane_count;
 
   using Column = std::array<double, capacity>;
 
@@ -73,14 +73,12 @@ struct RayBundle : BundleOrigin {
       return;
     }
     for (int k = 0; k < 3; ++k) {
-      Lanes low = Lanes{} + std::numeric_limits<double>::infinity(), high = -low;
-      for (std::size_t j = 0; j < size; j += lane_count) {
-        const Lanes d = load<Lanes>((*columns[k])[j]);
-        low = smaller(d, low), high = greater(d, high);  // NaN passes no comparison
+      simd::Doubles low = simd::Doubles{} + std::numeric_limits<double>::infinity(), high = -low;
+      for (std::size_t j = 0; j < size; j += simd::lane_count) {
+        const simd::Doubles d = simd::load<simd::Doubles>((*columns[k])[j]);
+        low = simd::min(d, low), high = simd::max(d, high);  // NaN passes no comparison
       }
-      least[k] = low[0], most[k] = high[0];
-      for (std::size_t lane = 1; lane < lane_count; ++lane)
-        least[k] = low[lane] < least[k] ? low[lane] : least[k], most[k] = high[lane] > most[k] ? high[lane] : most[k];
+      least[k] = simd::min(low), most[k] = simd::max(high);
     }
   }
 
@@ -130,11 +128,9 @@ struct ClosestHits {
   [[nodiscard]] double limit(const RayBundle& rays) const noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     if (rays.size == 1) return range[0] > -infinity ? range[0] : -infinity;
-    Lanes last = Lanes{} - infinity;
-    for (std::size_t j = 0; j < rays.size; j += lane_count) last = greater(load<Lanes>(range[j]), last);
-    double limit = last[0];
-    for (std::size_t lane = 1; lane < lane_count; ++lane) limit = last[lane] > limit ? last[lane] : limit;
-    return limit;
+    simd::Doubles last = simd::Doubles{} - infinity;
+    for (std::size_t j = 0; j < rays.size; j += simd::lane_count) last = simd::max(simd::load<simd::Doubles>(range[j]), last);
+    return simd::max(last);
   }
 };
 

@@ -13,7 +13,7 @@
 #include <limits>
 #include <type_traits>
 
-#include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 
@@ -176,8 +176,8 @@ class BundleInterval {
   [[nodiscard]] unsigned inside(const Box8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
     return inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
       const Axis& axis = axes_[k];
-      return {(load<Pack<Real>>(boxes.min[k][first]) - axis.origin_high) * axis.per_min,
-              (load<Pack<Real>>(boxes.max[k][first]) - axis.origin_low) * axis.per_max};
+      return {(simd::load<simd::Packet<Real>>(boxes.min[k][first]) - axis.origin_high) * axis.per_min,
+              (simd::load<simd::Packet<Real>>(boxes.max[k][first]) - axis.origin_low) * axis.per_max};
     });
   }
   [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
@@ -188,8 +188,8 @@ class BundleInterval {
       steps[k] = boxes.step(k);
     }
     const unsigned met = inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
-      return {(pack_from<Real>(boxes.walls[k][0][first]) * steps[k] + to_low[k]) * axes_[k].per_min,
-              (pack_from<Real>(boxes.walls[k][1][first]) * steps[k] + to_high[k]) * axes_[k].per_max};
+      return {(simd::packet_from<Real>(boxes.walls[k][0][first]) * steps[k] + to_low[k]) * axes_[k].per_min,
+              (simd::packet_from<Real>(boxes.walls[k][1][first]) * steps[k] + to_high[k]) * axes_[k].per_max};
     });
     return met & ((1U << boxes.count) - 1);
   }
@@ -218,25 +218,26 @@ class BundleInterval {
 
   /// The ranges to the lower and the upper walls of boxes, no numbers where a ray on a wall stays on it.
   struct Walls {
-    Pack<Real> low, high;
+    simd::Packet<Real> low, high;
   };
 
   template <class WallsOf>
   [[nodiscard]] unsigned inside(Real limit, std::array<Real, 8>& entries, const WallsOf& walls_of) const noexcept {
     unsigned met = 0;
-    for (std::size_t first = 0; first < 8; first += pack_count<Real>) {
-      Pack<Real> entry = Pack<Real>{} + near_, exit = Pack<Real>{} + std::min(limit, std::numeric_limits<Real>::max());
+    for (std::size_t first = 0; first < 8; first += simd::packet_size<Real>) {
+      simd::Packet<Real> entry = simd::Packet<Real>{} + near_,
+                         exit = simd::Packet<Real>{} + std::min(limit, std::numeric_limits<Real>::max());
       for (std::size_t k = 0; k < 3; ++k) {
         const Walls walls = walls_of(k, first);
         if (axes_[k].sense > 0)  // what is no number passes no comparison
-          entry = greater(walls.low, entry), exit = smaller(walls.high, exit);
+          entry = simd::max(walls.low, entry), exit = simd::min(walls.high, exit);
         else if (axes_[k].sense < 0)
-          entry = greater(walls.high, entry), exit = smaller(walls.low, exit);
+          entry = simd::max(walls.high, entry), exit = simd::min(walls.low, exit);
         else
-          entry = greater(walls.high, greater(walls.low, entry));
+          entry = simd::max(walls.high, simd::max(walls.low, entry));
       }
-      store(entry, entries[first]);
-      met |= bits(entry <= exit) << first;
+      simd::store(entry, entries[first]);
+      met |= simd::bits(entry <= exit) << first;
     }
     return met;
   }
@@ -278,16 +279,16 @@ class RayInterval {
  public:
   /// Of the only ray of a bundle. `bounds` is what the accelerator holds, `centre` what its boxes are relative to.
   RayInterval(const RayBundle& ray, const Box& bounds, const Vec3& centre) noexcept {
-    using Axes = Four<double>;
+    using Axes = simd::Vec4<double>;
     const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
     const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin), low = axes(bounds.min), high = axes(bounds.max);
     const Axes o = origin - axes(centre);
     // the margin of a bundle, for the same reasons
-    const Axes farthest = greater(greater(magnitude(low), magnitude(high)), magnitude(origin));
+    const Axes farthest = simd::max(simd::max(magnitude(low), magnitude(high)), magnitude(origin));
     const double slack = 64 * std::numeric_limits<double>::epsilon() * std::max(std::max(farthest[0], farthest[1]), farthest[2]);
     const Axes margin = Axes(slack) + (magnitude(o) + (high - low)) * Axes(4 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
     const Axes outwards = margin * sense(direction);
-    const Axes slowness = sense(direction) / greater(magnitude(direction), Axes(min_speed * ray.direction_length));
+    const Axes slowness = sense(direction) / simd::max(magnitude(direction), Axes(min_speed * ray.direction_length));
     put(0, o + outwards, slowness * Axes(1 - tolerance));
     put(1, o - outwards, slowness * Axes(1 + tolerance));
     for (std::size_t k = 0; k < 3; ++k) upper_[k] = direction[k] < 0 ? 1 : 0;
@@ -307,18 +308,18 @@ class RayInterval {
     Real steps[3];
     for (std::size_t k = 0; k < 3; ++k) steps[k] = boxes.step(k);
     unsigned met = 0;
-    for (std::size_t first = 0; first < 8; first += pack_count<Real>) {
+    for (std::size_t first = 0; first < 8; first += simd::packet_size<Real>) {
       // the range to a wall is a line over its number; where it lies errs by two roundings of how far the origin is, and four and a half of
       // half the bounds
-      const auto ranges = [&](std::size_t k, std::size_t side) noexcept -> Pack<Real> {
+      const auto ranges = [&](std::size_t k, std::size_t side) noexcept -> simd::Packet<Real> {
         const Real per = per_[side][k], start = boxes.origin[k] * per + start_[side][k];
-        return pack_from<Real>(boxes.walls[k][upper_[k] ^ side][first]) * (steps[k] * per) + start;
+        return simd::packet_from<Real>(boxes.walls[k][upper_[k] ^ side][first]) * (steps[k] * per) + start;
       };
-      Pack<Real> entry = near_ - Pack<Real>{}, exit = limit - Pack<Real>{};
+      simd::Packet<Real> entry = near_ - simd::Packet<Real>{}, exit = limit - simd::Packet<Real>{};
       for (std::size_t k = 0; k < 3; ++k)  // what is no number passes no comparison
-        entry = greater(ranges(k, 0), entry), exit = smaller(ranges(k, 1), exit);
-      store(entry, entries[first]);
-      met |= bits(entry <= exit) << first;
+        entry = simd::max(ranges(k, 0), entry), exit = simd::min(ranges(k, 1), exit);
+      simd::store(entry, entries[first]);
+      met |= simd::bits(entry <= exit) << first;
     }
     return met & ((1U << boxes.count) - 1);
   }
@@ -329,13 +330,13 @@ class RayInterval {
   /// that nothing is met beyond.
   static constexpr double min_speed = 1e-18;
 
-  void put(std::size_t side, const Four<double>& from, const Four<double>& slowness) noexcept {
+  void put(std::size_t side, const simd::Vec4<double>& from, const simd::Vec4<double>& slowness) noexcept {
     per_[side] = slowness.template as<Real>();
-    start_[side] = (Four<double>(0) - from).template as<Real>() * per_[side];
+    start_[side] = (simd::Vec4<double>(0) - from).template as<Real>() * per_[side];
   }
 
   /// What turns the place of a wall along each axis into the range to it, where a box is entered and where it is left.
-  Four<Real> per_[2], start_[2];
+  simd::Vec4<Real> per_[2], start_[2];
   Real near_;
   std::size_t upper_[3];  ///< 1 where boxes are entered through their upper walls
 };

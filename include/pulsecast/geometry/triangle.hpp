@@ -10,7 +10,7 @@
 #include <span>
 #include <utility>
 
-#include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
@@ -34,24 +34,24 @@ struct Triangle {
 /// As many triangles as go through the same arithmetic at once; the last of them stands in the idle lanes too.
 struct TrianglePacket {
   struct Corner {
-    Lanes x, y, z;  ///< [m]
+    simd::Doubles x, y, z;  ///< [m]
   };
   Corner a, b, c;
-  std::array<PrimitiveIndex, lane_count> primitives;
+  std::array<PrimitiveIndex, simd::lane_count> primitives;
   std::size_t size;  ///< lanes in use, at least one
 
   /// `triangle_of(n)` gives the triangle of the n-th of these primitives.
   template <class TriangleOf>
   TrianglePacket(std::span<const PrimitiveIndex> of, const TriangleOf& triangle_of) noexcept : size(of.size()) {
     const auto in_use = [&](std::size_t lane) noexcept { return std::min(lane, size - 1); };
-    for (std::size_t lane = 0; lane < lane_count; ++lane) primitives[lane] = of[in_use(lane)];
+    for (std::size_t lane = 0; lane < simd::lane_count; ++lane) primitives[lane] = of[in_use(lane)];
     const auto triangles = [&]<std::size_t... lane>(std::index_sequence<lane...>) noexcept {
       return std::array{triangle_of(in_use(lane))...};
     }
-    (std::make_index_sequence<lane_count>());
+    (std::make_index_sequence<simd::lane_count>());
     const auto corner = [&](Vec3 Triangle::*which) noexcept {
       const auto coordinate = [&](double Vec3::*axis) noexcept {
-        return lanes_of([&](std::size_t lane) { return triangles[lane].*which.*axis; });
+        return simd::generate([&](std::size_t lane) { return triangles[lane].*which.*axis; });
       };
       return Corner{coordinate(&Vec3::x), coordinate(&Vec3::y), coordinate(&Vec3::z)};
     };
@@ -72,10 +72,10 @@ struct TrianglePacket {
 /// Source: the volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin 2007; the stretch inside
 /// the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
 [[gnu::noinline]] inline void intersect(const TrianglePacket& triangles, const RayBundle& rays, ClosestHits& nearest) noexcept {
-  static_assert(RayBundle::lanes % lane_count == 0);
+  static_assert(RayBundle::lanes % simd::lane_count == 0);
   constexpr double unit = std::numeric_limits<double>::epsilon();
   using Corner = TrianglePacket::Corner;
-  const auto magnitude = [](const Lanes& v) noexcept { return Lanes(LaneIds(v) & 0x7FFF'FFFF'FFFF'FFFF); };
+  const auto magnitude = [](const simd::Doubles& v) noexcept { return simd::Doubles(simd::Ids(v) & 0x7FFF'FFFF'FFFF'FFFF); };
   const auto from_origin = [&](const Corner& p) noexcept -> Corner {
     return {p.x - rays.origin.x, p.y - rays.origin.y, p.z - rays.origin.z};
   };
@@ -84,36 +84,36 @@ struct TrianglePacket {
   // the planes through the origin and an edge, and for how long their side is in doubt: |e||s| in the 1-norm bounds each of the sums of
   // products, and seven roundings stand between them and the true ones
   struct Planes {
-    Lanes x, y, z, doubt;
+    simd::Doubles x, y, z, doubt;
   };
-  const Lanes tolerance = Lanes{} + 4 * unit * rays.direction_length;
+  const simd::Doubles tolerance = simd::Doubles{} + 4 * unit * rays.direction_length;
   const auto planes = [&](const Corner& from, const Corner& to) noexcept -> Planes {
-    const Lanes ex = to.x - from.x, ey = to.y - from.y, ez = to.z - from.z;
-    const Lanes sx = to.x + from.x, sy = to.y + from.y, sz = to.z + from.z;
+    const simd::Doubles ex = to.x - from.x, ey = to.y - from.y, ez = to.z - from.z;
+    const simd::Doubles sx = to.x + from.x, sy = to.y + from.y, sz = to.z + from.z;
     return {ey * sz - ez * sy, ez * sx - ex * sz, ex * sy - ey * sx,
             (magnitude(ex) + magnitude(ey) + magnitude(ez)) * (magnitude(sx) + magnitude(sy) + magnitude(sz)) * tolerance};
   };
   const Planes ab = planes(a, b), bc = planes(b, c), ca = planes(c, a);
 
   // no ray is inside where all of them pass one plane on its right and one on its left; rounding may come in here once more
-  LaneMask may_meet;
+  simd::Mask may_meet;
   const auto most = [&](const Planes& p) noexcept {
-    return greater(p.x * rays.least.x, p.x * rays.most.x) + greater(p.y * rays.least.y, p.y * rays.most.y) +
-           greater(p.z * rays.least.z, p.z * rays.most.z);
+    return simd::max(p.x * rays.least.x, p.x * rays.most.x) + simd::max(p.y * rays.least.y, p.y * rays.most.y) +
+           simd::max(p.z * rays.least.z, p.z * rays.most.z);
   };
   const auto least = [&](const Planes& p) noexcept {
-    return smaller(p.x * rays.least.x, p.x * rays.most.x) + smaller(p.y * rays.least.y, p.y * rays.most.y) +
-           smaller(p.z * rays.least.z, p.z * rays.most.z);
+    return simd::min(p.x * rays.least.x, p.x * rays.most.x) + simd::min(p.y * rays.least.y, p.y * rays.most.y) +
+           simd::min(p.z * rays.least.z, p.z * rays.most.z);
   };
   if (rays.size == 1) {
     const auto side = [&](const Planes& p) noexcept { return p.x * rays.x[0] + p.y * rays.y[0] + p.z * rays.z[0]; };
-    const Lanes u = side(ab), v = side(bc), w = side(ca), doubt = 4 * greater(ab.doubt, greater(bc.doubt, ca.doubt));
-    may_meet = (smaller(u, smaller(v, w)) >= -doubt) | (greater(u, greater(v, w)) <= doubt);
+    const simd::Doubles u = side(ab), v = side(bc), w = side(ca), doubt = 4 * simd::max(ab.doubt, simd::max(bc.doubt, ca.doubt));
+    may_meet = (simd::min(u, simd::min(v, w)) >= -doubt) | (simd::max(u, simd::max(v, w)) <= doubt);
   } else {
     may_meet = ((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
                ((least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt));
   }
-  unsigned candidates = bits(may_meet) & ((1U << triangles.size) - 1);
+  unsigned candidates = simd::bits(may_meet) & ((1U << triangles.size) - 1);
   if (candidates == 0) return;
 
   // their own planes and boxes, the boxes widened by the roundings of a hit
@@ -124,54 +124,55 @@ struct TrianglePacket {
   const auto square = [](const Corner& v) noexcept { return v.x * v.x + v.y * v.y + v.z * v.z; };
   const Corner from_a = minus(triangles.b, triangles.a), to_a = minus(triangles.a, triangles.c);  // not rounded by their distance
   const Corner normals = cross_of(from_a, to_a);
-  const Lanes offsets = normals.x * a.x + normals.y * a.y + normals.z * a.z, area = square(normals);
-  const LaneMask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // an angle of none but roundings
-  const Lanes grazing =
-      flat ? Lanes{} + std::numeric_limits<double>::infinity() : 1e-12 * 1e-12 * rays.direction_length * rays.direction_length * area;
-  const Corner lowest{smaller(a.x, smaller(b.x, c.x)), smaller(a.y, smaller(b.y, c.y)), smaller(a.z, smaller(b.z, c.z))};
-  const Corner highest{greater(a.x, greater(b.x, c.x)), greater(a.y, greater(b.y, c.y)), greater(a.z, greater(b.z, c.z))};
-  const Lanes extent =
-      greater(greater(greater(magnitude(lowest.x), magnitude(highest.x)), greater(magnitude(lowest.y), magnitude(highest.y))),
-              greater(magnitude(lowest.z), magnitude(highest.z)));
-  const Lanes margin = 8 * unit * extent;
+  const simd::Doubles offsets = normals.x * a.x + normals.y * a.y + normals.z * a.z, area = square(normals);
+  const simd::Mask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // an angle of none but roundings
+  const simd::Doubles grazing = flat ? simd::Doubles{} + std::numeric_limits<double>::infinity()
+                                     : 1e-12 * 1e-12 * rays.direction_length * rays.direction_length * area;
+  const Corner lowest{simd::min(a.x, simd::min(b.x, c.x)), simd::min(a.y, simd::min(b.y, c.y)), simd::min(a.z, simd::min(b.z, c.z))};
+  const Corner highest{simd::max(a.x, simd::max(b.x, c.x)), simd::max(a.y, simd::max(b.y, c.y)), simd::max(a.z, simd::max(b.z, c.z))};
+  const simd::Doubles extent =
+      simd::max(simd::max(simd::max(magnitude(lowest.x), magnitude(highest.x)), simd::max(magnitude(lowest.y), magnitude(highest.y))),
+                simd::max(magnitude(lowest.z), magnitude(highest.z)));
+  const simd::Doubles margin = 8 * unit * extent;
 
   for (; candidates != 0; candidates &= candidates - 1) {
     const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
     const PrimitiveIndex primitive = triangles.primitives[t];
-    for (std::size_t j = 0; j < rays.size; j += lane_count) {
-      const Lanes x = load<Lanes>(rays.x[j]), y = load<Lanes>(rays.y[j]), z = load<Lanes>(rays.z[j]);
-      const Lanes u = x * ab.x[t] + y * ab.y[t] + z * ab.z[t];
-      const Lanes v = x * bc.x[t] + y * bc.y[t] + z * bc.z[t];
-      const Lanes w = x * ca.x[t] + y * ca.y[t] + z * ca.z[t];
-      const LaneMask on_left = (u >= -ab.doubt[t]) & (v >= -bc.doubt[t]) & (w >= -ca.doubt[t]);
-      const LaneMask on_right = (u <= ab.doubt[t]) & (v <= bc.doubt[t]) & (w <= ca.doubt[t]);
-      const LaneMask between = on_left | on_right;
-      if (bits(between) == 0) continue;
+    for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
+      const simd::Doubles x = simd::load<simd::Doubles>(rays.x[j]), y = simd::load<simd::Doubles>(rays.y[j]),
+                          z = simd::load<simd::Doubles>(rays.z[j]);
+      const simd::Doubles u = x * ab.x[t] + y * ab.y[t] + z * ab.z[t];
+      const simd::Doubles v = x * bc.x[t] + y * bc.y[t] + z * bc.z[t];
+      const simd::Doubles w = x * ca.x[t] + y * ca.y[t] + z * ca.z[t];
+      const simd::Mask on_left = (u >= -ab.doubt[t]) & (v >= -bc.doubt[t]) & (w >= -ca.doubt[t]);
+      const simd::Mask on_right = (u <= ab.doubt[t]) & (v <= bc.doubt[t]) & (w <= ca.doubt[t]);
+      const simd::Mask between = on_left | on_right;
+      if (simd::bits(between) == 0) continue;
 
-      const Lanes slope = x * normals.x[t] + y * normals.y[t] + z * normals.z[t];
-      const LaneMask inside = between & (slope * slope > grazing[t]);
+      const simd::Doubles slope = x * normals.x[t] + y * normals.y[t] + z * normals.z[t];
+      const simd::Mask inside = between & (slope * slope > grazing[t]);
 
       // the stretch inside the box; a direction of zero becomes so small a one that the walls which it never reaches lie at infinity
-      const Lanes tiny = Lanes{} + 1e-300;
-      Lanes entry = Lanes{} - std::numeric_limits<double>::infinity(), exit = -entry;
-      const auto between_walls = [&](const Lanes& direction, double low, double high) noexcept {
-        const Lanes per = 1 / (direction * direction > 0 ? direction : tiny);
-        const Lanes to_low = low * per, to_high = high * per;
-        entry = greater(smaller(to_low, to_high), entry), exit = smaller(greater(to_low, to_high), exit);
+      const simd::Doubles tiny = simd::Doubles{} + 1e-300;
+      simd::Doubles entry = simd::Doubles{} - std::numeric_limits<double>::infinity(), exit = -entry;
+      const auto between_walls = [&](const simd::Doubles& direction, double low, double high) noexcept {
+        const simd::Doubles per = 1 / (direction * direction > 0 ? direction : tiny);
+        const simd::Doubles to_low = low * per, to_high = high * per;
+        entry = simd::max(simd::min(to_low, to_high), entry), exit = simd::min(simd::max(to_low, to_high), exit);
       };
       between_walls(x, lowest.x[t] - margin[t], highest.x[t] + margin[t]);
       between_walls(y, lowest.y[t] - margin[t], highest.y[t] + margin[t]);
       between_walls(z, lowest.z[t] - margin[t], highest.z[t] + margin[t]);
-      const Lanes crossing = offsets[t] / slope;
-      const Lanes after_entry = crossing < entry ? entry : crossing;
-      const Lanes at = after_entry > exit ? exit : after_entry;
+      const simd::Doubles crossing = offsets[t] / slope;
+      const simd::Doubles after_entry = crossing < entry ? entry : crossing;
+      const simd::Doubles at = after_entry > exit ? exit : after_entry;
 
-      const Lanes best = load<Lanes>(nearest.range[j]);
-      const LaneIds best_id = load<LaneIds>(nearest.id[j]), own_id = LaneIds{} + (nearest.part | primitive);
-      const LaneMask nearer = (at < best) | ((at == best) & (own_id < best_id));
-      const LaneMask hit = inside & (entry <= exit) & (at > rays.near) & nearer;
-      store(hit ? at : best, nearest.range[j]);
-      store(hit ? own_id : best_id, nearest.id[j]);
+      const simd::Doubles best = simd::load<simd::Doubles>(nearest.range[j]);
+      const simd::Ids best_id = simd::load<simd::Ids>(nearest.id[j]), own_id = simd::Ids{} + (nearest.part | primitive);
+      const simd::Mask nearer = (at < best) | ((at == best) & (own_id < best_id));
+      const simd::Mask hit = inside & (entry <= exit) & (at > rays.near) & nearer;
+      simd::store(hit ? at : best, nearest.range[j]);
+      simd::store(hit ? own_id : best_id, nearest.id[j]);
     }
   }
 }
@@ -180,8 +181,8 @@ struct TrianglePacket {
 template <class TriangleOf>
 void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const RayBundle& rays,
                ClosestHits& nearest) noexcept {
-  for (std::size_t first = 0; first < primitives.size(); first += lane_count)
-    intersect({primitives.subspan(first, std::min(lane_count, primitives.size() - first)),
+  for (std::size_t first = 0; first < primitives.size(); first += simd::lane_count)
+    intersect({primitives.subspan(first, std::min(simd::lane_count, primitives.size() - first)),
                [&](std::size_t n) noexcept { return triangle_of(first + n); }},
               rays, nearest);
 }

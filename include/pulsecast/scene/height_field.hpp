@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 #include <pulsecast/geometry/triangle.hpp>
@@ -257,8 +257,8 @@ class HeightField {
     bool westward, northward;      ///< which nodes come first
     unsigned turns[2];             ///< and which children of a node, by its `wide()` less one: see `turned`
     float limit;
-    std::array<Triangle, lane_count> triangles;  ///< to be tested, and their numbers
-    std::array<PrimitiveIndex, lane_count> primitives;
+    std::array<Triangle, simd::lane_count> triangles;  ///< to be tested, and their numbers
+    std::array<PrimitiveIndex, simd::lane_count> primitives;
     std::size_t taken = 0;
 
     Walk(const HeightField& field, const RayBundle& r, ClosestHits& n) noexcept
@@ -385,10 +385,11 @@ class HeightField {
   void put_walls(Box8<float>& boxes, const Walk& walk, const Level& own, std::uint32_t column, std::uint32_t row) const noexcept {
     const float west = west_of(column << own.shift[0]) - walk.pad[0], north = north_of(row << own.shift[1]) + walk.pad[1];
     const float width = own.size[0] + 2 * walk.pad[0], height = own.size[1] + 2 * walk.pad[1];
-    for (std::size_t i = 0; i < 8; i += pack_count<float>) {
-      const Pack<float> x = load<Pack<float>>(own.east[i]) + west, y = north - load<Pack<float>>(own.south[i]);
-      store(x, boxes.min[0][i]), store(Pack<float>(x + width), boxes.max[0][i]);
-      store(Pack<float>(y - height), boxes.min[1][i]), store(y, boxes.max[1][i]);
+    for (std::size_t i = 0; i < 8; i += simd::packet_size<float>) {
+      const simd::Packet<float> x = simd::load<simd::Packet<float>>(own.east[i]) + west,
+                                y = north - simd::load<simd::Packet<float>>(own.south[i]);
+      simd::store(x, boxes.min[0][i]), simd::store(simd::Packet<float>(x + width), boxes.max[0][i]);
+      simd::store(simd::Packet<float>(y - height), boxes.min[1][i]), simd::store(y, boxes.max[1][i]);
     }
   }
 
@@ -406,7 +407,7 @@ class HeightField {
 
   /// Enters the heights of 4 by 2 cells, and gives the places of those that are in the raster.
   unsigned put_cells(Box8<float>& boxes, std::uint32_t column, std::uint32_t row) const noexcept {
-    using Four = typename detail::VectorOf<16, float>::type;
+    using FourHeights = simd::Vec<float, 4>;
     const std::uint32_t c = 4 * column, r = 2 * row;
     const float* rows[3] = {heights_.data() + grid_.index(c, r), nullptr, nullptr};
     rows[1] = rows[0] + grid_.columns, rows[2] = rows[1] + grid_.columns;
@@ -422,18 +423,18 @@ class HeightField {
       const unsigned part = (1U << (wide - 1)) - 1;
       taken = high == 3 ? part | part << 4 : part;
     }
-    const Four zero = {};
-    Four low[3], high[3];
+    const FourHeights zero = {};
+    FourHeights low[3], high[3];
     for (std::size_t i = 0; i < 3; ++i) {
       low[i] = zero + most, high[i] = zero - most;
       for (const float* from : {rows[i], rows[i] + 1}) {  // what is missing passes no comparison
-        const Four heights = load<Four>(*from);
+        const FourHeights heights = simd::load<FourHeights>(*from);
         low[i] = heights < low[i] ? heights : low[i], high[i] = heights > high[i] ? heights : high[i];
       }
     }
     for (std::size_t i = 0; i < 2; ++i) {
-      store(Four(low[i] < low[i + 1] ? low[i] : low[i + 1]), boxes.min[2][4 * i]);
-      store(Four(high[i] > high[i + 1] ? high[i] : high[i + 1]), boxes.max[2][4 * i]);
+      simd::store(FourHeights(low[i] < low[i + 1] ? low[i] : low[i + 1]), boxes.min[2][4 * i]);
+      simd::store(FourHeights(high[i] > high[i + 1] ? high[i] : high[i + 1]), boxes.max[2][4 * i]);
     }
     return taken;
   }

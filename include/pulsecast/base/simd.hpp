@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+#include <pulsecast/base/arithmetic.hpp>
+
+/// SIMD: several numbers that go through the same arithmetic at once. The compilers' vector types give the operators; comparisons give a
+/// `Mask` that is all ones where they hold, and `mask ? a : b` chooses by lane.
+namespace pulsecast::simd {
+
+#if defined(__AVX__)  // and not more with AVX-512: a single ray would fill one lane of eight, and pay for all
+inline constexpr std::size_t register_bytes = 32;
+#else
+inline constexpr std::size_t register_bytes = 16;
+#endif
+
+namespace detail {
+template <class T, std::size_t N>
+struct Vector {
+  using type [[gnu::vector_size(N * sizeof(T))]] = T;
+};
+}  // namespace detail
+
+/// N numbers of type T in one vector of the compiler; N is a power of two.
+template <class T, std::size_t N>
+using Vec = typename detail::Vector<T, N>::type;
+
+/// Number of lanes of double precision in a register.
+inline constexpr std::size_t lane_count = register_bytes / sizeof(double);
+
+using Doubles = Vec<double, lane_count>;
+using Ids = Vec<std::uint64_t, lane_count>;
+using Mask = Vec<std::int64_t, lane_count>;
+
+/// Number of lanes in a `Packet`: as many as a register holds, but at most the eight children of a tree's node.
+template <class Real>
+inline constexpr std::size_t packet_size = register_bytes < 8 * sizeof(Real) ? register_bytes / sizeof(Real) : 8;
+
+/// Numbers of either precision.
+template <class Real>
+using Packet = Vec<Real, packet_size<Real>>;
+
+/// As many whole numbers of 16 bits in memory, from this one on, as a `Packet` has lanes.
+template <class Real>
+[[nodiscard]] inline Packet<Real> packet_from(const std::uint16_t& first) noexcept {
+  using Halves = Vec<std::uint16_t, 8>;
+  using Words = Vec<std::int32_t, packet_size<Real>>;
+  if constexpr (packet_size<Real> == 8) {
+    Halves halves;
+    std::memcpy(&halves, &first, sizeof halves);
+#if defined(__AVX2__) && !defined(__clang__)  // g++ 12 would take them by halves
+    return __builtin_convertvector(Words(__builtin_ia32_pmovzxwd256(Vec<short, 8>(halves))), Packet<Real>);
+#else
+    return __builtin_convertvector(__builtin_convertvector(halves, Words), Packet<Real>);
+#endif
+  } else if constexpr (packet_size<Real> == 4) {
+    std::uint64_t four;
+    std::memcpy(&four, &first, sizeof four);
+    const Halves halves = Halves(Vec<std::uint64_t, 2>{four, 0});
+#if defined(__clang__)
+    const Halves interleaved = __builtin_shufflevector(halves, Halves{}, 0, 8, 1, 9, 2, 10, 3, 11);
+#else  // g++ 11 has no other
+    const Halves interleaved = __builtin_shuffle(halves, Halves{}, Halves{0, 8, 1, 9, 2, 10, 3, 11});
+#endif
+    return __builtin_convertvector(Words(interleaved), Packet<Real>);
+  } else {
+    static_assert(packet_size<Real> == 2);
+    const std::uint16_t* two = &first;
+    return Packet<Real>{static_cast<Real>(two[0]), static_cast<Real>(two[1])};
+  }
+}
+
+/// The lanes that `number(lane)` gives.
+template <class Number>
+[[nodiscard]] inline Doubles generate(const Number& number) noexcept {
+  return [&]<std::size_t... lane>(std::index_sequence<lane...>) { return Doubles{number(lane)...}; }
+  (std::make_index_sequence<lane_count>());
+}
+
+/// The smaller and the greater of two, lane by lane; b where they cannot be compared.
+template <class V>
+[[nodiscard]] inline V min(const V& a, const V& b) noexcept {
+  return a < b ? a : b;
+}
+template <class V>
+[[nodiscard]] inline V max(const V& a, const V& b) noexcept {
+  return a > b ? a : b;
+}
+
+/// The sum of all lanes, from the first on.
+[[nodiscard]] inline double sum(const Doubles& v) noexcept {
+  double all = 0;
+  for (std::size_t lane = 0; lane < lane_count; ++lane) all += v[lane];
+  return all;
+}
+
+/// The least and the greatest of all lanes; a lane without a number counts only if it is the first.
+[[nodiscard]] inline double min(const Doubles& v) noexcept {
+  double least = v[0];
+  for (std::size_t lane = 1; lane < lane_count; ++lane) least = v[lane] < least ? v[lane] : least;
+  return least;
+}
+[[nodiscard]] inline double max(const Doubles& v) noexcept {
+  double most = v[0];
+  for (std::size_t lane = 1; lane < lane_count; ++lane) most = v[lane] > most ? v[lane] : most;
+  return most;
+}
+
+/// Four numbers, in as many registers as they need: coordinates, and one lane to spare.
+template <class Real>
+struct Vec4 {
+  static constexpr std::size_t count = 4 * sizeof(Real) > register_bytes ? 4 * sizeof(Real) / register_bytes : 1;
+  using Part = Vec<Real, 4 / count>;
+  Part parts[count];
+
+  Vec4() = default;
+  explicit Vec4(Real all) noexcept {
+    each([&](std::size_t i) { parts[i] = Part{} + all; });
+  }
+  Vec4(Real x, Real y, Real z) noexcept {  // a place, and 1
+    const Vec<Real, 4> whole{x, y, z, 1};
+    std::memcpy(parts, &whole, sizeof parts);
+  }
+  /// The four numbers in memory from this one on.
+  [[nodiscard]] static Vec4 from(const Real& first) noexcept {
+    Vec4 four;
+    std::memcpy(four.parts, &first, sizeof four.parts);
+    return four;
+  }
+  [[nodiscard]] Real operator[](std::size_t i) const noexcept { return parts[i * count / 4][i % (4 / count)]; }
+
+  /// In another precision.
+  template <class Other>
+  [[nodiscard]] Vec4<Other> as() const noexcept {
+    Vec<Real, 4> whole;
+    std::memcpy(&whole, parts, sizeof parts);
+    const auto converted = __builtin_convertvector(whole, Vec<Other, 4>);
+    Vec4<Other> four;
+    std::memcpy(four.parts, &converted, sizeof four.parts);
+    return four;
+  }
+
+  /// The four whose parts `make(i)` gives.
+  template <class Make>
+  [[nodiscard]] static Vec4 made(const Make& make) noexcept {
+    Vec4 four;
+    each([&](std::size_t i) { four.parts[i] = make(i); });
+    return four;
+  }
+
+  friend Vec4 operator+(const Vec4& a, const Vec4& b) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] + b.parts[i]; });
+  }
+  friend Vec4 operator-(const Vec4& a, const Vec4& b) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] - b.parts[i]; });
+  }
+  friend Vec4 operator*(const Vec4& a, const Vec4& b) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] * b.parts[i]; });
+  }
+  friend Vec4 operator/(const Vec4& a, const Vec4& b) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] / b.parts[i]; });
+  }
+  friend Vec4 magnitude(const Vec4& a) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] < 0 ? -a.parts[i] : a.parts[i]; });
+  }
+  /// -1 for what is negative, else 1.
+  friend Vec4 sense(const Vec4& a) noexcept {
+    return made([&](std::size_t i) { return a.parts[i] < 0 ? Part{} - 1 : Part{} + 1; });
+  }
+
+ private:
+  template <class Do>
+  static void each(const Do& act) noexcept {
+    for (std::size_t i = 0; i < count; ++i) act(i);
+  }
+};
+
+template <class Real>
+[[nodiscard]] inline Vec4<Real> min(const Vec4<Real>& a, const Vec4<Real>& b) noexcept {
+  return Vec4<Real>::made([&](std::size_t i) { return a.parts[i] < b.parts[i] ? a.parts[i] : b.parts[i]; });
+}
+template <class Real>
+[[nodiscard]] inline Vec4<Real> max(const Vec4<Real>& a, const Vec4<Real>& b) noexcept {
+  return Vec4<Real>::made([&](std::size_t i) { return a.parts[i] > b.parts[i] ? a.parts[i] : b.parts[i]; });
+}
+
+/// Fills a vector from memory, from this number on.
+template <class V, class Number>
+inline void fill(V& v, const Number& first) noexcept {
+  std::memcpy(&v, &first, sizeof v);
+}
+
+/// A vector filled from memory, from this number on.
+template <class V, class Number>
+[[nodiscard]] inline V load(const Number& first) noexcept {
+  V v;
+  fill(v, first);
+  return v;
+}
+
+/// A vector put into memory, from this number on.
+template <class V, class Number>
+inline void store(const V& v, Number& first) noexcept {
+  std::memcpy(&first, &v, sizeof v);
+}
+
+/// The lanes where a mask holds, a bit each.
+template <class M>
+[[nodiscard]] inline unsigned bits(const M& mask) noexcept {
+  constexpr std::size_t lanes = sizeof mask / sizeof mask[0];
+#if defined(__SSE2__)
+  if constexpr (sizeof mask == 16)
+    return static_cast<unsigned>(lanes == 4 ? __builtin_ia32_movmskps(Vec<float, 4>(mask)) : __builtin_ia32_movmskpd(Vec<double, 2>(mask)));
+#endif
+#if defined(__AVX__)
+  if constexpr (sizeof mask == 32)
+    return static_cast<unsigned>(lanes == 8 ? __builtin_ia32_movmskps256(Vec<float, 8>(mask))
+                                            : __builtin_ia32_movmskpd256(Vec<double, 4>(mask)));
+#endif
+  unsigned set = 0;
+  for (std::size_t lane = 0; lane < lanes; ++lane) set |= mask[lane] != 0 ? 1U << lane : 0U;
+  return set;
+}
+
+}  // namespace pulsecast::simd
+
+namespace pulsecast {
+
+/// Says that an object will be read soon, so that it be on its way from memory.
+template <class T>
+inline void prefetch(const T* object) noexcept {
+  for (std::size_t byte = 0; byte < sizeof(T); byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + byte);
+}
+
+}  // namespace pulsecast
