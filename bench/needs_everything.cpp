@@ -6,6 +6,18 @@
 
 #include <string_view>
 
+#include <pulsecast/deflector/fiber_array.hpp>
+#include <pulsecast/deflector/palmer_mirror.hpp>
+#include <pulsecast/deflector/pattern_table.hpp>
+#include <pulsecast/deflector/risley_prisms.hpp>
+#include <pulsecast/detector/analytic_waveform.hpp>
+#include <pulsecast/detector/gaussian_fit.hpp>
+#include <pulsecast/platform/waypoints.hpp>
+#include <pulsecast/scanner/one_of.hpp>
+#include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/scene/moving_scene.hpp>
+#include <pulsecast/scene/voxel_grid.hpp>
+
 #include "needs.hpp"
 
 using namespace needs;

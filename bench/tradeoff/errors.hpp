@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/platform/heading.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "bootstrap.hpp"
