@@ -13,7 +13,7 @@
 #include <pulsecast/detector/analytic_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/platform/waypoints.hpp>
-#include <pulsecast/scanner/one_of.hpp>
+#include <pulsecast/scanner/any_source.hpp>
 #include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/voxel_grid.hpp>
