@@ -115,9 +115,9 @@ struct ResultBuffer {
 namespace detail {
 
 /// The results of consecutive slots, in memory of their own that is used again and again.
-struct Chunk : ResultBuffer {
+struct ResultChunk : ResultBuffer {
   std::uint64_t number = 0;
-  Chunk* next_free = nullptr;
+  ResultChunk* next_free = nullptr;
 
   [[nodiscard]] std::size_t bytes() const noexcept {
     return std::span(shots).size_bytes() + std::span(echoes).size_bytes() + std::span(samples).size_bytes() +
@@ -134,18 +134,18 @@ class ReorderBuffer {
       : chunks_(chunks),
         always_ahead_(2 * workers + 2),
         max_ahead_(16 * always_ahead_),
-        room_(std::make_unique<Chunk[]>(max_ahead_)),
-        finished_(std::make_unique<Chunk*[]>(max_ahead_)),
+        room_(std::make_unique<ResultChunk[]>(max_ahead_)),
+        finished_(std::make_unique<ResultChunk*[]>(max_ahead_)),
         stop_(std::move(stop)) {
     for (std::size_t i = 0; i < max_ahead_; ++i) room_[i].next_free = std::exchange(free_, &room_[i]);
   }
 
   /// The next chunk to work on, empty; none at the end, or when the run is stopped.
-  [[nodiscard]] Chunk* next() {
+  [[nodiscard]] ResultChunk* next() {
     std::unique_lock lock(mutex_);
     moved_.wait(lock, [&] { return failure_ || handed_out_ == chunks_ || may_go_ahead(); });
     if (failure_ || handed_out_ == chunks_ || stop_.stop_requested()) return nullptr;
-    Chunk* const chunk = std::exchange(free_, free_->next_free);
+    ResultChunk* const chunk = std::exchange(free_, free_->next_free);
     chunk->clear();
     chunk->number = handed_out_++;
     return chunk;
@@ -153,14 +153,14 @@ class ReorderBuffer {
 
   /// Takes a chunk back, and delivers all that are due unless another worker is at it already.
   template <class Deliver>
-  void finish(Chunk& chunk, const Deliver& deliver) {
+  void finish(ResultChunk& chunk, const Deliver& deliver) {
     std::unique_lock lock(mutex_);
     finished_bytes_ += chunk.bytes();
     place(chunk.number) = &chunk;
     if (delivering_) return;
     delivering_ = true;
     while (!failure_ && place(delivered_)) {
-      Chunk* const due = std::exchange(place(delivered_), nullptr);
+      ResultChunk* const due = std::exchange(place(delivered_), nullptr);
       lock.unlock();
       deliver(*due);
       lock.lock();
@@ -188,13 +188,13 @@ class ReorderBuffer {
     const std::uint64_t ahead = handed_out_ - delivered_;
     return ahead < always_ahead_ || (ahead < max_ahead_ && finished_bytes_ < max_bytes);
   }
-  [[nodiscard]] Chunk*& place(std::uint64_t number) noexcept { return finished_[number % max_ahead_]; }
+  [[nodiscard]] ResultChunk*& place(std::uint64_t number) noexcept { return finished_[number % max_ahead_]; }
 
   std::uint64_t chunks_, handed_out_ = 0, delivered_ = 0;
   std::size_t always_ahead_, max_ahead_, finished_bytes_ = 0;
-  std::unique_ptr<Chunk[]> room_;
-  std::unique_ptr<Chunk*[]> finished_;  // each at its place, which is empty before
-  Chunk* free_ = nullptr;               // the first of them
+  std::unique_ptr<ResultChunk[]> room_;
+  std::unique_ptr<ResultChunk*[]> finished_;  // each at its place, which is empty before
+  ResultChunk* free_ = nullptr;               // the first of them
   std::stop_token stop_;
   bool delivering_ = false;
   std::exception_ptr failure_;
@@ -219,7 +219,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
 
   detail::ReorderBuffer buffer(chunks, workers, options.stop);
   RunSummary summary;
-  const auto deliver = [&](const detail::Chunk& chunk) {
+  const auto deliver = [&](const detail::ResultChunk& chunk) {
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
     (sinks(batch), ...);
     summary.add(chunk.counts);
@@ -227,7 +227,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   };
   for_each_index(workers, options.threads, [&](std::size_t) noexcept {  // each works on as long as there is something to do
     try {
-      detail::Chunk* chunk = buffer.next();
+      detail::ResultChunk* chunk = buffer.next();
       if (!chunk) return;
       auto workspace = survey.workspace();
       for (; chunk; chunk = buffer.next()) {

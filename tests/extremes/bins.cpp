@@ -30,7 +30,7 @@ using namespace pulsecast::extremes;
 
 namespace {
 
-const std::string axis = "bins";
+const std::string scale = "bins";
 
 template <class Detector>
 auto survey_of(const Laser& laser, const Wall& wall, const Detector& detector) {
@@ -74,9 +74,9 @@ TEST_CASE("bins of all sizes before a wall") {
       errors.width = std::max(errors.width, here.width);
     }
     const std::string bins = name + std::string(", wall at 100 m, all detectors and widths: ");
-    row(axis, bins + "largest error of the range [m]", 0, errors.range, 1e-9);
-    row(axis, bins + "largest error of the amplitude, as a share", 0, errors.amplitude, amplitude);
-    if (width > 0) row(axis, bins + "largest error of the width, as a share", 0, errors.width, width);  // else there are too few to fit
+    row(scale, bins + "largest error of the range [m]", 0, errors.range, 1e-9);
+    row(scale, bins + "largest error of the amplitude, as a share", 0, errors.amplitude, amplitude);
+    if (width > 0) row(scale, bins + "largest error of the width, as a share", 0, errors.width, width);  // else there are too few to fit
   }
 }
 
@@ -84,23 +84,23 @@ TEST_CASE("bins that do not fit the pulse") {
   const Wall wall{100};
   const Laser laser{.pulse_length = 4e-9};
   const WaveformSettings coarse{.sample_interval = 1e-6}, fine{.sample_interval = 1e-13};
-  refused(axis, "1 us, pulse of 4 ns, FullWaveform", [&] { return survey_of(laser, wall, FullWaveform{coarse}); });
-  refused(axis, "1 us, pulse of 4 ns, AnalyticWaveform with a fitted width", [&] {
+  refused(scale, "1 us, pulse of 4 ns, FullWaveform", [&] { return survey_of(laser, wall, FullWaveform{coarse}); });
+  refused(scale, "1 us, pulse of 4 ns, AnalyticWaveform with a fitted width", [&] {
     return survey_of(laser, wall, AnalyticWaveform{coarse, GaussianFit{}});
   });
-  refused(axis, "1 us, pulse of 4 ns, AnalyticWaveform with a record",
+  refused(scale, "1 us, pulse of 4 ns, AnalyticWaveform with a record",
           [&] { return survey_of(laser, wall, AnalyticWaveform{WaveformSettings{.sample_interval = 1e-6, .record_length = 1e-3}}); });
-  refused(axis, "0.1 ps, pulse of 4 ns, FullWaveform", [&] { return survey_of(laser, wall, FullWaveform{fine}); });
-  refused(axis, "1 us, width of a pulse of 4 ns, FullWaveform", [&] { return FullWaveform{coarse, MomentWidth{}}.pulse_width(laser); });
-  refused(axis, "0.25 ns, the last of 3 channels with a pulse of 1 fs, FullWaveform", [&] {
+  refused(scale, "0.1 ps, pulse of 4 ns, FullWaveform", [&] { return survey_of(laser, wall, FullWaveform{fine}); });
+  refused(scale, "1 us, width of a pulse of 4 ns, FullWaveform", [&] { return FullWaveform{coarse, MomentWidth{}}.pulse_width(laser); });
+  refused(scale, "0.25 ns, the last of 3 channels with a pulse of 1 fs, FullWaveform", [&] {
     std::vector<Scanner> lasers(3, Scanner{.pulses = 1000});
     lasers[2].laser.pulse_length = 1e-15;
     std::vector<Deflector<FixedBeam, Scanner>> emitters;
     for (const Scanner& s : lasers) emitters.emplace_back(FixedBeam{}, s);
     return Survey{Platform{Tripod{}, Mount{}, Channels{emitters}}, SingleRay{}, wall, validation::vacuum, FullWaveform{}};
   });
-  refused(axis, "0.01 fs", [] { return FullWaveform{WaveformSettings{.sample_interval = 1e-17}}; });
-  refused(axis, "1 us, in a record of 1e7 and 1 bins",
+  refused(scale, "0.01 fs", [] { return FullWaveform{WaveformSettings{.sample_interval = 1e-17}}; });
+  refused(scale, "1 us, in a record of 1e7 and 1 bins",
           [] { return FullWaveform{WaveformSettings{.sample_interval = 1e-6, .record_length = 10.000001}}; });
 
   // without samples, bins do not matter
@@ -117,11 +117,11 @@ TEST_CASE("bins that do not fit the pulse") {
     return all;
   }();
   const std::string bins = "0.1 fs to 1 s, pulse of 4 ns, detectors without samples: ";
-  row(axis, bins + "largest error of the range [m]", 0, errors.range, 1e-9);
-  row(axis, bins + "largest error of the amplitude, as a share", 0, errors.amplitude, 1e-9);
-  row(axis, bins + "largest error of the width, as a share", 0, errors.width, 1e-9);
+  row(scale, bins + "largest error of the range [m]", 0, errors.range, 1e-9);
+  row(scale, bins + "largest error of the amplitude, as a share", 0, errors.amplitude, 1e-9);
+  row(scale, bins + "largest error of the width, as a share", 0, errors.width, 1e-9);
   const AnalyticWaveform detector{WaveformSettings{.sample_interval = 1}, MomentWidth{}};
-  row(axis, "1 s, width of a pulse of 4 ns, AnalyticWaveform with moments, of the right one", 1,
+  row(scale, "1 s, width of a pulse of 4 ns, AnalyticWaveform with moments, of the right one", 1,
       detector.pulse_width(laser) / width_of(4e-9).moment, 1e-9);
 }
 
@@ -134,15 +134,15 @@ TEST_CASE("waveforms of ten million bins") {
   const WaveformSettings settings{.sample_interval = 1e-9, .threshold = 0, .record_length = 10e-3};
   const Record full(FullWaveform{settings}, walls, laser), analytic(AnalyticWaveform{settings}, walls, laser);
   const double samples = std::ceil((2 * (1'400'000 - 100) / speed_of_light + 22 * tau) / 1e-9);
-  row(axis, "1e7 bins of 1 ns, walls at 100 m and 1400 km, FullWaveform: samples kept", samples, static_cast<double>(full.samples), 10);
-  row(axis, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: samples kept", samples, static_cast<double>(analytic.samples),
+  row(scale, "1e7 bins of 1 ns, walls at 100 m and 1400 km, FullWaveform: samples kept", samples, static_cast<double>(full.samples), 10);
+  row(scale, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: samples kept", samples, static_cast<double>(analytic.samples),
       10);
-  row(axis, "1e7 bins of 1 ns, walls at 100 m and 1400 km, FullWaveform: energy, of the right one", 1, full.energy / energy, 1e-3);
-  row(axis, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: energy, of the right one", 1, analytic.energy / energy, 1e-3);
+  row(scale, "1e7 bins of 1 ns, walls at 100 m and 1400 km, FullWaveform: energy, of the right one", 1, full.energy / energy, 1e-3);
+  row(scale, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: energy, of the right one", 1, analytic.energy / energy, 1e-3);
 
   const Record noisy(FullWaveform{settings, NoWidth{}, ReceiverNoise{.deviation = 1e-12, .background = 1e-9}}, walls, laser);
-  row(axis, "1e7 bins of 1 ns, all of noise: samples kept", 1e7, static_cast<double>(noisy.samples), 0);
-  row(axis, "1e7 bins of 1 ns, all of noise: mean power, of background and echoes", 1,
+  row(scale, "1e7 bins of 1 ns, all of noise: samples kept", 1e7, static_cast<double>(noisy.samples), 0);
+  row(scale, "1e7 bins of 1 ns, all of noise: mean power, of background and echoes", 1,
       noisy.energy / (energy + 1e-9 * static_cast<double>(noisy.samples) * 1e-9), 1e-3);
 }
 
@@ -156,6 +156,6 @@ TEST_CASE("the noise of a sample does not come again") {
   std::vector<Reflection> reflections{{.range = 100, .power = 1e-9}, {.range = 100 + apart, .power = 1e-9}};
   const Detection detection = detector.detect(laser, reflections, workspace, {.seed = 1});
   REQUIRE(detection.echoes.size() == 2);
-  row(axis, "echoes 2^32 bins of 1 ps apart, with noise: how many have the same amplitude", 0,
+  row(scale, "echoes 2^32 bins of 1 ps apart, with noise: how many have the same amplitude", 0,
       std::fabs(detection.echoes[0].amplitude / detection.echoes[1].amplitude - 1) < 1e-6 ? 1 : 0, 0);
 }

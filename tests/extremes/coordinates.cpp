@@ -30,7 +30,7 @@ using namespace pulsecast::support;
 
 namespace {
 
-const std::string axis = "coordinates";
+const std::string scale = "coordinates";
 
 struct Place {
   std::string name;
@@ -65,7 +65,7 @@ void sphere(const std::string& what, const Vec3& centre, double radius, std::uin
   }
   check(verdict, others);
   CHECK(verdict.met > verdict.rays / 2);
-  row(axis, "sphere of 80 triangles, " + what + ": largest error of a range [1e-12 of the radius]", 0, verdict.worst / radius * 1e12, 10);
+  row(scale, "sphere of 80 triangles, " + what + ": largest error of a range [1e-12 of the radius]", 0, verdict.worst / radius * 1e12, 10);
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ TEST_CASE("no ray leaves a closed mesh of 1 m, wherever it is") {
     }
     CHECK(lost == 0);
   }
-  row(axis, "sphere of 320 triangles, at these places: rays at corners and edges that get out, of " + std::to_string(sent), 0,
+  row(scale, "sphere of 320 triangles, at these places: rays at corners and edges that get out, of " + std::to_string(sent), 0,
       static_cast<double>(lost), 0);
 }
 
@@ -146,9 +146,9 @@ double worst_of_part(const Vec3& own, double scale, const Vec3& centre, std::uin
 TEST_CASE("a part that stands at far coordinates is as exact as at the origin; one of far coordinates as they are") {
   for (const Place& place : places) {
     CAPTURE(place.name);
-    row(axis, "part of 0.25 m, turned, at " + place.name + ": largest error of a range [pm]", 0,
+    row(scale, "part of 0.25 m, turned, at " + place.name + ": largest error of a range [pm]", 0,
         1e12 * worst_of_part({}, 0.25, place.at, 8140), 10);
-    row(axis,
+    row(scale,
         "part whose own coordinates are at " + place.name + ", turned, at the origin: largest error of a range [1e-15 of the coordinates]",
         0, 1e15 * worst_of_part(place.at, 1, {}, 8145) / length(place.at), 10);
   }
@@ -176,7 +176,7 @@ TEST_CASE("ground of 1 m anywhere") {
       compare(meshes.linear, field, "HeightField", rays, others);
     }
     check(verdict, others);
-    row(axis, "raster of 1 m, at " + place.name + ": largest error of a range [pm]", 0, verdict.worst * 1e12, 10);
+    row(scale, "raster of 1 m, at " + place.name + ": largest error of a range [pm]", 0, verdict.worst * 1e12, 10);
   }
 }
 
@@ -215,36 +215,38 @@ TEST_CASE("voxels of any size, anywhere") {
       if (nearest.met(0)) worst = std::max(worst, std::fabs(static_cast<double>(DoubleDouble(origin.z) - face - nearest.range[0])));
     }
     CHECK(wrong == 0);
-    row(axis, "voxels, " + c.name + ": largest error of a range [1e-12 of the edge]", 0, worst / c.edge * 1e12, 100);
+    row(scale, "voxels, " + c.name + ": largest error of a range [1e-12 of the edge]", 0, worst / c.edge * 1e12, 100);
   }
 }
 
 TEST_CASE("what lies farther than can be computed with is refused") {
   const auto mesh_at = [](double at) { return MeshData{{{at, 0, 0}, {at, 1, 0}, {at, 0, 1}}, {{0, 1, 2}}, {}}; };
-  refused_as(axis, "mesh at 1.1e18 m", "within 1e18 m of the origin", [&] { return TriangleMesh<Bvh>(mesh_at(1.1e18)); });
+  refused_as(scale, "mesh at 1.1e18 m", "within 1e18 m of the origin", [&] { return TriangleMesh<Bvh>(mesh_at(1.1e18)); });
   CHECK_THROWS_AS((TriangleMesh<Bvh, double>(mesh_at(1.1e18))), SettingError);
   CHECK_THROWS_AS((TriangleMesh<KdTree>(mesh_at(1.1e18))), SettingError);
   CHECK_THROWS_AS((TriangleMesh<Linear>(mesh_at(1.1e18))), SettingError);
-  refused_as(axis, "mesh of infinity", "see vertex 0", [&] { return TriangleMesh<>(mesh_at(std::numeric_limits<double>::infinity())); });
-  refused_as(axis, "raster at 1.1e15 m", "Raster::first.x", [] {
+  refused_as(scale, "mesh of infinity", "see vertex 0", [&] { return TriangleMesh<>(mesh_at(std::numeric_limits<double>::infinity())); });
+  refused_as(scale, "raster at 1.1e15 m", "Raster::first.x", [] {
     return HeightField({.columns = 2, .rows = 2, .first = {1.1e15, 0}, .heights = {1, 1, 1, 1}});
   });
-  refused_as(axis, "raster of a height of 1.1e15 m", "see pixel 3", [] {
+  refused_as(scale, "raster of a height of 1.1e15 m", "see pixel 3", [] {
     return HeightField({.columns = 2, .rows = 2, .heights = {1, 1, 1, 1.1e15F}});
   });
-  refused_as(axis, "voxels at 1.1e18 m", "VoxelData::corner", [] { return VoxelGrid<>({.corner = {0, 1.1e18, 0}, .cells = {{0, 0, 0}}}); });
-  refused_as(axis, "raster of pixels of 8e-7 m at 1e9 m", "Raster::pixel.x", [] {
+  refused_as(scale, "voxels at 1.1e18 m", "VoxelData::corner", [] {
+    return VoxelGrid<>({.corner = {0, 1.1e18, 0}, .cells = {{0, 0, 0}}});
+  });
+  refused_as(scale, "raster of pixels of 8e-7 m at 1e9 m", "Raster::pixel.x", [] {
     return HeightField({.columns = 2, .rows = 2, .first = {1e9, 0}, .pixel = {8e-7, 1}, .heights = {1, 1, 1, 1}});
   });
   CHECK_THROWS_AS(HeightField({.columns = 2, .rows = 2, .first = {0, -1e9}, .pixel = {1, 8e-7}, .heights = {1, 1, 1, 1}}), SettingError);
-  refused_as(axis, "voxels of 8e-7 m at 1e9 m", "VoxelData::edge", [] {
+  refused_as(scale, "voxels of 8e-7 m at 1e9 m", "VoxelData::edge", [] {
     return VoxelGrid<>({.corner = {0, 0, 1e9}, .edge = 8e-7, .cells = {{0, 0, 0}}});
   });
-  refused_as(axis, "part at infinity", "Similarity::translation", [&] {
+  refused_as(scale, "part at infinity", "Similarity::translation", [&] {
     return Scene<TriangleMesh<>>({{.geometry = std::make_shared<const TriangleMesh<>>(mesh_at(0)),
                                    .placement = {.translation = {0, 0, std::numeric_limits<double>::infinity()}}}});
   });
-  refused_as(axis, "part of 1e-31 of its size", "Similarity::scale", [&] {
+  refused_as(scale, "part of 1e-31 of its size", "Similarity::scale", [&] {
     return Scene<TriangleMesh<>>({{.geometry = std::make_shared<const TriangleMesh<>>(mesh_at(0)), .placement = {.scale = 1e-31}}});
   });
 }

@@ -31,7 +31,7 @@ namespace {
 
 using Real = long double;
 
-const std::string axis = "divergence";
+const std::string scale = "divergence";
 constexpr double distance = 1;  // of the wall: so near that the pulse does not show how far apart its subrays are met [m]
 
 /// A wall of many triangles, so that there is a tree to go through.
@@ -107,8 +107,8 @@ TEST_CASE("divergences before a wall") {
                       : 1;
     });
     const std::string what = name + std::string(", wall at 1 m, 279 subrays, all detectors and widths: ");
-    row(axis, what + "largest error of the range [m]", 0, worst, 1e-9);
-    row(axis, what + "echoes that other accelerators give otherwise, in float and double", 0, differ, 0);
+    row(scale, what + "largest error of the range [m]", 0, worst, 1e-9);
+    row(scale, what + "echoes that other accelerators give otherwise, in float and double", 0, differ, 0);
   }
 }
 
@@ -120,5 +120,5 @@ TEST_CASE("divergences that cannot be") {
                                          {"0 by 1 mrad", {0, 1e-3}},
                                          {"1e-9 rad by 10 mrad", {1e-9, 1e-2}},
                                          {"0.5 rad by 5e-324 rad", {0.5, 5e-324}}})
-    refused(axis, name, [&divergence = divergence] { Scanner{.laser = {.divergence = divergence}}.validate(); });
+    refused(scale, name, [&divergence = divergence] { Scanner{.laser = {.divergence = divergence}}.validate(); });
 }

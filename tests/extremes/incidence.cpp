@@ -29,7 +29,7 @@ using namespace pulsecast::support;
 
 namespace {
 
-const std::string axis = "incidence";
+const std::string scale = "incidence";
 const std::vector<std::string> angles{"0", "60", "89", "89.99", "89.9999"};
 
 double radians(const std::string& degrees) { return std::stod(degrees) * pi / 180; }
@@ -78,10 +78,10 @@ TEST_CASE("a plane at any incidence") {
     INFO(others.first);
     CHECK(others.different == 0);
     CHECK(wrong == 0);
-    row(axis, "square met at " + angle + " degrees, 1 m away: largest error of a range, times the cosine [1e-15 m]", 0,
+    row(scale, "square met at " + angle + " degrees, 1 m away: largest error of a range, times the cosine [1e-15 m]", 0,
         worst * 1e15 * std::cos(slant), 100);
   }
-  row(axis, "square met at these angles: largest error of the cosine [1e-15]", 0, worst_cosine * 1e15, 100);
+  row(scale, "square met at these angles: largest error of the cosine [1e-15]", 0, worst_cosine * 1e15, 100);
 }
 
 TEST_CASE("ground and voxels at any incidence") {
@@ -108,9 +108,9 @@ TEST_CASE("ground and voxels at any incidence") {
       of_field = std::max(of_field, std::fabs(range_of(field, bundle_of(ray)) - exact));
       of_grid = std::max(of_grid, std::fabs(range_of(grid, bundle_of(ray)) - exact));
     }
-    row(axis, "ground of a raster met at " + angle + " degrees, 10 m away: largest error of a range, times the cosine [1e-15 m]", 0,
+    row(scale, "ground of a raster met at " + angle + " degrees, 10 m away: largest error of a range, times the cosine [1e-15 m]", 0,
         of_field * 1e15 * std::cos(slant), 1000);
-    row(axis, "top of voxels met at " + angle + " degrees, 10 m away: largest error of a range, times the cosine [1e-15 m]", 0,
+    row(scale, "top of voxels met at " + angle + " degrees, 10 m away: largest error of a range, times the cosine [1e-15 m]", 0,
         of_grid * 1e15 * std::cos(slant), 1000);
   }
 }
@@ -149,14 +149,14 @@ TEST_CASE("a ray within next to nothing of a triangle's plane") {
     Meshes(data).compare(bundle_of({origin, way}), others);
   }
   CHECK(others.different == 0);
-  row(axis,
+  row(scale,
       "triangles and needles seen from 1e-12 to 1e-3 rad off their planes: rays that do not answer as stated, of " +
           std::to_string(verdict.rays),
       0, static_cast<double>(verdict.wrong), 0);
 }
 
 TEST_CASE("a ray in the plane of a triangle") {
-  // whole numbers, so that it is quite in the plane; turned onto every axis
+  // whole numbers, so that it is quite in the plane; turned onto every scale
   std::size_t met = 0, through = 0;
   Comparison others;
   for (int k = 0; k < 3; ++k) {
@@ -165,7 +165,7 @@ TEST_CASE("a ray in the plane of a triangle") {
       for (int i = 0; i < 3; ++i) q[(i + k) % 3] = p[i];
       return q;
     };
-    // in a plane across an axis, and in the plane x + y + z = 0
+    // in a plane across an scale, and in the plane x + y + z = 0
     const MeshData across{{turned({0, 0, 0}), turned({4, 0, 0}), turned({0, 4, 0})}, {{0, 1, 2}}, {}};
     const MeshData aslant{{turned({4, -4, 0}), turned({0, 4, -4}), turned({-4, 0, 4})}, {{0, 1, 2}}, {}};
     for (const auto& [data, ends] : {std::pair{across, std::vector<Vec3>{{-4, 1, 0}, {-3, -3, 0}, {5, -1, 0}, {9, 0, 0}, {1, 1, 0}}},
@@ -219,8 +219,8 @@ TEST_CASE("a ray in the plane of a triangle") {
   }
   INFO(others.first);
   CHECK(others.different == 0);
-  row(axis, "triangle, in its plane: rays that meet it, of 1120", 0, static_cast<double>(met), 0);
-  row(axis, "cube, in the plane of its lid: rays that do not meet its side, of 12", 0, static_cast<double>(through), 0);
+  row(scale, "triangle, in its plane: rays that meet it, of 1120", 0, static_cast<double>(met), 0);
+  row(scale, "cube, in the plane of its lid: rays that do not meet its side, of 12", 0, static_cast<double>(through), 0);
 }
 
 TEST_CASE("a ray through an edge and through a corner") {
@@ -253,8 +253,8 @@ TEST_CASE("a ray through an edge and through a corner") {
   }
   INFO(others.first);
   CHECK(others.different == 0);
-  row(axis, "fan of 1000 triangles: rays at a shared edge that slip through, of 2000", 0, static_cast<double>(edges), 0);
-  row(axis, "fan of 1000 triangles: rays at the shared corner that slip through, of 2000", 0, static_cast<double>(corners), 0);
+  row(scale, "fan of 1000 triangles: rays at a shared edge that slip through, of 2000", 0, static_cast<double>(edges), 0);
+  row(scale, "fan of 1000 triangles: rays at the shared corner that slip through, of 2000", 0, static_cast<double>(corners), 0);
 }
 
 TEST_CASE("a ray along the border of cells") {
@@ -290,11 +290,11 @@ TEST_CASE("a ray along the border of cells") {
         }
     INFO(others.first);
     CHECK(others.different == 0);
-    row(axis,
+    row(scale,
         "raster " + where + ", along borders and diagonals of cells: rays that do not meet the ground where it is, of " +
             std::to_string(sent),
         0, static_cast<double>(of_field), 0);
-    row(axis,
+    row(scale,
         "voxels " + where + ", along borders of cells: rays that do not meet the cell in the east, of " + std::to_string(sent * 3 / 7), 0,
         static_cast<double>(of_grid), 0);
   }

@@ -30,7 +30,7 @@ using Grid = VoxelGrid<TransmissiveVoxels>;
 using Leaves = Scene<Grid>;
 using Real = long double;
 
-const std::string axis = "leaf area density";
+const std::string scale = "leaf area density";
 constexpr double before = 10;  // of the leaves: empty space [m]
 constexpr PulseIndex pulses = 20'000;
 constexpr std::uint64_t seed = 5;
@@ -90,11 +90,11 @@ TEST_CASE("leaf area densities") {
     Depths depths;
     depths.add(leaves, real_density, depth, FirstHit{}, pulses);
     const std::string what = name + std::string(", 20 000 rays: ");
-    row(axis, what + "share that is met", -std::expm1(-0.5 * real_density * depth), static_cast<double>(depths.met) / pulses, 0.01);
+    row(scale, what + "share that is met", -std::expm1(-0.5 * real_density * depth), static_cast<double>(depths.met) / pulses, 0.01);
     for_each_waveform(WaveformSettings{.threshold = 0},
                       [&](const char*, const auto& detector) { depths.add(leaves, real_density, depth, detector, 200); });
-    row(axis, what + "met and should not be, or the reverse, all detectors and widths", 0, static_cast<double>(depths.wrong), 0);
-    row(axis, what + "largest error of the range, as a share", 0, depths.worst, 1e-13);
+    row(scale, what + "met and should not be, or the reverse, all detectors and widths", 0, static_cast<double>(depths.wrong), 0);
+    row(scale, what + "largest error of the range, as a share", 0, depths.worst, 1e-13);
   }
 }
 
@@ -103,8 +103,8 @@ TEST_CASE("leaves edge on, and densities that cannot be") {
   for (int k = 0; k <= 18; ++k) edge_on.push_back({.zenith = k * pi / 36, .g = 0});
   Depths depths;
   depths.add(row_of_cells(1e9F, 1, 1, LeafAngles::table(edge_on)), 0, 1, FirstHit{}, pulses);
-  row(axis, "1e9, all leaves edge on, 20 000 rays: how many are met", 0, static_cast<double>(depths.met), 0);
-  refused(axis, "-1e-12", [] { return row_of_cells(-1e-12F, 1, 1); });
-  refused(axis, "infinite", [] { return row_of_cells(std::numeric_limits<float>::infinity(), 1, 1); });
-  refused(axis, "no number", [] { return row_of_cells(std::numeric_limits<float>::quiet_NaN(), 1, 1); });
+  row(scale, "1e9, all leaves edge on, 20 000 rays: how many are met", 0, static_cast<double>(depths.met), 0);
+  refused(scale, "-1e-12", [] { return row_of_cells(-1e-12F, 1, 1); });
+  refused(scale, "infinite", [] { return row_of_cells(std::numeric_limits<float>::infinity(), 1, 1); });
+  refused(scale, "no number", [] { return row_of_cells(std::numeric_limits<float>::quiet_NaN(), 1, 1); });
 }

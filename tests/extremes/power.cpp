@@ -21,7 +21,7 @@ using namespace pulsecast::extremes;
 
 namespace {
 
-const std::string axis = "power";
+const std::string scale = "power";
 
 /// The energy of the record of a wall, of the right one.
 template <class Detector>
@@ -51,12 +51,12 @@ TEST_CASE("powers before a wall") {
     const Laser laser{.peak_power = power};
     const Errors errors = errors_at_wall(laser, range, WaveformSettings{.threshold = 0});
     const std::string wall = name + std::string(", all detectors and widths: ");
-    row(axis, wall + "largest error of the range [m]", 0, errors.range, 1e-6);
-    row(axis, wall + "largest error of the amplitude, as a share", 0, errors.amplitude, 1e-3);
-    row(axis, wall + "largest error of the width, as a share", 0, errors.width, 0.01);
-    row(axis, name + std::string(", record of FullWaveform: energy, of the right one"), 1, energy_of_record<FullWaveform<>>(laser, range),
+    row(scale, wall + "largest error of the range [m]", 0, errors.range, 1e-6);
+    row(scale, wall + "largest error of the amplitude, as a share", 0, errors.amplitude, 1e-3);
+    row(scale, wall + "largest error of the width, as a share", 0, errors.width, 0.01);
+    row(scale, name + std::string(", record of FullWaveform: energy, of the right one"), 1, energy_of_record<FullWaveform<>>(laser, range),
         1e-3);
-    row(axis, name + std::string(", record of AnalyticWaveform: energy, of the right one"), 1,
+    row(scale, name + std::string(", record of AnalyticWaveform: energy, of the right one"), 1,
         energy_of_record<AnalyticWaveform<>>(laser, range), 1e-3);
   }
 }
@@ -68,8 +68,8 @@ TEST_CASE("apertures and wavelengths before a wall") {
       receiver.validate();
       const double radius = diameter / 2, spread = std::hypot(range, radius);
       const std::string wall = name + std::string(range == 1 ? ", wall at 1 m" : ", wall at 40 000 km");
-      // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the axis
-      row(axis, wall + ": received power, of the right one", 1,
+      // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the scale
+      row(scale, wall + ": received power, of the right one", 1,
           LinkBudget(receiver, Laser{}).power(1, 1, range) / (Laser{}.peak_power * (radius / spread) * (radius / spread) * 0.99), 1e-12);
     }
   for (const auto& [name, wavelength] : {std::pair{"10 nm", 1e-8}, {"1 cm", 1e-2}}) {
@@ -86,15 +86,15 @@ TEST_CASE("apertures and wavelengths before a wall") {
 
 TEST_CASE("powers, apertures and wavelengths that cannot be") {
   for (const auto& [name, power] : {std::pair{"1e-300 W", 1e-300}, {"1e-21 W", 1e-21}, {"1e21 W", 1e21}, {"1e300 W", 1e300}, {"0 W", 0.0}})
-    refused(axis, name, [power = power] { Scanner{.laser = {.peak_power = power}}.validate(); });
+    refused(scale, name, [power = power] { Scanner{.laser = {.peak_power = power}}.validate(); });
   for (const auto& [name, diameter] :
        {std::pair{"an aperture of 1e-300 m", 1e-300}, {"an aperture of 0.09 mm", 9e-5}, {"an aperture of 1.1 km", 1.1e3}})
-    refused(axis, name, [diameter = diameter] { Receiver{.diameter = diameter}.validate(); });
+    refused(scale, name, [diameter = diameter] { Receiver{.diameter = diameter}.validate(); });
   for (const auto& [name, length] :
        {std::pair{"a wavelength of 1e-300 m", 1e-300}, {"a wavelength of 9 nm", 9e-9}, {"a wavelength of 1.1 cm", 1.1e-2}})
-    refused(axis, name, [length = length] { Scanner{.laser = {.wavelength = length}}.validate(); });
-  refused(axis, "a threshold without bound",
+    refused(scale, name, [length = length] { Scanner{.laser = {.wavelength = length}}.validate(); });
+  refused(scale, "a threshold without bound",
           [] { return FullWaveform{WaveformSettings{.threshold = std::numeric_limits<double>::infinity()}}; });
-  refused(axis, "noise of 1e300 W", [] { ReceiverNoise{.deviation = 1e300}.validate(); });
-  refused(axis, "sunlight of 1e300 W", [] { ReceiverNoise{.background = 1e300}.validate(); });
+  refused(scale, "noise of 1e300 W", [] { ReceiverNoise{.deviation = 1e300}.validate(); });
+  refused(scale, "sunlight of 1e300 W", [] { ReceiverNoise{.background = 1e300}.validate(); });
 }

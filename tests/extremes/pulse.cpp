@@ -25,7 +25,7 @@ using namespace pulsecast::extremes;
 
 namespace {
 
-const std::string axis = "pulse rate and length";
+const std::string scale = "pulse rate and length";
 
 }  // namespace
 
@@ -53,11 +53,11 @@ TEST_CASE("pulse rates") {
           std::fabs(static_cast<double>(pulse->tick.second - static_cast<std::int64_t>(i / each)) + (pulse->tick.fraction - exact)) * rate);
       other_entry += std::fabs(std::atan2(pulse->direction().x, pulse->direction().y) - entries[i % 7].azimuth) < 1e-9 ? 0 : 1;
     }
-    row(axis, name + std::string(", 100 000 pulses: largest error of the time [slots]"), 0, worst, bound);
-    row(axis, name + std::string(", 100 000 pulses through a table of 7 entries: how many by a wrong one"), 0, other_entry, 0);
+    row(scale, name + std::string(", 100 000 pulses: largest error of the time [slots]"), 0, worst, bound);
+    row(scale, name + std::string(", 100 000 pulses through a table of 7 entries: how many by a wrong one"), 0, other_entry, 0);
   }
-  refused(axis, "0 Hz", [] { Scanner{.pulse_rate = 0}.validate(); });
-  refused(axis, "1e13 Hz", [] { Scanner{.pulse_rate = 1e13}.validate(); });
+  refused(scale, "0 Hz", [] { Scanner{.pulse_rate = 0}.validate(); });
+  refused(scale, "1e13 Hz", [] { Scanner{.pulse_rate = 1e13}.validate(); });
 }
 
 TEST_CASE("pulse lengths, before a wall") {
@@ -70,9 +70,9 @@ TEST_CASE("pulse lengths, before a wall") {
     const WaveformSettings settings{.sample_interval = length / 10, .threshold = 0, .window = length / 4};
     const Errors errors = errors_at_wall(laser, 100, settings);
     const std::string pulse = name + std::string(", wall at 100 m, all detectors and widths: ");
-    row(axis, pulse + "largest error of the range [m]", 0, errors.range, 1e-9);
-    row(axis, pulse + "largest error of the amplitude, as a share", 0, errors.amplitude, 1e-3);
-    row(axis, pulse + "largest error of the width, as a share", 0, errors.width, 0.01);
+    row(scale, pulse + "largest error of the range [m]", 0, errors.range, 1e-9);
+    row(scale, pulse + "largest error of the amplitude, as a share", 0, errors.amplitude, 1e-3);
+    row(scale, pulse + "largest error of the width, as a share", 0, errors.width, 0.01);
   }
   // a double tells two-way times of 0.27 s from each other by 6e-17 s, a fifth of the tau of 1 fs
   const Laser shortest{.pulse_length = 1e-15};
@@ -83,8 +83,8 @@ TEST_CASE("pulse lengths, before a wall") {
     CHECK(echoes[0].range == 4e7);
     return echoes[0].amplitude / from_wall(shortest, 4e7);
   };
-  row(axis, "1 fs, wall at 40 000 km, AnalyticWaveform: amplitude, of the right one", 1, far_away(AnalyticWaveform<>(bins)), 1e-6);
-  row(axis, "1 fs, wall at 40 000 km, FullWaveform: amplitude, of the right one", 1, far_away(FullWaveform<>(bins)), 0.1);
+  row(scale, "1 fs, wall at 40 000 km, AnalyticWaveform: amplitude, of the right one", 1, far_away(AnalyticWaveform<>(bins)), 1e-6);
+  row(scale, "1 fs, wall at 40 000 km, FullWaveform: amplitude, of the right one", 1, far_away(FullWaveform<>(bins)), 0.1);
 }
 
 TEST_CASE("pulse lengths, before two walls") {
@@ -98,7 +98,7 @@ TEST_CASE("pulse lengths, before two walls") {
     REQUIRE(echoes.size() == 2);
     worst = std::max({worst, std::fabs(echoes[0].range - 100), std::fabs(echoes[1].range - 100.000001)});
   });
-  row(axis, "1 fs, walls 1 um apart: largest error of two ranges, all detectors and widths [m]", 0, worst, 1e-8);
+  row(scale, "1 fs, walls 1 um apart: largest error of two ranges, all detectors and widths [m]", 0, worst, 1e-8);
 
   // and so long that walls 10 km apart are one, at the mean that their powers give
   const Laser longest{.pulse_length = 1e-3, .divergence = 1e-6};
@@ -111,10 +111,10 @@ TEST_CASE("pulse lengths, before two walls") {
     REQUIRE(echoes.size() == 1);
     worst = std::max(worst, std::fabs(echoes[0].range - (share * near + (1 - share) * far)));
   });
-  row(axis, "1 ms, walls 10 km apart: largest error of the mean range, all detectors and widths [m]", 0, worst, 1e-3);
+  row(scale, "1 ms, walls 10 km apart: largest error of the mean range, all detectors and widths [m]", 0, worst, 1e-3);
 }
 
 TEST_CASE("pulses that cannot be") {
-  refused(axis, "0.1 fs", [] { Scanner{.laser = {.pulse_length = 1e-16}}.validate(); });
-  refused(axis, "10 s", [] { Scanner{.laser = {.pulse_length = 10}}.validate(); });
+  refused(scale, "0.1 fs", [] { Scanner{.laser = {.pulse_length = 1e-16}}.validate(); });
+  refused(scale, "10 s", [] { Scanner{.laser = {.pulse_length = 10}}.validate(); });
 }

@@ -31,7 +31,7 @@ using namespace pulsecast::support;
 
 namespace {
 
-const std::string axis = "range";
+const std::string scale = "range";
 
 struct Distance {
   std::string name;
@@ -74,7 +74,7 @@ TEST_CASE("ground at any range") {
       compare(meshes.linear, field, "HeightField", rays, others);
     }
     check(verdict, others);
-    row(axis, "ground at " + d.name + ": largest error of a range [1e-15 of it]", 0, verdict.worst / d.range * 1e15, 100);
+    row(scale, "ground at " + d.name + ": largest error of a range [1e-15 of it]", 0, verdict.worst / d.range * 1e15, 100);
   }
 }
 
@@ -98,9 +98,9 @@ TEST_CASE("what lies at the very ends of a ray, at any range") {
     const double before = std::nextafter(d.range, 0), after = std::nextafter(d.range, 1e9);
     good += meet(0, d.range) + meet(before, after), bad += meet(0, before) + meet(d.range, after);
   }
-  row(axis, "wall at these ranges: answers, of 50, that meet it up to its range, or from a rounding before it", 50,
+  row(scale, "wall at these ranges: answers, of 50, that meet it up to its range, or from a rounding before it", 50,
       static_cast<double>(good), 0);
-  row(axis, "wall at these ranges: answers, of 50, that meet it up to a rounding before its range, or from there on", 0,
+  row(scale, "wall at these ranges: answers, of 50, that meet it up to a rounding before its range, or from there on", 0,
       static_cast<double>(bad), 0);
 }
 
@@ -125,7 +125,7 @@ TEST_CASE("voxels at any range") {
       if (nearest.met(0)) worst = std::max(worst, std::fabs(nearest.range[0] * rays.x[0] - d.range));
     }
     CHECK(met == 1000);
-    row(axis, "voxels at " + d.name + ": largest error of a range [1e-15 of it]", 0, worst / d.range * 1e15, 100);
+    row(scale, "voxels at " + d.name + ": largest error of a range [1e-15 of it]", 0, worst / d.range * 1e15, 100);
   }
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("a pulse's echo from a wall, at any range") {
       const double size = d.range / 4;
       const MeshData plate{{{-size, d.range, -size}, {size, d.range, -size}, {0, d.range, size}}, {{0, 1, 2}}, {}};
       const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(plate)}});
-      // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the axis
+      // Source: laser radar equation for an extended target, Jelalian 1992; near by, the solid angle of a disc on the scale
       const Receiver& receiver = validation::vacuum;
       const double reach = std::hypot(d.range, receiver.diameter / 2), gain = receiver.diameter * receiver.diameter * receiver.efficiency;
       const Laser laser{.peak_power = 1e9};
@@ -146,8 +146,8 @@ TEST_CASE("a pulse's echo from a wall, at any range") {
       worst = std::max(worst, std::fabs(result.echoes[0].range - d.range));
       worst_power = std::max(worst_power, std::fabs(result.power / (laser.peak_power * 0.5 * gain / (4 * reach * reach)) - 1));
     }
-    row(axis, detector + ", wall at these ranges: largest error of the range [nm]", 0, worst * 1e9, 1000);
-    row(axis, detector + ", wall at these ranges: largest error of the power [1e-12]", 0, worst_power * 1e12, 1);
+    row(scale, detector + ", wall at these ranges: largest error of the range [nm]", 0, worst * 1e9, 1000);
+    row(scale, detector + ", wall at these ranges: largest error of the power [1e-12]", 0, worst_power * 1e12, 1);
   };
   const WaveformSettings settings{.threshold = 0};
   ask("FirstHit", FirstHit{}), ask("AnalyticWaveform", AnalyticWaveform{settings}), ask("FullWaveform", FullWaveform{settings});

@@ -36,7 +36,7 @@ using namespace pulsecast::support;
 
 namespace {
 
-const std::string axis = "scene";
+const std::string scale = "scene";
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <Geometry G>
@@ -77,10 +77,10 @@ TEST_CASE("a scene without parts, and shapes without primitives, are met nowhere
   }
   CHECK(none.bounds().empty());
   CHECK_FALSE(none.ground_height({0, 0}));
-  row(axis, "no part, no box, no pixel: rays that meet something, of 1900", 0, static_cast<double>(met), 0);
+  row(scale, "no part, no box, no pixel: rays that meet something, of 1900", 0, static_cast<double>(met), 0);
   const validation::Result pulse = validation::one_pulse(none, SunflowerFootprint(19));
   CHECK(pulse.echoes.empty());
-  row(axis, "no part: share of a pulse that misses", 1, pulse.share(Fate::missed), 1e-12);
+  row(scale, "no part: share of a pulse that misses", 1, pulse.share(Fate::missed), 1e-12);
 }
 
 TEST_CASE("a scene of one triangle") {
@@ -97,27 +97,29 @@ TEST_CASE("a scene of one triangle") {
   check(verdict, others);
   CHECK(verdict.met < verdict.rays);
   const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(data)}});
-  row(axis, "one triangle: range of a pulse at it [m]", 5, validation::one_pulse(scene, SingleRay{}).echoes.at(0).range, 1e-9);
-  refused_as(axis, "mesh of no triangle", "at least one in number", [] { return TriangleMesh<>(MeshData{{{0, 0, 0}}, {}, {}}); });
+  row(scale, "one triangle: range of a pulse at it [m]", 5, validation::one_pulse(scene, SingleRay{}).echoes.at(0).range, 1e-9);
+  refused_as(scale, "mesh of no triangle", "at least one in number", [] { return TriangleMesh<>(MeshData{{{0, 0, 0}}, {}, {}}); });
 }
 
 TEST_CASE("more primitives than can be counted are refused before memory is asked for") {
   const Box box{{0, 0, 0}, {1, 1, 1}};
   const std::span<const Box> many(&box, std::size_t{4294967295});  // refused by their number: none but the first is there
-  refused_as(axis, "2^32 - 1 boxes, Bvh<float>", "in number", [&] { return Bvh<float>(many); });
-  refused_as(axis, "2^32 - 1 boxes, Bvh<double>", "in number", [&] { return Bvh<double>(many); });
-  refused_as(axis, "2^32 - 1 boxes, KdTree<float>", "in number", [&] { return KdTree<float>(many); });
-  refused_as(axis, "2^32 - 1 boxes, KdTree<double>", "in number", [&] { return KdTree<double>(many); });
-  refused_as(axis, "2^32 - 1 boxes, Linear", "in number", [&] { return Linear<float>(many); });
+  refused_as(scale, "2^32 - 1 boxes, Bvh<float>", "in number", [&] { return Bvh<float>(many); });
+  refused_as(scale, "2^32 - 1 boxes, Bvh<double>", "in number", [&] { return Bvh<double>(many); });
+  refused_as(scale, "2^32 - 1 boxes, KdTree<float>", "in number", [&] { return KdTree<float>(many); });
+  refused_as(scale, "2^32 - 1 boxes, KdTree<double>", "in number", [&] { return KdTree<double>(many); });
+  refused_as(scale, "2^32 - 1 boxes, Linear", "in number", [&] { return Linear<float>(many); });
   const auto counts = [](std::size_t vertices, std::size_t triangles) { return MeshData::validate_counts(vertices, triangles), true; };
   CHECK_NOTHROW(static_cast<void>(counts(4294967295, 4294967294)));  // 2^31 + 1 triangles are served
-  refused_as(axis, "mesh of 2^32 - 1 triangles", "MeshData::triangles (number)", [&] { return counts(3, 4294967295); });
-  refused_as(axis, "mesh of 2^32 vertices", "MeshData::vertices (number)", [&] { return counts(4294967296, 1); });
-  refused_as(axis, "raster of 65537 x 32769 pixels, 2^31 cells", "cells between them",
+  refused_as(scale, "mesh of 2^32 - 1 triangles", "MeshData::triangles (number)", [&] { return counts(3, 4294967295); });
+  refused_as(scale, "mesh of 2^32 vertices", "MeshData::vertices (number)", [&] { return counts(4294967296, 1); });
+  refused_as(scale, "raster of 65537 x 32769 pixels, 2^31 cells", "cells between them",
              [] { return HeightField({.columns = 65537, .rows = 32769}); });
-  refused_as(axis, "raster of 65536 x 65536 pixels", "cells between them", [] { return HeightField({.columns = 65536, .rows = 65536}); });
-  refused_as(axis, "raster of 2^32 - 1 columns", "Raster::columns is", [] { return HeightField({.columns = 4294967295, .rows = 2}); });
-  refused_as(axis, "voxels 2^21 cells apart", "within 2097152 cells", [] { return VoxelGrid<>({.cells = {{0, 0, 0}, {0, 0, 1U << 21}}}); });
+  refused_as(scale, "raster of 65536 x 65536 pixels", "cells between them", [] { return HeightField({.columns = 65536, .rows = 65536}); });
+  refused_as(scale, "raster of 2^32 - 1 columns", "Raster::columns is", [] { return HeightField({.columns = 4294967295, .rows = 2}); });
+  refused_as(scale, "voxels 2^21 cells apart", "within 2097152 cells", [] {
+    return VoxelGrid<>({.cells = {{0, 0, 0}, {0, 0, 1U << 21}}});
+  });
 }
 
 TEST_CASE("a lattice of 9e18 cells, of which the outermost are there, is served") {
@@ -128,7 +130,7 @@ TEST_CASE("a lattice of 9e18 cells, of which the outermost are there, is served"
   std::size_t wrong = 0;
   for (int k = 0; k < 3; ++k)
     for (std::uint32_t i = 0; i < 8; ++i) {
-      // from the outside of each corner, along each axis that leads out of the other end, past what is in the first cell or into it
+      // from the outside of each corner, along each scale that leads out of the other end, past what is in the first cell or into it
       Vec3 cell{data.cells[i][0], data.cells[i][1], data.cells[i][2]}, way{};
       const bool low = cell[k] == 0;
       way[k] = low ? 1 : -1;
@@ -139,7 +141,7 @@ TEST_CASE("a lattice of 9e18 cells, of which the outermost are there, is served"
       wrong += first.met(0) && first.range[0] == 9.5 ? 0 : 1;
       wrong += second.met(0) && second.range[0] == last - 10.5 ? 0 : 1;
     }
-  row(axis, "voxels in the corners of a lattice of 2^63 cells: rays along its edges that do not meet them where they are, of 48", 0,
+  row(scale, "voxels in the corners of a lattice of 2^63 cells: rays along its edges that do not meet them where they are, of 48", 0,
       static_cast<double>(wrong), 0);
 }
 
@@ -212,8 +214,8 @@ TEST_CASE("ground of nearly 2^32 triangles is served") {
     wrong += south_west.x == c && south_west.y == -1.0 - r ? 0 : 1;
   }
   CHECK(2 * std::uint64_t{side - 1} * (side - 1) > (std::uint64_t{1} << 31) + 1);
-  row(axis, "raster of 46341 x 46341 pixels, 4,294,791,200 triangles: rays that do not meet theirs, of 2000", 0, static_cast<double>(wrong),
-      0);
+  row(scale, "raster of 46341 x 46341 pixels, 4,294,791,200 triangles: rays that do not meet theirs, of 2000", 0,
+      static_cast<double>(wrong), 0);
 }
 
 #endif

@@ -49,7 +49,7 @@ namespace {
 __extension__ typedef unsigned __int128 Wide;
 using Real = long double;
 
-const std::string axis = "time of survey";
+const std::string scale = "time of survey";
 constexpr std::uint64_t rate = 31688;           // [Hz]
 constexpr PulseIndex late = 1'000'000'000'000;  // after a year
 constexpr PulseIndex window = 20'000;           // pulses that are looked at
@@ -93,8 +93,8 @@ double worst(const Source& source, PulseIndex first, const std::function<Directi
 /// A row at the first pulse and one after a year.
 template <class Source>
 void directions(const std::string& name, const Source& source, const std::function<Direction(PulseIndex)>& right_one) {
-  row(axis, name + ", 20 000 pulses from pulse 1: largest error [rad]", 0, worst(source, 1, right_one), 1e-11);
-  row(axis, name + ", 20 000 pulses from pulse 1e12: largest error [rad]", 0, worst(source, late, right_one), 1e-11);
+  row(scale, name + ", 20 000 pulses from pulse 1: largest error [rad]", 0, worst(source, 1, right_one), 1e-11);
+  row(scale, name + ", 20 000 pulses from pulse 1e12: largest error [rad]", 0, worst(source, late, right_one), 1e-11);
 }
 
 }  // namespace
@@ -107,9 +107,9 @@ TEST_CASE("the time of a pulse") {
     worst = std::max(worst, std::fabs(static_cast<Real>(tick.second - static_cast<std::int64_t>(exact.whole)) +
                                       (static_cast<Real>(tick.fraction) - exact.phase)));
   }
-  row(axis, "20 000 pulses from pulse 1e12: largest error of the time [s]", 0, static_cast<double>(worst), 1e-15);
-  refused(axis, "2^53 pulses", [] { Scanner{.pulse_rate = 1e6, .pulses = PulseIndex{1} << 53}.validate(); });
-  refused(axis, "1e12 pulses at 1e-4 Hz", [] { Scanner{.pulse_rate = 1e-4, .pulses = late}.validate(); });
+  row(scale, "20 000 pulses from pulse 1e12: largest error of the time [s]", 0, static_cast<double>(worst), 1e-15);
+  refused(scale, "2^53 pulses", [] { Scanner{.pulse_rate = 1e6, .pulses = PulseIndex{1} << 53}.validate(); });
+  refused(scale, "1e12 pulses at 1e-4 Hz", [] { Scanner{.pulse_rate = 1e-4, .pulses = late}.validate(); });
 }
 
 TEST_CASE("the phase of each optic") {
@@ -154,7 +154,7 @@ TEST_CASE("the phase of each optic") {
     const Real angle = std::remainder(10 * static_cast<Real>(i) / rate, turn);
     return Direction{-std::sin(angle), std::cos(angle), 0};
   });
-  row(axis, "RotatingHead at 10 rad/s, the same: largest error, of what half a unit in the last place of its rate makes up", 0,
+  row(scale, "RotatingHead at 10 rad/s, the same: largest error, of what half a unit in the last place of its rate makes up", 0,
       apart / (0x1p-50 * static_cast<double>(late) / rate), 2);
   // a thin end of glass before the beam, which turns: entered through the inclined face, left through the square one
   const double wedge = 0.3, index = 1.5;
@@ -165,16 +165,16 @@ TEST_CASE("the phase of each optic") {
                const Real off = std::asin(index * std::sin(wedge - inside)), angle = turn * turns(i).phase;
                return Direction{-std::sin(off) * std::sin(angle), std::cos(off), -std::sin(off) * std::cos(angle)};
              });
-  refused(axis, "a mirror at 0 Hz", [] { OscillatingMirror{.cycles_per_second = 0}.validate(); });
-  refused(axis, "a mirror at 1e13 Hz", [] { OscillatingMirror{.cycles_per_second = 1e13}.validate(); });
-  refused(axis, "a cone at 1e13 Hz", [] { PalmerMirror{.turns_per_second = 1e13}.validate(); });
-  refused(axis, "a polygon at 1e13 Hz", [] { PolygonMirror{.lines_per_second = 1e13}.validate(); });
-  refused(axis, "fibres at 1e13 Hz", [] { FiberArray{.fibers_per_second = 1e13}.validate(); });
-  refused(axis, "a table at 1e13 Hz", [] { PatternTable{.entries = {{}}, .entries_per_second = 1e13}.validate(); });
-  refused(axis, "a head at 1e13 rad/s", [] { RotatingHead{.rate = 1e13}.validate(); });
-  refused(axis, "a head that starts at 1e12 rad", [] { RotatingHead{.start = 1e12}.validate(); });
-  refused(axis, "a prism at 1e13 Hz", [] { RisleyPrisms{.prisms = {{.turns_per_second = 1e13}}}.validate(); });
-  refused(axis, "a prism that starts at 1e12 rad", [] { RisleyPrisms{.prisms = {{.start = 1e12}}}.validate(); });
+  refused(scale, "a mirror at 0 Hz", [] { OscillatingMirror{.cycles_per_second = 0}.validate(); });
+  refused(scale, "a mirror at 1e13 Hz", [] { OscillatingMirror{.cycles_per_second = 1e13}.validate(); });
+  refused(scale, "a cone at 1e13 Hz", [] { PalmerMirror{.turns_per_second = 1e13}.validate(); });
+  refused(scale, "a polygon at 1e13 Hz", [] { PolygonMirror{.lines_per_second = 1e13}.validate(); });
+  refused(scale, "fibres at 1e13 Hz", [] { FiberArray{.fibers_per_second = 1e13}.validate(); });
+  refused(scale, "a table at 1e13 Hz", [] { PatternTable{.entries = {{}}, .entries_per_second = 1e13}.validate(); });
+  refused(scale, "a head at 1e13 rad/s", [] { RotatingHead{.rate = 1e13}.validate(); });
+  refused(scale, "a head that starts at 1e12 rad", [] { RotatingHead{.start = 1e12}.validate(); });
+  refused(scale, "a prism at 1e13 Hz", [] { RisleyPrisms{.prisms = {{.turns_per_second = 1e13}}}.validate(); });
+  refused(scale, "a prism that starts at 1e12 rad", [] { RisleyPrisms{.prisms = {{.start = 1e12}}}.validate(); });
 }
 
 TEST_CASE("channels and legs") {
@@ -184,7 +184,7 @@ TEST_CASE("channels and legs") {
     const auto pulse = device.pulse(i);
     wrong += pulse && pulse->channel == i % 16 && pulse->index == i && pulse->tick == Tick::of(i / 16, rate / 16.0) ? 0 : 1;
   }
-  row(axis, "Channels, 20 000 slots from 1e12: of a wrong channel or time", 0, static_cast<double>(wrong), 0);
+  row(scale, "Channels, 20 000 slots from 1e12: of a wrong channel or time", 0, static_cast<double>(wrong), 0);
 
   // strips of 10^6 seconds less a bit: starts are sums of what has no exact fraction
   constexpr PulseIndex each = 12'345'678'901;
@@ -200,13 +200,13 @@ TEST_CASE("channels and legs") {
     worst = std::max(worst, std::fabs(static_cast<Real>(pulse->tick.second - static_cast<std::int64_t>(exact.whole)) +
                                       (static_cast<Real>(pulse->tick.fraction) - exact.phase)));
   }
-  row(axis, "Legs, 20 000 pulses from pulse 1e12: of a wrong leg", 0, static_cast<double>(wrong), 0);
-  row(axis, "Legs, 82 end to end, 20 000 pulses from pulse 1e12: largest error of the time [s]", 0, static_cast<double>(worst), 1e-13);
+  row(scale, "Legs, 20 000 pulses from pulse 1e12: of a wrong leg", 0, static_cast<double>(wrong), 0);
+  row(scale, "Legs, 82 end to end, 20 000 pulses from pulse 1e12: largest error of the time [s]", 0, static_cast<double>(worst), 1e-13);
   const auto longest = [](double pulse_rate) {
     return Strip{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulse_rate = pulse_rate, .pulses = PulseIndex{1} << 52}}};
   };
-  refused(axis, "Legs of 2^62 slots together", [&] { return Legs{std::vector<Strip>(1024, longest(1e9))}; });
-  refused(axis, "Legs of 1.8e15 s together", [&] { return Legs{std::vector<Strip>(2, longest(5))}; });
+  refused(scale, "Legs of 2^62 slots together", [&] { return Legs{std::vector<Strip>(1024, longest(1e9))}; });
+  refused(scale, "Legs of 1.8e15 s together", [&] { return Legs{std::vector<Strip>(2, longest(5))}; });
 }
 
 TEST_CASE("trajectories") {
@@ -225,12 +225,12 @@ TEST_CASE("trajectories") {
     slow = std::max(slow, error(survey, 0.0078125L * time, i)), fast = std::max(fast, error(orbit, 32 * time - 1e9L, i));
     between = std::max(between, error(linear, 32 * since, i)), smooth = std::max(smooth, error(cubic, 32 * since, i));
   }
-  row(axis, "StraightLine at 8 mm/s, 246 km on: largest error of the position [m]", 0, static_cast<double>(slow), 1e-8);
-  row(axis, "StraightLine at 32 m/s, 1 000 000 km on: largest error of the position [m]", 0, static_cast<double>(fast), 1e-5);
-  row(axis, "Waypoints at 32 m/s after a year: largest error of the position [m]", 0, static_cast<double>(between), 1e-12);
-  row(axis, "Waypoints, cubic, at 32 m/s after a year: largest error of the position [m]", 0, static_cast<double>(smooth), 1e-12);
-  refused(axis, "a waypoint at 1e16 s", [] { return Waypoints{{{.time = 1e16}}}; });
-  refused(axis, "a line that takes 1e16 s", [] { StraightLine{.to = {0, 1e8, 0}, .speed = 1e-8}.validate(); });
+  row(scale, "StraightLine at 8 mm/s, 246 km on: largest error of the position [m]", 0, static_cast<double>(slow), 1e-8);
+  row(scale, "StraightLine at 32 m/s, 1 000 000 km on: largest error of the position [m]", 0, static_cast<double>(fast), 1e-5);
+  row(scale, "Waypoints at 32 m/s after a year: largest error of the position [m]", 0, static_cast<double>(between), 1e-12);
+  row(scale, "Waypoints, cubic, at 32 m/s after a year: largest error of the position [m]", 0, static_cast<double>(smooth), 1e-12);
+  refused(scale, "a waypoint at 1e16 s", [] { return Waypoints{{{.time = 1e16}}}; });
+  refused(scale, "a line that takes 1e16 s", [] { StraightLine{.to = {0, 1e8, 0}, .speed = 1e-8}.validate(); });
 }
 
 TEST_CASE("the errors of a pose") {
@@ -256,11 +256,11 @@ TEST_CASE("the errors of a pose") {
       worst = std::max(worst, std::fabs(drifting.reported(t).position.x - (before + (drift - before) * static_cast<Real>(k) / 8)));
     }
   }
-  row(axis, "PoseErrors, a Gauss-Markov drift of 1 m and an hour, in the last ten hours of a year: largest error [m]", 0,
+  row(scale, "PoseErrors, a Gauss-Markov drift of 1 m and an hour, in the last ten hours of a year: largest error [m]", 0,
       static_cast<double>(worst), 1e-9);
-  row(axis, "PoseErrors, the same drift: its deviation over the year [m]", 1,
+  row(scale, "PoseErrors, the same drift: its deviation over the year [m]", 1,
       static_cast<double>(std::sqrt(squares / static_cast<Real>(steps))), 0.05);
-  refused(axis, "a drift of 1 s through a year", [&] {
+  refused(scale, "a drift of 1 s through a year", [&] {
     return WithPoseErrors{tripod(year), PoseErrors{.position_drift = 1, .drift_time = 1}};
   });
 
@@ -272,7 +272,7 @@ TEST_CASE("the errors of a pose") {
     same += noisy.reported({31'000'000, fraction}).position == noisy.reported({31'000'001, other}).position ? 1 : 0;
     same += noisy.reported({31'000'000, fraction}).position == noisy.reported({31'000'001, fraction}).position ? 1 : 0;
   }
-  row(axis, "PoseErrors, white noise of 2000 pairs of moments in two seconds: how many are alike", 0, static_cast<double>(same), 0);
+  row(scale, "PoseErrors, white noise of 2000 pairs of moments in two seconds: how many are alike", 0, static_cast<double>(same), 0);
 }
 
 TEST_CASE("random numbers") {
@@ -284,10 +284,10 @@ TEST_CASE("random numbers") {
     sum += x, squares += x * x, neighbours += x * before, before = x;
     same += x == wrapped ? 1 : 0;
   }
-  row(axis, "normal numbers of 1e6 pulses from pulse 1e12: mean", 0, sum / n, 0.004);
-  row(axis, "normal numbers of 1e6 pulses from pulse 1e12: variance", 1, squares / n, 0.006);
-  row(axis, "normal numbers of 1e6 pulses from pulse 1e12: correlation of neighbours", 0, neighbours / n, 0.004);
-  row(axis, "normal numbers of 1e6 pulses from pulse 1e12: how many are those of a pulse 232 * 2^32 before", 0, static_cast<double>(same),
+  row(scale, "normal numbers of 1e6 pulses from pulse 1e12: mean", 0, sum / n, 0.004);
+  row(scale, "normal numbers of 1e6 pulses from pulse 1e12: variance", 1, squares / n, 0.006);
+  row(scale, "normal numbers of 1e6 pulses from pulse 1e12: correlation of neighbours", 0, neighbours / n, 0.004);
+  row(scale, "normal numbers of 1e6 pulses from pulse 1e12: how many are those of a pulse 232 * 2^32 before", 0, static_cast<double>(same),
       0);
 }
 
@@ -311,5 +311,5 @@ TEST_CASE("a whole survey") {
     REQUIRE(outcome.echoes.size() == 1);
     worst = std::max(worst, std::fabs(outcome.echoes[0].range - 1000 / std::cos(static_cast<Real>(30_deg) * (2 * turns(i).phase - 1))));
   }
-  row(axis, "a survey from 1 km, 20 000 pulses from pulse 1e12: largest error of the range [m]", 0, static_cast<double>(worst), 1e-9);
+  row(scale, "a survey from 1 km, 20 000 pulses from pulse 1e12: largest error of the range [m]", 0, static_cast<double>(worst), 1e-9);
 }

@@ -32,7 +32,7 @@ using namespace pulsecast::support;
 
 namespace {
 
-const std::string axis = "triangle";
+const std::string scale = "triangle";
 
 /// Rays at triangles from up to so many times their size away.
 void shoot(const MeshData& data, double size, double farthest, Generator& random, Verdict& verdict, Comparison& others) {
@@ -113,7 +113,7 @@ TEST_CASE("triangles of any size") {
     Comparison others;
     shoot(data, size, 1e9, random, verdict, others);
     check(verdict, others);
-    row(axis,
+    row(scale,
         "sides of " + std::string(side) + " m, from 1 to 1e9 sides away: rays that do not answer as stated, of " +
             std::to_string(verdict.rays),
         0, static_cast<double>(verdict.wrong), 0);
@@ -134,7 +134,7 @@ TEST_CASE("triangles of any aspect") {
     Comparison others;
     shoot(data, 1, 1e3, random, verdict, others);
     check(verdict, others);
-    row(axis, "needles 1 m long, aspect " + std::string(text) + ": rays that do not answer as stated, of " + std::to_string(verdict.rays),
+    row(scale, "needles 1 m long, aspect " + std::string(text) + ": rays that do not answer as stated, of " + std::to_string(verdict.rays),
         0, static_cast<double>(verdict.wrong), 0);
     const TriangleMesh<> mesh(data);
     for (PrimitiveIndex i = 0; i < 40; ++i) {
@@ -143,7 +143,7 @@ TEST_CASE("triangles of any aspect") {
       worst = std::max(worst, length(mesh.surface(i, bundle_of({}), 0).normal - exact) / aspect);
     }
   }
-  row(axis, "needles of these aspects: largest error of a normal [1e-15 rad of the aspect]", 0, worst * 1e15, 10);
+  row(scale, "needles of these aspects: largest error of a normal [1e-15 rad of the aspect]", 0, worst * 1e15, 10);
 }
 
 TEST_CASE("triangles without area are never met, and hide nothing") {
@@ -179,8 +179,8 @@ TEST_CASE("triangles without area are never met, and hide nothing") {
   }
   INFO(others.first);
   CHECK(others.different == 0);
-  row(axis, "100 triangles without area: rays that meet one", 0, static_cast<double>(met), 0);
-  row(axis, "30 triangles among 100 without area: rays that do not meet them as without", 0, static_cast<double>(other), 0);
+  row(scale, "100 triangles without area: rays that meet one", 0, static_cast<double>(met), 0);
+  row(scale, "30 triangles among 100 without area: rays that do not meet them as without", 0, static_cast<double>(other), 0);
   CHECK(degenerate.bvh.surface(3, bundle_of({}), 0).normal == Vec3{});
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("very many triangles in one plane") {
   constexpr std::uint32_t many = 2237, fewer = 708;  // 1e7 triangles where it takes seconds to build, 1e6 where it would take minutes
 #endif
   const auto wrong = [](const std::string& what, std::uint32_t cells, const auto& mesh, int times) {
-    row(axis, what + ": rays at corners, edges and insides that do not meet the first triangle there", 0,
+    row(scale, what + ": rays at corners, edges and insides that do not meet the first triangle there", 0,
         static_cast<double>(wrong_on_slope(mesh, cells, times)), 0);
   };
   wrong("1e7 triangles in one plane, Bvh<float>", many, TriangleMesh<Bvh>(slope(many)), 100000);
@@ -225,10 +225,10 @@ TEST_CASE("one triangle very many times over") {
   }
   INFO(others.first);
   CHECK(others.different == 0);
-  row(axis, "1e5 doubles of one triangle, and another beneath: rays that do not meet a double, of " + std::to_string(asked), 0,
+  row(scale, "1e5 doubles of one triangle, and another beneath: rays that do not meet a double, of " + std::to_string(asked), 0,
       static_cast<double>(wrong), 0);
-  row(axis, "1e5 doubles of one triangle: rays of which accelerators do not meet the same double", 0, static_cast<double>(others.different),
-      0);
+  row(scale, "1e5 doubles of one triangle: rays of which accelerators do not meet the same double", 0,
+      static_cast<double>(others.different), 0);
   CHECK(meshes.bvh.index().depth() <= 64);
   CHECK(meshes.kd_tree.index().depth() <= 64);
 }
