@@ -50,3 +50,38 @@ TEST_CASE("settings are equal if all that they hold is") {
   CHECK(differs([](SurveySettings& s) { s.platform.attitude_noise[1].emplace(); }));
   CHECK(differs([](SurveySettings& s) { s.legs[0].scanner.divergence = 0; }));
 }
+
+TEST_CASE("the last leg of a platform that goes from leg to leg only says where the one before it ends") {
+  SurveySettings s;
+  s.legs.resize(3);
+  s.legs[1].platform.position = s.legs[2].platform.position = {5, 0, 0};
+  for (const PlatformKind kind : {PlatformKind::linear_path, PlatformKind::multicopter, PlatformKind::ground_vehicle}) {
+    s.platform.kind = kind;
+    CHECK(legs_connect(kind));
+    CHECK_FALSE(only_ends(s, 1));
+    CHECK(only_ends(s, 2));
+    CHECK_FALSE(is_stationary(s, 0));
+    CHECK(is_stationary(s, 1));
+    CHECK_FALSE(is_stationary(s, 2));
+  }
+  for (const PlatformKind kind : {PlatformKind::stationary, PlatformKind::interpolated}) {
+    s.platform.kind = kind;
+    CHECK_FALSE(legs_connect(kind));
+    CHECK_FALSE(only_ends(s, 2));
+    CHECK_FALSE(is_stationary(s, 1));
+  }
+  s.platform.kind = PlatformKind::multicopter;
+  s.legs.resize(1);
+  CHECK_FALSE(only_ends(s, 0));
+  CHECK(is_stationary(s, 0));
+}
+
+TEST_CASE("the first pulse rate is that of a leg, then of the scanner, then 100 kHz") {
+  SurveySettings s;
+  s.legs.resize(2);
+  CHECK(first_pulse_rate(s) == 100e3);
+  s.scanner.pulse_rates = {7e3, 8e3};
+  CHECK(first_pulse_rate(s) == 7e3);
+  s.legs[1].scanner.pulse_rate = 9e3;
+  CHECK(first_pulse_rate(s) == 9e3);
+}

@@ -30,7 +30,6 @@ TEST_CASE("legs go to where the next one begins, in as long as that takes") {
   const SurveySettings s = survey_of(PlatformKind::linear_path, {{0, 0, 9}, {30, 0, 9}, {30, 40, 9}});
   const SurveyBuildOptions options;
   const LegPaths paths(s, flat, options);
-  CHECK(paths.legs_connect());
   CHECK(paths[0].duration == relative(3, 1e-12));
   CHECK(paths[1].duration == relative(4, 1e-12));
   CHECK(paths[2].duration == 0);
