@@ -9,40 +9,41 @@
 
 #include <pulsecast/base/arithmetic.hpp>
 
-/// SIMD: several numbers that go through the same arithmetic at once, as many as one register of the processor holds. The compilers'
-/// vector types give the operators; comparisons give a `LaneMask` that is all ones where they hold, and `mask ? a : b` chooses by lane.
+/// SIMD registers: vectors of numbers that go through the same arithmetic at once. The compilers' vector types bring the operators; a
+/// comparison gives a `LaneMask`, all ones in lanes where it holds, and `mask ? a : b` selects by lane.
 namespace pulsecast {
 
-#if defined(__AVX__)  // and not more with AVX-512: a single ray would fill one lane of eight, and pay for all
-inline constexpr std::size_t register_bytes = 32;
+#if defined(__AVX__)                               // not wider with AVX-512: a single ray would use one lane of eight and pay for all
+inline constexpr std::size_t register_bytes = 32;  ///< of one SIMD register [byte]
 #else
 inline constexpr std::size_t register_bytes = 16;
 #endif
 
-/// How many numbers of double precision go at once.
+/// Number of doubles in one register.
 inline constexpr std::size_t lane_count = register_bytes / sizeof(double);
 
-using Lanes [[gnu::vector_size(register_bytes)]] = double;
-using LaneIds [[gnu::vector_size(register_bytes)]] = std::uint64_t;
-using LaneMask [[gnu::vector_size(register_bytes)]] = std::int64_t;
+using Lanes [[gnu::vector_size(register_bytes)]] = double;           ///< doubles
+using LaneIds [[gnu::vector_size(register_bytes)]] = std::uint64_t;  ///< unsigned integers of 64 bits
+using LaneMask [[gnu::vector_size(register_bytes)]] = std::int64_t;  ///< results of comparisons: -1 where true, 0 where false
 
 namespace detail {
 template <std::size_t Bytes, class Number>
 struct VectorOf {
   using type [[gnu::vector_size(Bytes)]] = Number;
 };
-/// As a register holds, but not more than eight numbers.
+/// Size of a `Pack` [byte]: one register, but at most eight numbers.
 template <class Real>
 inline constexpr std::size_t pack_bytes = register_bytes < 8 * sizeof(Real) ? register_bytes : 8 * sizeof(Real);
 }  // namespace detail
 
-/// Numbers of either precision, as many as go at once, but at most the eight children of a tree's node.
+/// Vector of floats or doubles: as many as a register holds, at most eight, the children of a tree's node.
 template <class Real>
 using Pack = typename detail::VectorOf<detail::pack_bytes<Real>, Real>::type;
+/// Number of lanes of a `Pack`.
 template <class Real>
 inline constexpr std::size_t pack_count = sizeof(Pack<Real>) / sizeof(Real);
 
-/// As many whole numbers of 16 bits in memory, from this one on, as a `Pack`.
+/// Converts `pack_count` 16-bit integers in memory, from `first` on, to a `Pack`.
 template <class Real>
 [[nodiscard]] inline Pack<Real> pack_from(const std::uint16_t& first) noexcept {
   using Halves = typename detail::VectorOf<16, std::uint16_t>::type;
@@ -50,7 +51,7 @@ template <class Real>
   if constexpr (pack_count<Real> == 8) {
     Halves halves;
     std::memcpy(&halves, &first, sizeof halves);
-#if defined(__AVX2__) && !defined(__clang__)  // g++ 12 would take them by halves
+#if defined(__AVX2__) && !defined(__clang__)  // g++ 12 would convert them in two halves
     using Signed = typename detail::VectorOf<16, short>::type;
     return __builtin_convertvector(Words(__builtin_ia32_pmovzxwd256(Signed(halves))), Pack<Real>);
 #else
@@ -69,13 +70,13 @@ template <class Real>
   }
 }
 
-/// The lanes that `number(lane)` gives.
+/// Register whose lanes are `number(lane)`.
 template <class Number>
 [[nodiscard]] inline Lanes lanes_of(const Number& number) noexcept {
   return [&]<std::size_t... lane>(std::index_sequence<lane...>) { return Lanes{number(lane)...}; }(std::make_index_sequence<lane_count>());
 }
 
-/// The smaller and the greater of two, lane by lane; b where they cannot be compared.
+/// Minimum and maximum of two registers, lane by lane; b where they do not compare (NaN).
 template <class Register>
 [[nodiscard]] inline Register smaller(const Register& a, const Register& b) noexcept {
   return a < b ? a : b;
@@ -85,7 +86,7 @@ template <class Register>
   return a > b ? a : b;
 }
 
-/// Four numbers, in as many registers as they need: coordinates, and one lane to spare.
+/// Vector of four numbers in as many registers as they need: three coordinates and a spare lane.
 template <class Real>
 struct Four {
   static constexpr std::size_t count = 4 * sizeof(Real) > register_bytes ? 4 * sizeof(Real) / register_bytes : 1;
@@ -94,11 +95,11 @@ struct Four {
 
   Four() = default;
   explicit Four(Real all) noexcept { each([&](std::size_t i) { parts[i] = Part{} + all; }); }
-  Four(Real x, Real y, Real z) noexcept {  // a place, and 1
+  Four(Real x, Real y, Real z) noexcept {  // point, and 1 in the spare lane
     const Whole<Real> whole{x, y, z, 1};
     std::memcpy(parts, &whole, sizeof parts);
   }
-  /// The four numbers in memory from this one on.
+  /// Loads four consecutive numbers from memory, from `first` on.
   [[nodiscard]] static Four from(const Real& first) noexcept {
     Four four;
     std::memcpy(four.parts, &first, sizeof four.parts);
@@ -106,7 +107,7 @@ struct Four {
   }
   [[nodiscard]] Real operator[](std::size_t i) const noexcept { return parts[i * count / 4][i % (4 / count)]; }
 
-  /// In another precision.
+  /// Conversion to another precision.
   template <class Other>
   [[nodiscard]] Four<Other> as() const noexcept {
     Whole<Real> whole;
@@ -132,7 +133,7 @@ struct Four {
   friend Four magnitude(const Four& a) noexcept {
     return made([&](std::size_t i) { return a.parts[i] < 0 ? -a.parts[i] : a.parts[i]; });
   }
-  /// -1 for what is negative, else 1.
+  /// Sign, lane by lane: -1 if negative, else 1.
   friend Four sense(const Four& a) noexcept {
     return made([&](std::size_t i) { return a.parts[i] < 0 ? Part{} - 1 : Part{} + 1; });
   }
@@ -159,13 +160,13 @@ struct Four {
   }
 };
 
-/// Fills a register from memory, from this number on.
+/// Fills a register from memory, from `first` on.
 template <class Register, class Number>
 inline void fill(Register& r, const Number& first) noexcept {
   std::memcpy(&r, &first, sizeof r);
 }
 
-/// A register of `register_bytes` filled from memory, from this number on.
+/// Register of `register_bytes` loaded from memory, from `first` on.
 template <class Register, class Number>
 [[nodiscard]] inline Register load(const Number& first) noexcept {
   Register r;
@@ -173,19 +174,19 @@ template <class Register, class Number>
   return r;
 }
 
-/// A register put into memory, from this number on.
+/// Stores a register in memory, from `first` on.
 template <class Register, class Number>
 inline void store(const Register& r, Number& first) noexcept {
   std::memcpy(&first, &r, sizeof r);
 }
 
-/// Says that an object will be read soon, so that it be on its way from memory.
+/// Prefetches an object that will be read soon, cache line by cache line.
 template <class T>
 inline void prefetch(const T* object) noexcept {
   for (std::size_t byte = 0; byte < sizeof(T); byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + byte);
 }
 
-/// The lanes where a mask holds, a bit each.
+/// Bit mask of the lanes where a mask holds; lane 0 is bit 0.
 template <class Mask>
 [[nodiscard]] inline unsigned bits(const Mask& mask) noexcept {
   constexpr std::size_t lanes = sizeof mask / sizeof mask[0];
