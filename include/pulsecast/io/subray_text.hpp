@@ -12,14 +12,13 @@
 
 namespace pulsecast::io {
 
-/// Writes the hits of the subrays of a `WithSubrayRecord` footprint as text, one a line, in these columns with blanks between, without a
-/// header:
+/// Writes the hits of the subrays of a `WithSubrayRecord` footprint as text, one a line, with these columns and blanks between:
 ///
 ///     fullwaveIndex subray x y z range intensity cosIncidence backscatter hitObjectId classification
 ///
 /// fullwaveIndex: slot of the pulse, as in point files; subray: number in the footprint, from 0; x, y, z: hit point [m], 4 decimals; range
 /// [m], 4; intensity: received power of a pulse without length [nW], 9; cosIncidence and backscatter as in `Hit`, 6 each; object and class.
-/// Subrays without a hit have no line.
+/// Subrays without a hit have no line. There is no header line.
 /// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class SubrayTextWriter {
  public:
