@@ -404,7 +404,7 @@ class GeoTiffReader {
     return static_cast<float>(value);
   }
 
-  /// A value for missing ones is written with more digits than a sample of single precision has.
+  /// True for the value of missing heights, which may be written with more digits than a single-precision sample has.
   template <class Sample>
   static bool is_missing(double value, double missing) noexcept {
     if constexpr (std::is_same_v<Sample, float>) return value == missing || static_cast<float>(value) == static_cast<float>(missing);
@@ -419,9 +419,9 @@ class GeoTiffReader {
   Handle tiff_;
   Layout layout_;
   GeoTiff result_;
-  double scale_ = 1;                           // metres a unit of height
-  bool westward_ = false, northward_ = false;  // how columns and rows go in the file
-  std::uint64_t there_ = 0, strange_ = 0;      // heights, and values that can be none
+  double scale_ = 1;                           // metres per unit of height
+  bool westward_ = false, northward_ = false;  // direction of columns and rows in the file
+  std::uint64_t there_ = 0, strange_ = 0;      // number of heights, and of values out of bounds
 };
 
 }  // namespace detail
