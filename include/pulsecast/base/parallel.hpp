@@ -50,9 +50,8 @@ inline void call_for_each_index(std::size_t count, unsigned threads, void (*call
 
 }  // namespace detail
 
-/// Calls task(i) once for each i below `count`, low ones first, on up to `threads` threads, the caller's included; 0 as in `thread_count`.
-/// Tasks that share no data need no lock. Rethrows an exception of a task, one of them if several throw; indices not yet begun are then
-/// skipped.
+/// Calls task(i) once for each i below `count`, low ones first, on up to `threads` threads with the caller's; 0 as in `thread_count`.
+/// Tasks that share no data need no lock. Rethrows the exception of a task, or one of several; indices not yet begun are then skipped.
 template <class Task>
 void for_each_index(std::size_t count, unsigned threads, const Task& task) {
   detail::call_for_each_index(

@@ -17,8 +17,7 @@ enum class Swing : std::uint8_t {
   sine,      ///< harmonic, as of a resonant mirror
 };
 
-/// Mirror that oscillates the beam in the plane of forward and up, from -half_angle to +half_angle and back, starting at the lower end. One
-/// cycle is two scan lines.
+/// Mirror that oscillates the beam in the plane of forward and up, from -half_angle, where it starts, to +half_angle; a cycle is two lines.
 struct OscillatingMirror {
   double cycles_per_second = 50;  ///< rate of full oscillations, at most 1e12 [Hz]
   double half_angle = pi / 9;     ///< beam angle to either side of forward, twice the mirror's [rad]

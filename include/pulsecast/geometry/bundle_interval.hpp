@@ -172,7 +172,7 @@ class BundleInterval {
     return span;
   }
 
-  /// Bit mask of the boxes that any ray may be inside of at a range up to `limit`, and the ranges at which it may enter them.
+  /// Bit mask of the boxes that any ray may be inside of at a range up to `limit`, and their entry ranges.
   [[nodiscard]] unsigned inside(const Box8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
     return inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
       const Axis& axis = axes_[k];
@@ -301,14 +301,13 @@ class RayInterval {
     return static_cast<Real>(std::min(nearest.range[0] * (1 + tolerance), double{std::numeric_limits<Real>::max()}));
   }
 
-  /// Bit mask of the boxes that the ray may be inside of at a range up to `limit`, and the ranges at which it may enter them.
+  /// Bit mask of the boxes that the ray may be inside of at a range up to `limit`, and their entry ranges.
   [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
     Real steps[3];
     for (std::size_t k = 0; k < 3; ++k) steps[k] = boxes.step(k);
     unsigned met = 0;
     for (std::size_t first = 0; first < 8; first += pack_count<Real>) {
-      // the range is linear in a wall's grid coordinate; the wall's place errs by two roundings of the distance of the origin, and four and
-      // a half of half the bounds
+      // the range is linear in a wall's grid coordinate; the wall errs by two roundings of the origin's distance and 4.5 of half the bounds
       const auto ranges = [&](std::size_t k, std::size_t side) noexcept -> Pack<Real> {
         const Real per = per_[side][k], start = boxes.origin[k] * per + start_[side][k];
         return pack_from<Real>(boxes.walls[k][upper_[k] ^ side][first]) * (steps[k] * per) + start;

@@ -25,8 +25,7 @@ namespace pulsecast::io {
 /// between rows are at most 10 degrees.
 ///
 /// G times the plant area density is the extinction coefficient: 1/2 for spherical leaf angles (Ross 1981). Tables of HELIOS++ hold this G;
-/// its further division by 2 pi is not repeated.
-/// Throws a `FileError` with path and line at the first error, or for a gap.
+/// its further division by 2 pi is not repeated. Throws a `FileError` with path and line at the first error, or for a gap.
 [[nodiscard]] LeafAngles read_leaf_angles(const std::filesystem::path& path);
 
 namespace detail {

@@ -37,9 +37,8 @@ struct MaterialLibrary {
 
 /// Reads an MTL file. Colours select the scattering model: `Ks` Phong's, `Kd` alone Lambert's. The reflectance is `helios_reflectance`, a
 /// fraction, or else the spectrum named by `helios_spectra`. `Ns`, `helios_isGround` and `helios_classification` count, too; other keys are
-/// ignored.
-/// The first of equal names counts. Keys before the first name describe the material "default". Throws a `FileError` with path and line at
-/// the first error.
+/// ignored. The first of equal names counts. Keys before the first name describe the material "default". Throws a `FileError` with path and
+/// line at the first error.
 [[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra = {});
 
 /// Surface without a description. It scatters alike in all directions, as in HELIOS++, which defined the extra keys.
@@ -58,8 +57,8 @@ inline constexpr double max_number = 1e12;  ///< upper limit in a file, so that 
   return text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
-/// Number in a word, if tinyobjloader would read the same. It takes other words for zero or for the number they begin with, and fails at
-/// very long ones.
+/// Number in a word, if tinyobjloader would read the same. It takes other words for zero or the number that they begin with, and
+/// fails at very long ones.
 template <class Number>
 [[nodiscard]] std::optional<Number> number_in(std::string_view word) {
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);

@@ -25,8 +25,7 @@
 
 namespace pulsecast::io {
 
-/// Locks an open file exclusively until it is closed, however the program ends; false if it is locked already. True without a lock where
-/// the file system has none.
+/// Locks an open file exclusively until it is closed or the program ends; false if locked already. True where the file system has no locks.
 [[nodiscard]] inline bool lock_alone(int file) noexcept {
   while (::flock(file, LOCK_EX | LOCK_NB) != 0)
     if (errno != EINTR) return errno != EWOULDBLOCK;

@@ -139,8 +139,7 @@ class Camera {
   Vec2 shift_{};
 };
 
-/// Canvas of points as discs with hidden-surface removal by depth, shaded by the relief of the depth. Drawn at twice the resolution of the
-/// picture, for smooth edges.
+/// Canvas of points as discs, with depth buffer and shading by the relief of the depth; twice the picture's resolution, for smooth edges.
 class Canvas {
  public:
   Canvas(const ImageSettings& s, std::span<const ImagePoint> points) : settings_(s), points_(points), camera_(s, points) {

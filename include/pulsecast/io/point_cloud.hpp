@@ -75,9 +75,7 @@ struct PointCloud {
 ///
 /// A voxel includes its lower faces and excludes its upper ones; with `at_cloud`, the last voxel includes its upper faces, too. Plane fits
 /// need at least three points not on one line. A voxel without a normal gets the default, or zero with a warning. Colours above the maximum
-/// are an error.
-/// Throws a `FileError` with path and line or byte at the first error.
-/// Limits: 2^32 voxels along each axis, 2^32 - 2 occupied.
+/// are an error. Throws a `FileError` with path and line or byte at the first error. Limits: 2^32 voxels an axis, 2^32 - 2 occupied.
 [[nodiscard]] PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings = {});
 
 /// Reads a single point cloud.

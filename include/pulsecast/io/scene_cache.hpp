@@ -37,7 +37,6 @@
 /// checksum guards against accidents; forgery is detected as far as a shape has `is_consistent`.
 /// Limits: a mapped file must not be written to. Caches are replaced as a whole, which leaves mapped ones intact; but programs that start
 /// at the same time should not make the same cache.
-/// programs that start at the same time should not make the same cache.
 namespace pulsecast::io {
 
 /// Geometry that can be kept in a cache. One function names all its members, in the same order for writing and reading. All its arrays are

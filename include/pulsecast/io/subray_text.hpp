@@ -18,8 +18,7 @@ namespace pulsecast::io {
 ///
 /// fullwaveIndex: slot of the pulse, as in point files; subray: number in the footprint, from 0; x, y, z: hit point [m], 4 decimals; range
 /// [m], 4; intensity: received power of a pulse without length [nW], 9; cosIncidence and backscatter as in `Hit`, 6 each; object and class.
-/// Subrays without a hit have no line. There is no header line.
-/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// Subrays without a hit have no line. There is no header line. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class SubrayTextWriter {
  public:
   explicit SubrayTextWriter(std::filesystem::path path) : text_(OutputFile(std::move(path))) {}

@@ -82,8 +82,7 @@ class TrajectoryWriter {
 };
 
 /// Writes a trajectory for `read_trajectory`, with all digits of a double; yaw is in [0, 2 pi). Poses are in order of time, with a jump's
-/// time twice; `start_time` [s] is added to times. Throws a `SettingError`, or a `FileError` for poses out of order, out of range or not
-/// unit.
+/// time twice; `start_time` [s] is added to times. Throws a `SettingError`, or a `FileError` for unordered, too large or non-unit poses.
 void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses, const TrajectoryFormat& format = csv_format(),
                       double start_time = 0);
 

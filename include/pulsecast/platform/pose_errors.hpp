@@ -18,8 +18,7 @@
 
 namespace pulsecast {
 
-/// Errors of position and attitude as an instrument reports them; zero by default. Deviations are standard deviations along or about each
-/// axis of the body.
+/// Errors of reported position and attitude, zero by default: standard deviations along or about each axis of the body.
 struct PoseErrors {
   double position_noise = 0;  ///< white noise [m]
   double attitude_noise = 0;  ///< white noise [rad]

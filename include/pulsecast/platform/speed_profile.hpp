@@ -90,8 +90,7 @@ struct PathSection {
 };
 
 /// Lowers the speeds at the joints of sections until each section can be driven within its limits: forwards for speeding up, then backwards
-/// for braking. Joints are one more than sections.
-/// Source: look-ahead of machine tools, with zero acceleration at a joint.
+/// for braking. Joints are one more than sections. Source: look-ahead of machine tools, with zero acceleration at a joint.
 inline void settle_speeds(std::span<double> joints, std::span<const PathSection> sections) {
   PULSECAST_ASSERT(joints.size() == sections.size() + 1);
   for (std::size_t k = 0; k < sections.size(); ++k) {

@@ -8,8 +8,7 @@
 
 namespace pulsecast {
 
-/// Straight motion at constant speed, at rest after its end. The body is level and looks along the path; north if the path is vertical or
-/// of zero length.
+/// Straight motion at constant speed, at rest after its end. The body is level and looks along the path, or north if vertical or empty.
 struct StraightLine {
   Vec3 from{};          ///< start, in the world [m]
   Vec3 to{0, 1000, 0};  ///< end, in the world [m]

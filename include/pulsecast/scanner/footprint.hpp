@@ -92,8 +92,7 @@ class SunflowerFootprint {
 /// Source: Niederreiter 1992, ch. 3, for the order; columns and rows from inverting the normal distribution.
 class LatticeFootprint {
  public:
-  /// `subrays` from 1 to 100,000; 19 are on the front of docs/tradeoff.md, and on a facade more exact than any number of rings. Throws a
-  /// `SettingError`.
+  /// `subrays` from 1 to 100,000; 19 are on the front of docs/tradeoff.md, more exact on a facade than any rings. Throws a `SettingError`.
   explicit LatticeFootprint(std::size_t subrays = 19) : offsets_(rows(subrays)) {
     for (std::size_t j = 0; j < subrays; ++j) offsets_[j].x = quantile(j, subrays);
   }

@@ -41,8 +41,7 @@ void las_in_blocks(OutputFile& file, std::uint64_t begin, std::size_t record, co
 }
 
 /// Writes points as LAS with extra bytes, in pulse order. `Records`, as `LasRecords` or `LazRecords`, stores the point records, and may
-/// change them once all are known.
-/// Source of every field: ASPRS LAS Specification 1.4 R15. Choices that it leaves open:
+/// change them once all are known. Source of every field: ASPRS LAS Specification 1.4 R15. Choices that it leaves open:
 /// - coordinates are rounded to the nearest step; one beyond 32 bits, or not finite, is a `FileError`;
 /// - intensity is linear in the quantity of `LasIntensity`; extra bytes Amplitude and Reflectance are levels [dB], -200 for zero;
 /// - return numbers and counts end at 15, or 5, by format: later returns are written as the last;

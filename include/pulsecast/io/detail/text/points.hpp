@@ -41,10 +41,9 @@ struct PointColumns {
   }
 };
 
-/// Reader of a text file of points, one a row. Blank rows, and those that begin with `//` or `#`, are skipped. Default separators are
-/// semicolons if the first row has any, else commas, else blanks. Blanks and tabs around a cell are ignored; as separators, several count
-/// as one. The first row decides on normals and colours; the others need at least the columns in use. Throws a `FileError` with path, line
-/// and column.
+/// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are skipped. Default separators are semicolons
+/// if the first row has any, else commas, else blanks. Blanks and tabs around a cell are ignored; as separators, several count as one. The
+/// first row decides on normals and colours; others need the columns in use. Throws a `FileError` with path, line and column.
 class TextPoints {
  public:
   TextPoints(InputFile file, PointColumns columns) : file_(std::move(file)), columns_(validated(std::move(columns))) {}

@@ -80,8 +80,7 @@ inline const AngleConvention ros_roll_pitch_yaw{
 
 /// Angles of an attitude, from the body to the world, in a convention: the middle one in [-pi/2, pi/2], the others in [-pi, pi]. They
 /// reproduce the attitude to some 1e-14 everywhere. In gimbal lock (middle angle +-pi/2) all rotation is yaw, or the first angle if yaw is
-/// in the middle.
-/// Source: half-angle sums of the product of three quaternions, as in Bernardes & Viollet 2022, PLoS ONE 17(11), e0276302.
+/// in the middle. Source: half-angle sums of the product of three quaternions, as in Bernardes & Viollet 2022, PLoS ONE 17(11), e0276302.
 [[nodiscard]] inline RollPitchYaw roll_pitch_yaw(const Rotation& rotation, const AngleConvention& convention) noexcept {
   const auto& [first, middle, last] = convention.turns;
   const Rotation q = rotation_about(axis::up, convention.zero_heading) * rotation;
