@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// Refuses compilers that are told to reckon as if there were no infinities, no rays of NaN and no order of additions. Contraction of
-/// products and sums into one rounding, as by -ffp-contract=fast where a machine has it, is welcome.
+/// Rejects compiler options that give up IEEE 754 arithmetic: infinities, NaN rays, the order of additions. Contraction of a product and a
+/// sum into one rounding (-ffp-contract=fast, where a machine has it) is welcome.
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)
 // clang-format off
 #error "pulsecast needs IEEE 754 arithmetic: compile without -ffast-math, -Ofast, -ffinite-math-only, -funsafe-math-optimizations; -O3 will do"

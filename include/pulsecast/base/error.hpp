@@ -12,16 +12,17 @@
 namespace pulsecast {
 
 namespace detail {
-/// A number as people write it, shortest so that it reads back the same.
+/// Shortest decimal text of a number that reads back the same.
 inline std::string to_text(double value) {
   std::array<char, 32> digits;
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 }  // namespace detail
 
-/// A setting that cannot be. Thrown when the stage that holds it is made, never later.
+/// Setting outside its allowed range. Thrown when the stage that holds it is made, never later.
 class SettingError : public std::invalid_argument {
  public:
+  /// `field` as in `Scanner::pulse_rate`; `value` in `unit`, an SI symbol; `allowed` range in words.
   SettingError(std::string field, double value, std::string unit, std::string allowed)
       : std::invalid_argument(message(field, value, unit, allowed)),
         field_(std::move(field)),
@@ -29,13 +30,13 @@ class SettingError : public std::invalid_argument {
         allowed_(std::move(allowed)),
         value_(value) {}
 
-  /// The same of a setting of something that has a name, as in `leg 3: Scanner::pulse_rate`.
+  /// Copy of this error whose field is prefixed by a name, as in `leg 3: Scanner::pulse_rate`.
   [[nodiscard]] SettingError of(const std::string& name) const { return {name + ": " + field_, value_, unit_, allowed_}; }
 
-  [[nodiscard]] const std::string& field() const noexcept { return field_; }      ///< as in `Scanner::pulse_rate`
-  [[nodiscard]] double value() const noexcept { return value_; }                  ///< what was given, in `unit()`
-  [[nodiscard]] const std::string& unit() const noexcept { return unit_; }        ///< SI symbol; empty if the value is a mere number
-  [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< the range that would do, in words
+  [[nodiscard]] const std::string& field() const noexcept { return field_; }      ///< name of the setting, as in `Scanner::pulse_rate`
+  [[nodiscard]] double value() const noexcept { return value_; }                  ///< value that was refused, in `unit()`
+  [[nodiscard]] const std::string& unit() const noexcept { return unit_; }        ///< SI symbol; empty for a pure number
+  [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< allowed range, in words
 
  private:
   static std::string message(const std::string& field, double value, const std::string& unit, const std::string& allowed) {
@@ -59,19 +60,19 @@ decltype(auto) naming(const std::string& name, const Function& function) {
   }
 }
 
-/// A file that is missing, malformed, truncated or cannot be written. Thrown by the rooms beside the core only.
+/// Missing, malformed, truncated or unwritable file. Thrown by the rooms beside the core only.
 class FileError : public std::runtime_error {
  public:
-  /// `place` is where in the file, as in "line 12" or "byte 375"; empty if it concerns the file as a whole.
+  /// `place` in the file, as in "line 12" or "byte 375"; empty if the error concerns the whole file.
   FileError(std::string path, std::string place, std::string problem)
       : std::runtime_error(path + (place.empty() ? "" : ", " + place) + ": " + problem),
         path_(std::move(path)),
         place_(std::move(place)),
         problem_(std::move(problem)) {}
 
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  [[nodiscard]] const std::string& place() const noexcept { return place_; }
-  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< what is wrong and what was expected
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }        ///< name of the file
+  [[nodiscard]] const std::string& place() const noexcept { return place_; }      ///< as in "line 12"; empty for the whole file
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }  ///< defect and expectation, in words
 
  private:
   std::string path_, place_, problem_;

@@ -11,14 +11,14 @@
 
 namespace pulsecast {
 
-/// e^x, for a number or for a register of them at once; 0 for x below -708. Relative error at most 4e-16 for |x| up to 708.
-/// Source: Cody & Waite 1980: x = n ln 2 + r, with ln 2 in two parts; Taylor's series for r, whose rest is 4e-18.
+/// Exponential function e^x of a number or of all lanes of a register; 0 for x below -708. Relative error at most 4e-16 for |x| up to 708.
+/// Source: Cody & Waite 1980: x = n ln 2 + r, with ln 2 in two parts; Taylor series for r, with a remainder of 4e-18.
 template <class Number>
 requires std::same_as<Number, double> || std::same_as<Number, simd::Doubles>
 [[nodiscard]] inline Number exponential(const Number& x) noexcept {
   using Bits = std::conditional_t<std::same_as<Number, double>, std::uint64_t, simd::Ids>;
   constexpr double per_ln2 = 1.4426950408889634, ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
-  constexpr double whole = 0x1.8p52;  // added to a number, it leaves no fraction, and n in the lowest bits
+  constexpr double whole = 0x1.8p52;  // adding it drops the fraction and leaves n in the lowest bits
   constexpr double least = -708;
   const Number shifted = x * per_ln2 + whole, n = shifted - whole;
   const Number r = (x - n * ln2_high) - n * ln2_low;

@@ -13,10 +13,9 @@
 
 namespace pulsecast {
 
-inline constexpr unsigned max_threads = 1024;  ///< that a setting may ask for
+inline constexpr unsigned max_threads = 1024;  ///< upper limit of a setting for threads
 
-/// Number of threads to use: as many as asked for, or as the machine runs at once where 0 is asked for.
-/// @throws SettingError if more than `max_threads` are asked for
+/// Number of threads to use: `asked`, or the hardware concurrency if 0. Throws a `SettingError` above `max_threads`.
 [[nodiscard]] inline unsigned thread_count(unsigned asked) {
   require_within("threads", asked, 0, max_threads, "");
   return asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
@@ -24,7 +23,7 @@ inline constexpr unsigned max_threads = 1024;  ///< that a setting may ask for
 
 namespace detail {
 
-/// `for_each_index` of whatever call(task, i) makes of a task: compiled once for all of them.
+/// Type-erased `for_each_index`, compiled once for all tasks; call(task, i) runs one index.
 inline void call_for_each_index(std::size_t count, unsigned threads, void (*call)(const void*, std::size_t), const void* task) {
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> failed = false;
@@ -43,7 +42,7 @@ inline void call_for_each_index(std::size_t count, unsigned threads, void (*call
     try {
       helpers = std::make_unique<std::jthread[]>(together);  // of which the first is this one
       for (std::size_t k = 1; k < together; ++k) helpers[k] = std::jthread(work);
-    } catch (...) {  // no more threads to be had: those there are do it all
+    } catch (...) {  // no more threads available: the existing ones do all the work
     }
     work();
   }
@@ -52,9 +51,8 @@ inline void call_for_each_index(std::size_t count, unsigned threads, void (*call
 
 }  // namespace detail
 
-/// Calls task(i) once for every i below `count`, the low ones first, on up to so many threads, this one among them; 0 as `thread_count`
-/// says. Tasks that touch nothing in common need no lock. What a task throws comes out here, if several do, one of them; those not yet
-/// begun are then left out.
+/// Calls task(i) once for each i below `count`, low ones first, on up to `threads` threads with the caller's; 0 as in `thread_count`.
+/// Tasks that share no data need no lock. Rethrows the exception of a task, or one of several; indices not yet begun are then skipped.
 template <class Task>
 void for_each_index(std::size_t count, unsigned threads, const Task& task) {
   detail::call_for_each_index(

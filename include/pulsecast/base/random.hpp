@@ -10,30 +10,30 @@
 
 namespace pulsecast {
 
-/// What a random number is drawn for; numbers for different purposes are independent. A purpose keeps its number for ever, as results
-/// depend on it: new ones come last. Those from 128 to 255 are left to models of a user's own: `Purpose{128}`.
+/// Purpose of a random number; numbers for different purposes are independent. Results depend on the values, so they never change and new
+/// ones come last. Values 128 to 255 are free for user models: `Purpose{128}`.
 enum class Purpose : std::uint32_t {
   range_noise = 0,
   position_noise = 1,
   attitude_noise = 2,
   free_path = 3,
   receiver_noise = 4,
-  scene = 5,  ///< making of scenes
+  scene = 5,  ///< generation of scenes
   position_drift = 6,
   attitude_drift = 7,
   angular_jitter = 8,
 };
 
-/// The full name of a random number: the same key gives the same number, on any thread, in any order.
+/// Key of a random number: the same key gives the same number on any thread, in any order.
 struct RandomKey {
-  std::uint64_t seed = 0;
-  PulseIndex pulse = 0;
-  std::uint32_t subray = 0;
+  std::uint64_t seed = 0;    ///< seed of the user's choice
+  PulseIndex pulse = 0;      ///< number of the pulse, or of another draw
+  std::uint32_t subray = 0;  ///< number of the subray, or of another draw
   Purpose purpose = Purpose::scene;
-  std::uint32_t part = 0;  ///< of the scene, where each part draws for itself; parts that are 2^24 apart draw the same
+  std::uint32_t part = 0;  ///< part of the scene, each with draws of its own; parts 2^24 apart draw the same
 };
 
-/// Four random words from a counter and a key. Source: Salmon, Moraes, Dror & Shaw 2011, Philox4x32-10.
+/// Philox4x32-10 generator: four random words from a counter and a key. Source: Salmon, Moraes, Dror & Shaw 2011.
 [[nodiscard]] constexpr std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
                                                             std::array<std::uint32_t, 2> key) noexcept {
   for (int round = 0; round < 10; ++round) {
@@ -47,22 +47,21 @@ struct RandomKey {
   return counter;
 }
 
-/// The four random words of a key. Purposes are less than 256, so the part has the upper bits of their word.
+/// Four random words of a key. Purposes are below 256, so the part takes the upper bits of their word.
 [[nodiscard]] constexpr std::array<std::uint32_t, 4> random_words(const RandomKey& k) noexcept {
   const std::uint32_t purpose = static_cast<std::uint32_t>(k.purpose) ^ k.part << 8;
   return philox({static_cast<std::uint32_t>(k.pulse), static_cast<std::uint32_t>(k.pulse >> 32), k.subray, purpose},
                 {static_cast<std::uint32_t>(k.seed), static_cast<std::uint32_t>(k.seed >> 32)});
 }
 
-/// A number in the open interval (0, 1), so that its logarithm is finite; 52 random bits.
+/// Uniform draw from the open interval (0, 1), so that its logarithm is finite; 52 random bits.
 [[nodiscard]] constexpr double uniform(const RandomKey& key) noexcept {
   const auto words = random_words(key);
   const std::uint64_t bits = (std::uint64_t{words[0]} << 20) | (words[1] >> 12);
   return (static_cast<double>(bits) + 0.5) * 0x1p-52;
 }
 
-/// Quantile of the standard normal distribution, p in (0, 1); relative error about 1e-16.
-/// Source: Wichura 1988, algorithm AS 241 (PPND16).
+/// Quantile of the standard normal distribution, p in (0, 1); relative error about 1e-16. Source: Wichura 1988, algorithm AS 241 (PPND16).
 [[nodiscard]] inline double normal_quantile(double p) noexcept {
   const double q = p - 0.5;
   if (std::fabs(q) <= 0.425) {
@@ -134,7 +133,7 @@ struct RandomKey {
   return q < 0 ? -x : x;
 }
 
-/// A draw from the standard normal distribution, by inversion: the same on every standard library.
+/// Draw from the standard normal distribution by inversion: the same with every standard library.
 [[nodiscard]] inline double normal(const RandomKey& key) noexcept { return normal_quantile(uniform(key)); }
 
 }  // namespace pulsecast

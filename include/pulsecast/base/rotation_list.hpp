@@ -9,10 +9,10 @@
 
 namespace pulsecast {
 
-/// A right-handed turn about an axis.
+/// Right-handed rotation by an angle about an axis.
 struct AxisAngle {
-  Vec3 axis = axis::up;  ///< of any length but zero
-  double angle = 0;      ///< [rad]
+  Vec3 axis = axis::up;  ///< axis of rotation, of any length but zero
+  double angle = 0;      ///< angle of rotation [rad]
 
   void validate() const {
     require_positive("AxisAngle::axis (length)", length(axis), "");
@@ -20,16 +20,16 @@ struct AxisAngle {
   }
 };
 
-/// One turn after the other, each about an axis of the frame outside, which stays where it is ("extrinsic"):
-/// `extrinsic({{axis::right, -90_deg}, {axis::up, 90_deg}})` tilts what looks forward down, and then turns it left.
+/// Extrinsic rotations in sequence, each about an axis of the fixed outer frame: `extrinsic({{axis::right, -90_deg}, {axis::up, 90_deg}})`
+/// tilts a forward view down, then turns it left. Throws a `SettingError` for an invalid turn.
 [[nodiscard]] inline Rotation extrinsic(const std::vector<AxisAngle>& turns) {
   Rotation all = no_rotation;
   for (const AxisAngle& turn : turns) turn.validate(), all = rotation_about(turn.axis, turn.angle) * all;
   return normalize(all);
 }
 
-/// One turn after the other, each about an axis of what is turned, as the turns before have left it ("intrinsic"). It is what
-/// `extrinsic` gives for the same turns in reverse order.
+/// Intrinsic rotations in sequence, each about an axis of the rotated frame; equal to `extrinsic` of the turns in reverse order. Throws a
+/// `SettingError` for an invalid turn.
 [[nodiscard]] inline Rotation intrinsic(const std::vector<AxisAngle>& turns) {
   Rotation all = no_rotation;
   for (const AxisAngle& turn : turns) turn.validate(), all = all * rotation_about(turn.axis, turn.angle);

@@ -20,8 +20,8 @@ namespace pulsecast {
 
 namespace detail {
 
-/// Asks the system for pages of 2 MiB, where it has them, under memory that nothing has been written to: rays go anywhere, and looking
-/// up where a small page is takes longer than reading what is there.
+/// Requests 2 MiB pages, where the system has them, for memory not yet written to. Rays access memory at random, and with small pages the
+/// address translation takes longer than the read.
 inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t size) noexcept {
 #if defined(__linux__)
   constexpr std::size_t small = 4096, large = std::size_t{1} << 21;
@@ -30,7 +30,7 @@ inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] st
 #endif
 }
 
-/// Memory of its own, so many bytes that nothing has been written to. Not a template, as compilers work hard on those for every type.
+/// Allocates uninitialized memory [byte]. Not a template, as those cost compile time for every type.
 [[nodiscard]] inline std::shared_ptr<void> allocate_shared(std::size_t size, std::align_val_t alignment) {
   std::shared_ptr<void> memory(::operator new(size, alignment), [=](void* bytes) { ::operator delete(bytes, alignment); });
   advise_huge_pages(memory.get(), size);
@@ -39,7 +39,7 @@ inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] st
 
 }  // namespace detail
 
-/// An array in the making: as made, its elements hold anything. Several threads may write to it, each where no other does. Copies share it.
+/// Array under construction, uninitialized at first. Several threads may write to different elements. Copies share it.
 template <class T>
 requires std::is_trivially_copyable_v<T>
 class SharedBuffer {
@@ -64,8 +64,7 @@ class SharedBuffer {
   std::size_t size_ = 0;
 };
 
-/// An array that is done: no element changes any more. It stands in memory of its own, or is a stretch of a file that is mapped into
-/// memory. Copies share it.
+/// Immutable array in memory of its own or in a memory-mapped file. Copies share it.
 template <class T>
 requires std::is_trivially_copyable_v<T>
 class SharedArray {
@@ -74,8 +73,8 @@ class SharedArray {
 
   SharedArray() = default;
 
-  /// Takes over what a build has made, and gives back what memory it had to spare.
-  SharedArray(std::vector<T> made) {  // NOLINT(google-explicit-constructor): a vector that is done is one
+  /// Takes over the elements of a vector and releases its spare capacity.
+  SharedArray(std::vector<T> made) {  // NOLINT(google-explicit-constructor): a finished vector is one
     size_ = made.size();
     if (size_ == made.capacity()) {
       elements_ = made.data();
@@ -86,10 +85,10 @@ class SharedArray {
       elements_ = copy.data(), owner_ = copy.memory();
     }
   }
-  SharedArray(const SharedBuffer<T>& made)  // NOLINT(google-explicit-constructor): so is a buffer
+  SharedArray(const SharedBuffer<T>& made)  // NOLINT(google-explicit-constructor): a buffer, too
       : elements_(made.data()), size_(made.size()), owner_(made.memory()) {}
 
-  /// Elements that live as long as their owner does.
+  /// Elements that live as long as `owner`.
   SharedArray(std::span<const T> elements, std::shared_ptr<const void> owner)
       : elements_(elements.data()), size_(elements.size()), owner_(std::move(owner)) {}
 
@@ -100,7 +99,7 @@ class SharedArray {
   [[nodiscard]] const T* begin() const noexcept { return elements_; }
   [[nodiscard]] const T* end() const noexcept { return elements_ + size_; }
 
-  /// [byte]
+  /// Size of the elements [byte].
   [[nodiscard]] std::size_t memory() const noexcept { return size_ * sizeof(T); }
 
  private:
@@ -109,7 +108,7 @@ class SharedArray {
   std::shared_ptr<const void> owner_;
 };
 
-/// Says that an object is made empty, to be filled by `archive` from what was kept of one that was built.
+/// Constructor tag: makes an empty object that `archive` fills from its serialized form.
 struct DeserializeTag {
   explicit DeserializeTag() = default;
 };

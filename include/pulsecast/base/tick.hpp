@@ -13,31 +13,31 @@ namespace pulsecast {
 /// Number of a pulse slot in its source, from 0.
 using PulseIndex = std::uint64_t;
 
-/// A moment of the survey since its start, as exact after a year as in the first second.
+/// Time since the start of the survey, as exact after a year as in the first second.
 struct Tick {
-  std::int64_t second = 0;  ///< whole seconds
-  double fraction = 0;      ///< the rest, in [0, 1) [s]
+  std::int64_t second = 0;  ///< whole part [s]
+  double fraction = 0;      ///< fractional part, in [0, 1) [s]
 
-  /// The moment when slot i of a source of constant rate [Hz] begins.
+  /// Begin of slot i of a source of constant rate [Hz].
   [[nodiscard]] static Tick of(PulseIndex i, double rate) noexcept {
     const double n = static_cast<double>(i);
-    double whole = std::floor(n / rate), rest = std::fma(-whole, rate, n);  // exact, if `whole` is the right one of two
+    double whole = std::floor(n / rate), rest = std::fma(-whole, rate, n);  // exact, if `whole` is the right one of two candidates
     if (rest < 0) --whole, rest = std::fma(-whole, rate, n);
     if (rest >= rate) ++whole, rest = std::fma(-whole, rate, n);
     return normal(static_cast<std::int64_t>(whole), rest / rate);
   }
 
-  /// A span or moment given in seconds.
+  /// Time span or point in time, given in seconds.
   [[nodiscard]] static Tick of_seconds(double seconds) noexcept {
     const double whole = std::floor(seconds);
     return normal(static_cast<std::int64_t>(whole), seconds - whole);
   }
 
-  /// As one number; rounds to some 1e-16 of its size [s].
+  /// Time as one number, rounded to some 1e-16 of its size [s].
   [[nodiscard]] double seconds() const noexcept { return static_cast<double>(second) + fraction; }
 
-  /// What a clockwork of constant frequency [Hz] shows: the part of a turn done, in [0, 1).
-  /// The whole turns are taken off exactly, so the phase does not wear out with time.
+  /// Phase of an oscillation of constant frequency [Hz]: completed part of the cycle, in [0, 1).
+  /// Whole cycles are removed exactly, so the phase keeps its precision over time.
   [[nodiscard]] double phase(double frequency) const noexcept {
     const double whole = static_cast<double>(second);
     const double turns = frequency * whole;

@@ -56,10 +56,10 @@ namespace pulsecast {
 /// Speed of light in vacuum [m/s]. Source: SI, exact by definition of the metre (17th CGPM, 1983).
 inline constexpr double speed_of_light = 299792458.0;
 
-/// From degrees, for files and people that speak them [rad].
+/// Converts degrees, as in files and user input, to radians.
 [[nodiscard]] constexpr double radians(double angle_deg) noexcept { return angle_deg * (std::numbers::pi / 180.0); }
 
-/// To degrees, for files and people that speak them [deg].
+/// Converts radians to degrees, as in files and user output.
 [[nodiscard]] constexpr double degrees(double angle) noexcept { return angle * (180.0 / std::numbers::pi); }
 
 }  // namespace pulsecast

@@ -19,11 +19,11 @@
 /// Vectors and rotations. GLM is named in this header only.
 namespace pulsecast {
 
-// packed, and constexpr only where GLM is: a program may tell GLM to align its own vectors, and to use intrinsics
-using Vec2 = glm::vec<2, double, glm::packed_highp>;
-using Vec3 = glm::vec<3, double, glm::packed_highp>;
+// packed, and constexpr only where GLM is: a program may make GLM align its own vectors and use intrinsics
+using Vec2 = glm::vec<2, double, glm::packed_highp>;  ///< in two dimensions
+using Vec3 = glm::vec<3, double, glm::packed_highp>;  ///< in three dimensions
 
-/// A rotation as a unit quaternion; `rotation * vector` turns the vector.
+/// Rotation as a unit quaternion; `rotation * vector` rotates the vector.
 using Rotation = glm::qua<double, glm::packed_highp>;
 
 using glm::conjugate;
@@ -34,31 +34,34 @@ using glm::normalize;
 using std::numbers::pi;
 
 namespace axis {
-inline GLM_CONSTEXPR const Vec3 right{1, 0, 0};    ///< +x of the world (east), a body and an instrument
-inline GLM_CONSTEXPR const Vec3 forward{0, 1, 0};  ///< +y: north, and where a beam leaves
+inline GLM_CONSTEXPR const Vec3 right{1, 0, 0};    ///< +x: east in the world, right of a body or instrument
+inline GLM_CONSTEXPR const Vec3 forward{0, 1, 0};  ///< +y: north in the world, direction of a beam
 inline GLM_CONSTEXPR const Vec3 up{0, 0, 1};       ///< +z
 }  // namespace axis
 
-inline const Rotation no_rotation{1, 0, 0, 0};
+inline const Rotation no_rotation{1, 0, 0, 0};  ///< the identity
 
-/// The right-handed rotation about an axis of any length but zero, by an angle [rad].
+/// Right-handed rotation about an axis of any length but zero, by an angle [rad].
 [[nodiscard]] inline Rotation rotation_about(const Vec3& axis, double angle) noexcept { return glm::angleAxis(angle, normalize(axis)); }
 
-/// The columns are where x, y and z are turned to; it costs less than the rotation where more than one vector is to be turned.
+/// Rotation matrix: its columns are the rotated x, y and z. Cheaper than the quaternion for more than one vector.
 using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
-[[nodiscard]] inline Matrix3 matrix_of(const Rotation& rotation) noexcept { return glm::mat3_cast(rotation); }
+[[nodiscard]] inline Matrix3 matrix_of(const Rotation& rotation) noexcept { return glm::mat3_cast(rotation); }  ///< of a unit quaternion
 
+/// True if no component is infinite or NaN.
 [[nodiscard]] inline bool finite(const Vec3& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
+/// Component-wise minimum.
 [[nodiscard]] inline Vec3 min(const Vec3& a, const Vec3& b) noexcept {
   return {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
 }
 
+/// Component-wise maximum.
 [[nodiscard]] inline Vec3 max(const Vec3& a, const Vec3& b) noexcept {
   return {a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
 }
 
-/// The largest of the three magnitudes.
+/// Maximum norm: largest magnitude of a component.
 [[nodiscard]] inline double max_norm(const Vec3& v) noexcept {
   const Vec3 m = max(v, -v);
   const double xy = m.x > m.y ? m.x : m.y;

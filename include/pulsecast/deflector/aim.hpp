@@ -6,25 +6,25 @@
 
 #include <pulsecast/base/frame.hpp>
 
-/// How optics say where their beam goes.
+/// Beam poses from angles or directions, for optics.
 namespace pulsecast {
 
-/// The pose of a beam that is turned up from forward, about right, by an angle [rad].
+/// Pose of a beam at an elevation [rad]: rotated from forward towards up, about the right axis.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_above(double angle) noexcept {
   return {Rotation{std::cos(0.5 * angle), std::sin(0.5 * angle), 0, 0}, {}};
 }
 
-/// The pose of a beam that leaves from `origin` [m] and is first turned up, then from forward to the right. Its right stays level.
+/// Pose of a beam from `origin` [m]: elevated, then turned from forward to the right by the azimuth [rad]. Its right axis stays level.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_at(double azimuth, double elevation, const Vec3& origin = {}) noexcept {
   return {Rotation{std::cos(0.5 * azimuth), 0, 0, -std::sin(0.5 * azimuth)} * aimed_above(elevation).rotation, origin};
 }
 
-/// The pose of a beam along a unit direction, by the shortest turn from forward: its up turns no more than it must.
+/// Pose of a beam along a unit direction, by the shortest rotation from forward, so that its up axis turns least.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_along(const Vec3& direction) noexcept {
   const double x = direction.x, y = direction.y, z = direction.z;
   const double aside_squared = x * x + z * z;
   if (y < 0 && aside_squared < 1e-300) return {Rotation{0, 0, 0, 1}, {}};  // straight back: about up
-  const double w = y < 0 ? aside_squared / (1 - y) : 1 + y;                // 1 + y both ways; near -1 only the first does not cancel
+  const double w = y < 0 ? aside_squared / (1 - y) : 1 + y;  // 1 + y in both cases; near -1 only the first form does not cancel
   return {normalize(Rotation{w, z, 0, -x}), {}};
 }
 

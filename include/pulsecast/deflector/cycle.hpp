@@ -9,8 +9,8 @@
 
 namespace pulsecast {
 
-/// Which of n steps a clockwork is at, from 0, when it takes them one after the other at a constant rate [Hz], over and over.
-/// A moment between two steps belongs to the nearer one: so a clockwork at the pulse rate takes one step a pulse, however times round.
+/// Index, from 0, of the current step in a cycle of n steps at a constant rate [Hz].
+/// A time between two steps takes the nearer one, so at the pulse rate every pulse takes one step in spite of rounding.
 [[nodiscard]] inline std::size_t step_in_cycle(const Tick& t, double steps_per_second, std::size_t n) noexcept {
   const double length = static_cast<double>(n);
   const auto step = static_cast<std::size_t>(std::floor(t.phase(steps_per_second / length) * length + 0.5));

@@ -10,7 +10,7 @@
 
 namespace pulsecast {
 
-/// Sends the pulses of a laser through a moving optic, or turns a whole instrument with a head:
+/// Deflects the pulses of a laser by a moving optic, or rotates a whole instrument by a head:
 /// `Deflector{RotatingHead{...}, Deflector{PolygonMirror{...}, Scanner{...}}}`.
 // clang-format off
 template <class Moving, class Source>
@@ -18,6 +18,7 @@ requires (Optic<Moving> && BeamSource<Source>) || (Head<Moving> && InstrumentSou
 class Deflector {
   // clang-format on
  public:
+  /// Throws a `SettingError` if the settings of `moving` or `source` are invalid.
   Deflector(Moving moving, Source source) : moving_(validated(std::move(moving))), source_(validated(std::move(source))) {}
 
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }

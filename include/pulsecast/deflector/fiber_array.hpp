@@ -12,12 +12,11 @@
 
 namespace pulsecast {
 
-/// A row of fibres in the plane of forward and up, lit one after the other from -half_angle to +half_angle, both ends included, then again
-/// from the first.
+/// Row of fibres in the plane of forward and up, lit in turn from -half_angle to +half_angle, both ends included, over and over.
 struct FiberArray {
-  std::uint32_t fibers = 128;        ///< how many stand in the row
-  double fibers_per_second = 100e3;  ///< changes from one to the next: best the pulse rate; at most 1e12 [Hz]
-  double half_angle = pi / 9;        ///< of the outermost fibres, either side of forward [rad]
+  std::uint32_t fibers = 128;        ///< number of fibres in the row
+  double fibers_per_second = 100e3;  ///< rate of change from fibre to fibre: best the pulse rate; at most 1e12 [Hz]
+  double half_angle = pi / 9;        ///< angle of the outermost fibres to either side of forward [rad]
 
   void validate() const {
     require_within("FiberArray::fibers", fibers, 1, 4294967295.0, "");
@@ -25,10 +24,10 @@ struct FiberArray {
     require_within("FiberArray::half_angle", half_angle, 0, pi, "rad");
   }
 
-  /// The fibre that is lit, from 0.
+  /// Index of the lit fibre, from 0.
   [[nodiscard]] std::size_t fiber(Tick t) const noexcept { return step_in_cycle(t, fibers_per_second, fibers); }
 
-  /// Above forward [rad].
+  /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept {
     return fibers == 1 ? 0 : half_angle * (2 * static_cast<double>(fiber(t)) / (fibers - 1.0) - 1);
   }

@@ -9,9 +9,9 @@
 
 namespace pulsecast {
 
-/// A laser that stands still in its housing: one emitter of a device of many, or a rangefinder. `FixedBeam{aimed_at(azimuth, elevation)}`.
+/// Laser fixed in its housing: an emitter of a device of many, or a rangefinder. `FixedBeam{aimed_at(azimuth, elevation)}`.
 struct FixedBeam {
-  Pose<frame::Beam, frame::Instrument> pose{};
+  Pose<frame::Beam, frame::Instrument> pose{};  ///< of the beam; rotation unit to within 1e-3
 
   void validate() const {
     require_rotation("FixedBeam::pose.rotation", pose.rotation);

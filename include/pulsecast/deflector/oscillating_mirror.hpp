@@ -11,19 +11,18 @@
 
 namespace pulsecast {
 
-/// How an oscillating mirror gets from one end to the other.
+/// Motion of an oscillating mirror from one end to the other.
 enum class Swing : std::uint8_t {
-  triangle,  ///< at a constant rate, turning round at a constant acceleration
-  sine,      ///< as a resonant mirror does
+  triangle,  ///< constant rate, and constant acceleration at the turning points
+  sine,      ///< harmonic, as of a resonant mirror
 };
 
-/// A mirror that swings the beam to and fro in the plane of forward and up, from -half_angle to +half_angle and back. It starts at the
-/// lower end. One cycle is two lines.
+/// Mirror that oscillates the beam in the plane of forward and up, from -half_angle, where it starts, to +half_angle; a cycle is two lines.
 struct OscillatingMirror {
-  double cycles_per_second = 50;  ///< to and fro, at most 1e12 [Hz]
-  double half_angle = pi / 9;     ///< of the beam either side of forward; the mirror itself turns half as far [rad]
-  Swing swing = Swing::triangle;  ///< how it gets from end to end
-  double turning_time = 0;  ///< of one turning round, half of it before the end and half after; of a triangle, at most half a cycle [s]
+  double cycles_per_second = 50;  ///< rate of full oscillations, at most 1e12 [Hz]
+  double half_angle = pi / 9;     ///< beam angle to either side of forward, twice the mirror's [rad]
+  Swing swing = Swing::triangle;  ///< motion from end to end
+  double turning_time = 0;        ///< duration of a reversal, half before the end, half after; triangle: at most half a cycle, sine: 0 [s]
 
   void validate() const {
     require_rate("OscillatingMirror::cycles_per_second", cycles_per_second);
@@ -31,14 +30,14 @@ struct OscillatingMirror {
     require_within("OscillatingMirror::turning_time", turning_time, 0, swing == Swing::triangle ? 0.5 / cycles_per_second : 0, "s");
   }
 
-  /// Above forward [rad].
+  /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept {
     const double phase = t.phase(cycles_per_second);
     if (swing == Swing::sine) return -half_angle * std::cos(2 * pi * phase);
     const double turn = turning_time * cycles_per_second;  // [cycles]
-    const double rate = 4 * half_angle / (1 - turn);       // between the turns, so that the parabolas end at the half angle [rad/cycle]
-    const double after = phase < 0.5 ? phase : 1 - phase;  // the lower end; the way back mirrors the way there [cycles]
-    const double before = 0.5 - after;                     // the upper end [cycles]
+    const double rate = 4 * half_angle / (1 - turn);  // between turning points, so that the parabolas end at the half angle [rad/cycle]
+    const double after = phase < 0.5 ? phase : 1 - phase;  // since the lower end; the second half mirrors the first [cycles]
+    const double before = 0.5 - after;                     // until the upper end [cycles]
     if (after < 0.5 * turn) return -half_angle + rate * after * after / turn;
     if (before < 0.5 * turn) return half_angle - rate * before * before / turn;
     return rate * (after - 0.25);

@@ -11,12 +11,12 @@
 
 namespace pulsecast {
 
-/// A nutating mirror: the beam runs around a cone about forward once a turn, from up over right. With a second half angle the cone is
-/// elliptical: the beam is off forward by the two half angles' shares of cosine and sine, upwards and to the right.
+/// Nutating mirror: the beam describes a cone about forward once a turn, from up over right. A second half angle makes the cone elliptical:
+/// the deviation from forward is the first half angle times the cosine upwards, the second times the sine to the right.
 struct PalmerMirror {
-  double turns_per_second = 50;               ///< around the cone, at most 1e12 [Hz]
-  double half_angle = pi / 9;                 ///< of the cone, upwards and downwards [rad]
-  std::optional<double> half_angle_across{};  ///< of the cone, to the right and left; if empty, the cone is circular [rad]
+  double turns_per_second = 50;               ///< rate of turns around the cone, at most 1e12 [Hz]
+  double half_angle = pi / 9;                 ///< half angle of the cone, upwards and downwards [rad]
+  std::optional<double> half_angle_across{};  ///< half angle of the cone to the right and left; circular cone if empty [rad]
 
   void validate() const {
     require_rate("PalmerMirror::turns_per_second", turns_per_second);
@@ -27,7 +27,7 @@ struct PalmerMirror {
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     const double turn = 2 * pi * t.phase(turns_per_second);
     const double across = half_angle_across.value_or(half_angle) * std::sin(turn), upwards = half_angle * std::cos(turn);
-    const double off = std::hypot(across, upwards);  // from forward [rad]
+    const double off = std::hypot(across, upwards);  // angle from forward [rad]
     const double aside = off > 0 ? std::sin(off) / off : 1;
     return aimed_along({aside * across, std::cos(off), aside * upwards});
   }

@@ -12,16 +12,16 @@
 
 namespace pulsecast {
 
-/// Where a beam goes, as two angles.
+/// Direction of a beam as two angles.
 struct BeamAngles {
-  double azimuth = 0;    ///< from forward to the right [rad]
-  double elevation = 0;  ///< above the plane of right and forward [rad]
+  double azimuth = 0;    ///< angle from forward to the right [rad]
+  double elevation = 0;  ///< angle above the plane of right and forward [rad]
 };
 
-/// Directions from a table, one after the other, then again from the first: any solid-state sensor, or the log of a real one.
+/// Beam directions from a table, taken in turn and repeated: any solid-state sensor, or the log of a real one.
 struct PatternTable {
-  std::vector<BeamAngles> entries{};  ///< in the order in which they are taken; at least one
-  double entries_per_second = 100e3;  ///< changes from one to the next: best the pulse rate; at most 1e12 [Hz]
+  std::vector<BeamAngles> entries{};  ///< directions in the order of use; at least one
+  double entries_per_second = 100e3;  ///< rate of change from entry to entry: best the pulse rate; at most 1e12 [Hz]
 
   void validate() const {
     require_within("PatternTable::entries (number)", static_cast<double>(entries.size()), 1, 1e9, "");
@@ -32,7 +32,7 @@ struct PatternTable {
     }
   }
 
-  /// The entry that is taken, from 0.
+  /// Index of the current entry, from 0.
   [[nodiscard]] std::size_t entry(Tick t) const noexcept { return step_in_cycle(t, entries_per_second, entries.size()); }
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {

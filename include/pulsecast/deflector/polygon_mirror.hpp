@@ -12,14 +12,14 @@
 
 namespace pulsecast {
 
-/// A rotating polygon mirror: every facet sweeps the beam once from low to high, in the plane of forward and up, then the next one takes
-/// over. Pulses outside the gate are blocked. The angle of a beam above forward counts from -sweep to +sweep.
+/// Rotating polygon mirror: each facet sweeps the beam once from low to high in the plane of forward and up, then the next one takes over.
+/// The beam's angle above forward runs from -sweep to +sweep. Pulses outside the gate are blocked.
 struct PolygonMirror {
-  double lines_per_second = 100;      ///< facets that pass, at most 1e12 [Hz]
-  double sweep = 2 * pi / 3;          ///< half angle that one facet sweeps: a full turn by the number of facets [rad]
-  double angle_min = -pi;             ///< the gate opens above this angle [rad]
-  double angle_max = pi;              ///< and closes above this one [rad]
-  std::vector<double> facet_tilts{};  ///< how far out of the plane, to the right, each facet in turn sends the beam; none if empty [rad]
+  double lines_per_second = 100;      ///< rate of facets, at most 1e12 [Hz]
+  double sweep = 2 * pi / 3;          ///< half angle swept by one facet: a full turn divided by the number of facets [rad]
+  double angle_min = -pi;             ///< lower end of the gate [rad]
+  double angle_max = pi;              ///< upper end of the gate [rad]
+  std::vector<double> facet_tilts{};  ///< deflection of each facet in turn out of the plane, to the right; none if empty [rad]
 
   void validate() const {
     require_rate("PolygonMirror::lines_per_second", lines_per_second);
@@ -30,24 +30,25 @@ struct PolygonMirror {
     for (const double tilt : facet_tilts) require_within("PolygonMirror::facet_tilts", tilt, -pi / 2, pi / 2, "rad");
   }
 
-  /// Above forward [rad].
+  /// Elevation of the beam above forward [rad].
   [[nodiscard]] double angle(Tick t) const noexcept { return sweep * (2 * t.phase(lines_per_second) - 1); }
 
-  /// The facet that the beam is on, from 0 to the number of tilts.
+  /// Index of the current facet: below the number of tilts, or 0 without tilts.
   [[nodiscard]] std::size_t facet(Tick t) const noexcept {
     if (facet_tilts.size() < 2) return 0;
     const double n = static_cast<double>(facet_tilts.size());
-    // whole lines of a turn: what rounds in the phase of the turn must not tell another line than that of the line itself
+    // whole lines of a turn: rounding in the phase of the turn must not give a line other than the line's own phase does
     const double line = std::round(n * t.phase(lines_per_second / n) - t.phase(lines_per_second));
     return static_cast<std::size_t>(line < 0 ? line + n : line) % facet_tilts.size();
   }
 
+  /// True if the beam is inside the gate.
   [[nodiscard]] bool open(Tick t) const noexcept {
     const double a = angle(t);
     return a >= angle_min && a <= angle_max;
   }
 
-  /// A tilted facet's line lies on a cone: it keeps its angle to the plane.
+  /// The line of a tilted facet lies on a cone, at a constant angle to the plane.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     const Pose<frame::Beam, frame::Instrument> level = aimed_above(angle(t));
     if (facet_tilts.empty()) return level;

@@ -12,19 +12,19 @@
 
 namespace pulsecast {
 
-/// One wedge of glass that turns about forward. One of its faces stands square to forward, the other one is inclined; unturned, its thick
-/// end, to which it bends the beam, is below.
+/// Glass wedge that rotates about forward. One face is normal to forward, the other inclined. Unrotated, its thick end, towards which it
+/// bends the beam, is below.
 struct Prism {
-  double wedge = pi / 10;          ///< angle between its faces [rad]
-  double turns_per_second = 100;   ///< from up to the right, as seen along forward; negative the other way; 1e12 at most [Hz]
-  double refractive_index = 1.51;  ///< of the glass, at the laser's wavelength
-  double start = 0;                ///< how far it is turned at the survey's start, from -1e6 to 1e6 [rad]
-  bool inclined_exit = false;      ///< the inclined face is the one where the beam leaves; else where it enters
+  double wedge = pi / 10;          ///< angle between the faces [rad]
+  double turns_per_second = 100;   ///< rotation rate, positive from up to the right as seen along forward; magnitude at most 1e12 [Hz]
+  double refractive_index = 1.51;  ///< refractive index of the glass at the laser's wavelength
+  double start = 0;                ///< rotation at the survey's start, from -1e6 to 1e6 [rad]
+  bool inclined_exit = false;      ///< true if the beam leaves through the inclined face, false if it enters there
 };
 
-/// Where light goes on behind a face, by Snell's law: none at total reflection, or if it does not come from the face's front.
-/// `direction` and `normal` are unit, and the normal stands on the front; `ratio` is the refractive index in front of the face by that
-/// behind it. Source: Born & Wolf 1999, sec. 1.5.1, written in vectors.
+/// Unit direction of a refracted ray by Snell's law; empty at total reflection, or if the ray does not come from the front of the face.
+/// `direction` and `normal` are unit, the normal on the front; `ratio` is the refractive index before the face divided by that behind it.
+/// Source: Born & Wolf 1999, sec. 1.5.1, in vector form.
 [[nodiscard]] inline std::optional<Vec3> refracted(const Vec3& direction, const Vec3& normal, double ratio) noexcept {
   const double cosine = -dot(direction, normal);
   const double sine_squared = ratio * ratio * (1 - cosine * cosine);
@@ -32,12 +32,12 @@ struct Prism {
   return normalize(ratio * direction + (ratio * cosine - std::sqrt(1 - sine_squared)) * normal);
 }
 
-/// Wedges one behind the other, each turning at its own rate: the beam draws a rosette. Light that is totally reflected inside does not
-/// get out. The wedges bend the beam, but do not shift it: their thickness and distance do not count.
+/// Risley prisms: wedges in series, each rotating at its own rate, draw a rosette. Totally reflected light is blocked. The wedges bend the
+/// beam without shifting it: thickness and distance are neglected.
 struct RisleyPrisms {
-  std::vector<Prism> prisms{};    ///< in the order in which the beam passes them; at least one
+  std::vector<Prism> prisms{};    ///< wedges in the order of the beam, from 1 to 16
   double surrounding_index = 1;   ///< refractive index between and around the prisms
-  Vec3 incident = axis::forward;  ///< where the laser shines, of any length but zero
+  Vec3 incident = axis::forward;  ///< direction of the laser, of any length but zero
 
   void validate() const {
     require_within("RisleyPrisms::prisms (number)", static_cast<double>(prisms.size()), 1, 16, "");
@@ -51,7 +51,7 @@ struct RisleyPrisms {
     require_positive("RisleyPrisms::incident (length)", length(incident), "");
   }
 
-  /// Where the light leaves; none if it does not get out.
+  /// Unit direction of the beam behind the last wedge; empty at total reflection.
   [[nodiscard]] std::optional<Vec3> direction(Tick t) const noexcept {
     std::optional<Vec3> light = normalize(incident);
     for (const Prism& p : prisms) {
@@ -66,6 +66,7 @@ struct RisleyPrisms {
     return light;
   }
 
+  /// True if the beam gets through all wedges.
   [[nodiscard]] bool open(Tick t) const noexcept { return direction(t).has_value(); }
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return aimed_along(direction(t).value_or(axis::forward)); }

@@ -7,12 +7,11 @@
 
 namespace pulsecast {
 
-/// A head that turns a whole instrument at a constant rate.
+/// Head that rotates a whole instrument at a constant rate.
 struct RotatingHead {
-  double rate = 2 * pi;  ///< positive turns left about an axis that points up; from -1e12 to 1e12; it goes by what a
-                         ///< double holds of its turns a second [rad/s]
+  double rate = 2 * pi;  ///< angular rate, positive to the left about an upward axis; from -1e12 to 1e12, rounded as turns a second [rad/s]
   double start = 0;      ///< angle at the survey's start, from -1e6 to 1e6 [rad]
-  Vec3 axis = axis::up;  ///< of any length but zero
+  Vec3 axis = axis::up;  ///< axis of rotation, of any length but zero
 
   void validate() const {
     require_within("RotatingHead::rate", rate, -1e12, 1e12, "rad/s");

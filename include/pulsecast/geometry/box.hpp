@@ -8,7 +8,7 @@
 
 namespace pulsecast {
 
-/// An axis-aligned box; as made, the empty one, which every extension replaces.
+/// Axis-aligned box between two corners [m]; empty by default, so that the first extension sets it.
 struct Box {
   Vec3 min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   Vec3 max = -min;
@@ -20,7 +20,7 @@ struct Box {
   void extend(const Vec3& p) noexcept { min = pulsecast::min(min, p), max = pulsecast::max(max, p); }
   void extend(const Box& b) noexcept { min = pulsecast::min(min, b.min), max = pulsecast::max(max, b.max); }
 
-  /// Half of the surface, the measure of how likely a ray is to meet it; 0 if empty [m^2].
+  /// Half of the surface area, proportional to the probability of a ray hit; 0 if empty [m^2].
   [[nodiscard]] double half_area() const noexcept {
     if (empty()) return 0;
     const Vec3 s = size();

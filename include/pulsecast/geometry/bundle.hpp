@@ -17,24 +17,24 @@ namespace pulsecast {
 /// Number of a primitive in its geometry.
 using PrimitiveIndex = std::uint32_t;
 
-/// What the rays of a bundle have in common.
+/// Properties shared by the rays of a bundle.
 struct BundleOrigin {
-  Vec3 origin{};  ///< [m]
-  double direction_length = 1;
+  Vec3 origin{};                                         ///< [m]
+  double direction_length = 1;                           ///< 1 in the world, 1/scale in an instance
   double near = 0;                                       ///< nothing is met at this range or before it, at least 0 [m]
   double far = std::numeric_limits<double>::infinity();  ///< nothing is met beyond this range [m]
   std::size_t size = 0;                                  ///< rays in use, at most `RayBundle::capacity`
 
-  double wavelength = 1.064e-6;  ///< of the light [m]
-  Tick tick{};                   ///< when the pulse left
-  std::uint64_t seed = 0;        ///< names, with the next two, every random number that tracing may draw
-  PulseIndex pulse = 0;
+  double wavelength = 1.064e-6;    ///< wavelength of the light [m]
+  Tick tick{};                     ///< departure of the pulse
+  std::uint64_t seed = 0;          ///< key, with the next two, of every random number that tracing may draw
+  PulseIndex pulse = 0;            ///< index of the pulse
   std::uint32_t first_subray = 0;  ///< number of ray 0 among the subrays of its pulse
 };
 
-/// Rays from one origin into a narrow cone: the subrays of one pulse, or a part of them. A single ray is a bundle of one.
-/// Structure of arrays, filled up with idle lanes to a multiple of `lanes`, so that loops over it turn into SIMD.
-/// All directions have the same length: 1 in the world, 1/scale inside an instance, so that a range means metres of the world everywhere.
+/// Rays from one origin into a narrow cone: the subrays of a pulse, or some of them. A single ray is a bundle of one.
+/// Structure of arrays, padded with idle lanes to a multiple of `lanes` for SIMD loops.
+/// All directions have the same length: 1 in the world, 1/scale inside an instance, so that ranges are metres of the world everywhere.
 struct RayBundle : BundleOrigin {
   static constexpr std::size_t capacity = 64;
   static constexpr std::size_t lanes = simd::lane_count;
@@ -42,7 +42,7 @@ struct RayBundle : BundleOrigin {
   using Column = std::array<double, capacity>;
 
   alignas(64) Column x, y, z;  ///< directions; only the first `padded_size()` are set
-  Vec3 least, most;            ///< of each component of the directions, leaving out what is not a number; infinite if nothing is left
+  Vec3 least, most;            ///< minimum and maximum of each component of the directions, NaN left out; infinite if nothing is left
 
   RayBundle() noexcept {}  // leaves the directions unset
   explicit RayBundle(const BundleOrigin& o) noexcept : BundleOrigin(o) {}
@@ -59,8 +59,8 @@ struct RayBundle : BundleOrigin {
 
   void set_direction(std::size_t j, const Vec3& d) noexcept { x[j] = d.x, y[j] = d.y, z[j] = d.z; }
 
-  /// Makes the idle lanes copies of the last ray, as every reader of `padded_size()` rays expects, and finds `least` and `most`.
-  /// Call it when the directions are set.
+  /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect, and finds `least` and `most`. To be
+  /// called once the directions are set.
   void pad() noexcept {
     PULSECAST_ASSERT(size > 0 && size <= capacity && !(near < 0));
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
@@ -76,7 +76,7 @@ struct RayBundle : BundleOrigin {
       simd::Doubles low = simd::Doubles{} + std::numeric_limits<double>::infinity(), high = -low;
       for (std::size_t j = 0; j < size; j += simd::lane_count) {
         const simd::Doubles d = simd::load<simd::Doubles>((*columns[k])[j]);
-        low = simd::min(d, low), high = simd::max(d, high);  // NaN passes no comparison
+        low = simd::min(d, low), high = simd::max(d, high);  // NaN fails every comparison
       }
       least[k] = simd::min(low), most[k] = simd::max(high);
     }
@@ -89,7 +89,7 @@ struct RayBundle : BundleOrigin {
   }
 };
 
-/// The bundle of one ray.
+/// Bundle of one ray.
 [[nodiscard]] inline RayBundle bundle_of(const Ray& ray) noexcept {
   RayBundle rays;
   rays.origin = ray.origin, rays.near = ray.near, rays.far = ray.far, rays.size = 1;
@@ -98,14 +98,14 @@ struct RayBundle : BundleOrigin {
   return rays;
 }
 
-/// The nearest primitive that each ray of a bundle has met so far. On exactly equal range the smallest identity wins.
+/// Closest hit so far of each ray of a bundle. At exactly equal range the smallest id wins.
 struct ClosestHits {
   static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
 
-  alignas(64) std::array<double, RayBundle::capacity> range;  ///< [m]; `far` if nothing was met
+  alignas(64) std::array<double, RayBundle::capacity> range;  ///< range of the hit [m]; `far` without a hit
   alignas(
       64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< part in the upper half, primitive in the lower; `none` if nothing was met
-  std::uint64_t part = 0;                                     ///< of what is being tested, in the upper half
+  std::uint64_t part = 0;                                     ///< part under test, in the upper half
 
   explicit ClosestHits(const RayBundle& rays) noexcept {
     for (std::size_t j = 0; j < rays.padded_size(); ++j) {
@@ -118,13 +118,13 @@ struct ClosestHits {
   [[nodiscard]] std::uint32_t part_of(std::size_t j) const noexcept { return static_cast<std::uint32_t>(id[j] >> 32); }
   [[nodiscard]] PrimitiveIndex primitive_of(std::size_t j) const noexcept { return static_cast<PrimitiveIndex>(id[j]); }
 
-  /// Takes note that ray j meets a primitive of the current part, if that is nearer than what it met before.
+  /// Records a hit of ray j with a primitive of the current part, if it is closer than the one before.
   void offer(std::size_t j, double at, PrimitiveIndex primitive) noexcept {
     const std::uint64_t candidate = part | primitive;
     if (at < range[j] || (at == range[j] && candidate < id[j])) range[j] = at, id[j] = candidate;
   }
 
-  /// The range beyond which no ray of the bundle can find anything nearer.
+  /// Largest range at which any ray of the bundle can still find a closer hit [m].
   [[nodiscard]] double limit(const RayBundle& rays) const noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     if (rays.size == 1) return range[0] > -infinity ? range[0] : -infinity;

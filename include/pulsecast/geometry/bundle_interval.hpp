@@ -20,7 +20,7 @@
 namespace pulsecast {
 
 namespace detail {
-/// The number next to r that is greater; r is not infinite. What std::nextafter gives, without a call.
+/// Next greater number after finite r, as of std::nextafter, but without a call.
 template <std::floating_point Real>
 [[nodiscard]] Real next_above(Real r) noexcept {
   using Bits = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
@@ -29,20 +29,20 @@ template <std::floating_point Real>
 }
 }  // namespace detail
 
-/// The nearest number of type Real that is not less.
+/// Least number of type Real that is not less than `value`.
 template <std::floating_point Real>
 [[nodiscard]] Real round_up(double value) noexcept {
   const Real r = static_cast<Real>(value);
   return static_cast<double>(r) < value ? detail::next_above(r) : r;
 }
 
-/// The nearest number of type Real that is not greater.
+/// Greatest number of type Real that is not greater than `value`.
 template <std::floating_point Real>
 [[nodiscard]] Real round_down(double value) noexcept {
   return -round_up<Real>(-value);
 }
 
-/// A box of type Real, in coordinates relative to the centre of an accelerator; never smaller than the box that it stands for.
+/// Box of type Real, relative to the centre of an accelerator; rounded outwards, so never smaller than the original.
 template <std::floating_point Real>
 struct BoundingBox {
   Real min[3], max[3];  ///< [m]
@@ -51,7 +51,7 @@ struct BoundingBox {
     constexpr double growing = 1 + 2 * std::numeric_limits<double>::epsilon(), shrinking = 2 - growing;
     BoundingBox b;
     for (int k = 0; k < 3; ++k) {
-      // the subtraction itself rounds, by at most half an ulp of its result; a factor leaves an empty box empty
+      // the subtraction rounds by at most half an ulp of its result; a factor leaves an empty box empty
       const double low = box.min[k] - centre[k], high = box.max[k] - centre[k];
       b.min[k] = round_down<Real>(low * (low > 0 ? shrinking : growing));
       b.max[k] = round_up<Real>(high * (high > 0 ? growing : shrinking));
@@ -60,7 +60,7 @@ struct BoundingBox {
   }
 };
 
-/// Eight boxes, wall by wall. A place that is not taken holds the box that nothing is inside of.
+/// Eight boxes as structure of arrays. A free slot holds an inverted box, which nothing is inside of.
 template <std::floating_point Real>
 struct Box8 {
   alignas(8 * sizeof(Real)) Real min[3][8], max[3][8];  ///< [m]
@@ -76,22 +76,22 @@ struct Box8 {
   }
 };
 
-/// Up to eight boxes in half the memory, none smaller than what it stands for: their walls are at steps of a grid of 65,536 an axis.
+/// Up to eight boxes in half the memory, each rounded outwards to a grid of 65,536 steps an axis.
 /// Source: Mahovsky & Wyvill 2006; Ylitie, Karras & Laine 2017.
 template <std::floating_point Real>
 struct QuantizedBox8 {
-  std::uint16_t walls[3][2][8];  ///< by axis, the lower ones first
-  Real origin[3];                ///< of the grid [m]
-  std::uint8_t exponent[3];      ///< of two, and 127 more: the grid's step [m]
-  std::uint8_t count = 0;        ///< places that hold a box, the first ones
+  std::uint16_t walls[3][2][8];  ///< grid coordinates by axis; lower walls first
+  Real origin[3];                ///< origin of the grid [m]
+  std::uint8_t exponent[3];      ///< binary exponent of the grid's step [m], biased by 127
+  std::uint8_t count = 0;        ///< number of slots that hold a box, the first ones
 
-  QuantizedBox8() noexcept {}  // leaves all but the number of boxes unset
+  QuantizedBox8() noexcept {}  // leaves all but `count` uninitialized
 
-  /// Makes the grid; `around` holds all the boxes that will be added.
+  /// Sets up the grid; `around` encloses all boxes to be added.
   void begin(const BoundingBox<Real>& around) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       const double extent = static_cast<double>(around.max[k]) - static_cast<double>(around.min[k]);
-      int e;  // of a power of two above the ratio
+      int e;  // exponent of a power of two above the ratio
       std::frexp(extent / (steps - 1), &e);
       origin[k] = around.min[k], exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 && e > min_exponent ? e : min_exponent));
       for (auto& side : walls[k]) std::fill(std::begin(side), std::end(side), std::uint16_t{0});
@@ -110,7 +110,7 @@ struct QuantizedBox8 {
     ++count;
   }
 
-  /// The grid's step along an axis [m].
+  /// Step of the grid along an axis [m].
   [[nodiscard]] Real step(std::size_t k) const noexcept {
     if constexpr (sizeof(Real) == 4)
       return std::bit_cast<Real>(std::uint32_t{exponent[k]} << 23);
@@ -123,9 +123,9 @@ struct QuantizedBox8 {
   static constexpr int min_exponent = -126;
 };
 
-/// A whole bundle against boxes and planes, by interval arithmetic. An answer may be too cautious, never too bold: where any ray
-/// of the bundle meets a primitive in double precision, no box around that primitive is passed over, and the range is inside its span.
-/// Rays that are not numbers are left out; if none is left, every span is empty.
+/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic: where any ray meets a primitive in double
+/// precision, no box around that primitive is missed, and the range lies inside its span.
+/// NaN rays are left out; if none is left, every span is empty.
 template <std::floating_point Real>
 class BundleInterval {
  public:
@@ -134,9 +134,9 @@ class BundleInterval {
     [[nodiscard]] bool empty() const noexcept { return !(entry <= exit); }
   };
 
-  /// `bounds` is what the accelerator holds, `centre` what its boxes are relative to.
+  /// `bounds` of the accelerator; its boxes are relative to `centre`.
   BundleInterval(const RayBundle& rays, const Box& bounds, const Vec3& centre) noexcept : near_(round_down<Real>(rays.near)) {
-    // Primitive tests round in double relative to the coordinates in play: a hit may lie this far outside of its box.
+    // Primitive tests round in double relative to the largest coordinates: a hit may lie this far outside its box.
     const double scale = std::max(max_norm(rays.origin), std::max(max_norm(bounds.min), max_norm(bounds.max)));
     const double slack = 64 * std::numeric_limits<double>::epsilon() * scale;
     if (!finite(rays.origin)) near_ = infinity;
@@ -144,7 +144,7 @@ class BundleInterval {
       const double low = rays.least[k], high = rays.most[k];
       if (!(low <= high)) near_ = infinity;
       const double o = rays.origin[k] - centre[k];
-      // of rounding to Real; a wall is at most three times the half of the bounds away from where a grid begins, see `inside`
+      // rounding to Real; a wall is at most three half extents away from the origin of a grid, see `inside`
       const double extent = 0.5 * (bounds.max[k] - bounds.min[k]);
       const double margin = slack + (4 * std::fabs(o) + 8 * extent) * static_cast<double>(std::numeric_limits<Real>::epsilon());
       Axis& axis = axes_[k];
@@ -159,10 +159,10 @@ class BundleInterval {
     }
   }
 
-  /// The range beyond which no ray can find anything nearer.
+  /// Largest range at which any ray can still find a closer hit.
   [[nodiscard]] Real limit(const RayBundle& rays, const ClosestHits& nearest) const noexcept { return round_up<Real>(nearest.limit(rays)); }
 
-  /// The stretch of range over which any ray may be inside the box; empty if none can be.
+  /// Interval of range over which any ray may be inside the box; empty if none can be.
   [[nodiscard]] Span inside(const BoundingBox<Real>& box) const noexcept {
     Span span{near_, std::numeric_limits<Real>::max()};
     for (int k = 0; k < 3; ++k) {
@@ -172,7 +172,7 @@ class BundleInterval {
     return span;
   }
 
-  /// The boxes that any ray may be inside of at a range of at most `limit`, a bit each, and where it may enter them.
+  /// Bit mask of the boxes that any ray may be inside of at a range up to `limit`, and their entry ranges.
   [[nodiscard]] unsigned inside(const Box8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
     return inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
       const Axis& axis = axes_[k];
@@ -181,7 +181,7 @@ class BundleInterval {
     });
   }
   [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
-    // two roundings of how far a wall is from the origin, as its grid's steps are powers of two
+    // two roundings of a wall's distance from the origin, as the steps of its grid are powers of two
     Real to_low[3], to_high[3], steps[3];
     for (std::size_t k = 0; k < 3; ++k) {
       to_low[k] = boxes.origin[k] - axes_[k].origin_high, to_high[k] = boxes.origin[k] - axes_[k].origin_low;
@@ -194,29 +194,29 @@ class BundleInterval {
     return met & ((1U << boxes.count) - 1);
   }
 
-  /// The part of a stretch over which any ray may be at or above the plane at `position` along axis k.
+  /// Part of an interval over which any ray may be at or above the plane at `position` along axis k.
   [[nodiscard]] Span above(Span span, int k, Real position) const noexcept {
     keep_above(span, axes_[k], position);
     return span;
   }
 
-  /// The part of a stretch over which any ray may be at or below the plane at `position` along axis k.
+  /// Part of an interval over which any ray may be at or below the plane at `position` along axis k.
   [[nodiscard]] Span below(Span span, int k, Real position) const noexcept {
     keep_below(span, axes_[k], position);
     return span;
   }
 
  private:
-  /// `sense` is +1 or -1 if all rays go that way along the axis, else 0. The other two turn the distance from the origin to a plane into
-  /// range: `per_min` where the inside is above the plane, `per_max` where it is below. Where all rays go one way, one of them is what the
-  /// fastest ray needs to enter and the other what the slowest needs to leave; where they do not, a box is entered from either side by
-  /// those that go up or down, and may be left late by one that stays.
+  /// Direction of the bundle along an axis: `sense` is +1 or -1 if all rays go that way, else 0. The factors turn the distance from the
+  /// origin to a plane into range: `per_min` for an inside above the plane, `per_max` for one below it. If all rays go one way, one factor
+  /// is the fastest ray's to enter, the other the slowest ray's to leave. Otherwise both bound the entry, by the fastest ray each way; the
+  /// exit is unbounded, as a ray may stay inside.
   struct Axis {
     Real origin_low, origin_high, per_min, per_max;
     int sense;
   };
 
-  /// The ranges to the lower and the upper walls of boxes, no numbers where a ray on a wall stays on it.
+  /// Ranges to the lower and upper walls of boxes; NaN where a ray on a wall stays on it.
   struct Walls {
     simd::Packet<Real> low, high;
   };
@@ -229,7 +229,7 @@ class BundleInterval {
                          exit = simd::Packet<Real>{} + std::min(limit, std::numeric_limits<Real>::max());
       for (std::size_t k = 0; k < 3; ++k) {
         const Walls walls = walls_of(k, first);
-        if (axes_[k].sense > 0)  // what is no number passes no comparison
+        if (axes_[k].sense > 0)  // NaN fails every comparison
           entry = simd::max(walls.low, entry), exit = simd::min(walls.high, exit);
         else if (axes_[k].sense < 0)
           entry = simd::max(walls.high, entry), exit = simd::min(walls.low, exit);
@@ -250,8 +250,8 @@ class BundleInterval {
     return static_cast<Real>(std::min(factor / speed, static_cast<double>(std::numeric_limits<Real>::max())));
   }
 
-  // A distance behind the origin gives a range before 0: as entry it says nothing, as exit that the box lies behind. Zero times infinity is
-  // no number and passes no comparison.
+  // A plane behind the origin gives a negative range: as entry it has no effect, as exit it puts the box behind. Zero times infinity is NaN
+  // and fails every comparison.
   static void keep_above(Span& span, const Axis& a, Real low) noexcept {
     const Real range = (low - a.origin_high) * a.per_min;
     if (a.sense >= 0)
@@ -272,18 +272,17 @@ class BundleInterval {
   Axis axes_[3];
 };
 
-/// A single ray against eight boxes, as cautious as a `BundleInterval`, in half the time: it enters through one wall along each axis, and
-/// leaves through the other.
+/// Conservative test of a single ray against eight boxes, in half the time of a `BundleInterval`: the entry wall on each axis is known.
 template <std::floating_point Real>
 class RayInterval {
  public:
-  /// Of the only ray of a bundle. `bounds` is what the accelerator holds, `centre` what its boxes are relative to.
+  /// Of the only ray of a bundle. `bounds` of the accelerator; its boxes are relative to `centre`.
   RayInterval(const RayBundle& ray, const Box& bounds, const Vec3& centre) noexcept {
     using Axes = simd::Vec4<double>;
     const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
     const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin), low = axes(bounds.min), high = axes(bounds.max);
     const Axes o = origin - axes(centre);
-    // the margin of a bundle, for the same reasons
+    // margin as for a bundle, for the same reasons
     const Axes farthest = simd::max(simd::max(magnitude(low), magnitude(high)), magnitude(origin));
     const double slack = 64 * std::numeric_limits<double>::epsilon() * std::max(std::max(farthest[0], farthest[1]), farthest[2]);
     const Axes margin = Axes(slack) + (magnitude(o) + (high - low)) * Axes(4 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
@@ -295,15 +294,15 @@ class RayInterval {
     const Axes both = o + direction;
     const double sum = both[0] + both[1] + both[2];
     near_ =
-        sum - sum == 0 ? static_cast<Real>(ray.near * (1 - tolerance)) : std::numeric_limits<Real>::infinity();  // what is no ray misses
+        sum - sum == 0 ? static_cast<Real>(ray.near * (1 - tolerance)) : std::numeric_limits<Real>::infinity();  // an invalid ray misses
   }
 
-  /// The range beyond which the ray can find nothing nearer.
+  /// Largest range at which the ray can still find a closer hit.
   [[nodiscard]] Real limit(const RayBundle&, const ClosestHits& nearest) const noexcept {
     return static_cast<Real>(std::min(nearest.range[0] * (1 + tolerance), double{std::numeric_limits<Real>::max()}));
   }
 
-  /// The boxes that the ray may be inside of at a range of at most `limit`, a bit each, and where it may enter them.
+  /// Bit mask of the boxes that the ray may be inside of at a range up to `limit`, and their entry ranges.
   [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
     Real steps[3];
     for (std::size_t k = 0; k < 3; ++k) steps[k] = boxes.step(k);
@@ -316,7 +315,7 @@ class RayInterval {
         return simd::packet_from<Real>(boxes.walls[k][upper_[k] ^ side][first]) * (steps[k] * per) + start;
       };
       simd::Packet<Real> entry = near_ - simd::Packet<Real>{}, exit = limit - simd::Packet<Real>{};
-      for (std::size_t k = 0; k < 3; ++k)  // what is no number passes no comparison
+      for (std::size_t k = 0; k < 3; ++k)  // NaN fails every comparison
         entry = simd::max(ranges(k, 0), entry), exit = simd::min(ranges(k, 1), exit);
       simd::store(entry, entries[first]);
       met |= simd::bits(entry <= exit) << first;
@@ -326,8 +325,8 @@ class RayInterval {
 
  private:
   static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-  /// By the length of the direction. A slower ray counts as one of this speed: from the margin on, it leaves a box so late all the same
-  /// that nothing is met beyond.
+  /// Least speed along an axis, relative to the direction's length. Slower rays count as this fast: from the margin on, they leave a box so
+  /// late that no hit lies beyond.
   static constexpr double min_speed = 1e-18;
 
   void put(std::size_t side, const simd::Vec4<double>& from, const simd::Vec4<double>& slowness) noexcept {
@@ -335,7 +334,7 @@ class RayInterval {
     start_[side] = (simd::Vec4<double>(0) - from).template as<Real>() * per_[side];
   }
 
-  /// What turns the place of a wall along each axis into the range to it, where a box is entered and where it is left.
+  /// Linear map from a wall's coordinate along each axis to range, for entry and for exit.
   simd::Vec4<Real> per_[2], start_[2];
   Real near_;
   std::size_t upper_[3];  ///< 1 where boxes are entered through their upper walls

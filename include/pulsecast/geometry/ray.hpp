@@ -8,12 +8,12 @@
 
 namespace pulsecast {
 
-/// A half-line, and the stretch of it that counts.
+/// Ray with the interval of distances that counts.
 struct Ray {
-  Vec3 origin{};                                         ///< [m]
-  Vec3 direction = axis::forward;                        ///< unit
-  double near = 0;                                       ///< nothing is met at this distance or before it [m]
-  double far = std::numeric_limits<double>::infinity();  ///< nothing is met beyond this distance [m]
+  Vec3 origin{};                                         ///< origin [m]
+  Vec3 direction = axis::forward;                        ///< unit vector
+  double near = 0;                                       ///< only hits beyond this distance count [m]
+  double far = std::numeric_limits<double>::infinity();  ///< only hits up to this distance count [m]
 };
 
 }  // namespace pulsecast

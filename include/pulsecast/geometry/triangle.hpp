@@ -17,7 +17,7 @@
 
 namespace pulsecast {
 
-/// Three corners [m]; both sides count.
+/// Triangle with corners a, b, c [m]; both sides count.
 struct Triangle {
   Vec3 a{}, b{}, c{};
 
@@ -27,11 +27,11 @@ struct Triangle {
     return box;
   }
 
-  /// Unit normal, right-handed about a, b, c; NaN if the triangle has no area.
+  /// Unit normal, right-handed about a, b, c; NaN without area.
   [[nodiscard]] Vec3 normal() const noexcept { return normalize(cross(b - a, c - a)); }
 };
 
-/// As many triangles as go through the same arithmetic at once; the last of them stands in the idle lanes too.
+/// Triangles tested together, one a lane; idle lanes repeat the last one.
 struct TrianglePacket {
   struct Corner {
     simd::Doubles x, y, z;  ///< [m]
@@ -40,7 +40,7 @@ struct TrianglePacket {
   std::array<PrimitiveIndex, simd::lane_count> primitives;
   std::size_t size;  ///< lanes in use, at least one
 
-  /// `triangle_of(n)` gives the triangle of the n-th of these primitives.
+  /// `triangle_of(n)` returns the triangle of the n-th of these primitives.
   template <class TriangleOf>
   TrianglePacket(std::span<const PrimitiveIndex> of, const TriangleOf& triangle_of) noexcept : size(of.size()) {
     const auto in_use = [&](std::size_t lane) noexcept { return std::min(lane, size - 1); };
@@ -59,18 +59,18 @@ struct TrianglePacket {
   }
 };
 
-/// Tests triangles against every ray of a bundle. This is the test that decides, always in double precision.
+/// Intersects triangles with every ray of a bundle: the deciding test, always in double precision.
 ///
-/// Inside means on the same side of the three planes through the origin and an edge; the planes depend on the bundle alone, so a ray
-/// costs three dot products, and none where the whole bundle passes a plane on one side. A ray counts as inside if rounding leaves it in
-/// doubt: no ray slips between two triangles that share an edge or a corner. A hit lies in the triangle's own box, widened by a few
-/// roundings, so that no box of an accelerator hides it; and beside an edge by at most 32 roundings of the distance, divided by the sine of
-/// the angle between ray and plane. Its range errs by as much, times one more than the triangle's aspect.
-/// A ray within 1e-12 rad of the triangle's plane misses, and so does every ray where two edges are parallel to within 8 roundings: such a
-/// triangle has no area.
+/// A ray is inside if it is on the same side of the three planes through the origin and an edge. The planes depend on the bundle alone, so
+/// a ray costs three dot products, and none where the whole bundle passes a plane on one side.
+/// If rounding leaves it in doubt, a ray counts as inside, so none slips between two triangles that share an edge or a corner.
+/// A hit lies in the triangle's own box, widened by a few roundings, so that no box of an accelerator hides it. Beside an edge it lies by
+/// at most 32 roundings of the distance, divided by the sine of the angle between ray and plane. Its range errs by that much, times one
+/// more than the triangle's aspect.
+/// A ray within 1e-12 rad of the triangle's plane misses. So does every ray if two edges are parallel to within 8 roundings (no area).
 /// Never inlined, so that every accelerator gets the same bits.
-/// Source: the volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin 2007; the stretch inside
-/// the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
+/// Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin 2007; interval inside the box:
+/// Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
 [[gnu::noinline]] inline void intersect(const TrianglePacket& triangles, const RayBundle& rays, ClosestHits& nearest) noexcept {
   static_assert(RayBundle::lanes % simd::lane_count == 0);
   constexpr double unit = std::numeric_limits<double>::epsilon();
@@ -81,8 +81,8 @@ struct TrianglePacket {
   };
   const Corner a = from_origin(triangles.a), b = from_origin(triangles.b), c = from_origin(triangles.c);
 
-  // the planes through the origin and an edge, and for how long their side is in doubt: |e||s| in the 1-norm bounds each of the sums of
-  // products, and seven roundings stand between them and the true ones
+  // planes through the origin and an edge, and the bound within which their side is in doubt: |e||s| in the 1-norm bounds each sum of
+  // products, which is at most seven roundings from the true one
   struct Planes {
     simd::Doubles x, y, z, doubt;
   };
@@ -116,13 +116,13 @@ struct TrianglePacket {
   unsigned candidates = simd::bits(may_meet) & ((1U << triangles.size) - 1);
   if (candidates == 0) return;
 
-  // their own planes and boxes, the boxes widened by the roundings of a hit
+  // planes and boxes of the triangles, the boxes widened by the roundings of a hit
   const auto cross_of = [](const Corner& u, const Corner& v) noexcept -> Corner {
     return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
   };
   const auto minus = [](const Corner& u, const Corner& v) noexcept -> Corner { return {u.x - v.x, u.y - v.y, u.z - v.z}; };
   const auto square = [](const Corner& v) noexcept { return v.x * v.x + v.y * v.y + v.z * v.z; };
-  const Corner from_a = minus(triangles.b, triangles.a), to_a = minus(triangles.a, triangles.c);  // not rounded by their distance
+  const Corner from_a = minus(triangles.b, triangles.a), to_a = minus(triangles.a, triangles.c);  // unaffected by the distance
   const Corner normals = cross_of(from_a, to_a);
   const simd::Doubles offsets = normals.x * a.x + normals.y * a.y + normals.z * a.z, area = square(normals);
   const simd::Mask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // an angle of none but roundings
@@ -152,7 +152,7 @@ struct TrianglePacket {
       const simd::Doubles slope = x * normals.x[t] + y * normals.y[t] + z * normals.z[t];
       const simd::Mask inside = between & (slope * slope > grazing[t]);
 
-      // the stretch inside the box; a direction of zero becomes so small a one that the walls which it never reaches lie at infinity
+      // interval inside the box; a zero direction is made so small that walls it never reaches lie at infinity
       const simd::Doubles tiny = simd::Doubles{} + 1e-300;
       simd::Doubles entry = simd::Doubles{} - std::numeric_limits<double>::infinity(), exit = -entry;
       const auto between_walls = [&](const simd::Doubles& direction, double low, double high) noexcept {
@@ -177,7 +177,7 @@ struct TrianglePacket {
   }
 }
 
-/// Tests as many triangles as there are primitives; `triangle_of(n)` gives the n-th.
+/// Intersects as many triangles as there are primitives; `triangle_of(n)` returns the n-th.
 template <class TriangleOf>
 void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const RayBundle& rays,
                ClosestHits& nearest) noexcept {
@@ -187,7 +187,7 @@ void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& tri
               rays, nearest);
 }
 
-/// Tests one triangle.
+/// Intersects one triangle.
 inline void intersect(const Triangle& triangle, PrimitiveIndex primitive, const RayBundle& rays, ClosestHits& nearest) noexcept {
   intersect(
       std::span(&primitive, 1), [&](std::size_t) noexcept { return triangle; }, rays, nearest);

@@ -13,13 +13,13 @@
 
 namespace pulsecast::io {
 
-/// Red, green and blue in proportion to light, 1 for the most a screen shows: sums and multiples of it are meaningful.
+/// Linear red, green and blue, 1 for the maximum of a screen; sums and multiples are meaningful.
 using Colour = Vec3;
 
-/// Red, green and blue as files and screens number them.
+/// Red, green and blue as in files and screens, gamma-encoded.
 using Srgb = std::array<std::uint8_t, 3>;
 
-/// Source: IEC 61966-2-1, sRGB.
+/// Decodes sRGB to linear light. Source: IEC 61966-2-1, sRGB.
 [[nodiscard]] inline Colour from_srgb(const Srgb& bytes) noexcept {
   static const auto light = [] {
     std::array<double, 256> table{};
@@ -32,7 +32,7 @@ using Srgb = std::array<std::uint8_t, 3>;
   return {light[bytes[0]], light[bytes[1]], light[bytes[2]]};
 }
 
-/// The nearest that a screen can show. Source: IEC 61966-2-1, sRGB.
+/// Nearest colour of a screen. Source: IEC 61966-2-1, sRGB.
 [[nodiscard]] inline Srgb to_srgb(const Colour& c) noexcept {
   Srgb bytes{};
   for (int k = 0; k < 3; ++k) {
@@ -43,7 +43,7 @@ using Srgb = std::array<std::uint8_t, 3>;
   return bytes;
 }
 
-/// A colour between those of a scale whose first stands for 0 and whose last for 1; NaN counts as 0.
+/// Linear interpolation in a colour scale from 0 (first) to 1 (last), clamped; NaN counts as 0.
 [[nodiscard]] inline Colour along(std::span<const Srgb> scale, double t) noexcept {
   const double place = (t > 0 ? std::min(t, 1.0) : 0.0) * static_cast<double>(scale.size() - 1);
   const std::size_t i = std::min(static_cast<std::size_t>(place), scale.size() - 2);
@@ -51,8 +51,7 @@ using Srgb = std::array<std::uint8_t, 3>;
   return from_srgb(scale[i]) * (1 - part) + from_srgb(scale[i + 1]) * part;
 }
 
-/// A scale in which equal steps look equal, from dark violet to yellow. Source: viridis of Smith & van der Walt 2015 (CC0), every 32nd
-/// entry.
+/// Perceptually uniform scale from dark violet to yellow. Source: viridis of Smith & van der Walt 2015 (CC0), every 32nd entry.
 inline constexpr std::array<Srgb, 9> viridis{{{68, 1, 84},
                                               {71, 44, 122},
                                               {59, 81, 139},
@@ -63,13 +62,14 @@ inline constexpr std::array<Srgb, 9> viridis{{{68, 1, 84},
                                               {170, 220, 50},
                                               {253, 231, 37}}};
 
+/// Scale from black to white, without the extremes.
 inline constexpr std::array<Srgb, 2> greys{{{24, 24, 24}, {250, 250, 250}}};
 
-/// Colours that people of every colour vision tell apart. Source: Okabe & Ito 2008.
+/// Colours distinct for every colour vision. Source: Okabe & Ito 2008.
 inline constexpr std::array<Srgb, 7> okabe_ito{
     {{0, 114, 178}, {230, 159, 0}, {0, 158, 115}, {213, 94, 0}, {86, 180, 233}, {204, 121, 167}, {240, 228, 66}}};
 
-/// A colour of a hue in [0, 1), all of them equally light and strong. Source: Ottosson 2020, Oklab.
+/// Colour of a hue in [0, 1), at constant lightness and chroma. Source: Ottosson 2020, Oklab.
 [[nodiscard]] inline Colour of_hue(double hue) noexcept {
   constexpr double lightness = 0.72, chroma = 0.13;
   const double a = chroma * std::cos(2 * pi * hue), b = chroma * std::sin(2 * pi * hue);
@@ -80,8 +80,7 @@ inline constexpr std::array<Srgb, 7> okabe_ito{
           -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
 }
 
-/// The colour of a class of points, about as maps show it. Source of the numbers: ASPRS LAS 1.4 R15, table 17; those from 64 on are the
-/// user's own.
+/// Colour of a point class, about as on maps. Source of the numbers: ASPRS LAS 1.4 R15, table 17; those from 64 on are user-defined.
 [[nodiscard]] inline Srgb of_class(std::uint16_t classification) noexcept {
   constexpr Srgb ground{158, 124, 88}, low_vegetation{160, 196, 72}, medium_vegetation{104, 168, 62}, high_vegetation{58, 136, 66},
       building{226, 104, 56}, water{64, 132, 196}, road{120, 124, 132}, other{176, 176, 176};

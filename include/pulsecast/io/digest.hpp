@@ -21,25 +21,25 @@
 
 namespace pulsecast::io {
 
-/// 128 bits that stand for any number of bytes: others have others, unless someone has looked for them.
+/// 128-bit hash of bytes; not safe against deliberate collisions.
 struct Fingerprint {
-  std::uint64_t low = 0, high = 0;
+  std::uint64_t low = 0, high = 0;  ///< halves of the hash
   friend bool operator==(const Fingerprint&, const Fingerprint&) = default;
 };
 
-/// The fingerprint of all that was added so far, by XXH3.
+/// Incremental hash by XXH3.
 class Digest {
  public:
   Digest() { XXH3_128bits_reset(state_.get()); }
 
-  /// As if two adjoining runs of bytes were one.
+  /// Adds bytes; two adjoining runs count as one.
   void add(std::span<const std::byte> bytes) { XXH3_128bits_update(state_.get(), bytes.data(), bytes.size()); }
   void add(std::uint64_t number) { add(std::as_bytes(std::span(&number, 1))); }
   void add(const Fingerprint& other) { add(other.low), add(other.high); }
-  /// With its length, so that it matters where one text ends and the next begins.
+  /// Adds a text with its length, so that the boundary between texts matters.
   void add(std::string_view text) { add(std::uint64_t{text.size()}), add(std::as_bytes(std::span(text))); }
 
-  /// What a file holds; of a folder, all files in it and in its folders, and their names. Where it is does not matter.
+  /// Adds the content of a file; of a folder, the content and names of all files below it. The path itself does not matter.
   /// Throws a `FileError` if it cannot be read.
   void add_content(const std::filesystem::path& path) {
     std::error_code error;
@@ -53,7 +53,7 @@ class Digest {
     }
   }
 
-  [[nodiscard]] Fingerprint value() const {
+  [[nodiscard]] Fingerprint value() const {  ///< fingerprint of all bytes added
     const XXH128_hash_t all = XXH3_128bits_digest(state_.get());
     return {all.low64, all.high64};
   }
@@ -91,7 +91,7 @@ class Digest {
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
 };
 
-/// The fingerprint of what a file or folder holds. Throws a `FileError` if it cannot be read.
+/// Fingerprint of the content of a file or folder. Throws a `FileError` if it cannot be read.
 [[nodiscard]] inline Fingerprint content_fingerprint(const std::filesystem::path& path) {
   Digest digest;
   digest.add_content(path);

@@ -33,10 +33,11 @@
 
 namespace pulsecast::io {
 
+/// Settings for GeoTIFF files.
 struct GeoTiffSettings {
-  std::uint16_t band = 1;                               ///< that holds the heights, from 1
-  std::optional<double> vertical_scale = std::nullopt;  ///< metres a unit of height; if empty, as the file's vertical unit says, or else 1
-  std::optional<double> missing = std::nullopt;         ///< what stands where no height is; if empty, as the file says (GDAL_NODATA)
+  std::uint16_t band = 1;                               ///< band of the heights, from 1
+  std::optional<double> vertical_scale = std::nullopt;  ///< metres per unit of height; by default from the file's vertical unit, or 1
+  std::optional<double> missing = std::nullopt;         ///< value of missing heights; by default from the file (GDAL_NODATA)
 
   void validate() const {
     require_within("GeoTiffSettings::band", band, 1, 65535, "");
@@ -44,22 +45,22 @@ struct GeoTiffSettings {
   }
 };
 
-/// What a GeoTIFF file holds.
+/// Content of a GeoTIFF file.
 struct GeoTiff {
-  Raster raster;
-  std::optional<std::uint16_t> epsg{};  ///< code of the projected reference system, if the file has one
-  std::vector<std::string> warnings{};  ///< what was odd, but could be read
+  Raster raster;                        ///< heights [m]
+  std::optional<std::uint16_t> epsg{};  ///< code of the projected reference system, if any
+  std::vector<std::string> warnings{};  ///< oddities that could still be read
 };
 
 /// Reads a raster of heights in a projected reference system in metres: the first image of a TIFF file, classic or BigTIFF, of either byte
-/// order, in strips or tiles, of whole numbers of 8 to 64 bits or floating-point numbers of 16 to 64, compressed as libtiff can read.
-/// Heights become `float`. NaN, what is no number within 1e15 m, and the value for missing ones become NaN.
-/// Throws a `FileError`, with the byte where there is one, if the raster is not whole, is turned or sheared, is in degrees or feet, or has
-/// no place. Memory goes by what has been read, not by what the header claims: it is the raster and one strip or row of tiles.
+/// order, in strips or tiles, of integers of 8 to 64 bits or floating-point numbers of 16 to 64, with any compression of libtiff.
+/// Heights become `float`. NaN, values not within 1e15 m, and the value for missing ones become NaN.
+/// Throws a `FileError`, with the byte if known, for a raster that is incomplete, rotated, sheared, in degrees or feet, or without a
+/// georeference. Memory is the raster and one strip or row of tiles, as far as read, not as claimed by the header.
 /// Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); for GDAL_NODATA and tiles that are left out, the GDAL manual, GTiff driver.
 [[nodiscard]] GeoTiff read_geotiff(const std::filesystem::path& path, const GeoTiffSettings& settings = {});
 
-/// The code of the projected reference system that such a file names, if any; reads no heights. Throws as `read_geotiff`.
+/// EPSG code of the projected reference system of a file, if any; reads no heights. Throws as `read_geotiff`.
 [[nodiscard]] std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path);
 
 namespace detail {
@@ -71,7 +72,7 @@ enum Key : std::uint16_t { model_type = 1024, raster_type = 1025, projected = 30
 inline constexpr std::uint16_t user_defined = 32767;
 }  // namespace geotiff
 
-/// A half-precision number. Source: IEEE 754-2019, 3.4, binary16.
+/// Converts a half-precision number. Source: IEEE 754-2019, 3.4, binary16.
 [[nodiscard]] inline float from_half(std::uint16_t half) noexcept {
   const int exponent = half >> 10 & 0x1F;
   const auto fraction = static_cast<float>(half & 0x3FF);
@@ -112,15 +113,15 @@ class GeoTiffReader {
  private:
   enum class Half : std::uint16_t {};
 
-  /// The samples that belong together in the file: a strip, which is as wide as the raster, or a tile.
+  /// Layout of the samples: in strips as wide as the raster, or in tiles.
   struct Layout {
-    std::uint32_t columns = 0, rows = 0;              ///< of the raster
-    std::uint32_t chunk_columns = 0, chunk_rows = 0;  ///< of a strip or tile
+    std::uint32_t columns = 0, rows = 0;              ///< size of the raster
+    std::uint32_t chunk_columns = 0, chunk_rows = 0;  ///< size of a strip or tile
     std::uint16_t samples = 1, bits = 1, format = SAMPLEFORMAT_UINT, planes = PLANARCONFIG_CONTIG;
     bool tiled = false;
     std::uint64_t chunk_bytes = 0;
 
-    /// Samples of other bands that stand between those of one.
+    /// Distance between samples of one band, in samples.
     [[nodiscard]] std::size_t stride() const noexcept { return planes == PLANARCONFIG_CONTIG ? samples : 1; }
     [[nodiscard]] const char* chunk() const noexcept { return tiled ? "tile " : "strip "; }
   };
@@ -132,10 +133,10 @@ class GeoTiffReader {
 
   [[noreturn]] void fail(const std::string& problem) const { file_.fail(problem); }
 
-  /// What libtiff complained of, as the end of a sentence.
+  /// Error of libtiff, to end a sentence.
   [[nodiscard]] std::string complaint() const { return complaint_[0] == '\0' ? "" : std::string(" (libtiff: ") + complaint_.data() + ')'; }
 
-  /// Keeps the first error; warnings are of tags that do not matter here. Nothing is printed.
+  /// Keeps the first error; warnings concern irrelevant tags. Nothing is printed.
   static int keep_error(TIFF*, void* self, const char*, const char* format, std::va_list arguments) noexcept {
     auto& complaint = static_cast<GeoTiffReader*>(self)->complaint_;
     if (complaint[0] == '\0') (std::vsnprintf)(complaint.data(), complaint.size(), format, arguments);
@@ -143,8 +144,8 @@ class GeoTiffReader {
   }
   static int drop_warning(TIFF*, void*, const char*, const char*, std::va_list) noexcept { return 1; }
 
-  /// More than any strip or tile of this file can unfold to: deflate reaches 1,032 to 1, LZW and others somewhat more, and a tile of 256 by
-  /// 256 that is left out, or all alike, stands for 16,384 times its entry in the lists of tiles.
+  /// Upper limit of the decoded size of any strip or tile: deflate reaches 1,032 to 1, LZW and others somewhat more. A tile of 256 by 256
+  /// that is left out or uniform is 16,384 times its entry in the lists of tiles.
   [[nodiscard]] std::uint64_t max_bytes() const noexcept { return (std::uint64_t{1} << 26) + 4096 * file_.size(); }
 
   [[nodiscard]] Handle open() {
@@ -153,7 +154,7 @@ class GeoTiffReader {
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, this);
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), drop_warning, this);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), static_cast<tmsize_t>(max_bytes()));
-    Handle tiff(TIFFOpenExt(file_.path().c_str(), "rm", options.get()));  // not mapped into memory, as a file may be cut meanwhile
+    Handle tiff(TIFFOpenExt(file_.path().c_str(), "rm", options.get()));  // not memory-mapped, as the file may be truncated meanwhile
     if (!tiff) fail("is not a TIFF file that can be read" + complaint() + ": expected a GeoTIFF");
     return tiff;
   }
@@ -164,8 +165,8 @@ class GeoTiffReader {
     return TIFFGetFieldDefaulted(tiff_.get(), number, &value) == 1 ? value : otherwise;
   }
 
-  /// The numbers, or characters, of a tag of many; none if it is not there, or of another type. libtiff does not know these tags, and
-  /// makes them up as it reads them; where GDAL or libgeotiff have told it of them, they may be counted otherwise.
+  /// Values of an array tag; empty if missing or of another type. libtiff does not know these tags, and defines them as it reads them; if
+  /// GDAL or libgeotiff defined them, their counts may have another form.
   template <class Number>
   [[nodiscard]] std::span<const Number> tags(ttag_t number) const {
     constexpr TIFFDataType type = std::is_same_v<Number, double> ? TIFF_DOUBLE : std::is_same_v<Number, char> ? TIFF_ASCII : TIFF_SHORT;
@@ -233,7 +234,7 @@ class GeoTiffReader {
       fail("holds a picture (photometric interpretation " + std::to_string(meaning) + "): expected heights");
   }
 
-  /// Source: OGC GeoTIFF 1.1, 7.1.2 (requirements class GeoKeyDirectory).
+  /// Value of a key. Source: OGC GeoTIFF 1.1, 7.1.2 (requirements class GeoKeyDirectory).
   [[nodiscard]] std::uint16_t key(geotiff::Key wanted, std::uint16_t otherwise) const {
     const auto keys = tags<std::uint16_t>(geotiff::key_directory);
     for (std::size_t i = 4; i + 4 <= keys.size() && i / 4 <= keys[3]; i += 4)
@@ -261,16 +262,16 @@ class GeoTiffReader {
     }
   }
 
-  /// Finds where the pixels are. Source: OGC GeoTIFF 1.1, 7.1.1 (raster to model) and 7.1.3 (PixelIsArea, PixelIsPoint).
+  /// Finds the position of the pixels. Source: OGC GeoTIFF 1.1, 7.1.1 (raster to model) and 7.1.3 (PixelIsArea, PixelIsPoint).
   void place() {
     const double to_centre = key(geotiff::raster_type, 1) == 2 ? 0 : 0.5;
     const auto scale = tags<double>(geotiff::pixel_scale), ties = tags<double>(geotiff::tie_points),
                matrix = tags<double>(geotiff::transformation);
-    double step_x = 0, step_y = 0, x = 0, y = 0;  // of a column to the east and of a row to the north; the first corner
+    double step_x = 0, step_y = 0, x = 0, y = 0;  // step of a column to the east, of a row to the north; first corner
     if (matrix.size() >= 16) {
       step_x = matrix[0], step_y = matrix[5], x = matrix[3], y = matrix[7];
       const double turn = std::max(std::fabs(matrix[1]) * layout_.rows, std::fabs(matrix[4]) * layout_.columns);
-      if (!(turn <= 1e-3 * std::min(std::fabs(step_x), std::fabs(step_y))))  // of a pixel, all over the raster
+      if (!(turn <= 1e-3 * std::min(std::fabs(step_x), std::fabs(step_y))))  // in pixels, over the whole raster
         fail("is turned or sheared: expected rows that go east (a resampling to north up makes them so)");
     } else if (scale.size() >= 2 && ties.size() >= 6) {
       step_x = scale[0], step_y = -std::fabs(scale[1]), x = ties[3] - ties[0] * step_x, y = ties[4] - ties[1] * step_y;
@@ -332,7 +333,7 @@ class GeoTiffReader {
     return std::move(result_);
   }
 
-  /// Strip by strip, or by rows of tiles; the raster grows as they are read.
+  /// Reads strip by strip, or rows of tiles; the raster grows meanwhile.
   template <class Sample>
   void read_heights(std::optional<double> missing) {
     const Layout& l = layout_;
@@ -363,7 +364,7 @@ class GeoTiffReader {
     }
   }
 
-  /// False if the strip or tile was left out.
+  /// Reads a strip or tile; false if it was left out.
   [[nodiscard]] bool read_chunk(std::uint32_t west, std::uint32_t north, unsigned char* to, std::uint64_t bytes) {
     const auto plane = static_cast<std::uint16_t>(layout_.planes == PLANARCONFIG_CONTIG ? 0 : settings_.band - 1);
     TIFF* tiff = tiff_.get();
@@ -403,7 +404,7 @@ class GeoTiffReader {
     return static_cast<float>(value);
   }
 
-  /// A value for missing ones is written with more digits than a sample of single precision has.
+  /// True for the value of missing heights, which may be written with more digits than a single-precision sample has.
   template <class Sample>
   static bool is_missing(double value, double missing) noexcept {
     if constexpr (std::is_same_v<Sample, float>) return value == missing || static_cast<float>(value) == static_cast<float>(missing);
@@ -418,9 +419,9 @@ class GeoTiffReader {
   Handle tiff_;
   Layout layout_;
   GeoTiff result_;
-  double scale_ = 1;                           // metres a unit of height
-  bool westward_ = false, northward_ = false;  // how columns and rows go in the file
-  std::uint64_t there_ = 0, strange_ = 0;      // heights, and values that can be none
+  double scale_ = 1;                           // metres per unit of height
+  bool westward_ = false, northward_ = false;  // direction of columns and rows in the file
+  std::uint64_t there_ = 0, strange_ = 0;      // number of heights, and of values out of bounds
 };
 
 }  // namespace detail

@@ -17,20 +17,21 @@
 
 namespace pulsecast::io {
 
+/// Settings of gzip compression.
 struct GzipSettings {
-  int level = 1;  ///< of effort, from 1, fast, to 9, small
+  int level = 1;  ///< effort, from 1, fast, to 9, small
 
   void validate() const { require_within("GzipSettings::level", level, 1, 9, ""); }
 };
 
 namespace detail {
 
-/// Compresses as one member of a gzip file, without name or time, so that the same bytes in give the same bytes out. Source: RFC 1952.
+/// Compressor to one gzip member without name or time, so that equal input gives equal output. Source: RFC 1952.
 class GzipEncoder final : public OutputEncoder {
  public:
   explicit GzipEncoder(int level) {
-    constexpr int window_bits = 15 + 16;  // 32 kB; plus 16, says zlib, for the gzip format
-    constexpr int memory_level = 9;       // the most: 256 kB, for speed
+    constexpr int window_bits = 15 + 16;  // 32 kB; plus 16 selects the gzip format of zlib
+    constexpr int memory_level = 9;       // maximum, 256 kB, for speed
     if (deflateInit2(&stream_, level, Z_DEFLATED, window_bits, memory_level, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
   }
   GzipEncoder(const GzipEncoder&) = delete;
@@ -38,7 +39,7 @@ class GzipEncoder final : public OutputEncoder {
   ~GzipEncoder() override { deflateEnd(&stream_); }
 
   void encode(std::span<const std::byte> bytes, bool last, std::vector<std::byte>& out) override {
-    constexpr std::size_t most = std::size_t{1} << 30;  // at a time: zlib counts in 32 bits
+    constexpr std::size_t most = std::size_t{1} << 30;  // limit of zlib's 32-bit counts
     do {
       const std::span<const std::byte> part = bytes.first(std::min(bytes.size(), most));
       bytes = bytes.subspan(part.size());
@@ -53,7 +54,7 @@ class GzipEncoder final : public OutputEncoder {
     do {
       stream_.next_out = reinterpret_cast<Bytef*>(room_.data());
       stream_.avail_out = static_cast<uInt>(room_.size());
-      deflate(&stream_, flush);  // cannot fail: the stream is whole, and there is room
+      deflate(&stream_, flush);  // cannot fail: the stream is valid, and there is room
       out.insert(out.end(), room_.begin(), room_.end() - stream_.avail_out);
     } while (stream_.avail_out == 0);
   }
@@ -64,11 +65,11 @@ class GzipEncoder final : public OutputEncoder {
 
 }  // namespace detail
 
-/// A file that is compressed with gzip as it is written, for any writer that takes an `OutputFile`:
+/// File compressed by gzip on the fly, for any writer that takes an `OutputFile`:
 ///
 ///     XyzWriter writer(gzip_file("points.xyz.gz"));
 ///
-/// Limits: one thread compresses. Text takes three times as long to write at level 1, and twelve times at 6, for a file a tenth smaller.
+/// Limits: compression uses one thread. Text takes three times as long at level 1, and twelve times at 6, for a file a tenth smaller.
 [[nodiscard]] inline OutputFile gzip_file(std::filesystem::path path, const GzipSettings& settings = {}) {
   return OutputFile(std::move(path), std::make_unique<detail::GzipEncoder>(validated(settings).level));
 }

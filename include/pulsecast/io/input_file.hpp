@@ -19,12 +19,12 @@
 
 namespace pulsecast::io {
 
-/// A file that is read from its beginning to its end, a block at a time, as bytes or as lines: memory does not grow with its size.
+/// File read from beginning to end in blocks, as bytes or as lines; memory is independent of its size.
 class InputFile {
  public:
-  static constexpr std::size_t block_size = std::size_t{1} << 20;  ///< no line and nothing that is taken at once is longer [byte]
+  static constexpr std::size_t block_size = std::size_t{1} << 20;  ///< upper limit of a line, and of bytes taken at once [byte]
 
-  /// `expected` is what the file should be, as in "a point cloud".
+  /// `expected` content for error messages, as in "a point cloud". Throws a `FileError` if there is no such file, or it is empty.
   InputFile(const std::filesystem::path& path, std::string_view expected) : path_(path.string()) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) fail("is not there: expected " + std::string(expected));
@@ -39,12 +39,12 @@ class InputFile {
   }
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }          ///< [byte]
-  [[nodiscard]] std::uint64_t position() const noexcept { return position_; }  ///< of the byte that comes next
-  [[nodiscard]] std::size_t line() const noexcept { return line_; }            ///< of the line taken last, from 1
-  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }   ///< the last one, without an end
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }          ///< size of the file [byte]
+  [[nodiscard]] std::uint64_t position() const noexcept { return position_; }  ///< offset of the next byte
+  [[nodiscard]] std::size_t line() const noexcept { return line_; }            ///< number of the line taken last, from 1
+  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }   ///< true for a last line without end
 
-  /// Goes to any byte; lines are counted from there.
+  /// Moves to any byte, and restarts the count of lines there.
   void seek(std::uint64_t byte) {
     file_.clear();
     file_.seekg(static_cast<std::streamoff>(byte));
@@ -52,14 +52,14 @@ class InputFile {
     begin_ = end_ = line_ = 0;
   }
 
-  /// The next bytes, at most `block_size`; fewer where the file ends. Valid until more is taken.
+  /// Next bytes, at most `block_size`; fewer at the end of the file. Valid until more is taken.
   [[nodiscard]] std::string_view take(std::size_t bytes) {
     if (end_ - begin_ < bytes) refill();
     return advance(std::min(bytes, end_ - begin_));
   }
 
-  /// The next line without its end, which may be that of any system but the old Macintosh's. Empty where the file ends. Valid until more
-  /// is taken.
+  /// Next line without its end (LF or CR LF); empty at the end of the file. Valid until more is taken. Throws a `FileError` for a line
+  /// longer than `block_size`.
   [[nodiscard]] std::optional<std::string_view> take_line() {
     std::optional<std::size_t> end = line_end();
     if (!end) {
@@ -75,7 +75,7 @@ class InputFile {
     std::string_view text = advance(end ? *end + 1 : end_ - begin_);
     if (end) text.remove_suffix(1);
     if (text.ends_with('\r')) text.remove_suffix(1);
-    if (line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the mark that some editors put before UTF-8
+    if (line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark of UTF-8
     return text;
   }
 
@@ -86,7 +86,7 @@ class InputFile {
   }
 
  private:
-  /// How many bytes of the block stand before the next line end.
+  /// Length of the next line in the block; empty without a line end.
   [[nodiscard]] std::optional<std::size_t> line_end() const noexcept {
     const void* found = begin_ == end_ ? nullptr : std::memchr(block_.data() + begin_, '\n', end_ - begin_);
     if (found == nullptr) return std::nullopt;
@@ -99,7 +99,7 @@ class InputFile {
     return taken;
   }
 
-  /// Moves what is left of the block to its beginning and fills up the rest.
+  /// Moves the rest of the block to its beginning and fills it up.
   void refill() {
     end_ -= begin_;
     std::memmove(block_.data(), block_.data() + begin_, end_);
@@ -113,7 +113,7 @@ class InputFile {
   std::ifstream file_;
   std::uint64_t size_ = 0, position_ = 0;
   std::vector<char> block_;
-  std::size_t begin_ = 0, end_ = 0;  // of what is left of the block
+  std::size_t begin_ = 0, end_ = 0;  // unread part of the block
   std::size_t line_ = 0;
   bool line_is_open_ = false;
 };

@@ -18,14 +18,14 @@ namespace pulsecast::io {
 
 namespace detail {
 
-/// The points of a LAS file, one record after another.
+/// Point records of a LAS file, uncompressed.
 class LasRecords {
  public:
-  static constexpr std::uint8_t format_bits = 0;        ///< that mark the point format in the header
-  static constexpr std::uint32_t descriptor_count = 0;  ///< of the records of variable length that tell how points are to be read
+  static constexpr std::uint8_t format_bits = 0;        ///< flags in the header's point format
+  static constexpr std::uint32_t descriptor_count = 0;  ///< variable-length records for the decoding of points
   [[nodiscard]] static std::vector<std::byte> descriptors() { return {}; }
 
-  /// Is called where the points begin, with the size of a record [byte], and whether `change` will be called.
+  /// Begins the points at the file's position; `record` is the size of a record [byte], `changed` says if `change` will be called.
   void begin(const OutputFile& file, std::size_t record, bool /*changed*/) {
     begin_ = file.position();
     record_ = record;
@@ -33,7 +33,7 @@ class LasRecords {
 
   void write(OutputFile& file, std::span<const std::byte> record) { file.write(record); }
 
-  /// Lets `change(bytes)` change all records, some at a time.
+  /// Calls `change(bytes)` on all records, in blocks, and writes them back.
   template <class Change>
   void change(OutputFile& file, const Change& change) {
     las_in_blocks(file, begin_, record_, [&](std::uint64_t at, std::span<std::byte> some) {
@@ -51,7 +51,7 @@ class LasRecords {
 
 }  // namespace detail
 
-/// Writes points as LAS with extra bytes, in pulse order, as `detail::LasFileWriter` says; memory does not grow with their number.
+/// Writes points as LAS with extra bytes, in pulse order, as `detail::LasFileWriter`. Memory is independent of the number of points.
 class LasWriter : public detail::LasFileWriter<detail::LasRecords> {
  public:
   explicit LasWriter(std::filesystem::path path, LasSettings settings = {}) : LasFileWriter(std::move(path), std::move(settings), {}) {}

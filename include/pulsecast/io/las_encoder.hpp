@@ -24,16 +24,17 @@
 
 namespace pulsecast::io {
 
-/// A ratio of powers as a level [dB], at least -200: the level of nothing.
+/// Level of a ratio of powers [dB]; -200 or more, also for zero.
 [[nodiscard]] inline float las_level(double ratio) noexcept { return static_cast<float>(ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0); }
 
-/// What the header of a LAS file says of its points. Those of parts of a file add up to that of the whole, in any order.
+/// Point statistics for the header of a LAS file. Those of parts add up to those of the whole, in any order.
 struct LasTally {
-  std::array<std::int32_t, 3> least{}, most{};  ///< of the coordinates as stored
-  std::uint64_t points = 0;
-  std::array<std::uint64_t, 15> points_by_return{};
-  float max_amplitude = -200;  ///< [dB]
+  std::array<std::int32_t, 3> least{}, most{};       ///< extent of the stored coordinates, in steps of the scale
+  std::uint64_t points = 0;                          ///< number of points
+  std::array<std::uint64_t, 15> points_by_return{};  ///< number of points by return number, from 1
+  float max_amplitude = -200;                        ///< highest amplitude [dB]
 
+  /// Adds the statistics of another part.
   void add(const LasTally& other) noexcept {
     if (other.points == 0) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -46,30 +47,30 @@ struct LasTally {
   }
 };
 
-/// Turns echoes into the point records of a LAS file, as `detail::LasFileWriter` says, and keeps count of them. Where a point is comes
-/// last, so that all else can be done before the offset of the coordinates is known.
+/// Encodes echoes as point records of a LAS file, as `detail::LasFileWriter`, and counts them. Coordinates come last, so that all else is
+/// done before their offset is known.
 class LasEncoder {
  public:
-  using Record = detail::LasBytes<30 + detail::las_packet_size + detail::las_extras_size>;  ///< the longest
+  using Record = detail::LasBytes<30 + detail::las_packet_size + detail::las_extras_size>;  ///< longest record
 
-  /// Of settings that are valid.
+  /// `settings` must be valid.
   explicit LasEncoder(LasSettings settings)
       : settings_(std::move(settings)), layout_(settings_.format, settings_.waveforms), offset_(settings_.offset.value_or(Vec3{})) {}
 
-  /// Bytes of a record of points written with these settings.
+  /// Size of a point record with these settings [byte].
   [[nodiscard]] static std::size_t record_size(const LasSettings& settings) {
     return detail::LasLayout(settings.format, settings.waveforms).record();
   }
 
-  /// Calls put(record, point) for every echo of a shot, in order. `record` lacks the coordinates of `point`, and goes on after
-  /// `layout().record()` bytes; `packet` is where the waveform of the shot is, if it is written.
+  /// Calls put(record, point) for every echo of a shot, in order. `record` lacks the coordinates of `point`; its length is
+  /// `layout().record()` bytes. `packet` is the place of the shot's waveform, null without one.
   template <class Put>
   void encode(const Shot& shot, const EchoBatch& batch, const LasPacket* packet, const Put& put) {
     Record record{};
     const std::uint32_t returns = std::min(shot.echoes, layout_.max_returns);
     const auto source = static_cast<std::uint16_t>(std::min(shot.leg + 1U, 65535U));
     const double time = settings_.start_time + shot.tick.seconds();
-    if (layout_.legacy) {  // positions: LAS 1.4 R15, Point Data Record Format 1
+    if (layout_.legacy) {  // offsets: LAS 1.4 R15, Point Data Record Format 1
       record.put(16, detail::las_rounded<std::int8_t>(degrees(shot.scan_angle), -90, 90));
       record.put(18, source);
       record.put(20, time);
@@ -100,7 +101,7 @@ class LasEncoder {
     }
   }
 
-  /// Puts the coordinates of a point into its record and counts it; false if they do not fit.
+  /// Writes the coordinates of a point into its record and counts it; false if they do not fit.
   [[nodiscard]] bool locate(std::byte* record, const Vec3& point) noexcept {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double steps = steps_of(point, axis);
@@ -114,7 +115,7 @@ class LasEncoder {
     return true;
   }
 
-  /// Why a point cannot be located.
+  /// Error text for a point that `locate` refuses.
   [[nodiscard]] std::string misfit(const Vec3& point) const {
     std::size_t axis = 0;
     while (axis < 2 && fits(steps_of(point, axis))) ++axis;
@@ -127,20 +128,20 @@ class LasEncoder {
     return problem.str();
   }
 
-  /// Takes the offset that goes with the first point of the file, unless the settings say one. Far from the origin numbers stay small this
-  /// way, and the offset reads well: with steps of 0.1 mm it is a multiple of 100 m.
+  /// Chooses the offset of the coordinates from the first point of the file, unless set. Stored numbers stay small far from the origin, and
+  /// the offset is round: with a scale of 0.1 mm a multiple of 100 m.
   void choose_offset(const Vec3& first) noexcept {
     const double unit = settings_.scale * 1e6;
-    const auto nearest = [unit](double v) { return std::nearbyint(v / unit) * unit + 0.0; };  // not -0
+    const auto nearest = [unit](double v) { return std::nearbyint(v / unit) * unit + 0.0; };  // + 0.0 avoids -0
     if (!settings_.offset && finite(first)) offset_ = {nearest(first.x), nearest(first.y), nearest(first.z)};
   }
 
-  /// Whether intensities are 0 until `scale_intensities`.
+  /// True if intensities are 0 until `scale_intensities`.
   [[nodiscard]] bool automatic_intensity() const noexcept {
     return settings_.intensity == LasIntensity::amplitude && !settings_.intensity_full_scale;
   }
 
-  /// Of whole records: the greatest amplitude is known now, and those of the points are in their extra bytes.
+  /// Sets the intensities of whole records from the amplitudes in their extra bytes, once the greatest is known.
   void scale_intensities(std::span<std::byte> bytes) const noexcept {
     for (std::size_t at = 0; at < bytes.size(); at += layout_.record()) {
       float level = 0;
@@ -150,13 +151,13 @@ class LasEncoder {
     }
   }
 
-  /// Says of whole records that the file of packets goes on so many bytes later than was thought.
+  /// Shifts the packet offsets of whole records by `later` bytes.
   void move_packets(std::span<std::byte> bytes, std::uint64_t later) const noexcept {
     for (std::size_t at = 0; at < bytes.size(); at += layout_.record()) {
       std::byte* const packet = bytes.data() + at + layout_.packet;
       std::uint64_t offset = 0;
       std::memcpy(&offset, packet + 1, sizeof offset);
-      offset += packet[0] != std::byte{0} ? later : 0;  // there is one
+      offset += packet[0] != std::byte{0} ? later : 0;  // only with a packet
       std::memcpy(packet + 1, &offset, sizeof offset);
     }
   }
@@ -170,7 +171,7 @@ class LasEncoder {
  private:
   static constexpr std::size_t range_at = 0, amplitude_at = 8, reflectance_at = 12, width_at = 16, pulse_at = 20, object_at = 28;
 
-  /// What of a wave packet all returns share. Positions: LAS 1.4 R15, Point Data Record Format 4, from the packet's first byte.
+  /// Writes the part of a wave packet common to all returns. Offsets from its first byte: LAS 1.4 R15, Point Data Record Format 4.
   void put_packet(Record& record, const Shot& shot, const LasPacket& packet) const noexcept {
     record.put(layout_.packet, packet.descriptor);
     record.put(layout_.packet + 1, packet.offset);

@@ -18,39 +18,41 @@
 
 namespace pulsecast::io {
 
-/// Where the waveform of a point is; of a point without, all is 0.
+/// Place of a point's waveform; all zero without one.
 struct LasPacket {
-  std::uint8_t descriptor = 0;  ///< the record that describes it is this plus 99
-  std::uint64_t offset = 0;     ///< from the beginning of the file of packets [byte]
-  std::uint32_t size = 0;       ///< [byte]
+  std::uint8_t descriptor = 0;  ///< record id of its descriptor, minus 99
+  std::uint64_t offset = 0;     ///< offset from the beginning of the packet file [byte]
+  std::uint32_t size = 0;       ///< size of the packet [byte]
 };
 
-/// Writes waveforms as packets of a `.wdp` file, which stands beside the LAS file that refers to them. Source: LAS 1.4 R15, Waveform
-/// Packet Descriptor, Waveform Data Packets, and Extended Variable Length Records.
+/// Writes waveforms as packets of a `.wdp` file beside the LAS file that refers to them. Source: LAS 1.4 R15, Waveform Packet Descriptor,
+/// Waveform Data Packets, and Extended Variable Length Records.
 ///
-/// A sample is an unsigned 16-bit number: power [W] is `offset + gain * number`, and no light is the number 4096, so that noise may be
-/// negative. Each packet has the smallest gain that its samples fit, of eleven, powers of 16 from 2^-52 W to 2^-12 W: they err by at most a
-/// 7680th of its peak, or 2^-53 W, unless noise is a fifteenth of the peak; samples above 15 W are cut.
-/// A descriptor says how many samples its packets have, so there are 23 sizes, two an octave, from 16 to 32768; what a packet is too long
-/// is filled up with no light. That makes 253 descriptors, all of them in every file: none need be known before the first packet.
+/// A sample is an unsigned 16-bit number: power [W] is `offset + gain * number`. Number 4096 is zero power, so that noise may be negative.
+/// Each packet has the smallest gain of eleven that its samples fit: powers of 16 from 2^-52 W to 2^-12 W. The error is at most 1/7680 of
+/// the packet's peak, or 2^-53 W, unless noise reaches 1/15 of the peak. Samples above 15 W are clipped.
+/// A descriptor states the number of samples of its packets, so there are 23 sizes, two an octave, from 16 to 32768; packets are padded
+/// with zero power. Every file has all 253 descriptors, so that none need be known before the first packet.
 class LasPackets {
  public:
+  /// Throws a `FileError` if the file cannot be made.
   explicit LasPackets(std::filesystem::path path) : file_(std::move(path)) { file_.write(header()); }
 
-  /// A piece of such a file, without its header: offsets count from the beginning of the piece.
+  /// Piece of such a file without header; offsets count from the beginning of the piece.
   explicit LasPackets(OutputFile piece) : file_(std::move(piece)) {}
-  void end_piece() { file_.commit(); }
+  void end_piece() { file_.commit(); }  ///< ends such a piece
 
-  /// Takes what others have put into the temporary file, up to some byte, with samples so many picoseconds apart.
+  /// Takes over packets that others wrote to the temporary file up to `end` [byte]; `spacing` of samples [ps].
   void adopt(std::uint64_t end, std::uint32_t spacing) {
     file_.continue_at(end);
     spacing_ = spacing;
   }
 
-  [[nodiscard]] std::uint64_t position() const noexcept { return file_.position(); }  ///< where the next packet will stand [byte]
-  [[nodiscard]] std::uint32_t spacing() const noexcept { return spacing_; }           ///< of samples, 0 if there are none [ps]
+  [[nodiscard]] std::uint64_t position() const noexcept { return file_.position(); }  ///< offset of the next packet [byte]
+  [[nodiscard]] std::uint32_t spacing() const noexcept { return spacing_; }           ///< interval of samples, 0 without packets [ps]
 
-  /// Writes a waveform [W], of at least one sample, every so many seconds.
+  /// Writes a waveform [W] of at least one sample; `interval` of samples [s]. Throws a `FileError` for more than `max_samples`, or an
+  /// interval other than before or not of whole picoseconds.
   [[nodiscard]] LasPacket add(std::span<const float> waveform, double interval) {
     require_interval(interval);
     const unsigned size_class = size_class_of(waveform.size()), gain_class = gain_class_of(waveform);
@@ -66,7 +68,7 @@ class LasPackets {
     return packet;
   }
 
-  /// The records that describe the packets, headers and all, for the LAS file. Only their bodies change from packet to packet.
+  /// Descriptor records with headers, for the LAS file. Only their bodies change from packet to packet.
   [[nodiscard]] std::vector<std::byte> descriptors() const {
     std::vector<std::byte> bytes;
     for (unsigned size_class = 0; size_class < size_classes; ++size_class)
@@ -85,13 +87,14 @@ class LasPackets {
     return bytes;
   }
 
+  /// Finishes the file and gives it its name.
   void close() {
     file_.overwrite(0, header());
     file_.commit();
   }
 
-  static constexpr double max_samples = 32768;  ///< of a waveform
-  static constexpr unsigned size_classes = 23, gain_classes = 11, descriptor_count = size_classes * gain_classes;
+  static constexpr double max_samples = 32768;                                                                     ///< of a waveform
+  static constexpr unsigned size_classes = 23, gain_classes = 11, descriptor_count = size_classes * gain_classes;  ///< kinds of packets
 
  private:
   static constexpr std::size_t header_size = 60, descriptor_size = 26;  // [byte]
@@ -119,7 +122,7 @@ class LasPackets {
     return c;
   }
 
-  /// The file has one interval, in whole picoseconds; a millionth of one is rounding.
+  /// Checks the sample interval, one per file, in whole picoseconds up to a rounding of 1e-6 ps.
   void require_interval(double interval) {
     const double picoseconds = interval * 1e12, whole = std::nearbyint(picoseconds);
     const bool can_be = std::fabs(picoseconds - whole) <= 1e-6 && whole >= 1 && whole <= 4294967295.0;
@@ -144,7 +147,7 @@ class LasPackets {
   }
 
   OutputFile file_;
-  std::uint32_t spacing_ = 0;  // of samples; 0 until there is a packet [ps]
+  std::uint32_t spacing_ = 0;  // interval of samples; 0 before the first packet [ps]
   std::vector<std::uint16_t> raw_;
 };
 

@@ -12,49 +12,50 @@
 
 namespace pulsecast::io {
 
-/// What a LAS file is to its readers.
+/// Version and point format of a LAS file.
 enum class LasFormat : std::uint8_t {
   las_1_4,         ///< version 1.4, point format 6, or 9 with waveforms
   las_1_4_legacy,  ///< version 1.4, point format 1, or 4 with waveforms: 5 returns, 32 classes, angles in whole degrees
-  las_1_0,  ///< version 1.0, point format 1, for readers of long ago: as before, without waveforms, well-known text, kind of GPS time
+  las_1_0,         ///< version 1.0, point format 1, for old readers: as above, without waveforms, well-known text, and kind of GPS time
 };
 
-/// What the 16-bit intensity of a LAS file stands for; it is linear in it.
+/// Meaning of the 16-bit intensity of a LAS file, which is linear in it.
 enum class LasIntensity : std::uint8_t {
-  reflectance,  ///< the echo's reflectance, which does not fall with range
-  amplitude,    ///< the echo's received power, as most instruments have it
+  reflectance,  ///< reflectance of the echo, independent of range
+  amplitude,    ///< received power of the echo, as of most instruments
 };
 
-/// What the times of a LAS file count from. Source: ASPRS LAS 1.4 R15, global encoding, bit 0.
+/// Epoch of the times of a LAS file. Source: ASPRS LAS 1.4 R15, global encoding, bit 0.
 enum class GpsTime : std::uint16_t {
-  week = 0,               ///< the start of some GPS week
+  week = 0,               ///< start of an unspecified GPS week
   adjusted_standard = 1,  ///< 1e9 s after the GPS epoch: 14 September 2011, 01:46:40 GPS time
 };
 
+/// Settings of a LAS or LAZ file.
 struct LasSettings {
   using Date = std::chrono::year_month_day;
 
-  LasFormat format = LasFormat::las_1_4;
-  bool waveforms = false;                         ///< whether they are written, to a file beside it that ends in .wdp
-  double scale = 1e-4;                            ///< step of the coordinates [m]
-  std::optional<Vec3> offset = std::nullopt;      ///< what they are relative to [m]; if empty, the multiple of 1e6 steps next to the first
-  std::string wkt = {};                           ///< coordinate reference system in OGC well-known text; if empty, `epsg` counts
-  std::uint16_t epsg = 0;                         ///< its code, if projected and in metres; 0 if it is not known, and none is written
-  GpsTime gps_time = GpsTime::adjusted_standard;  ///< what times count from
-  double start_time = 0;                          ///< when the survey's tick 0 is [s]
-  LasIntensity intensity = LasIntensity::reflectance;
-  std::optional<double> intensity_full_scale = {};  ///< what is given the greatest intensity, 65535, and all that is more; if empty, a
-                                                    ///< reflectance of 1, or the greatest amplitude of the file [W]
-  double amplitude_reference = 1e-9;                ///< power that amplitudes in dB are relative to [W]
-  std::optional<Date> created = std::nullopt;       ///< in the header; if empty, 0 there, so that the same survey gives the same bytes
+  LasFormat format = LasFormat::las_1_4;               ///< version and point format
+  bool waveforms = false;                              ///< true to write waveforms to a .wdp file beside it
+  double scale = 1e-4;                                 ///< step of the coordinates [m]
+  std::optional<Vec3> offset = std::nullopt;           ///< origin [m]; if empty, the multiple of 1e6 steps nearest to the first point
+  std::string wkt = {};                                ///< coordinate reference system as OGC well-known text; if empty, `epsg` counts
+  std::uint16_t epsg = 0;                              ///< EPSG code of a projected system in metres; 0 if unknown, and none is written
+  GpsTime gps_time = GpsTime::adjusted_standard;       ///< epoch of times
+  double start_time = 0;                               ///< time of the survey's tick 0 [s]
+  LasIntensity intensity = LasIntensity::reflectance;  ///< meaning of the intensity
+  std::optional<double> intensity_full_scale = {};     ///< value stored as the greatest intensity, 65535, and clipped above;
+                                                       ///< if empty, a reflectance of 1, or the greatest amplitude of the file [W]
+  double amplitude_reference = 1e-9;                   ///< reference power of amplitudes in dB [W]
+  std::optional<Date> created = std::nullopt;          ///< date in the header; if empty, 0, so that equal surveys give equal bytes
 
   void validate() const {
     if (waveforms && format == LasFormat::las_1_0)
       throw SettingError("LasSettings::waveforms", 1, "", "false with version 1.0, which knows none");
     require_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
-    require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // with its end, 16 bits count it
-    if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // source: OGC GeoTIFF 1.1, the codes that are EPSG's
+    require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // with a terminator, counted by 16 bits
+    if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // range of EPSG codes; source: OGC GeoTIFF 1.1
     require_finite("LasSettings::start_time", start_time, "s");
     if (intensity_full_scale)
       require_positive("LasSettings::intensity_full_scale", *intensity_full_scale, intensity == LasIntensity::amplitude ? "W" : "");

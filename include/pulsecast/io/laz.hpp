@@ -28,23 +28,22 @@ namespace pulsecast::io {
 
 namespace detail {
 
-inline constexpr std::size_t laz_chunk_points = 50000;  ///< what LASzip takes if nobody says otherwise
+inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
 
-/// The record of variable length that tells how points are compressed, header and all. Source: the record `laszip encoded` as LASzip and
-/// LAStools document it.
+/// Variable-length record, header included, on the compression of points. Source: `laszip encoded` as documented by LASzip, LAStools.
 [[nodiscard]] inline std::vector<std::byte> laz_descriptor() {
   struct Item {
     std::uint16_t type, size, version;
   };
   constexpr std::array items{Item{10, laz_point_size, 3}, Item{14, las_extras_size, 3}};  // POINT14, BYTE14
   LasBytes<34 + 6 * items.size()> d{};
-  d.put(0, std::uint16_t{3});  // chunks of layers; then 0: by the arithmetic coder
-  d.put(4, std::uint8_t{3});   // version 3.4, revision 3 of LASzip writes the same
+  d.put(0, std::uint16_t{3});  // layered chunks; then 0: arithmetic coder
+  d.put(4, std::uint8_t{3});   // version 3.4, revision 3, as of LASzip
   d.put(5, std::uint8_t{4});
   d.put(6, std::uint16_t{3});
   d.put(12, static_cast<std::uint32_t>(laz_chunk_points));
-  d.put(16, std::int64_t{-1});  // no special extended records, and
-  d.put(24, std::int64_t{-1});  // nowhere
+  d.put(16, std::int64_t{-1});  // no special extended records:
+  d.put(24, std::int64_t{-1});  // number and offset
   d.put(32, static_cast<std::uint16_t>(items.size()));
   for (std::size_t i = 0; i < items.size(); ++i) {
     d.put(34 + 6 * i, items[i].type);
@@ -57,14 +56,14 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< what LASzip takes i
   return bytes;
 }
 
-/// Sizes of all chunks [byte], so that a reader finds each at once. Source: Isenburg 2013, LASzip, 3 (chunk table).
+/// Chunk table: sizes of all chunks [byte], for random access. Source: Isenburg 2013, LASzip, 3 (chunk table).
 [[nodiscard]] inline std::vector<std::byte> laz_chunk_table(std::span<const std::size_t> sizes) {
-  LasBytes<8> head{};  // its version, 0, and the number of chunks
+  LasBytes<8> head{};  // version, 0, and number of chunks
   head.put(4, static_cast<std::uint32_t>(sizes.size()));
   std::vector<std::byte> bytes(head.begin(), head.end());
   if (sizes.empty()) return bytes;
   LazEncoder encoder;
-  LazIntegers integers(32, 2);  // the first context is for numbers of points, where they vary
+  LazIntegers integers(32, 2);  // the first context is for point counts, where they vary
   std::int32_t last = 0;
   for (const std::size_t size : sizes) {
     const auto next = static_cast<std::int32_t>(size);
@@ -76,8 +75,8 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< what LASzip takes i
   return bytes;
 }
 
-/// The points of a LAZ file. As many chunks as there are threads, but no more than 16, are gathered, compressed side by side and written in
-/// their order. Records that will be changed stand as they are in a file of their own until then.
+/// Point records of a LAZ file. As many chunks as threads, but at most 16, are gathered, compressed in parallel and written in order.
+/// Records to be changed wait uncompressed in a file of their own.
 class LazRecords {
  public:
   explicit LazRecords(unsigned threads) : threads_(std::min(thread_count(threads), 16U)) {}
@@ -89,7 +88,7 @@ class LazRecords {
   void begin(OutputFile& file, std::size_t record, bool changed) {
     record_ = record;
     table_position_at_ = file.position();
-    file.write(table_position(-1));  // until there is a table
+    file.write(table_position(-1));  // placeholder
     if (changed) unchanged_.emplace(file.path().string() + ".points");
   }
 
@@ -106,7 +105,7 @@ class LazRecords {
     });
   }
 
-  /// Takes chunks of these sizes [byte] that others have written.
+  /// Takes over chunks of these sizes [byte], written by others.
   void adopt(std::vector<std::size_t> sizes) { sizes_ = std::move(sizes); }
 
   void finish(OutputFile& file) {
@@ -127,7 +126,7 @@ class LazRecords {
     if (gathered_.size() == threads_ * laz_chunk_points * record_) compress(file);
   }
 
-  /// Of what is gathered, every chunk but the last is full.
+  /// Compresses the gathered records; every chunk but the last is full.
   void compress(OutputFile& file) {
     const std::size_t full = laz_chunk_points * record_;
     std::vector<std::vector<std::byte>> chunks((gathered_.size() + full - 1) / full);
@@ -144,24 +143,24 @@ class LazRecords {
 
   unsigned threads_;
   std::size_t record_ = 0;               // [byte]
-  std::uint64_t table_position_at_ = 0;  // from the beginning of the file [byte]
+  std::uint64_t table_position_at_ = 0;  // offset of the table's position in the file [byte]
   std::optional<OutputFile> unchanged_;
   std::vector<std::byte> gathered_;
-  std::vector<std::size_t> sizes_;  // of the chunks written [byte]
+  std::vector<std::size_t> sizes_;  // of the written chunks [byte]
 };
 
 }  // namespace detail
 
-/// Writes points as LAZ: what `LasWriter` writes of them in version 1.4 with point format 6, extra bytes included, compressed as LASzip
-/// does it, in chunks of 50,000 points that are compressed on so many threads; 0 for as many as the machine runs at once. The bytes of the
-/// file are the same for any number of them. A `SettingError` says that another format, or waveforms, are asked for. With intensities of
-/// amplitude that are scaled to the greatest, `close()` compresses all: until then, points stand in `NAME.points.part`.
+/// Writes points as LAZ: as `LasWriter` in version 1.4 with point format 6, extra bytes included, compressed as by LASzip. Chunks of 50,000
+/// points are compressed on `threads` threads, 0 as in `thread_count`; the bytes of the file are the same for any number. Throws a
+/// `SettingError` for another format, or for waveforms. With intensities scaled to the greatest amplitude, `close()` compresses all; until
+/// then, points wait in `NAME.points.part`.
 class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
  public:
   explicit LazWriter(std::filesystem::path path, LasSettings settings = {}, unsigned threads = 0)
       : LasFileWriter(std::move(path), compressible(std::move(settings)), detail::LazRecords(threads)) {}
 
-  /// The settings, if they can be met.
+  /// Settings, if LAZ can meet them. Throws a `SettingError` for another format, or for waveforms.
   [[nodiscard]] static LasSettings compressible(LasSettings settings) {
     if (settings.format != LasFormat::las_1_4)
       throw SettingError("LasSettings::format", static_cast<double>(settings.format), "", "0, LAS 1.4 with point format 6, for LAZ");
@@ -169,9 +168,9 @@ class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
     return settings;
   }
 
-  static constexpr std::uint64_t chunk_points = detail::laz_chunk_points;  ///< points per chunk, but for the last
+  static constexpr std::uint64_t chunk_points = detail::laz_chunk_points;  ///< points of a chunk, except the last
 
-  /// Compresses one chunk: whole records of `record_size` bytes, at least one and at most `chunk_points`.
+  /// Compresses a chunk of whole records of `record_size` bytes: at least one, at most `chunk_points`.
   [[nodiscard]] static std::vector<std::byte> compressed_chunk(std::span<const std::byte> records, std::size_t record_size) {
     return detail::LazChunk(records, record_size).compressed();
   }

@@ -20,13 +20,12 @@
 
 namespace pulsecast::io {
 
-/// Reads a table of leaf projections: rows of `x, y, z, G`, a unit direction and G there, in any order, without a header; `#` begins a
-/// comment. Leaves face all azimuths and both sides alike, so a direction counts by its angle to the vertical; two that have the same
-/// must have the same G. At most 10 degrees may be without a row.
+/// Reads a table of leaf projections: rows of `x, y, z, G`, a unit direction and its G, in any order, without a header; `#` begins a
+/// comment. Leaves face all azimuths and both sides alike, so only the angle to the vertical counts; equal angles need equal G. Gaps
+/// between rows are at most 10 degrees.
 ///
-/// G is what the plant area density is multiplied by to give the extinction: 1/2 for spherical leaf angles (Ross 1981). Tables of HELIOS++
-/// hold just that, and are taken as they are; its further division by 2 pi is not repeated.
-/// Throws a `FileError` with path and line at the first thing that cannot be right, and if there is a hole.
+/// G times the plant area density is the extinction coefficient: 1/2 for spherical leaf angles (Ross 1981). Tables of HELIOS++ hold this G;
+/// its further division by 2 pi is not repeated. Throws a `FileError` with path and line at the first error, or for a gap.
 [[nodiscard]] LeafAngles read_leaf_angles(const std::filesystem::path& path);
 
 namespace detail {
@@ -57,7 +56,7 @@ struct LeafRow {
 }  // namespace detail
 
 inline LeafAngles read_leaf_angles(const std::filesystem::path& path) {
-  constexpr double same = 5e-6, widest = 10 * pi / 180 + same;  // six decimals tell angles apart to 2e-6 or so
+  constexpr double same = 5e-6, widest = 10 * pi / 180 + same;  // six decimals resolve angles to some 2e-6
   TextTable table(path, "a table of leaf projections, x,y,z,G");
   std::vector<detail::LeafRow> rows;
   while (table.next())
@@ -65,12 +64,12 @@ inline LeafAngles read_leaf_angles(const std::filesystem::path& path) {
   if (rows.empty()) table.fail("has no rows: expected a table of leaf projections, x,y,z,G");
   std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.projection.zenith < b.projection.zenith; });
 
-  // Outside the rows holds what the nearest says.
+  // beyond the outermost rows, their values hold
   rows.insert(rows.begin(), {{0, rows.front().projection.g}, rows.front().line});
   rows.push_back({{pi / 2, rows.back().projection.g}, rows.back().line});
 
   std::vector<LeafProjection> result;
-  std::size_t line = 0;  // of the last of them
+  std::size_t line = 0;  // line of the last row
   for (const auto& [projection, row] : rows) {
     const LeafProjection last = result.empty() ? projection : result.back();
     const double step = projection.zenith - last.zenith;
@@ -83,7 +82,7 @@ inline LeafAngles read_leaf_angles(const std::filesystem::path& path) {
                       "has another G than line " + std::to_string(std::min(row, line)) +
                           ", for a direction as steep: expected one that depends on the zenith angle alone");
     if (step <= same && !result.empty()) continue;
-    // Halfway lies what joins them anyway: rounded rows 10 degrees apart may be a little farther apart than `LeafAngles` bridges.
+    // a midpoint by interpolation: rounded rows 10 degrees apart may exceed the gap that `LeafAngles` bridges
     if (step > widest / 2) result.push_back({last.zenith + step / 2, (last.g + projection.g) / 2});
     result.push_back(projection), line = row;
   }

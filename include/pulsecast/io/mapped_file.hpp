@@ -18,9 +18,8 @@
 
 namespace pulsecast::io {
 
-/// A file that stands in memory, to be read only, without being read as a whole. It begins at a page of memory. The name may be given to
-/// another file meanwhile; the file itself must not be written to. Throws a `FileError` if it cannot be had;
-/// a pipe is refused, and not waited for.
+/// Memory-mapped file, read-only, aligned to a page. Its name may be reused for another file meanwhile; the file itself must not be written
+/// to. Throws a `FileError` if it cannot be mapped, or is a pipe (without waiting for it).
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path) {

@@ -29,20 +29,19 @@
 
 namespace pulsecast::io {
 
-/// What MTL files describe.
+/// Content of MTL files.
 struct MaterialLibrary {
-  std::map<std::string, Material, std::less<>> materials;  ///< by name
-  std::vector<std::string> warnings;                       ///< what was odd, but could be read
+  std::map<std::string, Material, std::less<>> materials;  ///< materials by name
+  std::vector<std::string> warnings;                       ///< oddities that could still be read
 };
 
-/// Reads an MTL file. Colours decide the angular law: `Ks` makes it Phong's, `Kd` alone Lambert's. The amount is another matter: it is
-/// what `helios_reflectance` says, a fraction, or else the spectrum of the library that `helios_spectra` names. Beside these, `Ns`,
-/// `helios_isGround` and `helios_classification` count; other keys do not.
-/// Of a name that comes twice, the first counts. What stands before the first name describes the material "default".
-/// Throws a `FileError` with path and line at the first thing that cannot be right.
+/// Reads an MTL file. Colours select the scattering model: `Ks` Phong's, `Kd` alone Lambert's. The reflectance is `helios_reflectance`, a
+/// fraction, or else the spectrum named by `helios_spectra`. `Ns`, `helios_isGround` and `helios_classification` count, too; other keys are
+/// ignored. The first of equal names counts. Keys before the first name describe the material "default". Throws a `FileError` with path and
+/// line at the first error.
 [[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra = {});
 
-/// The surface that files say nothing about. It scatters alike in all directions, as in the home of the extra keys, HELIOS++.
+/// Surface without a description. It scatters alike in all directions, as in HELIOS++, which defined the extra keys.
 [[nodiscard]] inline Material undescribed(std::string name) {
   return {.name = std::move(name), .scattering = Scattering::direction_independent};
 }
@@ -51,15 +50,15 @@ namespace detail {
 
 static_assert(std::same_as<tinyobj::real_t, double>, "define TINYOBJLOADER_USE_DOUBLE and link libtinyobjloader_double");
 
-inline constexpr double max_number = 1e12;  ///< allowed in a file, so that no product of a few overflows
+inline constexpr double max_number = 1e12;  ///< upper limit in a file, so that products of a few numbers cannot overflow
 
 [[nodiscard]] inline std::string_view trimmed(std::string_view text) {
   const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
   return text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
-/// The number that a word is, if tinyobjloader reads all of it as that number: it would take other words for zeros, or for the number
-/// they begin with, and lose count in very long ones.
+/// Number in a word, if tinyobjloader would read the same. It takes other words for zero or the number that they begin with, and
+/// fails at very long ones.
 template <class Number>
 [[nodiscard]] std::optional<Number> number_in(std::string_view word) {
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
@@ -69,7 +68,7 @@ template <class Number>
   return is_all && std::isfinite(static_cast<double>(value)) ? std::optional(value) : std::nullopt;
 }
 
-/// The text of an OBJ or MTL file, a piece at a time.
+/// Text of an OBJ or MTL file, read in pieces.
 class StatementFile {
  public:
   explicit StatementFile(const std::filesystem::path& path) : path_(path.string()) {
@@ -81,7 +80,7 @@ class StatementFile {
     if (file_.peek() == std::ifstream::traits_type::eof()) fail("is empty: expected an OBJ or MTL file");
   }
 
-  /// The next whole statements, about so many bytes of them; nothing at the end of the file.
+  /// Next whole statements, about `bytes` long; empty at the end of the file.
   [[nodiscard]] std::string next(std::size_t bytes) {
     std::string text = std::exchange(rest_, {});
     while (file_) {
@@ -105,13 +104,13 @@ class StatementFile {
     return text;
   }
 
-  static constexpr std::size_t piece_bytes = std::size_t{1} << 18;
+  static constexpr std::size_t piece_bytes = std::size_t{1} << 18;  ///< default size of a piece [byte]
 
   [[nodiscard]] const std::string& path() const { return path_; }
   [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
 
  private:
-  /// After the last line that cannot go on in the next; 0 if there is none.
+  /// End of the last line that is not continued in the next; 0 if there is none.
   static std::size_t end_of_statements(std::string_view text) {
     while (!text.empty()) {
       const std::size_t end = text.rfind('\n') + 1;
@@ -126,25 +125,25 @@ class StatementFile {
   std::ifstream file_;
 };
 
-/// Gives tinyobjloader a text a statement at a time, so that every check and error knows the line it is about.
+/// Stream buffer that feeds tinyobjloader statement by statement, so that every check and error knows its line.
 class StatementBuffer : public std::streambuf {
  public:
-  /// Whole statements of a file, and how many lines stand before them.
+  /// `text` of whole statements of a file, behind `lines_before` lines.
   StatementBuffer(std::string path, std::string text, std::size_t lines_before)
       : path_(std::move(path)), text_(std::move(text)), lines_before_(lines_before), lines_(lines_before) {}
 
  protected:
-  /// Sets what tinyobjloader gets to read for the statement at hand, which is nothing at first; throws if it cannot be right.
+  /// Sets `ready`, empty at first, to the text for tinyobjloader for the current statement. Throws a `FileError` if it is invalid.
   virtual void check(std::string& ready) = 0;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] std::size_t line() const { return line_; }                   ///< in which the statement at hand begins, from 1
-  [[nodiscard]] bool line_is_open() const { return open_; }                  ///< the last one, without an end
-  [[nodiscard]] const std::string& statement() const { return statement_; }  ///< with one blank after the keyword
+  [[nodiscard]] std::size_t line() const { return line_; }                   ///< first line of the current statement, from 1
+  [[nodiscard]] bool line_is_open() const { return open_; }                  ///< true for a last line without end
+  [[nodiscard]] const std::string& statement() const { return statement_; }  ///< current statement, with one blank after the keyword
   [[nodiscard]] std::string_view keyword() const { return std::string_view(statement_).substr(0, statement_.find(' ')); }
   [[nodiscard]] std::string_view rest() const { return trimmed(std::string_view(statement_).substr(keyword().size())); }
 
-  /// The words after the keyword.
+  /// Words after the keyword.
   [[nodiscard]] const std::vector<std::string_view>& words() {
     words_.clear();
     for (std::string_view left = rest(); !left.empty(); left = trimmed(left.substr(words_.back().size())))
@@ -158,15 +157,15 @@ class StatementBuffer : public std::streambuf {
     if (!fulfilled) fail_here(quoted() + ": expected " + expected);
   }
 
-  /// Back to the beginning of the text.
+  /// Returns to the beginning of the text.
   void rewind() noexcept { at_ = 0, lines_ = lines_before_; }
 
-  /// Goes to the next statement that is not empty; false at the end of the text.
+  /// Advances to the next statement that is not empty; false at the end of the text.
   bool next_statement() {
     do {
       if (!take_statement()) return false;
     } while (statement_.empty() || statement_.starts_with('#'));
-    if (statement_.find('#') != statement_.npos && !keyword().ends_with("mtl"))  // names may have this sign, as in `usemtl Material #25`
+    if (statement_.find('#') != statement_.npos && !keyword().ends_with("mtl"))  // names may contain it, as in `usemtl Material #25`
       statement_.resize(std::min(statement_.find(" #"), statement_.size()));
     const std::string_view word = keyword(), after = rest();
     if (statement_.size() != word.size() + (after.empty() ? 0 : 1) + after.size())
@@ -184,7 +183,7 @@ class StatementBuffer : public std::streambuf {
     return traits_type::to_int_type(ready_.front());
   }
 
-  /// Joins the lines of which each but the last ends with a backslash, which tinyobjloader does not know. False at the end of the text.
+  /// Joins lines continued by a backslash, which tinyobjloader does not know. False at the end of the text.
   bool take_statement() {
     joined_.clear();
     line_ = lines_ + 1;
@@ -209,7 +208,7 @@ class StatementBuffer : public std::streambuf {
     open_ = end == text_.npos;
     at_ = open_ ? text_.size() : end + 1;
     const std::size_t after = open_ ? text_.size() : end;
-    if (++lines_ == 1 && text_.starts_with("\xEF\xBB\xBF")) begin += 3;  // the mark that some editors put before UTF-8
+    if (++lines_ == 1 && text_.starts_with("\xEF\xBB\xBF")) begin += 3;  // byte order mark of UTF-8
     for (std::size_t i = begin; i < after; ++i) {
       char& c = text_[i];
       if (static_cast<unsigned char>(c) >= ' ') continue;
@@ -222,7 +221,7 @@ class StatementBuffer : public std::streambuf {
   std::string path_, text_;
   std::string joined_, statement_, ready_;
   std::vector<std::string_view> words_;
-  std::size_t lines_before_, lines_, line_ = 0, at_ = 0;  // `at_`: where the next line begins in the text
+  std::size_t lines_before_, lines_, line_ = 0, at_ = 0;  // `at_`: begin of the next line in the text
   bool open_ = false;
 };
 
@@ -232,7 +231,7 @@ class MtlReader : private StatementBuffer {
 
   [[nodiscard]] MaterialLibrary read() {
     std::istream stream(this);
-    stream.exceptions(std::ios::badbit);  // so that those thrown while it reads pass through
+    stream.exceptions(std::ios::badbit);  // lets exceptions pass that are thrown while reading
     std::map<std::string, int> ignored_numbers;
     std::vector<tinyobj::material_t> found;
     tinyobj::LoadMtl(&ignored_numbers, &found, &stream, nullptr, nullptr);
@@ -244,7 +243,7 @@ class MtlReader : private StatementBuffer {
 
  private:
   void check(std::string& ready) override {
-    // tinyobjloader drops what stands before the first name, and its own exponent is 1.
+    // tinyobjloader drops keys before the first name, and its default exponent is 1
     static const std::string exponent = "\nNs " + pulsecast::detail::to_text(Material{}.specular_exponent) + "\n";
     const bool is_first = !std::exchange(begun_, true);
     if (keyword() == "newmtl") current_ = rest();
@@ -267,9 +266,9 @@ class MtlReader : private StatementBuffer {
     if (keyword() == "helios_reflectance") require(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
     if (keyword() == "helios_classification") require(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
     if (is_first) ready = "newmtl default" + exponent;
-    // A texture would make tinyobjloader change the colour, in some orders.
+    // with textures, tinyobjloader would change the colour, depending on the order
     if (is_colour || keyword() == "Ns" || keyword().starts_with("helios_")) ready += statement();
-    // A single number stands for red, green and blue. Source: MTL specification, Wavefront 1995.
+    // a single number stands for red, green and blue. Source: MTL specification, Wavefront 1995.
     if (is_colour && is_one) ready.append(" ").append(given[0]).append(" ").append(given[0]);
   }
 
@@ -321,7 +320,7 @@ class MtlReader : private StatementBuffer {
 
   const SpectralLibrary& spectra_;
   bool begun_ = false;
-  std::string current_ = "default";                                   // material
+  std::string current_ = "default";                                   // name of the current material
   std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // of each material and keyword
 };
 

@@ -36,40 +36,41 @@
 
 namespace pulsecast::io {
 
-/// The axis of a file that points up.
+/// Vertical axis of a file.
 enum class UpAxis : std::uint8_t {
-  z,  ///< taken as it is
+  z,  ///< coordinates unchanged
   y,  ///< (x, y, z) becomes (x, -z, y)
 };
 
+/// Settings for OBJ files.
 struct ObjSettings {
-  UpAxis up = UpAxis::z;
-  SpectralLibrary spectra{};  ///< what `helios_spectra` in an MTL file may name
+  UpAxis up = UpAxis::z;      ///< vertical axis of the file
+  SpectralLibrary spectra{};  ///< spectra for `helios_spectra` in MTL files
 };
 
-/// What an OBJ file holds, all its objects and groups together.
+/// Content of an OBJ file, all objects and groups together.
 struct ObjModel {
-  MeshData mesh;                      ///< in the units of the file, which should be metres; no triangle is without area
-  std::vector<Material> materials;    ///< those that triangles have, in order of first use
-  std::vector<std::string> warnings;  ///< what was odd, but could be read
+  MeshData mesh;                      ///< in units of the file, which should be metres; without triangles of zero area
+  std::vector<Material> materials;    ///< materials of triangles, in order of first use
+  std::vector<std::string> warnings;  ///< oddities that could still be read
 };
 
-/// Reads an OBJ file and the MTL files that it names. Polygons are cut into triangles, also concave ones. There is a warning if no face has
-/// an area, or if an MTL file is not there: what that would have described is `undescribed`. Throws a `FileError` with path and line at the
-/// first thing that cannot be right. Up to so many threads read; 0 stands for as many as the machine runs at once. Not more than some
-/// megabytes of the file are held. Limits: faces refer to vertices above them and have at most 4096 corners; coordinates stay within 1e12,
-/// where double resolves 0.1 mm, and are right to some units in the last place.
+/// Reads an OBJ file and its MTL files. Polygons, concave ones included, are triangulated. Warns if no face has an area, or an MTL file is
+/// missing; its materials become `undescribed`. Uses up to `threads` threads, 0 as in `thread_count`, and holds some megabytes of the file
+/// at most. Throws a `FileError` with path and line at the first error.
+/// Limits: faces refer to vertices above them and have at most 4096 corners; coordinates stay within 1e12, where a double resolves 0.1 mm,
+/// and are accurate to some units in the last place.
 [[nodiscard]] ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings = {}, unsigned threads = 0);
 
 namespace detail {
 
-inline constexpr std::size_t max_polygon_corners = 4096;  ///< corners; cutting takes time with their square
+inline constexpr std::size_t max_polygon_corners = 4096;  ///< upper limit; triangulation takes quadratic time
 
-/// Cuts a polygon into triangles by clipping ears; a convex one becomes the fan about its first corner. Gives their corners' places in
-/// the polygon, three each; empty if the outline crosses itself. Source: Meisters 1975, every simple polygon has two ears.
-/// tinyobjloader 2.0 rc10 would cut them too, but loses parts of concave ones away from the origin.
+/// Triangulates a polygon by ear clipping; a convex one becomes the fan about its first corner. Returns corner indices, three a triangle;
+/// empty if the outline crosses itself. Source: Meisters 1975, every simple polygon has two ears.
+/// tinyobjloader 2.0 rc10 triangulates, too, but loses parts of concave polygons away from the origin.
 [[nodiscard]] inline std::vector<std::array<std::size_t, 3>> triangulated(const std::vector<Vec3>& corners) {
-  // Seen along the axis nearest to the normal, so that the outline runs counter-clockwise. Source: Newell, in Sutherland et al. 1974.
+  // projection along the axis nearest to the normal, counter-clockwise. Source: Newell, in Sutherland et al. 1974.
   Vec3 normal{};
   for (std::size_t i = 0; i < corners.size(); ++i) normal += cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
   int axis = 2;
@@ -81,7 +82,7 @@ inline constexpr std::size_t max_polygon_corners = 4096;  ///< corners; cutting 
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     flat.push_back(normal[axis] < 0 ? Vec2{p[v], p[u]} : Vec2{p[u], p[v]});
   }
-  const auto left = [&](std::size_t a, std::size_t b, std::size_t c) {  // positive if the way from a over b to c turns left
+  const auto left = [&](std::size_t a, std::size_t b, std::size_t c) {  // positive if the path from a over b to c turns left
     const Vec2 ab = flat[b] - flat[a], ac = flat[c] - flat[a];
     return ab.x * ac.y - ab.y * ac.x;
   };
@@ -113,7 +114,7 @@ inline constexpr std::size_t max_polygon_corners = 4096;  ///< corners; cutting 
       i %= ring.size();
       const auto [before, after] = neighbours(i);
       triangles.push_back({before, ring[i], after});
-    } else {  // what is left may be folded flat
+    } else {  // the rest may be folded flat
       for (i = 0; i < ring.size() && !is_straight(i);) ++i;
       if (i == ring.size()) return {};
     }
@@ -123,10 +124,10 @@ inline constexpr std::size_t max_polygon_corners = 4096;  ///< corners; cutting 
   return triangles;
 }
 
-/// What the statements in a stretch of an OBJ file say, as far as that does not depend on those before it.
+/// Statements of part of an OBJ file, evaluated as far as they do not depend on earlier parts.
 class ObjPiece : private StatementBuffer {
  public:
-  /// Name of a material, the line of its `usemtl`, and its number, once a triangle needs it.
+  /// Name of a material, line of its `usemtl`, and number once a triangle needs it.
   struct Use {
     std::string name = "default";
     std::size_t line = 0;
@@ -140,13 +141,13 @@ class ObjPiece : private StatementBuffer {
     std::vector<std::string> names;
   };
 
-  /// What went wrong first, and in which line.
+  /// First error and its line.
   struct Failure {
     std::size_t line = std::numeric_limits<std::size_t>::max();
     std::exception_ptr error;
   };
 
-  /// About some line.
+  /// Text about a line.
   struct Note {
     std::size_t line;
     std::string text;
@@ -155,7 +156,7 @@ class ObjPiece : private StatementBuffer {
   ObjPiece(const std::string& path, std::string text, std::size_t lines_before, UpAxis up)
       : StatementBuffer(path, std::move(text), lines_before), up_(up) {}
 
-  /// Reads as far as nothing is wrong.
+  /// Reads up to the first error.
   void read() {
     tinyobj::callback_t callbacks;
     callbacks.vertex_cb = [](void* self, double x, double y, double z, double) { static_cast<ObjPiece*>(self)->vertex({x, y, z}); };
@@ -168,14 +169,14 @@ class ObjPiece : private StatementBuffer {
     };
     try {
       std::istream stream(this);
-      stream.exceptions(std::ios::badbit);  // so that those thrown while it reads pass through
+      stream.exceptions(std::ios::badbit);  // lets exceptions pass that are thrown while reading
       tinyobj::LoadObjWithCallback(stream, callbacks, this);
     } catch (...) {
       failure = {line(), std::current_exception()};
     }
   }
 
-  /// Cuts the faces into triangles, as far as nothing is wrong. `all` has the vertices of this piece, and those before it, `before` many.
+  /// Triangulates the faces up to the first error. `all` has the vertices of this piece and the `before` vertices of earlier ones.
   void triangulate(std::span<const Vec3> all, std::size_t before) {
     triangles.reserve(faces_.size()), triangle_uses.reserve(faces_.size());
     std::span<const int> rest = corners_;
@@ -195,24 +196,24 @@ class ObjPiece : private StatementBuffer {
   }
 
   std::vector<Vec3> vertices;
-  std::vector<Use> uses = std::vector<Use>(1);  ///< the first is the one in force before
+  std::vector<Use> uses = std::vector<Use>(1);  ///< the first is in force from earlier pieces
   std::vector<Libraries> libraries;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> triangle_uses;  ///< of each triangle: a number of `uses`
+  std::vector<std::uint32_t> triangle_uses;  ///< index into `uses` for each triangle
   std::vector<Note> crossings;               ///< polygons whose outline crosses itself
   std::optional<Note> first_unknown, first_flat;
   std::size_t unknown = 0, flat = 0;
-  std::size_t open_line = 0;  ///< of a last statement without an end; 0 if there is none
+  std::size_t open_line = 0;  ///< line of a last statement without end; 0 if there is none
   Failure failure;
 
  private:
-  /// A polygon.
+  /// Polygon of a face.
   struct Face {
     std::size_t line;
-    std::uint32_t corners, above, use;  ///< how many corners, and how many vertices of this piece stand above it
+    std::uint32_t corners, above, use;  ///< number of corners; vertices of this piece above it; index into `uses`
   };
 
-  /// Statements that say nothing about surfaces, of those that the OBJ specification (Wavefront 1995) knows.
+  /// Statements of the OBJ specification (Wavefront 1995) that do not concern surfaces.
   static constexpr std::array<std::string_view, 15> ignored{"vn", "vt", "vp",     "vw",     "o",   "g",          "s",        "l",
                                                             "p",  "mg", "usemap", "maplib", "lod", "shadow_obj", "trace_obj"};
 
@@ -231,7 +232,7 @@ class ObjPiece : private StatementBuffer {
       uses.push_back({"default", line(), std::nullopt});
       return;
     } else if (keyword() != "usemtl") {
-      if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader would read the first of several only
+      if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader would read only the first of several
         libraries.push_back({line(), quoted(), std::string(rest()), {given.begin(), given.end()}});
       } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
         if (unknown++ == 0) first_unknown = {line(), quoted()};
@@ -242,7 +243,7 @@ class ObjPiece : private StatementBuffer {
     ready = statement();
   }
 
-  /// Notes a face without area.
+  /// Counts a face without area.
   void add_flat(std::size_t line) {
     ++flat;
     if (!first_flat || line < first_flat->line) first_flat = {line, {}};
@@ -270,7 +271,7 @@ class ObjPiece : private StatementBuffer {
                       static_cast<std::uint32_t>(uses.size() - 1)});
   }
 
-  /// The face in a line names a vertex that is not there.
+  /// Records that a face refers to a missing vertex.
   void reject(std::size_t face_line, int corner, std::int64_t count) {
     try {
       rewind();
@@ -282,7 +283,7 @@ class ObjPiece : private StatementBuffer {
     }
   }
 
-  /// Cuts the polygon at hand.
+  /// Triangulates the current polygon.
   void cut(const Face& face) {
     if (numbers_.size() == 3) return triangle(face, 0, 1, 2);
     const auto pieces = triangulated(positions_);
@@ -304,13 +305,13 @@ class ObjPiece : private StatementBuffer {
 
   UpAxis up_;
   std::vector<Face> faces_;
-  std::vector<int> corners_;            // of all faces, as the file numbers them
-  std::vector<std::uint32_t> numbers_;  // of the face at hand
+  std::vector<int> corners_;            // of all faces, as numbered in the file
+  std::vector<std::uint32_t> numbers_;  // of the current face
   std::vector<Vec3> positions_;
 };
 
-/// Reads a file in windows of some pieces, each of which may be read on a thread of its own; so is each cut into triangles, once the
-/// vertices before it are known. What comes of them is put together in the order of the file.
+/// Reader of a file in windows of some pieces. Pieces are read in parallel, and triangulated in parallel once the vertices before them are
+/// known; results are joined in the order of the file.
 class ObjReader {
  public:
   ObjReader(const std::filesystem::path& path, const ObjSettings& settings, unsigned threads,
@@ -334,7 +335,7 @@ class ObjReader {
   using Note = ObjPiece::Note;
   using Use = ObjPiece::Use;
 
-  /// False at the end of the file.
+  /// Reads the next window; false at the end of the file.
   bool read_window() {
     std::vector<std::unique_ptr<ObjPiece>> pieces;
     while (pieces.size() < std::size_t{4} * threads_) {
@@ -346,7 +347,7 @@ class ObjReader {
     }
     for_each_index(pieces.size(), threads_, [&](std::size_t i) { pieces[i]->read(); });
     std::vector<Vec3>& vertices = model_.mesh.vertices;
-    std::vector<std::size_t> before;  // vertices
+    std::vector<std::size_t> before;  // number of vertices before each piece
     for (const auto& piece : pieces) {
       before.push_back(vertices.size());
       vertices.insert(vertices.end(), piece->vertices.begin(), piece->vertices.end());
@@ -381,7 +382,7 @@ class ObjReader {
     open_line_ = std::max(open_line_, piece.open_line);
   }
 
-  /// Number of a material in use; names get theirs when a triangle first needs them.
+  /// Number of a material in use, assigned when a triangle first needs it.
   [[nodiscard]] std::uint32_t material(Use& use) {
     if (!use.number) {
       use.number = numbers_.try_emplace(use.name, static_cast<std::uint32_t>(numbers_.size())).first->second;
@@ -390,7 +391,7 @@ class ObjReader {
     return *use.number;
   }
 
-  /// `mtllib` names one file, whose name may have blanks, or several.
+  /// Reads the files of `mtllib`: one file, whose name may have blanks, or several.
   void libraries(const ObjPiece::Libraries& statement) {
     std::error_code ignored_error;
     if (std::filesystem::exists(library_path(statement.rest), ignored_error)) return library(statement.rest, statement);
@@ -409,7 +410,7 @@ class ObjReader {
       warn(statement.line, statement.quoted + ": expected an MTL file at " + path.string() + ", but there is none");
       return;
     }
-    if (!read_.insert(path.string()).second) return;
+    if (!read_.insert(path.string()).second) return;  ///< the first of equal names counts
     MaterialLibrary more = read_mtl(path, settings_.spectra);
     library_.merge(more.materials);  // of one name, the first counts
     model_.warnings.insert(model_.warnings.end(), more.warnings.begin(), more.warnings.end());
@@ -432,13 +433,13 @@ class ObjReader {
   std::filesystem::path folder_;
   ObjSettings settings_;
   unsigned threads_;
-  std::size_t piece_bytes_, lines_ = 0;  // `lines_`: before what is read next
+  std::size_t piece_bytes_, lines_ = 0;  // `lines_`: number of lines read
   ObjModel model_;
   std::map<std::string, Material, std::less<>> library_;
-  std::set<std::string> read_;                    // MTL files
+  std::set<std::string> read_;                    // paths of MTL files
   Use use_;                                       // in force
-  std::vector<Use> uses_;                         // that triangles have
-  std::map<std::string, std::uint32_t> numbers_;  // of `uses_`, by name
+  std::vector<Use> uses_;                         // in use by triangles
+  std::map<std::string, std::uint32_t> numbers_;  // indices into `uses_` by name
   std::optional<Note> first_unknown_, first_flat_;
   std::size_t unknown_ = 0, flat_ = 0;
   std::size_t open_line_ = 0;

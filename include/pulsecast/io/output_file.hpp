@@ -25,43 +25,42 @@
 
 namespace pulsecast::io {
 
-/// Locks an open file until it is closed, however the program ends; false if it is locked already. True without a lock where the file
-/// system has none.
+/// Locks an open file exclusively until it is closed or the program ends; false if locked already. True where the file system has no locks.
 [[nodiscard]] inline bool lock_alone(int file) noexcept {
   while (::flock(file, LOCK_EX | LOCK_NB) != 0)
     if (errno != EINTR) return errno != EWOULDBLOCK;
   return true;
 }
 
-/// Whether a name still leads to an open file.
+/// True if a path still refers to an open file.
 [[nodiscard]] inline bool stands_at(int file, const std::filesystem::path& path) noexcept {
   struct stat open {};
   struct stat named {};
   return ::fstat(file, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
-/// Writes an open file to its disk; true where there is nothing to write, or no disk.
+/// Flushes an open file to its disk; true where there is nothing to flush, or no disk.
 [[nodiscard]] inline bool sync_to_disk(int file) noexcept {
   struct stat status {};
   return (::fstat(file, &status) == 0 && status.st_size == 0) || ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
 }
 
-/// What turns the bytes of a file into others on their way to it, as a compressor does.
+/// Encoder of the bytes of a file on their way to it, as a compressor.
 class OutputEncoder {
  public:
   virtual ~OutputEncoder() = default;
-  /// Appends to `out` what becomes of `bytes`; `last` is said once, with the last of them, which may be none.
+  /// Appends the encoded `bytes` to `out`; `last` is true once, with the last bytes, which may be none.
   virtual void encode(std::span<const std::byte> bytes, bool last, std::vector<std::byte>& out) = 0;
 };
 
-/// A file in the making: written beside its final name as `NAME.part`, and renamed by `commit()` when it is whole. Until then, and if the
-/// program is killed, nothing stands under the final name but what stood there before. Destroyed uncommitted, it leaves nothing behind.
-/// Every failure is a `FileError` that names the final path; after one, nothing more can be written or committed.
-/// With an encoder, what is written passes through it, a megabyte at a time, and cannot be read again or overwritten.
-/// The temporary file is locked: a second `OutputFile` of the same name, in this program or in another, is refused. Where the file system
-/// has no locks, the second takes the name, and the first finds that out when it commits.
-/// The content is on the disk before the file has its final name, so that a power cut leaves no file that only looks whole.
-/// Limits: the name may be lost in a power cut as long as the folder was not written to the disk.
+/// File under construction: written beside its final name as `NAME.part`, and renamed by `commit()` when complete. Until then, or if the
+/// program is killed, the final name keeps its former content. Destruction without `commit()` leaves nothing behind.
+/// Throws a `FileError` that names the final path at every failure; afterwards, nothing can be written or committed.
+/// With an encoder, bytes pass through it, a megabyte at a time, and cannot be read again or overwritten.
+/// The temporary file is locked: a second `OutputFile` of the same name, in any program, is refused. Where the file system has no locks,
+/// the second takes the name, and the first fails at its commit.
+/// The content is on the disk before the renaming, so that a power cut leaves no incomplete file under the final name.
+/// Limits: a power cut may lose the name until the folder itself is written to the disk.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path path, std::unique_ptr<OutputEncoder> encoder = nullptr)
@@ -78,12 +77,11 @@ class OutputFile {
       fail("cannot be created", error, "memory for it");
     }
     file_ = {file, Discard{temporary}};
-    std::setvbuf(file, nullptr, _IONBF, 0);  // what is buffered is buffered here, so that every error shows where it happens
+    std::setvbuf(file, nullptr, _IONBF, 0);  // buffered here instead, so that every error shows where it happens
     buffer_.reserve(capacity);
   }
 
-  /// A piece of a file that others put together: what is written is appended to `piece`, and `commit()` says that it is all. The file
-  /// itself is not touched; its name is for messages.
+  /// Piece of a file that others assemble: bytes are appended to `piece`, and `commit()` ends it. Its name is only for messages.
   OutputFile(std::filesystem::path path, std::vector<std::byte>& piece) : path_(std::move(path)), piece_(&piece) {}
 
   void write(std::span<const std::byte> bytes) {
@@ -103,14 +101,14 @@ class OutputFile {
 
   void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
 
-  /// Puts other bytes in the place of some that were written before; writing then goes on at the end.
+  /// Replaces bytes written before; writing then continues at the end.
   void overwrite(std::uint64_t position, std::span<const std::byte> bytes) {
     go_back(position, bytes.size());
     put(bytes);
     seek(0, SEEK_END);
   }
 
-  /// Reads bytes that were written before; writing then goes on at the end.
+  /// Reads bytes written before; writing then continues at the end.
   void read(std::uint64_t position, std::span<std::byte> bytes) {
     go_back(position, bytes.size());
     errno = 0;
@@ -118,7 +116,7 @@ class OutputFile {
     seek(0, SEEK_END);
   }
 
-  /// Goes on where others have written to, in the temporary file; without an encoder.
+  /// Continues behind bytes that others wrote to the temporary file; without an encoder.
   void continue_at(std::uint64_t position) {
     PULSECAST_ASSERT(!encoder_);
     require_open();
@@ -127,16 +125,16 @@ class OutputFile {
     seek(static_cast<long>(position), SEEK_SET);
   }
 
-  /// Where it stands until `commit()`.
+  /// Name until `commit()`.
   [[nodiscard]] static std::filesystem::path temporary_name(const std::filesystem::path& path) { return path.string() + ".part"; }
 
-  /// How many bytes were written so far, before any encoding: where the next ones will stand.
+  /// Number of bytes written, before any encoding: offset of the next one.
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
 
-  /// The final name.
+  /// Final name.
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
-  /// Makes the file stand under its final name, in place of any that stood there.
+  /// Completes the file under its final name, replacing any file of that name.
   void commit() {
     if (std::exchange(piece_, nullptr) != nullptr) return;
     require_open();
@@ -156,10 +154,10 @@ class OutputFile {
     }
     if (error)
       fail("cannot be completed", error.value(), "room for " + std::to_string(position_) + " bytes and a name that may be replaced");
-    std::fclose(file_.release());  // the lock ends after the renaming; closing has nothing to tell that syncing has not
+    std::fclose(file_.release());  // the lock ends after the renaming; closing reports no error that syncing has not
   }
 
-  /// Gives the file up and removes what was written; whoever finds half-way that the rest cannot be written calls this.
+  /// Abandons the file and removes the bytes written: for writers that cannot write the rest.
   void discard() noexcept {
     file_.reset();
     piece_ = nullptr;
@@ -174,11 +172,11 @@ class OutputFile {
     }
   };
 
-  static constexpr std::size_t capacity = std::size_t{1} << 20;  // bytes handed over at a time: large enough that calls cost nothing
+  static constexpr std::size_t capacity = std::size_t{1} << 20;  // bytes passed on at a time, so many that the cost of calls is negligible
 
   [[nodiscard]] static std::error_code system_error(int number) { return {number != 0 ? number : EIO, std::generic_category()}; }
 
-  /// Opens the temporary file for this one alone. What a killed program has left is removed, not emptied: processes of it may still write.
+  /// Opens the temporary file exclusively. Remains of a killed program are removed, not truncated: its processes may still write to them.
   [[nodiscard]] int open_alone(const std::filesystem::path& temporary) {
     for (int tries = 0; tries < 100; ++tries) {
       int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

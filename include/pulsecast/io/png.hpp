@@ -25,20 +25,21 @@
 
 namespace pulsecast::io {
 
-/// What the colour of a point tells.
+/// Meaning of a point's colour.
 enum class ColourBy : std::uint8_t { height, intensity, object, classification, return_number };
 
+/// Settings of a picture.
 struct ImageSettings {
-  int width = 1600;                    ///< [px]
-  int height = 900;                    ///< [px]
-  double azimuth = radians(30);        ///< where the view goes, clockwise from north [rad]
-  double elevation = radians(30);      ///< how steeply it goes down; at a quarter turn and azimuth 0 it is a map with north up [rad]
-  double field_of_view = radians(30);  ///< across the scene, about; 0 for parallel rays [rad]
-  std::optional<Vec3> eye{};           ///< where the camera stands, its field of view across the width; if empty, so that all is seen [m]
-  ColourBy colour_by = ColourBy::height;
-  double point_size = 0;  ///< diameter in the middle of the scene; 0 for what closes the gaps [px]
-  Srgb background{13, 17, 23};
-  std::size_t points_max = 3'000'000;  ///< of more, every k-th is shown
+  int width = 1600;                ///< width of the picture [px]
+  int height = 900;                ///< height of the picture [px]
+  double azimuth = radians(30);    ///< viewing direction, clockwise from north [rad]
+  double elevation = radians(30);  ///< viewing direction below the horizon; a quarter turn with azimuth 0 gives a map with north up [rad]
+  double field_of_view = radians(30);     ///< angle across the scene, approximate; 0 for a parallel projection [rad]
+  std::optional<Vec3> eye{};              ///< position of the camera, field of view across the width; if empty, such that all is seen [m]
+  ColourBy colour_by = ColourBy::height;  ///< meaning of the colours
+  double point_size = 0;                  ///< diameter in the middle of the scene; 0 to close the gaps [px]
+  Srgb background{13, 17, 23};            ///< colour of the background
+  std::size_t points_max = 3'000'000;     ///< maximum to draw; of more, every k-th
 
   void validate() const {
     require_within("ImageSettings::width", width, 1, 4096, "px");
@@ -54,15 +55,15 @@ struct ImageSettings {
 
 namespace detail {
 
-/// A point as a picture needs it.
+/// Point of a picture.
 struct ImagePoint {
-  float x, y, z;  ///< from an origin near by [m]
-  float value;    ///< that decides its colour
+  float x, y, z;  ///< relative to a nearby origin [m]
+  float value;    ///< quantity shown by the colour
 
   [[nodiscard]] Vec3 position() const noexcept { return {x, y, z}; }
 };
 
-/// The values that leave this share of all below, and above. Of many values, a sample answers.
+/// Percentiles that leave `share` of all values below, and above; those of a sample for many points.
 [[nodiscard]] std::pair<double, double> percentiles(std::span<const ImagePoint> points, double share, const auto& value) {
   constexpr std::size_t sample = 200'000;
   std::vector<double> values;
@@ -77,7 +78,7 @@ struct ImagePoint {
   return {at(share), at(1 - share)};
 }
 
-/// Looks at points: so that all but outliers fill a picture, or from a given place.
+/// Camera, framed so that the picture is full except for outliers, or at a given position.
 class Camera {
  public:
   Camera(const ImageSettings& s, std::span<const ImagePoint> points)
@@ -88,16 +89,16 @@ class Camera {
     s.eye ? stand(s, *s.eye) : frame(s, points);
   }
 
-  /// Column and row, from the upper left corner of the picture [px], and depth along the view [m]. NaN if it is behind the camera.
+  /// Column and row from the upper left corner of the picture [px], and depth along the view [m]. NaN behind the camera.
   [[nodiscard]] Vec3 pixel(const ImagePoint& p) const {
     const Vec3 v = seen(p);
     return {shift_.x + scale_ * v.x, shift_.y - scale_ * v.y, v.z};
   }
 
-  /// How large a metre across the view is at a depth [px/m].
+  /// Size of a metre across the view at a depth [px/m].
   [[nodiscard]] double scale(double depth) const { return parallel_ ? scale_ : scale_ * distance_ / depth; }
 
-  /// How much larger things are at a depth than in the middle of the scene.
+  /// Magnification at a depth relative to the middle of the scene.
   [[nodiscard]] double magnification(double depth) const { return parallel_ ? 1 : distance_ / depth; }
 
  private:
@@ -108,18 +109,18 @@ class Camera {
     return {m * dot(v, right_), m * dot(v, up_), depth};
   }
 
-  /// From a place, as it is seen from there.
+  /// Places the camera at a given position.
   void stand(const ImageSettings& s, const Vec3& eye) {
-    distance_ = 10, near_ = 0.3;  // points are as large as set at this distance; nearer than that, they would fill the picture [m]
+    distance_ = 10, near_ = 0.3;  // distance of the set point size; nearer points would fill the picture [m]
     centre_ = eye + distance_ * forward_;
     scale_ = 0.5 * s.width / (distance_ * std::tan(0.5 * s.field_of_view));
     shift_ = {0.5 * s.width, 0.5 * s.height};
   }
 
-  /// From a place from where all but outliers fill the picture.
+  /// Places the camera so that the picture is full except for outliers.
   void frame(const ImageSettings& s, std::span<const ImagePoint> points) {
     constexpr double outliers = 0.001, margin = 0.95;
-    double radius = 1e-3;  // at least, for a scene of one point [m]
+    double radius = 1e-3;  // minimum, for a scene of one point [m]
     for (const Vec3& axis : {right_, forward_, up_}) {
       const auto [low, high] = percentiles(points, outliers, [&](const ImagePoint& p) { return dot(axis, p.position()); });
       centre_ += axis * (0.5 * (low + high));
@@ -138,8 +139,7 @@ class Camera {
   Vec2 shift_{};
 };
 
-/// Draws points as discs of which the nearest hides the rest, and lights them by the relief of their depth. Works at twice the
-/// resolution of the picture, so that edges are smooth.
+/// Canvas of points as discs, with depth buffer and shading by the relief of the depth; twice the picture's resolution, for smooth edges.
 class Canvas {
  public:
   Canvas(const ImageSettings& s, std::span<const ImagePoint> points) : settings_(s), points_(points), camera_(s, points) {
@@ -149,7 +149,7 @@ class Canvas {
     for (std::size_t i = 0; i < points.size(); ++i) draw(static_cast<std::uint32_t>(i), diameter);
   }
 
-  /// The picture, row by row from the top.
+  /// Pixels of the picture, row by row from the top.
   [[nodiscard]] std::vector<Srgb> picture() const {
     const std::vector<Colour> colours = point_colours();
     const Colour background = from_srgb(settings_.background);
@@ -170,16 +170,15 @@ class Canvas {
 
  private:
   static constexpr float nothing = std::numeric_limits<float>::infinity();
-  static constexpr double max_disc = 64;  // radius, in pixels of the canvas
+  static constexpr double max_disc = 64;  // radius of a disc, in pixels of the canvas
 
   [[nodiscard]] std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
-  /// The diameter at which discs in the middle of the scene just touch: the root of the area that the points take up, over their number
-  /// [px].
+  /// Diameter at which discs in the middle of the scene just touch: square root of the covered area per point [px].
   [[nodiscard]] double closing_diameter() const {
-    constexpr int cell = 4;  // small enough to follow an outline, large enough to be filled by what looks filled [px]
+    constexpr int cell = 4;  // small enough to follow an outline, large enough for a closed appearance [px]
     const int columns = settings_.width / cell + 1, rows = settings_.height / cell + 1;
     std::vector<bool> taken(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     std::size_t cells = 0, points = 0;
@@ -208,17 +207,17 @@ class Canvas {
       }
   }
 
-  /// The depth at a pixel, if there is something.
+  /// Depth at a pixel; empty without a point.
   [[nodiscard]] std::optional<double> depth(int x, int y) const {
     if (x < 0 || x >= width_ || y < 0 || y >= height_ || depth_[index(x, y)] == nothing) return std::nullopt;
     return depth_[index(x, y)];
   }
 
-  /// How bright a pixel is: by how its surface is turned to a light from the upper left, and darker where it lies behind what is around.
+  /// Brightness of a pixel: shading by a light from the upper left, darker where it lies behind its surroundings.
   /// Source: the idea of Luft, Colditz & Deussen 2006, unsharp masking of the depth buffer; amounts by eye.
   [[nodiscard]] double light(int x, int y) const {
     const double here = depth_[index(x, y)];
-    const double pixel = 0.5 / camera_.scale(here);  // of the canvas, at this depth [m]
+    const double pixel = 0.5 / camera_.scale(here);  // size of a canvas pixel at this depth [m]
     double relief = 0;
     constexpr std::array<int, 3> reaches{2, 6, 16};
     for (const int r : reaches)
@@ -267,13 +266,13 @@ class Canvas {
   Camera camera_;
   int width_ = 2 * settings_.width, height_ = 2 * settings_.height;
   std::vector<float> depth_;            // along the view [m]
-  std::vector<std::uint32_t> nearest_;  // number of the point
+  std::vector<std::uint32_t> nearest_;  // index of the point
 };
 
 }  // namespace detail
 
-/// A sink that draws a quick look of the cloud as a PNG. It frames the cloud itself, and keeps a bounded number of points. What is
-/// drawn depends on the echoes and the settings only. Points that are not finite are passed over; no points give an empty picture.
+/// Sink that draws a preview of the cloud as a PNG, with automatic framing and a bounded number of points. The picture depends on the
+/// echoes and the settings only. Points that are not finite are skipped; without points it is empty.
 class ImageWriter {
  public:
   explicit ImageWriter(std::filesystem::path path, const ImageSettings& settings = {})
@@ -291,7 +290,7 @@ class ImageWriter {
       }
   }
 
-  /// Draws the picture and writes it; before, there is no file.
+  /// Draws and writes the picture; the file does not exist before. Throws a `FileError`.
   void close() {
     ImageSettings settings = settings_;
     if (settings.eye) *settings.eye -= origin_;
@@ -316,7 +315,7 @@ class ImageWriter {
         return echo.classification;
       case ColourBy::return_number:
         return echo.number;
-      // the golden ratio sets consecutive numbers far apart; 0 is olive, as it often is the ground
+      // the golden ratio spreads the hues of consecutive numbers; 0 is olive, as it often is the ground
       case ColourBy::object:
         return static_cast<float>(std::fmod(0.3 + echo.object * (std::numbers::phi - 1), 1.0));
       case ColourBy::height:
@@ -325,7 +324,7 @@ class ImageWriter {
     return 0;
   }
 
-  /// Drops every other point, and from now on takes only half as many.
+  /// Drops every other point, and halves the share of points kept from now on.
   void thin() {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < points_.size(); i += 2) points_[kept++] = points_[i];
@@ -336,9 +335,9 @@ class ImageWriter {
   ImageSettings settings_;
   OutputFile file_;
   std::vector<detail::ImagePoint> points_;
-  Vec3 origin_{};            // of the points; the first of them [m]
-  std::uint64_t seen_ = 0;   // points so far
-  std::uint64_t every_ = 1;  // how many points stand for one that is kept
+  Vec3 origin_{};            // of the points: the first of them [m]
+  std::uint64_t seen_ = 0;   // number of points so far
+  std::uint64_t every_ = 1;  // number of points for each one kept
 };
 
 static_assert(EchoSink<ImageWriter>);

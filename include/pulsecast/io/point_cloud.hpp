@@ -28,28 +28,29 @@
 
 namespace pulsecast::io {
 
-/// Where the normals of voxels come from.
+/// Source of the normals of voxels.
 enum class VoxelNormals : std::uint8_t {
-  none,     ///< voxels have none
-  mean,     ///< the file: mean of the unit normals of the points inside
-  nearest,  ///< the file: that of the point nearest to the voxel's centre, of those that have one
-  fitted,   ///< the plane through the points inside with the least sum of squared distances; points up
+  none,     ///< no normals
+  mean,     ///< mean of the unit normals of the points inside, from the file
+  nearest,  ///< normal of the point nearest to the voxel's centre, of those that have one
+  fitted,   ///< normal of the least-squares plane through the points inside; points up
 };
 
-/// Where the lattice of voxels stands.
+/// Position of the lattice of voxels.
 enum class VoxelLattice : std::uint8_t {
-  at_cloud,      ///< begins at the least coordinates; along an axis along which the cloud has no extent, its voxels are centred on it
-  at_multiples,  ///< faces stand at whole multiples of the voxel's size, so that clouds beside each other share a lattice
+  at_cloud,      ///< begins at the least coordinates; along an axis without extent, voxels are centred on the cloud
+  at_multiples,  ///< faces at integer multiples of the voxel size, so that adjacent clouds share a lattice
 };
 
+/// Settings for voxels of a point cloud.
 struct PointCloudSettings {
   double voxel_size = 1;                              ///< edge of a voxel [m]
-  VoxelLattice lattice = VoxelLattice::at_cloud;      ///< where it stands
-  VoxelNormals normals = VoxelNormals::none;          ///< where they come from
-  std::optional<Vec3> default_normal = std::nullopt;  ///< for voxels that get none otherwise, of any length but 0
-  bool colours = false;                               ///< whether voxels get any
-  std::optional<double> colour_max = std::nullopt;    ///< that a channel may have; if not given, 65535 in LAS and 255 in text
-  PointColumns columns = {};                          ///< of text files
+  VoxelLattice lattice = VoxelLattice::at_cloud;      ///< position of the lattice
+  VoxelNormals normals = VoxelNormals::none;          ///< source of the normals
+  std::optional<Vec3> default_normal = std::nullopt;  ///< for voxels without a normal, of any length but 0
+  bool colours = false;                               ///< true to give voxels colours
+  std::optional<double> colour_max = std::nullopt;    ///< maximum of a colour channel; by default 65535 in LAS and 255 in text
+  PointColumns columns = {};                          ///< columns of text files
 
   void validate() const {
     require_positive("PointCloudSettings::voxel_size", voxel_size, "m");
@@ -61,31 +62,30 @@ struct PointCloudSettings {
   }
 };
 
-/// The voxels that points of a cloud stand in.
+/// Voxels occupied by the points of a cloud.
 struct PointCloud {
-  VoxelData voxels;                             ///< with normals, if any were asked for and there were some
-  std::vector<std::array<float, 3>> colours{};  ///< red, green and blue, from 0 to 1, of each voxel: root of the mean square; or none
-  std::uint64_t points = 0;                     ///< that were read
-  std::vector<std::string> warnings{};          ///< what was odd, but could be read
+  VoxelData voxels;                             ///< with normals, if requested and available
+  std::vector<std::array<float, 3>> colours{};  ///< red, green and blue from 0 to 1 for each voxel, as root mean square; or none
+  std::uint64_t points = 0;                     ///< number of points read
+  std::vector<std::string> warnings{};          ///< oddities that could still be read
 };
 
-/// Reads point clouds, each of which is text (see `TextPoints`) or LAS (see `LasPoints`) as it begins, and makes one grid of them all.
-/// Every file is read twice, first for the extent and then for the voxels, and never held: memory goes with the voxels, not the points.
+/// Reads point clouds, text (see `TextPoints`) or LAS (see `LasPoints`) as detected, into one grid of voxels. Every file is read twice,
+/// first for the extent, then for the voxels: memory depends on the voxels, not on the points.
 ///
-/// A voxel holds the points from its lesser faces on up to, but without, its greater ones; the last of a lattice at the cloud holds those
-/// on its greater faces, too. Planes are fitted where at least three points are not on one line. A voxel without a normal gets the
-/// default; if there is none, zero, with a warning: the voxel stays. Colours beyond the largest are an error.
-/// Throws a `FileError` with path and line or byte at the first thing that cannot be right.
-/// Limits: 2^32 voxels along each axis, 2^32 - 2 occupied.
+/// A voxel includes its lower faces and excludes its upper ones; with `at_cloud`, the last voxel includes its upper faces, too. Plane fits
+/// need at least three points not on one line. A voxel without a normal gets the default, or zero with a warning. Colours above the maximum
+/// are an error. Throws a `FileError` with path and line or byte at the first error. Limits: 2^32 voxels an axis, 2^32 - 2 occupied.
 [[nodiscard]] PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings = {});
 
+/// Reads a single point cloud.
 [[nodiscard]] inline PointCloud read_point_cloud(const std::filesystem::path& path, const PointCloudSettings& settings = {}) {
   return read_point_cloud(std::vector{path}, settings);
 }
 
 namespace detail {
 
-/// Calls a function with the reader that a file needs.
+/// Calls a function with the reader for the format of a file.
 template <class Function>
 void with_points(const std::filesystem::path& path, const PointCloudSettings& settings, Function function) {
   InputFile file(path, "a point cloud");
@@ -101,8 +101,8 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
   }
 }
 
-/// The normal of the plane with the least sum of squared distances to points, which points up; empty if they are fewer than three or on
-/// one line. Given are their number, the sum of their offsets from any place near by, and that of the products xx, xy, xz, yy, yz, zz.
+/// Normal of the least-squares plane through points, pointing up; empty for fewer than three points, or points on one line. Arguments are
+/// their number, the sum of their offsets from a nearby origin, and the sums of the products xx, xy, xz, yy, yz, zz.
 /// Source: Pearson 1901: the eigenvector of the covariance with the least eigenvalue.
 [[nodiscard]] inline std::optional<Vec3> plane_normal(double count, const Vec3& sum, const std::array<double, 6>& products) {
   if (count < 3) return std::nullopt;
@@ -112,7 +112,7 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
   const double size = about.trace();
   if (!(size > 0)) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver((about - offset * offset.transpose() / count) / size);
-  constexpr double rounding = 1e-13;  // some hundred times the spacing of doubles at 1: what is less says nothing
+  constexpr double rounding = 1e-13;  // some hundred times the spacing of doubles at 1: smaller eigenvalues are noise
   if (solver.info() != Eigen::Success || !(solver.eigenvalues()[1] > rounding)) return std::nullopt;
   const Eigen::Vector3d least = solver.eigenvectors().col(0);
   const Vec3 normal = normalize(Vec3{least.x(), least.y(), least.z()});
@@ -144,7 +144,7 @@ class PointCloudReader {
  private:
   using Cell = CellNumbers::Cell;
 
-  /// The first pass.
+  /// First pass: finds the extent, and the normals and colours available.
   void measure(const std::vector<std::filesystem::path>& paths) {
     const bool from_file = settings_.normals == VoxelNormals::mean || settings_.normals == VoxelNormals::nearest;
     normals_ = settings_.normals != VoxelNormals::none, colours_ = settings_.colours;
@@ -165,7 +165,7 @@ class PointCloudReader {
       });
   }
 
-  /// Lays the lattice along an axis.
+  /// Sets up the lattice along an axis.
   void lay(int axis, const std::filesystem::path& path) {
     const double edge = settings_.voxel_size, extent = bounds_.max[axis] - bounds_.min[axis];
     double cells = std::max(std::ceil(extent / edge), 1.0);
@@ -185,7 +185,7 @@ class PointCloudReader {
 
   [[nodiscard]] Vec3 corner() const noexcept { return origin_ + first_ * settings_.voxel_size; }
 
-  /// Refuses voxels that are small against the rounding of coordinates where they stand.
+  /// Throws a `FileError` for voxels that are small against the rounding of coordinates at their position.
   void require_room(const std::filesystem::path& path) const {
     const double edge = settings_.voxel_size, least = VoxelData::min_edge(corner());
     if (edge >= least) return;
@@ -195,7 +195,7 @@ class PointCloudReader {
                         pulsecast::detail::to_text(least) + " m");
   }
 
-  /// Enters a point, in the second pass.
+  /// Second pass: adds a point to its voxel.
   template <class Points>
   void add(const Points& points) {
     const Vec3 p = points.position();
@@ -258,7 +258,7 @@ class PointCloudReader {
   [[nodiscard]] std::optional<Vec3> normal_of(std::size_t voxel) const {
     if (!normals_) return std::nullopt;
     if (settings_.normals == VoxelNormals::fitted) return plane_normal(static_cast<double>(counts_[voxel]), sums_[voxel], products_[voxel]);
-    constexpr double rounding = 1e-12;  // of what is left where normals of one voxel oppose each other
+    constexpr double rounding = 1e-12;  // residue where normals of one voxel cancel
     if (!(length(sums_[voxel]) > rounding * static_cast<double>(counts_[voxel]))) return std::nullopt;
     return normalize(sums_[voxel]);
   }
@@ -295,17 +295,17 @@ class PointCloudReader {
 
   PointCloudSettings settings_;
   PointCloud cloud_;
-  bool normals_ = false, colours_ = false;  // whether the second pass gathers them
-  Box bounds_;                              // of the points
-  Vec3 origin_{}, first_{}, last_{};        // of the lattice [m], and its first and last cells from there
-  double brightest_ = 0;                    // channel in LAS files
+  bool normals_ = false, colours_ = false;  // true if gathered in the second pass
+  Box bounds_;                              // extent of the points
+  Vec3 origin_{}, first_{}, last_{};        // of the lattice [m]; its first and last cells relative to that
+  double brightest_ = 0;                    // largest channel in LAS files
   CellNumbers cells_;
-  // Of each voxel:
-  std::vector<std::uint64_t> counts_;            // points
-  std::vector<Vec3> sums_;                       // of normals, or of the points' offsets from the centre
-  std::vector<double> nearest_;                  // squared distance from the centre to the point whose normal is taken
-  std::vector<std::array<double, 6>> products_;  // of those offsets
-  std::vector<Vec3> squares_;                    // of colours
+  // for each voxel:
+  std::vector<std::uint64_t> counts_;            // number of points
+  std::vector<Vec3> sums_;                       // sum of normals, or of the points' offsets from the centre
+  std::vector<double> nearest_;                  // squared distance from the centre to the point with the normal in use
+  std::vector<std::array<double, 6>> products_;  // sums of products of the offsets
+  std::vector<Vec3> squares_;                    // sums of squared colours
 };
 
 }  // namespace detail

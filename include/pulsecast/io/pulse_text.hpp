@@ -12,23 +12,23 @@
 
 namespace pulsecast::io {
 
+/// Settings of a pulse file.
 struct PulseTextSettings {
-  double start_time = 0;  ///< what the clock shows at tick 0 [s]
+  double start_time = 0;  ///< clock time at tick 0 [s]
 
   void validate() const { require_finite("PulseTextSettings::start_time", start_time, "s"); }
 };
 
-/// Writes the pulses that were sent as text, with or without echoes, one a line, with these columns and a blank between them:
+/// Writes pulses as text, with or without echoes, one a line, in these columns, separated by blanks, without a header line:
 ///
 ///     ox oy oz dx dy dz time pulseIndex deviceIndex fate
 ///
-/// ox, oy, oz: where it left [m], 4 decimals; dx, dy, dz: its direction, unit, 9 decimals; time: when [ns], 4 decimals, exact to the last
-/// of them however large; pulseIndex: its slot, the number that points and waveforms have as fullwaveIndex; deviceIndex: its emitter, from
-/// 0; fate: the number of its `Fate`: 0 returned, 2 missed, 3 out of range, 4 below threshold, 5 absorbed. Pulses that the optic blocked
-/// (1) were never sent, and have no line. There is no head line.
-/// The first nine are the columns of HELIOS++ pulse files, so that what reads those reads these: time is in nanoseconds there, too, unlike
-/// the seconds of all other files; here pulseIndex counts from 0 and over all devices, and directions have more decimals.
-/// Only `close()` makes the file: see `OutputFile`.
+/// ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction, 9 decimals; time: departure [ns], 4 decimals, all exact; pulseIndex:
+/// slot, the fullwaveIndex of points and waveforms; deviceIndex: emitter, from 0; fate: number of its `Fate`: 0 returned, 2 missed, 3 out
+/// of range, 4 below threshold, 5 absorbed. Pulses blocked by the optic (1) were never sent, and have no line.
+/// The first nine are the columns of HELIOS++ pulse files, so that their readers work. As there, time is in nanoseconds, unlike the seconds
+/// of all other files; pulseIndex counts from 0 and over all devices, and directions have more decimals.
+/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class PulseTextWriter {
  public:
   explicit PulseTextWriter(std::filesystem::path path, const PulseTextSettings& settings = {})

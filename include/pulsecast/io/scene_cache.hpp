@@ -30,24 +30,23 @@
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/version.hpp>
 
-/// A built scene in one file, which is mapped into memory rather than read.
+/// Cache of a built scene: one memory-mapped file.
 ///
-/// A cache belongs to one build of the program on one machine: it holds arrays as they stand in memory, and says which version, shapes and
-/// element types it was written with. It is taken only if it is whole, by a checksum over all its bytes, and if it was made from the very
-/// bytes that its sources hold now. The checksum is there for accidents; what was forged is caught as far as a shape has a `is_consistent`.
-/// Limits: a file that is mapped must not be written to. Caches are only ever replaced as a whole, which does not touch a mapped one; but
-/// programs that start at the same time should not make the same cache.
+/// A cache belongs to one build of the program on one machine: it holds arrays in their memory layout, and records version, shapes and
+/// element types. It is accepted only if complete, by a checksum over all bytes, and made from the present bytes of its sources. The
+/// checksum guards against accidents; forgery is detected as far as a shape has `is_consistent`.
+/// Limits: a mapped file must not be written to. Caches are replaced as a whole, which leaves mapped ones intact; but programs that start
+/// at the same time should not make the same cache.
 namespace pulsecast::io {
 
-/// A geometry that can be kept in a cache. All it holds is named, in the same order for writing and reading, by one function; all its
-/// arrays are `SharedArray`, so that they can stay in the file:
+/// Geometry that can be kept in a cache. One function names all its members, in the same order for writing and reading. All its arrays are
+/// `SharedArray`, so that they can stay in the file:
 ///
 ///     explicit G(DeserializeTag) {}
 ///     template <class Archive> void archive(Archive& a) { a(member1_, member2_, ...); }
 ///
-/// The members may be `SharedArray` arrays, plain values without pointers, strings, vectors, and objects that have an `archive` themselves.
-/// Not required: `bool is_consistent() const`, which is asked after the filling whether every number in the arrays can be followed without
-/// leaving them.
+/// Members may be `SharedArray` arrays, plain values without pointers, strings, vectors, and objects with an `archive` of their own.
+/// Not required: `bool is_consistent() const`, called after the filling: true if all indices in the arrays are in bounds.
 template <class G>
 concept Archived = Geometry<G> && detail::Restorable<G>;
 
@@ -56,54 +55,54 @@ template <Archived... Shapes>
 void require_archived(std::span<const Part<Shapes...>> parts);
 }  // namespace detail
 
-/// A scene of parts, all of whose shapes are `Archived`: `Scene` and `MovingScene`.
+/// Scene of parts whose shapes are all `Archived`: `Scene` and `MovingScene`.
 template <class S>
 concept CacheableScene = requires(const S& scene) {
   detail::require_archived(std::span<const typename S::Part>(scene.parts()));
 };
 
-/// What a scene is made from.
+/// Inputs of a scene.
 struct SceneSources {
-  std::vector<std::filesystem::path> files{};  ///< all that the build reads; of a folder all files in it, their names included
-  std::string settings{};                      ///< whatever else the scene depends on, in words
+  std::vector<std::filesystem::path> files{};  ///< all files that the build reads; a folder counts with all its files and their names
+  std::string settings{};                      ///< all else that the scene depends on, as text
 };
 
-/// The key of sources as they are now. Where the files are does not matter, their order does. Throws a `FileError` if one cannot be read.
-/// `content` gives the fingerprint of each: whoever has read them already spares reading them again.
+/// Key of the present sources. The order of the files matters, their paths do not. `content` gives the fingerprint of each, so that files
+/// already read need not be read again. Throws a `FileError` if one cannot be read.
 [[nodiscard]] Fingerprint scene_key(const SceneSources& sources,
                                     const std::function<Fingerprint(const std::filesystem::path&)>& content = content_fingerprint);
 
-/// Writes a cache. Throws a `FileError` if it cannot be written.
+/// Writes a cache. Throws a `FileError`.
 template <CacheableScene S>
 void save_scene(const std::filesystem::path& path, const S& scene, const Fingerprint& key);
 
-/// What became of the opening of a cache.
+/// Result of opening a cache.
 template <class S>
 struct OpenedScene {
-  std::optional<S> scene;
-  std::string reason;  ///< why there is none, as in "is cut short"; empty if there is one
+  std::optional<S> scene;  ///< empty if the cache is unusable
+  std::string reason;      ///< reason without a scene, as in "is cut short"; else empty
 };
 
-/// Opens a cache. Whatever is wrong with it, there is no scene then, and a reason. The scene is made from its parts and `further`.
+/// Opens a cache. Every defect gives a reason in place of a scene. The scene is made from its parts and `further`.
 template <CacheableScene S, class... Further>
 [[nodiscard]] OpenedScene<S> open_scene(const std::filesystem::path& path, const Fingerprint& key, const Further&... further);
 
-/// A scene, and where it comes from.
+/// Scene and its origin.
 template <class S>
 struct CachedScene {
-  S scene;
-  bool from_cache = false;
-  std::string reason;   ///< why it was built; empty if it comes from the cache
-  std::string warning;  ///< why it was not saved; empty if it was, or comes from the cache
+  S scene;                  ///< from the cache or built
+  bool from_cache = false;  ///< true if it comes from the cache
+  std::string reason;       ///< reason for building it; empty if it comes from the cache
+  std::string warning;      ///< reason for not saving it; empty if saved or from the cache
 };
 
-/// The scene of a cache; if there is no cache, or it is not that of the sources, what `build` makes, which is saved for the next time.
-/// `build` gives the parts. What it throws passes through. The scene is made from its parts and `further`, as a `MovingScene` needs it.
+/// Scene from a cache; without a cache of these sources, the scene that `build` makes, saved for the next time. `build` returns the parts;
+/// its exceptions pass through. The scene is made from its parts and `further`, as needed by a `MovingScene`.
 template <CacheableScene S, class Build, class... Further>
 [[nodiscard]] CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build,
                                           const Further&... further);
 
-/// What materials and parts hold; with one member more in either, this does not compile.
+/// Lists the members of materials and parts; a new member in either is a compile error.
 template <class Archive>
 void list_members(Archive& a, Material& m) {
   auto& [name, reflectance, scattering, specular_share, specular_exponent, classification, ground, spectrum] = m;
@@ -118,23 +117,23 @@ void list_members(Archive& a, Part<Shapes...>& part) {
 
 namespace detail {
 
-/// What a cache begins with.
+/// Header of a cache.
 struct CacheHeader {
   static constexpr std::array<char, 8> own_mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
-  static constexpr std::uint32_t own_order = 0x01020304;  ///< reads otherwise where bytes stand in another order
-  static constexpr std::uint32_t own_format = 2;          ///< counts the ways in which what follows was written
+  static constexpr std::uint32_t own_order = 0x01020304;  ///< reads differently in another byte order
+  static constexpr std::uint32_t own_format = 2;          ///< version of the layout of the file
 
   std::array<char, 8> mark = own_mark;
   std::uint32_t order = own_order, format = own_format;
-  Fingerprint program;     ///< of the library's version and the types in the file
-  Fingerprint key;         ///< of the sources
-  std::uint64_t size = 0;  ///< of the file [byte]
+  Fingerprint program;     ///< hash of the library's version and the types in the file
+  Fingerprint key;         ///< key of the sources
+  std::uint64_t size = 0;  ///< size of the file [byte]
   std::uint64_t unused[7] = {};
   Fingerprint checksum;  ///< over all other bytes of the file
 };
 static_assert(sizeof(CacheHeader) == 128 && std::is_trivially_copyable_v<CacheHeader>);
 
-/// Where the checksum of a cache ends up is not part of it; everything else is.
+/// Checksum of a cache over everything except the checksum itself.
 [[nodiscard]] inline Fingerprint checksum_of(CacheHeader header, const Digest& rest) {
   Digest digest;
   digest.add(rest.value());
@@ -148,7 +147,7 @@ static_assert(sizeof(CacheHeader) == 128 && std::is_trivially_copyable_v<CacheHe
   return checksum_of(header, digest);
 }
 
-/// Says which part type a file holds and which library wrote it.
+/// Fingerprint of the part type of a file and of the library's version.
 template <class P>
 [[nodiscard]] Fingerprint program_of() {
   Digest digest;
@@ -158,12 +157,12 @@ template <class P>
   return digest.value();
 }
 
-/// Why a cache cannot be taken.
+/// Reason for rejecting a cache.
 struct Unusable {
   std::string reason;
 };
 
-/// Whether the bytes are a cache of this program, whole and from these sources; throws `Unusable` if not.
+/// Throws `Unusable` unless the bytes are a complete cache of this program from these sources.
 inline void require_cache(std::span<const std::byte> bytes, const Fingerprint& program, const Fingerprint& key) {
   CacheHeader header;
   if (bytes.size() < sizeof header) throw Unusable{"is cut short"};
@@ -176,8 +175,7 @@ inline void require_cache(std::span<const std::byte> bytes, const Fingerprint& p
   if (header.checksum != checksum_of(header, bytes.subspan(sizeof header))) throw Unusable{"is damaged: its checksum is wrong"};
 }
 
-/// The parts in the bytes of a cache that was found to be whole; `owner` keeps them where they are. Throws an `ArchiveError`, or the
-/// `SettingError` of what a part is made from.
+/// Parts in the bytes of a checked cache; `owner` keeps the bytes alive. Throws an `ArchiveError`, or a part's `SettingError`.
 template <class P>
 [[nodiscard]] std::vector<P> parts_in(std::span<const std::byte> bytes, std::shared_ptr<const void> owner) {
   ArchiveReader reader(bytes.subspan(sizeof(CacheHeader)), std::move(owner));
@@ -202,7 +200,7 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
   OutputFile file(path);
   detail::CacheHeader header;
   const auto header_bytes = std::as_bytes(std::span(&header, 1));
-  file.write(header_bytes);  // to be made true at last
+  file.write(header_bytes);  // placeholder
   ArchiveWriter writer(file);
   writer(std::uint64_t{parts.size()});
   for (const typename S::Part& part : parts) {

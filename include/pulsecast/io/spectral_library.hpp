@@ -23,40 +23,40 @@
 
 namespace pulsecast::io {
 
-/// How a file writes reflectance.
+/// Unit of reflectance in a file.
 enum class ReflectanceScale : std::uint8_t { fraction, percent };
 
-/// What the file of a spectrum holds.
+/// Content of a spectrum file.
 struct SpectrumFile {
-  std::shared_ptr<const Spectrum> spectrum;
-  ReflectanceScale scale = ReflectanceScale::fraction;  ///< of the file; a spectrum has fractions always
-  std::string report{};                                 ///< in which units its columns were taken to be, and why
-  std::vector<std::string> warnings{};                  ///< what was odd, but could be read
+  std::shared_ptr<const Spectrum> spectrum;             ///< reflectance by wavelength, as fractions
+  ReflectanceScale scale = ReflectanceScale::fraction;  ///< unit in the file; the spectrum itself has fractions
+  std::string report{};                                 ///< units assumed for the columns, and the reason
+  std::vector<std::string> warnings{};                  ///< oddities that could still be read
 };
 
-/// Reads a text of two columns, wavelength and reflectance, with any header above and any further columns; rows in any order. Rows
-/// without a value, also the -1.23e34 of the USGS, are left out.
-/// Units are those that the header names, as those of the ECOSTRESS and ASTER libraries do ("X Units:", "Y Units:"), or the titles of the
-/// columns in the line above the numbers. Else wavelengths that begin at 100 or more are nanometres, below 0.01 metres, and micrometres
-/// between; and reflectances that exceed 1.5 are percent. What was taken, and why, is always reported.
-/// Throws a `FileError` with path and line at the first thing that cannot be right.
+/// Reads a text of two columns, wavelength and reflectance, with any header and further columns; rows in any order. Rows without a value,
+/// also -1.23e34 of the USGS, are left out.
+/// Units come from the header, as in the ECOSTRESS and ASTER libraries ("X Units:", "Y Units:"), or from column titles in the line above
+/// the numbers. Otherwise wavelengths that begin at 100 or more are nanometres, below 0.01 metres, and micrometres between; reflectances
+/// above 1.5 are percent. The report states units and reasons.
+/// Throws a `FileError` with path and line at the first error.
 [[nodiscard]] SpectrumFile read_spectrum(const std::filesystem::path& path);
 
 /// Spectra by name.
 struct SpectralLibrary {
-  std::map<std::string, std::shared_ptr<const Spectrum>, std::less<>> spectra{};
-  std::vector<std::string> reports{};   ///< of each file, as in `SpectrumFile`
-  std::vector<std::string> warnings{};  ///< what was odd, but could be read
-  std::vector<double> wavelengths{};  ///< of the lasers, if they are known: a material whose spectrum does not reach them is warned of [m]
+  std::map<std::string, std::shared_ptr<const Spectrum>, std::less<>> spectra{};  ///< spectra by name
+  std::vector<std::string> reports{};                                             ///< report of each file, as in `SpectrumFile`
+  std::vector<std::string> warnings{};                                            ///< oddities that could still be read
+  std::vector<double> wavelengths{};  ///< of the lasers, if known: materials whose spectra do not reach them cause a warning [m]
 };
 
-/// Reads all files of a folder, or a single file. A spectrum has the name of its file without the extension; files that hold none are left
-/// out with a warning. Throws a `FileError` if there is no spectrum at all.
+/// Reads a file, or all files of a folder. A spectrum is named like its file without the extension; files without one are left out with a
+/// warning. Throws a `FileError` if there is no spectrum at all.
 [[nodiscard]] SpectralLibrary read_spectral_library(const std::filesystem::path& path);
 
 namespace detail {
 
-/// In which unit the first column is.
+/// Unit of the first column.
 enum class WavelengthUnit : std::uint8_t { metre, micrometre, nanometre, wavenumber };
 
 [[nodiscard]] inline std::string lower(std::string_view text) {
@@ -65,7 +65,7 @@ enum class WavelengthUnit : std::uint8_t { metre, micrometre, nanometre, wavenum
   return out;
 }
 
-/// Whether a word stands in a text, and not inside a longer word.
+/// True if a text contains a word that is not part of a longer one.
 [[nodiscard]] inline bool has_word(std::string_view text, std::string_view word) {
   const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
   for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
@@ -80,7 +80,7 @@ enum class WavelengthUnit : std::uint8_t { metre, micrometre, nanometre, wavenum
   for (const std::string_view word : {"micromet", "micron"})
     if (text.find(word) != text.npos) return WavelengthUnit::micrometre;
   if (text.find("nanomet") != text.npos || has_word(text, "nm")) return WavelengthUnit::nanometre;
-  for (const std::string_view word : {"um", "\xC2\xB5m", "\xCE\xBCm", "\xB5m"})  // the two signs of micro, and that of Latin-1
+  for (const std::string_view word : {"um", "\xC2\xB5m", "\xCE\xBCm", "\xB5m"})  // two micro signs, and that of Latin-1
     if (has_word(text, word)) return WavelengthUnit::micrometre;
   return std::nullopt;
 }
@@ -108,12 +108,12 @@ class SpectrumReader {
   }
 
  private:
-  /// A row of the file.
+  /// Row of the file.
   struct Row : SpectralSample {
     std::size_t line = 0;
   };
 
-  /// A number, or nothing where it is said to be missing; `is_cell` is false if it is neither.
+  /// Number, or empty where marked as missing; `is_cell` is false for anything else.
   struct Cell {
     std::optional<double> number;
     bool is_cell;
@@ -156,7 +156,7 @@ class SpectrumReader {
     if (line.find("reflect") == line.npos) table_.fail_here(TextTable::quoted(text) + ": expected a spectrum of reflectance");
   }
 
-  /// Where no key named the units, the line above the numbers may.
+  /// Takes units from the line above the numbers if no key named them.
   void titles() {
     if (!unit_) unit_ = wavelength_unit_in(titles_);
     if (scale_ || titles_.find("reflect") == titles_.npos) return;
@@ -205,7 +205,7 @@ class SpectrumReader {
     return std::string("reflectance in ") + (percent ? "percent" : "fractions") + (told ? ", as its header says" : ", as " + reach);
   }
 
-  /// What stands at one wavelength becomes its mean.
+  /// Samples with those of equal wavelength averaged.
   [[nodiscard]] std::vector<SpectralSample> united() {
     std::vector<SpectralSample> all;
     std::size_t repeated = 0, first = 0;
@@ -229,10 +229,10 @@ class SpectrumReader {
   std::vector<Row> samples_;
   std::optional<WavelengthUnit> unit_;
   std::optional<ReflectanceScale> scale_;
-  std::string titles_;  // the last line of the header, in small letters
+  std::string titles_;  // last line of the header, in small letters
   std::size_t titles_line_ = 0;
   std::vector<std::string> warnings_;
-  std::size_t scale_line_ = 0, odd_ = 0;  // lines: of the header's scale, and of the first wavelength that is none of light
+  std::size_t scale_line_ = 0, odd_ = 0;  // lines of the header's scale, and of the first wavelength outside the range of light
   bool begun_ = false;
 };
 

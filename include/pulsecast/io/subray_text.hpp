@@ -12,14 +12,13 @@
 
 namespace pulsecast::io {
 
-/// Writes what the subrays of a `WithSubrayRecord` footprint met as text, one hit a line, with these columns and a blank between them:
+/// Writes the hits of the subrays of a `WithSubrayRecord` footprint as text, one a line, with these columns and blanks between:
 ///
 ///     fullwaveIndex subray x y z range intensity cosIncidence backscatter hitObjectId classification
 ///
-/// fullwaveIndex: the pulse's slot, as in the files of points; subray: its number in the footprint, from 0; x, y, z: where it met something
-/// [m], 4 decimals; range [m], 4; intensity: received power, as if the pulse had no length [nW], 9; cosIncidence and backscatter, as in
-/// `Hit`, 6 each; object and class. Subrays that met nothing have no line. There is no head line.
-/// Only `close()` makes the file: see `OutputFile`.
+/// fullwaveIndex: slot of the pulse, as in point files; subray: number in the footprint, from 0; x, y, z: hit point [m], 4 decimals; range
+/// [m], 4; intensity: received power of a pulse without length [nW], 9; cosIncidence and backscatter as in `Hit`, 6 each; object and class.
+/// Subrays without a hit have no line. There is no header line. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class SubrayTextWriter {
  public:
   explicit SubrayTextWriter(std::filesystem::path path) : text_(OutputFile(std::move(path))) {}
@@ -39,7 +38,7 @@ class SubrayTextWriter {
 
  private:
   void write(const Shot& shot, std::size_t subray, const SubrayHit& hit) {
-    constexpr double nano = 1e9;  // of a unit
+    constexpr double nano = 1e9;  // per unit
     text_.wholes(shot.index, subray).vector("the place of a hit", hit.point, 4).reals(4, hit.range).reals(9, hit.power * nano);
     text_.reals(6, hit.cos_incidence, hit.backscatter).wholes(hit.object, hit.classification).end_row();
   }

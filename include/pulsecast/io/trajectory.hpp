@@ -23,35 +23,35 @@
 
 namespace pulsecast::io {
 
+/// Settings of a trajectory file.
 struct TrajectoryFileSettings {
-  double start_time = 0;  ///< what the clock shows at tick 0 [s]
+  double start_time = 0;  ///< clock time at tick 0 [s]
 
   void validate() const { require_finite("TrajectoryFileSettings::start_time", start_time, "s"); }
 };
 
-/// Calls `record` with the times of the records of a leg: 0, `interval` [s, positive], twice that and so on, and the end, `duration`.
+/// Calls `record` with the record times of a leg: multiples of `interval` [s, positive] from 0, and the end, `duration`.
 template <class Record>
 void for_each_record(const Tick& duration, double interval, const Record& record) {
   const double end = duration.seconds();
-  constexpr double least = 0.5e-9;  // records that would show the same time are one [s]
+  constexpr double least = 0.5e-9;  // records this close would show the same time, and are one [s]
   for (std::uint64_t i = 0; end - static_cast<double>(i) * interval > least; ++i)
     record(Tick::of_seconds(static_cast<double>(i) * interval));
   record(duration);
 }
 
-/// Writes where a platform was and how it was turned as text, one record a line, with these columns and a blank between them:
+/// Writes poses of a platform as text, one a line, with these columns and a blank between them:
 ///
 ///     x y z gpsTime roll pitch yaw
 ///
-/// x, y, z [m] and the angles [deg], as `helios_canonical` has them, have 4 decimals, gpsTime [s] has 9; yaw is in [0, 360). There is no
-/// head line. These are the columns of HELIOS++ trajectory files; `helios_output_format` reads them. Only `close()` makes the file: see
-/// `OutputFile`.
+/// x, y, z [m] and the angles [deg, as `helios_canonical`] have 4 decimals, gpsTime [s] has 9; yaw is in [0, 360). There is no header line.
+/// These are the columns of HELIOS++ trajectory files, read by `helios_output_format`. Only `close()` completes the file: see `OutputFile`.
 class TrajectoryWriter {
  public:
   explicit TrajectoryWriter(std::filesystem::path path, const TrajectoryFileSettings& settings = {})
       : settings_(validated(settings)), file_(std::move(path)) {}
 
-  /// One record; `tick` is in the survey's time.
+  /// Adds one record; `tick` in the survey's time. Throws a `FileError` unless the pose is finite.
   void add(Tick tick, const Pose<frame::Body, frame::World>& pose) {
     if (!finite(pose.position) || !std::isfinite(length(pose.rotation))) {
       file_.discard();
@@ -65,8 +65,8 @@ class TrajectoryWriter {
     ++records_;
   }
 
-  /// A leg that begins at `start` in the survey's time. The trajectory is asked in its own time: at 0, `interval` [s], twice the interval
-  /// and so on, and at the end, `duration`.
+  /// Adds a leg that begins at `start` in the survey's time. The trajectory is sampled in its own time: at multiples of `interval` [s] from
+  /// 0, and at the end, `duration`. Throws a `SettingError` unless `interval` is positive.
   void add(const Trajectory auto& trajectory, Tick start, Tick duration, double interval) {
     require_positive("TrajectoryWriter::add interval", interval, "s");
     for_each_record(duration, interval, [&](const Tick& tick) { add(start + tick, trajectory.at(tick)); });
@@ -81,14 +81,14 @@ class TrajectoryWriter {
   std::uint64_t records_ = 0;
 };
 
-/// Writes a trajectory so that `read_trajectory` reads it back, with every digit that a double has; yaw is in [0, 2 pi). The poses come in
-/// order of time, where a jump's stands twice; to the times, `start_time` [s] is added.
+/// Writes a trajectory for `read_trajectory`, with all digits of a double; yaw is in [0, 2 pi). Poses are in order of time, with a jump's
+/// time twice; `start_time` [s] is added to times. Throws a `SettingError`, or a `FileError` for unordered, too large or non-unit poses.
 void write_trajectory(const std::filesystem::path& path, std::span<const TimedPose> poses, const TrajectoryFormat& format = csv_format(),
                       double start_time = 0);
 
 namespace detail {
 
-/// The lines that name the columns.
+/// Header lines with the names of the columns.
 [[nodiscard]] inline std::string head_of(const TrajectoryFormat& format, const TrajectoryColumns& columns) {
   if (format.names == ColumnNames::nowhere) return {};
   const bool in_comments = format.names == ColumnNames::comments;
@@ -103,7 +103,7 @@ namespace detail {
   return in_comments ? "#TIME_COLUMN: " + time + "\n#HEADER: " + names + '\n' : names + '\n';
 }
 
-/// A pose as a format tells it.
+/// Values of a pose in a format.
 [[nodiscard]] inline QuantityValues values_of(const TimedPose& pose, const TrajectoryFormat& format, double start_time) {
   const Vec3 p = pose.position, in_file = format.axes.swapped(p);
   const Rotation q = format.axes.to_file(pose.rotation);

@@ -26,18 +26,19 @@
 
 namespace pulsecast::io {
 
-/// What the voxels of a file are to be.
+/// Use of the voxels of a file.
 enum class VoxelUse : std::uint8_t {
-  transmissive,  ///< filled with leaves of some density
-  opaque,        ///< cubes as large as their cells
-  scaled,        ///< cubes that are the smaller, the less dense their cells are
+  transmissive,  ///< filled with leaves of a density
+  opaque,        ///< cubes of the size of their cells
+  scaled,        ///< cubes that shrink with the density of their cells
 };
 
+/// Settings for voxel files.
 struct VoxelFileSettings {
-  VoxelUse use = VoxelUse::transmissive;
-  double exponent = 0.5;                              ///< of scaled cubes: their edge is (PAD / PADmax)^exponent of their cell's
-  std::optional<double> density_max = std::nullopt;   ///< PADmax; if not given, as the file says, else its largest [m^2/m^3]
-  std::optional<std::uint64_t> shift = std::nullopt;  ///< seed by which scaled cubes are moved inside their cells; if not given, none is
+  VoxelUse use = VoxelUse::transmissive;              ///< use of the voxels
+  double exponent = 0.5;                              ///< of scaled cubes: their edge is (PAD / PADmax)^exponent times that of the cell
+  std::optional<double> density_max = std::nullopt;   ///< PADmax; by default from the file, or else its maximum [m^2/m^3]
+  std::optional<std::uint64_t> shift = std::nullopt;  ///< seed of random shifts of scaled cubes inside their cells; none if empty
 
   void validate() const {
     require_not_negative("VoxelFileSettings::exponent", exponent, "");
@@ -45,22 +46,22 @@ struct VoxelFileSettings {
   }
 };
 
-/// What a voxel file holds.
+/// Content of a voxel file.
 struct VoxelFile {
-  VoxelData voxels;                   ///< with densities, or with scales and shifts, as they are to be used
-  std::vector<float> transmittances;  ///< of each voxel, NaN where it is not known; none if there is no such column
-  double density_max = 0;             ///< PADmax: as set, as the file says, or its largest [m^2/m^3]
-  std::vector<std::string> warnings;  ///< what was odd, but could be read
+  VoxelData voxels;                   ///< with densities, or with scales and shifts, by use
+  std::vector<float> transmittances;  ///< for each voxel, NaN where unknown; none without such a column
+  double density_max = 0;             ///< PADmax: as set, from the file, or its maximum [m^2/m^3]
+  std::vector<std::string> warnings;  ///< oddities that could still be read
 };
 
 /// Reads a voxel file of AMAPVox: text that begins with `VOXEL SPACE`, lines of `#key: value` in any order, a row of column names, and a
-/// row for each voxel. Needed are the keys `min_corner` and `res` (one edge length, as voxels are cubes), and the columns i, j, k and
-/// PadBVTotal; for opaque and scaled voxels also transmittance. Not in the grid are
-/// - transmissive voxels whose density is 0, or, with a warning, NaN;
-/// - opaque and scaled voxels whose transmittance is 1 or NaN: what passes all light, and what was never seen;
-/// - scaled voxels whose density, and so whose cube, is 0, or, with a warning, NaN.
-/// Scaled cubes are shifted evenly, each as far as its cell lets it, by the seed and the place of the cell alone.
-/// Throws a `FileError` with path and line at the first thing that cannot be right, and if no voxel is left.
+/// row for each voxel. Required are the keys `min_corner` and `res` (one edge length, as voxels are cubes), and the columns i, j, k and
+/// PadBVTotal; for opaque and scaled voxels also transmittance. Left out of the grid are
+/// - transmissive voxels of density 0, or, with a warning, NaN;
+/// - opaque and scaled voxels of transmittance 1 (fully transparent) or NaN (never observed);
+/// - scaled voxels of density 0, and so of size 0, or, with a warning, NaN.
+/// Shifts of scaled cubes are uniform within their cells, and depend on the seed and the cell alone.
+/// Throws a `FileError` with path and line at the first error, and if no voxel is left.
 /// Source of the format and of the three uses: AMAPVox (Vincent et al. 2017); Weiser et al. 2021, opaque voxel-based tree models.
 [[nodiscard]] VoxelFile read_voxel_file(const std::filesystem::path& path, const VoxelFileSettings& settings = {});
 
@@ -92,7 +93,7 @@ class VoxelFileReader {
   }
 
  private:
-  /// Rows of which some cannot be used, or only just.
+  /// Rows with the same defect.
   struct Oddity {
     void at(std::size_t line) noexcept {
       if (count++ == 0) first = line;
@@ -100,7 +101,7 @@ class VoxelFileReader {
     std::size_t count = 0, first = 0;
   };
 
-  static constexpr double max_number = 1e12;  ///< number that may stand in a file
+  static constexpr double max_number = 1e12;  ///< upper limit of numbers in a file
 
   [[nodiscard]] static std::string lower(std::string_view text) {
     std::string result(text);
@@ -108,7 +109,7 @@ class VoxelFileReader {
     return result;
   }
 
-  /// A line of `#key: value #key: value ...`.
+  /// Reads a line of `#key: value #key: value ...`.
   void keys() {
     for (std::string_view left = table_.text(); !left.empty();) {
       left.remove_prefix(1);
@@ -154,7 +155,7 @@ class VoxelFileReader {
     return {given[0], given[1], given[2]};
   }
 
-  /// The numbers of a value, with or without brackets around and commas between them; none if there is anything else.
+  /// Numbers of a value, with or without brackets and commas; empty if it has anything else.
   [[nodiscard]] static std::vector<double> numbers(std::string_view value) {
     constexpr std::string_view between = " \t,()[]";
     std::vector<double> result;
@@ -255,13 +256,13 @@ class VoxelFileReader {
                                      : "has no voxel that light can meet: expected at least one");
   }
 
-  /// Gives each cube its size, and a place if it is to be shifted; leaves out those of size 0.
+  /// Sets the size of each cube, and its shift if requested; removes those of size 0.
   void scale() {
     std::size_t n = 0;
     for (std::size_t i = 0; i < kept_.size(); ++i) {
       const double share = densities_[i] > 0 ? densities_[i] / file_.density_max : 0;
       if (share > 1 + 1e-6) ++too_dense_.count;
-      // Source: Weiser et al. 2021, eq. 2, with its base size the edge of the cell.
+      // source: Weiser et al. 2021, eq. 2, with the cell's edge as base size
       const auto size = static_cast<float>(std::pow(std::min(share, 1.0), settings_.exponent));
       if (!(size > 0)) continue;
       kept_[n] = kept_[i];
@@ -274,7 +275,7 @@ class VoxelFileReader {
     if (!file_.transmittances.empty()) file_.transmittances.resize(n);
   }
 
-  /// Even over all places at which the cube stays inside its cell, in edges of the cell.
+  /// Uniform shift that keeps the cube inside its cell, in edges of the cell.
   [[nodiscard]] std::array<float, 3> shift(const CellNumbers::Cell& cell, float size) const {
     const auto words = random_words({*settings_.shift, std::uint64_t{cell[1]} << 32 | cell[0], cell[2], Purpose::scene});
     std::array<float, 3> result{};
@@ -301,14 +302,14 @@ class VoxelFileReader {
   std::optional<Vec3> min_corner_, max_corner_, split_;
   std::optional<double> edge_, max_pad_;
   std::size_t edge_line_ = 0;
-  std::array<std::size_t, 3> index_{};  // columns
+  std::array<std::size_t, 3> index_{};  // column numbers
   std::size_t density_ = 0, columns_ = 0;
   std::optional<std::size_t> transmittance_;
-  double density_max_ = 0;  // of all rows
+  double density_max_ = 0;  // over all rows
   Oddity no_density_, too_dense_;
   CellNumbers cells_;                    // of all rows
   std::vector<CellNumbers::Cell> kept_;  // of rows that become voxels
-  std::vector<float> densities_;         // of those
+  std::vector<float> densities_;         // of these
 };
 
 }  // namespace detail

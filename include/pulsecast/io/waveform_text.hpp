@@ -11,23 +11,23 @@
 
 namespace pulsecast::io {
 
+/// Settings of a waveform file.
 struct WaveformTextSettings {
-  double start_time = 0;  ///< what the clock shows at tick 0 [s]
+  double start_time = 0;  ///< clock time at tick 0 [s]
 
   void validate() const { require_finite("WaveformTextSettings::start_time", start_time, "s"); }
 };
 
-/// Writes waveforms as text, one a line, for all pulses that have one, be there echoes in it or not, with these columns and a blank
-/// between:
+/// Writes waveforms as text, one a line, with or without echoes, in these columns, separated by blanks, without a header line:
 ///
 ///     fullwaveIndex ox oy oz dx dy dz tmin tmax gpsTime w_0 ... w_(n-1)
 ///
-/// fullwaveIndex: the pulse's slot, as in the files of points; ox, oy, oz: where it left [m], 4 decimals; dx, dy, dz: its direction, unit,
-/// 9 decimals; tmin, tmax: times of the first and the last sample [ns], 6 decimals; gpsTime: when it left [s], 9 decimals; then the
-/// samples: received power [nW], as the points' intensity, 9 decimals, as many as the line is long. There is no head line. These are the
-/// columns of HELIOS++ waveform files, so that what reads those reads these. As there, tmin and tmax are one-way times, range by speed of
-/// light: sample i is from the range `c (tmin + (tmax - tmin) i / (n - 1))`, and only half of its two-way travel time. Only `close()` makes
-/// the file: see `OutputFile`.
+/// fullwaveIndex: slot of the pulse, as in point files; ox, oy, oz: origin [m], 4 decimals; dx, dy, dz: unit direction, 9 decimals; tmin,
+/// tmax: times of the first and last sample [ns], 6 decimals; gpsTime: departure [s], 9 decimals; w: samples of received power [nW], as the
+/// points' intensity, 9 decimals, to the end of the line.
+/// These are the columns of HELIOS++ waveform files, so that their readers work. As there, tmin and tmax are one-way times, range by speed
+/// of light: sample i is from the range `c (tmin + (tmax - tmin) i / (n - 1))`, half of its two-way travel time.
+/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class WaveformTextWriter {
  public:
   explicit WaveformTextWriter(std::filesystem::path path, const WaveformTextSettings& settings = {})

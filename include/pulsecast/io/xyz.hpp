@@ -11,21 +11,21 @@
 
 namespace pulsecast::io {
 
+/// Settings of a point file.
 struct XyzSettings {
-  double start_time = 0;  ///< what the clock shows at tick 0 [s]
+  double start_time = 0;  ///< clock time at tick 0 [s]
 
   void validate() const { require_finite("XyzSettings::start_time", start_time, "s"); }
 };
 
-/// Writes points as text, one a line, with these columns and a blank between them:
+/// Writes points as text, one a line, in these columns, separated by blanks, without a header line:
 ///
 ///     x y z intensity echo_width returnNumber pulseReturnNumber fullwaveIndex hitObjectId classification gpsTime
 ///
-/// x, y, z [m], intensity, which is the echo's amplitude [nW], and echo_width [ns], nan if there was none to be found, have 4 decimals,
-/// gpsTime [s] has 9; the others are whole numbers: return number, returns of the pulse, index of the pulse, object, class. There is no
-/// head line.
-/// These are the columns of HELIOS++ point files, so that what reads those reads these; only the unit of intensity is stated here.
-/// Only `close()` makes the file: see `OutputFile`.
+/// x, y, z [m], intensity (amplitude of the echo [nW]) and echo_width [ns], nan if none was found, have 4 decimals; gpsTime [s] has 9. The
+/// others are integers: return number, returns of the pulse, index of the pulse, object, class.
+/// These are the columns of HELIOS++ point files, so that their readers work; only the unit of intensity is stated here.
+/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class XyzWriter {
  public:
   explicit XyzWriter(std::filesystem::path path, const XyzSettings& settings = {})
@@ -42,7 +42,7 @@ class XyzWriter {
 
  private:
   void write(const Shot& shot, const Echo& echo) {
-    constexpr double nano = 1e9;  // of a unit
+    constexpr double nano = 1e9;  // per unit
     text_.vector("the place of an echo", point_of(shot, echo), 4).reals(4, echo.amplitude * nano, echo.width * nano);
     text_.wholes(echo.number, shot.echoes, shot.index, echo.object, echo.classification);
     text_.reals(9, settings_.start_time + shot.tick.seconds()).end_row();

@@ -26,7 +26,7 @@ namespace pulsecast::mpi {
 
 namespace detail {
 
-/// The points of a block: their records, without coordinates until the offset of the file is known, and their waveforms.
+/// Points of a block: records, whose coordinates wait for the offset of the file, and waveforms.
 class MpiLasPiece final : public MpiPiece {
  public:
   MpiLasPiece(const std::filesystem::path& path, const io::LasSettings& settings) : path_(path), encoder_(settings) {
@@ -60,7 +60,7 @@ class MpiLasPiece final : public MpiPiece {
     return records_.size() + std::span(points_).size_bytes() + packet_bytes_.size();
   }
 
-  /// The records as they are to be written, if `number` points come before them.
+  /// Finished records, for a position behind `number` points. Throws a `FileError` if coordinates do not fit.
   [[nodiscard]] std::span<const std::byte> located(const Vec3& first, std::uint64_t number, std::uint64_t packets_at) {
     const std::size_t size = encoder_.layout().record();
     encoder_.choose_offset(first);
@@ -83,21 +83,22 @@ class MpiLasPiece final : public MpiPiece {
   std::optional<io::LasPackets> packets_;
 };
 
-/// What processes can write together: an intensity that depends on all points, none can.
+/// Settings that processes can share. Throws a `SettingError` for an intensity that depends on all points.
 [[nodiscard]] inline io::LasSettings mpi_las_settings(io::LasSettings settings) {
   if (settings.intensity == io::LasIntensity::amplitude && !settings.intensity_full_scale)
     throw SettingError("LasSettings::intensity_full_scale", 0, "W", "given, with amplitudes and many processes");
   return validated(std::move(settings));
 }
 
-/// What a process has written.
+/// Contribution of one process to the header.
 struct MpiLasShare {
   io::LasTally tally{};
-  std::uint32_t spacing = 0;  ///< of samples [ps]
+  std::uint32_t spacing = 0;  ///< interval of samples [ps]
 
   void add(const MpiLasShare& other) noexcept { tally.add(other.tally), spacing = std::max(spacing, other.spacing); }
 };
 
+/// Sum of the shares of all processes; valid on the first.
 [[nodiscard]] inline MpiLasShare sum_of_shares(MpiGroup& group, const MpiLasShare& own) {
   MpiLasShare sum;
   for (const MpiLasShare& one : group.channel().gather(own)) sum.add(one);
@@ -106,8 +107,8 @@ struct MpiLasShare {
 
 }  // namespace detail
 
-/// A LAS file that all processes write, waveforms included: the bytes are those of `LasWriter`. A `SettingError` refuses intensities that
-/// are scaled to the greatest amplitude.
+/// LAS file written by all processes, waveforms included; its bytes equal those of `LasWriter`. Throws a `SettingError` for intensities
+/// scaled to the greatest amplitude.
 class MpiLas final : public MpiOutput {
  public:
   MpiLas(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings)
@@ -153,9 +154,9 @@ class MpiLas final : public MpiOutput {
   std::size_t record_;  // [byte]
   MpiFile points_file_, packets_file_;
   detail::MpiLasShare share_;
-  std::uint64_t begin_ = 0;                     // of the points [byte]
-  std::optional<io::LasWriter> whole_;          // on the first process, as what follows
-  std::uint64_t points_ = 0, packets_end_ = 0;  // that have their place; [byte]
+  std::uint64_t begin_ = 0;                     // begin of the points [byte]
+  std::optional<io::LasWriter> whole_;          // on the first process, as are the following
+  std::uint64_t points_ = 0, packets_end_ = 0;  // points placed; end of the packets placed [byte]
   Vec3 first_{};
 };
 

@@ -23,10 +23,11 @@
 
 namespace pulsecast::mpi {
 
-/// A LAZ file that all processes write: the bytes are those of `LazWriter`. The process that has the first point of a chunk compresses it,
-/// on so many threads as are said; others send it what they have of that chunk. The first process adds up the sizes of chunks.
+/// LAZ file written by all processes; its bytes equal those of `LazWriter`. The process with the first point of a chunk compresses it on
+/// its threads; others send their part of that chunk. The first process sums up the sizes of chunks.
 class MpiLaz final : public MpiOutput {
  public:
+  /// `threads` per process, 0 as in `thread_count`. Throws a `SettingError` or `FileError`.
   MpiLaz(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings, unsigned threads = 0)
       : MpiOutput(group),
         settings_(io::LazWriter::compressible(detail::mpi_las_settings(std::move(settings)))),
@@ -41,7 +42,7 @@ class MpiLaz final : public MpiOutput {
 
   [[nodiscard]] std::unique_ptr<MpiPiece> piece() override { return std::make_unique<detail::MpiLasPiece>(file_.path(), settings_); }
 
-  /// Chunks that lie in the piece as a whole are compressed here, and the one that begins in it and goes on behind it.
+  /// Keeps the chunks that begin in the piece, for compression here; sends the points before to the owner of their chunk.
   void put(MpiPiece& piece, const MpiPlace& place) override {
     auto& own = static_cast<detail::MpiLasPiece&>(piece);
     std::uint64_t at = place.starts[0];
@@ -96,7 +97,7 @@ class MpiLaz final : public MpiOutput {
     }
   }
 
-  /// Compresses as many chunks as there are threads.
+  /// Compresses up to one chunk per thread.
   bool work() override {
     std::vector<Chunk> some;
     for (; !ready_.empty() && some.size() < threads_; ready_.pop_front()) some.push_back(std::move(ready_.front()));
@@ -140,15 +141,15 @@ class MpiLaz final : public MpiOutput {
   struct Chunk {
     std::uint64_t number = 0;
     std::vector<std::byte> bytes;
-    std::uint64_t points = 0;  // of it that are there
+    std::uint64_t points = 0;  // number of its points received so far
   };
   using Chunks = std::map<std::uint64_t, Chunk>;
   static constexpr std::uint64_t chunk_points = io::LazWriter::chunk_points;
-  static constexpr std::size_t max_waiting = 64;  // chunks
+  static constexpr std::size_t max_waiting = 64;  // in chunks
 
   [[nodiscard]] static std::uint64_t chunks_of(std::uint64_t points) noexcept { return (points + chunk_points - 1) / chunk_points; }
 
-  /// Puts records of one chunk where they belong in it, which comes in any order.
+  /// Adds records of one chunk at their position in it, in any order.
   void add(std::uint64_t at, std::span<const std::byte> records) {
     const std::uint64_t number = at / chunk_points;
     const auto chunk = gathered_.try_emplace(number, Chunk{number, {}, 0}).first;
@@ -158,7 +159,7 @@ class MpiLaz final : public MpiOutput {
     finish(chunk);
   }
 
-  /// A chunk goes on to be compressed when all of it is there.
+  /// Queues a complete chunk for compression.
   void finish(Chunks::iterator chunk) {
     const std::uint64_t points = chunk->second.points;
     if (points < chunk_points && chunk->first * chunk_points + points != all_points_) return;
@@ -166,7 +167,7 @@ class MpiLaz final : public MpiOutput {
     gathered_.erase(chunk);
   }
 
-  /// On the first process: says where chunks belong, before which all are known.
+  /// First process: sends the positions of chunks behind which no size is missing.
   void place_chunks() {
     for (auto next = sizes_.find(sizes_of_placed_.size()); next != sizes_.end(); next = sizes_.find(sizes_of_placed_.size())) {
       const auto [size, owner] = next->second;
@@ -184,16 +185,16 @@ class MpiLaz final : public MpiOutput {
   detail::MpiLasShare share_;
   Chunks gathered_;                                             // by number, from several processes
   std::deque<Chunk> ready_;                                     // to be compressed
-  std::map<std::uint64_t, std::vector<std::byte>> compressed_;  // by number, until their place is known
-  std::optional<std::uint64_t> all_points_;                     // of the file, at the end
+  std::map<std::uint64_t, std::vector<std::byte>> compressed_;  // by number, waiting for their positions
+  std::optional<std::uint64_t> all_points_;                     // of the file, known at the end
   bool all_placed_ = false;
 
   // on the first process
   std::optional<io::LazWriter> whole_;
-  std::uint64_t points_ = 0, end_ = 0;  // that have their place; of the chunks that have theirs [byte]
+  std::uint64_t points_ = 0, end_ = 0;  // points placed; end of the chunks placed [byte]
   Vec3 first_{};
-  int chunk_owner_ = 0;                                         // of the chunk begun last
-  std::map<std::uint64_t, std::pair<std::size_t, int>> sizes_;  // and owners, by number of the chunk, without a place
+  int chunk_owner_ = 0;                                         // owner of the chunk begun last
+  std::map<std::uint64_t, std::pair<std::size_t, int>> sizes_;  // sizes and owners of chunks without a position, by number
   std::vector<std::size_t> sizes_of_placed_;                    // [byte]
   bool all_told_ = false;
 };

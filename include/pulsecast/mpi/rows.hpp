@@ -15,11 +15,12 @@
 
 namespace pulsecast::mpi {
 
-/// A file that all processes write, of rows of text: what `Writer` makes of one batch after another is what it makes of all of them, as
-/// with `XyzWriter`, `PulseTextWriter` and `WaveformTextWriter`.
+/// File of text rows, written by all processes. `Writer` must write the same for batches one by one as for all at once, as do `XyzWriter`,
+/// `PulseTextWriter` and `WaveformTextWriter`.
 template <class Writer, class Settings>
 class MpiRows final : public MpiOutput {
  public:
+  /// Throws a `FileError` if the file cannot be made.
   MpiRows(MpiGroup& group, std::filesystem::path path, Settings settings)
       : MpiOutput(group), settings_(std::move(settings)), file_(std::move(path)) {
     if (group.first()) whole_.emplace(file_.path());
@@ -36,7 +37,7 @@ class MpiRows final : public MpiOutput {
 
   void close() override {
     file_.close();
-    (void)group().channel().gather(0);  // all have written
+    (void)group().channel().gather(0);  // barrier: all have written
     if (!whole_) return;
     whole_->continue_at(size_);
     whole_->commit();
@@ -67,7 +68,7 @@ class MpiRows final : public MpiOutput {
   Settings settings_;
   MpiFile file_;
   std::optional<io::OutputFile> whole_;  // on the first process
-  std::uint64_t size_ = 0;               // of what has its place, there [byte]
+  std::uint64_t size_ = 0;               // end of the rows placed [byte]
 };
 
 }  // namespace pulsecast::mpi

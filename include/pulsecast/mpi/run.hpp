@@ -24,24 +24,24 @@
 #include <pulsecast/mpi/rows.hpp>
 #include <pulsecast/run.hpp>
 
-/// Runs a survey on the processes of an MPI communicator, one or several a machine, each with threads of its own.
+/// Survey runs on the processes of an MPI communicator: one or several per machine, each with its own threads.
 ///
 ///     MpiSession mpi;
 ///     MpiGroup group;                                   // of MPI_COMM_WORLD
-///     MpiLas points(group, "points.las", {});          // all processes write it
-///     run(group, survey, {.threads = 8}, points);      // all processes make the same survey
+///     MpiLas points(group, "points.las", {});          // written by all processes
+///     run(group, survey, {.threads = 8}, points);      // the same survey on all processes
 ///     points.close();
 ///
-/// The first process hands out blocks of pulses as others ask, and works as they do. The results are those of one process, byte for byte.
-/// All functions are called by all processes. What one of them throws must end them all: see `MpiSession`.
+/// The first process hands out blocks of pulses on request, and simulates, too. Results equal those of one process, byte for byte.
+/// All functions are collective: every process calls them. An exception on one process must end all: see `MpiSession`.
 namespace pulsecast::mpi {
 
-/// Simulates part of a survey: what `run(survey, options, sink)` does.
+/// Simulation of part of a survey, as by `run(survey, options, sink)`.
 using MpiSimulate = std::function<RunSummary(const RunOptions& options, const std::function<void(const EchoBatch&)>& sink)>;
 
 namespace detail {
 
-/// One run, as one process takes part in it.
+/// Part of one process in a run.
 class MpiRun {
  public:
   MpiRun(MpiGroup& group, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate, std::span<MpiOutput* const> outputs)
@@ -111,7 +111,7 @@ class MpiRun {
     }
   }
 
-  /// On the first process: says where the pieces of blocks belong, as soon as that is known.
+  /// First process: sends the places of finished blocks as soon as they are known.
   void place() {
     if (!scheduler_) return;
     const auto may = [this] { return std::all_of(outputs_.begin(), outputs_.end(), [](const MpiOutput* o) { return o->may_place(); }); };
@@ -123,7 +123,7 @@ class MpiRun {
     });
   }
 
-  /// Puts a piece where it belongs, or does something else that can be done now.
+  /// Writes a piece at its place, or does other work that is ready; false if there is none.
   bool work() {
     bool any = false;
     if (!held_.empty() && held_.front().places) {  // blocks of one process are placed in their order
@@ -144,7 +144,7 @@ class MpiRun {
   }
 
   void simulate(const MpiBlock& block) {
-    send(0, ask, {});  // so that the next is here when this is done
+    send(0, ask, {});  // requested early, so that it is here when this one is done
     Held& held = held_.emplace_back(Held{block.number, {}});
     for (MpiOutput* output : outputs_) held.pieces.push_back(output->take_piece());
     RunOptions part{.threads = options_.threads, .first = slots_[block.from], .end = slots_[block.to - 1] + 1, .stride = slots_.stride};
@@ -172,7 +172,7 @@ class MpiRun {
     send(0, done, std::move(MpiMessage().add(block.number).add(cost).add(extents.rest())));
   }
 
-  /// What all have done together.
+  /// Summary over all processes.
   [[nodiscard]] RunSummary sum() {
     const std::vector<RunSummary> all = group_.channel().gather(std::exchange(own_, {}));
     for (const RunSummary& one : all) own_.add(one);
@@ -189,14 +189,14 @@ class MpiRun {
   const MpiSimulate& simulate_;
   std::vector<MpiOutput*> outputs_;
   std::optional<MpiBlockScheduler> scheduler_;  // on the first process
-  std::optional<MpiBlock> work_;                // to be done next
+  std::optional<MpiBlock> work_;                // next block
   bool no_more_ = false;
-  std::deque<Held> held_;  // what is done, and the block at hand
+  std::deque<Held> held_;  // finished blocks without a place, and the current one
   RunSummary own_;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-/// A sink of the first process, fed with what all simulate.
+/// Output that feeds a sink of the first process with the results of all.
 template <class Sink>
 [[nodiscard]] std::unique_ptr<MpiOutput> mpi_output(MpiGroup& group, Sink& sink) {
   return std::make_unique<MpiStream<MpiBatchWriter>>(
@@ -206,16 +206,16 @@ template <class Sink>
 
 }  // namespace detail
 
-/// Runs a survey of so many slots, of which every process can simulate any part. Outputs may be written to in several runs; they are closed
-/// by whoever made them. `options.progress` and `options.stop` are asked on the first process only: when stopped, blocks that were begun
-/// are finished, so that what is there is whole up to some slot. `options.threads` is per process.
+/// Runs a survey of `size` slots, any part of which every process can simulate. Outputs may serve several runs; their makers close them.
+/// `options.progress` and `options.stop` count on the first process only: a stopped run finishes the blocks begun, so its results are
+/// complete up to some slot. `options.threads` is per process.
 inline RunSummary run_parts(MpiGroup& group, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate,
                             std::span<MpiOutput* const> outputs) {
   return detail::MpiRun(group, size, options, simulate, outputs).run();
 }
 
-/// Simulates the pulses of a survey, which all processes have made alike. A sink is an `MpiOutput`, which all write to, or any `EchoSink`:
-/// of these, only the first process's are called, with the batches in pulse order. All processes get the summary of all.
+/// Simulates the pulses of a survey, made alike on all processes. A sink is an `MpiOutput`, written by all, or any `EchoSink`, called on
+/// the first process only, with batches in pulse order. Every process gets the summary of all.
 template <class Survey, class... Sinks>
 RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   std::vector<MpiOutput*> outputs;

@@ -14,15 +14,15 @@
 
 namespace pulsecast {
 
-/// Parallel lines over an area, flown there and back in turn.
+/// Parallel flight lines over an area, flown in alternating directions.
 struct BlockFlight {
-  Box area{};             ///< to cover, seen from above: the z of its corners does not count [m]
-  double altitude = 500;  ///< of the lines: z in the world [m]
-  double swath = 300;     ///< width on the ground that one line covers [m]
-  double overlap = 0.3;   ///< share of the swath that neighbouring lines both cover, in [0, 0.99]
-  double heading = 0;     ///< of the first line, clockwise from north [rad]
-  double speed = 60;      ///< [m/s]
-  double run_in = 0;      ///< how far each line begins before the area, and ends behind it [m]
+  Box area{};             ///< area to cover, seen from above; z of its corners is ignored [m]
+  double altitude = 500;  ///< altitude of the lines: z in the world [m]
+  double swath = 300;     ///< width on the ground covered by one line [m]
+  double overlap = 0.3;   ///< share of the swath common to neighbouring lines, in [0, 0.99]
+  double heading = 0;     ///< heading of the first line, clockwise from north [rad]
+  double speed = 60;      ///< ground speed [m/s]
+  double run_in = 0;      ///< extension of each line before and behind the area [m]
 
   void validate() const {
     if (area.empty()) throw SettingError("BlockFlight::area (width)", area.size().x, "m", "not negative, nor the length");
@@ -36,8 +36,8 @@ struct BlockFlight {
   }
 };
 
-/// The lines of a block flight, from its left to its right as seen along the first line. Together their swaths cover the area, and reach
-/// beyond it by the same on both sides.
+/// Lines of a block flight, from left to right as seen along the first line. Together their swaths cover the area, with equal margins on
+/// both sides. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<StraightLine> plan_block_flight(const BlockFlight& block) {
   block.validate();
   const Vec3 along{std::sin(block.heading), std::cos(block.heading), 0}, across{along.y, -along.x, 0};
@@ -45,8 +45,8 @@ struct BlockFlight {
   const double length_along = size.x * std::fabs(along.x) + size.y * std::fabs(along.y) + 2 * block.run_in;
   const double width = size.x * std::fabs(across.x) + size.y * std::fabs(across.y);
   const double spacing = block.swath * (1 - block.overlap);
-  require_within("BlockFlight::swath (lines)", width / spacing, 0, 65534, "");  // as legs are numbered
-  // the swaths of n lines cover (n - 1) spacings and one swath; rounding asks for no further line
+  require_within("BlockFlight::swath (lines)", width / spacing, 0, 65534, "");  // limit of the leg numbers
+  // the swaths of n lines cover (n - 1) spacings and one swath; rounding must not add a line
   const auto lines = 1 + static_cast<std::size_t>(std::ceil(std::max(0.0, (width - block.swath) / spacing - 1e-9)));
   const Vec3 centre{block.area.centre().x, block.area.centre().y, block.altitude};
 

@@ -21,14 +21,15 @@
 
 namespace pulsecast {
 
+/// Limits and dimensions of a ground vehicle.
 struct GroundVehicleSettings {
-  double speed = 10;         ///< at most [m/s]
-  double acceleration = 2;   ///< at most, along and across the way together, as on level ground [m/s^2]
-  double jerk = 2;           ///< change of acceleration along the way at most [m/s^3]
-  double turn_radius = 5.5;  ///< of the middle of the rear axle, in every curve: the least that it can [m]
-  double wheelbase = 2.7;    ///< from the rear axle to the front axle [m]
-  double track = 1.6;        ///< from the left wheels to the right ones [m]
-  double ground_step = 0.1;  ///< the ground is asked at least this often along the way [m]
+  double speed = 10;         ///< maximum [m/s]
+  double acceleration = 2;   ///< maximum of the acceleration along and across the path combined, as on level ground [m/s^2]
+  double jerk = 2;           ///< maximum change of acceleration along the path [m/s^3]
+  double turn_radius = 5.5;  ///< radius of every curve, at the middle of the rear axle: the vehicle's minimum [m]
+  double wheelbase = 2.7;    ///< distance from the rear to the front axle [m]
+  double track = 1.6;        ///< distance from the left to the right wheels [m]
+  double ground_step = 0.1;  ///< maximum distance between ground queries along the path [m]
 
   void validate() const {
     require_within("GroundVehicleSettings::speed", speed, 1e-3, 1e3, "m/s");
@@ -41,13 +42,13 @@ struct GroundVehicleSettings {
   }
 };
 
-/// How a vehicle stands on the ground: the plane through its four wheels.
+/// Pose of a vehicle relative to the map: the plane through its four wheels.
 struct Footing {
-  double height = 0;  ///< of the middle of the rear axle, at the foot of the wheels [m]
-  double ahead = 0;   ///< slope: what it rises forwards [m/m]
-  double aside = 0;   ///< slope: what it rises to the right [m/m]
+  double height = 0;  ///< height of the middle of the rear axle, at the foot of the wheels [m]
+  double ahead = 0;   ///< slope forwards, positive upwards [m/m]
+  double aside = 0;   ///< slope to the right, positive upwards [m/m]
 
-  /// Turned to a heading, then pitched, then rolled, until its up is normal to the plane.
+  /// Attitude by heading, then pitch, then roll, so that up is normal to the plane.
   /// Source: the up of Rx(pitch) Ry(roll) is (sin r, -sin p cos r, cos p cos r), and the normal is (-aside, -ahead, 1).
   [[nodiscard]] Rotation attitude(double heading) const noexcept {
     const double pitch = std::atan(ahead);
@@ -55,18 +56,18 @@ struct Footing {
   }
 };
 
-/// A drive over the ground. The body's origin is the middle of the rear axle, at the height where the wheels touch the ground. Position,
-/// speed and attitude are continuous; where a vehicle changes gear it stands.
+/// Drive over the ground. The body's origin is the middle of the rear axle, at the height of the wheels' contact. Position, speed and
+/// attitude are continuous; the vehicle stops where it changes gear.
 class GroundVehicleDrive {
  public:
-  /// A piece of the way, and how the vehicle stands at equal distances along it, from its start to its end.
+  /// Piece of the path with the footings at equal distances along it, both ends included.
   struct Section {
     PathPiece path{};
-    double start = 0;  ///< of what was driven before [m]
+    double start = 0;  ///< length driven before [m]
     std::vector<Footing> footings{};
   };
 
-  /// See `plan_ground_vehicle`; `driven` [m].
+  /// `driven` is the length driven over time [m]: see `plan_ground_vehicle`.
   GroundVehicleDrive(std::vector<Section> sections, PiecewiseCubic<double> driven, Tick duration)
       : sections_(std::move(sections)), driven_(std::move(driven)), duration_(duration) {}
 
@@ -88,7 +89,7 @@ class GroundVehicleDrive {
 
   [[nodiscard]] Tick duration() const noexcept { return duration_; }
   [[nodiscard]] const std::vector<Section>& sections() const noexcept { return sections_; }
-  [[nodiscard]] const PiecewiseCubic<double>& driven() const noexcept { return driven_; }  ///< forwards and backwards added up [m]
+  [[nodiscard]] const PiecewiseCubic<double>& driven() const noexcept { return driven_; }  ///< length driven, forwards plus backwards [m]
 
  private:
   std::vector<Section> sections_;
@@ -100,8 +101,8 @@ static_assert(Trajectory<GroundVehicleDrive>);
 
 namespace detail {
 
-/// The waypoints, checked, without those that are less than a centimetre from the one before; the last one stays, and the first.
-/// `numbers` receives where in the list they were.
+/// Checked waypoints without those less than a centimetre from the one before; the first and the last stay. `numbers` receives their
+/// indices in the list. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<Vec2> checked(std::span<const Vec2> waypoints, std::vector<std::size_t>& numbers) {
   require_within("plan_ground_vehicle: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
   std::vector<Vec2> points;
@@ -118,9 +119,9 @@ namespace detail {
   return points;
 }
 
-/// How a vehicle stands at a stance: by least squares of its four wheels. Where these touch the ground depends on how it leans, so the
-/// plane is found in rounds, each of which leaves about the square of the slope of the error before.
-/// Source: of a plane through a rectangle's corners, the slopes are the differences of the means of opposite sides.
+/// Footing at a stance, by least squares of the four wheels. The wheels' contact depends on the attitude, so the plane is iterated; each
+/// round leaves about the square of the slope of the error before. Throws a `SettingError` where there is no ground.
+/// Source: the slopes of a plane through a rectangle's corners are the differences of the means of opposite sides.
 [[nodiscard]] inline Footing footing_at(const Stance& stance, std::size_t waypoint, const GroundVehicleSettings& s,
                                         const Ground auto& ground) {
   const auto height = [&](const Vec2& place) {
@@ -133,7 +134,7 @@ namespace detail {
   Footing footing{height(stance.position), 0, 0};
   for (int round = 0; round < 6; ++round) {
     const Rotation attitude = footing.attitude(stance.heading);
-    const auto error = [&](double x, double y) {  // of a wheel above the ground
+    const auto error = [&](double x, double y) {  // height error of a wheel against the ground
       const Vec3 wheel = attitude * Vec3{x, y, 0};
       return height(stance.position + Vec2{wheel.x, wheel.y}) - footing.height - wheel.z;
     };
@@ -147,8 +148,8 @@ namespace detail {
   return footing;
 }
 
-/// What a vehicle may do on a piece of its way. In a curve, acceleration along and across have equal shares of what is allowed. On a slope
-/// the way is longer than on the map.
+/// Speed limits on a piece of the path, on the map. In a curve, acceleration along and across have equal shares of the maximum. On a slope
+/// the path is longer than on the map.
 [[nodiscard]] inline SpeedLimits limits_on(const GroundVehicleDrive::Section& section, const GroundVehicleSettings& s) noexcept {
   double steepest = 0;
   const auto& footings = section.footings;
@@ -158,15 +159,15 @@ namespace detail {
   }
   const double map = 1 / std::hypot(1, steepest), bend = std::fabs(section.path.curvature);
   const double share = bend > 0 ? s.acceleration * std::sqrt(0.5) : s.acceleration;
-  const double speed = bend > 0 ? std::fmin(s.speed, std::sqrt(share / bend)) : s.speed;  // v^2 / r is the acceleration across
+  const double speed = bend > 0 ? std::fmin(s.speed, std::sqrt(share / bend)) : s.speed;  // centripetal acceleration v^2 / r
   return {map * speed, map * share, map * share, map * s.jerk};
 }
 
 }  // namespace detail
 
-/// Plans a drive from the first waypoint to the last, at rest at both and where it changes gear: see `path_through` for the way. It stands
-/// on the ground with all four wheels, as far as a rigid body can. A single waypoint looks north. Waypoints less than a centimetre apart
-/// are one. The ground is asked now, never later: the drive keeps what it was told.
+/// Plans a drive from the first waypoint to the last along `path_through`, at rest at both ends and at changes of gear. All four wheels
+/// follow the ground as far as a rigid body can. A single waypoint looks north. Waypoints less than a centimetre apart are one. The ground
+/// is queried only during planning. Throws a `SettingError` for invalid settings or waypoints, a path that is too long, or missing ground.
 [[nodiscard]] inline GroundVehicleDrive plan_ground_vehicle(std::span<const Vec2> waypoints, const Ground auto& ground,
                                                             const GroundVehicleSettings& settings = {}) {
   settings.validate();

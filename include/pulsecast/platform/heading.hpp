@@ -8,12 +8,12 @@
 
 namespace pulsecast {
 
-/// The heading of a direction: clockwise from north, in [-pi, pi]; `otherwise` if it is vertical or zero [rad].
+/// Heading of a direction: clockwise from north, in [-pi, pi]; `otherwise` if the direction is vertical or zero [rad].
 [[nodiscard]] inline double heading_of(const Vec3& direction, double otherwise = 0) noexcept {
   return direction.x == 0 && direction.y == 0 ? otherwise : std::atan2(direction.x, direction.y);
 }
 
-/// A body that stands level and looks where a compass says: clockwise from north [rad].
+/// Attitude of a level body with a compass heading, clockwise from north [rad].
 [[nodiscard]] inline Rotation level(double heading) noexcept { return rotation_about(axis::up, -heading); }
 
 }  // namespace pulsecast

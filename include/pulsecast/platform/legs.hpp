@@ -14,21 +14,20 @@
 
 namespace pulsecast {
 
-/// A pass. One that is not active takes its time, as a turn between two strips does, but holds no slots.
+/// Pass of a platform. An inactive leg takes its time, as a turn between two strips, but has no slots.
 template <WorldSource P>
 struct Leg {
-  P platform;
-  bool active = true;
-  std::optional<std::uint16_t>
-      strip{};  ///< the number that its pulses carry, which legs of one strip share; if empty, its place in the list
+  P platform;                            ///< carrier of the instrument
+  bool active = true;                    ///< true if pulses are emitted
+  std::optional<std::uint16_t> strip{};  ///< number carried by its pulses, equal for legs of one strip; by default the index in the list
 };
 
-/// Passes end to end, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's own clock starts at zero; the survey's
-/// time runs on from one to the next.
+/// Passes in sequence, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's own clock starts at zero; the survey's
+/// time continues from leg to leg.
 template <WorldSource P>
 class Legs {
  public:
-  /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s together.
+  /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total. Throws a `SettingError`.
   explicit Legs(std::vector<Leg<P>> legs) {
     require_within("Legs::legs (number)", static_cast<double>(legs.size()), 1, 65535, "");
     PulseIndex first = 0;
@@ -47,7 +46,7 @@ class Legs {
     end_ = {first, start, 0};
   }
 
-  /// All of them active.
+  /// All legs active.
   explicit Legs(std::vector<P> legs) : Legs(active(std::move(legs))) {}
 
   [[nodiscard]] PulseIndex size() const noexcept { return end_.pulse; }
@@ -62,10 +61,10 @@ class Legs {
 
   [[nodiscard]] const std::vector<P>& legs() const noexcept { return legs_; }
 
-  /// When leg k begins, since the survey's start.
+  /// Begin of leg k since the survey's start.
   [[nodiscard]] Tick start(std::size_t k) const noexcept { return starts_[k].tick; }
 
-  /// The leg that slot i belongs to.
+  /// Index of the leg of slot i.
   [[nodiscard]] std::size_t leg_of(PulseIndex i) const noexcept {
     const auto after = std::upper_bound(starts_.begin(), starts_.end(), i, [](PulseIndex n, const Start& s) { return n < s.pulse; });
     return static_cast<std::size_t>(after - starts_.begin()) - 1;

@@ -22,27 +22,29 @@ namespace pulsecast {
 /// Standard acceleration of gravity [m/s^2]. Source: 3rd CGPM, 1901.
 inline constexpr double standard_gravity = 9.80665;
 
-/// A place that a multicopter flies to.
+/// Waypoint of a multicopter.
 struct FlightPoint {
-  Vec3 position{};   ///< in the world [m]
-  double hover = 0;  ///< how long it stays there at least; it passes if 0 and the turns are smooth [s]
+  Vec3 position{};   ///< position in the world [m]
+  double hover = 0;  ///< least duration of the stay; 0 to pass, with smooth turns [s]
 };
 
+/// Flight at the waypoints between the first and the last.
 enum class MulticopterTurn {
-  stop_and_turn,  ///< stands still at each waypoint until it looks along the next leg
-  smooth,         ///< cuts the corner in a banked turn; stops where it hovers or must turn by more than 150 degrees
+  stop_and_turn,  ///< hovers at each waypoint until it faces the next leg
+  smooth,         ///< cuts the corner in a banked turn; stops to hover, or to turn by more than 150 degrees
 };
 
+/// Limits and style of a multicopter's flight.
 struct MulticopterSettings {
-  double speed = 8;                                ///< at most [m/s]
-  double acceleration = 3;                         ///< at most, in any direction [m/s^2]
-  double jerk = 6;                                 ///< change of acceleration at most, in any direction [m/s^3]
-  double bank_max = pi / 6;                        ///< how far it leans from upright at most [rad]
-  double yaw_rate = pi / 2;                        ///< at most [rad/s]
-  MulticopterTurn turn = MulticopterTurn::smooth;  ///< at waypoints between the first and the last
-  double turn_distance = 10;                       ///< before its waypoint a smooth turn begins at the earliest [m]
-  std::optional<double> departure_heading{};       ///< clockwise from north; if empty, along the first leg [rad]
-  std::optional<double> arrival_heading{};         ///< clockwise from north; if empty, along the last leg [rad]
+  double speed = 8;                                ///< maximum [m/s]
+  double acceleration = 3;                         ///< maximum in any direction [m/s^2]
+  double jerk = 6;                                 ///< maximum change of acceleration in any direction [m/s^3]
+  double bank_max = pi / 6;                        ///< maximum angle from upright [rad]
+  double yaw_rate = pi / 2;                        ///< maximum [rad/s]
+  MulticopterTurn turn = MulticopterTurn::smooth;  ///< behaviour at waypoints between the first and the last
+  double turn_distance = 10;                       ///< maximum distance from the begin of a smooth turn to its waypoint [m]
+  std::optional<double> departure_heading{};       ///< clockwise from north; along the first leg if empty [rad]
+  std::optional<double> arrival_heading{};         ///< clockwise from north; along the last leg if empty [rad]
 
   void validate() const {
     require_within("MulticopterSettings::speed", speed, 1e-3, 1e3, "m/s");
@@ -56,29 +58,28 @@ struct MulticopterSettings {
   }
 };
 
-/// The flight of a multicopter, in pieces of constant jerk. As thrust is all that moves it, it leans until its up is along acceleration
-/// and lift together; in a level turn that is tan(bank) = v^2 / (g r), the coordinated turn. Position, velocity and attitude are
-/// continuous.
+/// Flight of a multicopter, in pieces of constant jerk. Thrust alone moves it, so its up axis follows the sum of acceleration and lift; in
+/// a level turn tan(bank) = v^2 / (g r), the coordinated turn. Position, velocity and attitude are continuous.
 class MulticopterFlight {
  public:
-  /// `motion` [m]; `heading` clockwise from north [rad]: see `plan_multicopter`.
+  /// `motion` [m]; `heading` clockwise from north [rad]; `passes` by waypoint: see `plan_multicopter`.
   MulticopterFlight(PiecewiseCubic<Vec3> motion, PiecewiseCubic<double> heading, Tick duration, std::vector<Tick> passes = {})
       : motion_(std::move(motion)), heading_(std::move(heading)), duration_(duration), passes_(std::move(passes)) {}
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const CubicPiece<Vec3> state = motion_.at(t);
     const Vec3 thrust = normalize(state.acceleration + standard_gravity * axis::up);
-    const Rotation lean = normalize(Rotation{1 + thrust.z, -thrust.y, thrust.x, 0});  // takes up to thrust by the shortest way
+    const Rotation lean = normalize(Rotation{1 + thrust.z, -thrust.y, thrust.x, 0});  // rotates up to the thrust by the shortest way
     return {lean * level(heading_.at(t).position), state.position};
   }
 
   [[nodiscard]] Tick duration() const noexcept { return duration_; }
 
-  /// For each waypoint of the plan, the middle of its turn, or when it begins to stand there.
+  /// Passing time of each waypoint of the plan: the middle of its turn, or the begin of its hover.
   [[nodiscard]] const std::vector<Tick>& passes() const noexcept { return passes_; }
 
-  [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }
-  [[nodiscard]] const PiecewiseCubic<double>& heading() const noexcept { return heading_; }
+  [[nodiscard]] const PiecewiseCubic<Vec3>& motion() const noexcept { return motion_; }      ///< position over time [m]
+  [[nodiscard]] const PiecewiseCubic<double>& heading() const noexcept { return heading_; }  ///< clockwise from north over time [rad]
 
  private:
   PiecewiseCubic<Vec3> motion_;
@@ -91,7 +92,7 @@ static_assert(Trajectory<MulticopterFlight>);
 
 namespace detail {
 
-/// The most acceleration along a unit direction: within the bank, and so that thrust never falls below a tenth of the weight [m/s^2].
+/// Largest acceleration along a unit direction [m/s^2]: within the bank, and with thrust of at least a tenth of the weight.
 /// Source: tan(bank) = (horizontal acceleration) / (g + vertical acceleration), solved for the length of the acceleration.
 [[nodiscard]] inline double acceleration_along(const Vec3& direction, const MulticopterSettings& settings) noexcept {
   const double bank = std::tan(settings.bank_max), lean = std::hypot(direction.x, direction.y) - bank * direction.z;
@@ -101,26 +102,26 @@ namespace detail {
   return most;
 }
 
-/// The turn from one unit direction to another at a waypoint: the velocity changes along a straight line, so its amount never grows.
+/// Turn between two unit directions at a waypoint: the velocity changes along a straight line, so the speed never grows.
 /// Source: Craig 2005, section 7.3, straight lines with blends, with limited jerk.
 struct SmoothTurn {
-  Vec3 before{};        ///< unit
-  Vec3 after{};         ///< unit
-  SpeedChange limit{};  ///< of acceleration and jerk
+  Vec3 before{};        ///< direction in, unit
+  Vec3 after{};         ///< direction out, unit
+  SpeedChange limit{};  ///< limits of acceleration and jerk
 
   [[nodiscard]] SpeedChange change(double speed) const noexcept {
     return {0, speed * length(after - before), limit.acceleration, limit.jerk};
   }
-  /// From the begin of the turn to the waypoint, and from there to its end [m].
+  /// Length from the begin of the turn to the waypoint, equal to that from there to its end [m].
   [[nodiscard]] double distance(double speed) const noexcept { return 0.5 * speed * change(speed).duration(); }
 };
 
-/// A flight while it is planned: at a time, in a state.
+/// Flight under construction, at its current time and state.
 class FlightPlan {
  public:
   FlightPlan(const Vec3& position, double heading, double yaw_rate) : motion_(position), heading_(heading), yaw_rate_(yaw_rate) {}
 
-  /// Adds motion along a unit direction from a point, on top of a constant velocity.
+  /// Appends motion along a unit direction from a point, superposed on a constant velocity.
   void fly(const std::vector<CubicPiece<double>>& pieces, const Vec3& from, const Vec3& direction, const Vec3& drift = {}) {
     double elapsed = 0;
     for (const auto& p : pieces) {
@@ -131,13 +132,13 @@ class FlightPlan {
     }
   }
 
-  /// Stays at a point for a time, and until it looks along a heading.
+  /// Hovers at a point for a time [s], and until it faces a heading.
   void stand(const Vec3& at, double time, double heading) {
     motion_.add(now_, {.position = at});
     now_ = now_ + Tick::of_seconds(std::fmax(time, turn_to(heading, 0)));
   }
 
-  /// From now on turns to a heading the shorter way: within a time if the yaw rate allows it. Returns how long it takes [s].
+  /// Turns to a heading the shorter way, within a time if the yaw rate allows it. Returns the duration [s].
   double turn_to(double heading, double time) {
     const double yaw = heading_.at(now_).position, angle = std::remainder(heading - yaw, 2 * pi);
     const double needed = std::fmax(time, std::fabs(angle) / yaw_rate_);
@@ -148,7 +149,7 @@ class FlightPlan {
   /// Passes the next waypoint after a time [s].
   void pass(double after) { passes_.push_back(now_ + Tick::of_seconds(after)); }
 
-  /// `numbers` says of each waypoint which of those passed it is.
+  /// Finished flight; `numbers` maps each waypoint to its passing.
   [[nodiscard]] MulticopterFlight flight(const std::vector<std::size_t>& numbers) && {
     std::vector<Tick> passes;
     for (const std::size_t k : numbers) passes.push_back(passes_[k]);
@@ -163,8 +164,8 @@ class FlightPlan {
   std::vector<Tick> passes_;
 };
 
-/// The waypoints, checked, without those that are less than a nanometre from the one before; whose hover times add up. `numbers` receives
-/// which of them each waypoint is.
+/// Checked waypoints, those less than a nanometre from the one before merged into it with the sum of hover times. `numbers` maps each to
+/// its merged waypoint. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<FlightPoint> checked(std::span<const FlightPoint> waypoints, std::vector<std::size_t>& numbers) {
   require_within("plan_multicopter: waypoints (number)", static_cast<double>(waypoints.size()), 1, 1e7, "");
   std::vector<FlightPoint> points;
@@ -185,10 +186,10 @@ class FlightPlan {
 
 }  // namespace detail
 
-/// Plans a flight from the first waypoint to the last, at rest at both. It looks along its leg, and keeps its heading on a vertical one;
-/// at departure and arrival it turns standing. Each leg takes as little time as speed, acceleration, jerk and bank allow from turn to turn;
-/// a smooth turn takes at most a third of either leg, so waypoints that are close to each other are flown slowly.
-/// Waypoints less than a nanometre apart are one.
+/// Plans a flight from the first waypoint to the last, at rest at both. The vehicle faces its leg, keeps its heading on a vertical one, and
+/// turns in place at departure and arrival. Each leg takes the least time that speed, acceleration, jerk and bank allow from turn to turn.
+/// A smooth turn takes at most a third of either leg, so waypoints close to each other are flown slowly. Waypoints less than a nanometre
+/// apart are one. Throws a `SettingError`.
 [[nodiscard]] inline MulticopterFlight plan_multicopter(std::span<const FlightPoint> waypoints, const MulticopterSettings& settings = {}) {
   settings.validate();
   std::vector<std::size_t> numbers;
@@ -199,7 +200,7 @@ class FlightPlan {
   std::vector<double> headings(legs);
   std::vector<PathSection> sections(legs);
   double heading = settings.departure_heading.value_or(0);
-  bool level_leg = settings.departure_heading.has_value();  // so far
+  bool level_leg = settings.departure_heading.has_value();  // true once a heading is known
   for (std::size_t k = 0; k < legs; ++k) {
     const Vec3 way = points[k + 1].position - points[k].position;
     directions[k] = normalize(way);
@@ -207,7 +208,7 @@ class FlightPlan {
     sections[k] = {length(way), {settings.speed, ahead, back, settings.jerk}};
     if (std::hypot(directions[k].x, directions[k].y) > 1e-6) {
       heading = heading_of(directions[k]);
-      if (!level_leg) std::fill_n(headings.begin(), k, heading);  // it rises as it will fly on
+      if (!level_leg) std::fill_n(headings.begin(), k, heading);  // a vertical start faces the first level leg
       level_leg = true;
     }
     headings[k] = heading;

@@ -12,10 +12,10 @@
 
 namespace pulsecast {
 
-/// How an instrument sits on its platform.
+/// Mounting of an instrument on its platform.
 struct Mount {
-  Vec3 lever_arm{};                  ///< of the instrument's origin, in the frame of the body [m]
-  Rotation boresight = no_rotation;  ///< from the instrument to the body; unit to a thousandth
+  Vec3 lever_arm{};                  ///< position of the instrument's origin in the body frame [m]
+  Rotation boresight = no_rotation;  ///< rotation from the instrument to the body; unit to within 1e-3
 
   void validate() const {
     require_finite("Mount::lever_arm (length)", length(lever_arm), "m");
@@ -26,7 +26,7 @@ struct Mount {
   [[nodiscard]] Pose<frame::Instrument, frame::Body> pose() const noexcept { return {boresight, lever_arm}; }
 };
 
-/// Carries an instrument through the world. The lever arm turns with the body.
+/// Pulse source of an instrument carried through the world. The lever arm turns with the body.
 template <Trajectory Path, InstrumentSource Source>
 class Platform {
  public:
@@ -42,7 +42,7 @@ class Platform {
     return placed(*inner);
   }
 
-  /// A pulse of the instrument, in the world. It is always there; optional, so that `pulse` hands it on without a copy.
+  /// Pulse of the instrument, transformed into the world. Never empty; optional so that `pulse` returns it without a copy.
   [[nodiscard]] std::optional<Pulse<frame::World>> placed(const Pulse<frame::Instrument>& inner) const noexcept {
     const Pose<frame::Body, frame::World> world_from_body = path_.at(inner.tick);
     PULSECAST_ASSERT(world_from_body.rigid());

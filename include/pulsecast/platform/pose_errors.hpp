@@ -18,18 +18,17 @@
 
 namespace pulsecast {
 
-/// How an instrument errs about where it is and looks: nothing, unless told otherwise. Deviations are standard deviations along or about
-/// each axis of the body.
+/// Errors of reported position and attitude, zero by default: standard deviations along or about each axis of the body.
 struct PoseErrors {
-  double position_noise = 0;  ///< white [m]
-  double attitude_noise = 0;  ///< white [rad]
-  double position_drift = 0;  ///< Gauss-Markov: wanders slowly, within this deviation [m]
-  double attitude_drift = 0;  ///< Gauss-Markov [rad]
-  double drift_time = 60;     ///< after which a drift has forgotten all but 1/e of itself, 2.4 kB; at least 1e-6 of the survey's length [s]
-  double angular_jitter = 0;  ///< of each beam, beside where the optic says that it goes; white, right and up [rad]
-  Vec3 lever_arm_error{};     ///< reported less true [m]
-  Rotation boresight_error = no_rotation;  ///< from the true frame of the instrument to the reported one
-  std::uint64_t seed = 0;                  ///< of all that is random; each of several `Legs` draws numbers of its own
+  double position_noise = 0;  ///< white noise [m]
+  double attitude_noise = 0;  ///< white noise [rad]
+  double position_drift = 0;  ///< Gauss-Markov process: slow drift with this deviation [m]
+  double attitude_drift = 0;  ///< Gauss-Markov process [rad]
+  double drift_time = 60;     ///< correlation time of the drifts (decay to 1/e), 2.4 kB each; at least 1e-6 of the survey's length [s]
+  double angular_jitter = 0;  ///< unreported white deviation of each beam from the optic's direction, to the right and up [rad]
+  Vec3 lever_arm_error{};     ///< reported minus true [m]
+  Rotation boresight_error = no_rotation;  ///< rotation from the instrument's true frame to the reported one
+  std::uint64_t seed = 0;                  ///< of all random draws; each of several `Legs` draws its own
 
   void validate() const {
     require_not_negative("PoseErrors::position_noise", position_noise, "m");
@@ -44,13 +43,13 @@ struct PoseErrors {
   void normalize() noexcept { boresight_error = unit(boresight_error); }
 };
 
-/// A platform whose instrument errs: rays are cast from where it is, and points are written where it takes itself to be.
+/// Platform with pose errors: rays start at the true pose, points are computed from the reported one. Throws a `SettingError`.
 template <Trajectory Path, InstrumentSource Source>
 class WithPoseErrors {
  public:
   WithPoseErrors(Platform<Path, Source> truth, PoseErrors errors) : truth_(std::move(truth)), errors_(validated(errors)) { plan_drift(); }
 
-  /// Draws other errors of the same kind for each leg.
+  /// Draws independent errors of the same kind for each leg.
   void draw_for_leg(std::uint32_t leg) {
     if (leg == std::exchange(leg_, leg)) return;
     plan_drift();
@@ -60,7 +59,7 @@ class WithPoseErrors {
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
   [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }
 
-  /// The pose that is reported of the body.
+  /// Reported pose of the body.
   [[nodiscard]] Pose<frame::Body, frame::World> reported(Tick t) const noexcept {
     const Pose<frame::Body, frame::World> world_from_body = truth_.trajectory().at(t);
     const Drift drift = drift_at(t);
@@ -98,7 +97,7 @@ class WithPoseErrors {
     return {drawn(moment, first, purpose), drawn(moment, first + 1, purpose), drawn(moment, first + 2, purpose)};
   }
 
-  /// Emitters that fire at the same time share it. No two moments within 45 years do.
+  /// White noise, common to emitters that fire at the same time. No two ticks within 45 years share it.
   Vec3 white_noise(Tick t, Purpose purpose, double deviation) const noexcept {
     if (deviation == 0) return {};
     return deviation * normals(std::bit_cast<std::uint64_t>(t.fraction), purpose, static_cast<std::uint32_t>(t.second));
@@ -112,7 +111,7 @@ class WithPoseErrors {
     return p;
   }
 
-  /// The drift at every node is what is left of the one before and as much chance as keeps the deviation. Source: Gelb 1974, sec. 3.8.
+  /// Drift at each node: the previous one, decayed, plus a random part that keeps the deviation. Source: Gelb 1974, sec. 3.8.
   void plan_drift() {
     if (errors_.position_drift == 0 && errors_.attitude_drift == 0) return;
     const double kept = std::exp(-1.0 / nodes_per_drift_time), added = std::sqrt(1 - kept * kept);
@@ -137,7 +136,7 @@ class WithPoseErrors {
     return {a.position + share * (b.position - a.position), a.attitude + share * (b.attitude - a.attitude)};
   }
 
-  static constexpr double nodes_per_drift_time = 50;  ///< between them the drift is straight, which takes 1 % off its variance
+  static constexpr double nodes_per_drift_time = 50;  ///< linear interpolation between nodes takes 1 % off the variance
 
   Platform<Path, Source> truth_;
   PoseErrors errors_;

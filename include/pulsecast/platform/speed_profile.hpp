@@ -13,34 +13,34 @@
 
 namespace pulsecast {
 
-/// What a motion along a line may not exceed.
+/// Limits of a motion along a line.
 struct SpeedLimits {
-  double speed = 1;         ///< [m/s]
-  double acceleration = 1;  ///< when it speeds up [m/s^2]
-  double braking = 1;       ///< when it slows down [m/s^2]
-  double jerk = 1;          ///< change of acceleration [m/s^3]
+  double speed = 1;         ///< maximum [m/s]
+  double acceleration = 1;  ///< maximum when speeding up [m/s^2]
+  double braking = 1;       ///< maximum deceleration [m/s^2]
+  double jerk = 1;          ///< maximum change of acceleration [m/s^3]
 };
 
-/// The fastest change of speed, from and to no acceleration: it rises, stays for a while, and falls.
+/// Fastest change of speed between states of zero acceleration: the acceleration rises, holds, and falls.
 /// Source: Biagiotti & Melchiorri 2008, section 3.4, the acceleration phase of the double S profile.
 struct SpeedChange {
-  double from = 0;          ///< [m/s]
-  double to = 0;            ///< [m/s]
-  double acceleration = 1;  ///< its most, of either sign [m/s^2]
-  double jerk = 1;          ///< its amount while the acceleration rises or falls [m/s^3]
+  double from = 0;          ///< initial speed [m/s]
+  double to = 0;            ///< final speed [m/s]
+  double acceleration = 1;  ///< maximum magnitude [m/s^2]
+  double jerk = 1;          ///< magnitude while the acceleration rises or falls [m/s^3]
 
-  /// How long the acceleration rises, and how long it falls [s].
+  /// Duration of the rise of the acceleration, equal to that of its fall [s].
   [[nodiscard]] double ramp() const noexcept { return std::fmin(acceleration / jerk, std::sqrt(std::fabs(to - from) / jerk)); }
 
-  /// How long it stays in between [s].
+  /// Duration of constant acceleration in between [s].
   [[nodiscard]] double hold() const noexcept { return std::fmax(0.0, std::fabs(to - from) / acceleration - acceleration / jerk); }
 
-  [[nodiscard]] double duration() const noexcept { return 2 * ramp() + hold(); }
+  [[nodiscard]] double duration() const noexcept { return 2 * ramp() + hold(); }  ///< total [s]
 
-  /// What is driven meanwhile: as the speed is symmetric about its mean, that times the duration [m].
+  /// Length driven: the speed is symmetric about its mean, so mean times duration [m].
   [[nodiscard]] double distance() const noexcept { return 0.5 * (from + to) * duration(); }
 
-  /// Enters its pieces, which begin at a position [m].
+  /// Appends its pieces, which begin at a position [m].
   void add_to(std::vector<CubicPiece<double>>& pieces, double position) const {
     if (from == to) return;
     const double rise = std::copysign(jerk, to - from), t = ramp(), most = rise * t, gain = 0.5 * most * t;
@@ -51,7 +51,7 @@ struct SpeedChange {
   }
 };
 
-/// The largest speed from `low` to `high` that fits, if all below one that fits fit and `low` does: by halving.
+/// Largest fitting speed from `low` to `high`, by bisection. `low` must fit, and every speed below one that fits.
 [[nodiscard]] double max_speed(double low, double high, auto&& fits) {
   if (fits(high)) return high;
   for (int i = 0; i < 100; ++i) {
@@ -61,8 +61,8 @@ struct SpeedChange {
   return low;
 }
 
-/// The fastest motion over a length [m] from one speed to another [m/s], which `reachable_speed` must allow: up to seven pieces.
-/// Source: Biagiotti & Melchiorri 2008, section 3.4; where the length is short, the speed in the middle is found by halving.
+/// Fastest motion over a length [m] between two speeds [m/s] that `reachable_speed` allows, in up to seven pieces.
+/// Source: Biagiotti & Melchiorri 2008, section 3.4; over a short length, the speed in the middle is found by bisection.
 [[nodiscard]] inline std::vector<CubicPiece<double>> speed_profile(double length, double from, double to, const SpeedLimits& limits) {
   const auto rise = [&](double speed) { return SpeedChange{from, speed, limits.acceleration, limits.jerk}; };
   const auto fall = [&](double speed) { return SpeedChange{speed, to, limits.braking, limits.jerk}; };
@@ -76,22 +76,21 @@ struct SpeedChange {
   return pieces;
 }
 
-/// The highest speed after a length [m], from one speed [m/s].
+/// Highest speed after a length [m], from an initial speed [m/s].
 [[nodiscard]] inline double reachable_speed(double length, double from, double acceleration, const SpeedLimits& limits) {
   return max_speed(from, std::fmax(from, limits.speed), [&](double speed) {
     return SpeedChange{from, speed, acceleration, limits.jerk}.distance() <= length;
   });
 }
 
-/// A part of a way, to be driven without a stop in between.
+/// Section of a path, driven without a stop in between.
 struct PathSection {
   double length = 0;     ///< [m]
-  SpeedLimits limits{};  ///< all along it
+  SpeedLimits limits{};  ///< limits all along it
 };
 
-/// Lowers the speeds at the joints of sections, of which there is one more than of sections, until each section can be driven within its
-/// limits: forwards for speeding up, then backwards for braking.
-/// Source: the look-ahead of machine tools, with no acceleration at a joint.
+/// Lowers the speeds at the joints of sections until each section can be driven within its limits: forwards for speeding up, then backwards
+/// for braking. Joints are one more than sections. Source: look-ahead of machine tools, with zero acceleration at a joint.
 inline void settle_speeds(std::span<double> joints, std::span<const PathSection> sections) {
   PULSECAST_ASSERT(joints.size() == sections.size() + 1);
   for (std::size_t k = 0; k < sections.size(); ++k) {

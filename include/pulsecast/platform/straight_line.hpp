@@ -8,21 +8,20 @@
 
 namespace pulsecast {
 
-/// Moves from one place to another at a constant speed, and stays there. The body is level and looks along the path; on a path straight
-/// up or down, and on one that goes nowhere, it looks north.
+/// Straight motion at constant speed, at rest after its end. The body is level and looks along the path, or north if vertical or empty.
 struct StraightLine {
-  Vec3 from{};          ///< where it is when its clock starts, in the world [m]
-  Vec3 to{0, 1000, 0};  ///< where it arrives, in the world [m]
-  double speed = 60;    ///< along the path, slopes included [m/s]
+  Vec3 from{};          ///< start, in the world [m]
+  Vec3 to{0, 1000, 0};  ///< end, in the world [m]
+  double speed = 60;    ///< speed along the path, slopes included [m/s]
 
   void validate() const {
     require_finite("StraightLine::from (length)", length(from), "m");
     require_finite("StraightLine::to (length)", length(to), "m");
     require_positive("StraightLine::speed", speed, "m/s");
-    require_within("StraightLine (duration)", length(to - from) / speed, 0, 1e15, "s");  // as a Tick counts
+    require_within("StraightLine (duration)", length(to - from) / speed, 0, 1e15, "s");  // limit of a `Tick`
   }
 
-  /// When it arrives: a scanner that shoots until then covers the line.
+  /// Arrival time, and so the duration of a scan of the whole line.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(length(to - from) / speed); }
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {

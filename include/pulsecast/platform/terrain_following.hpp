@@ -16,9 +16,10 @@
 
 namespace pulsecast {
 
+/// Limits of a flight at a height above the ground.
 struct TerrainFollowing {
-  double height = 100;  ///< above the ground, at least [m]
-  double step = 10;     ///< horizontal distance at which the ground is looked at [m]
+  double height = 100;  ///< minimum height above the ground [m]
+  double step = 10;     ///< horizontal distance between ground queries [m]
   double slope = 0.2;   ///< steepest climb and descent: height by distance
 
   void validate() const {
@@ -28,9 +29,9 @@ struct TerrainFollowing {
   }
 };
 
-/// Follows a line over the ground: `ground(place)` gives its height [m] at a place east and north [m], or nothing where it is not known;
-/// there, the last height counts, or else the first one known. Of all paths that keep their height wherever the ground is looked at, and
-/// climb no steeper than allowed, it is the lowest. If no ground is known at all, the path is the line's own.
+/// Plans a path over the ground along a line: `ground(place)` gives the height [m] at a place east and north [m], or nothing where unknown;
+/// there the last known height counts, or else the first one. The path is the lowest that keeps its height at every query and its slope
+/// within the limit. Without any known ground it is the line itself. Throws a `SettingError`.
 [[nodiscard]] Waypoints plan_terrain_following(const StraightLine& line, const Ground auto& ground, const TerrainFollowing& settings = {}) {
   line.validate(), settings.validate();
   const Vec3 path = line.to - line.from;
@@ -41,7 +42,7 @@ struct TerrainFollowing {
 
   std::vector<Vec3> positions;
   std::optional<double> last;
-  std::size_t unknown = 0;  // at the start of the line
+  std::size_t unknown = 0;  // queries at the start of the line
   for (std::size_t i = 0; i <= steps; ++i) {
     positions.push_back(steps == 0 ? line.from : line.from + path * (static_cast<double>(i) / static_cast<double>(steps)));
     const std::optional<double> here = ground(Vec2{positions[i].x, positions[i].y});
@@ -54,7 +55,7 @@ struct TerrainFollowing {
   if (!last) return Waypoints(at_constant_speed({line.from, line.to}, line.speed));
   for (std::size_t i = unknown; i-- > 0;) positions[i].z = positions[unknown].z;
 
-  const double climb = settings.slope * step;  // from one position to the next
+  const double climb = settings.slope * step;  // largest height difference from one position to the next [m]
   for (std::size_t i = 1; i <= steps; ++i) positions[i].z = std::max(positions[i].z, positions[i - 1].z - climb);
   for (std::size_t i = steps; i-- > 0;) positions[i].z = std::max(positions[i].z, positions[i + 1].z - climb);
   return Waypoints(at_constant_speed(positions, line.speed));

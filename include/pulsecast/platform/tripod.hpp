@@ -8,10 +8,10 @@
 
 namespace pulsecast {
 
-/// Stands still.
+/// Static trajectory, level.
 struct Tripod {
-  Vec3 position{};     ///< of its foot, in the world [m]
-  double heading = 0;  ///< clockwise from north, as a compass shows it [rad]
+  Vec3 position{};     ///< foot of the tripod, in the world [m]
+  double heading = 0;  ///< compass heading, clockwise from north [rad]
 
   void validate() const {
     require_finite("Tripod::position (x)", position.x, "m");

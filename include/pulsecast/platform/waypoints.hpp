@@ -18,26 +18,26 @@
 
 namespace pulsecast {
 
-/// How a position is found between two waypoints.
+/// Interpolation of positions between two waypoints.
 enum class Interpolation : std::uint8_t {
-  linear,  ///< straight, at constant velocity
-  cubic,   ///< so that the velocity is continuous: cubic polynomials that pass through the waypoints
+  linear,  ///< piecewise linear, at constant velocity
+  cubic,   ///< cubic polynomials through the waypoints, with continuous velocity
 };
 
-/// Moves through timed poses. Attitudes turn at a constant rate about one axis, the shorter way, so headings may cross north. Before the
-/// first waypoint it stands there, and after the last one, too. Planners and trajectory files end in this.
+/// Motion through timed poses. Attitudes turn at a constant rate about one axis, the shorter way, so headings may cross north. Before the
+/// first waypoint and after the last one the body rests. Planners and trajectory files end in this.
 ///
-/// A time may stand twice or more: the body jumps then. Before it, the first of these waypoints is where it arrives; from it
-/// on, the last counts.
-/// Cubic positions are found on either side of a jump alone.
+/// A time that occurs more than once is a jump: before it, the body arrives at the first of these waypoints; from it on, the last counts.
+/// Cubic positions are interpolated on either side of a jump alone.
 class Waypoints {
  public:
+  /// From 1 to 1e9 waypoints, times not decreasing. Throws a `SettingError`.
   explicit Waypoints(std::vector<TimedPose> points, Interpolation positions = Interpolation::linear) : points_(std::move(points)) {
     require_within("Waypoints::points (number)", static_cast<double>(points_.size()), 1, 1e9, "");
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const std::string field = "Waypoints::points[" + std::to_string(i) + "]";
       TimedPose& p = points_[i];
-      require_within(field + ".time", p.time, -1e15, 1e15, "s");  // as a Tick counts
+      require_within(field + ".time", p.time, -1e15, 1e15, "s");  // limit of a `Tick`
       if (i > 0 && p.time < points_[i - 1].time)
         throw SettingError(field + ".time", p.time, "s",
                            "no earlier than that of the waypoint before, " + detail::to_text(points_[i - 1].time));
@@ -48,7 +48,7 @@ class Waypoints {
     if (positions == Interpolation::cubic && points_.size() > 1) find_velocities();
   }
 
-  /// From the start of the leg to the last waypoint.
+  /// Time from the start of the leg to the last waypoint.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(std::max(0.0, points_.back().time)); }
 
   [[nodiscard]] const std::vector<TimedPose>& points() const noexcept { return points_; }
@@ -59,14 +59,14 @@ class Waypoints {
     if (after == points_.begin()) return {points_.front().rotation, points_.front().position};
     if (after == points_.end()) return {points_.back().rotation, points_.back().position};
     const TimedPose &a = *(after - 1), &b = *after;
-    // counted from the waypoint, for as late as it is, the time is as exact as its fraction of a second
+    // relative to the waypoint the time keeps the exactness of its fraction of a second
     const double since = (static_cast<double>(tick.second) - a.time) + tick.fraction;
     const double interval = b.time - a.time, s = since / interval;
     const Vec3 path = b.position - a.position;
     const Rotation rotation = normalize(slerp(a.rotation, b.rotation, s));
     if (velocities_.empty()) return {rotation, a.position + s * path};
     const auto i = static_cast<std::size_t>(after - points_.begin());
-    // Source: the cubic Hermite polynomial, in powers of s
+    // source: cubic Hermite polynomial in powers of s
     const Vec3 leaving = interval * velocities_[i - 1], arriving = interval * velocities_[i];
     return {rotation, a.position + s * (leaving + s * (3.0 * path - 2.0 * leaving - arriving + s * (leaving + arriving - 2.0 * path)))};
   }
@@ -81,7 +81,7 @@ class Waypoints {
     for (const Vec3& v : velocities_) require_finite("Waypoints::points (velocity between)", length(v), "m/s");
   }
 
-  /// From one jump to the next: at each waypoint, the velocity of the parabola through it and its neighbours; at the ends, of the parabola
+  /// Velocities between two jumps: at each waypoint that of the parabola through it and its neighbours; at the ends, of the parabola
   /// through the outer three. Source: de Boor 1978, A Practical Guide to Splines, chapter IV, piecewise cubic Bessel interpolation; Catmull
   /// & Rom 1974 where the times are evenly spaced.
   void find_velocities(std::size_t first, std::size_t last) {
@@ -101,17 +101,17 @@ class Waypoints {
   }
 
   std::vector<TimedPose> points_;
-  std::vector<Vec3> velocities_;  ///< at each waypoint [m/s]; empty if linear
+  std::vector<Vec3> velocities_;  ///< at each waypoint [m/s]; empty for linear interpolation
 };
 
 static_assert(Trajectory<Waypoints>);
 
-/// Turns bodies so that they are level and look along their path: at a bend, halfway between the ways in and out; at a turn straight back,
-/// the way in. Who rests or moves straight up keeps the last heading, or else takes the next one; who never moves aside looks north. Where
-/// a time stands twice, the body jumps: neither side looks along that way.
+/// Copies poses with level attitudes along the path: at a bend halfway between the directions in and out; at a reversal the direction in.
+/// At rest or in vertical motion the last heading is kept, or else the next one taken; without horizontal motion, north. Where a time
+/// occurs twice the body jumps: neither side looks along the jump.
 [[nodiscard]] inline std::vector<TimedPose> with_headings(std::vector<TimedPose> points) {
   const std::size_t n = points.size();
-  std::vector<Vec3> ahead(n, Vec3{});  // of each waypoint: the horizontal direction of the next way out; zero if there is none
+  std::vector<Vec3> ahead(n, Vec3{});  // horizontal direction of the next way out of each waypoint; zero if there is none
   const auto jump_to = [&](std::size_t i) { return points[i].time == points[i - 1].time; };
   const auto way_to = [&](std::size_t i) {
     const Vec3 &from = points[i - 1].position, &to = points[i].position;
@@ -124,7 +124,7 @@ static_assert(Trajectory<Waypoints>);
     const Vec3 way = way_to(i);
     ahead[i - 1] = way == Vec3{} ? ahead[i] : way;
   }
-  Vec3 behind{}, came{};  // the last way that led aside, and that since the last jump
+  Vec3 behind{}, came{};  // last horizontal direction of motion, and that since the last jump
   for (std::size_t i = 0; i < n; ++i) {
     if (i > 0 && jump_to(i))
       came = Vec3{};
@@ -136,8 +136,8 @@ static_assert(Trajectory<Waypoints>);
   return points;
 }
 
-/// Waypoints at which a body arrives that follows the path through these positions [m] at a constant speed [m/s], level and looking along
-/// it. Positions that repeat the one before are left out.
+/// Waypoints of a body that follows the path through these positions [m] at a constant speed [m/s], level and looking along it. Repeated
+/// positions are left out. Throws a `SettingError`.
 [[nodiscard]] inline std::vector<TimedPose> at_constant_speed(const std::vector<Vec3>& positions, double speed) {
   require_positive("at_constant_speed (speed)", speed, "m/s");
   std::vector<TimedPose> points;

@@ -25,21 +25,20 @@
 
 #include <pulsecast/run.hpp>
 
-/// Surveys for Python: any compile-time pipeline, an optic of one's own included, becomes a class whose runs give NumPy arrays.
+/// Python bindings of surveys: any compile-time pipeline, with user-defined optics too, becomes a class whose runs return NumPy arrays.
 ///
 ///     PYBIND11_MODULE(own_scanner, m) {
 ///       pulsecast::python::bind_survey<OwnSurvey>(m, "OwnSurvey").def(pybind11::init(&make_own_survey));
 ///     }
 ///
-/// While a survey runs, Python is free to do other things; Ctrl-C ends the run, and what came until then is whole.
+/// A run releases the GIL; Ctrl-C ends it, and results up to then are complete.
 namespace pulsecast::python {
 
-/// One echo as a row of a NumPy array, by the names that users of point clouds know. Numbers that people calculate with are signed, as
-/// NumPy makes fractions of unsigned ones.
+/// Echo as a row of a NumPy array, named as in point clouds. Numbers for calculation are signed, as NumPy makes fractions of unsigned ones.
 struct PointRow {
-  double x, y, z;                  ///< in the world [m]
-  double time;                     ///< when its pulse left, since the survey's start [s]
-  double range;                    ///< along the pulse's axis [m]
+  double x, y, z;                  ///< position in the world [m]
+  double time;                     ///< departure of its pulse, since the survey's start [s]
+  double range;                    ///< range along the pulse's axis [m]
   float intensity;                 ///< received power at the echo's peak [W]
   float reflectance;               ///< as in `Echo`
   float echo_width;                ///< standard deviation in time; 0 if not asked for, NaN if none was found [s]
@@ -47,40 +46,40 @@ struct PointRow {
   std::int64_t pulse;              ///< number of the pulse slot
   std::uint32_t object;            ///< of the strongest contributor
   std::uint16_t classification;    ///< of the strongest contributor
-  std::uint16_t leg;               ///< from 0
-  std::uint8_t return_number;      ///< from 1 in order of range
-  std::uint8_t number_of_returns;  ///< of its pulse, 255 if more
-  std::uint8_t channel;            ///< from 0
-  std::uint8_t spare[5]{};         ///< not in the array: zeros, so that the same rows are the same bytes
+  std::uint16_t leg;               ///< number of the leg, from 0
+  std::uint8_t return_number;      ///< return number, from 1 in order of range
+  std::uint8_t number_of_returns;  ///< returns of its pulse, 255 if more
+  std::uint8_t channel;            ///< number of the emitter, from 0
+  std::uint8_t spare[5]{};         ///< zeros outside the array, so that equal rows have equal bytes
 };
 
-/// One pulse that was sent as a row of a NumPy array.
+/// Pulse sent, as a row of a NumPy array.
 struct PulseRow {
   std::int64_t pulse;                            ///< number of the slot
-  double time;                                   ///< when it left, since the survey's start [s]
-  double x, y, z;                                ///< where it left, in the world [m]
-  double direction_x, direction_y, direction_z;  ///< unit, in the world
-  double scan_angle;                             ///< [rad]
+  double time;                                   ///< departure, since the survey's start [s]
+  double x, y, z;                                ///< origin in the world [m]
+  double direction_x, direction_y, direction_z;  ///< unit direction in the world
+  double scan_angle;                             ///< as in `Pulse` [rad]
   double waveform_start;                         ///< two-way travel time of the first sample [s]
-  std::int64_t first_sample, first_point;        ///< of those in the arrays beside
-  std::uint32_t samples, points;                 ///< how many
-  std::uint16_t leg;                             ///< from 0
-  std::uint8_t channel;                          ///< from 0
+  std::int64_t first_sample, first_point;        ///< indices into the other arrays
+  std::uint32_t samples, points;                 ///< numbers of samples and points
+  std::uint16_t leg;                             ///< number of the leg, from 0
+  std::uint8_t channel;                          ///< number of the emitter, from 0
   std::uint8_t fate;                             ///< as in `Fate`
-  std::uint8_t spare[4]{};                       ///< not in the array: zeros
+  std::uint8_t spare[4]{};                       ///< zeros outside the array
 };
 
 }  // namespace pulsecast::python
 
-// Hidden, as pybind11's own names are, so that modules of different builds of it can live side by side.
+// hidden, as pybind11's own names, so that modules of different builds can coexist
 namespace pulsecast {
 namespace [[gnu::visibility("hidden")]] python {
 
+/// Names of the values of `Fate`, in order.
 inline constexpr std::array<const char*, fate_count> fate_names{"returned",     "blocked",         "missed",
                                                                 "out_of_range", "below_threshold", "absorbed"};
 
-/// Rows that become a NumPy array where they are. It grows without being copied, as far as the C library can, so that a large one never
-/// takes its memory twice.
+/// Rows that become a NumPy array in place. Growth avoids copies as far as the C library can: a large array never takes twice its memory.
 template <class Row>
 requires std::is_trivially_copyable_v<Row>
 class Rows {
@@ -92,7 +91,7 @@ class Rows {
     rows_.get()[size_++] = row;
   }
 
-  /// The array, which owns the rows; there are none here after it.
+  /// Array that owns the rows; leaves this empty.
   [[nodiscard]] pybind11::array_t<Row> take() {
     resize(std::max<std::size_t>(1, size_));
     Row* const rows = rows_.get();
@@ -119,16 +118,16 @@ class Rows {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// What a run brought back, for Python.
+/// Results of a run, for Python.
 struct Batch {
-  pybind11::array_t<PointRow> points;
-  pybind11::array_t<PulseRow> pulses;
-  pybind11::array_t<float> waveforms;  ///< the samples of all pulses, one after another [W]
-  double sample_interval = 0;          ///< [s]
-  RunSummary summary{};                ///< of the whole run; nothing in a batch that a callback is given
+  pybind11::array_t<PointRow> points;  ///< one row an echo
+  pybind11::array_t<PulseRow> pulses;  ///< one row a pulse sent
+  pybind11::array_t<float> waveforms;  ///< samples of all pulses, concatenated [W]
+  double sample_interval = 0;          ///< between samples [s]
+  RunSummary summary{};                ///< of the whole run; empty in a batch for a callback
 };
 
-/// A sink that keeps all as rows, or points alone.
+/// Sink that keeps echoes and pulses as rows, or echoes alone.
 class RowSink {
  public:
   explicit RowSink(bool keeps_pulses) : keeps_pulses_(keeps_pulses) {}
@@ -155,7 +154,7 @@ class RowSink {
     }
   }
 
-  [[nodiscard]] std::size_t pulses() const noexcept { return pulse_count_; }  ///< that were sent since rows were taken
+  [[nodiscard]] std::size_t pulses() const noexcept { return pulse_count_; }  ///< pulses sent since the last `take`
   [[nodiscard]] Batch take() {
     pulse_count_ = 0;
     return {points_.take(), pulses_.take(), samples_.take(), sample_interval_};
@@ -170,8 +169,8 @@ class RowSink {
   double sample_interval_ = 0;
 };
 
-/// Notes Ctrl-C for as long as it lives, where Python would have heard of it only later: on Python's main thread, which alone gets signals,
-/// and where Ctrl-C is a `KeyboardInterrupt`. A handler of the program's own, or none, stays as it is.
+/// Records Ctrl-C during its life, where Python would notice it only later: on the main thread, which alone gets signals, and only if
+/// Ctrl-C raises `KeyboardInterrupt`. The program's own handler, or none, stays as it is.
 class InterruptWatch {
  public:
   InterruptWatch() {
@@ -200,7 +199,7 @@ class InterruptWatch {
   PyOS_sighandler_t before_ = nullptr;
 };
 
-/// What `run` of a survey is asked.
+/// Arguments of a survey's `run`, as in Python.
 struct RunRequest {
   unsigned threads = 0;
   PulseIndex first = 0;
@@ -209,7 +208,7 @@ struct RunRequest {
   pybind11::object callback = pybind11::none(), progress = pybind11::none();
   PulseIndex every_pulses = 0;
   double every_seconds = 0;
-  bool pulses = true;  ///< keep them, and their waveforms
+  bool pulses = true;  ///< true to keep pulses and waveforms
 
   void validate() const {
     require_not_negative("run every_seconds", every_seconds, "s");
@@ -219,8 +218,8 @@ struct RunRequest {
   }
 };
 
-/// Runs what `run(options, sink)` does, with Python free meanwhile, until it is done or interrupted. Throws what Python threw in a
-/// callback.
+/// Calls `run(options, sink)` without the GIL until done or interrupted. Rethrows Python exceptions of callbacks. Throws a `SettingError`,
+/// or a `TypeError` for a callback that is not callable.
 template <class Run>
 [[nodiscard]] Batch run(const RunRequest& asked, const InterruptWatch& watch, const Run& run) {
   asked.validate();
@@ -263,7 +262,7 @@ template <class Run>
   return result;
 }
 
-/// The class of an exception that all modules share, made by the first that asks.
+/// Exception class shared by all modules, created by the first that asks.
 [[nodiscard]] inline pybind11::handle shared_exception(const char* name, PyObject* base, const char* doc) {
   const std::string key = std::string("pulsecast.") + name;
   if (void* const known = pybind11::get_shared_data(key)) return static_cast<PyObject*>(known);
@@ -273,7 +272,7 @@ template <class Run>
   return made;
 }
 
-/// Raises an exception with attributes.
+/// Raises a Python exception with attributes.
 template <class... Values>
 void raise(pybind11::handle type, const std::string& message, std::pair<const char*, Values>... attributes) {
   const pybind11::object exception = type(message);
@@ -281,6 +280,7 @@ void raise(pybind11::handle type, const std::string& message, std::pair<const ch
   PyErr_SetObject(type.ptr(), exception.ptr());
 }
 
+/// Exception classes of the library in Python.
 struct Exceptions {
   pybind11::handle setting =
       shared_exception("SettingError", PyExc_ValueError, "A setting that cannot be. Attributes: field, value, unit, allowed.");
@@ -290,11 +290,11 @@ struct Exceptions {
       "Interrupted", PyExc_KeyboardInterrupt, "Ctrl-C while a survey ran. Attribute: result, all that came until then, which is whole.");
 };
 
-/// Gives a module the exceptions, and what runs return. Once is enough; more does no harm.
+/// Adds exceptions and result types to a module; further calls do nothing.
 inline void bind_common(pybind11::module_& m) {
   namespace py = pybind11;
   if (py::hasattr(m, "Batch")) return;
-  if (!py::detail::get_numpy_internals().get_type_info<PointRow>(false)) {  // all modules share one register
+  if (!py::detail::get_numpy_internals().get_type_info<PointRow>(false)) {  // one registry for all modules
     PYBIND11_NUMPY_DTYPE(PointRow, x, y, z, time, range, intensity, reflectance, echo_width, cos_incidence, pulse, object, classification,
                          leg, return_number, number_of_returns, channel);
     PYBIND11_NUMPY_DTYPE(PulseRow, pulse, time, x, y, z, direction_x, direction_y, direction_z, scan_angle, waveform_start, first_sample,
@@ -377,7 +377,7 @@ inline void bind_common(pybind11::module_& m) {
           }));
 }
 
-/// Gives a class the method `run`; `runner(self)` is what runs: a callable of options and sink.
+/// Adds the method `run` to a class; `runner(self)` returns a callable of options and sink.
 template <class Class, class Runner>
 void bind_run(Class& bound, const Runner& runner) {
   namespace py = pybind11;
@@ -390,7 +390,7 @@ void bind_run(Class& bound, const Runner& runner) {
         Batch result =
             python::run({threads, first, end, stride, std::move(callback), std::move(progress), every_pulses, every_seconds, pulses}, watch,
                         runner(self));
-        if (result.summary.complete && !watch.interrupted()) return result;  // too late to stop is not too late to tell
+        if (result.summary.complete && !watch.interrupted()) return result;  // an interrupt too late to stop the run is still reported
         raise(Exceptions{}.interrupted, "the survey was stopped", std::pair{"result", py::cast(std::move(result))});
         throw py::error_already_set();
       },
@@ -408,8 +408,8 @@ void bind_run(Class& bound, const Runner& runner) {
 
 namespace pulsecast::python {
 
-/// Makes a class of surveys in a module, and what it needs. Add constructors by `.def(pybind11::init(...))`; where a survey refers to a
-/// scene that Python holds, add `pybind11::keep_alive`.
+/// Adds a class of surveys, with all it needs, to a module. Constructors are up to the caller, by `.def(pybind11::init(...))`; a survey
+/// that refers to a scene held by Python needs `pybind11::keep_alive`.
 template <class Survey>
 pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name) {
   python::bind_common(m);

@@ -11,15 +11,15 @@
 
 namespace pulsecast {
 
-/// A source of one of several types, for where all must be of one: emitters of one device behind different optics,
+/// Pulse source of one of several types, where a single type is required: emitters of one device behind different optics,
 /// `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`, or platforms of different
-/// kinds one after another in `Legs`.
+/// kinds in `Legs`.
 template <class First, class... Others>
 class AnySource {
  public:
   template <class Source>
   requires std::constructible_from<std::variant<First, Others...>, Source> AnySource(Source source)
-      : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor): that is what it is for
+      : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor): implicit by purpose
 
   [[nodiscard]] PulseIndex size() const noexcept {
     return std::visit([](const auto& s) noexcept { return s.size(); }, source_);

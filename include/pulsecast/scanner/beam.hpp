@@ -11,24 +11,24 @@
 
 namespace pulsecast {
 
-/// Half the axes of a beam at 1/e^2 of its peak irradiance, across and up, at a range [m].
+/// Semi-axes of a beam at 1/e^2 of its peak irradiance, across and up, at a range [m].
 /// Source: ISO 11146-1:2005, d^2 = d0^2 + theta^2 (z - z0)^2.
 [[nodiscard]] inline Vec2 beam_radius(const Laser& laser, double range) noexcept {
   const double across = 0.5 * std::hypot(laser.waist_diameter, laser.divergence.across * (range - laser.waist_range));
   return {across, across * laser.divergence.aspect()};
 }
 
-/// By how much more than the least that physics allows a beam widens, across, for its waist: M^2, 1 for a perfect Gaussian beam.
+/// Beam quality factor M^2, across: 1 for a perfect Gaussian beam, the physical minimum.
 /// Source: Siegman 1990; ISO 11146-1:2005, M^2 = pi d0 theta / (4 lambda).
 [[nodiscard]] inline double beam_quality(const Laser& laser) noexcept {
   return pi * laser.waist_diameter * laser.divergence.across / (4 * laser.wavelength);
 }
 
-/// A round beam by what its optics are: for `gaussian_beam`.
+/// Round beam described by its exit optics, for `gaussian_beam`.
 struct BeamExit {
-  double diameter = 5e-3;  ///< at 1/e^2, where it leaves [m]
+  double diameter = 5e-3;  ///< beam diameter at 1/e^2 at the exit [m]
   double focus =
-      std::numeric_limits<double>::infinity();  ///< radius of the wavefront there: infinite if it is flat, negative if it spreads [m]
+      std::numeric_limits<double>::infinity();  ///< radius of the wavefront at the exit: infinite if flat, negative if divergent [m]
   double quality = 1;                           ///< M^2, at least 1
 
   void validate() const {
@@ -38,13 +38,13 @@ struct BeamExit {
   }
 };
 
-/// A laser whose divergence and waist are those of the beam that leaves such an exit. A beam that is focused has its waist short of the
-/// focus. Source: Carlsson, Steinvall & Letalick 2001: w^2 = w0^2 ((1 - R/F)^2 + (lambda R / (pi w0^2))^2), with M^2 lambda for lambda as
-/// in Siegman 1990; waist and divergence from completing the square.
+/// Copy of a laser with the divergence and waist of the beam from an exit. The waist of a focused beam lies short of the focus. Throws a
+/// `SettingError`. Source: Carlsson, Steinvall & Letalick 2001: w^2 = w0^2 ((1 - R/F)^2 + (lambda R / (pi w0^2))^2), with M^2 lambda for
+/// lambda as in Siegman 1990; waist and divergence from completing the square.
 [[nodiscard]] inline Laser gaussian_beam(const BeamExit& exit, Laser laser) {
   exit.validate();
   require_positive("Laser::wavelength", laser.wavelength, "m");
-  const double radius = exit.diameter / 2, spread = exit.quality * laser.wavelength / pi;  // of a waist's radius by half its divergence
+  const double radius = exit.diameter / 2, spread = exit.quality * laser.wavelength / pi;  // waist radius times half angle
   const double half_angle = std::hypot(radius / exit.focus, spread / radius);
   laser.divergence = 2 * half_angle;
   laser.waist_diameter = 2 * spread / half_angle;

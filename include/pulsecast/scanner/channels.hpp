@@ -19,13 +19,13 @@ template <class S>
 concept SourceInSomeFrame = BeamSource<S> || InstrumentSource<S> || WorldSource<S>;
 }  // namespace detail
 
-/// One device with many emitters, each a source of its own with its own laser, origin and optic, in one frame and of one type:
-/// slot i is slot i / n of channel i % n. Emitters that fire in turn differ in `Scanner::delay`, which must not decrease from channel to
-/// channel; those that fire together have the same.
+/// Device with many emitters, each a pulse source with its own laser, origin and optic, all in one frame and of one type. Of n channels,
+/// slot i is slot `i / n` of channel `i % n`. Emitters that fire in turn differ in `Scanner::delay`, which must not decrease from channel
+/// to channel; emitters that fire together share it.
 template <detail::SourceInSomeFrame Source>
 class Channels {
  public:
-  /// At most 256 channels, all of one size and duration.
+  /// From 1 to 256 channels, all of one size and duration. Throws a `SettingError`.
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {
     require_within("Channels::channels (number)", static_cast<double>(channels_.size()), 1, 256, "");
     for (Source& c : channels_) c = validated(std::move(c));
@@ -50,7 +50,7 @@ class Channels {
   [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }
 
  private:
-  /// Refuses time that goes backwards from one channel to the next, as far as some rounds spread over the whole tell: channels of one
+  /// Throws a `SettingError` if time decreases from one channel to the next. Samples some rounds spread over the whole; channels of one
   /// rate show it in any round.
   void require_order() const {
     const PulseIndex n = channels_.size(), rounds = channels_[0].size(), step = rounds / 64 + 1;

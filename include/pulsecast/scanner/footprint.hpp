@@ -14,20 +14,20 @@
 
 namespace pulsecast {
 
-/// The axis of the beam alone: for sensors whose footprint does not matter.
+/// Single ray on the beam's axis, for sensors whose footprint does not matter.
 struct SingleRay {
   [[nodiscard]] std::size_t size() const noexcept { return 1; }
   [[nodiscard]] Vec2 offset(std::size_t) const noexcept { return {0, 0}; }
   [[nodiscard]] double share(std::size_t) const noexcept { return 1; }
 };
 
-/// Concentric circles about a central ray; circle i holds floor(2 pi i) subrays. Each circle stands for the ring of the beam
-/// between the middles to its neighbours, and its subrays share the energy of that ring. The outermost ring ends at the 1/e^2 radius.
+/// Concentric circles about a central ray; circle i has floor(2 pi i) subrays. Each circle represents the ring of the beam up to halfway to
+/// its neighbours, and its subrays share the energy of that ring. The outermost ring ends at the 1/e^2 radius.
 /// Source: Winiwarter et al. 2022 for the numbers; the radii are our own, so that rings tile the footprint.
-/// What XML surveys ask for. As the beam does not end there, more than 19 subrays gain little (docs/tradeoff.md): see `LatticeFootprint`.
+/// Footprint of XML surveys. The beam extends beyond it, so more than 19 subrays gain little (docs/tradeoff.md): see `LatticeFootprint`.
 class RingFootprint {
  public:
-  /// `circles`: the central ray counts as the first; 3 circles are 19 subrays.
+  /// `circles` from 1 to 1000, the central ray included; 3 circles are 19 subrays. Throws a `SettingError`.
   explicit RingFootprint(std::size_t circles = 3) {
     require_within("RingFootprint::circles", static_cast<double>(circles), 1, 1000, "");
     const double n = static_cast<double>(circles);
@@ -63,11 +63,12 @@ class RingFootprint {
   std::vector<double> shares_;
 };
 
-/// Subrays of equal energy on a sunflower's spiral: the golden angle from one to the next, radii at the quantiles of a Gaussian beam, and
-/// the whole shifted so that its middle is on the axis.
+/// Subrays of equal energy on a sunflower spiral: golden-angle steps, radii at the quantiles of a Gaussian beam, and the centroid shifted
+/// to the axis.
 /// Source: Vogel 1979 for the spiral; radius from inverting 1 - exp(-2 r^2 / w^2).
 class SunflowerFootprint {
  public:
+  /// `subrays` from 1 to 100,000. Throws a `SettingError`.
   explicit SunflowerFootprint(std::size_t subrays = 19) {
     require_within("SunflowerFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
     offsets_ = std::vector<Vec2>(subrays);
@@ -93,14 +94,14 @@ class SunflowerFootprint {
   std::vector<Vec2> offsets_;
 };
 
-/// Subrays of equal energy on a lattice of as many columns and rows, which stand at the quantiles of a Gaussian beam. Each subray has a
-/// column and a row to itself: rows in the order of the multiples of the golden ratio, so that neighbours across are far apart up.
-/// On the front of docs/tradeoff.md: edges and wires upright or level in the beam, as on what people build, are met as exactly as by twice
-/// as many subrays in rings; those aslant as by as many on a sunflower.
+/// Subrays of equal energy on a lattice with one column and one row for each, at the quantiles of a Gaussian beam. Rows follow the order of
+/// the multiples of the golden ratio, so that neighbours across are far apart up.
+/// On the front of docs/tradeoff.md: edges and wires upright or level in the beam, as on buildings, are met as exactly as by twice as many
+/// subrays in rings; oblique ones as exactly as by as many on a sunflower.
 /// Source: Niederreiter 1992, ch. 3, for the order; columns and rows from inverting the normal distribution.
 class LatticeFootprint {
  public:
-  /// 19 are on the front of docs/tradeoff.md, and on a facade more exact than rings of any number.
+  /// `subrays` from 1 to 100,000; 19 are on the front of docs/tradeoff.md, more exact on a facade than any rings. Throws a `SettingError`.
   explicit LatticeFootprint(std::size_t subrays = 19) : offsets_(rows(subrays)) {
     for (std::size_t j = 0; j < subrays; ++j) offsets_[j].x = quantile(j, subrays);
   }
@@ -110,13 +111,13 @@ class LatticeFootprint {
   [[nodiscard]] double share(std::size_t) const noexcept { return 1 / static_cast<double>(offsets_.size()); }
 
  private:
-  /// Of a number of columns or rows, across and up: there a beam has a standard deviation of half its radius.
+  /// Quantile of column or row `i` of `number`; a beam's standard deviation across and up is half its radius.
   /// Source: irradiance exp(-2 r^2 / w^2).
   static double quantile(std::size_t i, std::size_t number) noexcept {
     return 0.5 * normal_quantile((static_cast<double>(i) + 0.5) / static_cast<double>(number));
   }
 
-  /// How far up the subray in each column is.
+  /// Offset up of the subray in each column.
   static std::vector<Vec2> rows(std::size_t subrays) {
     require_within("LatticeFootprint::subrays", static_cast<double>(subrays), 1, 100'000, "");
     struct Column {
@@ -143,7 +144,7 @@ class LatticeFootprint {
 
 static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<SunflowerFootprint> && Footprint<LatticeFootprint>);
 
-/// A footprint whose subrays are handed on to the sinks, each with what it met (`EchoBatch::subrays`), for those who study footprints:
+/// Footprint that hands every subray with its hit on to the sinks (`EchoBatch::subrays`), for studies of footprints:
 /// `WithSubrayRecord{RingFootprint{5}}`.
 template <Footprint Pattern>
 struct WithSubrayRecord : Pattern {
@@ -153,8 +154,8 @@ struct WithSubrayRecord : Pattern {
 
 static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 
-/// The direction of a subray in the frame of its beam: unit, along +y for no offset.
-/// `offset` is in units of the beam's 1/e^2 radius, which stands at half the divergence in the far field.
+/// Unit direction of a subray in the frame of its beam; +y for zero offset.
+/// `offset` is in units of the beam's 1/e^2 radius, which is half the divergence in the far field.
 [[nodiscard]] inline Vec3 subray_direction(const Vec2& offset, const Divergence& divergence) noexcept {
   const Vec2 scaled{offset.x, offset.y * divergence.aspect()};
   const double radius = std::hypot(scaled.x, scaled.y);
@@ -164,9 +165,9 @@ static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
   return {aside * scaled.x, std::cos(angle), aside * scaled.y};
 }
 
-/// Where a subray leaves, in the frame of its beam, in the plane of the exit [m]: at the origin for a beam from a point. Else the subrays
-/// pass the waist a quarter of a turn ahead of where they are going, so that straight lines make up the hyperboloid that a beam is:
-/// at every range their distances from the axis are those of the footprint times `beam_radius`.
+/// Origin of a subray in the frame of its beam, in the plane of the exit [m]; zero for a beam from a point. Otherwise each subray passes
+/// the waist a quarter turn ahead of its far-field azimuth, so that the straight lines rule the hyperboloid of the beam: at every range,
+/// their distances from the axis are those of the footprint times `beam_radius`.
 [[nodiscard]] inline Vec3 subray_exit(const Vec2& offset, const Laser& laser) noexcept {
   const Vec3 direction = subray_direction(offset, laser.divergence);
   const Vec3 at_waist = 0.5 * laser.waist_diameter * Vec3{-offset.y, 0, offset.x * laser.divergence.aspect()};

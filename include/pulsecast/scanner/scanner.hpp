@@ -10,17 +10,17 @@
 
 namespace pulsecast {
 
-/// A pulsed laser at a constant rate: the innermost stage of every pipeline.
+/// Pulsed laser at a constant rate: the innermost stage of every pipeline.
 struct Scanner {
-  double pulse_rate = 100e3;      ///< pulses a second, at most 1e12 [Hz]
-  PulseIndex pulses = 1'000'000;  ///< how many slots the scan lasts, at most 2^52, and no longer than 1e15 s
-  double delay = 0;               ///< of every pulse after its slot begins; less than one slot [s]
-  Laser laser{};
+  double pulse_rate = 100e3;      ///< pulse repetition rate, at most 1e12 [Hz]
+  PulseIndex pulses = 1'000'000;  ///< number of slots, at most 2^52, and no longer than 1e15 s
+  double delay = 0;               ///< delay of every pulse after the begin of its slot; less than one slot [s]
+  Laser laser{};                  ///< of every pulse
 
   void validate() const {
     using namespace literals;
     require_rate("Scanner::pulse_rate", pulse_rate);
-    require_within("Scanner::pulses", static_cast<double>(pulses), 0, 0x1p52, "");  // as a Tick and a clockwork count
+    require_within("Scanner::pulses", static_cast<double>(pulses), 0, 0x1p52, "");  // limit of the counts in `Tick` and `step_in_cycle`
     require_within("Scanner::pulses (duration)", static_cast<double>(pulses) / pulse_rate, 0, 1e15, "s");
     if (!(delay >= 0 && delay < 1 / pulse_rate))
       throw SettingError("Scanner::delay", delay, "s", "at least 0 and less than " + detail::to_text(1 / pulse_rate));

@@ -23,11 +23,10 @@
 #include <pulsecast/io/digest.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-/// Objects as a run of bytes, from which their arrays need not be read but are used where they stand. For one program on one machine:
-/// arrays stand as they do in memory.
+/// Serialization of objects as bytes whose arrays are used in place. For one program on one machine: arrays keep their memory layout.
 namespace pulsecast::io {
 
-/// What was archived is not what is asked for, or does not fit together.
+/// Archive of other types, or inconsistent.
 class ArchiveError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -35,42 +34,42 @@ class ArchiveError : public std::runtime_error {
 
 namespace detail {
 
-/// What any archive is to an object: something to be called with its members.
+/// Archetype of archives: callable with the members of an object.
 struct ArchiveArchetype {
   template <class... Members>
   void operator()(Members&...) {}
 };
 
-/// Something that shows its members to an archive.
+/// Type that passes its members to an archive.
 template <class T>
 concept Archivable = requires(T& object, ArchiveArchetype& archive) {
   object.archive(archive);
 };
 
-/// Something that is made empty, and then filled by an archive.
+/// Type that is made empty, and then filled by an archive.
 template <class T>
 concept Restorable = std::constructible_from<T, DeserializeTag> && Archivable<T>;
 
-/// Something whose members someone else lists: `list_members(archive, object)`, in the namespace of the archives.
+/// Type with an external list of members: `list_members(archive, object)`, in the namespace of the archives.
 template <class T, class Archive>
 concept ExternallyArchivable = requires(T& object, Archive& archive) {
   list_members(archive, object);
 };
 
-/// Plain values: their bytes are all that they are. That a struct has no pointer inside, nobody can see from here.
+/// Plain value, defined by its bytes. Pointers inside a struct cannot be detected.
 template <class T>
 concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !Archivable<T>;
 
-/// Where the arrays begin that stay in place, in multiples [byte]: the strictest alignment that an element may have.
+/// Alignment of arrays used in place [byte]: the strictest that an element may have.
 inline constexpr std::size_t array_alignment = 64;
-inline constexpr std::size_t item_alignment = 8;  ///< where everything else begins [byte]
+inline constexpr std::size_t item_alignment = 8;  ///< alignment of everything else [byte]
 
 [[nodiscard]] constexpr std::uint64_t aligned(std::uint64_t position, std::uint64_t to) noexcept { return (position + to - 1) / to * to; }
 
-/// Stands before each run of elements, so that they are taken as what they were put.
+/// Header of each run of elements, to check its type when read.
 struct ItemHead {
-  std::uint64_t type;   ///< of the item and its elements
-  std::uint64_t count;  ///< of elements
+  std::uint64_t type;   ///< hash of the types of the item and its elements
+  std::uint64_t count;  ///< number of elements
 };
 
 template <class Item, class Element>
@@ -84,14 +83,14 @@ template <class Item, class Element>
   return mark;
 }
 
-/// The number of what is shared, where nothing is.
+/// Number of an empty shared pointer.
 inline constexpr std::uint64_t shares_nothing = ~std::uint64_t{0};
 
 }  // namespace detail
 
-/// Writes objects into a file, one after the other, from where it is on; that must be a multiple of 64 bytes. Objects are plain values,
-/// `SharedArray` arrays, strings, vectors, variants, shared pointers (what is shared is written once), and what shows its members by
-/// `template <class Archive> void archive(Archive& a) { a(member1_, member2_, ...); }`.
+/// Writes objects in sequence into a file, from its position on, a multiple of 64 bytes. Objects are plain values, `SharedArray` arrays,
+/// strings, vectors, variants, shared pointers (shared objects are written once), and types that pass their members by `template <class
+/// Archive> void archive(Archive& a) { a(member1_, member2_, ...); }`.
 class ArchiveWriter {
  public:
   explicit ArchiveWriter(OutputFile& file) : file_(file) {}
@@ -101,7 +100,7 @@ class ArchiveWriter {
     (put(items), ...);
   }
 
-  /// Of all bytes that were written so far.
+  /// Digest of all bytes written so far.
   [[nodiscard]] const Digest& digest() const noexcept { return digest_; }
 
  private:
@@ -149,7 +148,7 @@ class ArchiveWriter {
     put(known->second);
     if (is_new) put(*shared);
   }
-  // Objects name their members to an archive that fills them and to one that only looks: the latter takes them from a constant.
+  // `archive` serves filling and reading, so it is not const: the writer casts a constant object to call it
   template <detail::Archivable T>
   void put(const T& object) {
     const_cast<T&>(object).archive(*this);
@@ -161,15 +160,15 @@ class ArchiveWriter {
 
   OutputFile& file_;
   Digest digest_;
-  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t> numbers_;  ///< of what is shared, by address and type
+  std::map<std::pair<const void*, std::uint64_t>, std::uint64_t> numbers_;  ///< numbers of shared objects, by address and type
 };
 
-/// Takes objects out of such bytes, in the order in which they were put. Nothing is believed: what does not fit is an `ArchiveError`, and
-/// no memory is asked for but for what is there. What is filled may check itself: by `bool is_consistent() const`, whether every number in
-/// its arrays can be followed without leaving them, and by `void validate() const`.
+/// Reads objects in the order of writing. Input is untrusted: inconsistent bytes throw an `ArchiveError`, and memory is allocated only for
+/// data present. Filled objects may check themselves: by `bool is_consistent() const`, true if all indices in the arrays are in bounds, and
+/// by `void validate() const`.
 class ArchiveReader {
  public:
-  /// `owner` keeps the bytes where they are, at a multiple of 64.
+  /// `owner` keeps the bytes alive, at a multiple of 64.
   ArchiveReader(std::span<const std::byte> bytes, std::shared_ptr<const void> owner) : bytes_(bytes), owner_(std::move(owner)) {}
 
   template <class... Items>
@@ -177,7 +176,7 @@ class ArchiveReader {
     (take(items), ...);
   }
 
-  /// To be called at last: nothing may be left.
+  /// Throws an `ArchiveError` unless all bytes were read; to be called last.
   void require_end() const { require(position_ == bytes_.size()); }
 
  private:
@@ -225,7 +224,7 @@ class ArchiveReader {
     } else {
       std::uint64_t count = 0;
       take(count);
-      for (items.clear(); count > 0; --count) take(items.emplace_back());  // each takes bytes, so there are no more than these allow
+      for (items.clear(); count > 0; --count) take(items.emplace_back());  // each takes bytes, which bounds their number
     }
   }
   template <class... Options>
@@ -282,7 +281,7 @@ class ArchiveReader {
   }
 
   struct Shared {
-    std::shared_ptr<const void> object;  ///< none while it is being filled
+    std::shared_ptr<const void> object;  ///< null while it is being filled
     std::uint64_t type;
   };
 

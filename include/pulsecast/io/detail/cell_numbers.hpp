@@ -13,15 +13,15 @@
 
 namespace pulsecast::io {
 
-/// Numbers the cells of a lattice in the order in which they are first met; 12 bytes a cell, and 8 to 16 more to find it again.
+/// Numbering of the cells of a lattice in the order of first occurrence; 12 bytes a cell, and 8 to 16 more for look-up.
 class CellNumbers {
  public:
   using Cell = std::array<std::uint32_t, 3>;
-  static constexpr std::size_t max_size = 4294967294;  ///< cells, as in a grid of voxels
+  static constexpr std::size_t max_size = 4294967294;  ///< upper limit of cells, as in a grid of voxels
 
   [[nodiscard]] std::size_t size() const noexcept { return cells_.size(); }
 
-  /// The number of a cell; one that was not met before gets the next. The caller sees to it that there are fewer than `max_size` before.
+  /// Number of a cell; a new cell gets the next one. Requires fewer than `max_size` cells before.
   [[nodiscard]] std::uint32_t number(const Cell& cell) {
     if (2 * (cells_.size() + 1) > slots_.size()) grow();
     std::uint32_t& slot = slots_[slot_of(cell)];
@@ -32,20 +32,20 @@ class CellNumbers {
     return slot;
   }
 
-  /// The cells in the order of their numbers, handed over.
+  /// Cells in the order of their numbers, moved out.
   [[nodiscard]] std::vector<Cell> release() && { return std::move(cells_); }
 
  private:
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-  /// Where the cell stands, or may be put: the first such slot from the one that its hash names.
+  /// Slot of the cell, or the free slot for it: linear probing from its hash.
   [[nodiscard]] std::size_t slot_of(const Cell& cell) const noexcept {
     std::size_t slot = hash(cell) & (slots_.size() - 1);
     while (slots_[slot] != none && cells_[slots_[slot]] != cell) slot = (slot + 1) & (slots_.size() - 1);
     return slot;
   }
 
-  /// Source of the mixing: Steele, Lea & Flood 2014, SplitMix64 (variant 13 of Stafford).
+  /// Mixes the coordinates. Source: Steele, Lea & Flood 2014, SplitMix64 (variant 13 of Stafford).
   [[nodiscard]] static std::size_t hash(const Cell& cell) noexcept {
     std::uint64_t h = (std::uint64_t{cell[0]} << 32 | cell[1]) ^ std::rotl(cell[2] * std::uint64_t{0x9E3779B97F4A7C15}, 29);
     h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9;
@@ -59,7 +59,7 @@ class CellNumbers {
   }
 
   std::vector<Cell> cells_;
-  std::vector<std::uint32_t> slots_;  // numbers of cells; a power of two of them, at most half of them taken
+  std::vector<std::uint32_t> slots_;  // cell numbers; a power of two of slots, at most half of them taken
 };
 
 }  // namespace pulsecast::io

@@ -16,39 +16,39 @@
 
 namespace pulsecast::mpi {
 
-/// A stretch of the pulse slots of a run, which one process does.
+/// Consecutive pulse slots of a run, simulated by one process.
 struct MpiBlock {
-  std::uint64_t number = 0;
-  PulseIndex from = 0, to = 0;  ///< counted from the first slot of the run
+  std::uint64_t number = 0;     ///< number of the block, from 0 in pulse order
+  PulseIndex from = 0, to = 0;  ///< half-open range, counted from the first slot of the run
 };
 
-/// What a block leaves for an output: how much, in one or two counts, and its first point if there is one.
+/// Size of a block's results for an output: one or two amounts, and its first point, if any.
 struct MpiExtent {
-  std::uint64_t amounts[2] = {};
-  Vec3 first{};  ///< point
+  std::uint64_t amounts[2] = {};  ///< in units of the output
+  Vec3 first{};                   ///< first point
 };
 
-/// Where that belongs in the output.
+/// Place of a block's results in the output.
 struct MpiPlace {
-  std::uint64_t starts[2] = {};
-  Vec3 first{};         ///< point of the whole output
-  int chunk_owner = 0;  ///< process that has begun the chunk in which the block begins
+  std::uint64_t starts[2] = {};  ///< for each amount, the sum before the block
+  Vec3 first{};                  ///< first point of the whole output
+  int chunk_owner = 0;           ///< process with the begin of the chunk in which the block begins
 };
 
-/// What a block has taken.
+/// Cost of a block.
 struct MpiCost {
   PulseIndex slots = 0;
   std::uint64_t echoes = 0, bytes = 0;
-  double seconds = 0;  ///< [s]
+  double seconds = 0;  ///< computing time [s]
 };
 
-/// Who does what of a run, as the first process knows it: blocks are handed out in order, and come back in any. They become smaller towards
-/// the end, so that all processes end together, and are never so large that they take much memory or time.
+/// Schedule of a run, on the first process: blocks are handed out in order, and finish in any. They shrink towards the end, so that all
+/// processes end together; memory and time of a block are bounded.
 class MpiBlockScheduler {
  public:
   MpiBlockScheduler(PulseIndex slots, unsigned processes) : slots_(slots), processes_(std::max(1U, processes)) {}
 
-  /// The next block for a process; none at the end.
+  /// Next block for a process; none at the end.
   [[nodiscard]] std::optional<MpiBlock> next(int owner) {
     if (handed_out_ == slots_) return std::nullopt;
     const PulseIndex left = slots_ - handed_out_;
@@ -59,15 +59,16 @@ class MpiBlockScheduler {
     return block;
   }
 
-  /// No more blocks are handed out.
+  /// Stops handing out blocks.
   void stop() noexcept { slots_ = handed_out_; }
 
+  /// Records the results and cost of a block.
   void finish(std::uint64_t number, std::vector<MpiExtent> extents, const MpiCost& cost) {
     finished_.emplace(number, std::move(extents));
     cost_.slots += cost.slots, cost_.echoes += cost.echoes, cost_.bytes += cost.bytes, cost_.seconds += cost.seconds;
   }
 
-  /// Calls place(number, owner, extents) for every block that is finished and before which all are, in order, while may() says so.
+  /// Calls place(number, owner, extents) in order for each finished block without an unfinished one before it, as long as may() is true.
   template <class May, class Place>
   void settle(const May& may, const Place& place) {
     for (auto due = finished_.find(placed_); due != finished_.end() && may(); due = finished_.find(placed_)) {
@@ -80,13 +81,13 @@ class MpiBlockScheduler {
 
   [[nodiscard]] const MpiCost& cost() const noexcept { return cost_; }
 
-  static constexpr PulseIndex min_slots = 2048;  ///< slots of a block, but for the last
+  static constexpr PulseIndex min_slots = 2048;  ///< least slots of a block, except the last
 
  private:
-  static constexpr double max_bytes = 16 << 20, max_seconds = 0.5;  // of a block
+  static constexpr double max_bytes = 16 << 20, max_seconds = 0.5;  // upper limits of a block [byte], [s]
   static constexpr PulseIndex max_slots = PulseIndex{1} << 18, first_slots = PulseIndex{1} << 13;
 
-  /// As long as nobody knows what slots take, blocks are small.
+  /// Upper limit of a block's slots; small until a cost is known.
   [[nodiscard]] PulseIndex most() const noexcept {
     if (cost_.slots == 0) return first_slots;
     const double slots = static_cast<double>(cost_.slots), by_bytes = max_bytes / std::max(1.0, static_cast<double>(cost_.bytes)) * slots,
@@ -99,7 +100,7 @@ class MpiBlockScheduler {
   PulseIndex processes_;
   std::uint64_t next_ = 0, placed_ = 0;
   std::map<std::uint64_t, int> owners_;
-  std::map<std::uint64_t, std::vector<MpiExtent>> finished_;  // and not placed
+  std::map<std::uint64_t, std::vector<MpiExtent>> finished_;  // finished, without a place
   MpiCost cost_;
 };
 

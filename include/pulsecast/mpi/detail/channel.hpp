@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#define OMPI_SKIP_MPICXX 1  // the bindings for C++ that MPI 3.0 took back, of Open MPI and of MPICH
+#define OMPI_SKIP_MPICXX 1  // C++ bindings, removed in MPI 3.0, of Open MPI and MPICH
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
 
@@ -23,8 +23,8 @@
 
 namespace pulsecast::mpi {
 
-/// MPI, as long as this lives: the first thing that a program makes, and the last that it lets go. Where an exception unwinds it, all
-/// processes are ended, as those others would wait for ever: whoever has something to say of it says so before.
+/// MPI environment: the first object of a program, and the last to go. Destruction by an exception aborts all processes, as the others
+/// would wait for ever; messages to the user must come before. Throws a `SettingError` if MPI lacks MPI_THREAD_SERIALIZED.
 class MpiSession {
  public:
   MpiSession() {
@@ -39,25 +39,25 @@ class MpiSession {
     MPI_Finalize();
   }
 
-  /// Ends all processes at once.
+  /// Aborts all processes at once.
   static void abort(int status) noexcept { MPI_Abort(MPI_COMM_WORLD, status); }
 
  private:
   int exceptions_ = std::uncaught_exceptions();
 };
 
-/// What was sent, to other processes than the sender itself.
+/// Messages and bytes sent to other processes.
 struct MpiTraffic {
   std::uint64_t messages = 0, bytes = 0;
 };
 
-/// Messages among the processes of a communicator. What one process sends to another arrives in the order of sending; nobody waits for the
-/// other. Calls may come from several threads, but one at a time. Failures of MPI itself end the program, as it does by default.
+/// Messages among the processes of a communicator, non-blocking, in order between any two processes. Calls may come from several threads,
+/// one at a time. Errors of MPI itself abort the program (its default).
 class MpiChannel {
  public:
   using Bytes = std::vector<std::byte>;
 
-  /// Of all processes of `communicator` together.
+  /// Collective over `communicator`, which is duplicated.
   explicit MpiChannel(MPI_Comm communicator) {
     MPI_Comm_dup(communicator, &communicator_);
     MPI_Comm_rank(communicator_, &rank_);
@@ -66,7 +66,7 @@ class MpiChannel {
   MpiChannel(const MpiChannel&) = delete;
   MpiChannel& operator=(const MpiChannel&) = delete;
   ~MpiChannel() {
-    if (std::uncaught_exceptions() > exceptions_) return;  // nobody may be there to take the rest
+    if (std::uncaught_exceptions() > exceptions_) return;  // receivers may be gone
     for (Sent& sent : sent_) MPI_Wait(&sent.request, MPI_STATUS_IGNORE);
     MPI_Comm_free(&communicator_);
   }
@@ -76,7 +76,7 @@ class MpiChannel {
   [[nodiscard]] bool first() const noexcept { return rank_ == 0; }
   [[nodiscard]] const MpiTraffic& traffic() const noexcept { return traffic_; }
 
-  /// At most 2 GiB.
+  /// Sends bytes, at most 2 GiB, with a tag `kind`. Throws a `SettingError` above that.
   void send(int to, int kind, Bytes bytes) {
     require_within("MPI message size", static_cast<double>(bytes.size()), 0, std::numeric_limits<int>::max(), "bytes");
     if (to == rank_) return void(to_itself_.push_back({rank_, kind, std::move(bytes)}));
@@ -85,7 +85,7 @@ class MpiChannel {
     MPI_Isend(sent.bytes.data(), static_cast<int>(sent.bytes.size()), MPI_BYTE, to, kind, communicator_, &sent.request);
   }
 
-  /// Calls handle(from, kind, bytes) for every message that is there, and says whether there was one.
+  /// Calls handle(from, kind, bytes) for every message that has arrived; true if there was any.
   template <class Handle>
   bool poll(const Handle& handle) {
     std::erase_if(sent_, [](Sent& sent) {
@@ -111,7 +111,7 @@ class MpiChannel {
     }
   }
 
-  /// Calls `meanwhile` again and again, until all processes have come here.
+  /// Calls `meanwhile` repeatedly until all processes have reached the barrier.
   template <class Meanwhile>
   void barrier(const Meanwhile& meanwhile) {
     MPI_Request request;
@@ -122,7 +122,7 @@ class MpiChannel {
     }
   }
 
-  /// What each process has to say, in the order of their ranks, on the first; nothing on the others.
+  /// Values of all processes by rank, on the first; empty on the others.
   template <class Value>
   requires std::is_trivially_copyable_v<Value>
   [[nodiscard]] std::vector<Value> gather(const Value& own) const {
@@ -132,7 +132,7 @@ class MpiChannel {
     return all;
   }
 
-  /// What the first process has to say, on all.
+  /// Value of the first process, on all.
   [[nodiscard]] std::string from_first(std::string text) const {
     std::uint64_t size = text.size();
     MPI_Bcast(&size, sizeof size, MPI_BYTE, 0, communicator_);
@@ -159,12 +159,12 @@ class MpiChannel {
 
   MPI_Comm communicator_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1, exceptions_ = std::uncaught_exceptions();
-  std::list<Sent> sent_;  // not received yet
+  std::list<Sent> sent_;  // in transit
   std::deque<Arrived> to_itself_;
   MpiTraffic traffic_;
 };
 
-/// Puts values and bytes after one another into a message, and takes them out again in the same order.
+/// Byte message, values appended and read back in the same order.
 class MpiMessage {
  public:
   MpiMessage() = default;
@@ -197,7 +197,7 @@ class MpiMessage {
     if (count > 0) std::memcpy(values.data(), bytes_.data() + at_, count * sizeof(Value));
     at_ += count * sizeof(Value);
   }
-  /// Takes off what was added last.
+  /// Removes and returns the value appended last.
   template <class Value>
   requires std::is_trivially_copyable_v<Value>
   [[nodiscard]] Value last() {

@@ -19,8 +19,8 @@
 
 namespace pulsecast::mpi {
 
-/// The temporary file of an `OutputFile` of another process, which made it, as others write to it: each its own stretches. It is opened by
-/// the first of these. Every failure is a `FileError` that names the final path.
+/// Temporary file of an `OutputFile` of the first process, which others write in disjoint ranges. Opened at the first write. Throws a
+/// `FileError` that names the final path.
 class MpiFile {
  public:
   explicit MpiFile(std::filesystem::path path) : path_(std::move(path)) {}
@@ -40,7 +40,7 @@ class MpiFile {
     }
   }
 
-  /// Everything is on the disk: the system may tell only now that it is not.
+  /// Flushes to the disk and closes; the system may report write errors only now.
   void close() {
     if (file_ < 0) return;
     if (!io::sync_to_disk(file_)) fail(0);

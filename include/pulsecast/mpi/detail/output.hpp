@@ -21,7 +21,7 @@ namespace pulsecast::mpi {
 
 class MpiOutput;
 
-/// The processes of a communicator that run surveys together, and the outputs that they share. Made and destroyed by all of them.
+/// Processes of a communicator that run surveys together, and their shared outputs. Construction and destruction are collective.
 class MpiGroup {
  public:
   explicit MpiGroup(MPI_Comm communicator = MPI_COMM_WORLD) : channel_(communicator) {}
@@ -31,20 +31,20 @@ class MpiGroup {
   [[nodiscard]] int size() const noexcept { return channel_.size(); }
   [[nodiscard]] bool first() const noexcept { return channel_.first(); }
 
-  /// A run begins, and takes its messages with `handler`. Other processes may be in the next run already: what they say is kept for it.
+  /// Begins a run, whose messages go to `handler`. Other processes may be in the next run already: their messages are kept for it.
   using Handler = void (*)(void* run, int from, int kind, MpiMessage message);
   void begin(void* run, Handler handler);
   void end() noexcept { handler_ = nullptr; }
-  /// Sends something to the same run elsewhere; `kind` is from 0 to 7.
+  /// Sends a message to the same run on another process; `kind` is from 0 to 7.
   void send(int to, int kind, MpiMessage message) { channel_.send(to, 2 + 8 * parity_ + kind, std::move(message).take()); }
 
-  /// Takes all messages that are there, and says whether there was one.
+  /// Handles all messages that have arrived; true if there was any.
   bool serve();
 
-  /// Lets the processor go for a moment, as there is nothing to do.
+  /// Yields the processor for a moment when idle.
   static void pause() noexcept { ::usleep(50); }
 
-  /// Sends something to an output on another process, or on this one.
+  /// Sends a message to the same output on any process.
   void send_to_output(int to, std::uint32_t output, MpiMessage message) {
     channel_.send(to, to_output, std::move(message.add(output)).take());
   }
@@ -56,7 +56,7 @@ class MpiGroup {
   void leave(std::uint32_t output) noexcept { outputs_.erase(output); }
 
  private:
-  static constexpr int to_output = 1;  // kind of message; from 2 on, those of runs
+  static constexpr int to_output = 1;  // tag of messages to outputs; runs have those from 2 on
 
   void hand_over(int from, int kind, MpiChannel::Bytes bytes) { handler_(run_, from, (kind - 2) % 8, MpiMessage(std::move(bytes))); }
 
@@ -73,20 +73,20 @@ class MpiGroup {
   std::vector<Early> early_;
 };
 
-/// What one block leaves for one output, in the making.
+/// Results of one block for one output, under construction.
 class MpiPiece {
  public:
   virtual ~MpiPiece() = default;
-  /// Begins anew, in the memory that it has.
+  /// Resets the piece, keeping its memory.
   virtual void clear() = 0;
-  virtual void operator()(const EchoBatch& batch) = 0;
-  /// After the last batch: how much it is.
+  virtual void operator()(const EchoBatch& batch) = 0;  ///< adds a batch, in pulse order
+  /// Size of the piece, after the last batch.
   [[nodiscard]] virtual MpiExtent extent() = 0;
   [[nodiscard]] virtual std::size_t memory() const noexcept = 0;  ///< [byte]
 };
 
-/// A file, or whatever takes results, that all processes write to. Each makes pieces of the blocks it has done, and puts them where the
-/// first process says that they belong, when all that comes before is known. Made, and closed, by all processes in the same order.
+/// Output written by all processes, a file or a stream. Each process makes pieces of its blocks, and puts each at the place that the first
+/// process assigns once all before is known. Construction and `close()` are collective, in the same order.
 class MpiOutput {
  public:
   explicit MpiOutput(MpiGroup& group) : group_(group), number_(group.enter(*this)) {}
@@ -94,7 +94,7 @@ class MpiOutput {
   MpiOutput& operator=(const MpiOutput&) = delete;
   virtual ~MpiOutput() { group_.leave(number_); }
 
-  /// A piece for the next block: a new one, or one that was given back.
+  /// Piece for the next block, new or recycled.
   [[nodiscard]] std::unique_ptr<MpiPiece> take_piece() {
     if (spare_.empty()) return piece();
     std::unique_ptr<MpiPiece> piece = std::move(spare_.back());
@@ -104,30 +104,30 @@ class MpiOutput {
   }
   void give_back(std::unique_ptr<MpiPiece> piece) { spare_.push_back(std::move(piece)); }
 
-  [[nodiscard]] virtual std::unique_ptr<MpiPiece> piece() = 0;
-  virtual void put(MpiPiece& piece, const MpiPlace& place) = 0;
+  [[nodiscard]] virtual std::unique_ptr<MpiPiece> piece() = 0;   ///< new, empty piece
+  virtual void put(MpiPiece& piece, const MpiPlace& place) = 0;  ///< writes a piece at its place
 
-  /// On the first process, in the order of blocks: where a piece belongs. It is asked only while it may be.
+  /// First process, in the order of blocks: place of a piece. Called only while `may_place()` is true.
   [[nodiscard]] virtual MpiPlace place(const MpiExtent& extent, int owner) = 0;
   [[nodiscard]] virtual bool may_place() const noexcept { return true; }
 
-  /// Takes what another process has sent to this output. It should not take long.
+  /// Handles a message from the same output of another process, quickly.
   virtual void receive(int /*from*/, MpiMessage /*message*/) {}
-  /// Does some of what there is to do; false if there is nothing.
+  /// Does some pending work; false if there is none.
   virtual bool work() { return false; }
-  /// So much is waiting that no more should be made.
+  /// True if enough is waiting and no more pieces should be made.
   [[nodiscard]] virtual bool full() const noexcept { return false; }
 
-  /// Writes what is left, and gives the file its name.
+  /// Writes the rest and gives the file its final name.
   virtual void close() = 0;
 
-  std::optional<std::uint8_t> channel{};  ///< the only one that it wants to know of
+  std::optional<std::uint8_t> channel{};  ///< only emitter whose pulses are wanted; all if empty
 
  protected:
   [[nodiscard]] MpiGroup& group() const noexcept { return group_; }
   void send(int to, MpiMessage message) { group_.send_to_output(to, number_, std::move(message)); }
 
-  /// Serves and works until done() says so.
+  /// Handles messages and works until done() is true.
   template <class Done>
   void work_until(const Done& done) {
     while (!done()) {

@@ -19,7 +19,7 @@
 
 namespace pulsecast::mpi {
 
-/// Writes batches as they stand in memory, for a process of the same program to read again by `for_each_batch`.
+/// Writes batches in their memory layout, for `for_each_batch` in another process of the same program.
 class MpiBatchWriter {
  public:
   explicit MpiBatchWriter(io::OutputFile file) : file_(std::move(file)) {}
@@ -43,6 +43,7 @@ class MpiBatchWriter {
   io::OutputFile file_;
 };
 
+/// Calls a sink with each batch of a message from `MpiBatchWriter`.
 template <class Sink>
 void for_each_batch(MpiMessage bytes, Sink&& sink) {
   std::vector<Shot> shots;
@@ -56,8 +57,8 @@ void for_each_batch(MpiMessage bytes, Sink&& sink) {
   }
 }
 
-/// What `Writer` writes of all blocks goes to the first process, which takes it in order, some of it at a time. So it is with what only one
-/// can make, as a compressed stream; what all do is simulate, and write text.
+/// Output whose pieces, made by `Writer`, go to the first process in order, a bounded number at a time: for results that one process must
+/// make, as a compressed stream, while all simulate and format text.
 template <class Writer>
 class MpiStream final : public MpiOutput {
  public:

@@ -10,12 +10,12 @@
 #include <cstring>
 #include <string_view>
 
-/// Pieces of LAS files as bytes. Source of every position: ASPRS LAS Specification 1.4 R15, and 1.0 where it is named.
+/// Byte layout of LAS files. Source of every offset: ASPRS LAS Specification 1.4 R15, or 1.0 where named.
 namespace pulsecast::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "LAS files are little-endian, and are written as the numbers lie in memory");
 
-/// Bytes that are filled in by their positions.
+/// Byte array filled in by offsets.
 template <std::size_t Size>
 struct LasBytes : std::array<std::byte, Size> {
   template <class Number>
@@ -25,7 +25,7 @@ struct LasBytes : std::array<std::byte, Size> {
   void put_text(std::size_t position, std::string_view text) noexcept { std::memcpy(this->data() + position, text.data(), text.size()); }
 };
 
-/// To the nearest whole number, cut to [low, high]; what is not a number becomes `low`.
+/// Nearest integer, clamped to [low, high]; NaN becomes `low`.
 template <class Integer>
 [[nodiscard]] Integer las_rounded(double value, double low, double high) noexcept {
   return static_cast<Integer>(std::nearbyint(std::fmin(std::fmax(value, low), high)));
@@ -33,7 +33,7 @@ template <class Integer>
 
 inline constexpr std::size_t las_vlr_header_size = 54;  ///< [byte]
 
-/// What stands before the body of a record of so many bytes. Source: LAS 1.4 R15, Variable Length Records.
+/// Header of a variable-length record with a body of `size` bytes. Source: LAS 1.4 R15, Variable Length Records.
 [[nodiscard]] inline LasBytes<las_vlr_header_size> las_vlr_header(std::string_view user, std::uint16_t record, std::size_t size,
                                                                   std::string_view description) noexcept {
   LasBytes<las_vlr_header_size> h{};

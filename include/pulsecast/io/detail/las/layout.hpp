@@ -11,10 +11,10 @@
 
 namespace pulsecast::io::detail {
 
-/// One of the values that stand after the standard ones in each point.
+/// Extra value of each point, behind the standard ones.
 struct LasExtra {
   std::string_view name, description;
-  std::uint8_t type, size;  ///< of data, in the words of the Extra Bytes record: 5 uint32, 7 uint64, 9 float, 10 double
+  std::uint8_t type, size;  ///< data type of the Extra Bytes record: 5 uint32, 7 uint64, 9 float, 10 double; size [byte]
 };
 
 inline constexpr std::array las_extras{
@@ -26,7 +26,7 @@ inline constexpr std::array las_extras{
     LasExtra{"ObjectId", "number of the object met", 5, 4},
 };
 
-// Sizes in bytes. Source: LAS 1.4 R15, Extra Bytes, Point Data Record Format 4.
+// sizes [byte]. Source: LAS 1.4 R15, Extra Bytes, Point Data Record Format 4.
 inline constexpr std::size_t las_descriptor_size = 192, las_packet_size = 29;
 inline constexpr std::size_t las_extras_size = [] {
   std::size_t size = 0;
@@ -34,7 +34,7 @@ inline constexpr std::size_t las_extras_size = [] {
   return size;
 }();
 
-/// Where things stand in a file, and how much they hold. Source: LAS 1.4 R15, Public Header Block, Point Data Record Formats 1, 4, 6 and 9;
+/// Offsets and limits of a file. Source: LAS 1.4 R15, Public Header Block, Point Data Record Formats 1, 4, 6 and 9;
 /// LAS 1.0, Public Header Block, Point Data Start Signature.
 struct LasLayout {
   LasLayout(LasFormat file, bool with_waveforms) noexcept
@@ -50,12 +50,12 @@ struct LasLayout {
 
   [[nodiscard]] std::size_t record() const noexcept { return extras + las_extras_size; }  ///< size of a point [byte]
 
-  bool legacy;                  ///< points as before version 1.4
-  std::uint8_t minor, format;   ///< version 1.minor, point format
-  std::size_t header;           ///< its size [byte]
-  std::size_t start_signature;  ///< between the last record and the first point [byte]
-  std::size_t packet, extras;   ///< in a point: where the wave packet and the extra bytes are, if there are any [byte]
-  std::uint32_t max_returns, max_class;
+  bool legacy;                           ///< true for point formats older than version 1.4
+  std::uint8_t minor, format;            ///< version 1.`minor`, point format
+  std::size_t header;                    ///< size of the header [byte]
+  std::size_t start_signature;           ///< size of the signature between the last record and the first point [byte]
+  std::size_t packet, extras;            ///< offsets of wave packet and extra bytes in a point [byte]
+  std::uint32_t max_returns, max_class;  ///< limits of return numbers and classes
 };
 
 }  // namespace pulsecast::io::detail

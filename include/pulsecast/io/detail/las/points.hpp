@@ -20,12 +20,12 @@
 
 namespace pulsecast::io {
 
-/// The points of a LAS file one after another, versions 1.0 to 1.4, point formats 0 to 10. Points that the file marks as withheld, which
-/// means deleted, are passed over. What the header says of sizes is held against the file's size; what it says of bounds is not asked for.
+/// Reader of the points of a LAS file, versions 1.0 to 1.4, point formats 0 to 10. Points marked as withheld (deleted) are skipped. Sizes
+/// in the header are checked against the file's size; bounds in it are ignored.
 /// Throws a `FileError` with path and byte. Source of every field: ASPRS LAS Specification 1.4 R15, and 1.0 to 1.3 for their headers.
 class LasPoints {
  public:
-  /// A file that begins as all LAS files do.
+  /// True if the file begins with the LAS signature.
   [[nodiscard]] static bool is_las(InputFile& file) {
     file.seek(0);
     const bool is = file.take(4) == "LASF";
@@ -35,7 +35,7 @@ class LasPoints {
 
   explicit LasPoints(InputFile file) : file_(std::move(file)) { read_header(); }
 
-  /// Goes to the next point; false if there is none.
+  /// Advances to the next point; false at the end.
   [[nodiscard]] bool next() {
     while (taken_ < count_) {
       at_ = file_.position();
@@ -48,7 +48,7 @@ class LasPoints {
     return false;
   }
 
-  /// Of the point at hand, in the units of the file, which should be metres.
+  /// Position of the current point, in units of the file, which should be metres. Throws a `FileError` beyond 1e12.
   [[nodiscard]] Vec3 position() const {
     Vec3 p{};
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -61,14 +61,14 @@ class LasPoints {
   [[nodiscard]] Vec3 normal() const noexcept { return {}; }
   [[nodiscard]] bool has_colours() const noexcept { return colour_at_ != 0; }
 
-  /// Red, green and blue of the point at hand, from 0 to `max_colour`.
+  /// Red, green and blue of the current point, from 0 to `max_colour`.
   [[nodiscard]] Vec3 colour() const noexcept {
     return {number<std::uint16_t>(record_, colour_at_), number<std::uint16_t>(record_, colour_at_ + 2),
             number<std::uint16_t>(record_, colour_at_ + 4)};
   }
   static constexpr double max_colour = 65535;
 
-  /// What was odd, but could be read; to be asked for after the last point.
+  /// Oddities that could still be read; complete after the last point.
   [[nodiscard]] std::vector<std::string> warnings() const {
     if (withheld_ == 0) return {};
     return {file_.path() + ": " + std::to_string(withheld_) + " of " + std::to_string(count_) +
@@ -89,7 +89,7 @@ class LasPoints {
   }
 
   void read_header() {
-    constexpr std::array<std::size_t, 5> header_sizes{227, 227, 227, 235, 375};  // by the minor version
+    constexpr std::array<std::size_t, 5> header_sizes{227, 227, 227, 235, 375};  // by minor version
     constexpr std::array<std::size_t, 11> sizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
     constexpr std::array<std::size_t, 11> colours{0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
 
@@ -105,7 +105,7 @@ class LasPoints {
       file_.fail_at_byte(94, "the header has " + std::to_string(std::min(header_size, bytes.size())) + " bytes: expected at least " +
                                  std::to_string(header_sizes[minor_]));
     format_ = number<std::uint8_t>(bytes, 104);
-    if (format_ >= 128)  // so LASzip marks its formats
+    if (format_ >= 128)  // mark of LASzip
       file_.fail_at_byte(104, "the points are compressed (LAZ): expected LAS; laszip or pdal translate turn one into the other");
     if (format_ >= sizes.size()) file_.fail_at_byte(104, "has the point format " + std::to_string(format_) + ": expected one from 0 to 10");
     colour_at_ = colours[format_];
@@ -137,7 +137,7 @@ class LasPoints {
     file_.seek(begin);
   }
 
-  /// In LAS 1.0 the bit is part of the class.
+  /// True if the current point is marked as withheld; LAS 1.0 has no such bit, as it belongs to the class.
   [[nodiscard]] bool withheld() const noexcept {
     const auto bits = number<std::uint8_t>(record_, 15);
     return format_ >= 6 ? (bits & 4U) != 0 : minor_ > 0 && (bits & 128U) != 0;
@@ -145,10 +145,10 @@ class LasPoints {
 
   InputFile file_;
   unsigned minor_ = 0, format_ = 0;
-  std::size_t record_size_ = 0, colour_at_ = 0;  // bytes; 0 if there is none
+  std::size_t record_size_ = 0, colour_at_ = 0;  // [byte]; 0 without colours
   std::array<double, 3> scale_{}, offset_{};
   std::uint64_t count_ = 0, taken_ = 0, withheld_ = 0;
-  std::uint64_t at_ = 0;  // byte at which the point at hand begins
+  std::uint64_t at_ = 0;  // offset of the current point [byte]
   std::string_view record_;
 };
 

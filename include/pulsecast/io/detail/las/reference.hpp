@@ -10,12 +10,12 @@
 
 namespace pulsecast::io::detail {
 
-/// The well-known text of a reference system that is UTM on WGS 84, ETRS89 or NAD83; empty for any other code, as definitions are in a
-/// register of thousands. Source: EPSG registry; OGC 01-009 (Coordinate Transformation Services), 7.
+/// Well-known text of a UTM system on WGS 84, ETRS89 or NAD83; empty for other codes, whose definitions fill a register of thousands.
+/// Source: EPSG registry; OGC 01-009 (Coordinate Transformation Services), 7.
 [[nodiscard]] inline std::string las_utm(std::uint16_t epsg) {
   struct Family {
     unsigned first, last;  // codes of its zones
-    unsigned zone;         // the first
+    unsigned zone;         // number of the first zone
     std::string_view system, system_code, datum, datum_code, ellipsoid, flattening, ellipsoid_code;
     bool south = false;
   };
@@ -41,8 +41,7 @@ namespace pulsecast::io::detail {
          code(std::to_string(epsg)) + ']';
 }
 
-/// A GeoTIFF key directory: a header and three keys, which are that the model is projected, its code, and its unit, the metre. Source: OGC
-/// GeoTIFF 1.1, 7.1.2 and annex B.
+/// GeoTIFF key directory: header and three keys (projected model, its code, metre as unit). Source: OGC GeoTIFF 1.1, 7.1.2 and annex B.
 [[nodiscard]] constexpr std::array<std::uint16_t, 16> las_geo_keys(std::uint16_t epsg) noexcept {
   return {1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, epsg, 3076, 0, 1, 9001};
 }

@@ -28,7 +28,7 @@
 
 namespace pulsecast::io::detail {
 
-/// Reads what was written from some byte on, records of so many bytes, again: `task(at, bytes)` gets whole records, some at a time.
+/// Reads back records of `record` bytes from offset `begin` on: `task(at, bytes)` gets blocks of whole records.
 template <class Task>
 void las_in_blocks(OutputFile& file, std::uint64_t begin, std::size_t record, const Task& task) {
   const std::uint64_t at_once = (std::size_t{1} << 20) / record * record, end = file.position();
@@ -40,24 +40,23 @@ void las_in_blocks(OutputFile& file, std::uint64_t begin, std::size_t record, co
   }
 }
 
-/// Writes points as LAS with extra bytes, in pulse order; `Records` puts their records into the file as it will, and may change them once
-/// when all are known. It offers what `LasRecords` and `LazRecords` do.
-/// Source of every field: ASPRS LAS Specification 1.4 R15. What it leaves open is decided so:
-/// - coordinates are rounded to the nearest step; one that does not fit 32 bits, or is not finite, is a `FileError`;
-/// - intensity is linear in what `LasIntensity` says; the extra bytes Amplitude and Reflectance are levels [dB], -200 for nothing;
-/// - return numbers and their count end at 15, or 5, as the format does: later returns are written as the 15th;
+/// Writes points as LAS with extra bytes, in pulse order. `Records`, as `LasRecords` or `LazRecords`, stores the point records, and may
+/// change them once all are known. Source of every field: ASPRS LAS Specification 1.4 R15. Choices that it leaves open:
+/// - coordinates are rounded to the nearest step; one beyond 32 bits, or not finite, is a `FileError`;
+/// - intensity is linear in the quantity of `LasIntensity`; extra bytes Amplitude and Reflectance are levels [dB], -200 for zero;
+/// - return numbers and counts end at 15, or 5, by format: later returns are written as the last;
 /// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; scanner channel is the channel's lowest two bits;
-/// - scan angle counts from down, positive to the right of the flight; GPS time is that of the pulse, alike in all its returns;
-/// - a reference system that is known by its code alone, and not one of UTM, is written as GeoTIFF keys and the WKT bit is left out: the
-///   specification wants well-known text with point formats 6 and 9, but a code that readers understand is more than nothing. With legacy
-///   formats, a code is always written as keys;
-/// - flags, scan direction, edge of flight line and user data are 0, for no field of an echo tells them.
+/// - scan angle counts from down, positive to the right of the flight; GPS time is that of the pulse for all its returns;
+/// - a reference system given by its code alone, other than UTM, is written as GeoTIFF keys, with the WKT bit clear: the specification
+/// demands well-known text with point formats 6 and 9, but a code serves readers better than nothing. Legacy formats always take a code as
+/// keys;
+/// - flags, scan direction, edge of flight line and user data are 0, as echoes have no such fields.
 ///
-/// Waveforms are written once for all echoes of their pulse, as `LasPackets` says; those of pulses without echoes are not, as no
-/// point could refer to them. The location L of a point's return is the two-way time from the first sample to the echo [ps], and the vector
-/// d points back to the instrument, half the speed of light long [m/ps]. So, as in the specification, `P + L d` is the anchor, where the
-/// first sample is from, and sample i is from `P + (L - i spacing) d`; P is the point.
-/// Only `close()` makes the file: see `OutputFile`. The `.wdp` file is made before the LAS file, so that this is whole when it is there.
+/// A waveform is written once for all echoes of its pulse, see `LasPackets`, and not at all without echoes, as no point could refer to it.
+/// The return point waveform location L is the two-way time from the first sample to the echo [ps]. The vector d points back to the
+/// instrument, with half the speed of light as length [m/ps]. Then, as in the specification, `P + L d` is the anchor, the origin of the
+/// first sample, and sample i is from `P + (L - i spacing) d`, for point P.
+/// Only `close()` completes the file: see `OutputFile`. The `.wdp` file is completed before the LAS file, so a LAS file always has it.
 template <class Records>
 class LasFileWriter {
  public:
@@ -87,14 +86,14 @@ class LasFileWriter {
     }
   }
 
-  /// Where `Records` begin, and the bytes of the file of waveforms so far.
+  /// Offset of `Records` in the file, and size of the waveform file so far [byte].
   [[nodiscard]] std::uint64_t records_at() const noexcept { return records_at_; }
   [[nodiscard]] std::uint64_t packets_at() const noexcept { return packets_ ? packets_->position() : 0; }
 
   [[nodiscard]] Records& records() noexcept { return records_; }
 
-  /// Takes what others have put into the temporary files: the points of which `tally` tells, up to `end`, and if there are waveforms, those
-  /// up to `packets_end`, with samples so many picoseconds apart. To be closed is all that is left then.
+  /// Takes over content that others wrote to the temporary files: points with the statistics `tally`, up to offset `end`, and waveforms up
+  /// to `packets_end` [byte] with samples `spacing` apart [ps]. Only `close()` may follow.
   void adopt(const LasTally& tally, const Vec3& first_point, std::uint64_t end, std::uint64_t packets_end = 0, std::uint32_t spacing = 0) {
     encoder_.tally() = tally;
     if (tally.points > 0) encoder_.choose_offset(first_point);
@@ -102,7 +101,7 @@ class LasFileWriter {
     if (packets_) packets_->adopt(packets_end, spacing);
   }
 
-  /// Enters numbers and bounds into the header, gives intensities their scale if it is automatic, and the file its name.
+  /// Completes the header and automatic intensities, and gives the file its name. Throws a `FileError`.
   void close() {
     if (layout().minor == 0 && encoder_.tally().points > std::numeric_limits<std::uint32_t>::max())
       throw FileError(file_.path().string(), "", "has too many points; expected fewer than 2^32, with version 1.0");
@@ -117,7 +116,7 @@ class LasFileWriter {
   }
 
  private:
-  using Header = LasBytes<375>;  ///< the longest
+  using Header = LasBytes<375>;  ///< longest header
 
   [[nodiscard]] const LasSettings& settings() const noexcept { return encoder_.settings(); }
   [[nodiscard]] const LasLayout& layout() const noexcept { return encoder_.layout(); }
@@ -149,8 +148,8 @@ class LasFileWriter {
     throw FileError(file_.path().string(), "point " + std::to_string(encoder_.tally().points + 1), encoder_.misfit(point));
   }
 
-  /// Writes the header as of now. Positions: LAS 1.4 R15, Public Header Block; what is not put is 0, as the legacy numbers must be with
-  /// formats 6 and 9, and the start of waveforms with those in a file of their own. Version 1.0 ends before it, and has no global encoding.
+  /// Writes the header in its current state. Offsets: LAS 1.4 R15, Public Header Block. Other bytes are 0, as required of legacy counts
+  /// with formats 6 and 9, and of the start of waveforms in a file of their own. Version 1.0 ends before it, and has no global encoding.
   void write_header() {
     const LasTally& tally = encoder_.tally();
     Header h{};
@@ -193,8 +192,8 @@ class LasFileWriter {
       file_.overwrite(0, bytes);
   }
 
-  /// Source: LAS 1.4 R15, Global Encoding: bit 0 is the kind of time, bit 2 says waveforms are in a file of their own, bit 4 must be set
-  /// with well-known text, and with formats 6 and 9.
+  /// Global encoding: bit 0 is the kind of time, bit 2 marks waveforms in a file of their own, bit 4 is set with well-known text, and with
+  /// formats 6 and 9. Source: LAS 1.4 R15, Global Encoding.
   [[nodiscard]] std::uint16_t global_encoding() const noexcept {
     const bool wkt = layout().legacy ? !settings().wkt.empty() : !by_keys();
     return static_cast<std::uint16_t>(static_cast<unsigned>(settings().gps_time) | (packets_ ? 1U << 2 : 0U) | (wkt ? 1U << 4 : 0U));
@@ -207,7 +206,7 @@ class LasFileWriter {
     ++variable_records_;
   }
 
-  /// Source: LAS 1.4 R15, Extra Bytes.
+  /// Writes the descriptions of the extra bytes. Source: LAS 1.4 R15, Extra Bytes.
   void write_extra_bytes_record() {
     write_record_header("LASF_Spec", 4, las_extras.size() * las_descriptor_size, "Extra Bytes");
     for (const LasExtra& extra : las_extras) {
@@ -219,16 +218,16 @@ class LasFileWriter {
     }
   }
 
-  /// Source: LAS 1.4 R15, OGC Coordinate System WKT.
+  /// Writes the well-known text. Source: LAS 1.4 R15, OGC Coordinate System WKT.
   void write_wkt_record() {
     write_record_header("LASF_Projection", 2112, settings().wkt.size() + 1, "OGC Coordinate System WKT");
     file_.write(std::string_view(settings().wkt.c_str(), settings().wkt.size() + 1));
   }
 
-  /// Whether the reference system is known by its code alone.
+  /// True if the reference system is given by its code alone.
   [[nodiscard]] bool by_keys() const noexcept { return settings().wkt.empty() && settings().epsg != 0; }
 
-  /// Source: LAS 1.4 R15, GeoKeyDirectoryTag Record.
+  /// Writes the GeoTIFF keys. Source: LAS 1.4 R15, GeoKeyDirectoryTag Record.
   void write_keys_record() {
     const auto keys = las_geo_keys(settings().epsg);
     write_record_header("LASF_Projection", 34735, sizeof keys, "GeoTIFF GeoKeyDirectoryTag");
@@ -239,8 +238,8 @@ class LasFileWriter {
   Records records_;
   OutputFile file_;
   std::optional<LasPackets> packets_;
-  std::uint32_t variable_records_ = 0;                                 // of variable length
-  std::uint64_t descriptors_at_ = 0, points_at_ = 0, records_at_ = 0;  // from the beginning of the file [byte]
+  std::uint32_t variable_records_ = 0;                                 // number of variable-length records
+  std::uint64_t descriptors_at_ = 0, points_at_ = 0, records_at_ = 0;  // offsets in the file [byte]
 };
 
 }  // namespace pulsecast::io::detail

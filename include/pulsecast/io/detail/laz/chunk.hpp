@@ -19,18 +19,18 @@
 
 namespace pulsecast::io::detail {
 
-/// Compresses points of format 6 with extra bytes that are together in a chunk, as LASzip does from its version 3 on: attribute by
-/// attribute, each a layer of its own. A layer in which nothing changes is left out. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4
-/// (native extension), specification document; and files of it, of the items POINT14 and BYTE14 in version 3, for what these leave open.
+/// Compressor of a chunk of points of format 6 with extra bytes, as LASzip from its version 3 on: each attribute is a layer, left out if
+/// constant. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4 (native extension), specification document; files of it, items POINT14 and
+/// BYTE14 in version 3, for details left open there.
 class LazChunk {
  public:
-  /// Whole records, one after another, at least one.
+  /// One or more whole records, contiguous.
   LazChunk(std::span<const std::byte> records, std::size_t record) : records_(records), record_(record) {
     points_.reserve(records.size() / record);
     for (std::size_t at = 0; at < records.size(); at += record) points_.emplace_back(records.data() + at);
   }
 
-  /// The chunk as it stands in the file: the first point as it is, the number of points, sizes of the layers, and the layers.
+  /// Chunk as in the file: first point uncompressed, number of points, sizes of the layers, layers.
   [[nodiscard]] std::vector<std::byte> compressed() {
     std::vector<std::vector<std::byte>> layers;
     layers.push_back(positions());
@@ -57,15 +57,15 @@ class LazChunk {
   }
 
  private:
-  /// What the other layers take from that of the positions. Each scanner channel is predicted by itself.
+  /// State of the positions layer for the other layers. Each scanner channel is predicted by itself.
   struct Step {
-    const LazPoint* before;  ///< the last point of this channel, or of any if there is none
-    bool new_time;           ///< since `before`
-    std::uint8_t out;        ///< how far the prediction was out in x and y: the mean number of bits
-    std::uint8_t told;  ///< the channel that extra bytes are told: in version 3, that of the point if it is another than the last, or 0
+    const LazPoint* before;  ///< last point of this channel, or of any if there is none
+    bool new_time;           ///< true if the time differs from that of `before`
+    std::uint8_t out;        ///< error of the prediction in x and y: mean number of bits
+    std::uint8_t told;       ///< channel for extra bytes: in version 3, that of the point if other than the last point's, else 0
   };
 
-  /// Models of each channel, made of the point that its first one is compared with.
+  /// Models by channel, initialized with the point before the channel's first.
   template <class Models>
   class Channels {
    public:
@@ -78,7 +78,7 @@ class LazChunk {
     std::array<std::unique_ptr<Models>, 4> models_;
   };
 
-  /// Where in its pulse a return is, in six kinds: the rows are by the number of returns, the columns by that of the return.
+  /// Kind of a return's place in its pulse, one of six: rows by the number of returns, columns by the return number.
   [[nodiscard]] static std::size_t kind(const LazPoint& p) noexcept {
     static constexpr std::array<std::string_view, 16> kinds{"0123453445555555", "1013333333333333", "2124444444433333", "3345444444444444",
                                                             "4344544444444444", "5344454444444444", "3344445444444444", "4344444544444444",
@@ -87,12 +87,12 @@ class LazChunk {
     return static_cast<std::size_t>(kinds[p.returns][p.number] - '0');
   }
 
-  /// What is even of a number of bits, up to a greatest; plus 1 for the only return of a pulse.
+  /// Context from a number of bits, rounded down to even and limited; plus 1 for the only return of a pulse.
   [[nodiscard]] static std::size_t context(unsigned bits, unsigned greatest, const LazPoint& p) noexcept {
     return (bits < greatest ? bits & ~1U : greatest) + (p.only() ? 1U : 0U);
   }
 
-  /// What is new, and x and y. Fills `steps_`.
+  /// Encodes change flags, x and y. Fills `steps_`.
   [[nodiscard]] std::vector<std::byte> positions() {
     struct Models {
       explicit Models(const LazPoint&) {}
@@ -109,7 +109,7 @@ class LazChunk {
     LazEncoder encoder;
     steps_.reserve(points_.size());
     steps_.push_back({points_.data(), false, 0, points_[0].channel});
-    bool new_time = false;  // at the last point
+    bool new_time = false;  // of the last point
     for (std::size_t i = 1; i < points_.size(); ++i) {
       const LazPoint &p = points_[i], &last = points_[i - 1];
       const LazPoint& before = last_of_channel[p.channel] != nullptr ? *last_of_channel[p.channel] : last;
@@ -117,7 +117,7 @@ class LazChunk {
       const unsigned place = (last.first() ? 1U : 0U) | (last.last() ? 2U : 0U) | (new_time ? 4U : 0U);
       new_time = p.time != before.time;
       const unsigned up = (p.number - before.number) & 15U;
-      const unsigned number = up < 2 ? up : up == 15 ? 2U : 3U;  // as before, the next, the previous, another
+      const unsigned number = up < 2 ? up : up == 15 ? 2U : 3U;  // same, next, previous, other
       const unsigned news = number | (p.returns != before.returns ? 4U : 0U) | (p.angle != before.angle ? 8U : 0U) | (new_time ? 16U : 0U) |
                             (p.source != before.source ? 32U : 0U) | (p.channel != last.channel ? 64U : 0U);
       Models& of_last = channels.of(last.channel, last);
@@ -144,7 +144,7 @@ class LazChunk {
     return std::move(encoder).finish();
   }
 
-  /// A layer of all points but the first: `encode(encoder, models, point, step)` codes one.
+  /// Encodes a layer of all points but the first: `encode(encoder, models, point, step)` encodes one.
   template <class Models, class Encode>
   [[nodiscard]] std::vector<std::byte> layer(const Encode& encode) const {
     Channels<Models> channels;
@@ -155,7 +155,7 @@ class LazChunk {
     return std::move(encoder).finish();
   }
 
-  /// The same, but nothing if the value is the same in all points.
+  /// Encodes a layer, or nothing if the value is constant.
   template <class Models, class Value, class Encode>
   [[nodiscard]] std::vector<std::byte> layer_of(Value LazPoint::*value, const Encode& encode) const {
     const auto same = [&](const LazPoint& p) { return p.*value == points_[0].*value; };
@@ -167,7 +167,7 @@ class LazChunk {
     struct Models {
       explicit Models(const LazPoint& before) { last.fill(before.z); }
       LazIntegers z{32, 20};
-      std::array<std::int32_t, 8> last;  // by how many returns are to come, or so
+      std::array<std::int32_t, 8> last;  // by number of returns to come, approximately
     };
     return layer<Models>([](LazEncoder& encoder, Models& m, const LazPoint& p, const Step& step) {
       std::int32_t& last = m.last[std::min<unsigned>(p.returns > p.number ? p.returns - p.number : p.number - p.returns, 7)];
@@ -176,7 +176,7 @@ class LazChunk {
     });
   }
 
-  /// By a model for each of some kinds of points.
+  /// Models by kind of point.
   template <std::size_t Symbols>
   struct SymbolModels {
     explicit SymbolModels(const LazPoint&) {}
@@ -248,18 +248,18 @@ class LazChunk {
     });
   }
 
-  /// Each byte is a layer.
+  /// Adds a layer for each extra byte.
   void add_extra_bytes(std::vector<std::vector<std::byte>>& layers) const {
     const std::size_t extras = record_ - laz_point_size, count = points_.size();
-    std::vector<std::uint8_t> columns(extras * count);  // so that each is read from one piece of memory
+    std::vector<std::uint8_t> columns(extras * count);  // contiguous for each byte
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t k = 0; k < extras; ++k)
         columns[k * count + i] = std::to_integer<std::uint8_t>(records_[i * record_ + laz_point_size + k]);
     for (std::size_t k = 0; k < extras; ++k) layers.push_back(extra_byte(std::span(columns).subspan(k * count, count)));
   }
 
-  /// Codes what is added to the last byte. All files of version 3 have it so: where the channel told is another than before, the last byte
-  /// is still that of the channel before, and is kept as such, unless this channel is new.
+  /// Encodes differences to the last byte. As in all files of version 3, if the channel told changes, the last byte is still that of the
+  /// channel before, and is stored there, unless this channel is new.
   [[nodiscard]] std::vector<std::byte> extra_byte(std::span<const std::uint8_t> column) const {
     if (std::all_of(column.begin(), column.end(), [&](std::uint8_t byte) { return byte == column[0]; })) return {};
     std::array<LazModel<>, 4> models;

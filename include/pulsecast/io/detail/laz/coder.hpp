@@ -13,11 +13,11 @@
 
 #include <pulsecast/base/require.hpp>
 
-/// The arithmetic coder of LAZ. Source of the algorithm: Said 2004, Introduction to Arithmetic Coding - Theory and Practice, 2.2 and 3;
+/// Arithmetic coder of LAZ. Source of the algorithm: Said 2004, Introduction to Arithmetic Coding - Theory and Practice, 2.2 and 3;
 /// of the constants: Isenburg 2013, LASzip: lossless compression of lidar data, and the LAZ files that LASzip writes.
 namespace pulsecast::io::detail {
 
-/// How often each of some symbols came, learnt while they are coded. Shares are renewed seldom at first, then ever more seldom.
+/// Adaptive frequency model of some symbols. Updates of the shares become rarer while coding.
 template <std::size_t Capacity = 256>
 class LazModel {
  public:
@@ -30,7 +30,7 @@ class LazModel {
     until_renewal_ = cycle_ = (symbols_ + 6) / 2;
   }
 
-  /// The shares of all symbols below this one, and of those up to it, in 2^-15; the last is up to all.
+  /// Cumulative share of all symbols below this one, in 2^-15; the range of the last symbol ends at 1.
   [[nodiscard]] std::uint32_t below(std::size_t symbol) const noexcept { return below_[symbol]; }
   [[nodiscard]] bool last(std::size_t symbol) const noexcept { return symbol + 1 == symbols_; }
 
@@ -58,12 +58,12 @@ class LazModel {
   std::array<std::uint16_t, Capacity> below_, count_;
 };
 
-/// The same for a bit.
+/// Adaptive model of a bit.
 class LazBitModel {
  public:
   static constexpr unsigned share_bits = 13;
 
-  /// The share of 0, in 2^-13.
+  /// Share of 0, in 2^-13.
   [[nodiscard]] std::uint32_t of_zero() const noexcept { return of_zero_; }
 
   void learn(bool bit) noexcept {
@@ -82,7 +82,7 @@ class LazBitModel {
   std::uint32_t zeros_ = 1, total_ = 2, of_zero_ = 1U << (share_bits - 1), cycle_ = 4, until_renewal_ = 4;
 };
 
-/// Codes symbols into bytes: together they are a number in [0, 1), and each symbol narrows the interval where it can be.
+/// Arithmetic encoder: the bytes are a number in [0, 1), and each symbol narrows its interval.
 class LazEncoder {
  public:
   template <std::size_t Capacity>
@@ -98,9 +98,9 @@ class LazEncoder {
     model.learn(bit);
   }
 
-  /// The lowest `count` bits of a number, 1 to 32, which nothing is known of; the others must be 0.
+  /// Encodes the lowest `count` bits of a number, from 1 to 32, as equally likely; the others must be 0.
   void encode_bits(std::uint32_t value, unsigned count) {
-    if (count > 19) {  // more do not fit the interval at once
+    if (count > 19) {  // more would exceed the interval
       encode_bits(value & 0xFFFFU, 16);
       value >>= 16;
       count -= 16;
@@ -109,14 +109,14 @@ class LazEncoder {
     narrow(unit * value, unit);
   }
 
-  /// The bytes of all that was coded; what stands after them does not matter.
+  /// Bytes of all symbols coded; bytes behind them do not matter.
   [[nodiscard]] std::vector<std::byte> finish() && {
-    const std::uint32_t gap = (0U - base_) & 0xFFFFFFU;  // the interval is at least 2^24 long: it holds a number that ends in 24 zeros
+    const std::uint32_t gap = (0U - base_) & 0xFFFFFFU;  // the interval is at least 2^24 long, so it holds a number that ends in 24 zeros
     base_ += gap;
     if (base_ < gap) carry();
     out_.resize(size_);
     out_.push_back(static_cast<std::byte>(base_ >> 24));
-    out_.resize(size_ + 4);  // decoders look four bytes ahead
+    out_.resize(size_ + 4);  // decoders read four bytes ahead
     return std::move(out_);
   }
 
@@ -128,7 +128,7 @@ class LazEncoder {
     std::array<std::byte, 4> bytes{};
     for (unsigned i = 0; i < 4; ++i) bytes[i] = static_cast<std::byte>(base >> (24 - 8 * i));
     std::memcpy(out_.data() + size_, bytes.data(), bytes.size());
-    const unsigned done = static_cast<unsigned>(std::countl_zero(length)) & 24U;  // bits that no longer change, in whole bytes
+    const unsigned done = static_cast<unsigned>(std::countl_zero(length)) & 24U;  // settled bits, in whole bytes
     size_ += done / 8;
     base_ = base << done;
     length_ = length << done;

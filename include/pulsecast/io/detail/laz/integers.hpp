@@ -12,26 +12,26 @@
 
 namespace pulsecast::io::detail {
 
-/// Codes whole numbers as corrections to what was expected: first how many bits a correction has, by a model of each of some contexts, then
-/// which of so many bits it is, of which the highest eight are modelled. Source: Isenburg 2013, LASzip, 4 (Entropy coding).
+/// Coder of integers as corrections to a prediction: first the bit length of the correction, by a model for each context, then its place
+/// among corrections of that length, with its highest eight bits modelled. Source: Isenburg 2013, LASzip, 4 (Entropy coding).
 class LazIntegers {
  public:
-  /// Of 16 or 32 bits.
+  /// `bits` of the integers, 16 or 32; number of contexts.
   LazIntegers(unsigned bits, std::size_t contexts) : bits_(bits), lengths_(contexts, LazModel<33>(bits + 1)) {
     for (unsigned k = 1; k <= bits; ++k) corrections_.emplace_back(std::size_t{1} << std::min(k, modelled_bits));
   }
 
-  /// Numbers of 16 bits may be given as signed or unsigned ones. All wraps around.
+  /// Encodes a number; 16-bit ones may be signed or unsigned. Arithmetic wraps around.
   void encode(LazEncoder& encoder, std::int32_t expected, std::int32_t number, std::size_t context = 0) {
     auto correction = static_cast<std::int32_t>(static_cast<std::uint32_t>(number) - static_cast<std::uint32_t>(expected));
     if (bits_ == 16) correction = static_cast<std::int16_t>(correction);
-    // Corrections of k bits are those in [1 - 2^k, -2^(k-1)] and [2^(k-1) + 1, 2^k], and with k = 0, 0 and 1.
+    // corrections of k bits are those in [1 - 2^k, -2^(k-1)] and [2^(k-1) + 1, 2^k]; with k = 0, 0 and 1
     const auto size = static_cast<std::uint32_t>(correction > 0 ? correction - 1 : -std::int64_t{correction});
     length_ = static_cast<unsigned>(std::bit_width(size));
     encoder.encode(lengths_[context], length_);
     if (length_ == 0) return encoder.encode(zero_or_one_, correction == 1);
-    if (length_ == 32) return;                                                       // there is but one: -2^31
-    const std::uint32_t place = correction > 0 ? size : (1U << length_) - 1 - size;  // among those of its length, from 0
+    if (length_ == 32) return;                                                       // a single one: -2^31
+    const std::uint32_t place = correction > 0 ? size : (1U << length_) - 1 - size;  // index among those of its length, from 0
     LazModel<>& model = corrections_[length_ - 1];
     if (length_ <= modelled_bits) return encoder.encode(model, place);
     const unsigned others = length_ - modelled_bits;
@@ -39,7 +39,7 @@ class LazIntegers {
     encoder.encode_bits(place & ((1U << others) - 1), others);
   }
 
-  /// How many bits the last correction had: a measure of how far the next of another number may be out.
+  /// Bit length of the last correction: a measure of the error to expect of a related number.
   [[nodiscard]] unsigned last_length() const noexcept { return length_; }
 
  private:
@@ -48,7 +48,7 @@ class LazIntegers {
   unsigned bits_, length_ = 0;
   std::vector<LazModel<33>> lengths_;
   LazBitModel zero_or_one_;
-  std::vector<LazModel<>> corrections_;  // by their length, from 1
+  std::vector<LazModel<>> corrections_;  // by length, from 1
 };
 
 }  // namespace pulsecast::io::detail

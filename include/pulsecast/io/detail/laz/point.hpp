@@ -12,9 +12,9 @@ namespace pulsecast::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "LAZ files are little-endian, and numbers are taken as they lie in memory");
 
-inline constexpr std::size_t laz_point_size = 30;  ///< of point format 6 without extra bytes [byte]
+inline constexpr std::size_t laz_point_size = 30;  ///< size of point format 6 without extra bytes [byte]
 
-/// A point, as far as it is the format's. Positions: LAS 1.4 R15, Point Data Record Format 6.
+/// Standard fields of a point. Offsets: LAS 1.4 R15, Point Data Record Format 6.
 struct LazPoint {
   LazPoint() = default;
   explicit LazPoint(const std::byte* record) noexcept {
@@ -35,10 +35,10 @@ struct LazPoint {
   std::int32_t x = 0, y = 0, z = 0;
   std::uint16_t intensity = 0, source = 0;
   std::int16_t angle = 0;
-  std::uint8_t number = 0, returns = 0;  ///< of the return, and of all of its pulse
-  std::uint8_t flags = 0;                ///< those of the class, then scan direction and edge of flight line
+  std::uint8_t number = 0, returns = 0;  ///< return number and number of returns of its pulse
+  std::uint8_t flags = 0;                ///< class flags, then scan direction and edge of flight line
   std::uint8_t channel = 0, classification = 0, user = 0;
-  std::int64_t time = 0;  ///< the bits of the number
+  std::int64_t time = 0;  ///< bit pattern of the double
 };
 
 }  // namespace pulsecast::io::detail

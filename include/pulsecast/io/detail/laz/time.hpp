@@ -12,8 +12,8 @@
 
 namespace pulsecast::io::detail {
 
-/// Codes times, as the whole numbers that their 64 bits are, by how they go on with one of four series: each has its last time, and the
-/// step that is usual in it. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
+/// Coder of times, as the 64-bit integers of their bit patterns, as continuations of one of four series, each with its last time and usual
+/// step. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
 class LazTimes {
  public:
   explicit LazTimes(std::int64_t first) { last_[0] = first; }
@@ -32,9 +32,9 @@ class LazTimes {
   }
 
  private:
-  /// What a step is: a multiple of the usual one from 0 to 499, or at least 500, or from -9 to -1, or at most -10; or there is none.
+  /// Symbols of a step as a multiple of the usual one: 0 to 499, at least 500, -9 to -1, at most -10; or a new series.
   static constexpr int most = 500, least = -10, new_series = most - least + 1;
-  static constexpr int symbols = new_series + 4;  // and the three other series
+  static constexpr int symbols = new_series + 4;  // plus the three other series
 
   [[nodiscard]] std::int64_t step_to(std::int64_t time, std::size_t series) const noexcept {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(time) - static_cast<std::uint64_t>(last_[series]));
@@ -92,12 +92,12 @@ class LazTimes {
     return 7;
   }
 
-  LazModel<5> first_steps_;  // where no step is usual: a step, a new series, one of the others
+  LazModel<5> first_steps_;  // without a usual step: a step, a new series, one of the others
   LazModel<symbols> multiples_;
   LazIntegers steps_{32, 9};
   std::array<std::int64_t, 4> last_{};
   std::array<std::int32_t, 4> usual_{};
-  std::array<unsigned, 4> unusual_{};  // how many steps in a row, or nearly, were nothing like it
+  std::array<unsigned, 4> unusual_{};  // steps nearly in a row that were unlike the usual one
   std::size_t series_ = 0, newest_ = 0;
 };
 

@@ -18,28 +18,28 @@
 
 namespace pulsecast::io {
 
-/// A text table in the making, row by row. The file may be one that compresses: see `gzip_file`.
+/// Text table under construction, row by row. The file may be a compressing one: see `gzip_file`.
 class TextOutput {
  public:
   explicit TextOutput(OutputFile file) : file_(std::move(file)) {}
 
-  /// A place or a direction. One that is not finite ends the table with a `FileError`; `what` says in it whose it is.
+  /// Adds a position or direction. One that is not finite discards the table and throws a `FileError`; `what` names it there.
   TextOutput& vector(std::string_view what, const Vec3& v, int decimals) {
     if (!finite(v)) reject(what);
     return reals(decimals, v.x, v.y, v.z);
   }
 
-  /// Numbers, each with so many decimals.
+  /// Adds numbers with a fixed number of decimals.
   template <std::convertible_to<double>... Reals>
   TextOutput& reals(int decimals, Reals... values) {
     (row_.add(static_cast<double>(values), decimals), ...);
     return *this;
   }
 
-  /// A time [ns] with 4 decimals, rounded to nearest and exact to the last of them: a double would not hold as many after some minutes.
+  /// Adds a time [ns] with 4 decimals, rounded to nearest, all exact: a double would lose some of them after minutes.
   TextOutput& nanoseconds(const Tick& time) {
     const bool negative = time.second < 0;
-    constexpr std::int64_t unit = 10'000;  // of a nanosecond: 0.1 ps
+    constexpr std::int64_t unit = 10'000;  // per nanosecond: 0.1 ps
     const auto units = static_cast<std::int64_t>(std::nearbyint((negative ? 1 - time.fraction : time.fraction) * 1e9 * unit));
     const std::int64_t whole = (negative ? -1 - time.second : time.second) * 1'000'000'000 + units / unit;
     std::array<char, 32> digits;
@@ -52,6 +52,7 @@ class TextOutput {
     return *this;
   }
 
+  /// Adds integers.
   template <std::integral... Integers>
   TextOutput& wholes(Integers... values) {
     (row_.add(values), ...);

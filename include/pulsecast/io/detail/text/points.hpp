@@ -19,15 +19,15 @@
 
 namespace pulsecast::io {
 
-/// Where a text file of points has what. Columns are counted from 0.
+/// Columns of a text file of points, counted from 0.
 struct PointColumns {
   using Columns = std::array<std::size_t, 3>;
 
-  std::string separators = {};                       ///< any of these; if none are given, what the first row has: see `TextPoints`
-  Columns position{0, 1, 2};                         ///< x, y and z
-  std::optional<Columns> normal = Columns{3, 4, 5};  ///< its x, y and z
-  std::optional<Columns> colour = Columns{6, 7, 8};  ///< red, green and blue
-  static constexpr std::size_t max_column = 999;     ///< that may be asked for
+  std::string separators = {};                       ///< any of these characters; if empty, found in the first row: see `TextPoints`
+  Columns position{0, 1, 2};                         ///< columns of x, y and z
+  std::optional<Columns> normal = Columns{3, 4, 5};  ///< columns of its x, y and z
+  std::optional<Columns> colour = Columns{6, 7, 8};  ///< columns of red, green and blue
+  static constexpr std::size_t max_column = 999;     ///< upper limit of a column
 
   void validate() const {
     for (const char c : separators)
@@ -41,15 +41,14 @@ struct PointColumns {
   }
 };
 
-/// The points of a text file, a row each, one after another. Rows that begin with `//` or `#`, and blank ones, do not count. Separators
-/// that are not given are semicolons if the first row has any, else commas, else blanks. Blanks and tabs around a cell do not count, and
-/// where they separate, many count as one. Whether there are normals and colours, the first row decides; the others must have as many
-/// columns as are needed, and may have more. Throws a `FileError` with path, line and column.
+/// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are skipped. Default separators are semicolons
+/// if the first row has any, else commas, else blanks. Blanks and tabs around a cell are ignored; as separators, several count as one. The
+/// first row decides on normals and colours; others need the columns in use. Throws a `FileError` with path, line and column.
 class TextPoints {
  public:
   TextPoints(InputFile file, PointColumns columns) : file_(std::move(file)), columns_(validated(std::move(columns))) {}
 
-  /// Goes to the next point; false if there is none.
+  /// Advances to the next point; false at the end.
   [[nodiscard]] bool next() {
     while (const std::optional<std::string_view> line = file_.take_line()) {
       std::string_view text = *line;
@@ -68,14 +67,14 @@ class TextPoints {
     return false;
   }
 
-  [[nodiscard]] Vec3 position() const { return vector(columns_.position); }  ///< of the point at hand, as it stands in the file
+  [[nodiscard]] Vec3 position() const { return vector(columns_.position); }  ///< of the current point, in coordinates of the file
   [[nodiscard]] bool has_normals() const noexcept { return columns_.normal.has_value(); }
   [[nodiscard]] Vec3 normal() const { return vector(*columns_.normal); }
   [[nodiscard]] bool has_colours() const noexcept { return columns_.colour.has_value(); }
   [[nodiscard]] Vec3 colour() const { return vector(*columns_.colour); }
-  static constexpr double max_colour = 255;  ///< if nobody says otherwise
+  static constexpr double max_colour = 255;  ///< default
 
-  /// What was odd, but could be read; to be asked for after the last point.
+  /// Oddities that could still be read; complete after the last point.
   [[nodiscard]] std::vector<std::string> warnings() const {
     if (!cut_) return {};
     return {file_.path() + ": the last line has no end: the file may have been cut short"};
@@ -90,7 +89,7 @@ class TextPoints {
   [[nodiscard]] static bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
   [[nodiscard]] bool separates(char c) const noexcept { return separates_[static_cast<unsigned char>(c)]; }
 
-  /// Finds out from the first row what the file has.
+  /// Detects the separators and columns from the first row.
   void begin(std::string_view text) {
     std::string separators = columns_.separators;
     if (separators.empty()) {
@@ -110,7 +109,7 @@ class TextPoints {
     begun_ = true;
   }
 
-  /// Cuts a row that has no blanks around it into cells, as many as are needed.
+  /// Splits a trimmed row into as many cells as needed.
   void split(std::string_view text) {
     cells_.clear();
     for (std::size_t begin = 0; cells_.size() < needed_;) {
@@ -122,7 +121,7 @@ class TextPoints {
       while (end < text.size() && is_blank(text[end])) ++end;
       if (end == text.size()) break;
       begin = end;
-      if (separates(text[begin])) ++begin;  // not so where blanks separated
+      if (separates(text[begin])) ++begin;  // not after separating blanks
       while (begin < text.size() && is_blank(text[begin])) ++begin;
     }
   }
@@ -145,9 +144,9 @@ class TextPoints {
   InputFile file_;
   PointColumns columns_;
   std::array<bool, 256> separates_{};
-  std::size_t needed_ = 0;  // columns
+  std::size_t needed_ = 0;  // columns in use
   bool begun_ = false, cut_ = false;
-  std::vector<std::string_view> cells_;  // of the row at hand
+  std::vector<std::string_view> cells_;  // of the current row
 };
 
 }  // namespace pulsecast::io

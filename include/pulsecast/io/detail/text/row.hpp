@@ -16,22 +16,22 @@
 
 namespace pulsecast::io {
 
-/// A row of a text table: numbers with one separator between them, a blank if not told otherwise, written the same whatever the locale.
+/// Row of a text table: numbers with a separator between, a blank by default, independent of the locale.
 class TextRow {
  public:
   explicit TextRow(char separator = ' ') noexcept : separator_(separator) {}
 
-  /// A number as short as it can be so that it reads back the same; a zero has no sign.
+  /// Adds a number in the shortest form that reads back the same; zero has no sign.
   TextRow& add(double value) { return append(pulsecast::detail::to_text(value == 0 ? 0 : value)); }
 
-  /// A number in fixed notation, rounded to nearest; neither a zero nor what is not a number has a sign.
+  /// Adds a number in fixed notation, rounded to nearest; zero and NaN have no sign.
   TextRow& add(double value, int decimals) {
     if (std::isnan(value)) return append("nan");
-    if (decimals >= 0 && decimals < static_cast<int>(powers_of_ten.size())) {  // five times as fast as what takes any number
+    if (decimals >= 0 && decimals < static_cast<int>(powers_of_ten.size())) {  // five times as fast as the general case
       const double size = std::fabs(value), unit = powers_of_ten[static_cast<std::size_t>(decimals)], units = size * unit;
       if (units < 0x1p52) return append_units(value < 0, size, unit, units, decimals);
     }
-    std::array<char, std::numeric_limits<double>::max_exponent10 + 32> digits;  // the longest number, its sign, point and decimals
+    std::array<char, std::numeric_limits<double>::max_exponent10 + 32> digits;  // longest number with sign, point and decimals
     const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, decimals);
     std::string_view text(digits.data(), end);
     if (text.find_first_not_of("-0.") == std::string_view::npos && text.front() == '-') text.remove_prefix(1);
@@ -45,10 +45,10 @@ class TextRow {
     return append({digits.data(), end});
   }
 
-  /// A word as it stands, in which the separator does not occur.
+  /// Adds a word, which must not contain the separator.
   TextRow& add(std::string_view word) { return append(word); }
 
-  /// The row with its line end; what is added next begins another. Valid until then.
+  /// Row with line end, valid until the next `add`, which begins a new row.
   [[nodiscard]] std::string_view end() {
     text_ += '\n';
     ended_ = true;
@@ -58,8 +58,8 @@ class TextRow {
  private:
   static constexpr std::array powers_of_ten{1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
 
-  /// A number of units of the last decimal. `units` is rounded to a double; what it lost decides where it is half-way, and a half is
-  /// rounded to even, so the digits are those of the exact product.
+  /// Adds a number of units of the last decimal. `units` is rounded to a double; its rounding error decides ties, and exact ties go to
+  /// even, so the digits are those of the exact product.
   TextRow& append_units(bool negative, double size, double unit, double units, int decimals) {
     const double below = std::floor(units), over_half = (units - below - 0.5) + std::fma(size, unit, -units);
     auto whole = static_cast<std::uint64_t>(below);

@@ -18,12 +18,12 @@
 
 namespace pulsecast::io {
 
-/// Reads a table of text row by row, the same whatever the locale, and knows the line and column that an error is about. What separates
-/// the columns is given, or found in the first row asked for: semicolons if there are any, else commas, else tabs, else blanks, of which
-/// many count as one. Quotation marks do not shelter separators. Lines may end as on any system; blank ones do not count.
+/// Reader of a text table, row by row, independent of the locale, with line and column for errors. The separator is given, or found in the
+/// first row: semicolon, else comma, else tab, else blanks, several as one. Quotation marks do not protect separators. Lines may end as on
+/// any system; blank ones are skipped.
 class TextTable {
  public:
-  /// `expected` is what the file should be, as in "a trajectory".
+  /// `expected` content for error messages, as in "a trajectory". Throws a `FileError` if there is no such file, or it is empty.
   TextTable(const std::filesystem::path& path, std::string_view expected, std::optional<char> separator = {})
       : path_(path.string()), expected_(expected), separator_(separator) {
     std::error_code ignored;
@@ -35,11 +35,11 @@ class TextTable {
     if (!has_some) fail("is empty: expected " + expected_);
   }
 
-  /// Goes to the next line that is not blank. False if there is none.
+  /// Advances to the next line that is not blank; false at the end.
   bool next() {
     while (std::getline(file_, buffer_)) {
       line_is_open_ = file_.eof();
-      if (++line_ == 1 && buffer_.starts_with("\xEF\xBB\xBF")) buffer_.erase(0, 3);  // the mark that some editors put before UTF-8
+      if (++line_ == 1 && buffer_.starts_with("\xEF\xBB\xBF")) buffer_.erase(0, 3);  // byte order mark of UTF-8
       if (buffer_.ends_with('\r')) buffer_.pop_back();
       if (std::any_of(buffer_.begin(), buffer_.end(), [](unsigned char c) { return c < ' ' && c != '\t'; }))
         fail_here("holds binary data: expected the text of " + expected_);
@@ -49,14 +49,14 @@ class TextTable {
     return false;
   }
 
-  /// The line at hand, without blanks around it.
+  /// Current line without surrounding blanks.
   [[nodiscard]] std::string_view text() const { return trimmed(buffer_); }
 
-  [[nodiscard]] std::size_t line() const noexcept { return line_; }           ///< from 1
-  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }  ///< the last one, without an end
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }    ///< of the file
+  [[nodiscard]] std::size_t line() const noexcept { return line_; }           ///< number of the line, from 1
+  [[nodiscard]] bool line_is_open() const noexcept { return line_is_open_; }  ///< true for a last line without end
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }    ///< path of the file
 
-  /// The cells of the line at hand, without blanks and quotation marks around them. Valid until the next line.
+  /// Cells of the current line without surrounding blanks and quotation marks. Valid until the next line.
   [[nodiscard]] const std::vector<std::string_view>& cells() {
     if (!separator_) separator_ = separator_in(buffer_);
     cells_.clear();
@@ -77,7 +77,7 @@ class TextTable {
     return cells_;
   }
 
-  /// The number that a cell is, if all of it is one, with a decimal point, and finite.
+  /// Number in a cell; empty unless the whole cell is a finite number with a decimal point.
   [[nodiscard]] static std::optional<double> number_in(std::string_view cell) {
     if (cell.starts_with('+') && !cell.starts_with("+-")) cell.remove_prefix(1);
     double value = 0;
@@ -86,7 +86,7 @@ class TextTable {
     return is_all && std::isfinite(value) ? std::optional(value) : std::nullopt;
   }
 
-  /// As much of a text as an error should show.
+  /// Quotation of a text for an error message, cut to 64 characters.
   [[nodiscard]] static std::string quoted(std::string_view text) {
     return std::string("'").append(text.substr(0, 64)) + (text.size() > 64 ? "...'" : "'");
   }
@@ -94,7 +94,7 @@ class TextTable {
   [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
   [[noreturn]] void fail_here(const std::string& problem) const { throw FileError(path_, place(line_), problem); }
 
-  /// `column` is counted from 0 here and from 1 for people.
+  /// `column` is counted from 0 here, from 1 in the message.
   [[noreturn]] void fail_here(std::size_t column, const std::string& problem) const {
     throw FileError(path_, place(line_) + ", column " + std::to_string(column + 1), problem);
   }

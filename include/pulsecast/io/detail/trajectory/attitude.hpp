@@ -11,29 +11,29 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
-/// How files speak of attitudes: which angles, about which axes, in which order, and along which axes quaternions and positions count.
+/// Conventions of attitudes in files: angles, their axes and order, and the axes of quaternions and positions.
 namespace pulsecast::io {
 
-/// The three angles of an attitude. What they mean is for an `AngleConvention` to say.
+/// Three angles of an attitude, to be interpreted by an `AngleConvention`.
 struct RollPitchYaw {
-  double roll = 0;   ///< [rad]
-  double pitch = 0;  ///< [rad]
-  double yaw = 0;    ///< or heading [rad]
+  double roll = 0;   ///< roll [rad]
+  double pitch = 0;  ///< pitch [rad]
+  double yaw = 0;    ///< yaw or heading [rad]
 };
 
-/// One of the three turns that make an attitude: which angle is about which axis.
+/// One of the three rotations of an attitude.
 struct ElementalRotation {
-  double RollPitchYaw::*angle;  ///< by how much: `&RollPitchYaw::yaw`
-  Vec3 axis;                    ///< of the body, unit; the right-handed sense about it is positive
+  double RollPitchYaw::*angle;  ///< angle of rotation, as in `&RollPitchYaw::yaw`
+  Vec3 axis;                    ///< axis in the body, unit; right-handed
 };
 
-/// What three angles mean: with all of them 0 the body is level and faces `zero_heading`; then it is turned about its own axes, in the
-/// order of the list. Each axis is perpendicular to the others.
+/// Convention of three angles: at zero the body is level and faces `zero_heading`; then it is rotated about its own axes, which are
+/// perpendicular to each other, in the order of the list.
 struct AngleConvention {
-  /// Each about an axis that the turns before it have moved; read from its end, the list is that of turns about axes that stay.
+  /// Intrinsic rotations; read backwards, the list is that of extrinsic ones.
   std::array<ElementalRotation, 3> turns{
       {{&RollPitchYaw::yaw, -axis::up}, {&RollPitchYaw::pitch, axis::right}, {&RollPitchYaw::roll, axis::forward}}};
-  double zero_heading = 0;  ///< which way the body faces when all angles are 0, clockwise from north [rad]
+  double zero_heading = 0;  ///< heading of the body at zero angles, clockwise from north [rad]
 
   void validate() const {
     require_finite("AngleConvention::zero_heading", zero_heading, "rad");
@@ -48,11 +48,11 @@ struct AngleConvention {
   }
 };
 
-/// Heading clockwise from north, then pitch, nose up, then roll, right wing down: the body axes forward, right, down in the world of
-/// north, east, down. Source: ISO 1151-1, DIN 9300-1; the usual one of navigation units.
+/// Heading clockwise from north, then pitch, nose up, then roll, right wing down: body axes forward, right, down in a world of north, east,
+/// down. Source: ISO 1151-1, DIN 9300-1; usual for navigation units.
 inline const AngleConvention heading_pitch_roll{};
 
-/// As `heading_pitch_roll`, but roll comes before pitch. HELIOS++ calls this "ARINC 705".
+/// `heading_pitch_roll` with roll before pitch. HELIOS++ calls this "ARINC 705".
 inline const AngleConvention helios_arinc_705{
     .turns = {{{&RollPitchYaw::yaw, -axis::up}, {&RollPitchYaw::roll, axis::forward}, {&RollPitchYaw::pitch, axis::right}}}};
 
@@ -65,30 +65,29 @@ inline const AngleConvention mathematical{
     .turns = {{{&RollPitchYaw::yaw, axis::up}, {&RollPitchYaw::pitch, axis::right}, {&RollPitchYaw::roll, axis::forward}}},
     .zero_heading = pi / 2};
 
-/// Yaw counter-clockwise from east, then pitch, nose down, then roll, right wing down: the body axes forward, left, up in the world of
-/// east, north, up. Source: ROS REP 103.
+/// Yaw counter-clockwise from east, then pitch, nose down, then roll, right wing down: body axes forward, left, up in a world of east,
+/// north, up. Source: ROS REP 103.
 inline const AngleConvention ros_roll_pitch_yaw{
     .turns = {{{&RollPitchYaw::yaw, axis::up}, {&RollPitchYaw::pitch, -axis::right}, {&RollPitchYaw::roll, axis::forward}}},
     .zero_heading = pi / 2};
 
-/// The attitude, from the body to the world, of angles in a convention.
+/// Attitude, from the body to the world, of angles in a convention.
 [[nodiscard]] inline Rotation rotation_of(const RollPitchYaw& angles, const AngleConvention& convention) noexcept {
   Rotation rotation = rotation_about(axis::up, -convention.zero_heading);
   for (const ElementalRotation& turn : convention.turns) rotation = rotation * rotation_about(turn.axis, angles.*turn.angle);
   return normalize(rotation);
 }
 
-/// The angles of an attitude, from the body to the world, in a convention: that of the middle turn in [-pi/2, pi/2], the others in
-/// [-pi, pi]. They make the same attitude again to some 1e-14, wherever it is. Where the middle one is +-pi/2, the others are turns about
-/// one axis: then all of it is yaw, or that of the first turn, if yaw is in the middle.
-/// Source: half-angle sums of the product of three quaternions, as in Bernardes & Viollet 2022, PLoS ONE 17(11), e0276302.
+/// Angles of an attitude, from the body to the world, in a convention: the middle one in [-pi/2, pi/2], the others in [-pi, pi]. They
+/// reproduce the attitude to some 1e-14 everywhere. In gimbal lock (middle angle +-pi/2) all rotation is yaw, or the first angle if yaw is
+/// in the middle. Source: half-angle sums of the product of three quaternions, as in Bernardes & Viollet 2022, PLoS ONE 17(11), e0276302.
 [[nodiscard]] inline RollPitchYaw roll_pitch_yaw(const Rotation& rotation, const AngleConvention& convention) noexcept {
   const auto& [first, middle, last] = convention.turns;
   const Rotation q = rotation_about(axis::up, convention.zero_heading) * rotation;
   const Vec3 v{q.x, q.y, q.z};
-  const double sense = dot(cross(first.axis, middle.axis), last.axis) < 0 ? -1 : 1;  // of the three axes, as a frame
+  const double sense = dot(cross(first.axis, middle.axis), last.axis) < 0 ? -1 : 1;  // handedness of the three axes
   const double a = dot(v, first.axis), b = sense * dot(v, middle.axis), c = dot(v, last.axis);
-  // With the angles A, B, C of the turns, q is, but for its length and sign,
+  // With the angles A, B, C of the turns, q is, up to length and sign,
   //   w + b = (cos B/2 + sin B/2) cos (A+C)/2,  a + c = (cos B/2 + sin B/2) sin (A+C)/2,
   //   w - b = (cos B/2 - sin B/2) cos (A-C)/2,  a - c = (cos B/2 - sin B/2) sin (A-C)/2.
   const double plus = std::hypot(q.w + b, a + c), minus = std::hypot(q.w - b, a - c);
@@ -109,33 +108,33 @@ inline const AngleConvention ros_roll_pitch_yaw{
   return angles;
 }
 
-/// Which way x, y and z of a body point.
+/// Directions of the axes x, y and z of a body.
 enum class BodyAxes : std::uint8_t {
-  right_forward_up,    ///< as everywhere here
+  right_forward_up,    ///< of this library
   forward_right_down,  ///< aviation. Source: ISO 1151-1
-  forward_left_up,     ///< robots. Source: ROS REP 103
+  forward_left_up,     ///< robotics. Source: ROS REP 103
 };
 
-/// Which way x, y and z of the world point.
+/// Directions of the axes x, y and z of the world.
 enum class WorldAxes : std::uint8_t {
-  east_north_up,    ///< as everywhere here
+  east_north_up,    ///< of this library
   north_east_down,  ///< aviation
 };
 
-/// Which axes the numbers of a position and of a quaternion count along.
+/// Axes of a file's positions and quaternions.
 struct Axes {
-  BodyAxes body = BodyAxes::right_forward_up;
-  WorldAxes world = WorldAxes::east_north_up;
+  BodyAxes body = BodyAxes::right_forward_up;  ///< of the body
+  WorldAxes world = WorldAxes::east_north_up;  ///< of the world
 
-  /// From a world of these axes to one of east, north, up; and, as that is the same swap, back.
+  /// Converts a position from these world axes to east, north, up, and back, as the swap is its own inverse.
   [[nodiscard]] Vec3 swapped(const Vec3& position) const noexcept {
     return world == WorldAxes::east_north_up ? position : Vec3{position.y, position.x, -position.z};
   }
 
-  /// From an attitude between these axes to the same between right, forward, up and east, north, up.
+  /// Converts an attitude between these axes to right, forward, up and east, north, up.
   [[nodiscard]] Rotation from_file(const Rotation& rotation) const noexcept { return of_world() * rotation * conjugate(of_body()); }
 
-  /// The other way.
+  /// Inverse of `from_file`.
   [[nodiscard]] Rotation to_file(const Rotation& rotation) const noexcept { return conjugate(of_world()) * rotation * of_body(); }
 
  private:

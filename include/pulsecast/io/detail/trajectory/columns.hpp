@@ -17,32 +17,32 @@
 
 #include <pulsecast/base/units.hpp>
 
-/// The columns of trajectory files: what they are called, and in which units they are.
+/// Columns of trajectory files: names and units.
 namespace pulsecast::io {
 
-/// What a column of a trajectory file holds.
+/// Content of a column of a trajectory file.
 enum class Quantity : std::uint8_t { time, x, y, z, east, north, up, down, roll, pitch, yaw, qx, qy, qz, qw };
 
-/// A number for each quantity, in SI units; 0 if not set.
+/// Value of each quantity in SI units; 0 if not set.
 struct QuantityValues {
-  std::array<double, 15> values{};  ///< [s, m, rad, or a mere number]
+  std::array<double, 15> values{};  ///< [s, m, rad or 1]
 
   [[nodiscard]] double& operator[](Quantity quantity) noexcept { return values[static_cast<std::size_t>(quantity)]; }
   [[nodiscard]] double operator[](Quantity quantity) const noexcept { return values[static_cast<std::size_t>(quantity)]; }
 };
 
-/// The unit of angles in columns whose names do not say it.
+/// Unit of angles in columns whose names do not state it.
 enum class AngleUnit : std::uint8_t { degree, radian };
 
-/// A column as its name describes it.
+/// Content and unit of a column, from its name.
 struct TrajectoryColumn {
-  Quantity quantity{};  ///< what it holds
-  double per_si = 1;    ///< how many of its unit are one second, metre or radian
+  Quantity quantity{};  ///< content
+  double per_si = 1;    ///< number of its units in a second, metre or radian
 };
 
 namespace detail {
 
-/// Names of columns; the first of each quantity is what to call it.
+/// Names of columns; the first of each quantity is the preferred one.
 inline constexpr auto quantity_names = std::to_array<std::pair<std::string_view, Quantity>>({
     {"time", Quantity::time},      {"t", Quantity::time},       {"gps_time", Quantity::time}, {"gpstime", Quantity::time},
     {"timestamp", Quantity::time}, {"x", Quantity::x},          {"y", Quantity::y},           {"z", Quantity::z},
@@ -79,7 +79,7 @@ inline constexpr auto units = std::to_array<Unit>({
     {"rad", Dimension::angle, 1},
 });
 
-/// In small letters, with one underscore for whatever is neither letter nor digit: "Roll [deg]" becomes "roll_deg".
+/// Normal form of a name: small letters, and one underscore for each run of other characters: "Roll [deg]" becomes "roll_deg".
 [[nodiscard]] inline std::string plain(std::string_view name) {
   std::string result;
   for (char c : name) {
@@ -94,7 +94,7 @@ inline constexpr auto units = std::to_array<Unit>({
   return result;
 }
 
-/// How many letters must be put in, taken out or changed to make one word of another. Source: Wagner & Fischer 1974.
+/// Edit distance: number of letters to insert, delete or change. Source: Wagner & Fischer 1974.
 [[nodiscard]] inline std::size_t edits_between(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -111,8 +111,8 @@ inline constexpr auto units = std::to_array<Unit>({
 
 }  // namespace detail
 
-/// The column that goes by a name, if there is one. A unit follows what is called: `time_s`, `x_mm`, `Roll [deg]`; without it, times are
-/// in seconds and lengths in metres. Capitals do not matter.
+/// Column of a name; empty if unknown. A unit may follow: `time_s`, `x_mm`, `Roll [deg]`; without one, times are in seconds and lengths in
+/// metres. Case does not matter.
 [[nodiscard]] inline std::optional<TrajectoryColumn> trajectory_column(std::string_view name, AngleUnit angles) {
   const std::string whole = detail::plain(name);
   for (const auto& [known, quantity] : detail::quantity_names) {
@@ -129,7 +129,7 @@ inline constexpr auto units = std::to_array<Unit>({
   return std::nullopt;
 }
 
-/// The name of a column that is nearest to one that is none.
+/// Known column name nearest to an unknown one.
 [[nodiscard]] inline std::string nearest_trajectory_column(std::string_view name) {
   const std::string whole = detail::plain(name.substr(0, 64));
   std::string nearest;
@@ -146,10 +146,10 @@ inline constexpr auto units = std::to_array<Unit>({
   return nearest;
 }
 
-/// Which column holds what.
+/// Assignment of quantities to columns.
 class TrajectoryColumns {
  public:
-  /// Names in the order of the columns; those in `left_out` are no matter.
+  /// `names` in the order of the columns; those in `left_out` are ignored.
   TrajectoryColumns(const std::vector<std::string>& names, const std::vector<std::string>& left_out, AngleUnit angles) {
     for (std::size_t i = 0; i < names.size() && problem_.empty(); ++i) {
       const auto same = [&](const std::string& other) { return detail::plain(other) == detail::plain(names[i]); };
@@ -163,13 +163,13 @@ class TrajectoryColumns {
     if (problem_.empty()) require_whole();
   }
 
-  /// What is wrong with them; empty if nothing is.
+  /// Defect of the names, in words; empty without one.
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
-  /// The column that it is about, from 0; none if it is about all.
+  /// Column of the defect, from 0; empty if it concerns all.
   [[nodiscard]] std::optional<std::size_t> culprit() const noexcept { return culprit_; }
 
-  /// In the order of the file; what is left out is nothing.
+  /// Columns in the order of the file; empty for ignored ones.
   [[nodiscard]] const std::vector<std::optional<TrajectoryColumn>>& all() const noexcept { return columns_; }
 
   [[nodiscard]] bool has(Quantity quantity) const noexcept { return places_[static_cast<std::size_t>(quantity)].has_value(); }
@@ -183,7 +183,7 @@ class TrajectoryColumns {
     place = i;
   }
 
-  /// Times, all of a position, and not two attitudes.
+  /// Requires a time, one whole position, and at most one attitude.
   void require_whole() {
     using enum Quantity;
     const int xyz = count({x, y, z}), directions = count({east, north}), vertical = count({up, down}), angles = count({roll, pitch, yaw}),

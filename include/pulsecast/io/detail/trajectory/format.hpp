@@ -14,26 +14,25 @@
 
 namespace pulsecast::io {
 
-/// Where a trajectory file names its columns.
+/// Place of the column names in a trajectory file.
 enum class ColumnNames : std::uint8_t {
-  first_line,  ///< in its first line
+  first_line,  ///< in the first line
   comments,    ///< in lines that begin with `#HEADER:` and `#TIME_COLUMN:`
-  nowhere,     ///< they are agreed
+  nowhere,     ///< nowhere, by agreement
 };
 
-/// How a trajectory file speaks; the same for reading and writing. `trajectory_column` tells what names and units there are. Lines that
-/// begin with # are comments.
+/// Format of a trajectory file, for reading and writing. Names and units: see `trajectory_column`. Lines that begin with # are comments.
 struct TrajectoryFormat {
-  ColumnNames names = ColumnNames::first_line;  ///< where they stand
-  /// What is written, in this order; and what is read from a file that does not name its columns.
+  ColumnNames names = ColumnNames::first_line;  ///< place of the names
+  /// Columns to write, in this order, and to read from a file without names.
   std::vector<std::string> columns{"time_s", "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "heading_deg"};
-  std::vector<std::string> left_out{};       ///< columns of the file that are no matter
-  char separator = ',';                      ///< comma, semicolon, tab or blank when writing; when reading it is found, unless fixed
-  bool fixed_separator = false;              ///< whether files that are read must have that one
-  bool more_columns = false;                 ///< whether a file may have columns of other names, or beyond those named, which do not count
-  AngleUnit angle_unit = AngleUnit::degree;  ///< of angles in columns whose names do not say it
-  AngleConvention angles = heading_pitch_roll;  ///< what roll, pitch and yaw mean
-  Axes axes{};                                  ///< of x, y, z and of qx, qy, qz
+  std::vector<std::string> left_out{};          ///< columns of the file to ignore
+  char separator = ',';                         ///< comma, semicolon, tab or blank for writing; found when reading, unless fixed
+  bool fixed_separator = false;                 ///< true if files to be read must have this separator
+  bool more_columns = false;                    ///< true if a file may have other columns, which are ignored
+  AngleUnit angle_unit = AngleUnit::degree;     ///< unit of angles in columns whose names do not state it
+  AngleConvention angles = heading_pitch_roll;  ///< meaning of roll, pitch and yaw
+  Axes axes{};                                  ///< axes of x, y, z and of qx, qy, qz
 
   void validate() const {
     angles.validate();
@@ -53,10 +52,10 @@ struct TrajectoryFormat {
   }
 };
 
-/// Columns that are named, with units, in the first line, in any order.
+/// CSV: columns in any order, with names and units in the first line.
 [[nodiscard]] inline TrajectoryFormat csv_format() { return {}; }
 
-/// What HELIOS++ reads: names and the place of the time in comments, angles in degrees. Other columns may stand between, if they are named.
+/// Trajectories that HELIOS++ reads: names and place of the time in comments, angles in degrees. Other columns may stand between, if named.
 [[nodiscard]] inline TrajectoryFormat helios_format() {
   return {.names = ColumnNames::comments,
           .columns = {"t", "roll", "pitch", "yaw", "x", "y", "z"},
@@ -64,7 +63,7 @@ struct TrajectoryFormat {
           .angles = helios_arinc_705};
 }
 
-/// What HELIOS++ and `TrajectoryWriter` write: position, time and angles in degrees, with blanks between them.
+/// Output of HELIOS++ and `TrajectoryWriter`: position, time and angles in degrees, separated by blanks.
 [[nodiscard]] inline TrajectoryFormat helios_output_format() {
   return {.names = ColumnNames::nowhere,
           .columns = {"x", "y", "z", "gpsTime", "roll", "pitch", "yaw"},
@@ -72,8 +71,8 @@ struct TrajectoryFormat {
           .angles = helios_canonical};
 }
 
-/// Time, position and quaternion with blanks between them, as in the TUM RGB-D benchmark (Sturm et al. 2012). The body is a robot's: x is
-/// forward, y left and z up (ROS REP 103).
+/// Time, position and quaternion, separated by blanks, as in the TUM RGB-D benchmark (Sturm et al. 2012). Body axes are a robot's: x
+/// forward, y left, z up (ROS REP 103).
 [[nodiscard]] inline TrajectoryFormat tum_format() {
   return {.names = ColumnNames::nowhere,
           .columns = {"time", "x", "y", "z", "qx", "qy", "qz", "qw"},

@@ -20,11 +20,11 @@
 
 namespace pulsecast::io {
 
-/// The part of a trajectory that is wanted, on the clock of its file. Where an end falls between two poses, it is interpolated as
-/// `Waypoints` does. A window that begins at a jump begins after it, and one that ends there, before it.
+/// Part of a trajectory, on the clock of its file. Ends between two poses are interpolated as by `Waypoints`. A window that begins at a
+/// jump begins after it; one that ends there ends before it.
 struct TimeWindow {
-  std::optional<double> start{};  ///< the first pose, if not given [s]
-  std::optional<double> end{};    ///< the last pose, if not given [s]
+  std::optional<double> start{};  ///< begin; by default the first pose [s]
+  std::optional<double> end{};    ///< end; by default the last pose [s]
 
   void validate() const {
     if (start) require_finite("TimeWindow::start", *start, "s");
@@ -34,25 +34,24 @@ struct TimeWindow {
   }
 };
 
-/// What a trajectory file holds: `Waypoints(table.poses)` moves along it.
+/// Content of a trajectory file: `Waypoints(table.poses)` moves along it.
 struct TrajectoryTable {
-  double start_time = 0;              ///< what the clock of the file shows at the first pose [s]
-  std::vector<TimedPose> poses;       ///< in order of time, from 0; where the platform jumps, a time stands twice
-  std::vector<std::string> warnings;  ///< what was odd, but could be read
+  double start_time = 0;              ///< clock time of the file at the first pose [s]
+  std::vector<TimedPose> poses;       ///< poses in order of time, from 0; a time occurs twice where the platform jumps
+  std::vector<std::string> warnings;  ///< oddities that could still be read
 };
 
-/// Reads a trajectory.
+/// Reads a trajectory. Throws a `FileError` with path, line and column at the first error.
 ///
-/// Poses that are out of order are sorted, with a warning. One that stands twice is left out, with a warning; different ones at one time
-/// are a jump, from the first of them in the file to the last, with a warning if it is within the window. Angles that no column gives are
-/// 0, with a warning. Quaternions are normalised: with a warning where that shows, and those that are off by more than 1/1000 are an error,
-/// as are numbers beyond 1e12 s, m or rad. Throws a `FileError` with path, line and column at the first thing that cannot be right.
+/// Warnings: poses out of order, which are sorted; repeated poses, which are left out; different poses at one time within the window, which
+/// are a jump from the first in the file to the last; angles without a column, which are 0; quaternions that are visibly not unit, which
+/// are normalized. Errors: quaternions whose norm is off by more than 1/1000, and numbers beyond 1e12 s, m or rad.
 [[nodiscard]] TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format = csv_format(),
                                               const TimeWindow& window = {});
 
 namespace detail {
 
-inline constexpr double max_in_trajectory = 1e12;  ///< s, m or rad; where double still resolves 0.1 mm
+inline constexpr double max_in_trajectory = 1e12;  ///< [s, m or rad]; at this size a double resolves about 0.1 mm
 
 class TrajectoryReader {
  public:
@@ -88,13 +87,13 @@ class TrajectoryReader {
     std::size_t line = 0;
   };
 
-  /// The first of lines that are odd in the same way, and their number.
+  /// First line with an oddity, and number of such lines.
   struct Oddity {
     std::size_t first = 0, count = 0;
     void at(std::size_t line) { first = count++ == 0 ? line : first; }
   };
 
-  /// `#HEADER: "t", "roll"` names the columns, `#TIME_COLUMN: 0` says which of them is the time.
+  /// Reads `#HEADER: "t", "roll"`, the column names, and `#TIME_COLUMN: 0`, the column of the time.
   void comment(std::string_view text) {
     if (text.starts_with("#HEADER:")) {
       named_ = true;
@@ -115,7 +114,7 @@ class TrajectoryReader {
     }
   }
 
-  /// Whether the line could be a head that is no comment.
+  /// True if the line could be a header without a comment mark.
   [[nodiscard]] bool has_names_only() {
     const std::vector<std::string_view>& cells = table_.cells();
     return std::none_of(cells.begin(), cells.end(), [](std::string_view cell) {
@@ -131,7 +130,7 @@ class TrajectoryReader {
     understand();
   }
 
-  /// Before the first row of a file without a line of names.
+  /// Settles the column names before the first row of a file without them.
   void settle_names() {
     const auto is_time = [&](const std::string& name) {
       const std::optional<TrajectoryColumn> column = trajectory_column(name, format_.angle_unit);
@@ -154,7 +153,7 @@ class TrajectoryReader {
     table_.fail_here(*columns_->culprit(), TextTable::quoted(names_[*columns_->culprit()]) + " " + columns_->problem());
   }
 
-  /// Whether columns that are not asked for may be there: where the file or the format says which ones are which.
+  /// True if extra columns are allowed: the file or the format tells which ones those are.
   [[nodiscard]] bool may_have_more() const noexcept { return format_.more_columns && (named_ || format_.names != ColumnNames::comments); }
 
   void leave_out_unknown() {
@@ -201,7 +200,7 @@ class TrajectoryReader {
     const double error = std::fabs(length(given) - 1);
     if (!(error <= 1e-3))
       table_.fail_here("the quaternion has the length " + pulsecast::detail::to_text(length(given)) + ": expected 1, within 1e-3");
-    if (error > 2e-6) not_unit_.at(table_.line());  // more than six decimals leave
+    if (error > 2e-6) not_unit_.at(table_.line());  // more than six decimals explain
     return format_.axes.from_file(normalize(given));
   }
 
@@ -229,7 +228,7 @@ class TrajectoryReader {
       if (!columns_->has(quantity)) result_.warnings.push_back(table_.path() + ": no column holds the " + name + ": it is taken to be 0");
   }
 
-  /// Takes over what is in the window, and starts its clock.
+  /// Cuts the poses to the window and starts its clock.
   void cut(const TimeWindow& window) {
     const double first = rows_.front().pose.time, last = rows_.back().pose.time;
     const double start = std::max(first, window.start.value_or(first)), end = std::min(last, window.end.value_or(last));
@@ -256,7 +255,7 @@ class TrajectoryReader {
                             ": the platform jumps there");
   }
 
-  /// At a time between a row and the one before it.
+  /// Pose at a time between a row and the one before.
   [[nodiscard]] static TimedPose between(std::vector<Row>::const_iterator row, double time) {
     const TimedPose &before = (row - 1)->pose, &after = row->pose;
     const auto pose = Waypoints({{0, before.position, before.rotation}, {after.time - before.time, after.position, after.rotation}})
@@ -273,7 +272,7 @@ class TrajectoryReader {
   TrajectoryFormat format_;
   std::vector<std::string> names_;
   bool named_ = false;                     // by a #HEADER
-  std::optional<std::size_t> time_place_;  // from 0
+  std::optional<std::size_t> time_place_;  // index from 0
   TextTable table_;
   std::optional<TrajectoryColumns> columns_;
   std::vector<Row> rows_;
