@@ -12,7 +12,7 @@ trap 'rm -rf "$folder"' EXIT
 printf '#include <%s>\n' algorithm array cmath cstdint functional memory optional span string thread vector > "$folder/standard.cpp"
 echo '#include <pulsecast/concepts.hpp>' > "$folder/contract.cpp"
 echo '#include <pulsecast/pulsecast.hpp>' > "$folder/pulsecast.cpp"
-find include/pulsecast -name '*.hpp' ! -path '*/adapters/*' | sort | sed 's|^include/\(.*\)|#include <\1>|' > "$folder/core.cpp"
+find include/pulsecast -name '*.hpp' -regextype posix-extended ! -regex '.*/(io|helios|mpi|page|python)/.*' | sort | sed 's|^include/\(.*\)|#include <\1>|' > "$folder/core.cpp"
 
 # row WHAT FLAGS...: compiles with FLAGS five times. What the first row takes is the unit of the ratios.
 row() {

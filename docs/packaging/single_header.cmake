@@ -38,5 +38,5 @@ file(WRITE ${OUT} "// SPDX-FileCopyrightText: 2026 the pulsecast contributors
 #pragma once
 
 // The whole core in one file, for those who copy rather than install. It needs GLM, C++20 and threads.
-// Adapters need an installation: no other header of the library goes with this one.
+// Headers of other rooms need an installation: no other header of the library goes with this one.
 ${text}")

@@ -24,5 +24,5 @@ inside { body = body $0 "\n"; if ($0 != "") ++lines; next }
 END {
   if (failed) exit 1
   finish()
-  printf "#include <doctest/doctest.h>\n#include \"cookbook/kitchen.hpp\"\n%s\n%s%s", includes, common, cases
+  printf "#include <doctest/doctest.h>\n#include \"cookbook/kitchen.hpp\"\n%s\nnamespace cookbook {\n%s%s}  // namespace cookbook\n", includes, common, cases
 }
