@@ -37,6 +37,7 @@ struct RunSlots {
   [[nodiscard]] PulseIndex operator[](PulseIndex n) const noexcept { return first + n * stride; }
 };
 
+/// Options of a run.
 struct RunOptions {
   unsigned threads = 0;                                     ///< at most `max_threads`; 0 for the hardware's
   PulseIndex first = 0;                                     ///< first slot

@@ -26,7 +26,7 @@ struct Outcome {
   std::span<const float> waveform;
   std::size_t hits = 0;  ///< subrays with a hit
   double energy = 0;     ///< energy sent: peak power times pulse length; the pulse shape makes some percent of difference [J]
-  std::array<double, fate_count> shares{};  ///< of that energy, by `Fate`; they sum to one, or to zero if nothing was sent
+  std::array<double, fate_count> shares{};  ///< shares of that energy by `Fate`; they sum to one, or to zero if nothing was sent
   std::span<const SubrayHit> subrays{};     ///< all subrays, if the footprint is `WithSubrayRecord`
 
   [[nodiscard]] double share(Fate fate) const noexcept { return shares[static_cast<std::size_t>(fate)]; }
@@ -73,6 +73,7 @@ class Survey {
     } white_target{};
   };
 
+  /// Scratch memory for one worker.
   [[nodiscard]] Workspace workspace() const {
     const Laser laser{};
     const std::size_t n = footprint_.size();

@@ -34,8 +34,8 @@ namespace pulsecast {
 /// false echoes. The threshold applies to the samples themselves. Amplitudes and widths are relative to the mean background. Echoes are
 /// timed by their peaks, since noisy samples do not tell the reflections apart. The record includes the background.
 ///
-/// Limits: a single echo's peak errs by 0.03 mm for an interval of 1/16 of the pulse length, by 0.5 mm at 1/8, and by 10 mm at 1/4, with a
-/// 2 % amplitude error. Pulses shorter than one interval or longer than 10,000 are refused. At most 4096 noise peaks per pulse are
+/// Limits: a single echo's peak errs by 0.03 mm for an interval of 1/16 of the pulse length, and by 0.5 mm at 1/8. At 1/4 it errs by 10 mm,
+/// and its amplitude by 2 %. Pulses shorter than one interval or longer than 10,000 are refused. At most 4096 noise peaks per pulse are
 /// considered.
 template <EchoWidth Width = NoWidth>
 class FullWaveform {
@@ -129,7 +129,7 @@ class FullWaveform {
 
  private:
   static constexpr std::size_t window_samples = 262144;  ///< capacity of the sample window: the longest pulse until it has decayed
-  static constexpr std::size_t max_peaks = 4096;         ///< of noise
+  static constexpr std::size_t max_peaks = 4096;         ///< peaks of noise
 
   /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its peak. False if these
   /// reach back before the last edge.
@@ -138,7 +138,7 @@ class FullWaveform {
     const double before = std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // last sample before the peak
     const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau, step = s_.sample_interval * per_tau;
     if (!(first >= 0)) return false;
-    std::array<double, 8> y;  // from two samples before it on
+    std::array<double, 8> y;  // samples from two before it on
     for (std::size_t j = 0; j < y.size(); j += simd::lane_count)
       simd::store(group.power(simd::generate([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), y[j]);
     const std::size_t top = y[3] > y[2] ? 3 : 2;
@@ -196,7 +196,7 @@ class FullWaveform {
   }
 
   struct Vertex {
-    double offset, height;  ///< from the middle sample [samples]; power [W]
+    double offset, height;  ///< offset from the middle sample [samples]; power [W]
   };
 
   /// Maximum of the quartic through five samples about a peak, by Newton's method from the vertex of the parabola through the middle three.

@@ -42,7 +42,7 @@ struct GaussianFit {
   struct Result {
     Gaussian gaussian{};
     int iterations = 0;      ///< iterations done
-    bool converged = false;  ///< to a Gaussian no wider than the samples' extent, centred among them or within its width of them
+    bool converged = false;  ///< true for a Gaussian no wider than the samples' extent, centred among them or within its width of them
   };
 
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {

@@ -74,7 +74,7 @@ struct RangeErrors {
 /// Receiver of an instrument, and the atmosphere before it.
 struct Receiver {
   double diameter = 0.15;                                      ///< aperture, from 0.1 mm to 1 km [m]
-  double efficiency = 0.99;                                    ///< of the optics, both ways, in [0, 1]
+  double efficiency = 0.99;                                    ///< transmission of the optics, both ways, in [0, 1]
   double visibility = 23e3;                                    ///< meteorological visibility, at least 1 m; infinite for no atmosphere [m]
   double range_min = 0;                                        ///< range gate's start [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< range gate's end [m]

@@ -33,8 +33,8 @@ class SinglePeakGroup {
     explicit Workspace(std::size_t reflections) : ages(reflections + simd::lane_count), weights(reflections + simd::lane_count) {}
   };
 
-  /// Computes ages and weights in a workspace that must outlive the group. `one()` is false, and nothing else may be called, if reflections
-  /// are none, too far apart, more than the workspace holds, without power, or too far away.
+  /// Computes ages and weights in a workspace that must outlive the group. `one()` is false for reflections that are none, too far apart,
+  /// more than the workspace holds, without power, or too far away. Nothing else may be called then.
   SinglePeakGroup(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval, Workspace& w) noexcept
       : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()), per_tau_(1 / shape.tau) {
     if (reflections.empty() || reflections.size() + simd::lane_count > w.ages.size()) return;

@@ -401,7 +401,7 @@ class HeightField {
     const std::uint32_t wide = own.wide(), tall = 3 - wide;
     const std::uint32_t columns = below.columns - (column << wide), rows = below.rows - (row << tall);
     unsigned taken = rows >= 1U << tall ? 0xFF : (1U << (rows << wide)) - 1;
-    if (columns < 1U << wide) taken &= ((1U << columns) - 1) * (wide == 1 ? 0x55 : 0x11);  // in each row of children
+    if (columns < 1U << wide) taken &= ((1U << columns) - 1) * (wide == 1 ? 0x55 : 0x11);  // masks each row of children
     return taken;
   }
 

@@ -168,7 +168,7 @@ class LeafAngles {
     return sum;
   }
 
-  double chi_ = 1, half_surface_ = 2;  ///< of the ellipsoid; a sphere unless there is a table
+  double chi_ = 1, half_surface_ = 2;  ///< shape of the ellipsoid; a sphere unless there is a table
   SharedArray<LeafProjection> table_;
 };
 

@@ -16,7 +16,7 @@ namespace pulsecast {
 enum class Scattering : std::uint8_t {
   lambert,                ///< proportional to the cosine of incidence
   phong,                  ///< Lambert and a specular lobe
-  direction_independent,  ///< the same at any incidence
+  direction_independent,  ///< equal at any incidence
 };
 
 /// Backscatter of a material at one wavelength, by the cosine of incidence.

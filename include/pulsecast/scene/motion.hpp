@@ -28,7 +28,7 @@ namespace pulsecast {
 /// velocity is along the axis; rest if both are zero.
 struct SteadyMotion {
   Vec3 velocity{};               ///< [m/s]
-  Vec3 axis = axis::up;          ///< of any non-zero length
+  Vec3 axis = axis::up;          ///< direction, of any non-zero length
   double rate = 0;               ///< right-handed about the axis [rad/s]
   std::optional<Vec3> centre{};  ///< point of the axis in the world at the motion's begin [m]; empty for the body's own centre
   std::optional<Vec3> spin{};    ///< angular velocity in the world, if not the orbit's: zero for a Ferris wheel's cabin [rad/s]
@@ -102,7 +102,7 @@ inline constexpr double wide_turn = 2;
   require_positive("steady_motion (seconds)", seconds, "s");
   require_rotation("steady_motion (rotation)", step.rotation);
   require_finite("steady_motion (position, length)", length(step.position), "m");
-  const detail::RotationParts turn(step.rotation);  // of any norm
+  const detail::RotationParts turn(step.rotation);  // accepts any norm
   if (turn.angle == 0) return {.velocity = step.position / seconds};
   const Vec3 along = dot(step.position, turn.axis) * turn.axis, across = step.position - along;
   return {.velocity = along / seconds,

@@ -105,7 +105,7 @@ class MovingScene {
   }
 
   Scene<Shapes...> scene_;     ///< all parts; its index holds those that stand
-  std::vector<Mover> movers_;  ///< by index of their part
+  std::vector<Mover> movers_;  ///< sorted by index of their part
   MovingIndex index_;
   Box bounds_;
 };

@@ -99,7 +99,7 @@ struct Part {
   Similarity placement{};
   ObjectId object = 0;                         ///< object id of its points
   std::string name{};                          ///< user's name for it
-  std::shared_ptr<const PartMotion> motion{};  ///< on top of its placement; empty if it stands; for a `MovingScene`
+  std::shared_ptr<const PartMotion> motion{};  ///< motion on top of its placement; empty if static; for a `MovingScene`
 };
 
 }  // namespace pulsecast

@@ -241,11 +241,11 @@ class TriangleMesh {
   }
 
   SharedArray<Vec3> corners_;
-  SharedArray<std::uint64_t> first_corners_;  ///< of the blocks
-  SharedArray<Corners> triangles_;            ///< in the order of the index
+  SharedArray<std::uint64_t> first_corners_;  ///< first corner of each block
+  SharedArray<Corners> triangles_;            ///< corners of the triangles, in the order of the index
   SharedArray<std::uint32_t> places_;         ///< position of each triangle in that order
   SharedArray<std::uint8_t> few_materials_;   ///< material of each triangle; empty if all are 0, or if an index exceeds 255
-  SharedArray<std::uint32_t> materials_;      ///< the same if an index exceeds 255
+  SharedArray<std::uint32_t> materials_;      ///< material of each triangle if an index exceeds 255, else empty
   Index index_;
   std::size_t material_count_ = 1;
 };

@@ -109,7 +109,7 @@ class VoxelIndex {
   /// Ray j in the lattice, relative to the lower corner of the bounds.
   [[nodiscard]] LatticeRay ray(const RayBundle& rays, std::size_t j) const noexcept { return {corner_, edge_, rays, j}; }
 
-  /// Traverses a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in order, until a cell is
+  /// Traverses a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in order. Stops at a cell
   /// beyond the limit. `in` is the crossing into the cell; `near` if the ray begins there.
   template <class Visit>
   void walk(const LatticeRay& ray, double near, double limit, Visit visit) const noexcept {
@@ -235,8 +235,8 @@ class VoxelIndex {
       return neighbours(from, cell[axis]);
     }
 
-    /// Leaps over empty cubes of edge 2^shift cells, from the one around the cell, up to an occupied one or out of the 4 x 4 x 4 of the
-    /// mask `occupied`. False if the ray never leaves.
+    /// Leaps over empty cubes of edge 2^shift cells, from the one around the cell. Stops at a cube that is occupied by the mask `occupied`,
+    /// or outside of its 4 x 4 x 4. False if the ray never leaves.
     bool leap(int shift, std::uint64_t occupied) noexcept {
       LatticeCell at;
       std::array<double, 3> exit;
