@@ -9,12 +9,12 @@
 
 namespace pulsecast {
 
-/// A point cloud in memory: a sink that keeps every echo, column by column.
+/// Point cloud in memory: a sink that keeps every echo, column by column.
 struct Cloud {
-  std::vector<Vec3> points;  ///< in the world [m]
+  std::vector<Vec3> points;  ///< points in the world [m]
   std::vector<Echo> echoes;
-  std::vector<PulseIndex> pulses;  ///< the pulse that each belongs to
-  std::vector<Tick> ticks;         ///< when that pulse left, since the survey's start
+  std::vector<PulseIndex> pulses;  ///< pulse index of each point
+  std::vector<Tick> ticks;         ///< emission time of that pulse, since the survey's start
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)

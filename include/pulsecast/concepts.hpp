@@ -16,15 +16,15 @@
 #include <pulsecast/geometry/ray.hpp>
 #include <pulsecast/pulse.hpp>
 
-/// The contract: every public concept, on one page. A model is one plain struct; nothing is inherited or registered.
+/// Contract: every public concept, on one page. A model is a plain struct, without inheritance or registration.
 /// The laws that a compiler cannot check are tested by `tests/support/laws.hpp`.
 // clang-format off
-// version 14 tears compound requirements apart
+// version 14 breaks up compound requirements
 namespace pulsecast {
 
 // ---------------------------------------------------------------------------------------------------------------- motions
 
-/// A moving thing, as a closed-form function of time: where the frame `From` is in the frame `To`.
+/// Rigid motion in closed form over time: the pose of the frame `From` in the frame `To`.
 /// Law: the same tick gives the same pose, in any order, from any thread, from a copy; its rotation is unit.
 /// Not required: continuity, a default constructor, an inverse.
 template <class M, class From, class To>
@@ -32,28 +32,28 @@ concept Motion = std::copyable<M> && requires(const M m, Tick t) {
   { m.at(t) } noexcept -> std::same_as<Pose<From, To>>;
 };
 
-/// What a laser beam passes on its way out: a mirror, a prism, a fibre.
+/// Optic in the path of the outgoing laser beam: a mirror, a prism, a fibre.
 template <class O>
 concept Optic = Motion<O, frame::Beam, frame::Instrument>;
 
-/// A moving thing that lets light out at some times only. An optic or head need not be gated.
+/// Motion that transmits light at some times only. An optic or head need not be gated.
 /// Law: as for `Motion`.
 template <class M>
 concept Gated = requires(const M m, Tick t) {
   { m.open(t) } noexcept -> std::same_as<bool>;
 };
 
-/// What turns a whole instrument that already deflects its beam.
+/// Rotation of a whole instrument that already deflects its beam.
 template <class H>
 concept Head = Motion<H, frame::Instrument, frame::Instrument>;
 
-/// What carries an instrument through the world.
+/// Motion of an instrument's carrier through the world.
 /// Law: continuous, except where its data jump; right-continuous there.
 template <class T>
 concept Trajectory = Motion<T, frame::Body, frame::World>;
 
-/// The height of the ground [m] at a place [m east, m north]; empty where there is none. Asked by planners, before the first pulse, so it
-/// need not be noexcept.
+/// Height of the ground [m] at a place [m east, m north]; empty where there is none. Called by planners, before the first pulse, so it need
+/// not be noexcept.
 template <class G>
 concept Ground = requires(const G ground, Vec2 place) {
   { ground(place) } -> std::convertible_to<std::optional<double>>;
@@ -61,9 +61,9 @@ concept Ground = requires(const G ground, Vec2 place) {
 
 // ---------------------------------------------------------------------------------------------------------- pulse sources
 
-/// Pulses by number, in one frame: slot i is asked for in any order, and may be empty if an optic blocks it.
-/// `duration()` is the time from the first slot to the one that would follow the last.
-/// Law: pure in i; time does not decrease with i; the pose's rotation is unit; what wraps a source keeps its size and ticks.
+/// Pulses by number, in one frame. Slots may be requested in any order, and are empty if an optic blocks the pulse. `duration()` is the
+/// time from the first slot to one past the last.
+/// Law: pure in i; time does not decrease with i; the pose's rotation is unit; a wrapper of a source keeps its size and ticks.
 template <class S, class Frame>
 concept PulseSource = std::copyable<S> && requires(const S s, PulseIndex i) {
   { s.size() } noexcept -> std::same_as<PulseIndex>;
@@ -78,8 +78,8 @@ concept InstrumentSource = PulseSource<S, frame::Instrument>;  ///< as `Deflecto
 template <class S>
 concept WorldSource = PulseSource<S, frame::World>;  ///< as `Platform<...>`
 
-/// A source that draws random errors, as `WithPoseErrors`: `Legs` tells each of its legs its place in the list, so that no two draw the
-/// same.
+/// Source with random errors, as `WithPoseErrors`. `Legs` passes each of its legs its place in the list, so that their draws are
+/// independent.
 /// Law: place 0 changes nothing.
 template <class S>
 concept DrawsByLeg = WorldSource<S> && requires(S& s, std::uint32_t leg) { s.draw_for_leg(leg); };
@@ -92,11 +92,10 @@ struct TestsPrimitives {
 };
 }  // namespace detail
 
-/// A search structure over the boxes of numbered primitives. It knows nothing of what is inside them: `test` is called with the
-/// primitives that a bundle may meet, and enters what it finds into `nearest`. What it is called with are stretches of `order()`, in which
-/// every primitive stands that can be met at all, side by side with its neighbours, and maybe in several places. `test.prefetch(range)`, if
-/// there is such a thing, may be told some time before.
-/// Law: where the primitives keep to their boxes, `nearest` ends as if every primitive had been tested; rays of NaN miss.
+/// Search structure over the boxes of numbered primitives, independent of their kind. `closest` calls `test` with the primitives that a
+/// bundle may meet, and `test` enters hits into `nearest`. Each call gets a subrange of `order()`. `order()` holds every primitive that can
+/// be hit, next to its neighbours, possibly repeated. An optional `test.prefetch(range)` may be called some time before.
+/// Law: if primitives are inside their boxes, `nearest` ends as if every primitive had been tested; rays of NaN miss.
 template <class A>
 concept Accelerator = std::copyable<A> && std::constructible_from<A, std::span<const Box>> &&
     requires(const A a, const RayBundle& rays, const detail::TestsPrimitives& test, ClosestHits& nearest) {
@@ -106,17 +105,17 @@ concept Accelerator = std::copyable<A> && std::constructible_from<A, std::span<c
   { a.closest(rays, test, nearest) } noexcept;
 };
 
-/// A primitive's surface where a ray met it.
+/// Surface of a primitive at a hit.
 struct Surface {
-  Vec3 normal{};               ///< unit, either side, in the geometry's own frame; zero if the surface has no direction
+  Vec3 normal{};               ///< unit, either side, in the geometry's own frame; zero for a surface without direction
   std::uint32_t material = 0;  ///< index into the material table of the part
 };
 
-/// A shape that rays can meet, in its own frame [m]. Shared by any number of parts. `memory()` is in bytes; `material_count()` is how
-/// long a part's material table must be.
-/// `surface(i, rays, j)` is that of primitive i where ray j met it: not told where, a curved one meets the ray again. The shape may say
-/// `static constexpr bool flat = true` if a primitive's surface is the same wherever it is met: it is then asked for once.
-/// Law: pure; random draws come from the bundle's names only; `closest` offers primitives to `nearest` and nothing else.
+/// Shape for ray intersection, in its own frame [m], shared by any number of parts. `memory()` is in bytes; `material_count()` is the least
+/// length of a part's material table.
+/// `surface(i, rays, j)` is the surface of primitive i at its hit by ray j. The hit point is not passed; a curved primitive recomputes it.
+/// An optional `static constexpr bool flat = true` promises the same surface at any hit of a primitive: it is then called once.
+/// Law: pure; random draws depend on the bundle's names only; `closest` offers primitives to `nearest` and does nothing else.
 template <class G>
 concept Geometry = requires(const G g, const RayBundle& rays, ClosestHits& nearest, PrimitiveIndex i, std::size_t j) {
   { g.bounds() } noexcept -> std::same_as<const Box&>;
@@ -126,28 +125,28 @@ concept Geometry = requires(const G g, const RayBundle& rays, ClosestHits& neare
   { g.surface(i, rays, j) } noexcept -> std::same_as<Surface>;
 };
 
-/// A map that answers for a bundle of subrays at once, as `Scene` does. `hits` has room for one hit a ray.
-/// Law: pure; every hit is set, to infinite range where nothing is met.
+/// Map that intersects a bundle of subrays at once, as `Scene` does. `hits` has room for one hit per ray.
+/// Law: pure; every hit is set, to infinite range for a miss.
 template <class T>
 concept BundleTarget = requires(const T t, const RayBundle& rays, std::span<Hit> hits) {
   { t.closest(rays, hits) } noexcept;
 };
 
-/// A map of the user's own that answers for one ray: the simplest thing that can be scanned.
+/// User's own map that intersects one ray: the simplest scan target.
 template <class T>
 concept RayTarget = requires(const T t, const Ray& ray) {
   { t.closest_hit(ray) } noexcept -> std::same_as<std::optional<Hit>>;
 };
 
-/// Anything that can be scanned.
+/// Any scan target.
 template <class T>
 concept Target = BundleTarget<T> || RayTarget<T>;
 
 // ----------------------------------------------------------------------------------------------------------- the detector
 
-/// How a beam's cross section is sampled by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along the beam.
+/// Sampling of a beam's cross section by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along the beam.
 /// Law: the shares are not negative and sum to one; a survey refuses others.
-/// May say `static constexpr bool recorded = true`, to have all subrays handed on to the sinks, as `WithSubrayRecord` does.
+/// Optional: `static constexpr bool recorded = true` passes all subrays on to the sinks, as `WithSubrayRecord` does.
 template <class F>
 concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
   { f.size() } noexcept -> std::same_as<std::size_t>;
@@ -155,44 +154,44 @@ concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
   { f.share(j) } noexcept -> std::same_as<double>;
 };
 
-/// What a subray brought back: the input of a detector.
+/// Return of one subray: the input of a detector.
 struct Reflection {
   double range = 0;  ///< [m]
-  double power = 0;  ///< received, as if the pulse had no length; greater than 0 [W]
+  double power = 0;  ///< received, for a pulse of zero length; greater than 0 [W]
   ObjectId object = 0;
   std::uint16_t classification = 0;
   double cos_incidence = 1;  ///< as in `Hit`
 };
 
-/// What a detector made of a pulse; the spans stay valid until the workspace is used again.
+/// Result of a detector for one pulse; the spans stay valid until the workspace is used again.
 struct Detection {
-  std::span<Echo> echoes;           ///< sorted by range; `reflectance` is the survey's to fill in
+  std::span<Echo> echoes;           ///< sorted by range; the survey fills in `reflectance`
   std::span<const float> waveform;  ///< received power [W]; empty if not kept
   double waveform_start = 0;        ///< two-way travel time of the first sample [s]
 };
 
-/// Turns what the subrays brought back into echoes. Reflections come in the order of the subrays, those without power left out. All that it
-/// needs to write on is its `Workspace`, made once per worker by `workspace(subrays)`.
-/// Law: pure; echoes are sorted by range; their energy is not more than what came in.
-/// Not required: to use all reflections; randomness; `void validate(const Laser&) const`, which refuses lasers before the first pulse. A
-/// detector that draws random numbers takes a last argument, `RandomKey key = {}`, that names seed and pulse, and draws from a
-/// `purpose` of its own, as `Purpose{128}`, and any `subray` and `part` of it.
+/// Turns the returns of the subrays into echoes. Reflections are in the order of the subrays, without those of zero power. Its only
+/// writable memory is a `Workspace`, made once per worker by `workspace(subrays)`.
+/// Law: pure; echoes are sorted by range; their energy does not exceed that received.
+/// Not required: use of all reflections; randomness; `void validate(const Laser&) const`, which refuses lasers before the first pulse. A
+/// detector with random draws takes a last argument, `RandomKey key = {}`, with seed and pulse. It draws from a `purpose` of its own, as
+/// `Purpose{128}`, with any `subray` and `part`.
 template <class D>
 concept Detector = std::copyable<D> && requires(const D d, const Laser& laser, std::span<Reflection> reflections, std::size_t subrays,
                                                 decltype(d.workspace(subrays))& workspace) {
   { d.detect(laser, reflections, workspace) } noexcept -> std::same_as<Detection>;
 };
 
-/// How the width of an echo is measured: a policy of the waveform detectors. `samples` is the waveform [W] between the valleys to the
-/// neighbouring echoes, every `interval` [s]; the answer is a standard deviation in time [s], NaN if there is none to be found.
-/// Not required: `width(const WaveformMoments&)`, from which `AnalyticWaveform` has the exact width without samples; `min_share()`, a
-/// share of the highest sample below which samples do not matter, so that the tail of a waveform need not be sampled.
+/// Measure of the width of an echo: a policy of the waveform detectors. `samples` is the waveform [W] between the valleys to the
+/// neighbouring echoes, every `interval` [s]. The result is a standard deviation in time [s], or NaN if none is found.
+/// Not required: `width(const WaveformMoments&)`, for the exact width without samples in `AnalyticWaveform`; `min_share()`, a share of the
+/// highest sample below which samples are irrelevant, so that a waveform's tail need not be sampled.
 template <class W>
 concept EchoWidth = std::copyable<W> && requires(const W w, std::span<const double> samples, double interval) {
   { w.width(samples, interval) } noexcept -> std::same_as<double>;
 };
 
-/// Whatever takes the results: a writer, a cloud in memory, a lambda.
+/// Receiver of results: a writer, a cloud in memory, a lambda.
 /// Law of the caller: batches come in ascending pulse order, one call at a time.
 template <class S>
 concept EchoSink = std::invocable<S&, const EchoBatch&>;

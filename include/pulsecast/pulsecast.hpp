@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// The contract, the pipeline, and the models that most surveys are made of: triangle meshes, mirrors and heads, tripods and straight
-/// lines, every footprint, two detectors, a cloud in memory. All else is included by name: other shapes, accelerators and optics, moving
-/// parts, trajectories by waypoints or by planners, errors of poses, the analytic detector.
+/// The contract, the pipeline, and the models of most surveys: triangle meshes, mirrors and heads, tripods and straight lines, every
+/// footprint, two detectors, a cloud in memory. Include all else by name: other shapes, accelerators and optics, moving parts, trajectories
+/// by waypoints or by planners, pose errors, the analytic detector.
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/frame.hpp>

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <condition_variable>  // and with it the steady clock: <chrono> would add a calendar, a tenth of what this header costs
+#include <condition_variable>  // includes the steady clock: <chrono> would add a calendar, a tenth of this header's cost
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -22,35 +22,36 @@
 
 namespace pulsecast {
 
-/// How far a run has come.
+/// Progress of a run.
 struct Progress {
   PulseIndex done = 0;   ///< pulse slots delivered to the sinks
-  PulseIndex total = 0;  ///< pulse slots to do
+  PulseIndex total = 0;  ///< pulse slots in the run
   std::uint64_t echoes = 0;
-  double seconds = 0;  ///< since the start of the run [s]
+  double seconds = 0;  ///< time since the start of the run [s]
 };
 
-/// The slots of a survey that a run does.
+/// Slots of a survey in a run.
 struct RunSlots {
   PulseIndex first, stride, count;
 
   [[nodiscard]] PulseIndex operator[](PulseIndex n) const noexcept { return first + n * stride; }
 };
 
+/// Options of a run.
 struct RunOptions {
-  unsigned threads = 0;                                     ///< at most `max_threads`; 0 for as many as the machine runs at once
-  PulseIndex first = 0;                                     ///< the first slot to do
-  PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< the slot after the last, at most the survey's size
-  PulseIndex stride = 1;                                    ///< every so many-th slot only: a preview
+  unsigned threads = 0;                                     ///< at most `max_threads`; 0 for the hardware's
+  PulseIndex first = 0;                                     ///< first slot
+  PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< one past the last slot, at most the survey's size
+  PulseIndex stride = 1;                                    ///< step between slots, greater than 1 for a preview
   std::function<void(const Progress&)> progress{};          ///< called after every batch, one call at a time, on any thread
-  std::stop_token stop{};                                   ///< ends the run early; what was delivered is whole up to there
+  std::stop_token stop{};                                   ///< ends the run early; results delivered so far are complete
 
   void validate() const {
     require_within("RunOptions::threads", threads, 0, max_threads, "");
     require_within("RunOptions::stride", static_cast<double>(stride), 1, 1e18, "");
   }
 
-  /// Which of `size` slots to do. @throws SettingError if the options cannot be
+  /// Slots of a run over `size` slots. @throws SettingError for options out of range
   [[nodiscard]] RunSlots slots(PulseIndex size) const {
     validate();
     const PulseIndex to = std::min(end, size), from = std::min(first, to);
@@ -58,18 +59,18 @@ struct RunOptions {
   }
 };
 
-/// What a run came to.
+/// Totals of a run.
 struct RunSummary {
   PulseIndex slots = 0;                             ///< pulse slots done
   std::array<std::uint64_t, fate_count> fates{};    ///< slots by `Fate`
   double energy = 0;                                ///< sent, as in `Outcome` [J]
-  std::array<double, fate_count> energy_by_fate{};  ///< of that energy, by the fate of the subrays that carried it; in sum all of it [J]
+  std::array<double, fate_count> energy_by_fate{};  ///< that energy by the fate of the subrays that carried it; sums to all of it [J]
   std::uint64_t echoes = 0;
   std::uint64_t rays = 0;  ///< subrays traced
-  double seconds = 0;      ///< [s]
-  bool complete = true;    ///< false if it was stopped
+  double seconds = 0;      ///< duration [s]
+  bool complete = true;    ///< false if stopped
 
-  /// Takes in what another run came to, or another part of the same.
+  /// Adds the totals of another run, or of another part of the same run.
   void add(const RunSummary& other) noexcept {
     slots += other.slots, echoes += other.echoes, rays += other.rays, energy += other.energy, seconds += other.seconds;
     for (std::size_t f = 0; f < fate_count; ++f) fates[f] += other.fates[f], energy_by_fate[f] += other.energy_by_fate[f];
@@ -78,16 +79,16 @@ struct RunSummary {
 
   [[nodiscard]] std::uint64_t count(Fate fate) const noexcept { return fates[static_cast<std::size_t>(fate)]; }
   [[nodiscard]] double share(Fate fate) const noexcept { return energy > 0 ? energy_by_fate[static_cast<std::size_t>(fate)] / energy : 0; }
-  [[nodiscard]] PulseIndex pulses() const noexcept { return slots - count(Fate::blocked); }  ///< that were sent
+  [[nodiscard]] PulseIndex pulses() const noexcept { return slots - count(Fate::blocked); }  ///< pulses sent
 };
 
-/// What came of slots, one after another, for those who ask a survey for single ones.
+/// Results of successive slots, for single requests to a survey.
 struct ResultBuffer {
   std::vector<Shot> shots{};
   std::vector<Echo> echoes{};
   std::vector<float> samples{};
   std::vector<SubrayHit> subrays{};
-  RunSummary counts{};  ///< all but rays and seconds
+  RunSummary counts{};  ///< without rays and seconds
 
   void clear() noexcept { shots.clear(), echoes.clear(), samples.clear(), subrays.clear(), counts = {}; }
 
@@ -109,7 +110,7 @@ struct ResultBuffer {
     for (std::size_t f = 0; f < fate_count; ++f) counts.energy_by_fate[f] += outcome.energy * outcome.shares[f];
   }
 
-  /// The batch that sinks get; it lives as long as this is not changed.
+  /// Batch for the sinks; valid until this buffer changes.
   [[nodiscard]] EchoBatch batch(double sample_interval) const noexcept {
     return {{shots.data(), shots.size()},
             {echoes.data(), echoes.size()},
@@ -121,7 +122,7 @@ struct ResultBuffer {
 
 namespace detail {
 
-/// The results of consecutive slots, in memory of their own that is used again and again.
+/// Results of consecutive slots, in reused memory.
 struct ResultChunk : ResultBuffer {
   std::uint64_t number = 0;
   ResultChunk* next_free = nullptr;
@@ -131,9 +132,9 @@ struct ResultChunk : ResultBuffer {
   }
 };
 
-/// Hands out chunks to workers, and the finished ones, in order and one at a time, to whoever takes them. Workers run ahead, so that none
-/// waits for one that is slow, or that the system has put aside; but only until what is finished fills a few megabytes, or until there are
-/// two chunks a worker if these are large, which bounds the memory. The chunk delivered last is the next to be used, as it is in the cache.
+/// Reorder buffer: hands out chunks to workers, and delivers finished ones in order, one at a time. Workers run ahead, so that none waits
+/// for a slow or descheduled one. Memory is bounded: they stop when finished chunks fill a few megabytes, or at two chunks per worker if
+/// these are large. The chunk delivered last is reused first, as it is in the cache.
 class ReorderBuffer {
  public:
   ReorderBuffer(std::uint64_t chunks, std::size_t workers, std::stop_token stop)
@@ -146,7 +147,7 @@ class ReorderBuffer {
     for (std::size_t i = 0; i < max_ahead_; ++i) room_[i].next_free = std::exchange(free_, &room_[i]);
   }
 
-  /// The next chunk to work on, empty; none at the end, or when the run is stopped.
+  /// Next empty chunk to work on; null at the end, or when the run is stopped.
   [[nodiscard]] ResultChunk* next() {
     std::unique_lock lock(mutex_);
     moved_.wait(lock, [&] { return failure_ || handed_out_ == chunks_ || may_go_ahead(); });
@@ -157,7 +158,7 @@ class ReorderBuffer {
     return chunk;
   }
 
-  /// Takes a chunk back, and delivers all that are due unless another worker is at it already.
+  /// Takes back a finished chunk, and delivers all that are due unless another worker is delivering.
   template <class Deliver>
   void finish(ResultChunk& chunk, const Deliver& deliver) {
     std::unique_lock lock(mutex_);
@@ -178,7 +179,7 @@ class ReorderBuffer {
     delivering_ = false;
   }
 
-  /// Ends the run for everybody; the first failure is the one that counts.
+  /// Ends the run for all workers; the first failure counts.
   void fail(std::exception_ptr failure) noexcept {
     const std::lock_guard lock(mutex_);
     if (!failure_) failure_ = std::move(failure);
@@ -188,7 +189,7 @@ class ReorderBuffer {
   [[nodiscard]] std::exception_ptr failure() const noexcept { return failure_; }
 
  private:
-  static constexpr std::size_t max_bytes = std::size_t{6} << 20;  // finished and not delivered: some milliseconds of fast work
+  static constexpr std::size_t max_bytes = std::size_t{6} << 20;  // finished but not delivered: some milliseconds of fast work
 
   [[nodiscard]] bool may_go_ahead() const noexcept {
     const std::uint64_t ahead = handed_out_ - delivered_;
@@ -199,8 +200,8 @@ class ReorderBuffer {
   std::uint64_t chunks_, handed_out_ = 0, delivered_ = 0;
   std::size_t always_ahead_, max_ahead_, finished_bytes_ = 0;
   std::unique_ptr<ResultChunk[]> room_;
-  std::unique_ptr<ResultChunk*[]> finished_;  // each at its place, which is empty before
-  ResultChunk* free_ = nullptr;               // the first of them
+  std::unique_ptr<ResultChunk*[]> finished_;  // ring by chunk number; null until finished
+  ResultChunk* free_ = nullptr;               // head of the free list
   std::stop_token stop_;
   bool delivering_ = false;
   std::exception_ptr failure_;
@@ -210,12 +211,13 @@ class ReorderBuffer {
 
 }  // namespace detail
 
-/// Simulates the pulses of a survey on several threads, and hands what came back to the sinks in pulse order. The same survey gives the
-/// same batches on any number of threads. Whatever a sink or the progress callback throws ends the run and comes out here.
+/// Simulates the pulses of a survey on several threads, and passes the results to the sinks in pulse order. The batches do not depend on
+/// the number of threads. Exceptions of sinks and of the progress callback end the run and are rethrown.
+/// @throws SettingError for options out of range
 template <class Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   const RunSlots slots = options.slots(survey.size());
-  const PulseIndex subrays_per_chunk = 65'536;  // where they are recorded, else they take no room
+  const PulseIndex subrays_per_chunk = 65'536;  // bound where subrays are recorded; otherwise they take no memory
   const PulseIndex slots_per_chunk =
       std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, PulseIndex{2048});
   const std::uint64_t chunks = (slots.count + slots_per_chunk - 1) / slots_per_chunk;
@@ -231,7 +233,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
     summary.add(chunk.counts);
     if (options.progress) options.progress({summary.slots, slots.count, summary.echoes, elapsed()});
   };
-  for_each_index(workers, options.threads, [&](std::size_t) noexcept {  // each works on as long as there is something to do
+  for_each_index(workers, options.threads, [&](std::size_t) noexcept {  // each worker runs until no chunk is left
     try {
       detail::ResultChunk* chunk = buffer.next();
       if (!chunk) return;

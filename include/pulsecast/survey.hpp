@@ -19,24 +19,25 @@
 
 namespace pulsecast {
 
-/// What came of one pulse slot. The spans stay valid until the workspace is used again; the shot's places in a batch are not set.
+/// Result of one pulse slot. The spans stay valid until the workspace is used again; the shot's indices into a batch are not set.
 struct Outcome {
   Shot shot;
   std::span<const Echo> echoes;
   std::span<const float> waveform;
-  std::size_t hits = 0;  ///< subrays that met something
-  double energy = 0;     ///< that was sent: peak power by pulse length; the shape of a pulse in time makes some percent of difference [J]
-  std::array<double, fate_count> shares{};  ///< of that energy, by what became of it; they sum to one, or to nothing if nothing was sent
-  std::span<const SubrayHit> subrays{};     ///< all of them, if the footprint is `WithSubrayRecord`
+  std::size_t hits = 0;  ///< subrays with a hit
+  double energy = 0;     ///< energy sent: peak power times pulse length; the pulse shape makes some percent of difference [J]
+  std::array<double, fate_count> shares{};  ///< shares of that energy by `Fate`; they sum to one, or to zero if nothing was sent
+  std::span<const SubrayHit> subrays{};     ///< all subrays, if the footprint is `WithSubrayRecord`
 
   [[nodiscard]] double share(Fate fate) const noexcept { return shares[static_cast<std::size_t>(fate)]; }
 };
 
-/// The whole of a simulation, as a pure function from a pulse index to echoes. Made once; from then on nothing in it changes, so that
-/// pulses may be asked for in any order and from any number of threads. The map is referred to, not copied, and must live as long.
+/// Simulation as a pure function from a pulse index to echoes. Immutable, so that pulses may be requested in any order and from any number
+/// of threads. Refers to the map, which must outlive it.
 template <WorldSource Source, Footprint Pattern, Target Map, Detector Instrument>
 class Survey {
  public:
+  /// @throws SettingError for settings out of range, footprint shares that do not sum to one, or a laser that the detector refuses
   Survey(Source source, Pattern footprint, const Map& map, Receiver receiver, Instrument detector, std::uint64_t seed = 0)
       : source_(validated(std::move(source))),
         footprint_(validated(std::move(footprint))),
@@ -48,30 +49,31 @@ class Survey {
     if constexpr (requires(const Laser& laser) { detector_.validate(laser); }) require_lasers();
   }
 
-  Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would be gone
+  Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would dangle
 
-  /// The subrays in the frame of the beam, number by number, and some lanes to spare.
+  /// Directions, shares and exits of the subrays in the beam's frame, by number, padded to whole SIMD vectors.
   struct SubrayDirections {
-    std::vector<double> x, y, z;  ///< directions
+    std::vector<double> x, y, z;  ///< unit directions
     std::vector<double> shares;
-    std::vector<Vec3> exits;  ///< where they leave; not set for a beam from a point [m]
+    std::vector<Vec3> exits;  ///< exit points; not set for a beam from a point [m]
   };
 
-  /// The scratch memory of one worker, and what need not be computed again from pulse to pulse.
+  /// Scratch memory of one worker, with values cached between pulses.
   struct Workspace {
-    Laser laser;  ///< that `budget` and `directions` are made for
+    Laser laser;  ///< laser of `budget` and `directions`
     LinkBudget budget;
     SubrayDirections directions;
-    std::vector<Hit> hits;                ///< of a bundle
-    std::vector<Reflection> reflections;  ///< of a pulse, as many as there are, and room for more
-    std::vector<SubrayHit> subrays;       ///< all of a pulse, if they are recorded
+    std::vector<Hit> hits;                ///< hits of a bundle
+    std::vector<Reflection> reflections;  ///< reflections of a pulse, with room for all subrays
+    std::vector<SubrayHit> subrays;       ///< all of a pulse, if recorded
     decltype(std::declval<const Instrument&>().workspace(0)) detector;
     struct {
-      double range = -1;  ///< last asked for [m]
-      double power = 0;   ///< what a white surface there gives of the whole pulse [W]
+      double range = -1;  ///< last range requested [m]
+      double power = 0;   ///< power received from a white target there [W]
     } white_target{};
   };
 
+  /// Scratch memory for one worker.
   [[nodiscard]] Workspace workspace() const {
     const Laser laser{};
     const std::size_t n = footprint_.size();
@@ -90,11 +92,11 @@ class Survey {
 
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
   [[nodiscard]] std::size_t subrays() const noexcept { return footprint_.size(); }
-  [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }  ///< handed on with each pulse
+  [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }  ///< subrays passed on with each pulse
   [[nodiscard]] const Source& source() const noexcept { return source_; }
   [[nodiscard]] const Instrument& detector() const noexcept { return detector_; }
 
-  /// Between two samples of a waveform; 0 if the detector has none [s].
+  /// Sample spacing of a waveform; 0 if the detector has none [s].
   [[nodiscard]] double sample_interval() const noexcept {
     if constexpr (requires { detector_.sample_interval(); })
       return detector_.sample_interval();
@@ -102,7 +104,7 @@ class Survey {
       return 0;
   }
 
-  /// What pulse i brings back.
+  /// Simulates pulse i.
   [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
     Outcome out;
     out.shot.index = i;
@@ -148,7 +150,7 @@ class Survey {
  private:
   using Scratch = decltype(Workspace::detector);
 
-  /// Refuses a footprint that keeps energy back, or gives more than there is.
+  /// Refuses a footprint whose shares do not sum to the whole beam.
   void require_whole_beam() const {
     double sum = 0;
     for (std::size_t j = 0; j < footprint_.size(); ++j) {
@@ -157,10 +159,10 @@ class Survey {
       require_finite("Footprint::offset (length)", length(footprint_.offset(j)), "");
       sum += share;
     }
-    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // adding up a million rounds less
+    require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // tolerates the rounding of a sum of a million
   }
 
-  /// Refuses a laser that the detector cannot serve, as far as the first slots, of every channel, and some from all over tell.
+  /// Refuses a laser that the detector refuses, as sampled: the first slots, of every channel, and some at random numbers.
   void require_lasers() const {
     constexpr PulseIndex first = 256;
     for (PulseIndex k = 0; k < 2 * first && k < size(); ++k) {
@@ -177,10 +179,9 @@ class Survey {
       return detector_.detect(laser, reflections, scratch);
   }
 
-  /// Puts echoes in order of the range that is reported, which errors may have upset. An echo that passes another one takes over its
-  /// number.
+  /// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are renumbered in order.
   static void sort_by_range(std::span<Echo> echoes) noexcept {
-    for (std::size_t unsorted = 1; unsorted < echoes.size(); ++unsorted)  // by insertion: a pulse has few echoes, most of them in order
+    for (std::size_t unsorted = 1; unsorted < echoes.size(); ++unsorted)  // insertion sort: a pulse has few echoes, most of them in order
       for (std::size_t e = unsorted; e > 0 && echoes[e].range < echoes[e - 1].range; --e) {
         std::swap(echoes[e - 1], echoes[e]);
         std::swap(echoes[e - 1].number, echoes[e].number);
@@ -205,14 +206,14 @@ class Survey {
     w.laser = laser;
   }
 
-  /// What the subrays of a pulse met, and the shares of its energy that they carried there.
+  /// Shares of a pulse's energy by fate, and counts of its subrays.
   struct EnergyByFate {
     double missed = 0, out_of_range = 0, absorbed = 0, reflected = 0;
     std::size_t hits = 0, reflections = 0;
     bool any_in_gate = false;
   };
 
-  /// Fills in the reflections, and the subrays if they are recorded.
+  /// Traces all subrays; sets the reflections, and the subrays if they are recorded.
   EnergyByFate trace(const Pulse<frame::World>& pulse, const Pose<frame::Beam, frame::World>& reported, Workspace& w) const noexcept {
     EnergyByFate by_fate;
     RayBundle rays;
@@ -259,7 +260,7 @@ class Survey {
     return by_fate;
   }
 
-  /// Sets the directions of a bundle to those of subrays from a number on.
+  /// Sets the directions of a bundle from those of subrays `first` on.
   static void to_world(const Matrix3& world_from_beam, const SubrayDirections& directions, std::size_t first, RayBundle& rays) noexcept {
     const Vec3 across = world_from_beam[0], ahead = world_from_beam[1], above = world_from_beam[2];
     for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
@@ -272,13 +273,13 @@ class Survey {
     rays.pad();
   }
 
-  /// What the receiver gets of a whole pulse from a white surface; the echo of a single ray is asked about where the ray was [W].
+  /// Power received from a white Lambertian target facing the beam at `range` [W]. Cached: a single ray's echo has the range of its hit.
   static double white_target_power(Workspace& w, double range) noexcept {
     if (range != w.white_target.range) w.white_target = {range, w.budget.power(1, 1, range)};
     return w.white_target.power;
   }
 
-  /// What the receiver gets of the hits of a bundle, were it open at all ranges [W]. No number where nothing was met.
+  /// Power received from the hits of a bundle, without the range gate [W]. Undefined for misses.
   static void received_power(Workspace& w, std::size_t first, std::size_t size, RayBundle::Column& power) noexcept {
     if (size == 1) {
       power[0] = w.directions.shares[first] * w.hits[0].backscatter * white_target_power(w, w.hits[0].range);

@@ -19,29 +19,29 @@
 
 namespace pulsecast::detail {
 
-/// A tree of boxes that is split in two by the surface-area heuristic down to single primitives, and the plan of how it turns into one of
-/// eight children a node with as many primitives a leaf as may be, so that the surface of its boxes, times what is done in them, is least
-/// in sum. The primitives are brought into the order of its leaves.
-/// Source: Wald 2007 (bins); Ylitie, Karras & Laine 2017, sec. 3.2 (plan).
+/// Binary SAH tree with one primitive per leaf, and the dynamic program that collapses it into an 8-wide tree of least SAH cost. Leaves of
+/// the wide tree hold up to `leaf_size` primitives. Reorders the primitives to the order of the leaves.
+/// Source: Wald 2007 (binned build); Ylitie, Karras & Laine 2017, sec. 3.2 (dynamic program).
 template <std::floating_point Real>
 class BinarySahTree {
  public:
-  static constexpr std::size_t places = 8;  ///< of the nodes that are planned
+  static constexpr std::size_t places = 8;  ///< children per node of the collapsed tree
 
-  /// What is below a node: primitives side by side. `middle` is where the second child begins, and the node's number; 0 for one primitive.
+  /// Subtree: a contiguous range of primitives. `middle` is the begin of the second child and the node's index; 0 for one primitive.
   struct Range {
     std::uint32_t begin, end, middle;
     [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
   };
 
-  /// At least one primitive, which must outlive the tree; up to so many a leaf.
+  /// Takes at least one primitive; the array must outlive the tree. `leaf_size`: greatest number of primitives per leaf of the collapsed
+  /// tree.
   BinarySahTree(std::span<Boxed<Real>> primitives, std::uint32_t leaf_size, unsigned threads)
       : primitives_(primitives), leaf_size_(leaf_size), spare_(primitives.size()), nodes_(primitives.size()) {
-    // the upper levels node by node, each on all threads; then what is below them side by side
+    // upper levels: one node at a time on all threads; then the subtrees in parallel
     struct Step {
       Task task;
       Sums sums{};
-      std::size_t halves = 0;  // where the first is, the other after it; 0 if it is built as a whole
+      std::size_t halves = 0;  // index of the first half, the second follows it; 0 if built as one subtree
     };
     threads = thread_count(threads);
     const std::size_t grain = threads == 1 ? primitives.size() : std::max<std::size_t>(primitives.size() / (8 * threads), 4096);
@@ -51,7 +51,7 @@ class BinarySahTree {
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (steps[i].task.size() <= grain) {
         const auto larger = [&](std::size_t a, std::size_t b) { return steps[a].task.size() > steps[b].task.size(); };
-        subtrees.insert(std::upper_bound(subtrees.begin(), subtrees.end(), i, larger), i);  // the largest first
+        subtrees.insert(std::upper_bound(subtrees.begin(), subtrees.end(), i, larger), i);  // largest first
         continue;
       }
       const auto halves = split(steps[i].task, space, threads);
@@ -77,10 +77,10 @@ class BinarySahTree {
     return range.middle == 0 ? primitives_[range.begin].box : nodes_[range.middle].box;
   }
 
-  /// Whether the plan makes it a leaf.
+  /// True if the collapsed tree has a leaf here.
   [[nodiscard]] bool leaf(const Range& range) const noexcept { return range.middle == 0 || nodes_[range.middle].leaf; }
 
-  /// What stands in the places of a node that this one was given so many of.
+  /// Appends the children that this range contributes when given `given` of its parent's eight slots.
   void gather(const Range& range, std::size_t given, std::vector<Range>& children) const {
     const std::uint8_t left = given > 1 && range.middle != 0 ? nodes_[range.middle].left[given - 2] : 0;
     if (left == 0) return children.push_back(range);
@@ -90,18 +90,18 @@ class BinarySahTree {
 
  private:
   static constexpr std::size_t max_slices = 16;
-  static constexpr std::size_t few =
-      4096;  ///< primitives: a tree of so few is built at once, and these may be shapes with trees of their own
-  static constexpr double leaf_cost = 1;  ///< of the tests in a leaf, where a step of the traversal costs 1
+  static constexpr std::size_t few = 4096;  ///< primitives; trees up to this size always take all slices: they build at once, and their
+                                            ///< primitives may be shapes with trees of their own
+  static constexpr double leaf_cost = 1;    ///< SAH cost of the tests in a leaf; a traversal step costs 1
 
-  /// What the best plan costs where a node takes up to j + 1 places of the one above, j being the index.
+  /// SAH cost of the best collapse with up to j + 1 slots of the parent, by index j.
   using Sums = std::array<double, places>;
 
-  /// An inner node. Every place between two primitives that are neighbours in the end splits just one of them, and so is its number.
+  /// Inner node. Every gap between neighbours in the final order splits exactly one node, and its position is the node's index.
   struct Node {
     BoundingBox<Real> box;
-    std::uint32_t first, second;    ///< the numbers of its children, 0 for one primitive
-    std::uint8_t left[places - 1];  ///< of j + 2 places, how many its first child gets; 0 if it takes but one itself
+    std::uint32_t first, second;    ///< indices of the children, 0 for one primitive
+    std::uint8_t left[places - 1];  ///< slots of the first child, out of j + 2; 0 if the node itself takes one slot
     bool leaf;
   };
 
@@ -109,7 +109,7 @@ class BinarySahTree {
   using Growing = GrowingBox<Real>;
 
   struct Bounds {
-    Growing boxes, centres;  ///< the centres doubled
+    Growing boxes, centres;  ///< centres times two
 
     void extend(const Boxed<Real>& boxed) noexcept {
       const Corner low = boxed.low(), high = boxed.high(), centre = low + high;
@@ -120,14 +120,14 @@ class BinarySahTree {
 
   struct Task {
     std::uint32_t begin, end, depth;
-    bool spare;             ///< whether its primitives are in the spare array
-    std::uint32_t* number;  ///< where the number of its node is to stand
+    bool spare;             ///< true if the primitives are in the spare array
+    std::uint32_t* number;  ///< destination of the node's index
     Bounds bounds;
 
     [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
   };
 
-  /// What is in the slices along each axis.
+  /// Bins along each axis.
   struct Bins {
     Growing boxes[3][max_slices];
     std::uint32_t counts[3][max_slices];
@@ -141,15 +141,15 @@ class BinarySahTree {
     }
   };
 
-  /// A chunk of the primitives of a node, as a thread splits it.
+  /// Bins of one chunk of a node's primitives, for the parallel split.
   struct ChunkBins {
     Bins bins;
-    std::uint32_t to[2];  ///< where its primitives of either half go
-    Growing centres[2];   ///< of these, doubled
+    std::uint32_t to[2];  ///< next destination in either half
+    Growing centres[2];   ///< bounds of the centres, times two
   };
 
   struct Split {
-    std::size_t axis = 0, slice = 0;  ///< the first slice of the second half; 0 if there is no split
+    std::size_t axis = 0, slice = 0;  ///< first slice of the second half; 0 for no split
     double cost = std::numeric_limits<double>::infinity();
   };
 
@@ -165,10 +165,10 @@ class BinarySahTree {
     return bounds;
   }
 
-  /// The array that a task's primitives are in, and the other one.
+  /// Array that holds the primitives of a task.
   [[nodiscard]] Boxed<Real>* array(bool spare) const noexcept { return spare ? spare_.data() : primitives_.data(); }
 
-  /// Makes a node and all that is below it, and plans them.
+  /// Builds and plans a subtree.
   Sums build(const Task& task, std::vector<ChunkBins>& space) {
     if (task.size() > 2) {
       const auto [first, second] = split(task, space, 1);
@@ -188,7 +188,7 @@ class BinarySahTree {
     return plan(node, sums_of(task.begin), 1, sums_of(task.begin + 1), 1);
   }
 
-  /// Makes a node of three primitives or more, and divides them. Both parts are left with levels enough to be halved down to single ones.
+  /// Splits a node of three or more primitives. Both halves keep enough levels for halving down to single primitives.
   std::array<Task, 2> split(const Task& task, std::vector<ChunkBins>& space, unsigned threads) {
     const Boxed<Real>* const from = array(task.spare) + task.begin;
     if (threads == 1 || task.size() <= 2 * chunk_size) threads = 1;
@@ -248,7 +248,7 @@ class BinarySahTree {
       for (std::size_t k = 0; k < 3; ++k) to.boxes[k][of[k]].extend(low, high), ++to.counts[k][of[k]];
     };
     bins.clear(slices.count());
-    if (end - begin > 256) {  // neighbours are often in one slice, and would wait for each other
+    if (end - begin > 256) {  // alternates two sets of bins, since neighbours often share a slice and would serialize
       Bins other;
       other.clear(slices.count());
       for (; end - begin > 1; begin += 2) put(begin[0], bins), put(begin[1], other);
@@ -257,7 +257,7 @@ class BinarySahTree {
     for (; begin != end; ++begin) put(*begin, bins);
   }
 
-  /// Brings primitives to their halves, in the order in which they are.
+  /// Moves primitives to their halves, stable in order.
   static void scatter(ChunkBins& part, const Slices<Real>& slices, const Split& split, Boxed<Real>* to, const Boxed<Real>* begin,
                       const Boxed<Real>* end) noexcept {
     part.centres[0] = part.centres[1] = Growing();
@@ -269,7 +269,7 @@ class BinarySahTree {
     }
   }
 
-  /// Divides in the middle along the longest axis.
+  /// Splits at the median along the longest axis.
   std::array<Task, 2> halve(const Task& task) {
     const Growing& centres = task.bounds.centres;
     std::size_t axis = 0;
@@ -286,7 +286,7 @@ class BinarySahTree {
     return made(task, first, second);
   }
 
-  /// The cheapest split between slices, its cost being the sum of area times number.
+  /// Cheapest split between slices; the cost is the sum of area times count.
   static Split best_split(const Bins& bins, const Slices<Real>& slices, std::uint32_t size) noexcept {
     Split best;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -300,7 +300,7 @@ class BinarySahTree {
       }
       box = Growing(), count = 0;
       for (std::size_t i = 1; i < slices.count(); ++i) {
-        if (bins.counts[k][i - 1] == 0) continue;  // the same split as the one before
+        if (bins.counts[k][i - 1] == 0) continue;  // same split as the one before
         box.extend(bins.boxes[k][i - 1]), count += bins.counts[k][i - 1];
         if (count == size) break;
         const double cost = box.half_area() * count + second_cost[i];
@@ -313,7 +313,7 @@ class BinarySahTree {
   [[nodiscard]] Range first(const Range& r) const noexcept { return {r.begin, r.middle, nodes_[r.middle].first}; }
   [[nodiscard]] Range second(const Range& r) const noexcept { return {r.middle, r.end, nodes_[r.middle].second}; }
 
-  /// Plans a node, of whose halves the sums and sizes are known.
+  /// Plans a node from the costs and sizes of its halves.
   Sums plan(Node& node, const Sums& first, std::size_t in_first, const Sums& second, std::size_t in_second) const noexcept {
     Sums sums;
     const std::size_t size = in_first + in_second;
@@ -331,14 +331,14 @@ class BinarySahTree {
     const double as_leaf = size <= leaf_size_ ? area * leaf_cost : std::numeric_limits<double>::infinity();
     node.leaf = as_leaf <= as_node;
     sums[0] = std::min(as_leaf, as_node);
-    for (std::size_t j = 1; j < places - 1; ++j)  // not the last, which is the node itself
+    for (std::size_t j = 1; j < places - 1; ++j)  // the last entry is the node itself
       if (sums[0] <= sums[j]) sums[j] = sums[0], node.left[j - 1] = 0;
     return sums;
   }
 
   std::span<Boxed<Real>> primitives_;
   std::uint32_t leaf_size_;
-  SharedBuffer<Boxed<Real>> spare_;  ///< while it is built
+  SharedBuffer<Boxed<Real>> spare_;  ///< second buffer during the build
   SharedBuffer<Node> nodes_;
   std::uint32_t root_ = 0;
 };

@@ -21,19 +21,18 @@
 
 namespace pulsecast {
 
-/// A tree of boxes with up to eight children a node, all of whose boxes a bundle is tested against at once. It is split in two by the
-/// surface-area heuristic, down to single primitives; then some levels are made one, and up to `leaf_size` primitives a leaf, as costs
-/// least. Every primitive stands in exactly one leaf. A bundle goes through it as a whole, front to back. Where a split would make the
-/// binary tree deeper than 64 levels, it halves. The tree is the same for every number of threads that it is built on; 0 for as many as
-/// the machine runs.
-/// Source: Wald 2007 (build in bins); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic); Wald, Benthin & Boulos 2008
+/// BVH with up to eight children per node, whose boxes are tested against a bundle together. The build splits a binary SAH tree down to
+/// single primitives. It then collapses the tree at least SAH cost into nodes and leaves of up to `leaf_size` primitives. Every primitive
+/// is in exactly one leaf. A bundle traverses the tree as a whole, front to back. The build halves a range where an SAH split would exceed
+/// 64 levels of the binary tree. The tree is the same for any number of build threads; 0 for the hardware's.
+/// Source: Wald 2007 (binned build); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic); Wald, Benthin & Boulos 2008
 /// (collapsing).
 template <std::floating_point Real = float>
 class Bvh {
  public:
-  /// Of a span of boxes, or of anything that has a size and gives a `Box` of each number. Leaves of some primitives, at most 7, are for
-  /// those that are tested several at once; where a test is a search of its own, as in the parts of a scene, take one a leaf, each behind
-  /// its own box.
+  /// Builds the tree over `boxes` [m]: a span, or any sized range that yields a `Box` by index. `leaf_size`, from 1 to 7: several
+  /// primitives for vectorized tests; 1 where a test is a search of its own, as for the parts of a scene.
+  /// @throws SettingError for a `leaf_size` out of range, coordinates beyond 1e18 m, or more than 4294967294 boxes
   explicit Bvh(const detail::BoxRangeRef& boxes, unsigned threads = 0, std::uint32_t leaf_size = 4) {
     require_within("Bvh::leaf_size", leaf_size, 1, 7, "");
     detail::BuildInput<Real> input(boxes, threads);
@@ -49,9 +48,9 @@ class Bvh {
     a(bounds_, centre_, depth_, nodes_, primitives_);
   }
 
-  /// Whether it is a tree at all, no deeper than it may be, and over so many primitives.
+  /// True if the archived nodes form a tree within the depth limit and index only `primitives` primitives.
   [[nodiscard]] bool is_consistent(std::size_t primitives) const {
-    std::vector<std::uint8_t> depths(nodes_.size());  // 0 where nothing leads to so far
+    std::vector<std::uint8_t> depths(nodes_.size());  // 0 for no parent so far
     if (!depths.empty()) depths[0] = 1;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const Node& node = nodes_[i];
@@ -72,11 +71,13 @@ class Bvh {
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return nodes_.memory() + primitives_.memory(); }
 
+  /// Primitives in the order of the leaves.
   [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept { return {primitives_.data(), primitives_.size()}; }
 
   /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
+  /// Traverses the tree front to back; `test` gets the primitives of each leaf that the bundle may meet.
   template <class Test>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
   void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
@@ -93,9 +94,9 @@ class Bvh {
 
   struct alignas(64) Node {
     QuantizedBox8<Real> boxes;
-    std::uint32_t children = 0;       ///< the first node below; the others follow it
-    std::uint32_t primitives = 0;     ///< the first primitive of the leaves; the others follow it
-    std::uint8_t kinds[places] = {};  ///< by place: the size of a leaf in the lower three bits, 0 for a node; above, where it follows
+    std::uint32_t children = 0;       ///< index of the first child node; the others follow it
+    std::uint32_t primitives = 0;     ///< index of the first leaf primitive; the others follow it
+    std::uint8_t kinds[places] = {};  ///< per child: leaf size in the lower three bits, 0 for a node; above, offset from the first
 
     [[nodiscard]] std::uint32_t size(std::size_t place) const noexcept { return kinds[place] & 7U; }
     [[nodiscard]] std::uint32_t first(std::size_t place) const noexcept {
@@ -106,9 +107,9 @@ class Bvh {
 
   struct StackEntry {
     Real entry;
-    std::uint32_t first, size;  ///< of a leaf's primitives, or the number of a node and 0
+    std::uint32_t first, size;  ///< first primitive of a leaf and its size, or index of a node and 0
   };
-  static constexpr std::uint32_t nothing = 0xFFFFFFFF;  ///< in place of a size
+  static constexpr std::uint32_t nothing = 0xFFFFFFFF;  ///< sentinel in place of a size
 
   template <class Interval, class Test>
   void descend(const Interval& interval, const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
@@ -125,7 +126,7 @@ class Bvh {
         return {entries[place], node->first(place), node->size(place)};
       };
       StackEntry next{0, 0, nothing};
-      if (met != 0) {  // the nearest at once; the others to the stack, the nearest of them on top
+      if (met != 0) {  // nearest child next; the others on the stack, nearest on top
         next = take_first();
         const std::size_t bottom = stack_size;
         while (met != 0) {
@@ -159,13 +160,13 @@ class Bvh {
       test.prefetch(std::span<const PrimitiveIndex>(primitives_.data() + next.first, next.size));
   }
 
-  /// A node to be made of what is below one of the binary tree.
+  /// Node of the wide tree to be made from a range of the binary tree.
   struct Open {
     typename BinaryTree::Range range;
     std::uint32_t node, depth;
   };
 
-  /// Makes the upper nodes one after another, and what is below them side by side: first by themselves, then where they stand in the end.
+  /// Makes the upper nodes serially and the subtrees in parallel, then copies the subtrees into place.
   void collapse(const BinaryTree& binary, unsigned threads) {
     const std::size_t count = binary.primitives().size();
     const SharedBuffer<PrimitiveIndex> primitives(count);
@@ -191,7 +192,7 @@ class Bvh {
     for (Subtree& own : subtrees) own.first_node = nodes, nodes += own.nodes.size() - 1, depth = std::max(depth, own.depth);
     const SharedBuffer<Node> all(nodes);
     std::copy(upper.begin(), upper.end(), all.begin());
-    for_each_index(subtrees.size(), threads, [&](std::size_t i) {  // its first node takes the place that was left for it
+    for_each_index(subtrees.size(), threads, [&](std::size_t i) {  // the first node of a subtree takes its reserved slot
       const Subtree& own = subtrees[i];
       for (std::size_t k = 0; k < own.nodes.size(); ++k) {
         Node& node = all[k == 0 ? below[i].node : own.first_node + k - 1] = own.nodes[k];
@@ -201,8 +202,7 @@ class Bvh {
     nodes_ = all, primitives_ = primitives, depth_ = depth;
   }
 
-  /// Makes a node, for which there is a place, and all that is below it but for ranges of at most `grain` primitives, which go to `below`.
-  /// Gives the depth.
+  /// Fills the reserved node of `top` and makes its subtree. Ranges of at most `grain` primitives go to `below` instead. Returns the depth.
   static std::size_t make_nodes(const BinaryTree& binary, const Open& top, std::vector<Node>& nodes,
                                 const SharedBuffer<PrimitiveIndex>& primitives, std::size_t& next, std::size_t grain,
                                 std::vector<Open>& below) {
@@ -241,8 +241,8 @@ class Bvh {
 
   Box bounds_;
   Vec3 centre_{};
-  SharedArray<Node> nodes_;                 ///< the root first
-  SharedArray<PrimitiveIndex> primitives_;  ///< of the leaves
+  SharedArray<Node> nodes_;                 ///< root first
+  SharedArray<PrimitiveIndex> primitives_;  ///< leaf primitives
   std::size_t depth_ = 0;
 };
 

@@ -19,12 +19,13 @@
 
 namespace pulsecast {
 
-/// A tree of planes, set by the surface-area heuristic among the edges of 32 slices an axis. A primitive stands in every leaf that its box
-/// reaches, four leaves on average at most.
-/// Source: Wald & Havran 2006; in slices: Shevtsov, Soupikov & Kapustin 2007.
+/// Kd-tree split by the surface-area heuristic at the edges of 32 slices per axis. A primitive is in every leaf that its box reaches: at
+/// most four leaves on average.
+/// Source: Wald & Havran 2006; binned: Shevtsov, Soupikov & Kapustin 2007.
 template <std::floating_point Real = float>
 class KdTree {
  public:
+  /// Builds the tree over boxes [m]. @throws SettingError for coordinates beyond 1e18 m, or more than 4294967294 boxes
   explicit KdTree(std::span<const Box> boxes) {
     detail::BuildInput<Real> input(boxes);
     bounds_ = input.bounds, centre_ = input.centre;
@@ -38,9 +39,9 @@ class KdTree {
     a(bounds_, centre_, cell_, depth_, nodes_, order_);
   }
 
-  /// Whether it is a tree at all, no deeper than it may be, and over so many primitives.
+  /// True if the archived nodes form a tree within the depth limit and index only `primitives` primitives.
   [[nodiscard]] bool is_consistent(std::size_t primitives) const {
-    std::vector<std::uint8_t> depths(nodes_.size());  // 0 where nothing leads to so far
+    std::vector<std::uint8_t> depths(nodes_.size());  // 0 for no parent so far
     if (!depths.empty()) depths[0] = 1;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const Node& node = nodes_[i];
@@ -60,11 +61,13 @@ class KdTree {
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return nodes_.memory() + order_.memory(); }
 
+  /// Primitives in the order of the leaves, repeated in every leaf that they reach.
   [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept { return {order_.data(), order_.size()}; }
 
   /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
+  /// Traverses the tree front to back; `test` gets the primitives of each leaf that the bundle may meet.
   template <class Test>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
   void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
@@ -108,16 +111,16 @@ class KdTree {
 
   static constexpr std::size_t slice_count = 32;
   static constexpr double leaves_per_primitive = 4;
-  static constexpr double empty_bonus = 0.8;  ///< factor on the cost where one side is empty. Source: Wald & Havran 2006, sec. 3.2
+  static constexpr double empty_bonus = 0.8;  ///< cost factor for a split with an empty side. Source: Wald & Havran 2006, sec. 3.2
 
   struct Node {
-    std::uint64_t packed;  ///< axis across which it is split, 3 for a leaf; and four times `first()`
+    std::uint64_t packed;  ///< split axis, 3 for a leaf; plus four times `first()`
     union {
-      Real split;           ///< where [m]
-      std::uint32_t count;  ///< of a leaf's primitives
+      Real split;           ///< split plane's coordinate [m]
+      std::uint32_t count;  ///< primitives of a leaf
     };
     [[nodiscard]] int axis() const noexcept { return static_cast<int>(packed & 3); }
-    /// Of a leaf's primitives in `order_`, or number of the lower child; the upper one follows it.
+    /// First leaf primitive in `order_`, or index of the lower child; the upper child follows it.
     [[nodiscard]] std::size_t first() const noexcept { return packed >> 2; }
     void place(std::size_t first, int axis) noexcept { packed = std::uint64_t{first} << 2 | static_cast<std::uint64_t>(axis); }
   };
@@ -129,14 +132,14 @@ class KdTree {
   };
 
   struct Task {
-    std::size_t begin;  ///< of its primitives in the heap of those that wait
+    std::size_t begin;  ///< first primitive of the task in the heap of pending ones
     std::size_t node, depth;
     BoundingBox<Real> cell;
-    double allowance;  ///< leaves that its primitives may stand in, all told
+    double allowance;  ///< greatest number of references to its primitives in the leaves below
   };
 
   struct Split {
-    int axis = -1;  ///< -1 if none is worth it
+    int axis = -1;  ///< -1 for no worthwhile split
     Real at = 0;
   };
 
@@ -231,7 +234,7 @@ class KdTree {
   Box bounds_;
   Vec3 centre_{};
   BoundingBox<Real> cell_{};
-  SharedArray<Node> nodes_;  ///< the root first
+  SharedArray<Node> nodes_;  ///< root first
   SharedArray<PrimitiveIndex> order_;
   std::size_t depth_ = 0;
 };

@@ -15,10 +15,12 @@
 
 namespace pulsecast {
 
-/// No search at all: every primitive is tested. The oracle for the others, and right for a handful of primitives.
+/// Accelerator without a search structure: tests every primitive. Oracle for the other accelerators, and efficient for a handful of
+/// primitives.
 template <std::floating_point Real = float>
 class Linear {
  public:
+  /// Takes boxes [m]. @throws SettingError for coordinates beyond 1e18 m, or more than 4294967294 boxes
   explicit Linear(std::span<const Box> boxes) {
     const detail::BuildInput<Real> input(boxes);
     bounds_ = input.bounds;
@@ -33,6 +35,7 @@ class Linear {
   void archive(Archive& a) {
     a(bounds_, primitives_);
   }
+  /// True if all archived indices are below `primitives`.
   [[nodiscard]] bool is_consistent(std::size_t primitives) const noexcept {
     return std::all_of(primitives_.begin(), primitives_.end(), [&](PrimitiveIndex i) { return i < primitives; });
   }

@@ -18,21 +18,21 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 
-/// What the builds by the surface-area heuristic share: the cost of a node is that of the tests which a ray that meets it must expect,
-/// and a ray that meets a box meets a part of it in proportion to the part's surface.
-/// Source: Goldsmith & Salmon 1987; MacDonald & Booth 1990. In bins: Wald 2007; Shevtsov, Soupikov & Kapustin 2007.
+/// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray that meets it; a ray that meets a box
+/// meets a part of it with a probability proportional to the part's surface area.
+/// Source: Goldsmith & Salmon 1987; MacDonald & Booth 1990. Binned: Wald 2007; Shevtsov, Soupikov & Kapustin 2007.
 namespace pulsecast::detail {
 
-/// Cost of testing a primitive, where a step of the traversal costs 1. Only speed depends on it.
+/// Cost of a primitive test, in traversal steps. Affects speed only.
 inline constexpr double test_cost = 2;
 
-/// No leaf lies deeper, so a traversal may keep its way back in as many places.
+/// Depth limit of the leaves, and so the size of a traversal stack.
 inline constexpr std::size_t max_depth = 64;
 
-/// Coordinates beyond are refused, so that sums and areas of any Real stay finite [m].
+/// Greatest coordinate accepted, so that sums and areas in any Real stay finite [m].
 inline constexpr double max_coordinate = 1e18;
 
-/// Half of the surface [m^2].
+/// Half of the surface area [m^2].
 template <std::floating_point Real>
 [[nodiscard]] double half_area(const BoundingBox<Real>& box) noexcept {
   const double x = static_cast<double>(box.max[0]) - static_cast<double>(box.min[0]);
@@ -41,13 +41,13 @@ template <std::floating_point Real>
   return x * y + y * z + z * x;
 }
 
-/// A primitive as a build handles it.
+/// Primitive during a build.
 template <std::floating_point Real>
 struct Boxed {
   BoundingBox<Real> box;
   PrimitiveIndex primitive;
 
-  /// The corners of its box; the fourth lane means nothing.
+  /// Corners of the box; the fourth lane is undefined.
   [[nodiscard]] simd::Vec4<Real> low() const noexcept { return simd::Vec4<Real>::from(box.min[0]); }
   [[nodiscard]] simd::Vec4<Real> high() const noexcept {
     static_assert(sizeof(Boxed) >= 7 * sizeof(Real), "one lane beyond the box is read");
@@ -55,7 +55,7 @@ struct Boxed {
   }
 };
 
-/// A box as it grows; as made, the one that nothing is inside of.
+/// Growing bounding box, initially empty.
 template <std::floating_point Real>
 struct GrowingBox {
   simd::Vec4<Real> min{std::numeric_limits<Real>::max()}, max{-std::numeric_limits<Real>::max()};
@@ -63,7 +63,7 @@ struct GrowingBox {
   void extend(const simd::Vec4<Real>& low, const simd::Vec4<Real>& high) noexcept { min = simd::min(low, min), max = simd::max(high, max); }
   void extend(const GrowingBox& by) noexcept { extend(by.min, by.max); }
   [[nodiscard]] BoundingBox<Real> box() const noexcept { return {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}}; }
-  /// The same as of `box()`, give or take rounding [m^2].
+  /// Half of the surface area, equal to that of `box()` up to rounding [m^2].
   [[nodiscard]] double half_area() const noexcept {
     const simd::Vec4<Real> size = max - min;
     const auto x = static_cast<double>(size[0]), y = static_cast<double>(size[1]), z = static_cast<double>(size[2]);
@@ -71,7 +71,7 @@ struct GrowingBox {
   }
 };
 
-/// Equal slices of a box along each axis, between which a build considers to split.
+/// Equal slices of a box along each axis; their edges are the candidate splits of a build.
 template <std::floating_point Real>
 class Slices {
  public:
@@ -86,25 +86,25 @@ class Slices {
     per_width_ = simd::Vec4<Real>::from(per_width[0]);
   }
 
-  /// How many along an axis.
+  /// Slices per axis.
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
-  /// Whether the box is long enough along an axis to be sliced.
+  /// True if the box is long enough along axis k to be sliced.
   [[nodiscard]] bool valid(std::size_t k) const noexcept { return valid_[k]; }
 
-  /// The slice along each axis that holds a point, or the one next to it; 0 along those that are not sliced.
+  /// Slice along each axis that holds a point, clamped to the box; 0 along axes that are not sliced.
   [[nodiscard]] std::array<std::uint32_t, 3> of(const simd::Vec4<Real>& point) const noexcept {
     const simd::Vec4<Real> slice = simd::min(simd::max((point - low_) * per_width_, simd::Vec4<Real>(0)), last_);
     const auto whole = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(slice[k])); };
     return {whole(0), whole(1), whole(2)};
   }
 
-  /// Whether a coordinate along axis k is in slice i, which is not the first, or in one after it, as `of` says.
+  /// True if coordinate x along axis k is in slice i or a later one, consistent with `of`. Requires i > 0.
   [[nodiscard]] bool reaches(std::size_t k, Real x, std::size_t i) const noexcept {
     return (x - low_[k]) * per_width_[k] >= static_cast<Real>(i);
   }
 
-  /// Where slice i along an axis begins.
+  /// Lower edge of slice i along axis k.
   [[nodiscard]] Real edge(std::size_t k, std::size_t i) const noexcept { return low_[k] + static_cast<Real>(i) * width_[k]; }
 
  private:
@@ -114,8 +114,8 @@ class Slices {
   bool valid_[3];
 };
 
-/// Calls act(part, i) for the i-th chunk of an array, on several threads if there is more than one. The results are the same for any
-/// number of threads if chunks are put together in order, or if the order does not matter.
+/// Calls act(i, begin, end) for the i-th chunk of an array, on several threads if there is more than one chunk. Results merged in chunk
+/// order, or independent of it, do not depend on the number of threads.
 inline constexpr std::size_t chunk_size = std::size_t{1} << 14;
 [[nodiscard]] constexpr std::size_t chunk_count(std::size_t count) noexcept { return (count + chunk_size - 1) / chunk_size; }
 template <class Act>
@@ -123,22 +123,22 @@ void for_each_chunk(std::size_t count, unsigned threads, const Act& act) {
   for_each_index(chunk_count(count), threads, [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
 }
 
-/// Boxes by number, of whatever has a size and gives a `Box` of each number, the same at all times: an array, or what makes them as they
-/// are asked for. It must outlive this, which is there so that a build need be compiled but once.
+/// Non-owning, type-erased view of an indexable range of boxes, so that builders compile once. The range must outlive the view, and yield
+/// the same `Box` for an index every time: an array, or a generator.
 class BoxRangeRef {
  public:
   template <class Boxes>
   requires requires(const Boxes& boxes) {
     { boxes[boxes.size()] } -> std::convertible_to<Box>;
   }
-  BoxRangeRef(const Boxes& boxes)  // NOLINT(google-explicit-constructor): an array is one
+  BoxRangeRef(const Boxes& boxes)  // NOLINT(google-explicit-constructor): implicit from an array
       : boxes_(&boxes), size_(boxes.size()), copy_([](const void* all, std::size_t begin, std::size_t end, Box* to) {
           for (std::size_t i = begin; i < end; ++i) *to++ = (*static_cast<const Boxes*>(all))[i];
         }) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-  /// Calls act(i, box) for those of a chunk that are not empty.
+  /// Calls act(i, box) for the non-empty boxes of a chunk.
   template <class Act>
   void for_each(std::size_t begin, std::size_t end, const Act& act) const {
     constexpr std::size_t at_once = 64;
@@ -157,7 +157,7 @@ class BoxRangeRef {
   void (*copy_)(const void* boxes, std::size_t begin, std::size_t end, Box* to);
 };
 
-/// The primitives that can be met at all, in coordinates relative to the centre of their bounds.
+/// The primitives with non-empty boxes, in coordinates relative to the centre of their bounds.
 template <std::floating_point Real>
 struct BuildInput {
   Box bounds;
@@ -165,12 +165,12 @@ struct BuildInput {
   SharedBuffer<Boxed<Real>> primitives;
 
   explicit BuildInput(const BoxRangeRef& boxes, unsigned threads = 1) {
-    constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // one more would be taken for `ClosestHits::none`
+    constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // greater indices are left to `ClosestHits::none`
     if (boxes.size() > most)
       throw SettingError("Accelerator::boxes", static_cast<double>(boxes.size()), "", "at most 4294967294 in number");
     struct ChunkBounds {
       Box bounds;
-      std::size_t first = 0, met = 0;  // in `primitives`
+      std::size_t first = 0, met = 0;  // index of the first in `primitives`, and count
     };
     std::vector<ChunkBounds> all(chunk_count(boxes.size()));
     for_each_chunk(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
@@ -196,7 +196,7 @@ struct BuildInput {
   }
 };
 
-/// The levels that halving needs until every part is one.
+/// Levels of halving down to single parts.
 [[nodiscard]] inline std::size_t levels_of_halving(std::size_t parts) noexcept { return parts < 2 ? 0 : std::bit_width(parts - 1); }
 
 }  // namespace pulsecast::detail

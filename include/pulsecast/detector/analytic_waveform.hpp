@@ -25,14 +25,14 @@
 
 namespace pulsecast {
 
-/// The sum of the pulse shapes of all reflections whose leading edges have passed, in closed form until the next one comes in.
+/// Sum of the pulse shapes of all reflections whose leading edges have passed, in closed form until the next edge.
 ///
-/// An edge that passed an age u ago, in tau, gives P u^2 e^-u. Weigh each age by P e^-u: with the sum W of the weights, the mean m and the
-/// variance v of the ages, the sum of pulses is W (m^2 + v), and after a time x it is W e^-x ((m + x)^2 + v). Its slope is zero at ages
-/// m + x = 1 - sqrt(1 - v), in a valley, and 1 + sqrt(1 - v), at a peak; and nowhere, for v > 1. Derived from `PulseShape`.
+/// An edge of age u [tau] contributes P u^2 e^-u. Weight each age by P e^-u; let W be the sum of the weights, m the mean and v the variance
+/// of the ages. The sum of pulses is W (m^2 + v), and W e^-x ((m + x)^2 + v) a time x later. Its slope is zero at the ages m + x = 1 -
+/// sqrt(1 - v), a valley, and 1 + sqrt(1 - v), a peak; nowhere for v > 1. Derived from `PulseShape`.
 class EdgeAgeMoments {
  public:
-  /// A pulse whose leading edge comes in now.
+  /// Adds a pulse whose leading edge arrives now.
   void add(double power) noexcept {
     const double sum = weight_ + power, share = power / sum;
     variance_ = (1 - share) * (variance_ + share * mean_ * mean_);
@@ -40,26 +40,26 @@ class EdgeAgeMoments {
     weight_ = sum;
   }
 
-  /// After a time [tau].
+  /// Advances by a time [tau].
   void advance(double x) noexcept {
     weight_ *= std::exp(-x);
     mean_ += x;
   }
 
   [[nodiscard]] bool can_turn() const noexcept { return variance_ < 1; }
-  [[nodiscard]] double until_valley() const noexcept { return 1 - std::sqrt(1 - variance_) - mean_; }  ///< negative if it has passed [tau]
-  [[nodiscard]] double until_peak() const noexcept { return 1 + std::sqrt(1 - variance_) - mean_; }    ///< negative if it has passed [tau]
+  [[nodiscard]] double until_valley() const noexcept { return 1 - std::sqrt(1 - variance_) - mean_; }  ///< negative if passed [tau]
+  [[nodiscard]] double until_peak() const noexcept { return 1 + std::sqrt(1 - variance_) - mean_; }    ///< negative if passed [tau]
 
   [[nodiscard]] double power() const noexcept { return weight_ * (mean_ * mean_ + variance_) * PulseShape::to_unit_peak; }
 
-  /// Integrals of the sum from now on, times counted from now on [tau].
+  /// Moments of the sum over a time x from now on, about now [tau].
   [[nodiscard]] WaveformMoments until(double x) const noexcept {
     std::array<double, 5> g{};  // integrals of t^k e^-t from 0 to x, by parts
     const double rest = std::exp(-x);
     double term = rest;  // x^k e^-x
     g[0] = 1 - rest;
     for (std::size_t k = 1; k < g.size(); ++k) {
-      if (term > 0) term *= x;  // an infinite x has none
+      if (term > 0) term *= x;  // 0 for an infinite x
       g[k] = static_cast<double>(k) * g[k - 1] - term;
     }
     const double c0 = mean_ * mean_ + variance_, c1 = 2 * mean_, w = weight_ * PulseShape::to_unit_peak;
@@ -70,28 +70,29 @@ class EdgeAgeMoments {
   double weight_ = 0, mean_ = 0, variance_ = 0;
 };
 
-/// Finds the peaks of the sum of the pulse shapes of all reflections without sampling it: their times and heights are exact. Between the
-/// leading edges of two pulses the sum is a quadratic polynomial times one exponential, so that it turns at the roots of a quadratic; one
-/// pass over the reflections finds them all. Reflections that are a group have one peak, which is found without sorting them.
-/// On the front of docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. That one has the digitiser's bins,
-/// and the receiver's noise.
+/// Peak detector on the sum of the pulse shapes of all reflections, without sampling: times and heights are exact. Between two leading
+/// edges the sum is a quadratic polynomial times one exponential, so its extrema are roots of a quadratic. One pass over the reflections
+/// finds them all. A `SinglePeakGroup` is evaluated without sorting.
+/// On the front of docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. `FullWaveform` models the digitiser's
+/// bins and the receiver's noise.
 ///
 /// `WaveformSettings::sample_interval` is that of the record, and of the grid on which a fitted width samples the sum; moments are exact.
 template <EchoWidth Width = NoWidth>
 class AnalyticWaveform {
  public:
+  /// @throws SettingError for settings out of range
   explicit AnalyticWaveform(WaveformSettings settings = {}, Width width = {})
       : s_(validated(settings)), width_(validated(std::move(width))) {}
 
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
-  /// Refuses pulses that samples do not resolve, if samples are taken: for a record, or a width that is fitted.
+  /// Refuses pulses that samples do not resolve, if a record or a fitted width takes samples. @throws SettingError
   void validate(const Laser& laser) const {
     if (by_samples || s_.record_length > 0) s_.require_sampled(laser.pulse_length, infinity);
   }
 
-  /// The width of a laser's outgoing pulse, by the measure of its echoes [s].
+  /// Width of a laser's outgoing pulse, by the measure of its echoes [s]. @throws SettingError as `validate`
   [[nodiscard]] double pulse_width(const Laser& laser) const {
     validate(laser);
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
@@ -109,12 +110,13 @@ class AnalyticWaveform {
 
   struct Workspace {
     std::vector<Peak> peaks;
-    std::vector<double> samples;  ///< of one echo, for a width that is fitted [W]
+    std::vector<double> samples;  ///< samples of one echo, for a fitted width [W]
     std::vector<Echo> echoes;
     std::vector<float> record;
     SinglePeakGroup::Workspace group;
   };
 
+  /// Scratch memory for pulses of up to `subrays` subrays.
   [[nodiscard]] Workspace workspace(std::size_t subrays) const {
     Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(subrays)};
     w.peaks.reserve(subrays);
@@ -124,7 +126,7 @@ class AnalyticWaveform {
     return w;
   }
 
-  /// Sorts the reflections by range. Left out are those without power, and those so far away that samples could not be counted.
+  /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted.
   [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> all, Workspace& w) const noexcept {
     w.peaks.clear(), w.echoes.clear(), w.record.clear();
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
@@ -153,10 +155,10 @@ class AnalyticWaveform {
  private:
   static constexpr bool by_moments = requires(const Width w, const WaveformMoments& m) { w.width(m); };
   static constexpr bool by_samples = !by_moments && !std::same_as<Width, NoWidth>;
-  static constexpr std::size_t max_samples = 4096;  ///< of one echo; the grid is coarser if they do not reach
+  static constexpr std::size_t max_samples = 4096;  ///< samples of one echo; a longer echo gets a coarser grid
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// Enters the only echo of a group, if it reaches the threshold.
+  /// Appends the only echo of a group, if it reaches the threshold.
   void detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
     const double peak = group.peak(), height = group.power(simd::Doubles{} + peak)[0];
     if (height < s_.threshold) return;
@@ -167,10 +169,10 @@ class AnalyticWaveform {
   void find_peaks(std::span<const Reflection> reflections, const PulseShape& shape, double min_separation, Workspace& w) const noexcept {
     const double per_metre = 2 / (speed_of_light * shape.tau);
     EdgeAgeMoments ages;
-    Peak peak;             // the one at hand
-    WaveformMoments m;     // of its stretch so far
-    WaveformMoments last;  // of the peak that was entered last
-    double since = 0;      // from the begin of its stretch to the edge at hand [tau]
+    Peak peak;             // current peak
+    WaveformMoments m;     // moments of its stretch so far
+    WaveformMoments last;  // moments of the last peak entered
+    double since = 0;      // time from the begin of its stretch to the current edge [tau]
     bool rising = false, met = false;
     const auto finish = [&](double end) {
       peak.end = end;
@@ -184,8 +186,8 @@ class AnalyticWaveform {
       const double next = k + 1 == reflections.size() ? infinity : (reflections[k + 1].range - reflections[k].range) * per_metre;
       if (next == 0) continue;
       const double edge = arrival(reflections[k]) - PulseShape::peak * shape.tau;
-      double x = 0;  // since the edge [tau]
-      // A turn that rounding puts just before the edge is taken to be at it, so that peaks and valleys alternate.
+      double x = 0;  // time since the edge [tau]
+      // An extremum that rounding puts just before the edge is moved to it, so that peaks and valleys alternate.
       if (!rising && ages.can_turn() && ages.until_valley() < next && ages.until_peak() > 0) {
         x = std::fmax(ages.until_valley(), 0);
         if constexpr (by_moments) m.add(ages.until(x), since);
@@ -208,7 +210,7 @@ class AnalyticWaveform {
     finish(infinity);
   }
 
-  /// By sampling the sum between the valleys.
+  /// Width of a peak from samples of the sum between its valleys [s].
   double sampled_width(const Peak& peak, std::span<const Reflection> reflections, const PulseShape& shape,
                        std::vector<double>& samples) const noexcept {
     const auto before = [](double limit) { return [limit](const Reflection& r) { return arrival(r) < limit; }; };

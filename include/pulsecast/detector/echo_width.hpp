@@ -14,18 +14,18 @@
 
 namespace pulsecast {
 
-/// Integrals of a stretch of waveform over time: of the power, and of the power times the time and its square since some moment.
+/// Integrals of a stretch of waveform over time, about a reference time: of the power, and of the power times the time and its square.
 struct WaveformMoments {
   double energy = 0, first = 0, second = 0;
 
-  /// Adds a stretch whose moment is later by a time.
+  /// Adds a stretch whose reference time is `later` by a time.
   void add(const WaveformMoments& m, double later) noexcept {
     energy += m.energy;
     first += m.first + later * m.energy;
     second += m.second + later * (2 * m.first + later * m.energy);
   }
 
-  /// Standard deviation in time, in the unit of the moments; 0 if there is none.
+  /// Standard deviation in time, in the time unit of the moments; 0 without energy or spread.
   [[nodiscard]] double deviation() const noexcept {
     if (!(energy > 0)) return 0;
     const double mean = first / energy;
@@ -34,12 +34,12 @@ struct WaveformMoments {
   }
 };
 
-/// Not measured: 0.
+/// No width measured: 0.
 struct NoWidth {
   [[nodiscard]] double width(std::span<const double>, double) const noexcept { return 0; }
 };
 
-/// By the second central moment of the waveform.
+/// Width by the second central moment of the waveform.
 struct MomentWidth {
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {
     WaveformMoments m;
@@ -55,7 +55,7 @@ struct MomentWidth {
 
 static_assert(EchoWidth<NoWidth> && EchoWidth<MomentWidth>);
 
-/// How long after the peak of its last pulse a waveform matters to a width [tau].
+/// Time after the peak of its last pulse up to which a waveform affects a width [tau].
 template <EchoWidth Width>
 [[nodiscard]] double tail_of(const Width& width) noexcept {
   if constexpr (requires { width.min_share(); })
@@ -64,8 +64,8 @@ template <EchoWidth Width>
     return std::same_as<Width, NoWidth> ? 0 : SampledSum::negligible;
 }
 
-/// The width of the outgoing pulse by the measure of its echoes [s], to compare them with: what a surface met squarely would give.
-/// Sampled every `interval` [s]; not for the hot path.
+/// Width of the outgoing pulse by the measure of its echoes [s]: that of an echo from a surface at normal incidence. Sampled every
+/// `interval` [s]; not for the hot path.
 template <EchoWidth Width>
 [[nodiscard]] double pulse_width(const Width& width, const PulseShape& shape, double interval) {
   std::vector<double> samples;

@@ -9,9 +9,9 @@
 
 namespace pulsecast {
 
-/// The nearest reflection, as it is: range without a waveform, for robotics and visibility.
+/// Detector of the nearest reflection at its exact range, without a waveform: for robotics and visibility.
 struct FirstHit {
-  double threshold = 0;  ///< weaker reflections are not seen [W]
+  double threshold = 0;  ///< least detectable power [W]
 
   void validate() const { require_not_negative("FirstHit::threshold", threshold, "W"); }
 

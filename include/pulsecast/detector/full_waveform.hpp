@@ -27,41 +27,44 @@
 
 namespace pulsecast {
 
-/// Samples the sum of the pulse shapes of all reflections, and finds its peaks. Their heights and times are interpolated between samples.
+/// Digitising detector: samples the sum of the pulse shapes of all reflections and finds its peaks. Their heights and times are
+/// interpolated between samples.
 ///
-/// With noise, the receiver listens from the pulse's first reflection on, for as long as the record is and as reflections come, and finds
-/// echoes where there are none. Thresholds are held against the samples themselves, amplitudes and widths count from the mean of the
-/// background, and echoes are timed by their peaks: what made them cannot be told from noisy samples. The record has the background in it.
+/// With noise, the receiver records from the first reflection on, for the record's length and as long as reflections arrive, and detects
+/// false echoes. The threshold applies to the samples themselves. Amplitudes and widths are relative to the mean background. Echoes are
+/// timed by their peaks, since noisy samples do not tell the reflections apart. The record includes the background.
 ///
-/// Limits: a lone echo's peak errs by 0.03 mm where an interval is a sixteenth of the pulse's length, by 0.5 mm at an eighth and by
-/// 10 mm at a quarter, where its amplitude errs by 2 %. A pulse that is shorter than an interval, or longer than 10,000, is refused.
-/// Of the peaks in one pulse's noise, no more than 4096 are looked at.
+/// Limits: a single echo's peak errs by 0.03 mm for an interval of 1/16 of the pulse length, and by 0.5 mm at 1/8. At 1/4 it errs by 10 mm,
+/// and its amplitude by 2 %. Pulses shorter than one interval or longer than 10,000 are refused. At most 4096 noise peaks per pulse are
+/// considered.
 template <EchoWidth Width = NoWidth>
 class FullWaveform {
  public:
+  /// @throws SettingError for settings out of range
   explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, ReceiverNoise noise = {})
       : s_(validated(settings)), width_(validated(std::move(width))), noise_(validated(noise)) {}
 
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
-  /// Refuses pulses that the samples do not resolve, or that do not fit into those at hand.
+  /// Refuses pulses that the samples do not resolve, or that exceed the sample window. @throws SettingError
   void validate(const Laser& laser) const { s_.require_sampled(laser.pulse_length, WaveformSettings::max_samples); }
 
-  /// The width of a laser's outgoing pulse, by the measure of its echoes [s].
+  /// Width of a laser's outgoing pulse, by the measure of its echoes [s]. @throws SettingError as `validate`
   [[nodiscard]] double pulse_width(const Laser& laser) const {
     validate(laser);
     return pulsecast::pulse_width(width_, PulseShape(laser.pulse_length, s_.shape_divisor), s_.sample_interval);
   }
 
   struct Workspace {
-    std::vector<double> samples;  ///< of the window at hand [W]
+    std::vector<double> samples;  ///< current window [W]
     std::vector<Peak> peaks;
     std::vector<Echo> echoes;
     std::vector<float> record;
     SinglePeakGroup::Workspace group;
   };
 
+  /// Scratch memory for pulses of up to `subrays` subrays.
   [[nodiscard]] Workspace workspace(std::size_t subrays) const {
     Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(subrays)};
     w.samples.reserve(window_samples);
@@ -71,8 +74,8 @@ class FullWaveform {
     return w;
   }
 
-  /// Sorts the reflections by range. Left out are those without power, and those so far away that samples could not be counted. Noise is
-  /// that of the key, a number for each sample: it has seed and pulse.
+  /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted. Noise is drawn per
+  /// sample from the seed and pulse of `key`.
   [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> all, Workspace& w, RandomKey key = {}) const noexcept {
     w.peaks.clear(), w.echoes.clear(), w.record.clear();
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
@@ -111,7 +114,7 @@ class FullWaveform {
         const bool listening = noisy && n - record_start < record_size;
         going_on = !silent || listening || (next < reflections.size() && first_sample(next) <= n + died_away / s_.sample_interval);
         if (going_on && w.samples.size() == window_samples) {
-          const std::size_t cut = last_valley(w.samples);  // so that no echo is cut in two
+          const std::size_t cut = last_valley(w.samples);  // a cut between two echoes
           find_peaks(n, cut, min_separation, w);
           w.samples.erase(w.samples.begin(), w.samples.begin() + static_cast<std::ptrdiff_t>(cut - 2));
         }
@@ -125,18 +128,17 @@ class FullWaveform {
   }
 
  private:
-  static constexpr std::size_t window_samples = 262144;  ///< samples at hand at one time: the longest pulse until it has died away
-  static constexpr std::size_t max_peaks = 4096;         ///< of the noise
+  static constexpr std::size_t window_samples = 262144;  ///< capacity of the sample window: the longest pulse until it has decayed
+  static constexpr std::size_t max_peaks = 4096;         ///< peaks of noise
 
-  /// Enters the only echo of a group, if it reaches the threshold: what sampling all of it would give, from the samples about its peak.
-  /// False if these reach back to where edges come in.
+  /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its peak. False if these
+  /// reach back before the last edge.
   bool detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
     const double per_tau = 1 / shape.tau;
-    const double before =
-        std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // the last sample before the peak
+    const double before = std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // last sample before the peak
     const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau, step = s_.sample_interval * per_tau;
     if (!(first >= 0)) return false;
-    std::array<double, 8> y;  // from two samples before that one on
+    std::array<double, 8> y;  // samples from two before it on
     for (std::size_t j = 0; j < y.size(); j += simd::lane_count)
       simd::store(group.power(simd::generate([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), y[j]);
     const std::size_t top = y[3] > y[2] ? 3 : 2;
@@ -149,18 +151,18 @@ class FullWaveform {
 
   void keep(double at, double power, std::vector<float>& record) const noexcept {
     if (at < 0 || at >= static_cast<double>(s_.record_capacity())) return;
-    record.resize(static_cast<std::size_t>(at) + 1);  // within its capacity; a gap is filled with zeros
+    record.resize(static_cast<std::size_t>(at) + 1);  // within the capacity; a gap is filled with zeros
     record.back() = static_cast<float>(power);
   }
 
-  /// Where the last echo that is whole ends; two samples before the end if there is no valley.
+  /// End of the last complete echo; two samples before the end if there is no valley.
   static std::size_t last_valley(const std::vector<double>& y) noexcept {
     for (std::size_t i = y.size() - 2; i > 4; --i)
       if (y[i] < y[i - 1] && y[i] <= y[i + 1]) return i;
     return y.size() - 2;
   }
 
-  /// Enters every peak before `end` of the window whose last sample has the number `last`.
+  /// Appends every peak before index `end` of the window, whose last sample has the number `last`.
   void find_peaks(double last, std::size_t end, double min_separation, Workspace& w) const noexcept {
     const std::vector<double>& y = w.samples;
     const double start = last - static_cast<double>(y.size() - 1);
@@ -194,11 +196,11 @@ class FullWaveform {
   }
 
   struct Vertex {
-    double offset, height;  ///< from the middle sample [samples], [W]
+    double offset, height;  ///< offset from the middle sample [samples]; power [W]
   };
 
-  /// The top of the quartic through five samples about a peak, by Newton's method from that of the parabola through the middle three;
-  /// the latter where the former is no top, as happens in noise.
+  /// Maximum of the quartic through five samples about a peak, by Newton's method from the vertex of the parabola through the middle three.
+  /// Returns that vertex where the quartic has no maximum, as in noise.
   static Vertex vertex(const double* y) noexcept {
     const double c1 = (8 * (y[1] - y[-1]) - (y[2] - y[-2])) / 12, c2 = (16 * (y[1] + y[-1]) - (y[2] + y[-2]) - 30 * y[0]) / 24;
     const double c3 = ((y[2] - y[-2]) - 2 * (y[1] - y[-1])) / 12, c4 = ((y[2] + y[-2]) - 4 * (y[1] + y[-1]) + 6 * y[0]) / 24;

@@ -16,21 +16,21 @@
 
 namespace pulsecast {
 
-/// amplitude exp(-(i - position)^2 / (2 width^2)), over the numbers i of samples.
+/// Gaussian amplitude exp(-(i - position)^2 / (2 width^2)) over sample indices i.
 struct Gaussian {
-  double amplitude = 0;  ///< in the unit of the samples
+  double amplitude = 0;  ///< peak value, in the unit of the samples
   double position = 0;   ///< [samples]
   double width = 0;      ///< standard deviation [samples]
 };
 
-/// By the least-squares Gaussian, found by Levenberg and Marquardt's method. An echo to which none could be fitted has a width of NaN.
+/// Echo width by a least-squares Gaussian, fitted by the Levenberg-Marquardt method. NaN without convergence.
 ///
-/// Each sample weighs what it holds of the power: the Gaussian is to match the echo, not the tail that a pulse has and a Gaussian has not,
-/// and where the samples lie on a steep edge must not matter: it changes the width of a pulse by less than 0.5 %.
-/// Source: Levenberg 1944, Marquardt 1963, with the damping of Marquardt: normal equations whose diagonal is stretched.
+/// Each sample is weighted by its own power. The Gaussian then matches the echo, not the tail that a pulse has and a Gaussian lacks. The
+/// positions of samples on a steep edge change the width of a pulse by less than 0.5 %.
+/// Source: Levenberg 1944, Marquardt 1963, with Marquardt's damping: scaled diagonal of the normal equations.
 struct GaussianFit {
   int iterations_max = 50;
-  double share = 0.03;  ///< of the highest sample, in [0, 1): the fit ends to either side where samples are lower
+  double share = 0.03;  ///< share of the highest sample, in [0, 1): lower samples end the fit on either side
 
   void validate() const {
     require_within("GaussianFit::iterations_max", iterations_max, 1, 1000, "");
@@ -41,8 +41,8 @@ struct GaussianFit {
 
   struct Result {
     Gaussian gaussian{};
-    int iterations = 0;      ///< that it took
-    bool converged = false;  ///< to a Gaussian that is no wider than the samples reach, and stands among them or within its width of them
+    int iterations = 0;      ///< iterations done
+    bool converged = false;  ///< true for a Gaussian no wider than the samples' extent, centred among them or within its width of them
   };
 
   [[nodiscard]] double width(std::span<const double> samples, double interval) const noexcept {
@@ -61,7 +61,7 @@ struct GaussianFit {
     if (to - from < 2) return {};
     const std::span<const double> samples = all.subspan(from, to - from + 1);
 
-    // the first guess: the squares of a Gaussian are one of the same position, narrower by the root of two
+    // initial guess: the squares of a Gaussian are one at the same position, narrower by the root of two
     double sum = 0, first = 0, second = 0, x = 0;
     for (const double y : samples) {
       const double square = y * y;
@@ -85,7 +85,7 @@ struct GaussianFit {
         r.gaussian = next, e = there, damping *= 0.1;
         r.converged = size < small_enough;
       } else if (possible && size < small_enough) {
-        r.converged = true;  // as low as rounding lets it get
+        r.converged = true;  // at the minimum within rounding
       } else {
         damping *= 10;
       }
@@ -98,9 +98,10 @@ struct GaussianFit {
   }
 
  private:
-  static constexpr double small_enough = 1e-3;  ///< the last step, as a share of amplitude and width: the error left is far smaller
+  static constexpr double small_enough =
+      1e-3;  ///< tolerance of the last step, relative to amplitude and width; the error left is far smaller
 
-  /// The normal equations at a Gaussian: the products of the derivatives, those with the residuals, and the sum of squared residuals.
+  /// Normal equations at a Gaussian: products of the derivatives, products with the residuals, and the sum of squared residuals.
   struct Equations {
     double aa = 0, ap = 0, aw = 0, pp = 0, pw = 0, ww = 0;
     double a = 0, p = 0, w = 0;
@@ -108,13 +109,13 @@ struct GaussianFit {
   };
 
   static Equations equations(std::span<const double> samples, const Gaussian& g) noexcept {
-    // exp(-x^2/2) at every so many-th sample: each step multiplies by a ratio, and the ratio by a constant
+    // exp(-x^2/2) at every lane_count-th sample: each step multiplies by a ratio, and the ratio by a constant
     const double h = 1 / g.width, step = simd::lane_count * h;
     simd::Doubles x = (simd::generate([](std::size_t lane) { return static_cast<double>(lane); }) - g.position) * h;
     const simd::Doubles growth = -step * (x + 0.5 * step), none = simd::Doubles{} + std::numeric_limits<double>::infinity();
     simd::Doubles value = exponential(simd::Doubles(-0.5 * x * x)), ratio = growth < 700 ? exponential(growth) : none;
     const double decay = exponential(-step * step);
-    // the derivatives are value, value x k and value x^2 k, with k = amplitude / width: what is needed are sums over powers of x
+    // the derivatives are value, value x k and value x^2 k, with k = amplitude / width: sums over powers of x suffice
     simd::Doubles s0{}, s1{}, s2{}, s3{}, s4{}, r0{}, r1{}, r2{}, squares{};
     for (std::size_t i = 0; i < samples.size(); i += simd::lane_count) {
       simd::Doubles y{};
@@ -134,7 +135,7 @@ struct GaussianFit {
             simd::sum(s4) * k * k, simd::sum(r0),     simd::sum(r1) * k, simd::sum(r2) * k,     simd::sum(squares)};
   }
 
-  /// The step that the damped normal equations give, by Cholesky's decomposition; not finite if there is none.
+  /// Step from the damped normal equations, by Cholesky decomposition; not finite if they are singular.
   static Gaussian solution(const Equations& e, double damping) noexcept {
     const double stretch = 1 + damping;
     const double l11 = std::sqrt(e.aa * stretch), l21 = e.ap / l11, l31 = e.aw / l11;

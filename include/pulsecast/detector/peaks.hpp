@@ -16,18 +16,18 @@
 
 namespace pulsecast {
 
-/// A peak of a waveform, and the stretch that belongs to it. Times are two-way.
+/// Peak of a waveform between its two valleys. Times are two-way.
 struct Peak {
-  double time = 0;         ///< of its highest point [s]
-  double height = 0;       ///< there [W]
-  double begin = 0;        ///< of the valley before it [s]
-  double end = 0;          ///< of the valley after it [s]
+  double time = 0;         ///< time of the maximum [s]
+  double height = 0;       ///< power at the maximum [W]
+  double begin = 0;        ///< time of the valley before it [s]
+  double end = 0;          ///< time of the valley after it [s]
   double width = 0;        ///< as in `Echo` [s]
-  bool dominated = false;  ///< by a higher one within the window
+  bool dominated = false;  ///< true if a higher peak is within the window
 };
 
-/// Enters a peak after those before it, if there is room. True if it has become one with the last of them, for being closer to it than
-/// peaks must be apart [s].
+/// Appends a peak after those before it, within the capacity. Merges it with the last one and returns true if they are closer than
+/// `min_separation` [s].
 inline bool merge_or_append(const Peak& peak, double min_separation, std::vector<Peak>& peaks) noexcept {
   if (!peaks.empty() && peak.time - peaks.back().time < min_separation) {
     Peak& one = peaks.back();
@@ -39,7 +39,7 @@ inline bool merge_or_append(const Peak& peak, double min_separation, std::vector
   return false;
 }
 
-/// True if a higher peak, or as high a one before it, is within the window of a peak. Peaks are in order of time.
+/// True if a higher peak, or an earlier one as high, is within the window of peak i. Requires peaks in order of time.
 [[nodiscard]] inline bool is_dominated(std::size_t i, const WaveformSettings& s, const std::vector<Peak>& peaks) noexcept {
   const Peak& peak = peaks[i];
   for (std::size_t j = i; j-- > 0 && peak.time - peaks[j].time <= s.window;)
@@ -49,7 +49,7 @@ inline bool merge_or_append(const Peak& peak, double min_separation, std::vector
   return false;
 }
 
-/// Leaves those of peaks, in order of time, that are echoes by window, dead time and number.
+/// Keeps the peaks that are echoes by window, dead time and number. Requires order of time.
 inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noexcept {
   for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].dominated = is_dominated(i, s, peaks);
   std::size_t kept = 0;
@@ -61,7 +61,7 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
   peaks.resize(kept);
 }
 
-/// The echo of a peak, among reflections sorted by range.
+/// Echo of a peak; reflections are sorted by range.
 [[nodiscard]] inline Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const PulseShape& shape, EchoTiming timing,
                                   std::size_t number) noexcept {
   const Reflection* const end = reflections.data() + reflections.size();
@@ -73,10 +73,10 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
             .amplitude = peak.height,
             .width = peak.width,
             .number = static_cast<std::uint8_t>(number)};
-  constexpr double faded = 60;  // tau after its peak, 1e-22 of a pulse is left
+  constexpr double faded = 60;  // 60 tau after its peak, 1e-22 of a pulse is left
   double strongest = 0;
   for (auto r = from(peak.time - faded * shape.tau); r != end && arrival(*r) < peak.time + PulseShape::peak * shape.tau; ++r) {
-    if (!(r->power > strongest)) continue;  // nor is it with what is left of its pulse
+    if (!(r->power > strongest)) continue;  // its share at this time is at most its power
     const double power = r->power * shape(peak.time - arrival(*r));
     if (!(power > strongest)) continue;
     strongest = power;

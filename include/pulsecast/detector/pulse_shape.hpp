@@ -9,22 +9,22 @@
 
 namespace pulsecast {
 
-/// A laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge at t = 0, here scaled to a peak of 1, which stands at 2 tau.
+/// Laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge at t = 0, scaled to a peak of 1 at 2 tau.
 /// Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5, with tau = full width at half maximum / 3.5.
 struct PulseShape {
   double tau;  ///< [s]
 
-  /// `divisor`: full width at half maximum by tau. Solving for the half maximum gives 3.395; the literature says 3.5.
+  /// `divisor`: full width at half maximum by tau. The exact value is 3.395; the literature says 3.5.
   explicit PulseShape(double pulse_length, double divisor = 3.5) noexcept : tau(pulse_length / divisor) {}
 
-  static constexpr double peak = 2;  ///< when the peak comes, since the leading edge [tau]
+  static constexpr double peak = 2;  ///< time of the peak since the leading edge [tau]
   static constexpr double to_unit_peak = std::numbers::e * std::numbers::e / 4;
 
   /// Standard deviation in time [s]: the shape is a gamma distribution of order 3.
   [[nodiscard]] double deviation() const noexcept { return std::numbers::sqrt3 * tau; }
 
-  /// A time since the peak after which the power is below a share of it [tau]: as u^2 e^(-u/2) is at most 16/e^2, the shape is at most
-  /// 4 e^(-u/2), with u = t/tau.
+  /// Upper bound of the time since the peak at which the power falls to a share of it [tau]. As u^2 e^(-u/2) is at most 16/e^2, the shape
+  /// is at most 4 e^(-u/2), with u = t/tau.
   [[nodiscard]] static double fallen_to(double share) noexcept { return 2 * std::log(4 / share) - peak; }
 
   /// Power at time t since the peak [s]; 1 at t = 0.

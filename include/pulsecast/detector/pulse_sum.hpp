@@ -15,15 +15,15 @@
 
 namespace pulsecast {
 
-/// When the peak of a reflection's pulse arrives, since the pulse left [s].
+/// Arrival time of the peak of a reflection's pulse, since emission [s].
 [[nodiscard]] inline double arrival(const Reflection& r) noexcept { return 2 * r.range / speed_of_light; }
 
-/// Whether a reflection can be an echo: it has power, and is not so far away that samples could not be counted, 2^52 of them.
+/// True if a reflection can be an echo: it has power, and is nearer than 2^52 samples, so that they can be counted.
 [[nodiscard]] inline bool can_count(const Reflection& r, double sample_interval) noexcept {
   return r.power > 0 && r.range < 0x1p51 * speed_of_light * sample_interval;
 }
 
-/// Sorts reflections by range. Left out are those that cannot be echoes.
+/// Sorts reflections by range and drops those that cannot be echoes.
 [[nodiscard]] inline std::span<Reflection> in_order_of_range(std::span<Reflection> all, double sample_interval) noexcept {
   const auto nearer = [](const Reflection& a, const Reflection& b) { return a.range < b.range; };
   const auto useless = [&](const Reflection& r) { return !can_count(r, sample_interval); };
@@ -33,16 +33,16 @@ namespace pulsecast {
   return {begin, static_cast<std::size_t>(end - begin)};
 }
 
-/// The sum of the pulse shapes of reflections, sorted by range, sample by sample.
+/// Sum of the pulse shapes of reflections, sorted by range, sample by sample.
 ///
-/// The shape is a polynomial times an exponential, so the sum of any number of shapes is carried from sample to sample by three moments
-/// about the leading edges, the sums of P e^-u, P u e^-u and P u^2 e^-u: exact, and at a cost of samples plus reflections, not of their
-/// product.
+/// The shape is a polynomial times an exponential. Three moments about the leading edges carry the sum of any number of shapes from sample
+/// to sample: the sums of P e^-u, P u e^-u and P u^2 e^-u. This is exact, and costs samples plus reflections instead of their product.
 class SampledSum {
  public:
-  static constexpr double negligible = 20;  ///< after so many tau since its peak, 1e-6 of a pulse is left
+  static constexpr double negligible = 20;  ///< time since its peak at which 1e-6 of a pulse is left [tau]
 
-  /// Begins with a reflection, the first that counts, and with a number of a sample; those before it count if their edges have passed.
+  /// Starts at a reflection and a sample number. Earlier reflections are ignored; `first` and later ones count once their edges have
+  /// passed.
   SampledSum(std::span<const Reflection> reflections, const PulseShape& shape, double interval, std::size_t first, double sample) noexcept
       : reflections_(reflections),
         shape_(shape),
@@ -59,13 +59,15 @@ class SampledSum {
     return std::floor((arrival(r) - PulseShape::peak * shape.tau) / interval) - 2;
   }
 
-  [[nodiscard]] double sample() const noexcept { return sample_; }            ///< number of the sample that `power` will give
-  [[nodiscard]] double time() const noexcept { return sample_ * interval_; }  ///< and its time [s]
-  [[nodiscard]] std::size_t next() const noexcept { return next_; }           ///< the first reflection that has not come in
+  [[nodiscard]] double sample() const noexcept { return sample_; }            ///< number of the next sample
+  [[nodiscard]] double time() const noexcept { return sample_ * interval_; }  ///< time of the next sample [s]
+  [[nodiscard]] std::size_t next() const noexcept { return next_; }           ///< index of the first reflection still to arrive
   [[nodiscard]] bool all_in() const noexcept { return next_ == reflections_.size(); }
-  [[nodiscard]] double last_peak() const noexcept { return arrival(reflections_[next_ - 1]); }  ///< of those that have come in [s]
+  [[nodiscard]] double last_peak() const noexcept {
+    return arrival(reflections_[next_ - 1]);
+  }  ///< arrival of the last reflection so far [s]
 
-  /// The sum at a sample [W]; goes on to the next.
+  /// Returns the sum at the next sample [W] and advances.
   double power() noexcept {
     second_ = decay_ * (second_ + step_ * (2 * first_ + step_ * zeroth_));
     first_ = decay_ * (first_ + step_ * zeroth_);
@@ -87,7 +89,7 @@ class SampledSum {
   PulseShape shape_;
   double interval_, step_, decay_;
   std::size_t next_;
-  double next_edge_ = 0;  ///< of the first reflection that has not come in [s]
+  double next_edge_ = 0;  ///< leading edge of reflection `next_` [s]
   double sample_;
   double zeroth_ = 0, first_ = 0, second_ = 0;
 };

@@ -16,7 +16,7 @@
 
 namespace pulsecast {
 
-/// Extinction of the air [1/m] for a wavelength [m] and a visibility [m]; none if the visibility is infinite.
+/// Atmospheric extinction coefficient [1/m] for a wavelength [m] and a visibility [m]; 0 for an infinite visibility.
 /// Source: Kruse, McGlauchlin & McQuistan 1962: 3.91/V (lambda / 0.55 um)^-q per km, V in km.
 [[nodiscard]] inline double extinction(double wavelength, double visibility) noexcept {
   const double v = visibility * 1e-3;
@@ -24,19 +24,19 @@ namespace pulsecast {
   return 3.91 / v * std::pow(wavelength / 0.55e-6, -q) * 1e-3;
 }
 
-/// One row of a table of how an instrument errs.
+/// Row of a table of range noise.
 struct DeviationAtRange {
   double range = 0;      ///< [m]
-  double deviation = 0;  ///< standard deviation of the noise there [m]
+  double deviation = 0;  ///< standard deviation of the noise at that range [m]
 };
 
-/// How an instrument errs about ranges: not at all, unless told otherwise.
+/// Range errors of an instrument, none by default.
 struct RangeErrors {
-  double bias = 0;                    ///< reported less true [m]
+  double bias = 0;                    ///< reported minus true range [m]
   double deviation = 0;               ///< standard deviation of the noise, at any range [m]
-  double deviation_per_metre = 0;     ///< by which it grows with range
-  bool grows_with_incidence = false;  ///< divided by the cosine of the incidence. Source: Soudarissanane et al. 2011
-  /// If it has rows, in place of the two deviations above: a straight line from row to row, and level beyond them. Ranges ascend.
+  double deviation_per_metre = 0;     ///< increase of the deviation per metre of range
+  bool grows_with_incidence = false;  ///< divides by the cosine of incidence. Source: Soudarissanane et al. 2011
+  /// Table that replaces both deviations if not empty: linear between rows, constant beyond them; ranges ascend.
   SharedArray<DeviationAtRange> deviations{};
 
   void validate() const {
@@ -52,7 +52,7 @@ struct RangeErrors {
 
   [[nodiscard]] bool none() const noexcept { return bias == 0 && deviation == 0 && deviation_per_metre == 0 && deviations.size() == 0; }
 
-  /// Standard deviation of the noise at a range, faced squarely [m].
+  /// Standard deviation of the noise at a range, at normal incidence [m].
   [[nodiscard]] double deviation_at(double range) const noexcept {
     if (deviations.size() == 0) return deviation + deviation_per_metre * range;
     const std::size_t i = detail::first_not(deviations.size(), [&](std::size_t n) noexcept { return !(range < deviations[n].range); });
@@ -63,21 +63,21 @@ struct RangeErrors {
     return from.deviation + (to.deviation - from.deviation) * (range - from.range) / (to.range - from.range);
   }
 
-  /// Reported less true range [m] of an echo at a range [m], for a draw from the standard normal distribution.
+  /// Reported minus true range [m] of an echo at a range [m], for a draw from the standard normal distribution.
   [[nodiscard]] double at(double range, double cos_incidence, double draw) const noexcept {
-    constexpr double min_cosine = 0.01;  // an edge-on surface has no noise without bound
+    constexpr double min_cosine = 0.01;  // bounds the noise of an edge-on surface
     const double slant = grows_with_incidence ? (cos_incidence > min_cosine ? cos_incidence : min_cosine) : 1;
     return bias + draw * deviation_at(range) / slant;
   }
 };
 
-/// The receiving half of an instrument, and the air before it.
+/// Receiver of an instrument, and the atmosphere before it.
 struct Receiver {
-  double diameter = 0.15;                                      ///< of the aperture, from 0.1 mm to 1 km [m]
-  double efficiency = 0.99;                                    ///< of the optics, both ways
-  double visibility = 23e3;                                    ///< meteorological; infinite for no atmosphere [m]
-  double range_min = 0;                                        ///< nearer than this, nothing is received [m]
-  double range_max = std::numeric_limits<double>::infinity();  ///< farther than this, nothing is received [m]
+  double diameter = 0.15;                                      ///< aperture, from 0.1 mm to 1 km [m]
+  double efficiency = 0.99;                                    ///< transmission of the optics, both ways, in [0, 1]
+  double visibility = 23e3;                                    ///< meteorological visibility, at least 1 m; infinite for no atmosphere [m]
+  double range_min = 0;                                        ///< range gate's start [m]
+  double range_max = std::numeric_limits<double>::infinity();  ///< range gate's end [m]
   RangeErrors range_errors{};
 
   void validate() const {
@@ -92,10 +92,9 @@ struct Receiver {
   [[nodiscard]] bool in_gate(double range) const noexcept { return range >= range_min && range <= range_max; }
 };
 
-/// From the power of a pulse to the power that a subray brings back.
-/// Source: laser radar equation for an extended target, Jelalian 1992; in the form of Winiwarter et al. 2022. Near by, an aperture on the
-/// axis holds sin^2 of half the angle that it subtends, of what a Lambertian surface scatters: D^2 / (4 R^2 + D^2) in place of D^2 / (4
-/// R^2).
+/// Link budget: received power of a subray from the power of a pulse.
+/// Source: laser radar equation for an extended target, Jelalian 1992; in the form of Winiwarter et al. 2022. At close range, an aperture
+/// on the axis collects sin^2 of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 + D^2) in place of D^2 / (4 R^2).
 class LinkBudget {
  public:
   LinkBudget(const Receiver& receiver, const Laser& laser) noexcept
@@ -104,10 +103,10 @@ class LinkBudget {
         both_ways_(-2 * extinction(laser.wavelength, receiver.visibility)) {}
 
   /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in `Hit`) at a range [m].
-  /// At a range of 0, all that comes back.
+  /// At range 0 all the scattered power is received.
   [[nodiscard]] double power(double share, double backscatter, double range) const noexcept { return of(share, backscatter, range); }
 
-  /// The same of several subrays.
+  /// Received power of several subrays [W].
   [[nodiscard]] simd::Doubles power(const simd::Doubles& share, const simd::Doubles& backscatter,
                                     const simd::Doubles& range) const noexcept {
     return of(share, backscatter, range);
@@ -119,9 +118,9 @@ class LinkBudget {
     return gain_ * share * backscatter / (range * range + near_) * exponential(Number(both_ways_ * range));
   }
 
-  double gain_;       ///< received power at 1 m by the inverse square of the range, of a white surface in vacuum [W m^2]
+  double gain_;       ///< received power times squared range, from a white surface in vacuum [W m^2]
   double near_;       ///< square of half the aperture's diameter [m^2]
-  double both_ways_;  ///< by which the logarithm of the power grows with the range [1/m]
+  double both_ways_;  ///< slope of the logarithm of the power over range [1/m]
 };
 
 }  // namespace pulsecast

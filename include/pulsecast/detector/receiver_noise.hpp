@@ -12,11 +12,11 @@
 
 namespace pulsecast {
 
-/// What a receiver measures besides the pulse: nothing, unless told otherwise. Each sample errs for itself.
+/// Receiver noise and background light, none by default. Samples are independent.
 struct ReceiverNoise {
-  double deviation = 0;           ///< standard deviation of the electronics' noise, in every sample, from 0 to 1e20 [W]
-  double background = 0;          ///< power of the sunlight that comes in with the pulse, from 0 to 1e20 [W]
-  double quantum_efficiency = 1;  ///< share of the photons of the background that are counted, in (0, 1]
+  double deviation = 0;           ///< standard deviation of the electronic noise per sample, from 0 to 1e20 [W]
+  double background = 0;          ///< received sunlight power, from 0 to 1e20 [W]
+  double quantum_efficiency = 1;  ///< share of background photons detected, in (0, 1]
 
   void validate() const {
     require_within("ReceiverNoise::deviation", deviation, 0, 1e20, "W");
@@ -27,8 +27,9 @@ struct ReceiverNoise {
 
   [[nodiscard]] bool none() const noexcept { return deviation == 0 && background == 0; }
 
-  /// Standard deviation of a sample [W]: electronics, and the shot noise of the background. The number of photons is Poisson-distributed,
-  /// so its variance is its mean; there are many in an interval, so it is taken for normal. Source: Liu et al. 2006, Applied Optics 45.
+  /// Standard deviation of a sample [W]: electronic noise, and shot noise of the background. The photon count is Poisson-distributed, with
+  /// a variance equal to its mean. It is large per interval, so a normal distribution approximates it. Source: Liu et al. 2006, Applied
+  /// Optics 45.
   [[nodiscard]] double deviation_of_sample(double wavelength, double interval) const noexcept {
     constexpr double planck = 6.62607015e-34;  // [J s]. Source: SI, exact by definition of the kilogram (26th CGPM, 2018)
     const double photon = planck * speed_of_light / wavelength;

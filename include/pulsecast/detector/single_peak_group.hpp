@@ -19,22 +19,22 @@
 
 namespace pulsecast {
 
-/// The sum of the pulse shapes of reflections so close to one another that the last one's leading edge comes in before the first one has
-/// peaked. All of them rise until then, so that the sum turns once, at its only peak. Reflections come in any order.
+/// Sum of the pulse shapes of reflections within 2 tau: the last leading edge arrives before the first pulse has peaked. All pulses rise
+/// until then, so the sum has a single peak. Reflections are in any order.
 ///
-/// An edge that passed an age u before the last one, in tau, gives P (u + x)^2 e^-(u + x) a time x after it. Weigh each by P e^-u: with
-/// the sums M0, M1 and M2 of the weights times u^0, u and u^2, the sum of pulses is e^-x (M2 + 2 M1 x + M0 x^2), and its slope is zero at
-/// x = 1 + sqrt(1 - v) - m, with the mean m = M1 / M0 and the variance v = M2 / M0 - m^2 of the ages. Derived from `PulseShape`.
+/// An edge that passed an age u [tau] before the last one contributes P (u + x)^2 e^-(u + x) a time x after it. Weight each by P e^-u; let
+/// M0, M1 and M2 be the sums of the weights times u^0, u and u^2. The sum of pulses is e^-x (M2 + 2 M1 x + M0 x^2). Its slope is zero at x
+/// = 1 + sqrt(1 - v) - m, with the mean m = M1 / M0 and the variance v = M2 / M0 - m^2 of the ages. Derived from `PulseShape`.
 class SinglePeakGroup {
  public:
-  /// A number a reflection, and lanes to spare.
+  /// Ages and weights, one per reflection, padded to whole SIMD vectors.
   struct Workspace {
     std::vector<double> ages, weights;
     explicit Workspace(std::size_t reflections) : ages(reflections + simd::lane_count), weights(reflections + simd::lane_count) {}
   };
 
-  /// Looks at reflections, and notes their ages and weights in a workspace, which is to be there as long as the group is. If they are none
-  /// (`!one()`), for being too far apart, too many for the workspace, without power, or of no range, nothing else is to be asked.
+  /// Computes ages and weights in a workspace that must outlive the group. `one()` is false for reflections that are none, too far apart,
+  /// more than the workspace holds, without power, or too far away. Nothing else may be called then.
   SinglePeakGroup(std::span<const Reflection> reflections, const PulseShape& shape, double sample_interval, Workspace& w) noexcept
       : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()), per_tau_(1 / shape.tau) {
     if (reflections.empty() || reflections.size() + simd::lane_count > w.ages.size()) return;
@@ -65,33 +65,33 @@ class SinglePeakGroup {
   }
 
   [[nodiscard]] bool one() const noexcept { return one_; }
-  [[nodiscard]] double last_edge() const noexcept { return last_edge_; }    ///< two-way travel time; times below count from there [s]
-  [[nodiscard]] double mean_range() const noexcept { return mean_range_; }  ///< of the reflections, weighed by their power [m]
+  [[nodiscard]] double last_edge() const noexcept { return last_edge_; }    ///< two-way travel time, origin of the times below [s]
+  [[nodiscard]] double mean_range() const noexcept { return mean_range_; }  ///< power-weighted mean of the reflections [m]
 
-  /// Of the peak of the sum [tau].
+  /// Time of the sum's peak since the last edge [tau].
   [[nodiscard]] double peak() const noexcept {
     const double mean = first_ / zeroth_, variance = second_ / zeroth_ - mean * mean;
     return 1 + (variance < 1 ? std::sqrt(1 - variance) : 0) - mean;  // rounding may bring it to 1
   }
 
-  /// The sum at times [tau] from the last edge on [W].
+  /// Sum at times [tau] since the last edge [W].
   [[nodiscard]] simd::Doubles power(const simd::Doubles& x) const noexcept {
     return PulseShape::to_unit_peak * exponential(simd::Doubles(-x)) * (second_ + x * (2 * first_ + x * zeroth_));
   }
 
-  /// Integrals over all of the sum, times counted from the last edge on [tau].
+  /// Integrals over the whole sum, about the last edge [tau].
   [[nodiscard]] WaveformMoments moments() const noexcept {
     double sum = 0, first = 0, second = 0;
     for (std::size_t j = 0; j < reflections_.size(); ++j) {
       const double p = reflections_[j].power, age = ages_[j];
       sum += p, first += p * age, second += p * age * age;
     }
-    // those of u^2 e^-u from 0 on are 2, 6 and 24
+    // the moments of u^2 e^-u from 0 on are 2, 6 and 24
     constexpr double c = PulseShape::to_unit_peak;
     return {c * 2 * sum, c * (6 * sum - 2 * first), c * (24 * sum - 12 * first + 2 * second)};
   }
 
-  /// What has the greatest share of the sum at a time from the last edge on [tau]; the first of several.
+  /// Reflection with the greatest share of the sum at a time since the last edge [tau]; the first of equals.
   [[nodiscard]] const Reflection& strongest(double x) const noexcept {
     simd::Doubles most{}, number{}, best{};
     for (std::size_t lane = 0; lane < simd::lane_count; ++lane) number[lane] = static_cast<double>(lane);
@@ -106,7 +106,7 @@ class SinglePeakGroup {
     return reflections_[static_cast<std::size_t>(best[first])];
   }
 
-  /// The only echo of the group, whose peak is at a time, two-way [s], and of a height [W].
+  /// The only echo of the group, for a peak at a two-way time [s] and of a height [W].
   [[nodiscard]] Echo echo(double time, double height, EchoTiming timing) const noexcept {
     const Reflection& most = strongest((time - last_edge_) * per_tau_);
     return {.range = timing == EchoTiming::energy ? mean_range_ : 0.5 * speed_of_light * time,

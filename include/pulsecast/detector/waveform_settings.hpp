@@ -10,32 +10,32 @@
 
 namespace pulsecast {
 
-/// What of an echo is timed: where on it its range is.
+/// Point of an echo that defines its range.
 enum class EchoTiming : std::uint8_t {
-  /// The mean of the reflections between its valleys, weighted by power: without bias, however the echo is drawn out. It is taken from the
-  /// true ranges of the subrays, which no instrument knows: an oracle, not a model of one.
+  /// Power-weighted mean of the reflections between its valleys: unbiased for an echo of any length. Taken from the true ranges of the
+  /// subrays, which no instrument knows: an oracle, not an instrument model.
   energy,
-  peak,  ///< its highest point: on a slope later than the mean, by a tau of `PulseShape` or so, as pulses rise faster than they fall
+  peak,  ///< maximum: on a slope about a tau of `PulseShape` later than the mean, as pulses rise faster than they fall
 };
 
 /// Settings of the waveform detectors. All times are two-way.
 ///
-/// A peak of the waveform is an echo if it passes, in this order: it reaches the threshold; it is not closer than `separation` to a peak
-/// before it, with which it would be one; it is the highest within the window; it comes after the dead time of the echo before it; it is
-/// among the first `returns_max`.
+/// A peak of the waveform is an echo if it passes these tests in order: it reaches the threshold; it is at least `separation` from the peak
+/// before it, else the two merge; it is the highest within the window; it is later than the dead time of the echo before it; it is among
+/// the first `returns_max`.
 ///
-/// Of all bins, these are on the front of docs/tradeoff.md, to within a few percent: at a sixteenth of a pulse they cost hardly more than
-/// wider ones, which lose echoes that are close to each other, and narrower ones gain little. Widths of echoes cost more than any other
-/// setting here, but for moments of `AnalyticWaveform`; so there are none unless they are asked for.
+/// The default bin is on the front of docs/tradeoff.md to within a few percent. At 1/16 of a pulse, bins cost hardly more than wider ones,
+/// which lose close echoes; narrower bins gain little. Widths cost more than any other setting, except for moments of `AnalyticWaveform`,
+/// so there are none by default.
 struct WaveformSettings {
-  double sample_interval = 0.25e-9;  ///< of the digitiser: one bin, from 1e-16 to 1; no longer than a pulse, where samples matter [s]
-  double threshold = 1e-12;          ///< weaker peaks are no echoes [W]
-  double separation = 0;             ///< peaks that are closer to each other are one, as high as the highest of them [s]
-  double window = 1e-9;              ///< an echo is the highest within this time before and after it [s]
-  double dead_time = 0;              ///< so long after the peak of an echo, there is no other [s]
-  std::size_t returns_max = 15;      ///< the first so many in order of range; at least 1
+  double sample_interval = 0.25e-9;  ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
+  double threshold = 1e-12;          ///< least power of an echo's peak [W]
+  double separation = 0;             ///< closer peaks merge, with the greater height [s]
+  double window = 1e-9;              ///< an echo is the highest peak within this time before and after it [s]
+  double dead_time = 0;              ///< no other echo within this time after an echo's peak [s]
+  std::size_t returns_max = 15;      ///< first echoes kept, in order of range; from 1 to 255
   EchoTiming timing = EchoTiming::energy;
-  double record_length = 0;    ///< how much of the waveform is kept, from its first sample on, at most 1e7 bins; 0 for none [s]
+  double record_length = 0;    ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
   double shape_divisor = 3.5;  ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
 
   void validate() const {
@@ -50,20 +50,21 @@ struct WaveformSettings {
   }
 
   static constexpr double max_kept = 1e7;     ///< samples of a record
-  static constexpr double max_samples = 1e4;  ///< in the length of a pulse, that `FullWaveform` takes
+  static constexpr double max_samples = 1e4;  ///< samples in a pulse length, for `FullWaveform`
 
-  /// Refuses bins that are longer than a pulse [s], which would fall between two samples, or so short that it has more than so many.
+  /// Refuses bins longer than a pulse [s], which could fall between two samples, or so short that a pulse has more than `most`. @throws
+  /// SettingError
   void require_sampled(double pulse_length, double most) const {
     if (sample_interval <= pulse_length && pulse_length <= most * sample_interval) return;
     throw SettingError("WaveformSettings::sample_interval", sample_interval, "s",
                        "from " + detail::to_text(pulse_length / most) + " to " + detail::to_text(pulse_length) + " for such a pulse");
   }
 
-  /// Peaks closer than this are one echo, for which all that is between its outer valleys counts: the separation; or else, as nobody tells
-  /// the lower from the flank of the higher, the window, unless it is wider than the pulse is long [s].
+  /// Least separation of two echoes [s]: the greater of `separation` and the shorter of window and pulse length, since a lower peak cannot
+  /// be told from the flank of a higher one. Closer peaks become one echo over the whole stretch between their outer valleys.
   [[nodiscard]] double min_separation(double pulse_length) const noexcept { return std::fmax(separation, std::fmin(window, pulse_length)); }
 
-  /// The most samples that a record can have.
+  /// Greatest number of samples of a record.
   [[nodiscard]] std::size_t record_capacity() const noexcept {
     return static_cast<std::size_t>(std::ceil(record_length / sample_interval));
   }

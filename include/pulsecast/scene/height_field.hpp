@@ -28,9 +28,9 @@ namespace pulsecast {
 
 namespace detail {
 
-inline constexpr std::uint32_t max_pixels = std::uint32_t{1} << 27;  ///< in a row or column
+inline constexpr std::uint32_t max_pixels = std::uint32_t{1} << 27;  ///< per row or column
 
-/// Where the pixels of a raster are: row 0 is the northernmost, column 0 the westernmost.
+/// Placement of a raster's pixels: row 0 is the northernmost, column 0 the westernmost.
 struct RasterGrid {
   std::uint32_t columns = 0, rows = 0;
   Vec2 first{}, pixel{1, 1};
@@ -42,7 +42,7 @@ struct RasterGrid {
   [[nodiscard]] std::size_t index(std::uint32_t column, std::uint32_t row) const noexcept { return std::size_t{row} * columns + column; }
 };
 
-/// The corners of a cell: north-west, south-west, south-east, north-east. Its triangles are (0, 1, 3) and (1, 2, 3).
+/// Corners of a cell: north-west, south-west, south-east, north-east. Its triangles are (0, 1, 3) and (1, 2, 3).
 struct RasterCell {
   std::uint32_t column, row;
   float heights[4];
@@ -52,7 +52,7 @@ struct RasterCell {
     heights[0] = north[0], heights[1] = south[0], heights[2] = south[1], heights[3] = north[1];
   }
 
-  /// Whether a triangle's corners are there; no comparison holds for those that are missing.
+  /// True if no corner of a triangle is missing, that is NaN.
   [[nodiscard]] bool has(int triangle) const noexcept {
     const float own = heights[2 * triangle];
     return own == own && heights[1] == heights[1] && heights[3] == heights[3];
@@ -69,22 +69,22 @@ struct RasterCell {
 
 }  // namespace detail
 
-/// Heights at the centres of pixels, as a file of terrain has them. Between the centres of four pixels there are two triangles that meet
-/// along the diagonal from south-west to north-east; one is left out where a corner is missing.
+/// Heights at pixel centres, as in a terrain file. Between the centres of four pixels there are two triangles that meet along the
+/// south-west to north-east diagonal; a triangle with a missing corner is left out.
 struct Raster {
-  std::uint32_t columns = 0, rows = 0;  ///< pixels, at least 2 each
+  std::uint32_t columns = 0, rows = 0;  ///< pixels, from 2 to 2^27 each
   Vec2 first{};                         ///< centre of the first pixel, in the north-west [m east, m north]
-  Vec2 pixel{1, 1};                     ///< from centre to centre: to the next column in the east, to the next row in the south [m]
-  std::vector<float> heights{};         ///< row by row from the north [m]; NaN where it is missing
+  Vec2 pixel{1, 1};                     ///< spacing of the centres, to the next column in the east and the next row in the south [m]
+  std::vector<float> heights{};         ///< heights, row by row from the north [m]; NaN if missing
 
   void validate() const {
     require_within("Raster::columns", columns, 2, detail::max_pixels, "");
     require_within("Raster::rows", rows, 2, detail::max_pixels, "");
-    // two primitives a cell, and `ClosestHits::none` is none of them
+    // two primitives per cell, none of which is `ClosestHits::none`
     require_within("Raster::columns and rows, cells between them", (columns - 1.0) * (rows - 1.0), 1, 2147483647, "");
     require_within("Raster::first.x", first.x, -1e15, 1e15, "m");
     require_within("Raster::first.y", first.y, -1e15, 1e15, "m");
-    // far from the origin, coordinates round: by an eighth of these pixels, and so no two of them fall together
+    // far from the origin, coordinates round by at most an eighth of the least pixel, so no two centres coincide
     constexpr double least = 4 * std::numeric_limits<double>::epsilon();
     require_within("Raster::pixel.x", pixel.x, std::max(1e-9, least * std::fabs(first.x)), 1e6, "m");
     require_within("Raster::pixel.y", pixel.y, std::max(1e-9, least * std::fabs(first.y)), 1e6, "m");
@@ -99,7 +99,7 @@ struct Raster {
 
   [[nodiscard]] detail::RasterGrid grid() const noexcept { return {columns, rows, first, pixel}; }
 
-  /// The same ground as a mesh. It takes some 13 times the memory, and gives the same answers.
+  /// The same ground as a mesh, with the same hits and some 13 times the memory. @throws SettingError as `validate`
   [[nodiscard]] MeshData mesh() const {
     validate();
     constexpr std::uint32_t missing = std::numeric_limits<std::uint32_t>::max();
@@ -127,16 +127,16 @@ struct Raster {
   }
 };
 
-/// The ground of a raster, met as `Raster::mesh()` would be, bit by bit, without any triangle being stored: 5.2 bytes a cell. Both sides
-/// count. The two triangles of cell i, row by row, are primitives 2 i and 2 i + 1.
-/// A pyramid of least and greatest heights, eight to one, tells where rays may be near the ground. A bundle goes through it as a whole,
-/// front to back: row by row and column by column in the order in which it passes them.
+/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell. Two-sided. The two
+/// triangles of cell i, row by row, are primitives 2 i and 2 i + 1.
+/// A min-max pyramid of heights, eight children per node, bounds the ground for rays. A bundle traverses it as a whole, front to back: row
+/// by row and column by column in the order of passage.
 /// Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic).
 class HeightField {
  public:
   static constexpr bool flat = true;
 
-  /// `threads`: how many build it, as `thread_count` says.
+  /// `threads`: build threads, as in `thread_count`. @throws SettingError as `Raster::validate`
   explicit HeightField(Raster raster, unsigned threads = 0) {
     raster.validate();
     grid_ = raster.grid();
@@ -150,7 +150,7 @@ class HeightField {
     a(grid_, levels_, top_, per_metre_, pad_, centre_, bounds_, heights_, pyramid_);
   }
 
-  /// Whether the arrays are as long as the grid says.
+  /// True if the array sizes match the grid.
   [[nodiscard]] bool is_consistent() const noexcept {
     if (grid_.columns < 2 || grid_.rows < 2 || grid_.columns > detail::max_pixels || grid_.rows > detail::max_pixels) return false;
     HeightField other(DeserializeTag{});
@@ -166,7 +166,7 @@ class HeightField {
   [[nodiscard]] std::size_t memory() const noexcept { return heights_.memory() + pyramid_.memory(); }
   [[nodiscard]] std::size_t material_count() const noexcept { return 1; }
 
-  /// The triangle of a number [m]; its missing corners are NaN.
+  /// Triangle of primitive i [m]; its missing corners are NaN.
   [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept {
     const std::uint32_t cell = i / 2, cells = grid_.columns - 1;
     return detail::RasterCell(grid_, heights_.data(), cell % cells, cell / cells).triangle(grid_, static_cast<int>(i % 2));
@@ -178,7 +178,7 @@ class HeightField {
     auto span = walk.interval.inside(slab(static_cast<float>(bounds_.min.z), static_cast<float>(bounds_.max.z)));
     Cells cells{0, levels_[0].columns - 1, 0, levels_[0].rows - 1};
     if (span.empty() || !walk.narrow(span, cells)) return;
-    // rays are near the ground only between the greatest height and the least of the cells that they pass, and pass fewer there
+    // clips the span to the heights of the cells passed, and these to the span, while that helps
     unsigned level = level_of(cells, top_);
     for (std::size_t before = std::numeric_limits<std::size_t>::max() / 4; cells.count() > 1 && 4 * cells.count() <= 3 * before;) {
       before = cells.count();
@@ -208,56 +208,56 @@ class HeightField {
  private:
   static constexpr float most = std::numeric_limits<float>::max();
 
-  static constexpr std::size_t few = 4;  ///< cells are tested without more ado
+  static constexpr std::size_t few = 4;  ///< cells up to this number are tested without traversal
 
-  /// A rectangle of cells or nodes, its ends within it.
+  /// Rectangle of cells or nodes, ends included.
   struct Cells {
     std::uint32_t west, east, north, south;
 
     [[nodiscard]] std::size_t count() const noexcept { return (std::size_t{east} - west + 1) * (south - north + 1); }
-    /// The nodes that hold them, as wide and as high as these powers of 2.
+    /// Nodes that hold the cells; a node is 2^wide by 2^tall cells.
     [[nodiscard]] Cells in_nodes(std::uint32_t wide, std::uint32_t tall) const noexcept {
       return {west >> wide, east >> wide, north >> tall, south >> tall};
     }
   };
 
-  /// Level 0 are the cells. A node of each further one has eight children in the one below: 4 by 2 cells, 2 by 4 of these, and so on by
-  /// turns. The heights of the children stand in `pyramid_`, node by node: eight least, then eight greatest; where there is no triangle,
-  /// the span that nothing is inside of.
+  /// Level 0 are the cells. A node of a higher level has eight children in the level below: 4 by 2 cells, then alternately 2 by 4 and 4 by
+  /// 2 nodes. `pyramid_` holds the heights of the children, node by node: eight minima, then eight maxima; an empty interval where there is
+  /// no triangle.
   struct Level {
     std::uint32_t columns = 0, rows = 0;
-    std::size_t begin = 0;                 ///< in `pyramid_`
-    std::array<std::uint32_t, 2> shift{};  ///< the width and height of a node are these powers of 2, in cells
-    std::array<std::uint32_t, 2> below{};  ///< the same of its children
-    std::array<float, 8> east{}, south{};  ///< where its children begin, from its own corner in the north-west [m]
-    std::array<float, 2> size{};           ///< of a child, to the east and to the south [m]
+    std::size_t begin = 0;                 ///< begin in `pyramid_`
+    std::array<std::uint32_t, 2> shift{};  ///< log2 of a node's width and height [cells]
+    std::array<std::uint32_t, 2> below{};  ///< log2 of a child's width and height [cells]
+    std::array<float, 8> east{}, south{};  ///< offsets of the children from the node's north-west corner [m]
+    std::array<float, 2> size{};           ///< size of a child, east and south [m]
 
     [[nodiscard]] std::size_t node(std::uint32_t column, std::uint32_t row) const noexcept {
       return begin + (std::size_t{row} * columns + column) * 16;
     }
-    /// Where the least height of a child is, by its own column and row; the greatest is eight numbers on.
+    /// Index of a child's least height, by the child's column and row; the greatest is eight numbers on.
     [[nodiscard]] std::size_t of_child(std::uint32_t column, std::uint32_t row) const noexcept {
       const std::uint32_t w = wide(), tall = 3 - w;
       return node(column >> w, row >> tall) + (column & ((1U << w) - 1)) + ((row & ((1U << tall) - 1)) << w);
     }
-    /// The bits of a child's place that are its column.
+    /// Number of column bits in a child's slot.
     [[nodiscard]] std::uint32_t wide() const noexcept { return shift[0] - below[0]; }
     friend bool operator==(const Level&, const Level&) = default;
   };
-  static constexpr std::size_t max_levels = 18;  // as two of them make 8 by 8 to one
+  static constexpr std::size_t max_levels = 18;  // two levels reduce 8 by 8 nodes to one
 
-  /// One bundle on its way.
+  /// Traversal of one bundle.
   struct Walk {
     const RayBundle& rays;
     ClosestHits& nearest;
     BundleInterval<float> interval;
-    double least[2], greatest[2];  ///< of the directions, in pixels to the east and to the south
-    double from[2], slack[2];      ///< origin and what rounding may make of it, likewise
-    float pad[2];                  ///< walls of cells err by less [m]
-    bool westward, northward;      ///< which nodes come first
-    unsigned turns[2];             ///< and which children of a node, by its `wide()` less one: see `turned`
+    double least[2], greatest[2];  ///< bounds of the directions [pixels east and south]
+    double from[2], slack[2];      ///< origin and its bound of rounding [pixels east and south]
+    float pad[2];                  ///< error bound of cell walls [m]
+    bool westward, northward;      ///< order of traversal of nodes
+    unsigned turns[2];             ///< child permutation of a node, by its `wide()` less one, for `turned`
     float limit;
-    std::array<Triangle, simd::lane_count> triangles;  ///< to be tested, and their numbers
+    std::array<Triangle, simd::lane_count> triangles;  ///< batch to be tested, with its primitives
     std::array<PrimitiveIndex, simd::lane_count> primitives;
     std::size_t taken = 0;
 
@@ -278,7 +278,7 @@ class HeightField {
 
     using Span = BundleInterval<float>::Span;
 
-    /// Takes the triangles of a cell to be tested, as soon as there are enough to be tested at once.
+    /// Adds the triangles of a cell to the batch; tests it when full.
     void take(const HeightField& field, std::uint32_t column, std::uint32_t row) noexcept {
       const detail::RasterCell cell(field.grid_, field.heights_.data(), column, row);
       const auto first = static_cast<PrimitiveIndex>(2 * (std::size_t{row} * (field.grid_.columns - 1) + column));
@@ -288,7 +288,7 @@ class HeightField {
       if (taken + 2 > triangles.size()) test();
     }
 
-    /// Tests what was taken.
+    /// Tests the batch.
     void test() noexcept {
       if (taken == 0) return;
       const auto triangle_of = [this](std::size_t n) noexcept { return triangles[n]; };
@@ -296,12 +296,12 @@ class HeightField {
       taken = 0, limit = round_up<float>(nearest.limit(rays));
     }
 
-    /// Narrows a rectangle to the cells that any ray passes in a stretch of range. False if nothing is left.
+    /// Clips a rectangle to the cells that any ray passes in a range interval. False if none is left.
     [[nodiscard]] bool narrow(const Span& span, Cells& cells) const noexcept {
       return narrow(0, span, cells.west, cells.east) && narrow(1, span, cells.north, cells.south);
     }
 
-    /// The same by columns (k = 0) or rows (k = 1).
+    /// Clips columns (k = 0) or rows (k = 1).
     [[nodiscard]] bool narrow(int k, const Span& span, std::uint32_t& low, std::uint32_t& high) const noexcept {
       const auto entry = static_cast<double>(span.entry), exit = static_cast<double>(span.exit);
       const double a = from[k] + least[k] * (least[k] < 0 ? exit : entry) - slack[k];
@@ -313,10 +313,10 @@ class HeightField {
     }
   };
 
-  /// All that is between two heights.
+  /// Slab between two heights.
   static BoundingBox<float> slab(float low, float high) noexcept { return {{-most, -most, low}, {most, most, high}}; }
 
-  /// The lowest level on which two nodes by two hold the cells, from one down on which they do; the top one is taken to.
+  /// Lowest level, from `level` down, on which at most 2 by 2 nodes hold the cells. The start level must do so, or be the top.
   [[nodiscard]] unsigned level_of(const Cells& cells, unsigned level) const noexcept {
     for (; level > 0; --level) {
       const Cells nodes = cells.in_nodes(levels_[level - 1].shift[0], levels_[level - 1].shift[1]);
@@ -328,12 +328,12 @@ class HeightField {
   struct Heights {
     float least = most, greatest = -most;
 
-    void extend(float low, float high) noexcept {  // what is missing passes no comparison
+    void extend(float low, float high) noexcept {  // NaN fails every comparison
       least = low < least ? low : least, greatest = high > greatest ? high : greatest;
     }
   };
 
-  /// What the heights of cells are between, by the nodes of a level that hold them.
+  /// Bounds of the heights of cells, from the nodes of a level that hold them.
   [[nodiscard]] Heights heights(const Cells& cells, unsigned level) const noexcept {
     Heights all;
     if (level == top_) {
@@ -373,7 +373,7 @@ class HeightField {
     if (level == 1) walk.test();
   }
 
-  /// Moves bit i of eight to the place i ^ turn.
+  /// Moves bit i of eight to position i ^ turn.
   static unsigned turned(unsigned bits, unsigned turn) noexcept {
     if ((turn & 1U) != 0) bits = (bits & 0x55U) << 1 | (bits >> 1 & 0x55U);
     if ((turn & 2U) != 0) bits = (bits & 0x33U) << 2 | (bits >> 2 & 0x33U);
@@ -381,7 +381,7 @@ class HeightField {
     return bits;
   }
 
-  /// Enters the walls of a node's children.
+  /// Sets the walls of a node's children.
   void put_walls(Box8<float>& boxes, const Walk& walk, const Level& own, std::uint32_t column, std::uint32_t row) const noexcept {
     const float west = west_of(column << own.shift[0]) - walk.pad[0], north = north_of(row << own.shift[1]) + walk.pad[1];
     const float width = own.size[0] + 2 * walk.pad[0], height = own.size[1] + 2 * walk.pad[1];
@@ -393,7 +393,7 @@ class HeightField {
     }
   }
 
-  /// Enters the heights of a node's children, and gives the places of those that are in the raster.
+  /// Sets the heights of a node's children and returns the mask of those in the raster.
   unsigned put_nodes(Box8<float>& boxes, unsigned level, std::uint32_t column, std::uint32_t row) const noexcept {
     const Level &own = levels_[level], &below = levels_[level - 1];
     const float* heights = pyramid_.data() + own.node(column, row);
@@ -401,11 +401,11 @@ class HeightField {
     const std::uint32_t wide = own.wide(), tall = 3 - wide;
     const std::uint32_t columns = below.columns - (column << wide), rows = below.rows - (row << tall);
     unsigned taken = rows >= 1U << tall ? 0xFF : (1U << (rows << wide)) - 1;
-    if (columns < 1U << wide) taken &= ((1U << columns) - 1) * (wide == 1 ? 0x55 : 0x11);  // in each row of them
+    if (columns < 1U << wide) taken &= ((1U << columns) - 1) * (wide == 1 ? 0x55 : 0x11);  // masks each row of children
     return taken;
   }
 
-  /// Enters the heights of 4 by 2 cells, and gives the places of those that are in the raster.
+  /// Sets the heights of 4 by 2 cells and returns the mask of those in the raster.
   unsigned put_cells(Box8<float>& boxes, std::uint32_t column, std::uint32_t row) const noexcept {
     using FourHeights = simd::Vec<float, 4>;
     const std::uint32_t c = 4 * column, r = 2 * row;
@@ -413,7 +413,7 @@ class HeightField {
     rows[1] = rows[0] + grid_.columns, rows[2] = rows[1] + grid_.columns;
     float ends[3][5];
     unsigned taken = 0xFF;
-    if (c + 5 > grid_.columns || r + 3 > grid_.rows) {  // the last ones
+    if (c + 5 > grid_.columns || r + 3 > grid_.rows) {  // at the raster's edge
       const std::uint32_t wide = std::min(grid_.columns - c, 5U), high = std::min(grid_.rows - r, 3U);
       for (std::uint32_t i = 0; i < 3; ++i) {
         const float* from = rows[0] + std::size_t{std::min(i, high - 1)} * grid_.columns;
@@ -427,7 +427,7 @@ class HeightField {
     FourHeights low[3], high[3];
     for (std::size_t i = 0; i < 3; ++i) {
       low[i] = zero + most, high[i] = zero - most;
-      for (const float* from : {rows[i], rows[i] + 1}) {  // what is missing passes no comparison
+      for (const float* from : {rows[i], rows[i] + 1}) {  // NaN fails every comparison
         const FourHeights heights = simd::load<FourHeights>(*from);
         low[i] = heights < low[i] ? heights : low[i], high[i] = heights > high[i] ? heights : high[i];
       }
@@ -445,7 +445,7 @@ class HeightField {
   }
   [[nodiscard]] float north_of(std::uint32_t row) const noexcept { return static_cast<float>((0.5 * grid_.rows - row) * grid_.pixel.y); }
 
-  /// Finds the levels of the grid, and how many numbers the pyramid has.
+  /// Lays out the levels of the grid and returns the size of the pyramid.
   std::size_t lay_out() noexcept {
     levels_ = {};
     levels_[0] = {.columns = grid_.columns - 1, .rows = grid_.rows - 1};
@@ -463,7 +463,7 @@ class HeightField {
         level.east[i] = static_cast<float>(((i & ((1U << wide) - 1)) << below.shift[0]) * grid_.pixel.x);
         level.south[i] = static_cast<float>((i >> wide << below.shift[1]) * grid_.pixel.y);
       }
-      if (top_ > 1) size = level.node(0, level.rows);  // of the cells, the heights themselves tell
+      if (top_ > 1) size = level.node(0, level.rows);  // level 1 reads the heights themselves
     } while (levels_[top_].columns > 1 || levels_[top_].rows > 1);
     return size;
   }
@@ -476,7 +476,7 @@ class HeightField {
     std::vector<float> pyramid(lay_out());
     for (std::size_t i = 0; i < pyramid.size(); ++i) pyramid[i] = i % 16 < 8 ? most : -most;
     std::vector<Box> grounds(levels_[1].rows);
-    if (heights_.size() < 1'000'000) threads = 1;  // threads would take longer to start
+    if (heights_.size() < 1'000'000) threads = 1;  // starting threads would take longer
     for (unsigned level = 1; level <= top_; ++level)
       for_each_index(levels_[level].rows, level <= 2 ? threads : 1, [&](std::size_t task) {
         const auto row = static_cast<std::uint32_t>(task);
@@ -500,7 +500,7 @@ class HeightField {
     pyramid_ = std::move(pyramid);
   }
 
-  /// What holds the triangles of 4 by 2 cells.
+  /// Bounding box of the triangles of 4 by 2 cells.
   [[nodiscard]] Box ground_of(std::uint32_t node_column, std::uint32_t node_row) const {
     const std::uint32_t west = 4 * node_column, north = 2 * node_row;
     const std::uint32_t east = std::min(west + 4, grid_.columns - 1), south = std::min(north + 2, grid_.rows - 1);
@@ -526,9 +526,9 @@ class HeightField {
   detail::RasterGrid grid_;
   std::array<Level, max_levels + 1> levels_{};
   std::uint32_t top_ = 0;
-  Vec2 per_metre_{};  ///< pixels to the east a metre to the east, and to the south a metre to the north
-  Vec2 pad_{};        ///< what single precision may make of walls [m]
-  Vec3 centre_{};     ///< of the raster, at height 0, so that heights are exact
+  Vec2 per_metre_{};  ///< pixels east per metre east, and pixels south per metre north
+  Vec2 pad_{};        ///< error bound of walls in single precision [m]
+  Vec3 centre_{};     ///< centre of the raster, at height 0, so that heights are exact
   Box bounds_;
   SharedArray<float> heights_, pyramid_;
 };

@@ -12,27 +12,27 @@
 
 namespace pulsecast {
 
-/// A cell of a lattice, along x, y and z.
+/// Cell of a lattice, along x, y and z.
 using LatticeCell = std::array<std::int32_t, 3>;
 
-/// Where a ray crosses a plane of a lattice. Crossings are in order of range; at exactly equal range x comes before y before z, as for a
-/// ray that is moved aside by next to nothing. So a ray through an edge or a corner still goes from a cell to its neighbour by a face.
+/// Crossing of a ray and a lattice plane. Crossings are ordered by range; at exactly equal range x comes before y before z, as by symbolic
+/// perturbation. So a ray through an edge or a corner still passes from a cell to its neighbour through a face.
 struct Crossing {
-  static constexpr int begin = 3;  ///< in place of an axis: where the ray begins to count, after all that it crosses at that range
+  static constexpr int begin = 3;  ///< in place of an axis: begin of the ray, after all crossings at that range
 
   double range = 0;  ///< [m]
-  int axis = begin;  ///< that the plane is across
+  int axis = begin;  ///< normal axis of the plane
 
   [[nodiscard]] bool before(const Crossing& other) const noexcept {
     return range < other.range || (range == other.range && axis < other.axis);
   }
 };
 
-/// A ray among the planes of a lattice of cubes. A plane of one number is crossed at one range, to the last bit, whichever of the cells
-/// at its sides asks: neighbours leave no gap. A cell owns the least of its faces, for rays that go along them.
+/// Ray among the planes of a lattice of cubes. The range of a plane's crossing is the same to the last bit for the cells on both sides, so
+/// neighbours leave no gap. A cell owns its lower faces, for rays that run along them.
 class LatticeRay {
  public:
-  /// `corner` is where the planes 0 meet.
+  /// `corner`: meeting point of the planes 0 [m]; `edge`: edge of a cell [m].
   LatticeRay(const Vec3& corner, double edge, const RayBundle& rays, std::size_t j) noexcept : edge_(edge), per_edge_(1 / edge) {
     const Vec3 direction = rays.direction(j);
     for (int k = 0; k < 3; ++k) {
@@ -44,28 +44,28 @@ class LatticeRay {
     valid_ = finite(rays.origin) && finite(direction) && (sense_[0] != 0 || sense_[1] != 0 || sense_[2] != 0);
   }
 
-  /// Whether it goes anywhere.
+  /// True if origin and direction are finite and the ray moves along at least one axis.
   [[nodiscard]] bool valid() const noexcept { return valid_; }
 
-  /// +1 or -1, or 0 if the ray stays between two planes.
+  /// Sign of the direction, +1 or -1; 0 if the ray stays between two planes.
   [[nodiscard]] int sense(int k) const noexcept { return sense_[static_cast<std::size_t>(k)]; }
 
-  /// Of the plane of a number, whole or not, across an axis along which the ray goes.
+  /// Crossing with a plane by its number, whole or not. Requires sense(k) != 0.
   [[nodiscard]] Crossing crossing(int k, double plane) const noexcept {
     const auto axis = static_cast<std::size_t>(k);
     return {(start_[axis] + edge_ * plane) * per_speed_[axis], k};
   }
 
-  /// Whether a ray that does not go along the axis stays at or above a plane.
+  /// True if a ray with sense(k) = 0 is at or above a plane.
   [[nodiscard]] bool above(int k, double plane) const noexcept { return start_[static_cast<std::size_t>(k)] + edge_ * plane <= 0; }
 
-  /// Position along an axis, in edges, give or take rounding.
+  /// Position along an axis at a range [m], up to rounding [edges].
   [[nodiscard]] double position(int k, double range) const noexcept {
     const auto axis = static_cast<std::size_t>(k);
     return (range * speed_[axis] - start_[axis]) * per_edge_;
   }
 
-  /// Where the ray enters and leaves a box, in edges; nothing of it is inside unless one is before the other.
+  /// Entry into and exit from a box [edges]. The ray misses the box unless `in` is before `out`.
   struct Passage {
     Crossing in{-std::numeric_limits<double>::infinity(), 0}, out{std::numeric_limits<double>::infinity(), 0};
   };

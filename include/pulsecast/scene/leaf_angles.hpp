@@ -16,37 +16,38 @@
 
 namespace pulsecast {
 
-/// How much leaves face a direction.
+/// Mean projection of leaves at one zenith angle.
 struct LeafProjection {
   double zenith = 0;  ///< angle between the direction and the vertical, in [0, pi/2] [rad]
   double g = 0;       ///< mean projection of unit leaf area onto the plane across the direction, in [0, 1]
 };
 
-/// How the leaves of a plant are inclined; they face all azimuths and both sides alike. What a beam meets of them is
-/// G(direction), the mean projection of unit leaf area onto the plane across the direction (Ross 1981); over all directions it has the
-/// mean 1/2, however the leaves stand. As made, spherical. Copies share their table.
+/// Leaf inclination distribution of a plant, uniform in azimuth and equal for both sides. It gives G(direction), the mean projection of
+/// unit leaf area onto the plane across the direction (Ross 1981). The mean of G over all directions is 1/2 for any distribution. Spherical
+/// by default. Copies share their table.
 class LeafAngles {
  public:
   LeafAngles() = default;
 
-  /// As the surface of a sphere: G is 1/2 in all directions.
+  /// Inclinations of a sphere's surface: G is 1/2 in all directions.
   [[nodiscard]] static LeafAngles spherical() { return {}; }
 
-  // Densities of the inclination t of leaves, from 0 (lying) to pi/2 (standing). Source: de Wit 1965; closed forms: Goel & Strebel 1984.
+  // Densities of leaf inclination t, from 0 (horizontal) to pi/2 (vertical). Source: de Wit 1965; closed forms: Goel & Strebel 1984.
 
-  /// Mostly lying.
+  /// Mostly horizontal.
   [[nodiscard]] static LeafAngles planophile() { return of_density({.second = 1}); }
-  /// Mostly standing.
+  /// Mostly vertical.
   [[nodiscard]] static LeafAngles erectophile() { return of_density({.second = -1}); }
   /// Mostly oblique.
   [[nodiscard]] static LeafAngles plagiophile() { return of_density({.fourth = -1}); }
-  /// Mostly either lying or standing.
+  /// Mostly either horizontal or vertical.
   [[nodiscard]] static LeafAngles extremophile() { return of_density({.fourth = 1}); }
-  /// Every inclination as likely as every other.
+  /// Uniform in inclination.
   [[nodiscard]] static LeafAngles uniform() { return of_density({}); }
 
-  /// As the surface of an ellipsoid whose horizontal axes are `chi` times the vertical one: 1 is spherical, less stands, more lies.
-  /// Source: Campbell 1986; the surface of the ellipsoid is its exact one.
+  /// Inclinations of an ellipsoid's surface, with horizontal axes `chi` times the vertical one: spherical at 1, more vertical below, more
+  /// horizontal above. Source: Campbell 1986, with the exact surface of the ellipsoid.
+  /// @throws SettingError unless `chi` is from 1e-6 to 1e6
   [[nodiscard]] static LeafAngles ellipsoidal(double chi) {
     require_within("LeafAngles::ellipsoidal (chi)", chi, 1e-6, 1e6, "");
     LeafAngles made;
@@ -59,8 +60,8 @@ class LeafAngles {
     return made;
   }
 
-  /// G by the angle between direction and vertical, in any order, none twice; linear in between, and as the nearest before the first
-  /// and behind the last. Refuses a hole: 10 degrees without an entry are bridged, more are not.
+  /// G by zenith angle, in any order without duplicates; linear in between, constant before the first and after the last.
+  /// @throws SettingError for values out of range, duplicates, or gaps of more than 10 degrees, also at the ends
   [[nodiscard]] static LeafAngles table(std::vector<LeafProjection> entries) {
     constexpr double widest = 10 * pi / 180 * (1 + 1e-6);
     for (const LeafProjection& entry : entries) {
@@ -79,7 +80,7 @@ class LeafAngles {
     return made;
   }
 
-  /// G for light that goes along a direction of any length but zero, z being the vertical; within 1e-6 of the integral that defines it.
+  /// G for light along a direction of any non-zero length, z being the vertical; within 1e-6 of the defining integral.
   [[nodiscard]] double projection(const Vec3& direction) const noexcept {
     const double level = std::hypot(direction.x, direction.y), steep = std::fabs(direction.z);
     if (table_.empty()) return std::hypot(chi_ * steep, level) / (std::hypot(steep, level) * half_surface_);
@@ -100,7 +101,7 @@ class LeafAngles {
   }
 
  private:
-  /// Intervals of zenith angle that G is kept for: linear in between, it is within 2e-7 of its integral.
+  /// Zenith intervals of the table of G: linear interpolation is within 2e-7 of the integral.
   static constexpr std::size_t intervals = 2048;
 
   static void require_no_hole(double from, double to, double widest) {
@@ -125,7 +126,7 @@ class LeafAngles {
     return made;
   }
 
-  /// Where and with what weight to take an integrand over [0, 1]: exact for polynomials up to the degree 47.
+  /// Nodes and weights of a quadrature over [0, 1], exact for polynomials up to degree 47.
   /// Source: Gauss-Legendre quadrature; the nodes by Newton's method (Press et al. 2007, section 4.6).
   struct Nodes {
     static constexpr std::size_t size = 24;
@@ -148,8 +149,8 @@ class LeafAngles {
     }
   };
 
-  /// The integral over all inclinations of their density and of how much a leaf of that inclination, at any azimuth, faces the direction.
-  /// Source: Ross 1981; Goel & Strebel 1984. Leaves less inclined than pi/2 - zenith show one side whatever their azimuth.
+  /// G at a zenith angle: integral over all inclinations of density times mean projection, at any azimuth.
+  /// Source: Ross 1981; Goel & Strebel 1984. Leaves less inclined than pi/2 - zenith show one side at any azimuth.
   static double projection(const Density& density, double zenith, const Nodes& nodes) noexcept {
     const double c = std::cos(zenith), s = std::sin(zenith), one_sided = pi / 2 - zenith;
     double sum = 0;
@@ -158,16 +159,16 @@ class LeafAngles {
       const double lying = one_sided * u;
       sum += nodes.weight[i] * one_sided * density(lying) * c * std::cos(lying);
       if (s == 0) continue;
-      const double standing = one_sided + zenith * u * u;  // what follows goes with the root of the distance from `one_sided`
+      const double standing = one_sided + zenith * u * u;  // the integrand grows with the root of the distance from `one_sided`
       const double cos_t = std::cos(standing), sin_t = std::sin(standing);
-      const double turn = std::acos(std::min(c * cos_t / (s * sin_t), 1.0));  // azimuth at which the leaf is seen edge on
+      const double turn = std::acos(std::min(c * cos_t / (s * sin_t), 1.0));  // azimuth of the leaf seen edge-on
       const double facing = c * cos_t * (1 - 2 / pi * turn) + 2 / pi * s * sin_t * std::sin(turn);
       sum += nodes.weight[i] * 2 * zenith * u * density(standing) * facing;
     }
     return sum;
   }
 
-  double chi_ = 1, half_surface_ = 2;  ///< of the ellipsoid; a sphere, unless there is a table
+  double chi_ = 1, half_surface_ = 2;  ///< shape of the ellipsoid; a sphere unless there is a table
   SharedArray<LeafProjection> table_;
 };
 

@@ -12,21 +12,21 @@
 
 namespace pulsecast {
 
-/// The angular law by which a surface sends light back to where it came from.
+/// Angular law of the light that a surface scatters back to its source.
 enum class Scattering : std::uint8_t {
-  lambert,                ///< falls with the cosine of the incidence
-  phong,                  ///< Lambert and a glossy lobe
-  direction_independent,  ///< the same from everywhere
+  lambert,                ///< proportional to the cosine of incidence
+  phong,                  ///< Lambert and a specular lobe
+  direction_independent,  ///< equal at any incidence
 };
 
-/// What a surface of a material sends back of light of one wavelength, by the cosine of the incidence.
-/// Source: Jutzi & Gross 2009; the lobe stands about the mirror direction, twice the incidence away, and ends at 90 degrees.
+/// Backscatter of a material at one wavelength, by the cosine of incidence.
+/// Source: Jutzi & Gross 2009; the lobe is about the mirror direction, twice the incidence away, and ends at 90 degrees.
 struct Backscatter {
-  double reflectance = 0;                 ///< a fraction, of which the other three have shares
-  double even = 0, cosine = 0, lobe = 0;  ///< the same from everywhere; as the cosine; as a glossy lobe
-  double exponent = 0;                    ///< of the lobe
+  double reflectance = 0;                 ///< a fraction, split into the three shares below
+  double even = 0, cosine = 0, lobe = 0;  ///< shares: isotropic; Lambertian; specular lobe
+  double exponent = 0;                    ///< exponent of the lobe
 
-  /// For light that arrives at an angle of this cosine, in [0, 1], and returns the way it came.
+  /// Backscatter towards the source at a cosine of incidence in [0, 1].
   [[nodiscard]] double operator()(double cos_incidence) const noexcept {
     const double rough = cosine * cos_incidence + even;
     if (lobe == 0) return reflectance * rough;
@@ -35,29 +35,30 @@ struct Backscatter {
   }
 };
 
-/// What a surface is made of.
+/// Surface material.
 struct Material {
   std::string name = "default";
-  double reflectance = 0.5;  ///< at the laser's wavelength, a fraction: in [0, 1]; does not count where there is a spectrum
+  double reflectance = 0.5;  ///< at the laser's wavelength, a fraction in [0, 1]; ignored with a spectrum
   Scattering scattering = Scattering::lambert;
-  double specular_share = 0;                   ///< of the reflectance, in the glossy lobe of Phong's law: in [0, 1]
-  double specular_exponent = 10;               ///< of that lobe, at least 0
-  std::uint16_t classification = 0;            ///< ASPRS class that its points get
-  bool ground = false;                         ///< may carry set-ups and vehicles
-  std::shared_ptr<const Spectrum> spectrum{};  ///< reflectance by wavelength, for several materials perhaps; empty if it is the same at all
+  double specular_share = 0;                   ///< share of the reflectance in the lobe of Phong's law, in [0, 1]
+  double specular_exponent = 10;               ///< exponent of that lobe, at least 0
+  std::uint16_t classification = 0;            ///< ASPRS class of its points
+  bool ground = false;                         ///< true if it may carry set-ups and vehicles
+  std::shared_ptr<const Spectrum> spectrum{};  ///< reflectance by wavelength, shareable; empty for a constant reflectance
 
+  /// @throws SettingError for values out of range
   void validate() const {
     require_within("Material::reflectance", reflectance, 0, 1, "");
     require_within("Material::specular_share", specular_share, 0, 1, "");
     require_not_negative("Material::specular_exponent", specular_exponent, "");
   }
 
-  /// For light of a wavelength [m]: a fraction.
+  /// Reflectance at a wavelength [m], a fraction.
   [[nodiscard]] double reflectance_at(double wavelength) const noexcept {
     return spectrum ? spectrum->reflectance(wavelength) : reflectance;
   }
 
-  /// Reflectance times the angular law, for light of a wavelength [m].
+  /// Reflectance times the angular law, at a wavelength [m].
   [[nodiscard]] Backscatter backscatter(double wavelength) const noexcept {
     Backscatter all{.reflectance = reflectance_at(wavelength)};
     switch (scattering) {
@@ -74,7 +75,7 @@ struct Material {
     return all;
   }
 
-  /// The same for one angle, given by its cosine.
+  /// Backscatter at a cosine of incidence and a wavelength [m].
   [[nodiscard]] double backscatter(double cos_incidence, double wavelength) const noexcept {
     return backscatter(wavelength)(cos_incidence);
   }

@@ -24,15 +24,14 @@
 
 namespace pulsecast {
 
-/// A body that moves at constant rates, as seen from the world: at a velocity, while it turns about an axis through a centre that moves
-/// along. With the velocity along the axis this is a helix; of two zeros it is a rest.
+/// Rigid motion at constant rates in the world: a velocity, and a rotation about an axis through a centre that moves along. A helix if the
+/// velocity is along the axis; rest if both are zero.
 struct SteadyMotion {
   Vec3 velocity{};               ///< [m/s]
-  Vec3 axis = axis::up;          ///< of any length but zero
+  Vec3 axis = axis::up;          ///< direction, of any non-zero length
   double rate = 0;               ///< right-handed about the axis [rad/s]
-  std::optional<Vec3> centre{};  ///< a point of the axis in the world when the motion begins [m]; empty: the centre of the body itself
-  std::optional<Vec3> spin{};    ///< angular velocity of the body in the world, if other than on its way around the centre: zero for the
-                                 ///< cabin of a Ferris wheel [rad/s]
+  std::optional<Vec3> centre{};  ///< point of the axis in the world at the motion's begin [m]; empty for the body's own centre
+  std::optional<Vec3> spin{};    ///< angular velocity in the world, if not the orbit's: zero for a Ferris wheel's cabin [rad/s]
   double duration = std::numeric_limits<double>::infinity();  ///< at least 1e-6 [s]
 
   void validate() const {
@@ -45,20 +44,20 @@ struct SteadyMotion {
   }
 };
 
-/// Motions one after the other, and all of them so many times. Each begins where the one before has left the body.
+/// Motions in succession, all of them repeated `times` times. Each begins at the end of the one before.
 struct MotionSequence {
   std::vector<SteadyMotion> motions{};
   std::uint64_t times = 1;
 };
 
-/// What a body does after the last of its timed poses.
+/// Behaviour of a body after the last of its timed poses.
 enum class AfterLastPose : std::uint8_t {
-  rest,         ///< it stays there
-  start_again,  ///< it is where it was at the start of the survey, and goes on from there
+  rest,         ///< stays at the last pose
+  start_again,  ///< jumps to its pose at the start of the survey and repeats from there
 };
 
-/// Where a body was moved to: turned about a point, then shifted. The point is near the body, so that no digits are lost far from the
-/// origin of the world.
+/// Displacement of a body: rotation about a point, then a shift. The point is near the body, so that no digits are lost far from the
+/// world's origin.
 struct Displacement {
   Rotation rotation = no_rotation;  ///< unit quaternion
   Vec3 about{};                     ///< [m]
@@ -69,8 +68,7 @@ struct Displacement {
 
 namespace detail {
 
-/// What has become of a body: how it was turned, and the rigid motion that took its own centre where it is. The two differ where it turned
-/// about its own centre.
+/// Accumulated change of a body: its rotation, and the rigid motion of its own centre. The two differ after rotation about its own centre.
 struct Change {
   Rotation attitude = no_rotation;
   Screw path{};
@@ -87,23 +85,24 @@ struct Change {
 
 [[nodiscard]] inline Box grown(const Box& b, double by) noexcept { return {b.min - Vec3(by), b.max + Vec3(by)}; }
 
-/// How far from a straight and even way a point may get that turns by an angle [rad] at this distance from the axis, while the axis itself
-/// keeps to such a way.
+/// Greatest deviation of a point from uniform straight motion, while it turns by an angle [rad] at this distance from an axis in uniform
+/// straight motion; in the unit of the distance.
 /// Source: the error of linear interpolation, |f''| h^2 / 8 (Davis 1975, Interpolation and Approximation, ch. 3).
 [[nodiscard]] inline double bulge(double distance, double angle) noexcept { return distance * angle * angle / 8; }
 
-/// Beyond this angle a turning point is somewhere on its sphere [rad]; only the size of boxes depends on it.
+/// Angle beyond which the bound of a turning point is its whole sphere [rad]; affects only the size of boxes.
 inline constexpr double wide_turn = 2;
 
 }  // namespace detail
 
-/// The steady motion of which `seconds` take every point p of the world to `position + rotation * p`: a screw, the shorter way around.
+/// Steady motion that takes every point p of the world to `position + rotation * p` in `seconds` [s]: a screw, the shorter way around.
 /// Source: Chasles 1830; the centre of a plane displacement, Bottema & Roth 1979, Theoretical Kinematics, ch. III.
+/// @throws SettingError unless `seconds` is positive, the position [m] finite and the rotation unit
 [[nodiscard]] inline SteadyMotion steady_motion(const Pose<frame::World, frame::World>& step, double seconds) {
   require_positive("steady_motion (seconds)", seconds, "s");
   require_rotation("steady_motion (rotation)", step.rotation);
   require_finite("steady_motion (position, length)", length(step.position), "m");
-  const detail::RotationParts turn(step.rotation);  // of any norm
+  const detail::RotationParts turn(step.rotation);  // accepts any norm
   if (turn.angle == 0) return {.velocity = step.position / seconds};
   const Vec3 along = dot(step.position, turn.axis) * turn.axis, across = step.position - along;
   return {.velocity = along / seconds,
@@ -112,15 +111,15 @@ inline constexpr double wide_turn = 2;
           .centre = 0.5 * (across + cross(turn.axis, across) / std::tan(turn.angle / 2))};
 }
 
-/// How a part of a scene moves: a rigid motion, as a closed form of time, on top of the part's placement. Times count from the start of
-/// the survey; before it, the part stands where it was placed. "Its own centre" is the centre of its box as placed, and goes along.
+/// Motion of a part of a scene: rigid, in closed form over time, on top of the part's placement. Times count from the start of the survey;
+/// before it, the part is as placed. "Its own centre" is the centre of its box as placed, and moves along.
 class PartMotion {
  public:
-  /// One motion; if it ends, the body stays where it is then.
+  /// Follows one motion, then rests at its end. @throws SettingError for values out of range
   explicit PartMotion(const SteadyMotion& motion) : PartMotion(std::vector<MotionSequence>{{.motions = {motion}}}) {}
 
-  /// Sequences one after the other, each as many times as it says. Then the body stays where it is, or goes on with the sequence of number
-  /// `again_from` and those that follow it, for ever. Only the last motion of all may be infinite.
+  /// Follows sequences in succession, then rests; or repeats them for ever from index `again_from` on. Only the very last motion may be
+  /// infinite. @throws SettingError for values out of range
   explicit PartMotion(const std::vector<MotionSequence>& sequences, std::optional<std::size_t> again_from = std::nullopt) {
     if (sequences.empty()) throw SettingError("PartMotion::sequences (number)", 0, "", "at least 1");
     if (again_from)
@@ -137,9 +136,9 @@ class PartMotion {
     again_from ? end_cycle(so_far.time, so_far.change) : end(so_far);
   }
 
-  /// Through timed poses: positions on straight lines at constant velocity, attitudes at a constant rate about one axis, the shorter way.
-  /// Before the first pose the body is there. A pose applies on top of the placement: the body is turned about the origin of the world, and
-  /// what was placed at the origin goes to `position`.
+  /// Interpolates timed poses: linear positions, and rotation at a constant rate about one axis, the shorter way. Before the first pose the
+  /// body rests there. A pose applies on top of the placement: rotation about the world's origin, then a shift by `position`.
+  /// @throws SettingError for values out of range, or times that do not ascend
   explicit PartMotion(const std::vector<TimedPose>& poses, AfterLastPose after = AfterLastPose::rest) : from_origin_(true) {
     if (poses.empty()) throw SettingError("PartMotion::poses (number)", 0, "", "at least 1");
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -157,7 +156,7 @@ class PartMotion {
     for (std::size_t i = 1; i < poses.size(); ++i) add_way(poses[i - 1], poses[i]);
     const Tick time = Tick::of_seconds(poses.back().time);
     const Change last{normalize(poses.back().rotation), {no_rotation, poses.back().position}};
-    again ? end_cycle(time, {}) : end({time, last});  // what comes again begins where it began
+    again ? end_cycle(time, {}) : end({time, last});  // each cycle begins with no change
   }
 
   explicit PartMotion(DeserializeTag) {}
@@ -170,20 +169,20 @@ class PartMotion {
     return !runs_.empty() && cycle_first_ <= runs_.size() && std::all_of(runs_.begin(), runs_.end(), has_pieces);
   }
 
-  /// [byte]
+  /// Memory held [byte].
   [[nodiscard]] std::size_t memory() const noexcept {
     return sizeof(*this) + runs_.capacity() * sizeof(Run) + pieces_.capacity() * sizeof(Piece);
   }
 
-  /// Where a body whose own centre [m] was placed there is at a time.
+  /// Displacement at a time of a body with its own centre placed at `own_centre` [m].
   [[nodiscard]] Displacement at(const Tick& tick, const Vec3& own_centre) const noexcept {
     const Vec3 centre = from_origin_ ? Vec3{} : own_centre, start = centre - reference_;
     const State state = state_at(place_of(tick), start);
     return {state.attitude, centre, state.centre - start};
   }
 
-  /// A box that holds all points of space that the hull of the given points, as placed, passes from one time to another. It is close if
-  /// the body turns little and changes its motion seldom in this time, and rough otherwise.
+  /// Box that holds all points passed by the hull of the given points, as placed [m], between two times. Tight for small rotations and few
+  /// changes of motion in this time, loose otherwise.
   [[nodiscard]] Box swept(std::span<const Vec3> points, const Vec3& own_centre, const Tick& from, const Tick& to) const noexcept {
     const Vec3 centre = from_origin_ ? Vec3{} : own_centre, start = centre - reference_;
     Box box;
@@ -202,16 +201,16 @@ class PartMotion {
     for (const Vec3& p : points) radius = std::max(radius, length(p - centre));
     if (pieces == max_pieces) box.extend(detail::grown(roughly(start, tick, to), radius));
     box.min = box.min + reference_, box.max = box.max + reference_;
-    return detail::grown(box, 1e-12 * (max_norm(box.min) + max_norm(box.max)) + 1e-7 * radius);  // more than roundings
+    return detail::grown(box, 1e-12 * (max_norm(box.min) + max_norm(box.max)) + 1e-7 * radius);  // above rounding
   }
 
  private:
-  static constexpr int max_pieces = 32;  ///< that `swept` looks at one by one; only the size of the box depends on it
+  static constexpr int max_pieces = 32;  ///< pieces bounded one by one in `swept`; affects only the size of the box
 
   using Change = detail::Change;
   using Screw = detail::Screw;
 
-  /// A turn at a constant rate.
+  /// Rotation at a constant rate.
   struct Turning {
     Vec3 axis = axis::up;  ///< unit
     double rate = 0;       ///< [rad/s]
@@ -221,34 +220,34 @@ class PartMotion {
     }
   };
 
-  /// A steady motion, or a way between two poses, in its run.
+  /// Steady motion, or interpolation between two poses, in a run.
   struct Piece {
-    Change before;             ///< since the run's start
+    Change before;             ///< since the begin of the run
     Vec3 velocity{};           ///< [m/s]
-    Turning orbit{};           ///< of its own centre, if not about itself
-    Vec3 centre{};             ///< of the orbit, relative to the reference [m]
-    bool about_itself = true;  ///< it turns about its own centre, which goes straight on
-    bool spins = false;        ///< it turns otherwise than on its orbit
+    Turning orbit{};           ///< rotation of its own centre, unless about itself
+    Vec3 centre{};             ///< centre of the orbit, relative to the reference [m]
+    bool about_itself = true;  ///< true for rotation about its own centre, which moves straight
+    bool spins = false;        ///< true for an attitude other than the orbit's
     Turning attitude{};
-    double start = 0;                                           ///< since the run's [s]
+    double start = 0;                                           ///< since the begin of the run [s]
     double duration = std::numeric_limits<double>::infinity();  ///< [s]
   };
 
-  /// Pieces that are passed so many times.
+  /// Pieces repeated `times` times.
   struct Run {
-    Change before;           ///< since the start, or that of the cycle
-    Tick start;              ///< since the start, or that of the cycle
-    Change pass;             ///< what one pass changes
+    Change before;           ///< since the start, or since that of the cycle
+    Tick start;              ///< since the start, or since that of the cycle
+    Change pass;             ///< change in one pass
     double pass_duration;    ///< [s]
     std::int64_t times;      ///< at least 1
     std::size_t first, end;  ///< its pieces
   };
 
-  /// What a time falls into.
+  /// Piece at a time.
   struct Place {
     Change before;
     const Piece* piece;
-    Tick time;  ///< since the piece's start
+    Tick time;  ///< since the begin of the piece
   };
 
   struct State {
@@ -256,7 +255,7 @@ class PartMotion {
     Vec3 centre;  ///< relative to the reference [m]
   };
 
-  /// While a motion is made: since the start, or that of the cycle.
+  /// State of the construction, since the start or since that of the cycle.
   struct SoFar {
     Tick time{};
     Change change{};
@@ -306,7 +305,7 @@ class PartMotion {
     return {detail::unless_rounding(c.attitude), {detail::unless_rounding(c.path.turn), c.path.shift}};
   }
 
-  /// Each way is known from its poses alone, so that nothing sums up.
+  /// Adds a piece known from its two poses alone, so that errors do not accumulate.
   void add_way(const TimedPose& from, const TimedPose& to) {
     if (runs_.empty()) runs_.push_back({{}, {}, {}, 0, 1, 0, 0});
     Run& run = runs_.back();
@@ -327,7 +326,7 @@ class PartMotion {
     runs_.shrink_to_fit(), pieces_.shrink_to_fit();
   }
 
-  /// What has an end is followed by a rest.
+  /// Appends a rest to a finite motion.
   void end(const SoFar& so_far) {
     if (!so_far.endless) {
       pieces_.emplace_back();
@@ -337,7 +336,7 @@ class PartMotion {
     runs_.shrink_to_fit(), pieces_.shrink_to_fit();
   }
 
-  /// What a piece changes until a time since its start.
+  /// Change from the begin of a piece to a time in it.
   static Change change(const Piece& p, const Tick& time) noexcept {
     const Vec3 way = p.velocity * static_cast<double>(time.second) + p.velocity * time.fraction;
     const Rotation attitude = p.attitude.until(time);
@@ -376,14 +375,14 @@ class PartMotion {
     return {detail::then(before, piece.before), &piece, piece.start > 0 ? detail::since(Tick::of_seconds(piece.start), time) : time};
   }
 
-  /// By what the points pass from a place in a piece to its time `end`, `span` seconds later.
+  /// Extends a box by the paths of the points, from a place in a piece to its time `end`, `span` seconds later.
   static void extend_by(Box& box, std::span<const Vec3> points, const Vec3& centre, const Vec3& start, const Place& place, const Tick& end,
                         double span) noexcept {
     const State a = state_at(place, start), b = state_at({place.before, place.piece, end}, start);
     const Piece& piece = *place.piece;
     const Vec3 middle = piece.about_itself ? a.centre : piece.centre + piece.velocity * place.time.seconds();
     const double angle = std::fabs(piece.spins ? piece.orbit.rate : piece.attitude.rate) * span;
-    double radius = 0, own_radius = 0;  // of what turns about the middle, and about the body's own centre besides
+    double radius = 0, own_radius = 0;  // radius about the middle; and about the body's own centre
     Box ends;
     const auto extend_ends = [&](const Vec3& first, const Vec3& last) {
       radius = std::max(radius, length(first - middle));
@@ -402,7 +401,7 @@ class PartMotion {
     box.extend(detail::grown(ends, own_radius + (angle > detail::wide_turn ? radius : detail::bulge(radius, angle))));
   }
 
-  /// A box around all places of the body's own centre from one time to another, in terms of whole runs and cycles.
+  /// Box of all positions of the body's own centre between two times, from whole runs and cycles.
   Box roughly(const Vec3& start, const Tick& from, const Tick& to) const noexcept {
     Box box, own;
     own.extend(start);
@@ -427,7 +426,7 @@ class PartMotion {
     return box;
   }
 
-  /// By all passes of a run from one number to another, of a body whose own centre is in the box at the start or that of a cycle.
+  /// Extends a box by passes `first` to `last` of a run, for a body whose own centre is in `own` at the start or at that of a cycle.
   void extend_by_run(Box& box, const Box& own, const Run& run, std::int64_t first, std::int64_t last, double end) const noexcept {
     const Box before = repeated_box(moved(own, run.before.path), run.pass.path, first, last);
     for (std::size_t k = run.first; k < run.end; ++k) {
@@ -455,7 +454,7 @@ class PartMotion {
     return out;
   }
 
-  /// The box around a box that has done a rigid motion from `first` to `last` times.
+  /// Box around a box after `first` to `last` repetitions of a rigid motion.
   static Box repeated_box(const Box& box, const Screw& once, std::int64_t first, std::int64_t last) noexcept {
     Box out = moved(box, detail::repeated(once, first));
     out.extend(moved(box, detail::repeated(once, last)));
@@ -473,14 +472,14 @@ class PartMotion {
     return detail::grown(axis, radius);
   }
 
-  std::vector<Run> runs_;        ///< those of the cycle last
-  std::vector<Piece> pieces_;    ///< of all runs
-  std::size_t cycle_first_ = 0;  ///< its first run; the number of runs if nothing comes again
+  std::vector<Run> runs_;        ///< the cycle's last
+  std::vector<Piece> pieces_;    ///< pieces of all runs
+  std::size_t cycle_first_ = 0;  ///< first run of the cycle; the number of runs without a cycle
   Tick cycle_start_{};
-  Change cycle_before_{}, cycle_{};  ///< until its start, and in one of it
+  Change cycle_before_{}, cycle_{};  ///< change until the cycle's start, and in one cycle
   double cycle_duration_ = 0;        ///< [s]
-  Vec3 reference_{};                 ///< what paths are relative to: near the motion, so that no digits are lost [m]
-  bool from_origin_ = false;         ///< of timed poses: bodies turn about the origin of the world, not their own centre
+  Vec3 reference_{};                 ///< origin of the paths: near the motion, so that no digits are lost [m]
+  bool from_origin_ = false;         ///< true for timed poses: rotation about the world's origin, not the body's own centre
 };
 
 }  // namespace pulsecast

@@ -17,10 +17,10 @@
 
 namespace pulsecast {
 
-/// The time for which an index of moving things is made, and how large it may get.
+/// Time span and size limit of an index of moving things.
 struct MovingIndexSettings {
-  double from = 0, to = 3600;                    ///< since the start of the survey [s]
-  std::size_t boxes_max = std::size_t{1} << 20;  ///< that are held, of about 70 bytes each
+  double from = 0, to = 3600;                    ///< times since the start of the survey [s]
+  std::size_t boxes_max = std::size_t{1} << 20;  ///< greatest number of boxes, of about 70 bytes each
 
   void validate() const {
     require_within("MovingIndexSettings::from", from, -1e15, 1e15, "s");
@@ -29,12 +29,13 @@ struct MovingIndexSettings {
   }
 };
 
-/// An index over things that move: a time is divided into windows, and each window has a tree over the boxes that the things sweep in it.
-/// Who moves faster gets shorter windows, half as long at each level, until within a window it moves no more than about its own size; where
-/// that asks for too many boxes, the shortest windows are made longer. Outside of the time everything is tested: slow, but right.
+/// Index of moving things: the time is divided into windows, each with a tree over the boxes swept in it. Faster bodies get shorter
+/// windows, halved per level until a body moves at most about its own size per window. Where that takes too many boxes, the shortest
+/// windows are lengthened. Outside of the time all things are tested: slow but correct.
 class MovingIndex {
  public:
-  /// `swept(i, from, to)` gives the box that the thing of number i sweeps between two ticks; less than `things` in number.
+  /// `swept(i, from, to)` returns the box [m] that thing i sweeps between two ticks, for i < `things`. @throws SettingError for a bad
+  /// `time`
   template <class Swept>
   MovingIndex(std::size_t things, const MovingIndexSettings& time, const Swept& swept)
       : time_(validated(time)), span_(time.to - time.from) {
@@ -60,9 +61,10 @@ class MovingIndex {
     all_ = things;
   }
 
-  /// Of all that is swept in the time.
+  /// Bounds of all swept boxes [m].
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
 
+  /// Memory held [byte].
   [[nodiscard]] std::size_t memory() const noexcept {
     std::size_t bytes = levels_.capacity() * sizeof(Level);
     for (const Level& level : levels_) {
@@ -72,7 +74,7 @@ class MovingIndex {
     return bytes;
   }
 
-  /// Calls `test(i)` for each thing that the bundle may meet at its tick before what it has met.
+  /// Calls `test(i)` for each thing that the bundle may meet at its tick before its nearest hits.
   template <class Test>
   void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
     const double share = (rays.tick.seconds() - time_.from) / span_;
@@ -93,13 +95,13 @@ class MovingIndex {
  private:
   static constexpr std::size_t max_level = 20;
 
-  /// Things that move about equally fast, and windows of the same length over all of the time.
+  /// Things of about equal speed, and equal windows over all of the time.
   struct Level {
     std::vector<PrimitiveIndex> things;
     std::vector<Bvh<float>> windows;
   };
 
-  /// How many boxes are held; a tree without any weighs as much as some.
+  /// Number of boxes held; each tree counts as three more.
   static std::size_t boxes(const std::array<std::vector<PrimitiveIndex>, max_level + 1>& at_level) noexcept {
     std::size_t sum = 0;
     for (std::size_t level = 0; level <= max_level; ++level)
@@ -107,7 +109,7 @@ class MovingIndex {
     return sum;
   }
 
-  /// Windows overlap by more than times round.
+  /// Swept box in a window; windows overlap by more than times round.
   template <class Swept>
   Box box_in(PrimitiveIndex i, std::size_t window, std::size_t windows, const Swept& swept) const {
     const double width = span_ / static_cast<double>(windows), start = time_.from + static_cast<double>(window) * width;
@@ -115,11 +117,11 @@ class MovingIndex {
     return swept(i, Tick::of_seconds(start - overlap), Tick::of_seconds(start + width + overlap));
   }
 
-  /// The first level in whose windows a thing moves no more than about its own size, judged by some of them. Only speed depends on it.
+  /// First level in whose windows a thing moves at most about its own size, judged by samples. Affects speed only.
   template <class Swept>
   std::size_t level_of(std::size_t i, const Swept& swept) const {
     constexpr std::size_t max_samples = 8;
-    constexpr double small = 0.5;  // whatever is smaller than that gains nothing from a box that is [m]
+    constexpr double small = 0.5;  // a smaller thing gains nothing from a tight box [m]
     const auto thing = static_cast<PrimitiveIndex>(i);
     for (std::size_t level = 0; level < max_level; ++level) {
       const std::size_t windows = std::size_t{1} << level, samples = std::min(windows, max_samples);

@@ -18,16 +18,16 @@
 
 namespace pulsecast {
 
-/// A scene of which some parts move: `MovingScene<TriangleMesh<>> scene(parts, {.to = 60})`. Each pulse meets every part where it is at the
-/// pulse's own tick; a motion comes on top of the placement. Parts without a motion cost what they cost in a `Scene`, and a program whose
-/// scenes all stand still holds none of this.
+/// Scene with moving parts: `MovingScene<TriangleMesh<>> scene(parts, {.to = 60})`. Each pulse meets every part at its pose of the pulse's
+/// tick; a motion applies on top of the placement. Parts without a motion cost as much as in a `Scene`. Programs with `Scene` only contain
+/// none of this code.
 template <Geometry... Shapes>
 class MovingScene {
  public:
   using Part = pulsecast::Part<Shapes...>;
 
-  /// `time` should span the survey, and little more: the longer it is, the longer its windows get. At other times the answer is the same,
-  /// but all moving parts are tested.
+  /// `time` should span the survey and little more: a longer time has longer windows. Hits at other times are the same, but all moving
+  /// parts are tested. @throws SettingError as `Scene` and `MovingIndexSettings`
   MovingScene(std::vector<Part> parts, const MovingIndexSettings& time)
       : scene_(std::move(parts), Scene<Shapes...>::Motions::left_out),
         movers_(movers(scene_.parts())),
@@ -36,11 +36,11 @@ class MovingScene {
     bounds_.extend(index_.bounds());
   }
 
-  /// Of all parts, wherever they come in the time.
+  /// Bounds of all parts over the time [m].
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::span<const Part> parts() const noexcept { return scene_.parts(); }
 
-  /// Memory held, with all that parts share counted once [byte].
+  /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
     std::size_t bytes = scene_.memory() + index_.memory() + movers_.capacity() * sizeof(Mover);
     std::unordered_set<const void*> counted;
@@ -51,7 +51,7 @@ class MovingScene {
     return bytes;
   }
 
-  /// Where a part is at a time.
+  /// Placement of a part at a time.
   [[nodiscard]] Similarity placement(std::size_t part, const Tick& tick) const noexcept {
     const Part& moving = parts()[part];
     if (!moving.motion) return moving.placement;
@@ -59,7 +59,7 @@ class MovingScene {
     return moved(*std::lower_bound(movers_.begin(), movers_.end(), part, before), tick);
   }
 
-  /// What each ray of the bundle meets first at its tick. The tie between parts goes to the first in the list, moving or not.
+  /// Nearest hit of each ray of the bundle at its tick. Ties between parts go to the first in the list, moving or not.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
     ClosestHits nearest = scene_.nearest(rays);
     const auto test = [&](PrimitiveIndex i) noexcept { scene_.closest_in(movers_[i].part, moved(movers_[i], rays.tick), rays, nearest); };
@@ -67,14 +67,14 @@ class MovingScene {
     scene_.describe(rays, nearest, hits, [&](std::size_t part) noexcept { return placement(part, rays.tick); });
   }
 
-  /// The height of the ground at a place, as of `Scene`; what moves is no ground.
+  /// Height of the ground at a place [m], as of `Scene`; moving parts are no ground.
   [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept { return scene_.ground_height(at); }
 
  private:
-  /// A part that moves.
+  /// Moving part.
   struct Mover {
     std::size_t part;
-    Vec3 centre;  ///< of its box as placed [m]
+    Vec3 centre;  ///< centre of its box as placed [m]
   };
 
   static Box bounds_of(const Part& part) noexcept {
@@ -104,8 +104,8 @@ class MovingScene {
     return {now.rotation * part.placement.rotation, part.placement.scale, now.point(part.placement.translation)};
   }
 
-  Scene<Shapes...> scene_;     ///< of all parts; its index holds those that stand
-  std::vector<Mover> movers_;  ///< by number of their part
+  Scene<Shapes...> scene_;     ///< all parts; its index holds those that stand
+  std::vector<Mover> movers_;  ///< sorted by index of their part
   MovingIndex index_;
   Box bounds_;
 };

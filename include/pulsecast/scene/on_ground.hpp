@@ -16,13 +16,12 @@
 
 namespace pulsecast {
 
-/// What of a part comes to the height of the ground below or above it. Points of a part are the corners of its triangles, or else those of
-/// its box.
+/// Point of a part placed at the height of the ground. Points of a part are the corners of its triangles, or of its box if it has none.
 enum class GroundPlacement : std::uint8_t {
-  origin,        ///< its own origin, wherever its shape is: for models that are made to be stood there
-  lowest_point,  ///< its lowest point (of several, their middle), whatever the ground does around it: for a tree
-  touching,      ///< the point that touches first if it is let down: nothing is below the ground; for a car or a crate
-  sunk,          ///< all corners of the bottom of its box are in the ground or on it: nothing hovers; for a house on a slope
+  origin,        ///< its own origin, wherever its shape is: for models made to stand on it
+  lowest_point,  ///< its lowest point, or the middle of several, whatever the ground around it: for a tree
+  touching,      ///< the first point to touch when lowered, so that none is below the ground: for a car or a crate
+  sunk,          ///< all bottom corners of its box are in or on the ground, so that none hovers: for a house on a slope
 };
 
 namespace detail {
@@ -45,14 +44,13 @@ void visit_points(const Shape& shape, const Similarity& placement, const Visit& 
 
 }  // namespace detail
 
-/// The height by which a placed shape has to be lifted to stand on the ground, negative if lowered [m]; empty if none of the points that
-/// are asked for stands over or under ground. Ground is asked once a point: `ground(place)`, as `Scene::ground_height` of the scene of the
-/// parts that carry others.
+/// Lift that places a shape on the ground, negative if lowered [m]; empty if no point asked for has ground above or below. Calls
+/// `ground(place)` once per point; suitable: `Scene::ground_height` of a scene of the carrying parts.
 template <Geometry Shape>
 [[nodiscard]] std::optional<double> lift_onto_ground(const Shape& shape, const Similarity& placement, const Ground auto& ground,
                                                      GroundPlacement ground_placement = GroundPlacement::lowest_point) {
   std::optional<double> lift;
-  // the least or the most that any of the points asks for
+  // least or greatest lift of the points asked for
   const auto ask = [&](const Vec3& p, bool most) {
     const std::optional<double> height = ground(Vec2{p.x, p.y});
     if (!height) return;
@@ -81,8 +79,8 @@ template <Geometry Shape>
   return ask({middle.x, middle.y, box.min.z}, true), lift;
 }
 
-/// A part that stands on the ground of others, lifted or lowered; empty if there is no ground for it. A motion of the part is not asked:
-/// it starts there.
+/// Part lifted or lowered onto the ground of others; empty without ground. A motion of the part is ignored: it starts there.
+/// @throws SettingError for a placement out of range or a missing geometry
 template <Geometry... Shapes>
 [[nodiscard]] std::optional<Part<Shapes...>> on_ground(Part<Shapes...> part, const Ground auto& ground,
                                                        GroundPlacement ground_placement = GroundPlacement::lowest_point) {

@@ -27,22 +27,22 @@ namespace detail {
   return all;
 }
 
-/// What a text holds besides itself [byte].
+/// Heap memory of a text [byte].
 [[nodiscard]] inline std::size_t heap_bytes(const std::string& text) noexcept {
   return text.capacity() > std::string().capacity() ? text.capacity() + 1 : 0;
 }
 
 }  // namespace detail
 
-/// Where a part stands in the world: turned, scaled alike in all directions, and moved, in this order.
+/// Placement of a part in the world: rotation, uniform scale and translation, in this order.
 struct Similarity {
-  Rotation rotation = no_rotation;  ///< unit quaternion, to a thousandth
+  Rotation rotation = no_rotation;  ///< unit quaternion, within a thousandth
   double scale = 1;
   Vec3 translation{};  ///< [m]
 
   void validate() const {
     require_rotation("Similarity::rotation", rotation);
-    require_within("Similarity::scale", scale, 1e-30, 1e30, "");  // squares of lengths stay numbers in the part's own frame
+    require_within("Similarity::scale", scale, 1e-30, 1e30, "");  // keeps squared lengths finite in the part's own frame
     if (!finite(translation)) throw SettingError("Similarity::translation (length)", length(translation), "m", "finite");
   }
   void normalize() noexcept { rotation = unit(rotation); }
@@ -51,14 +51,14 @@ struct Similarity {
 
   [[nodiscard]] bool identity() const noexcept { return rotation == no_rotation && scale == 1 && translation == Vec3{}; }
 
-  /// The box around a box, placed.
+  /// Box around a placed box [m].
   [[nodiscard]] Box box(const Box& b) const noexcept {
     Box out;
     for (const Vec3& corner : detail::corners(b)) out.extend(point(corner));
     return out;
   }
 
-  /// Rays of the world in the part's own frame. Their directions get longer or shorter, so that ranges stay what they are.
+  /// Rays of the world in the part's own frame. Directions change in length, so that ranges are kept.
   [[nodiscard]] RayBundle to_local(const RayBundle& rays) const noexcept {
     RayBundle local(static_cast<const BundleOrigin&>(rays));
     const double per_metre = 1 / scale;
@@ -76,30 +76,30 @@ struct Similarity {
   }
 };
 
-/// Materials by index, shared by any number of parts.
+/// Materials by index, shareable among parts.
 using MaterialTable = std::shared_ptr<const std::vector<Material>>;
 
-/// A table of materials.
+/// Makes a table of materials. @throws SettingError for values out of range
 [[nodiscard]] inline MaterialTable material_table(std::vector<Material> materials) {
   for (const Material& m : materials) m.validate();
   return std::make_shared<const std::vector<Material>>(std::move(materials));
 }
 
-/// The table of a single default material, the same for all that ask.
+/// Table of a single default material, shared by all callers.
 [[nodiscard]] inline MaterialTable material_table() {
   static const MaterialTable table = material_table(std::vector<Material>(1));
   return table;
 }
 
-/// A shape in a place: many parts may share one geometry, one table of materials and one motion.
+/// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
   std::variant<std::shared_ptr<const Shapes>...> geometry;
   MaterialTable materials = material_table();
   Similarity placement{};
-  ObjectId object = 0;                         ///< what its points are marked with
-  std::string name{};                          ///< its user's id for it, as text
-  std::shared_ptr<const PartMotion> motion{};  ///< on top of its placement; none if it stands; for a `MovingScene`
+  ObjectId object = 0;                         ///< object id of its points
+  std::string name{};                          ///< user's name for it
+  std::shared_ptr<const PartMotion> motion{};  ///< motion on top of its placement; empty if static; for a `MovingScene`
 };
 
 }  // namespace pulsecast

@@ -19,28 +19,29 @@
 namespace pulsecast {
 
 namespace detail {
-/// Whether a primitive of a shape has the same surface wherever it is met.
+/// True if the surface of a primitive is the same at all its points.
 template <class Shape>
 inline constexpr bool flat = requires {
   requires bool{Shape::flat};
 };
 }  // namespace detail
 
-/// Parts of the given kinds of geometry, and no code for any other kind: `Scene<TriangleMesh<>>`. They stand; `MovingScene` moves some.
+/// Static parts of the given kinds of geometry, without code for other kinds: `Scene<TriangleMesh<>>`. `MovingScene` moves parts.
 ///
-/// Parts share their geometries, so a second scene of other parts, or of the same ones in other places, costs a box a part. Where things
-/// change from one repetition of a survey to the next (leaves fall, a car has gone), make a scene for each, from the same geometries.
+/// Parts share their geometries, so a second scene of other parts or placements costs one box per part. For changes between repetitions of
+/// a survey (leaves fall, a car is gone), make one scene each from the same geometries.
 template <Geometry... Shapes>
 class Scene {
  public:
   using Part = pulsecast::Part<Shapes...>;
 
+  /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a placement out of range
   explicit Scene(std::vector<Part> parts) : Scene(std::move(parts), Motions::refused) {}
 
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
 
-  /// Memory held, with all that parts share counted once [byte].
+  /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
     std::size_t bytes = index_.memory() + parts_.capacity() * sizeof(Part);
     std::unordered_set<const void*> counted;
@@ -57,12 +58,12 @@ class Scene {
     return bytes;
   }
 
-  /// What each ray of the bundle meets first. Parts are met where they stand; the tie between parts goes to the first in the list.
+  /// Nearest hit of each ray of the bundle, one per ray. Ties between parts go to the first in the list.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
     describe(rays, nearest(rays), hits, [&](std::size_t part) noexcept -> const Similarity& { return parts_[part].placement; });
   }
 
-  /// The height of the ground at a place, as far as any is there: the highest surface of a material that is ground [m].
+  /// Height of the highest surface of a ground material at a place [m]; empty if there is none.
   [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept {
     if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
     const double top = bounds().max.z + 1;
@@ -71,7 +72,7 @@ class Scene {
       const ClosestHits nearest = this->nearest(down);
       if (!nearest.met(0)) return std::nullopt;
       if (material_at(down, nearest).ground) return top - nearest.range[0];
-      down.near = nearest.range[0];  // what is not ground is passed
+      down.near = nearest.range[0];  // continues below a surface that is no ground
     }
   }
 
@@ -81,7 +82,7 @@ class Scene {
 
   enum class Motions : std::uint8_t { refused, left_out };
 
-  /// Parts that move are refused, or left out of the index.
+  /// Refuses moving parts, or leaves them out of the index.
   Scene(std::vector<Part> parts, Motions motions) : parts_(placed(std::move(parts))), index_(boxes(parts_, motions), 0, 1) {
     parts_.shrink_to_fit();
     alone_ = parts_.size() == 1 && !parts_[0].motion;
@@ -116,13 +117,13 @@ class Scene {
       for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, nearest);
     };
     if (alone_)
-      closest_in(0, parts_[0].placement, rays, nearest);  // it has bounds of its own
+      closest_in(0, parts_[0].placement, rays, nearest);  // shapes test their own bounds
     else
       index_.closest(rays, test, nearest);
     return nearest;
   }
 
-  /// Of what the bundle's only ray met.
+  /// Material met by the bundle's only ray.
   const Material& material_at(const RayBundle& rays, const ClosestHits& nearest) const noexcept {
     const Part& part = parts_[nearest.part_of(0)];
     const RayBundle local = part.placement.to_local(rays);
@@ -138,14 +139,14 @@ class Scene {
     placement.identity() ? closest(rays) : closest(placement.to_local(rays));
   }
 
-  /// What there is to know of a primitive to describe how rays met it.
+  /// Surface data of a primitive, for the hits on it.
   struct SurfaceSample {
-    Vec3 normal{};          ///< by the length of the directions, in the frame of its part
-    double min_cosine = 0;  ///< 1 if the surface has no direction
+    Vec3 normal{};          ///< divided by the length of the directions, in the part's frame
+    double min_cosine = 0;  ///< 1 for a surface without direction
     Backscatter backscatter{};
     ObjectId object = 0;
     std::uint16_t classification = 0;
-    bool flat = false;  ///< the same for every ray that met the primitive
+    bool flat = false;  ///< same for every ray that met the primitive
   };
 
   SurfaceSample sample_surface(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j) const noexcept {
@@ -162,14 +163,14 @@ class Scene {
     return std::visit(look, part.geometry);
   }
 
-  /// `placement_of` gives where the part of a number stands.
+  /// `placement_of(i)` returns the placement of part i.
   template <class PlacementOf>
   void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of) const noexcept {
-    // neighbours mostly meet the same part, and often the same primitive: what is known of it need not be found again
+    // neighbouring rays often meet the same part and primitive: the sample is reused
     std::uint64_t known = ClosestHits::none;
     SurfaceSample sample;
     constexpr std::size_t nothing = std::size_t(-1);
-    std::size_t at = nothing;  // the part whose frame `local` is in
+    std::size_t at = nothing;  // part of the frame of `local`
     const RayBundle* local = &rays;
     RayBundle turned;
     for (std::size_t j = 0; j < rays.size; ++j) {
@@ -194,7 +195,7 @@ class Scene {
 
   std::vector<Part> parts_;
   Bvh<float> index_;
-  bool alone_ = false;  ///< there is one part, which stands
+  bool alone_ = false;  ///< true if the only part stands
 };
 
 }  // namespace pulsecast

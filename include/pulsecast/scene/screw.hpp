@@ -8,22 +8,22 @@
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector.hpp>
 
-/// Rigid motions that are done again and again, in closed form.
+/// Repeated rigid motions in closed form.
 namespace pulsecast::detail {
 
-/// From one tick to a later one.
+/// Duration from one tick to a later one.
 [[nodiscard]] inline Tick since(const Tick& start, const Tick& tick) noexcept {
   const double fraction = tick.fraction - start.fraction;
   const std::int64_t second = tick.second - start.second;
   return fraction < 0 && fraction + 1 < 1 ? Tick{second - 1, fraction + 1} : Tick{second, fraction > 0 ? fraction : 0};
 }
 
-/// A time as so many whole periods [s] and a rest.
+/// Time as a number of whole periods [s] and a remainder.
 struct Periods {
   std::int64_t whole;
   Tick rest;
 
-  /// Exact, as fmod is: a period begins at the same time of it after a year as in the first second.
+  /// Exact, as fmod is: the phase of a period after a year is that of the first second.
   Periods(const Tick& time, double period) noexcept {
     const double second = static_cast<double>(time.second);
     const double of_seconds = std::fmod(second, period), sum = of_seconds + time.fraction, last = std::fmod(sum, period);
@@ -32,7 +32,7 @@ struct Periods {
   }
 };
 
-/// A rigid motion of space: first turned about the origin, then shifted.
+/// Rigid motion: rotation about the origin, then a shift [m].
 struct Screw {
   Rotation turn = no_rotation;
   Vec3 shift{};
@@ -44,7 +44,7 @@ struct Screw {
   return {normalize(second.turn * first.turn), second.point(first.shift)};
 }
 
-/// The axis, of any length if there is no turn, and the angle of a rotation, in [0, pi].
+/// Axis and angle of a rotation, the angle in [0, pi] [rad]; an axis of any length without rotation.
 struct RotationParts {
   Vec3 axis;
   double angle;
@@ -57,14 +57,14 @@ struct RotationParts {
   }
 };
 
-/// A rotation, or none where it differs from none by roundings only [rad]: what comes back exactly need not be turned again and again.
+/// Replaces a rotation of less than 1e-15 rad, a rounding, by none, so that repetitions do not amplify it.
 [[nodiscard]] inline Rotation unless_rounding(const Rotation& r) noexcept { return RotationParts(r).angle < 1e-15 ? no_rotation : r; }
 
-/// An angle [rad] taken n times, less whole turns.
+/// An angle [rad] times n, modulo whole turns.
 [[nodiscard]] inline double multiple(double angle, std::int64_t n) noexcept { return 2 * pi * Tick{n, 0}.phase(angle / (2 * pi)); }
 
-/// A rigid motion done n times: a screw of n times the angle and n times the glide. Across the axis, n equal steps that each turn by the
-/// angle sum up as the vectors of a regular polygon do.
+/// A rigid motion repeated n times: a screw of n times the angle and n times the glide. Across the axis, the n equal steps sum up as the
+/// sides of a regular polygon.
 /// Source: Chasles 1830, every rigid motion is a screw; sum of sin(k a): Gradshteyn & Ryzhik, 1.341.
 [[nodiscard]] inline Screw repeated(const Screw& once, std::int64_t n) noexcept {
   if (n == 0) return {};

@@ -17,13 +17,13 @@ namespace pulsecast {
 /// Reflectance at one wavelength.
 struct SpectralSample {
   double wavelength = 0;   ///< [m]
-  double reflectance = 0;  ///< a fraction: in [0, 1]
+  double reflectance = 0;  ///< a fraction, in [0, 1]
 };
 
-/// Reflectance over wavelength: linear between the samples, and beyond the first and last one as it is there. Copies share the samples.
+/// Reflectance over wavelength: linear between the samples, constant beyond the first and last. Copies share the samples.
 class Spectrum {
  public:
-  /// Samples in ascending order of wavelength, at least one, no two at the same.
+  /// Takes at least one sample, in strictly ascending order of wavelength. @throws SettingError otherwise
   explicit Spectrum(const std::vector<SpectralSample>& samples) {
     if (samples.empty()) throw SettingError("Spectrum::samples (number)", 0, "", "at least 1");
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -51,7 +51,7 @@ class Spectrum {
   [[nodiscard]] double longest() const noexcept { return samples_[samples_.size() - 1].wavelength; }  ///< [m]
   [[nodiscard]] std::size_t memory() const noexcept { return samples_.memory(); }                     ///< [byte]
 
-  /// Reflectance at a wavelength [m]: a fraction.
+  /// Reflectance at a wavelength [m], a fraction.
   [[nodiscard]] double reflectance(double wavelength) const noexcept {
     const std::size_t i = detail::first_not(samples_.size(), [&](std::size_t n) noexcept { return samples_[n].wavelength < wavelength; });
     if (i == samples_.size()) return samples_[i - 1].reflectance;

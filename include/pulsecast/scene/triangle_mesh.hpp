@@ -23,12 +23,13 @@
 
 namespace pulsecast {
 
-/// What a triangle mesh is made from.
+/// Vertices and triangles of a mesh.
 struct MeshData {
   std::vector<Vec3> vertices{};                           ///< [m]
-  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< numbers of their corners, from 0
-  std::vector<std::uint32_t> materials{};                 ///< one a triangle: index into the part's table; empty if all are 0
+  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertex indices of the corners
+  std::vector<std::uint32_t> materials{};                 ///< one per triangle: index into the part's table; empty if all are 0
 
+  /// @throws SettingError for no triangles, an index out of range, a vertex that is not finite, or columns of different lengths
   void validate() const {
     if (triangles.empty()) throw_setting_error("MeshData::triangles", 0, "", "at least one in number");
     validate_counts(vertices.size(), triangles.size());
@@ -46,13 +47,13 @@ struct MeshData {
       reject_at("MeshData::materials", static_cast<double>(materials.size()), "", "as many as triangles, ", triangles.size(), ", or none");
   }
 
-  /// Refuses more than can be numbered by 32 bits, before memory is asked for to index them; `ClosestHits::none` is no triangle.
+  /// Refuses counts beyond 32 bits, before memory is allocated; `ClosestHits::none` is no triangle. @throws SettingError
   static void validate_counts(std::size_t vertices, std::size_t triangles) {
     require_within("MeshData::vertices (number)", static_cast<double>(vertices), 0, 4294967295.0, "");
     require_within("MeshData::triangles (number)", static_cast<double>(triangles), 1, 4294967294.0, "");
   }
 
-  /// The triangle of a number [m].
+  /// Triangle i [m].
   [[nodiscard]] Triangle triangle(std::size_t i) const noexcept {
     const auto& corners = triangles[i];
     return {vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]};
@@ -65,17 +66,17 @@ struct MeshData {
   }
 };
 
-/// Triangles that share their corners where these are equal, to the last bit. Both sides count; a triangle without area is never met. They
-/// keep their numbers, but stand in memory as the index meets them, in blocks with corners of their own, which two bytes are enough to
-/// number. So a triangle takes 10 bytes beside its index and its corners of 24 bytes each, and one more if there are several materials.
-/// `Bvh<float>` is on the front of docs/tradeoff.md: it finds what `Bvh<double>` finds, in less time and memory, as triangles are met in
-/// double.
+/// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are never hit. Triangles
+/// keep their numbers but are stored in the index's order, in blocks with vertices of their own for 16-bit indices. A triangle takes 10
+/// bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials.
+/// `Bvh<float>` is on the front of docs/tradeoff.md: it finds the hits of `Bvh<double>` in less time and memory, since triangles are tested
+/// in double.
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
   static constexpr bool flat = true;
 
-  /// `threads` to build it on; 0 for as many as the machine runs.
+  /// `threads` of the build; 0 for the hardware's. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
   explicit TriangleMesh(MeshData data, unsigned threads = 0) : index_(built(data, threads)) {
     arrange(data, threads);
     for (const std::uint32_t m : data.materials) material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
@@ -108,6 +109,7 @@ class TriangleMesh {
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
+  /// Triangle i [m].
   [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept { return triangle_at(places_[i]); }
   [[nodiscard]] const Index& index() const noexcept { return index_; }
   [[nodiscard]] std::size_t material_count() const noexcept { return material_count_; }
@@ -126,7 +128,7 @@ class TriangleMesh {
   }
 
  private:
-  /// What the index does with the triangles that it finds.
+  /// Leaf test and prefetch of the index.
   struct Test {
     const TriangleMesh& mesh;
     const RayBundle& rays;
@@ -152,7 +154,7 @@ class TriangleMesh {
     return {corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
   }
 
-  /// The boxes of triangles, made as they are asked for.
+  /// Boxes of the triangles, computed on access.
   struct Boxes {
     const MeshData& data;
     [[nodiscard]] std::size_t size() const noexcept { return data.triangles.size(); }
@@ -182,10 +184,10 @@ class TriangleMesh {
     return copy;
   }
 
-  using Corners = std::array<std::uint16_t, 3>;  ///< of a triangle: their numbers in its block
+  using Corners = std::array<std::uint16_t, 3>;  ///< vertex indices of a triangle in its block
   static_assert(3 * detail::chunk_size < 0xFFFF);
 
-  /// The corners of a block, each once, and what finds them.
+  /// Hash table of the unique corners of a block.
   class CornerTable {
    public:
     explicit CornerTable(std::size_t triangles) : places_(std::bit_ceil(4 * triangles), nowhere) { corners_.reserve(triangles); }
@@ -212,12 +214,12 @@ class TriangleMesh {
     std::vector<Vec3> corners_;
   };
 
-  /// Puts triangles and corners where the index meets them, block by block.
+  /// Stores triangles and corners in the index's order, block by block.
   void arrange(const MeshData& data, unsigned threads) {
     const auto order = index_.order();
-    if (order.size() > data.triangles.size()) threads = 1;  // a triangle may be in several blocks, of which the last will be its place
+    if (order.size() > data.triangles.size()) threads = 1;  // a triangle may be in several blocks: the last one wins
     const SharedBuffer<std::uint32_t> places(data.triangles.size());
-    if (order.size() < places.size()) std::fill(places.begin(), places.end(), 0);  // what the index leaves out is never met
+    if (order.size() < places.size()) std::fill(places.begin(), places.end(), 0);  // triangles left out of the index are never hit
     const SharedBuffer<Corners> triangles(order.size());
     std::vector<std::vector<Vec3>> parts(detail::chunk_count(order.size()));
     detail::for_each_chunk(order.size(), threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -239,11 +241,11 @@ class TriangleMesh {
   }
 
   SharedArray<Vec3> corners_;
-  SharedArray<std::uint64_t> first_corners_;  ///< of the blocks
-  SharedArray<Corners> triangles_;            ///< in the order of the index
-  SharedArray<std::uint32_t> places_;         ///< of each triangle, in that order
-  SharedArray<std::uint8_t> few_materials_;   ///< empty if all are 0, or if they are
-  SharedArray<std::uint32_t> materials_;      ///< numbers too large for these
+  SharedArray<std::uint64_t> first_corners_;  ///< first corner of each block
+  SharedArray<Corners> triangles_;            ///< corners of the triangles, in the order of the index
+  SharedArray<std::uint32_t> places_;         ///< position of each triangle in that order
+  SharedArray<std::uint8_t> few_materials_;   ///< material of each triangle; empty if all are 0, or if an index exceeds 255
+  SharedArray<std::uint32_t> materials_;      ///< material of each triangle if an index exceeds 255, else empty
   Index index_;
   std::size_t material_count_ = 1;
 };

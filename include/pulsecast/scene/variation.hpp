@@ -14,13 +14,13 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/scene/material.hpp>
 
-/// Surfaces that are alike but not the same: variants of a material, for the primitives of one shape or for its copies, which get a table
-/// of materials each.
+/// Variation of surfaces: variants of a material, for the primitives of one shape, or for its copies with a table of materials each.
 namespace pulsecast {
 
-/// Variants of a material, named "leaf 1", "leaf 2" and so on. The reflectance of each, or its spectrum as a whole, is shifted by an amount
-/// between minus and plus `range`, every one as likely as every other, and clipped to [0, 1]. The same seed gives the same variants, and
-/// the first ones are the same however many are asked for.
+/// Variants of a material, named "leaf 1", "leaf 2" and so on. Shifts the reflectance of each, or its whole spectrum, by a uniform random
+/// amount between minus and plus `range`, and clips it to [0, 1]. The same seed gives the same variants, the first ones for any number of
+/// variants.
+/// @throws SettingError for a bad material or a `range` outside [0, 1]
 [[nodiscard]] inline std::vector<Material> vary_reflectance(const Material& material, std::size_t variants, double range,
                                                             std::uint64_t seed) {
   material.validate();
@@ -39,7 +39,8 @@ namespace pulsecast {
   return all;
 }
 
-/// The materials of primitives that take their turns: 0, 1, ..., materials - 1, 0, 1, ... For `MeshData::materials` and its like.
+/// Material indices of primitives in turn: 0, 1, ..., materials - 1, 0, 1, ... For `MeshData::materials` and its like. @throws SettingError
+/// for no materials
 [[nodiscard]] inline std::vector<std::uint32_t> assign_round_robin(std::size_t primitives, std::uint32_t materials) {
   require_within("assign_round_robin (materials)", materials, 1, 4294967295.0, "");
   std::vector<std::uint32_t> all(primitives);
@@ -47,7 +48,7 @@ namespace pulsecast {
   return all;
 }
 
-/// The materials of primitives that draw theirs, each one as likely as every other. The same seed gives the same draws.
+/// Uniform random material indices of primitives. The same seed gives the same draws. @throws SettingError for no materials
 [[nodiscard]] inline std::vector<std::uint32_t> assign_randomly(std::size_t primitives, std::uint32_t materials, std::uint64_t seed) {
   require_within("assign_randomly (materials)", materials, 1, 4294967295.0, "");
   std::vector<std::uint32_t> all(primitives);

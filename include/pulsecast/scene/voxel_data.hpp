@@ -16,22 +16,22 @@
 
 namespace pulsecast {
 
-/// What a grid of voxels is made from: the occupied cells of a lattice of cubes, in any order, none twice. The columns below `cells` have
-/// an entry for each cell, or none at all.
+/// Data of a voxel grid: the occupied cells of a lattice of cubes, in any order, without duplicates. The columns below `cells` have one
+/// entry per cell, or none.
 struct VoxelData {
-  Vec3 corner{};                                      ///< least corner of the cell (0, 0, 0) [m]
-  double edge = 1;                                    ///< of a cell [m]
-  std::vector<std::array<std::uint32_t, 3>> cells{};  ///< which ones, along x, y and z
-  std::vector<std::array<float, 3>> normals{};        ///< of the surface inside; unit, or zero where there is none
+  Vec3 corner{};                                      ///< lower corner of the cell (0, 0, 0) [m]
+  double edge = 1;                                    ///< edge of a cell [m]
+  std::vector<std::array<std::uint32_t, 3>> cells{};  ///< cell coordinates along x, y and z
+  std::vector<std::array<float, 3>> normals{};        ///< unit normal of the surface inside, or zero if there is none
   std::vector<float> densities{};                     ///< plant area density, not negative [m^2/m^3]
-  std::vector<float> scales{};                        ///< edge of the cube inside as a share of the cell's: in (0, 1]
-  std::vector<std::array<float, 3>> shifts{};         ///< of that cube's centre from the cell's, in edges of the cell
+  std::vector<float> scales{};                        ///< edge of the cube inside relative to the cell's, in (0, 1]
+  std::vector<std::array<float, 3>> shifts{};         ///< centre of that cube from the cell's centre [cell edges]
   std::vector<std::uint16_t> materials{};             ///< index into the part's table
 
-  /// Edge of the smallest cell that a lattice may have at a place [m]: coordinates there round by an eighth of it.
+  /// Least edge of a lattice at a place [m]: coordinates there round by an eighth of it.
   [[nodiscard]] static double min_edge(const Vec3& place) noexcept { return 4 * std::numeric_limits<double>::epsilon() * max_norm(place); }
 
-  /// Refuses what cannot be, but for cells that are there twice: those show when they are sorted, in the making of a grid.
+  /// Refuses invalid data, except for duplicate cells, which the grid finds when it sorts them. @throws SettingError
   void validate() const {
     constexpr double max_coordinate = 1e18;
     for (int k = 0; k < 3; ++k)

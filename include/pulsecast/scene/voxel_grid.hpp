@@ -23,11 +23,11 @@
 
 namespace pulsecast {
 
-/// The direction that the surface of a voxel is taken to have.
+/// Surface direction of a voxel.
 enum class Incidence : std::uint8_t {
-  normal,         ///< that of the voxel's normal; of the face where it has none
-  face,           ///< that of the face of the cube which the ray meets
-  perpendicular,  ///< always straight at the scanner
+  normal,         ///< the voxel's normal; its face's if it has none
+  face,           ///< normal of the face of the cube that the ray meets
+  perpendicular,  ///< always towards the scanner
 };
 
 namespace detail {
@@ -53,7 +53,7 @@ class PackedVector {
   std::uint64_t bits_ = 0;
 };
 
-/// A column of the data in another order and form; empty if it was.
+/// Reorders and converts a column of the data; empty for an empty column.
 template <class To, class From>
 [[nodiscard]] SharedArray<To> reordered(const std::vector<From>& column, std::span<const std::uint32_t> order) {
   std::vector<To> kept;
@@ -63,8 +63,8 @@ template <class To, class From>
   return kept;
 }
 
-/// The part of a ray's walk that meets solid cubes, as a mesh of all of them would be met, but for walls between two of them. A ray that
-/// begins inside a cube meets its far side, or what stands there.
+/// Intersection of a ray's walk with solid cubes, equal to that with a mesh of them without walls between two. A ray that begins inside a
+/// cube meets its far side, or the cube that touches it there.
 template <class Columns>
 class SolidMeeting {
  public:
@@ -94,11 +94,11 @@ class SolidMeeting {
   Crossing begin_;
   std::size_t j_;
   ClosestHits& nearest_;
-  double far_side_ = infinity;  ///< of the cube that the ray begins in [m]
-  std::uint32_t around_ = 0;    ///< its number
+  double far_side_ = infinity;  ///< far side of the cube around the ray's begin [m]
+  std::uint32_t around_ = 0;    ///< number of that cube
 };
 
-/// The normal of the face by which a ray meets a cube; that of the far side if it begins inside.
+/// Normal of the face at which a ray meets a cube; that of the far side if the ray begins inside.
 [[nodiscard]] inline Vec3 face_normal(const LatticeRay& ray, const LatticeRay::Passage& cube, double near) noexcept {
   const bool from_inside = cube.in.before({near, Crossing::begin});
   const int axis = from_inside ? cube.out.axis : cube.in.axis;
@@ -109,8 +109,8 @@ class SolidMeeting {
 
 }  // namespace detail
 
-/// Voxels that are opaque cubes, as large as their cells: what a point cloud is turned into. A ray that begins inside a voxel meets its far
-/// side, as that of any closed surface.
+/// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a voxel meets its far side, as with any
+/// closed surface.
 struct OpaqueVoxels {
   Incidence incidence = Incidence::normal;
 
@@ -161,9 +161,8 @@ struct OpaqueVoxels {
   };
 };
 
-/// Voxels that are opaque cubes inside their cells, each of its own size and shifted by its own vector: what a plant is approximated by
-/// where its density is known. Source: Weiser et al. 2021. Data must have scales; normals are not kept, so that `Incidence::normal` means
-/// the face.
+/// Opaque cubes inside their cells, each with its own size and shift: a plant model from known density. Source: Weiser et al. 2021.
+/// Requires scales; normals are not kept, so `Incidence::normal` means the face.
 struct ScaledVoxels {
   Incidence incidence = Incidence::face;
 
@@ -218,13 +217,13 @@ struct ScaledVoxels {
   };
 };
 
-/// Voxels full of leaves that are spread at random: light goes on until it meets one. Data must have densities.
+/// Turbid medium of randomly placed leaves: light passes until it meets one. Requires densities.
 ///
-/// A path of length s is survived with the probability exp(-PAD G s). Each ray draws how much of PAD G s it survives in the part as a
-/// whole, and uses it up from voxel to voxel; as the law has no memory, that is the same as to draw in each voxel, whatever their size.
-/// Parts draw for themselves. A ray that begins inside counts its path from there. The density is per metre of the part's own frame, and so
-/// are paths: a plant that is scaled as a whole lets the same share of the light through. G is taken in that frame too, z being the
-/// vertical. Leaves have no one direction, so the incidence is perpendicular. Source: North 1996; Ross 1981.
+/// Transmittance along a path of length s is exp(-PAD G s). Each ray draws its optical depth once per part and consumes it from voxel to
+/// voxel. As the law is memoryless, this equals a draw per voxel, for any voxel size. Draws are independent between parts. A ray that
+/// begins inside counts its path from there. Density and paths are in metres of the part's own frame: scaling a plant keeps its
+/// transmittance. G is taken in that frame too, z being the vertical. Leaves have no single direction, so incidence is perpendicular.
+/// Source: North 1996; Ross 1981.
 struct TransmissiveVoxels {
   LeafAngles leaf_angles{};
 
@@ -273,7 +272,7 @@ struct TransmissiveVoxels {
         const auto subray = rays_.first_subray + static_cast<std::uint32_t>(j_);
         left_ = -std::log(uniform({rays_.seed, rays_.pulse, subray, Purpose::free_path, part}));
         per_density_ = leaf_angles_.projection(rays_.direction(j_)) * rays_.direction_length;
-        if (!(per_density_ > 0)) per_density_ = std::numeric_limits<double>::min();  // leaves seen edge on, all of them
+        if (!(per_density_ > 0)) per_density_ = std::numeric_limits<double>::min();  // all leaves edge-on
       }
 
       const Columns& columns_;
@@ -281,7 +280,7 @@ struct TransmissiveVoxels {
       const RayBundle& rays_;
       std::size_t j_;
       ClosestHits& nearest_;
-      double left_ = 0;         ///< optical depth that the ray may still go
+      double left_ = 0;         ///< optical depth left to the ray
       double per_density_ = 0;  ///< optical depth per range and density; 0 before the draw
     };
 
@@ -304,24 +303,25 @@ struct TransmissiveVoxels {
   };
 };
 
-/// A grid of voxels, of which it holds those that are there: each ray goes from cell to cell. Primitives are numbered by their place,
-/// not as in the data. What the filling does not need of the data is not kept; at most 40 bytes a voxel are, and 16 more.
-/// `Filling`: `OpaqueVoxels`, `ScaledVoxels` or `TransmissiveVoxels`, with the settings of all voxels alike.
+/// Sparse grid of voxels; each ray is traversed cell by cell. Primitives are numbered by position, not as in the data. Keeps only the data
+/// that the filling needs, in at most 40 bytes per voxel plus 16.
+/// `Filling`: `OpaqueVoxels`, `ScaledVoxels` or `TransmissiveVoxels`, with the settings common to all voxels.
 template <class Filling = OpaqueVoxels>
 class VoxelGrid {
  public:
   explicit VoxelGrid(DeserializeTag tag) : index_(tag), columns_(tag) {}
 
+  /// @throws SettingError as `VoxelData::validate` and `VoxelIndex`, or for a column that the filling lacks
   explicit VoxelGrid(const VoxelData& data, Filling filling = {}) : VoxelGrid(data, std::move(filling), {}) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return index_.size(); }
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   [[nodiscard]] std::size_t material_count() const noexcept { return material_count_; }
 
-  /// The table of leaf angles, which grids may share, is not in it.
+  /// Memory held [byte], without the table of leaf angles, which grids may share.
   [[nodiscard]] std::size_t memory() const noexcept { return index_.memory() + columns_.memory() + materials_.memory(); }
 
-  /// The cell of a voxel, which is met inside of it [m].
+  /// Cell of a voxel, which contains its hits [m].
   [[nodiscard]] Box cell(PrimitiveIndex i) const noexcept {
     const LatticeCell c = index_.cell(i);
     const Vec3 low = bounds().min + index_.edge() * Vec3(c[0], c[1], c[2]);

@@ -21,19 +21,19 @@
 
 namespace pulsecast {
 
-/// Which cells of a lattice are occupied, and the numbers of those that are: a search structure that holds only what is there. Cells are
-/// kept in bricks of 4 x 4 x 4, a bit each; where that saves memory, bricks in blocks of as many; bricks or blocks are found by a hash.
-/// A pyramid over the whole lattice, a bit for each cube that may hold anything, tells how far a ray may leap.
-/// At most 26 bytes an occupied cell, wherever they are, and 16 more.
+/// Sparse index of the occupied cells of a lattice, and their numbers. Cells are bits of bricks of 4 x 4 x 4; bricks are bits of blocks of
+/// as many, where that saves memory. A hash table finds bricks or blocks. A bit pyramid over the whole lattice lets rays leap over empty
+/// cubes.
+/// Takes at most 26 bytes per occupied cell at any positions, plus 16.
 /// Source: Amanatides & Woo 1987 (traversal).
 class VoxelIndex {
  public:
-  /// Cells along an axis that can be told apart.
+  /// Greatest extent along an axis [cells].
   static constexpr std::uint32_t longest = 1U << 21;
 
   explicit VoxelIndex(DeserializeTag) {}
 
-  /// `order` is set to which cell of the data each number stands for.
+  /// Sets `order` to the data's cell index of each number. @throws SettingError for a duplicate cell, or an extent above `longest`
   VoxelIndex(const VoxelData& data, std::vector<std::uint32_t>& order) {
     std::array<std::uint32_t, 3> least = data.cells.front(), most = least;
     for (const auto& cell : data.cells)
@@ -96,7 +96,7 @@ class VoxelIndex {
            brick_first_.memory() + pyramid_.memory();
   }
 
-  /// The cell of a number below `size()`, counted from the least corner of the bounds.
+  /// Cell of a number below `size()`, relative to the lower corner of the bounds.
   [[nodiscard]] LatticeCell cell(std::uint32_t number) const noexcept {
     const std::size_t brick = holder(brick_first_, number);
     const unsigned bit = nth_bit(brick_masks_[brick], number - brick_first_[brick]);
@@ -106,17 +106,17 @@ class VoxelIndex {
     return inside(inside(unpacked(keys_[block]), place), bit);
   }
 
-  /// A ray in the lattice, counted from the least corner of the bounds.
+  /// Ray j in the lattice, relative to the lower corner of the bounds.
   [[nodiscard]] LatticeRay ray(const RayBundle& rays, std::size_t j) const noexcept { return {corner_, edge_, rays, j}; }
 
-  /// Goes along a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in turn, until one lies
-  /// beyond the limit. `in` is where the ray crosses into the cell or, if it begins there, `near`.
+  /// Traverses a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in order. Stops at a cell
+  /// beyond the limit. `in` is the crossing into the cell; `near` if the ray begins there.
   template <class Visit>
   void walk(const LatticeRay& ray, double near, double limit, Visit visit) const noexcept {
     Walker at(ray, near, extent_);
     if (!at.inside) return;
     Place place;
-    limit = std::min(limit, std::numeric_limits<double>::max());  // what is never crossed is beyond
+    limit = std::min(limit, std::numeric_limits<double>::max());  // planes never crossed are beyond
     while (at.in.range <= limit) {
       if (outside(at.cell)) return;
       if (const Empty empty = around(at.cell, place); empty.shift > 0) {
@@ -145,17 +145,17 @@ class VoxelIndex {
   }
 
  private:
-  /// Cubes of one size: a bit each, in words of 4 x 4 x 4. A level too large to be kept whole has its words fall together by a hash: a cube
-  /// without its bit is empty all the same.
+  /// Cubes of one size, a bit each, in words of 4 x 4 x 4. A level too large for direct indexing shares its words by a hash; an unset bit
+  /// still proves its cube empty.
   struct Level {
-    std::uint64_t first = 0;                ///< word
-    std::uint64_t words = 0;                ///< of a hashed level; 0 if it is whole
+    std::uint64_t first = 0;                ///< first word
+    std::uint64_t words = 0;                ///< words of a hashed level; 0 if indexed directly
     std::array<std::uint32_t, 2> extent{};  ///< words along x and y
     std::int32_t shift = 0;                 ///< log2 of the edge of a bit's cube [cells]
     std::int32_t unused = 0;                ///< makes all bytes of an archive definite
   };
 
-  /// Masks of children, and the number of the first child of each.
+  /// Child masks, and the number of the first child of each node.
   struct Nodes {
     std::vector<std::uint64_t> mask;
     std::vector<std::uint32_t> first;
@@ -167,20 +167,20 @@ class VoxelIndex {
     }
   };
 
-  /// Where a walk is in the tree.
+  /// Position of a walk in the tree.
   struct Place {
-    std::uint64_t key = ~std::uint64_t{0};  ///< of `root`
+    std::uint64_t key = ~std::uint64_t{0};  ///< key of `root`
     std::uint32_t root = 0, brick = 0;
   };
 
   static constexpr std::uint32_t nothing = ~std::uint32_t{0};
 
-  /// A ray on its way.
+  /// State of a ray's traversal.
   struct Walker {
     const LatticeRay& ray;
     LatticeCell cell{};
-    Crossing in;                 ///< where the cell was entered
-    std::array<double, 3> next;  ///< range of the plane that it is left by, for each axis
+    Crossing in;                 ///< crossing into the cell
+    std::array<double, 3> next;  ///< range of the exit plane along each axis
     bool inside = false;
 
     Walker(const LatticeRay& r, double near, const LatticeCell& extent) noexcept : ray(r), in{near, Crossing::begin} {
@@ -196,11 +196,11 @@ class VoxelIndex {
       inside = true;
     }
 
-    /// Sets the cell along an axis to what the ray is in at `in`; false if that is not between `low` and `high`.
+    /// Sets the cell along an axis to that of the ray at `in`; false if it is not between `low` and `high`.
     bool find(int k, std::int32_t low, std::int32_t high) noexcept {
       const auto axis = static_cast<std::size_t>(k);
       const int sense = ray.sense(k);
-      const double guess = ray.position(k, in.range);  // `low` is not negative, so its whole part is the cell
+      const double guess = ray.position(k, in.range);  // `low` is not negative, so truncation gives the cell
       std::int32_t c = guess > low ? guess < high ? static_cast<std::int32_t>(guess) : high : low;
       if (sense == 0) {
         while (c < high && ray.above(k, c + 1)) ++c;
@@ -215,16 +215,16 @@ class VoxelIndex {
       return in.before({next[axis], k});
     }
 
-    /// The axis whose plane is crossed first.
+    /// Axis of the first crossing.
     static int first_of(const std::array<double, 3>& ranges) noexcept {
       const int xy = ranges[0] <= ranges[1] ? 0 : 1;
       return ranges[static_cast<std::size_t>(xy)] <= ranges[2] ? xy : 2;
     }
 
-    /// Whether two numbers along an axis are of the same four.
+    /// True if two coordinates along an axis are in the same group of four.
     static bool neighbours(std::int32_t a, std::int32_t b) noexcept { return a >> 2 == b >> 2; }
 
-    /// Into the next cell; false if it is in another brick.
+    /// Steps to the next cell; false if it is in another brick.
     bool step(int k) noexcept {
       const auto axis = static_cast<std::size_t>(k);
       const int sense = ray.sense(k);
@@ -235,8 +235,8 @@ class VoxelIndex {
       return neighbours(from, cell[axis]);
     }
 
-    /// On through cubes, with edges of 2^shift cells, from the empty one that the cell is in, until one is not empty or not among the
-    /// 4 x 4 x 4 that `occupied` tells of; false if the ray stays inside for ever.
+    /// Leaps over empty cubes of edge 2^shift cells, from the one around the cell. Stops at a cube that is occupied by the mask `occupied`,
+    /// or outside of its 4 x 4 x 4. False if the ray never leaves.
     bool leap(int shift, std::uint64_t occupied) noexcept {
       LatticeCell at;
       std::array<double, 3> exit;
@@ -274,12 +274,12 @@ class VoxelIndex {
     return {static_cast<std::int32_t>(a[0] - b[0]), static_cast<std::int32_t>(a[1] - b[1]), static_cast<std::int32_t>(a[2] - b[2])};
   }
 
-  /// Place of a cell, after `shift` bits of its coordinates, among the 4 x 4 x 4 around it.
+  /// Position of a cell, after `shift` bits of its coordinates, among the 4 x 4 x 4 around it.
   static unsigned digit(const LatticeCell& c, int shift) noexcept {
     return static_cast<unsigned>((c[0] >> shift & 3) | (c[1] >> shift & 3) << 2 | (c[2] >> shift & 3) << 4);
   }
 
-  /// The child at such a place, whose edge is a fourth.
+  /// Child at such a position, of a fourth of the edge.
   static LatticeCell inside(const LatticeCell& c, unsigned place) noexcept {
     const auto p = static_cast<std::int32_t>(place);
     return {c[0] << 2 | (p & 3), c[1] << 2 | (p >> 2 & 3), c[2] << 2 | p >> 4};
@@ -290,7 +290,7 @@ class VoxelIndex {
            static_cast<std::uint64_t>(c[2] >> shift) << 42;
   }
 
-  /// Cells of a brick, and bricks of a block, are neighbours in this order.
+  /// Sort order in which the cells of a brick, and the bricks of a block, are contiguous.
   static std::uint64_t sort_key(const LatticeCell& c) noexcept {
     const std::uint64_t block =
         static_cast<std::uint64_t>(c[0] >> 4) | static_cast<std::uint64_t>(c[1] >> 4) << 17 | static_cast<std::uint64_t>(c[2] >> 4) << 34;
@@ -304,7 +304,7 @@ class VoxelIndex {
             static_cast<std::int32_t>(key >> 42)};
   }
 
-  /// The last node whose first child is not after a child.
+  /// Last node whose first child is not after `child`.
   static std::size_t holder(const SharedArray<std::uint32_t>& first, std::uint32_t child) noexcept {
     return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), child) - first.begin()) - 1;
   }
@@ -335,8 +335,8 @@ class VoxelIndex {
     return nothing;
   }
 
-  /// From the cubes of the roots on, each level has cubes four times as long as the one before. A fourth of the budget is for those that
-  /// are kept whole, the rest for those that are hashed.
+  /// Builds levels from the cubes of the roots on, each of four times the edge of the one before. A fourth of the budget bounds each level
+  /// indexed directly; hashed levels share the rest.
   void make_pyramid(const std::vector<std::uint64_t>& keys, std::size_t budget) {
     const std::size_t affordable = budget / sizeof(std::uint64_t);
     std::vector<Level> levels;
@@ -364,14 +364,14 @@ class VoxelIndex {
       std::size_t set = 0;
       for (std::size_t w = level.first; w < pyramid.size(); ++w) set += static_cast<std::size_t>(std::popcount(pyramid[w]));
       if (level.words > 0 && set > words * 60)
-        pyramid.resize(pyramid.size() - words);  // of no use
+        pyramid.resize(pyramid.size() - words);  // almost full
       else
         levels_[level_count_++] = level;
     }
     pyramid_ = SharedArray<std::uint64_t>(std::move(pyramid));
   }
 
-  /// The least cell of a root.
+  /// Lower corner cell of a root.
   LatticeCell root_corner(std::uint64_t key) const noexcept {
     const LatticeCell c = unpacked(key);
     return {c[0] << 2 * height_, c[1] << 2 * height_, c[2] << 2 * height_};
@@ -391,13 +391,13 @@ class VoxelIndex {
     return false;
   }
 
-  /// An empty cube: log2 of its edge [cells], 0 if there is none, and which of the 4 x 4 x 4 that it is one of are occupied.
+  /// Empty cube: log2 of its edge [cells], 0 for none; and the occupancy mask of the 4 x 4 x 4 that it belongs to.
   struct Empty {
     int shift = 0;
     std::uint64_t siblings = 0;
   };
 
-  /// The largest empty cube around a cell; if its brick holds anything, that is set in `place`.
+  /// Largest empty cube around a cell, or none; then `place` is set to the brick.
   Empty around(const LatticeCell& c, Place& place) const noexcept {
     Empty empty;
     for (std::size_t i = 0; i < level_count_; ++i) {
@@ -411,7 +411,7 @@ class VoxelIndex {
     if (empty.shift > 0) return empty;
     const std::uint64_t key = root_key(c);
     if (key != place.key) place.key = key, place.root = root(key);
-    if (place.root == nothing) return {2 * height_, ~std::uint64_t{0}};  // of the roots around it nothing is known here
+    if (place.root == nothing) return {2 * height_, ~std::uint64_t{0}};  // unknown roots around it count as occupied
     place.brick = place.root;
     if (height_ == 1) return {};
     const std::uint64_t mask = block_masks_[place.root];
@@ -424,13 +424,13 @@ class VoxelIndex {
   Box bounds_;
   Vec3 corner_{};
   double edge_ = 1;
-  LatticeCell extent_{};  ///< cells
+  LatticeCell extent_{};  ///< extent [cells]
   std::uint32_t size_ = 0;
-  std::int32_t height_ = 1;  ///< 1 if the roots are bricks, 2 if they are blocks
+  std::int32_t height_ = 1;  ///< 1 for bricks as roots, 2 for blocks
   std::array<Level, 10> levels_{};
   std::size_t level_count_ = 0;
-  SharedArray<std::uint64_t> keys_;   ///< of the roots: where they are
-  SharedArray<std::uint32_t> slots_;  ///< of the hash: numbers of roots
+  SharedArray<std::uint64_t> keys_;   ///< positions of the roots
+  SharedArray<std::uint32_t> slots_;  ///< hash table of root numbers
   SharedArray<std::uint64_t> block_masks_;
   SharedArray<std::uint32_t> block_first_;
   SharedArray<std::uint64_t> brick_masks_;
