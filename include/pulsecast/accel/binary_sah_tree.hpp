@@ -27,7 +27,7 @@ class BinarySahTree {
  public:
   static constexpr std::size_t places = 8;  ///< children per node of the collapsed tree
 
-  /// Subtree: a contiguous range of primitives. `middle` is the begin of the second child and the node's index; 0 for one primitive.
+  /// Subtree: a contiguous range of primitives. `middle` is the start of the second child and the node's index; 0 for one primitive.
   struct Range {
     std::uint32_t begin, end, middle;
     [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }

@@ -172,7 +172,7 @@ class AnalyticWaveform {
     Peak peak;             // current peak
     WaveformMoments m;     // moments of its stretch so far
     WaveformMoments last;  // moments of the last peak entered
-    double since = 0;      // time from the begin of its stretch to the current edge [tau]
+    double since = 0;      // time from the start of its stretch to the current edge [tau]
     bool rising = false, met = false;
     const auto finish = [&](double end) {
       peak.end = end;

@@ -226,7 +226,7 @@ class HeightField {
   /// no triangle.
   struct Level {
     std::uint32_t columns = 0, rows = 0;
-    std::size_t begin = 0;                 ///< begin in `pyramid_`
+    std::size_t begin = 0;                 ///< start in `pyramid_`
     std::array<std::uint32_t, 2> shift{};  ///< log2 of a node's width and height [cells]
     std::array<std::uint32_t, 2> below{};  ///< log2 of a child's width and height [cells]
     std::array<float, 8> east{}, south{};  ///< offsets of the children from the node's north-west corner [m]

@@ -30,7 +30,7 @@ struct SteadyMotion {
   Vec3 velocity{};               ///< [m/s]
   Vec3 axis = axis::up;          ///< direction, of any non-zero length
   double rate = 0;               ///< right-handed about the axis [rad/s]
-  std::optional<Vec3> centre{};  ///< point of the axis in the world at the motion's begin [m]; empty for the body's own centre
+  std::optional<Vec3> centre{};  ///< point of the axis in the world at the motion's start [m]; empty for the body's own centre
   std::optional<Vec3> spin{};    ///< angular velocity in the world, if not the orbit's: zero for a Ferris wheel's cabin [rad/s]
   double duration = std::numeric_limits<double>::infinity();  ///< at least 1e-6 [s]
 
@@ -222,14 +222,14 @@ class PartMotion {
 
   /// Steady motion, or interpolation between two poses, in a run.
   struct Piece {
-    Change before;             ///< since the begin of the run
+    Change before;             ///< since the start of the run
     Vec3 velocity{};           ///< [m/s]
     Turning orbit{};           ///< rotation of its own centre, unless about itself
     Vec3 centre{};             ///< centre of the orbit, relative to the reference [m]
     bool about_itself = true;  ///< true for rotation about its own centre, which moves straight
     bool spins = false;        ///< true for an attitude other than the orbit's
     Turning attitude{};
-    double start = 0;                                           ///< since the begin of the run [s]
+    double start = 0;                                           ///< since the start of the run [s]
     double duration = std::numeric_limits<double>::infinity();  ///< [s]
   };
 
@@ -247,7 +247,7 @@ class PartMotion {
   struct Place {
     Change before;
     const Piece* piece;
-    Tick time;  ///< since the begin of the piece
+    Tick time;  ///< since the start of the piece
   };
 
   struct State {
@@ -336,7 +336,7 @@ class PartMotion {
     runs_.shrink_to_fit(), pieces_.shrink_to_fit();
   }
 
-  /// Change from the begin of a piece to a time in it.
+  /// Change from the start of a piece to a time in it.
   static Change change(const Piece& p, const Tick& time) noexcept {
     const Vec3 way = p.velocity * static_cast<double>(time.second) + p.velocity * time.fraction;
     const Rotation attitude = p.attitude.until(time);

@@ -109,7 +109,7 @@ class MovingIndex {
     return sum;
   }
 
-  /// Swept box in a window; windows overlap by more than times round.
+  /// Swept box in a window; windows overlap by more than the rounding of times.
   template <class Swept>
   Box box_in(PrimitiveIndex i, std::size_t window, std::size_t windows, const Swept& swept) const {
     const double width = span_ / static_cast<double>(windows), start = time_.from + static_cast<double>(window) * width;

@@ -18,8 +18,8 @@
 namespace pulsecast {
 
 /// Variants of a material, named "leaf 1", "leaf 2" and so on. Shifts the reflectance of each, or its whole spectrum, by a uniform random
-/// amount between minus and plus `range`, and clips it to [0, 1]. The same seed gives the same variants, the first ones for any number of
-/// variants.
+/// amount between minus and plus `range`, and clips it to [0, 1]. The same seed gives the same variants; `variants`
+/// only sets their number.
 /// @throws SettingError for a bad material or a `range` outside [0, 1]
 [[nodiscard]] inline std::vector<Material> vary_reflectance(const Material& material, std::size_t variants, double range,
                                                             std::uint64_t seed) {

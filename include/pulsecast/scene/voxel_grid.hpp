@@ -94,7 +94,7 @@ class SolidMeeting {
   Crossing begin_;
   std::size_t j_;
   ClosestHits& nearest_;
-  double far_side_ = infinity;  ///< far side of the cube around the ray's begin [m]
+  double far_side_ = infinity;  ///< far side of the cube around the ray's start [m]
   std::uint32_t around_ = 0;    ///< number of that cube
 };
 
