@@ -15,8 +15,8 @@
 #include <pulsecast/helios/detail/settings/scene.hpp>
 
 /// Settings of a survey document, as plain structs in SI units and radians. A program may change them before it builds the survey.
-/// Templates, references and inheritance are resolved: each struct is complete. The comment of a member names its attribute or element.
-/// Where 0 stands for a default or for none, `validate` refuses negative values.
+/// Templates, references and inheritance are resolved: each struct is complete. The comment of a member names its attribute or element. A 0
+/// may mean a default or none; `validate` refuses negative values there.
 namespace pulsecast::helios {
 
 /// Random offset of the start of legs: `legRandomOffset`.
