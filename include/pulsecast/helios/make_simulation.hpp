@@ -276,7 +276,7 @@ class LoadedSimulation final : public Simulation {
   std::optional<SurveyScene> scene_;
   std::unique_ptr<const AnySurvey> pipeline_;
   std::vector<SurveyPart> meshes_;  // in addition to the survey's own parts
-  std::uint64_t seed_ = 0;          // of this repetition
+  std::uint64_t seed_ = 0;          // seed of this repetition
   std::vector<std::string> scene_warnings_, warnings_;
 };
 

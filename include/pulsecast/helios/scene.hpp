@@ -38,13 +38,14 @@ namespace pulsecast::helios {
 
 /// Part with any shape of the document format.
 using SurveyPart = Part<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
+/// Scene of such parts.
 using SurveyScene =
     MovingScene<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
 
 /// Options for building a scene.
 struct SceneBuildOptions {
   io::SpectralLibrary spectra{};  ///< spectra for materials
-  double pulse_rate = 100e3;      ///< of the first leg, for motions per pulse [Hz]
+  double pulse_rate = 100e3;      ///< pulse rate of the first leg, for motions per pulse [Hz]
   std::uint64_t seed = 0;         ///< seed of random properties of the scene
   bool fixed_incidence = false;   ///< perpendicular incidence on all surfaces, for scattering
   unsigned threads = 0;           ///< threads for reading and building, at most `max_threads`; 0: all of the machine
@@ -327,7 +328,7 @@ class SceneBuilder {
   SceneSettings settings_;
   SceneBuildOptions options_;
   std::vector<std::pair<PartSource, std::vector<Loaded>>> loaded_;
-  std::vector<const PartSettings*> settings_of_;  // of each part of the last run
+  std::vector<const PartSettings*> settings_of_;  // one per part of the last run
   std::vector<std::string> warnings_;
   std::set<std::string> warned_;
 };

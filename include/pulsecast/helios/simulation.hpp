@@ -98,7 +98,7 @@ class Simulation {
 
   [[nodiscard]] virtual const CompiledSurvey& compiled() const = 0;
   [[nodiscard]] virtual Scene scene() const = 0;
-  [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;  ///< of scene, legs and receivers, each once
+  [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;  ///< from scene, legs and receivers, each once
 
   /// Simulates the pulses as `pulsecast::run` does. The sink gets the echoes in the order of their pulses.
   virtual RunSummary run(const RunOptions& options, const std::function<void(const EchoBatch&)>& sink) const = 0;

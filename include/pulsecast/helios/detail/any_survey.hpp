@@ -31,8 +31,8 @@ class AnySurvey {
   [[nodiscard]] virtual Outcome operator()(PulseIndex i, Workspace& w) const noexcept = 0;
 };
 
-template <class Survey>
 /// Wraps a `Survey` of one kind as an `AnySurvey`.
+template <class Survey>
 class SurveyOf final : public AnySurvey {
  public:
   explicit SurveyOf(Survey survey) : survey_(std::move(survey)) {}

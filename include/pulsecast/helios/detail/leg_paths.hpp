@@ -31,6 +31,7 @@
 /// Paths of the legs of a survey document.
 namespace pulsecast::helios {
 
+/// Options for compiling a survey to pulses.
 struct SurveyBuildOptions {
   std::uint64_t seed = 0;                 ///< seed of leg offsets and noise
   bool platform_noise = true;             ///< true: platform noise as in the survey; false: none

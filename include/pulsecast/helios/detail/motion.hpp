@@ -62,6 +62,7 @@ struct MotionSteps {
   std::optional<MotionStep> own{};  ///< motions of a part about itself
 };
 
+/// Composes the motions of a sequence, in their order.
 [[nodiscard]] inline MotionSteps motion_steps(const MotionSequenceSettings& sequence, const Vec3& scene_centre) {
   MotionSteps out;
   for (const MotionSettings& m : sequence.motions) {

@@ -50,8 +50,8 @@ namespace detail {
 struct PageCodes {
   std::string name{};
   std::string_view kind{};              ///< "linear", "logarithmic" or "listed"
-  double offset = 0, step = 0;          ///< of linear and logarithmic codes
-  std::vector<std::uint32_t> values{};  ///< of listed codes
+  double offset = 0, step = 0;          ///< for linear and logarithmic codes
+  std::vector<std::uint32_t> values{};  ///< for listed codes
   std::optional<double> per_pulse{};    ///< term added, times the number of the pulse
   bool differences = true;              ///< store differences, for attributes with similar neighbours
   std::vector<std::uint64_t> codes{};

@@ -30,7 +30,7 @@ struct PagePoint {
   std::uint32_t key = 0;                 ///< for thinning: see `page_key`
   std::uint16_t classification = 0;      ///< as in `Echo`
   std::uint16_t leg = 0;                 ///< as in `Shot`
-  std::uint8_t number = 1, returns = 1;  ///< of the echo, and of its pulse in total
+  std::uint8_t number = 1, returns = 1;  ///< number of the echo, total of its pulse
   std::uint8_t channel = 0;              ///< as in `Shot`
 };
 

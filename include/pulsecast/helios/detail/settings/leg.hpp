@@ -65,7 +65,7 @@ struct LegScannerSettings {
   double head_speed = 0;                       ///< `headRotatePerSec_deg` [rad/s]
   double head_start = 0;                       ///< `headRotateStart_deg` [rad]
   double head_stop = 0;                        ///< `headRotateStop_deg` [rad]
-  std::optional<double> divergence{};          ///< of all channels, default each one's own; `beamDivergence_rad` [rad]
+  std::optional<double> divergence{};          ///< common value of all channels, default each one's own; `beamDivergence_rad` [rad]
   double trajectory_interval = 0;              ///< interval of trajectory records; 0: none. `trajectoryTimeInterval_s` [s]
   double warm_up = 0;                          ///< running time of head and optic before the first pulse; `opticsWarmupPhase_s` [s]
 

@@ -22,6 +22,7 @@ inline void require_at_least(int least, std::string_view field, int value) {
 
 }  // namespace detail
 
+/// Axis of a rotation: right, forward, up.
 enum class Axis : std::uint8_t { x, y, z };
 
 /// One rotation of a list: `<rot>`.

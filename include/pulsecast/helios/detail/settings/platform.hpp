@@ -63,7 +63,7 @@ struct PlatformSettings {
   std::string id{};                                              ///< `id`
   std::string name{};                                            ///< `name`
   PlatformKind kind = PlatformKind::stationary;                  ///< `type`
-  MountSettings mount{};                                         ///< of the instrument on the body; `<scannerMount>`
+  MountSettings mount{};                                         ///< pose of the instrument on the body; `<scannerMount>`
   MulticopterDynamics multicopter{};                             ///< multicopter only
   RotationSpec rotation_spec = RotationSpec::arinc_705;          ///< interpolated only; `rotationSpec`
   std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`, Y and Z [m]

@@ -61,6 +61,7 @@ struct RisleyOptic {
   bool operator==(const RisleyOptic&) const = default;
 };
 
+/// Any optic.
 using OpticSettings = std::variant<OscillatingOptic, RotatingOptic, ConicOptic, LineOptic, RisleyOptic>;
 
 /// Sampling of waveforms: `<FWFSettings>`.
@@ -107,7 +108,7 @@ struct ChannelSettings {
   double wavelength = 1064e-9;                                 ///< `wavelength_nm` [m]
   double efficiency = 0.99;                                    ///< `opticalEfficiency`
   double receiver_diameter = 0.15;                             ///< `receiverDiameter_m` [m]
-  double visibility = 23e3;                                    ///< of the atmosphere; `atmosphericVisibility_km` [m]
+  double visibility = 23e3;                                    ///< atmospheric visibility; `atmosphericVisibility_km` [m]
   double accuracy = 0;                                         ///< standard deviation of the range; `accuracy_m` [m]
   double range_min = 0;                                        ///< `rangeMin_m` [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< `rangeMax_m` [m]

@@ -90,6 +90,7 @@ struct VoxelSource {
   bool operator==(const VoxelSource&) const = default;
 };
 
+/// Any source of geometry.
 using PartSource = std::variant<ObjSource, GeoTiffSource, XyzSource, VoxelSource>;
 
 namespace detail {
@@ -134,7 +135,7 @@ struct RotationMotion {
 
 /// `<motion type="reflection">` and, with `shift`, `<motion type="glideplane">`
 struct ReflectionMotion {
-  Vec3 normal = axis::up;       ///< of a plane through the origin; non-zero, any length. `ortho`
+  Vec3 normal = axis::up;       ///< normal of a plane through the origin; non-zero, any length. `ortho`
   std::optional<Vec3> shift{};  ///< along the plane: glide plane only. `shift` [m]
 
   bool operator==(const ReflectionMotion&) const = default;

@@ -70,7 +70,7 @@ class XmlFaults : public FileError {
 /// Collects faults and warnings, each once.
 class XmlReport {
  public:
-  static constexpr std::size_t max_told = 1000;  ///< of faults and of warnings; later ones are dropped
+  static constexpr std::size_t max_told = 1000;  ///< limit of faults and of warnings; later ones are dropped
 
   void fault(XmlPlace place, std::string problem) {
     if (is_full()) return;
