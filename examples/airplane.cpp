@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// A scanner in an airplane: flies over hills in overlapping strips, there and back in turn. Leaves cloud.las, cloud.png and
-// trajectory.txt.
+// Airborne scanner: overlapping strips over hills in alternating directions. Writes cloud.las, cloud.png and trajectory.txt.
 
 #include <cmath>
 #include <cstddef>
@@ -23,8 +22,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
-/// The airplane on one pass: an oscillating mirror sweeps the beam from left to right below it and back. The instrument looks down, with
-/// its up to the right of the flight, and sits before and below the airplane's own origin.
+/// Airplane on one pass: an oscillating mirror sweeps the beam across the track. The instrument looks down, its up axis points to the right
+/// of the flight. Its lever arm is forward and below the airplane's origin.
 auto airplane(const StraightLine& pass, double pulse_rate) {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 2500_W, .pulse_length = 4_ns, .divergence = 0.3_mrad};
   const auto pulses = static_cast<PulseIndex>(std::ceil(pass.duration().seconds() * pulse_rate));
@@ -49,7 +48,7 @@ int main(int argc, char** argv) {
     const auto pass = [&](const StraightLine& path) { return airplane(path, 1e3 * pulse_rate_kHz); };
     std::vector<Leg<decltype(pass({}))>> legs;
     for (const StraightLine& strip : strips) {
-      if (!legs.empty()) {  // the turn: it takes its time, but nothing is scanned
+      if (!legs.empty()) {  // turn: takes time, without pulses
         const StraightLine turn{.from = legs.back().platform.trajectory().to, .to = strip.from, .speed = 5};
         legs.push_back({.platform = pass(turn), .active = false});
       }

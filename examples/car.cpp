@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Two scanners on the roof of a car that drives through a small town: it turns right, turns round where the street is too narrow for a
-// curve, and goes on. Leaves cloud.las, cloud.png and trajectory.txt.
+// Two scanners on the roof of a car in a small town. The car turns right, reverses to turn round where the street is too narrow for a
+// curve, and drives on. Writes cloud.las, cloud.png and trajectory.txt.
 
 #include <cmath>
 #include <iostream>
@@ -22,7 +22,7 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
-/// One of the scanners: its beam runs around a vertical circle, which stands at an angle to the way of the car [rad].
+/// One of the scanners: its beam rotates in a vertical plane at `angle` to the driving direction [rad].
 auto scanner(const GroundVehicleDrive& drive, double angle, double pulse_rate) {
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 5_ns, .divergence = 0.5_mrad};
   const auto pulses = static_cast<PulseIndex>(drive.duration().seconds() * pulse_rate);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// An optic of one's own: two spinning prisms draw a rosette. Leaves custom_deflector.png.
+// User-defined optic: two rotating prisms draw a rosette. Writes custom_deflector.png.
 
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/pulsecast.hpp>
@@ -13,12 +13,12 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
-/// Two thin prisms, one behind the other, each of which bends the beam by the same angle towards where it is turned.
+/// Two thin prisms in series. Each bends the beam by the same angle towards its own rotation angle.
 struct Rosette {
-  double bend;           ///< by each prism [rad]
-  double first, second;  ///< turns of the prisms per second, negative for the other way [Hz]
+  double bend;           ///< deflection by each prism [rad]
+  double first, second;  ///< rotation rates of the prisms, negative for the opposite direction [Hz]
 
-  /// The one function that makes it an optic.
+  /// The only function that the `Optic` concept requires.
   Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     const double a = 2 * pi * t.phase(first), b = 2 * pi * t.phase(second);
     const double aside = bend * (std::cos(a) + std::cos(b)), upwards = bend * (std::sin(a) + std::sin(b));

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// A scanner under a drone: rises before a hut in a wood, flies over the trees to and fro, hovers for a last look, and comes down again. It
-// leans into every turn, and its beam with it. Leaves cloud.las, cloud.png and trajectory.txt.
+// Scanner under a drone: it rises before a hut in a wood, flies rows over the trees, hovers, and comes down again. It banks in turns, and
+// the beam with it. Writes cloud.las, cloud.png and trajectory.txt.
 
 #include <cmath>
 #include <iostream>
@@ -21,7 +21,7 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
-/// From a glade up, over the wood in rows, and down to the glade again.
+/// Route: up from a glade, over the wood in rows, and down to the glade again.
 std::vector<FlightPoint> route(const Vec3& glade, double height) {
   std::vector<FlightPoint> points{{glade}, {glade + height * axis::up}};
   bool north = true;
@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
     const Scanner scanner{
         .pulse_rate = pulse_rate, .pulses = static_cast<PulseIndex>(flight.duration().seconds() * pulse_rate), .laser = laser};
     const PolygonMirror mirror{.lines_per_second = 40_Hz, .sweep = 45_deg};
-    // The instrument looks down, with its up to the right of the flight.
+    // The instrument looks down; its up axis points to the right of the flight.
     const Platform drone{flight, Mount{.lever_arm = {0, 0.1, -0.25}, .boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                          Deflector{mirror, scanner}};
 

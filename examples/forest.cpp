@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// A forest of three models of a tree in one scene, on a raster of terrain: a mesh with every leaf; voxels that let light through by chance,
-// as foliage of their density does; and the voxels that a point cloud of the first one stands in. An airplane flies over it.
-// Leaves cloud.las, cloud.png, and tree.xyz, the point cloud that the third model is made from.
+// Forest of three tree models in one scene, on a terrain raster: a mesh with all leaves; voxels with random transmission by leaf density;
+// voxels of a point cloud of the mesh. An airplane flies over it. Writes cloud.las, cloud.png, and tree.xyz, the point cloud of the third
+// model.
 
 #include <algorithm>
 #include <array>
@@ -39,13 +39,13 @@ using Foliage = VoxelGrid<TransmissiveVoxels>;
 using Solid = VoxelGrid<OpaqueVoxels>;
 using Forest = Scene<HeightField, Mesh, Foliage, Solid>;
 
-/// The height of the ground at a place [m].
+/// Height of the ground at a place [m].
 double ground(std::uint64_t seed, const Vec2& at) noexcept {
   return 25 * wood::noise(seed + 1, at.x / 210, at.y / 210) + 6 * wood::noise(seed + 2, at.x / 70, at.y / 70) +
          0.4 * wood::noise(seed + 3, at.x / 9, at.y / 9);
 }
 
-/// The ground of a square about the origin, in pixels of 1 m.
+/// Ground of a square about the origin, in pixels of 1 m.
 Raster terrain(std::uint64_t seed, double side) {
   const auto pixels = static_cast<std::uint32_t>(side) + 1;
   Raster raster{.columns = pixels, .rows = pixels, .first = {-side / 2, side / 2}};
@@ -55,7 +55,7 @@ Raster terrain(std::uint64_t seed, double side) {
   return raster;
 }
 
-/// A crown without branches: an egg of leaves, 8 m wide, from 5 m to 17 m above the foot, that get fewer towards its middle.
+/// Crown without branches: an ellipsoid of leaves, 8 m wide, from 5 m to 17 m above the foot, with fewer leaves towards its centre.
 VoxelData crown() {
   constexpr double edge = 0.25, radius = 4, half_height = 6;
   VoxelData voxels{.corner = {-radius, -radius, 5}, .edge = edge};
@@ -71,14 +71,14 @@ VoxelData crown() {
   return voxels;
 }
 
-/// The point cloud of a tree, scanned by a single ray a pulse from four sides, as a file.
+/// Scans a tree by one ray per pulse from four sides, into a point cloud file.
 void scan_tree(const std::shared_ptr<const Mesh>& tree, const std::filesystem::path& file, unsigned threads) {
   const Scene<Mesh> alone({{.geometry = tree, .materials = material_table(wood::materials())}});
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = 250'000};
   const OscillatingMirror mirror{.cycles_per_second = 50_Hz, .half_angle = 32_deg};
   std::vector<Platform<Tripod, Deflector<RotatingHead, Deflector<OscillatingMirror, Scanner>>>> set_ups;
   for (int side = 0; side < 4; ++side) {
-    const double heading = side * 90_deg;  // the way to the tree; the head turns from left of it to right of it
+    const double heading = side * 90_deg;  // towards the tree; the head turns from left of it to right of it
     const Vec3 foot = -15.0 * Vec3(std::sin(heading), std::cos(heading), 0);
     const RotatingHead head{.rate = -40_deg / scanner.duration().seconds(), .start = 20_deg};
     set_ups.push_back(
@@ -89,7 +89,7 @@ void scan_tree(const std::shared_ptr<const Mesh>& tree, const std::filesystem::p
   xyz.close();
 }
 
-/// Each of `count` trees is drawn from the models; a model is one part or several.
+/// Forest of `count` trees, drawn from models of one part or several.
 Forest plant(std::uint64_t seed, std::size_t count, double side, const std::vector<std::vector<Forest::Part>>& models) {
   const auto soil = material_table({{.name = "soil", .reflectance = 0.35, .classification = 2, .ground = true}});
   std::vector<Forest::Part> parts{{.geometry = std::make_shared<const HeightField>(terrain(seed, side)), .materials = soil}};

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// A robot scans a map of its own: no mesh, no scene, only a struct that answers for a ray. Here it is a signed distance function of an
-// underground cistern with columns and vaults; it might as well be an occupancy grid. Leaves own_map.png.
+// Robot that scans a user-defined map: a struct that answers ray queries, without mesh or scene. Here it is a signed distance function of
+// an underground cistern with columns and vaults; an occupancy grid works as well. Writes own_map.png.
 
 #include <array>
 #include <cmath>
@@ -21,12 +21,12 @@ using namespace pulsecast::literals;
 struct Cistern {
   enum Class : std::uint16_t { water = 9, column = 64, vault = 65 };
 
-  static constexpr double spacing = 4, springing = 3;  // of the columns, and the height where vaults begin [m]
+  static constexpr double spacing = 4, springing = 3;  // of the columns, and the springing height of the vaults [m]
 
-  /// From the nearest axis of columns, in [-spacing/2, spacing/2].
+  /// Offset from the nearest axis of columns, in [-spacing/2, spacing/2].
   static double cell(double x) noexcept { return x - spacing * std::round(x / spacing); }
 
-  /// Distances to the water, columns and vaults [m]. A groin vault is what two round barrels that cross leave standing.
+  /// Distances to the water, columns and vaults [m]. A groin vault encloses the union of two crossing barrels.
   static std::array<double, 3> distances(const Vec3& p) noexcept {
     const double x = cell(p.x), y = cell(p.y), across = std::hypot(x, y);
     const double base = std::fmax(std::fmax(std::fabs(x), std::fabs(y)) - 0.45, std::fmax(std::fabs(p.z) - 0.35, -p.z));
@@ -36,8 +36,8 @@ struct Cistern {
     const double above = std::fmax(p.z - springing, 0.0), radius = spacing / 2 - 0.25;
     const double along_x = radius - std::hypot(spacing / 2 - std::fabs(y), above),
                  along_y = radius - std::hypot(spacing / 2 - std::fabs(x), above);
-    const double vaults =
-        p.z > springing ? std::fmax(along_x, along_y) : springing + 0.05 - p.z;  // below, as far as the vaults are at least
+    const double vaults = p.z > springing ? std::fmax(along_x, along_y)
+                                          : springing + 0.05 - p.z;  // below the springing: lower bound of the distance to the vaults
     const double walls = std::fmin(10 - std::fabs(p.x - 2), 18 - std::fabs(p.y - 14));
     return {p.z, std::fmin(base, std::fmin(shaft, 0.8 * capital)), std::fmin(walls, vaults)};
   }
@@ -47,7 +47,7 @@ struct Cistern {
     return std::fmin(to_water, std::fmin(to_column, to_vault));
   }
 
-  /// The one function that makes it a target. Source: Hart 1996, sphere tracing.
+  /// The only function that the `Target` concept requires. Source: Hart 1996, sphere tracing.
   std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
     double range = ray.near;
     for (int step = 0; step < 400 && range < ray.far && range < 60; ++step) {
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
       const Deflector sweeping{PolygonMirror{.lines_per_second = 500_Hz, .sweep = 90_deg}, scanner};
       return Platform{Tripod{.position = {2, y, 0.4}}, Mount{}, Deflector{RotatingHead{.rate = 180_deg}, sweeping}};
     };
-    const Legs stops(std::vector{stop_at(2), stop_at(10), stop_at(18), stop_at(26)});  // the robot drives along an aisle
+    const Legs stops(std::vector{stop_at(2), stop_at(10), stop_at(18), stop_at(26)});  // set-ups along an aisle
     const Survey survey{stops, SingleRay{}, map, Receiver{}, FirstHit{}};
     io::ImageWriter image(
         line.output / "own_map.png",

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// A robot drives down a street with a spinning sensor of 32 beams. Every turn of the sensor is one scan, asked for as a robotics program
-// would in its loop: the pose in, the points out, with ring, time offset and intensity. Leaves robot.png.
+// Robot that drives down a street with a spinning sensor of 32 beams. Each turn of the sensor is one scan, requested as in a robotics
+// program: pose in; points out, with ring, time offset and intensity. Writes robot.png.
 //
-// Each scan has a clock of its own. In a scene with parts that move, let the scanner last the whole drive, and run the slots of one scan
-// after those of the other (`RunOptions::first` and `end`): then time goes on from scan to scan.
+// Each scan has its own clock. For scenes with moving parts, let the scanner last the whole drive, and run the slots of the scans in order
+// (`RunOptions::first` and `end`): then time continues from scan to scan.
 
 #include <array>
 #include <chrono>
@@ -24,7 +24,7 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
-/// One turn of the sensor: beams that fire together, a head that spins.
+/// One turn of the sensor: beams that fire together on a rotating head.
 auto spinning_sensor(std::size_t beams, double turns_per_second, PulseIndex columns) {
   const Scanner scanner{.pulse_rate = turns_per_second * static_cast<double>(columns), .pulses = columns, .laser = {.wavelength = 905_nm}};
   std::vector<Deflector<FixedBeam, Scanner>> emitters;
@@ -35,7 +35,7 @@ auto spinning_sensor(std::size_t beams, double turns_per_second, PulseIndex colu
   return Deflector{RotatingHead{.rate = -360_deg * turns_per_second}, Channels{emitters}};
 }
 
-/// Where the robot is during one scan: it goes on at its speed, so the scan is as distorted as a real one.
+/// Motion of the robot during one scan, at constant speed: the scan has the distortion of a real one.
 struct Drive {
   Vec3 start;    ///< [m]
   double speed;  ///< to the north [m/s]
@@ -44,12 +44,12 @@ struct Drive {
 };
 static_assert(Trajectory<Drive>);
 
-/// What the robot's program works on: a scan as columns of numbers.
+/// Scan as columns of numbers, for the robot's program.
 struct Scan {
   std::vector<std::array<float, 3>> points;  ///< in the frame of the robot at the scan's start: x right, y forward, z up [m]
-  std::vector<std::uint8_t> rings;           ///< the beam, from 0 at the bottom
+  std::vector<std::uint8_t> rings;           ///< beam number, from 0 at the bottom
   std::vector<float> time_offsets;           ///< since the scan's start [s]
-  std::vector<float> intensities;            ///< reflectance of a white surface is 1
+  std::vector<float> intensities;            ///< 1 for a white surface
 
   void clear() { points.clear(), rings.clear(), time_offsets.clear(), intensities.clear(); }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What each optic draws on a floor of blue and orange fields, ten metres wide. Leaves one picture an optic, seen from above.
+// Scan pattern of each optic on a floor of blue and orange squares, ten metres wide. Writes one picture per optic, seen from above.
 
 #include <cmath>
 #include <cstdint>
@@ -22,9 +22,9 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
-/// The plane z = 0, painted like a chessboard.
+/// Plane z = 0 with a chessboard pattern.
 struct PaintedFloor {
-  enum Class : std::uint16_t { orange = 6, blue = 9 };  // as the map of classes has them: building and water
+  enum Class : std::uint16_t { orange = 6, blue = 9 };  // codes of building and water in the colour map of classes
 
   std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
     const double range = -ray.origin.z / ray.direction.z;
@@ -37,7 +37,7 @@ struct PaintedFloor {
 };
 static_assert(Target<PaintedFloor>);
 
-/// A picture to which one instrument after the other adds its points.
+/// Picture that collects the points of several instruments.
 class Picture {
  public:
   Picture(const CommandLine& line, const std::string& name)
@@ -51,18 +51,19 @@ class Picture {
                                                .point_size = 3,
                                                .background = {250, 250, 247}}) {}
 
-  /// Flies north, 100 m up, for as long as the scanner shoots, at 60 m/s. The beam goes down, and what an optic calls up is to the right.
+  /// Flight to the north at 60 m/s and 100 m height, for the duration of the scanner. The beam points down; the optic's up axis points to
+  /// the right.
   Picture& flight(double x, const InstrumentSource auto& instrument) {
     const double way = 60 * instrument.duration().seconds();
     return scan(Platform{StraightLine{.from = {x, -way / 2, 100}, .to = {x, way / 2, 100}, .speed = 60}, looking_down(), instrument});
   }
 
-  /// Stands still, as high as that, and looks down.
+  /// Fixed position at the same height, looking down.
   Picture& balloon(double x, const InstrumentSource auto& instrument) {
     return scan(Platform{Tripod{.position = {x, 0, 100}}, looking_down(), instrument});
   }
 
-  /// Stands upright on legs of two metres.
+  /// Upright on a tripod of two metres.
   Picture& tripod(double x, const InstrumentSource auto& instrument) {
     return scan(Platform{Tripod{.position = {x, 0, 2}}, Mount{}, instrument});
   }
@@ -82,7 +83,7 @@ class Picture {
   io::ImageWriter image_;
 };
 
-/// A second of 4,000 pulses.
+/// Scanner of 4,000 pulses in one second.
 constexpr Scanner slow{.pulse_rate = 4_kHz, .pulses = 4000};
 
 void draw_lines(const CommandLine& line) {
@@ -93,7 +94,7 @@ void draw_lines(const CommandLine& line) {
   const PolygonMirror plain{.lines_per_second = 30, .sweep = 45_deg, .angle_min = -20_deg, .angle_max = 20_deg};
   PolygonMirror tilted = plain;
   tilted.facet_tilts = {-0.7_deg, 0, 0.7_deg};
-  const Scanner fast{.pulse_rate = 9_kHz, .pulses = 9000};  // of which the gate lets four in nine through
+  const Scanner fast{.pulse_rate = 9_kHz, .pulses = 9000};  // the gate passes four in nine
   Picture(line, "polygon_mirror").flight(-45, Deflector{plain, fast}).flight(45, Deflector{tilted, fast}).close();
 
   const FiberArray fibers{.fibers = 64, .fibers_per_second = slow.pulse_rate, .half_angle = 20_deg};
@@ -127,7 +128,7 @@ void draw_heads(const CommandLine& line) {
   const Deflector circling_in_a_circle{RotatingHead{.rate = -3 * 360_deg, .axis = axis::forward}, circling};
   Picture(line, "rotating_head").balloon(-45, circling).balloon(45, circling_in_a_circle).close();
 
-  std::vector<Deflector<FixedBeam, Scanner>> beams;  // sixteen, one after the other
+  std::vector<Deflector<FixedBeam, Scanner>> beams;  // sixteen beams in turn
   for (int k = 0; k < 16; ++k)
     beams.emplace_back(FixedBeam{aimed_at(0, radians(-25 + k))}, Scanner{.pulse_rate = 5_kHz, .pulses = 500, .delay = k * 10_us});
   const Deflector spinning{RotatingHead{.rate = -10 * 360_deg}, Channels{beams}};

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Runs the survey of an XML document. Leaves cloud.las.
+// Runs the survey of an XML document. Writes cloud.las.
 
 #include <filesystem>
 #include <iostream>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// A scanner on a tripod: scans the OBJ files named on the command line, or else a wood, from several set-ups.
-// Leaves cloud.las, cloud.png and trajectory.txt, and cloud.xyz if asked for.
+// Scanner on a tripod: scans the OBJ files of the command line, by default a wood, from several set-ups. Writes cloud.las, cloud.png,
+// trajectory.txt, and cloud.xyz on request.
 
 #include <cmath>
 #include <cstddef>
@@ -27,8 +27,8 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
-/// The scanner: a polygon mirror of four facets sweeps the beam upwards, while the head turns once around. `step` is the angle from
-/// one pulse to the next, and from one line to the next [rad].
+/// Scanner: a polygon mirror of four facets sweeps the beam upwards, while the head turns once around. `step` is the angle between pulses
+/// and between lines [rad].
 auto set_up(const Vec3& foot, double step) {
   const Laser laser{.wavelength = 1550_nm, .peak_power = 10_W, .pulse_length = 4_ns, .divergence = 0.35_mrad};
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(180_deg / step * 360_deg / step), .laser = laser};
@@ -59,7 +59,7 @@ std::vector<Vec3> places_around(const Box& box) {
   return places;
 }
 
-/// Along the path to the hut in the wood.
+/// View along the path to the hut in the wood.
 io::ImageSettings view_of_hut(std::uint64_t seed) {
   const Vec3 eye = wood::Terrain(seed).on({-12.6, -13.2}) + 3.2 * axis::up,
              sight = wood::Terrain(seed).on(wood::hut_place) + 2.5 * axis::up - eye;

@@ -37,13 +37,13 @@ using helios::SurveySettings;
 
 namespace {
 
-/// Slots that cost alike.
+/// Classes of slots with equal cost.
 enum Kind : std::uint8_t { blocked, missed, met };
 constexpr std::size_t kinds = 3;
 
 Kind kind_of(Fate fate) { return fate == Fate::blocked ? blocked : fate == Fate::missed ? missed : met; }
 
-/// Time that may be used up, on processors that are free, so that samples do not depend on what else they do.
+/// Budget of processor time. Samples thus do not depend on other load.
 class Allowance {
  public:
   Allowance(double seconds, double workers) : ticks_(seconds * workers * CLOCKS_PER_SEC) {}
@@ -56,17 +56,16 @@ class Allowance {
 
 // ------------------------------------------------------------------------------------------------------------------ slots
 
-/// What single slots come to that are spread over the whole survey.
+/// Results of single slots, spread over the whole survey.
 struct Census {
-  std::array<double, kinds> slots{};  ///< of the survey, by kind
+  std::array<double, kinds> slots{};  ///< number of slots in the survey, by kind
   Estimate points{};
-  std::array<std::vector<PulseIndex>, kinds> found{};  ///< in order
+  std::array<std::vector<PulseIndex>, kinds> found{};  ///< sampled slots in order
   std::uint64_t sampled = 0;
 };
 
-/// One slot at random from each of many equal strata of the survey, which are visited in rounds so that each round is spread over all of
-/// it. A small survey is counted as a whole. The mean of a stratified sample, and its variance from differences of neighbours.
-/// Source: Cochran 1977, sections 5.3 and 5A.12.
+/// Stratified random sample: one slot from each of many equal strata. Rounds visit the strata, each spread over the whole survey. A small
+/// survey is counted in full. The variance is from differences of neighbours. Source: Cochran 1977, sections 5.3 and 5A.12.
 Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned threads, double workers) {
   constexpr std::uint64_t rounds = 64, most = rounds << 12;
   const std::uint64_t size = simulation.compiled().source.size(), strata = std::min(size, most),
@@ -106,13 +105,13 @@ Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned th
   for (std::size_t k = 0; k < kinds; ++k) census.slots[k] = of_kind[k] * per_slot;
   const double deviation = n < 2 ? 0 : per_slot * std::sqrt((1 - n / all) * n * differences / (2 * (n - 1)));
   const double value = sum * per_slot;
-  // Where nothing is found in n trials, it is rarer than 3 in n. Source: Hanley & Lippman-Hand 1983.
+  // Upper limit after n trials without success: 3 in n. Source: Hanley & Lippman-Hand 1983.
   const double none = census.sampled == size ? 0 : 3 * per_slot;
   census.points = {value, std::max(sum, value - 2 * deviation), sum > 0 ? value + 2 * deviation : none};
   return census;
 }
 
-/// Places of a list, such that any number of the first of them is spread over all of it. Source: Weyl 1916, steps of the golden section.
+/// Element of a list by golden-section steps: any number of first steps is spread over the whole list. Source: Weyl 1916.
 PulseIndex spread_over(const std::vector<PulseIndex>& list, std::uint64_t number, double start) {
   const double at = start + static_cast<double>(number) * 0.6180339887498949;
   return list[std::min(list.size() - 1, static_cast<std::size_t>((at - std::floor(at)) * static_cast<double>(list.size())))];
@@ -120,7 +119,7 @@ PulseIndex spread_over(const std::vector<PulseIndex>& list, std::uint64_t number
 
 // ------------------------------------------------------------------------------------------------------------------- time
 
-/// Blocks of consecutive slots that begin at one of a kind.
+/// Blocks of consecutive slots, each with a first slot of one kind.
 std::vector<SampleBlock> blocks_at(const Census& census, Kind kind, std::uint64_t first, std::uint64_t end, PulseIndex before,
                                    PulseIndex length, std::uint64_t seed, PulseIndex size) {
   std::vector<SampleBlock> blocks;
@@ -133,16 +132,16 @@ std::vector<SampleBlock> blocks_at(const Census& census, Kind kind, std::uint64_
   return blocks;
 }
 
-/// Slots of a block by kind.
+/// Number of slots in a block by kind.
 std::array<double, kinds> kinds_in(const Sample& sample) {
   std::array<double, kinds> n{};
   for (std::size_t f = 0; f < fate_count; ++f) n[kind_of(static_cast<Fate>(f))] += static_cast<double>(sample.counts.fates[f]);
   return n;
 }
 
-/// What a slot of each kind takes [s], such that it comes out right for all slots together: least squares over blocks, each of which stands
-/// for so many. Slots of a kind do not take the same everywhere, nor does each block hold one kind only: so a kind may come out below zero.
-/// Source: Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, chapter 6, the regression estimator.
+/// Cost of a slot of each kind [s], calibrated to the total of all slots: weighted least squares over blocks. A cost may be below zero, as
+/// costs vary within a kind and blocks mix kinds. Source: Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, chapter 6, the
+/// regression estimator.
 std::array<double, kinds> cost_of_kinds(std::span<const Sample> kinds_of, std::span<const Sample> times, std::span<const double> weights) {
   std::array<std::array<double, kinds + 1>, kinds> m{};
   for (std::size_t b = 0; b < kinds_of.size(); ++b) {
@@ -155,7 +154,7 @@ std::array<double, kinds> cost_of_kinds(std::span<const Sample> kinds_of, std::s
   double trace = 0;
   for (std::size_t i = 0; i < kinds; ++i) trace += m[i][i];
   for (std::size_t i = 0; i < kinds; ++i) m[i][i] += 1e-9 * trace;
-  for (std::size_t i = 0; i < kinds; ++i)  // Gauss's elimination; the matrix is positive definite
+  for (std::size_t i = 0; i < kinds; ++i)  // Gaussian elimination; the matrix is positive definite
     for (std::size_t row = 0; row < kinds; ++row) {
       if (row == i || !(m[i][i] > 0)) continue;
       const double factor = m[row][i] / m[i][i];
@@ -170,7 +169,7 @@ double bytes_of(const Sample& s) {
   return static_cast<double>(std::span(s.shots).size_bytes() + std::span(s.echoes).size_bytes() + std::span(s.samples).size_bytes());
 }
 
-/// How many blocks of the survey each block of a sample stands for, if it begins at a slot of a kind. Source: Horvitz & Thompson 1952.
+/// Sampling weights: number of blocks of the survey per block of a sample, by the kind of its first slot. Source: Horvitz & Thompson 1952.
 std::vector<double> weights_of(const Census& census, std::span<const Kind> begin_at) {
   std::array<double, kinds> number{};
   for (const Kind kind : begin_at) ++number[kind];
@@ -187,18 +186,18 @@ double dot(const std::array<double, kinds>& a, const std::array<double, kinds>& 
 
 // ---------------------------------------------------------------------------------------------------------------- writing
 
-/// What it takes to write.
+/// Cost of writing.
 struct Writing {
   struct Cost {
     double seconds = 0, bytes = 0;  ///< [s], [byte]
   };
-  Cost point{};   ///< with all that belongs to it
-  Cost empty{};   ///< a pulse without a point
-  Cost leg{};     ///< what has its own files, without points
-  Cost record{};  ///< of a trajectory
+  Cost point{};   ///< including its attributes
+  Cost empty{};   ///< pulse without a point
+  Cost leg{};     ///< set of files, without points
+  Cost record{};  ///< record of a trajectory
 };
 
-/// Some place to write to, which is gone at the end.
+/// Temporary folder; the destructor removes it.
 struct TemporaryFolder {
   fs::path path =
       fs::temp_directory_path() / ("pulsecast_forecast_" + std::to_string(getpid()) + '_' + std::to_string(std::random_device{}()));
@@ -211,7 +210,7 @@ struct TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 };
 
-/// Pulses of a sample that have echoes, or those that have not.
+/// Pulses of a sample with echoes, or those without.
 Sample only(const Sample& sample, bool with_echoes) {
   Sample some;
   some.echoes = sample.echoes, some.samples = sample.samples, some.sample_interval = sample.sample_interval;
@@ -222,7 +221,7 @@ Sample only(const Sample& sample, bool with_echoes) {
 
 Writing measure_writing(std::span<const Sample> samples, const CompiledSurvey& compiled, const Options& options) {
   const auto processor = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
-  // What is written may take some time [s] to get ready, which is told.
+  // `what` returns its time of preparation [s], which does not count.
   const auto write = [&](const auto& what) {
     const TemporaryFolder folder;
     const double start = processor();
@@ -235,7 +234,7 @@ Writing measure_writing(std::span<const Sample> samples, const CompiledSurvey& c
   };
   const auto nothing = [](LegFiles&) { return 0.0; };
   Writing w;
-  write(nothing);  // whatever is done once
+  write(nothing);  // one-time costs
   w.leg = write(nothing);
   const auto each = [&](const Writing::Cost& all, std::uint64_t number) -> Writing::Cost {
     if (number == 0) return {};
@@ -244,7 +243,7 @@ Writing measure_writing(std::span<const Sample> samples, const CompiledSurvey& c
   };
   for (const bool with_echoes : {true, false}) {
     std::uint64_t number = 0;
-    const Allowance allowance(0.4, 1);  // samples come in rounds, each from all over the survey
+    const Allowance allowance(0.4, 1);  // samples come in rounds, each spread over the survey
     const Writing::Cost all = write([&](LegFiles& files) {
       double readying = 0;
       for (std::size_t k = 0; k < samples.size() && allowance.left(); ++k) {
@@ -273,7 +272,7 @@ Writing measure_writing(std::span<const Sample> samples, const CompiledSurvey& c
   return w;
 }
 
-/// Records of all trajectories.
+/// Number of records in all trajectories.
 double records_of(const CompiledSurvey& compiled) {
   double sum = 0;
   for (const auto& leg : compiled.legs)
@@ -281,7 +280,7 @@ double records_of(const CompiledSurvey& compiled) {
   return sum;
 }
 
-/// Sets of files: legs, and strips.
+/// Number of sets of files: one per leg or strip.
 double files_of(const CompiledSurvey& compiled) {
   std::set<std::string> strips;
   double legs = 0;
@@ -302,13 +301,13 @@ double resident_now() {
 double resident_at_most() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024;  // Linux counts in KiB. Source: getrusage(2)
+  return static_cast<double>(usage.ru_maxrss) * 1024;  // KiB on Linux. Source: getrusage(2)
 }
 
 // ----------------------------------------------------------------------------------------------------------------- errors
 
-/// What 19 of 20 do not exceed, and, by the order of those that there are, what that may be of all. Source: David & Nagaraja 2003,
-/// section 7.1, with the normal approximation of the binomial distribution.
+/// 95 % quantile, with confidence limits by order statistics. Source: David & Nagaraja 2003, section 7.1, with the normal approximation of
+/// the binomial distribution.
 Estimate exceeded_by_few(std::vector<double>& all) {
   if (all.empty()) return {0, 0, std::numeric_limits<double>::infinity()};
   std::sort(all.begin(), all.end());
@@ -318,12 +317,12 @@ Estimate exceeded_by_few(std::vector<double>& all) {
   return {at(n * share), at(n * share - margin), at(n * share + margin)};
 }
 
-/// How the echoes of pulses differ from those of the same pulses, simulated finer.
+/// Differences between the echoes of pulses and those of a finer simulation.
 struct Differences {
-  std::vector<double> range{}, intensity{};  ///< [m], and as shares; of echoes that are in both
-  double of_finer = 0, of_other = 0;         ///< echoes
+  std::vector<double> range{}, intensity{};  ///< [m], and relative; of echoes in both
+  double of_finer = 0, of_other = 0;         ///< number of echoes
 
-  /// Each echo of the finer simulation is matched by the nearest one within a reach [m].
+  /// Matches each echo of the finer simulation with the nearest one within `reach` [m].
   void add(std::span<const Echo> finer, std::span<const Echo> other, double reach) {
     std::size_t next = 0;
     for (const Echo& echo : finer) {
@@ -341,7 +340,7 @@ struct Differences {
 
 // --------------------------------------------------------------------------------------------------------------- together
 
-/// 1, 2, 5, 10 and so on that are not farther from each other than these two.
+/// Round numbers (1, 2, 5, 10 and so on) in an interval.
 std::vector<double> round_numbers(double from, double to) {
   std::vector<double> all;
   for (int power = static_cast<int>(std::floor(std::log10(from))); std::pow(10.0, power) <= to; ++power)
@@ -393,7 +392,7 @@ class Forecaster {
     return blocks_at(census_, kind, first, end, before, length, seed_, compiled_.source.size());
   }
 
-  /// The survey as it is: what slots of each kind take, and what it takes to write what comes of them.
+  /// Measures the survey with its own settings: cost of slots by kind, and cost of writing the results.
   void measure_as_is() {
     constexpr std::uint64_t max_rounds = 48;
     std::vector<Sample> samples;
@@ -424,7 +423,7 @@ class Forecaster {
     writing_ = measure_writing(samples, compiled_, options_);
   }
 
-  /// What the other settings are held against, on so many pulses that trying them all takes a second or so.
+  /// Prepares the reference for other settings, with few enough pulses to try all settings in about a second.
   void prepare_others() {
     double trials = 0;  // in units of the survey's own settings
     const auto own = static_cast<double>(subrays_of(rings_));
@@ -446,7 +445,7 @@ class Forecaster {
     simulation_.receive({});
   }
 
-  /// As the survey is, and all else that may be worth it.
+  /// Own settings of the survey, then all other plausible ones.
   [[nodiscard]] std::vector<Receiving> candidates() const {
     std::vector<Receiving> all{{}};
     std::vector<double> bins = round_numbers(pulse_length_ * 1e9 / 64, pulse_length_ * 1e9 / 4);
@@ -475,7 +474,7 @@ class Forecaster {
     return f;
   }
 
-  /// By how many points more there are than of the survey as it is: the same pulses are compared.
+  /// Adds the difference in points from the survey's own settings, measured on the same pulses.
   void add_points(const std::vector<Sample>& samples, Estimate& points) const {
     double more = 0, variance = 0;
     for (const Kind kind : {met, missed}) {
@@ -500,7 +499,7 @@ class Forecaster {
     points.low = std::max(0.0, points.value - low), points.high = points.value + high;
   }
 
-  /// Time, memory and files from what was measured.
+  /// Estimates time, memory and files from the measurements.
   void entire(Forecast& f, double computing) const {
     const double repetitions = simulation_.runs(), legs = files_of(compiled_), records = records_of(compiled_),
                  shots = census_.slots[met] + census_.slots[missed];
@@ -511,19 +510,19 @@ class Forecaster {
     const auto seconds = [&](double points, double unsure) {
       const double writing = points * writing_.point.seconds + std::max(0.0, shots - points) * writing_.empty.seconds;
       const double alone = legs * writing_.leg.seconds + records * writing_.record.seconds;
-      // One thread writes at a time, while the others go on.
+      // One thread writes at a time, while the others compute.
       return repetitions * (loading_ + unsure * (alone + std::max(writing, (computing + writing) / workers_)));
     };
-    const double unsure = std::hypot(0.1, unsure_);  // what a sample cannot know is put at a tenth
+    const double unsure = std::hypot(0.1, unsure_);  // sampling misses some effects: 10 % uncertainty
     f.seconds = {seconds(f.points.value, 1), seconds(f.points.low, 1 - unsure), seconds(f.points.high, 1 + unsure)};
     f.bytes = {bytes(f.points.value, 1), bytes(f.points.low, 0.99), bytes(f.points.high, 1.01)};
-    // Threads run ahead of the one that writes as `ReorderBuffer` lets them, more and more as that one has more to do than they. Vectors
-    // grow to twice the room that they need, and then keep it.
+    // Threads run ahead of the writer within the limits of `ReorderBuffer`, further if the writer is the bottleneck. Vectors grow to twice
+    // the needed capacity and keep it.
     const double chunk = chunk_ + 1, always = 2 * threads_ + 2;
     const double ahead = std::clamp(6.3e6 / chunk + threads_ + 1, always, 16 * always);
     const double busy = computing > 0 ? writing_.point.seconds * f.points.value * workers_ / computing : 1;
     const auto memory = [&](double chunks, double room) { return std::max(peak_, resident_ + chunks * chunk * room + 3e6); };
-    // One thread alone writes what it has before it goes on.
+    // A single thread writes before it continues.
     const double few = threads_ == 1 ? 1 : threads_ + 2, waiting = threads_ == 1 ? 0 : std::clamp(busy - 0.5, 0.0, 1.0);
     f.memory = {memory(few + waiting * (ahead - few), 1 + 0.75 * waiting), memory(few, 0.5), memory(threads_ == 1 ? 1 : ahead, 3)};
     for (double* end : {&f.points.value, &f.points.low, &f.points.high}) *end *= repetitions;
@@ -531,7 +530,7 @@ class Forecaster {
 
   void compare(const std::vector<Sample>& samples, Forecast& f) const {
     Differences all;
-    const double reach = 0.25 * speed_of_light * pulse_length_;  // half a pulse, there and back
+    const double reach = 0.25 * speed_of_light * pulse_length_;  // half a pulse length, two-way
     for (std::size_t b = 0; b < samples.size(); ++b)
       for (std::size_t k = 0; k < samples[b].shots.size(); ++k)
         all.add(finer_[b].batch().echoes_of(finer_[b].shots[k]), samples[b].batch().echoes_of(samples[b].shots[k]), reach);
@@ -547,18 +546,18 @@ class Forecaster {
   const Options& options_;
   std::uint64_t seed_;
   unsigned threads_;
-  double workers_;  ///< that run at the same time
+  double workers_;  ///< threads that run at the same time
   double loading_, resident_, peak_;
   Census census_;
   double pulse_length_ = std::numeric_limits<double>::infinity(), bin_size_ = std::numeric_limits<double>::infinity();
   int rings_ = 1;
   Receiving finest_{};
-  // of the survey as it is
+  // with the survey's own settings
   double computing_ = 0, met_cost_ = 0, unsure_ = 0;
-  double chunk_ = 0;  ///< of 2048 slots: that which a byte is in, on average [byte]
+  double chunk_ = 0;  ///< chunk of 2048 slots that an average byte belongs to [byte]
   std::uint64_t sampled_ = 0;
   Writing writing_{};
-  // what other settings are held against
+  // reference for other settings
   std::vector<SampleBlock> blocks_, compared_;
   std::vector<Kind> kind_of_block_;
   std::vector<double> weights_;

@@ -21,7 +21,7 @@
 
 namespace {
 
-/// Three digits that count, and never powers of ten.
+/// Three significant digits, without an exponent.
 std::string digits(double x) {
   if (!std::isfinite(x)) return "unknown";
   const int before = x == 0 ? 3 : static_cast<int>(std::floor(std::log10(std::fabs(x)))) + 1;
@@ -35,7 +35,7 @@ struct Unit {
   const char* name;
 };
 
-/// The largest of which there is one; else the first.
+/// Largest unit not above the value; else the first.
 Unit unit_of(double x, std::initializer_list<Unit> units) {
   Unit best = *units.begin();
   for (const Unit& unit : units)
@@ -55,7 +55,7 @@ std::string told(const Estimate& e, const Unit& unit) {
          digits(e.high / unit.size) + ')';
 }
 
-/// Chooses settings, and says why.
+/// Chooses settings, with reasons.
 class SettingsChooser {
  public:
   SettingsChooser(const Options& options, const pulsecast::helios::SurveySettings& survey, const Forecasts& found)
@@ -66,7 +66,7 @@ class SettingsChooser {
     for (const Forecast& f : found_.all)
       if (worst(f) <= 1) able.push_back(&f);
     if (able.empty()) return nullptr;
-    // What differs by less than a twentieth is the same; then the other counts, and then what the survey has.
+    // Differences below a twentieth are ties. Ties go to the survey's own settings, then to the other criterion.
     constexpr double same = 1.05;
     const auto best = [&](const auto& first, const auto& second) {
       const auto by = [](const auto& figure) {
@@ -82,7 +82,7 @@ class SettingsChooser {
     return asked_.range_error || asked_.intensity_error ? best(seconds, error) : best(error, seconds);
   }
 
-  /// That comes nearest to what was asked.
+  /// Forecast with the least violation of the limits.
   [[nodiscard]] const Forecast& nearest() const {
     return *std::min_element(found_.all.begin(), found_.all.end(),
                              [&](const Forecast& a, const Forecast& b) { return worst(a) < worst(b); });
@@ -144,7 +144,7 @@ class SettingsChooser {
   }
 
  private:
-  /// By how much a forecast misses what it misses most, on the safe side; up to 1, it meets all.
+  /// Greatest ratio of upper estimate to limit; all limits hold up to 1.
   [[nodiscard]] double worst(const Forecast& f) const {
     double most = 0;
     const auto hold = [&](const Estimate& e, const std::optional<double>& asked) {
@@ -155,7 +155,7 @@ class SettingsChooser {
     return most;
   }
 
-  /// The survey as it is, and those settings than which no other is faster and at least as close; all, for those who want to know more.
+  /// Own settings and the Pareto front of speed and errors; all settings if verbose.
   [[nodiscard]] std::vector<const Forecast*> table() const {
     std::vector<const Forecast*> rows;
     for (const Forecast& f : found_.all) {

@@ -7,5 +7,5 @@
 #include "options.hpp"
 #include "survey_files.hpp"
 
-/// The command `forecast`: says what a run would come to, and the cheapest settings that meet what is asked. False if none does.
+/// Command `forecast`: prints the cost of a run and the cheapest settings within the limits. False if there are none.
 bool forecast(const Options& options, const SurveyFile& file, const Loading& loading, Notes& notes);

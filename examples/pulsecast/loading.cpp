@@ -31,7 +31,7 @@ bool is_random(const helios::PartSource& source) {
       source);
 }
 
-/// All that a scene depends on in a run.
+/// Inputs of a scene in a run.
 SceneInputs inputs_of(const SurveySettings& survey, const Loading& how, int run) {
   SceneInputs inputs{.files = how.inputs->scene(), .more = how.inputs->spectra(), .name = survey.scene.id};
   inputs.content = [&all = *how.inputs](const std::filesystem::path& path) { return all.fingerprint(path); };

@@ -14,20 +14,19 @@
 class SceneSharing;
 class SurveyInputs;
 
-/// Settings of a simulation, and of what keeps its scene.
+/// Settings of a simulation and of its scene store.
 struct Loading {
   pulsecast::helios::Simulation::Settings settings{};
-  std::string scene_text{};  ///< says all settings of the scene
+  std::string scene_text{};  ///< text of all settings of the scene
   SceneStore store{};
-  std::shared_ptr<SurveyInputs> inputs{};  ///< found unless given
-  SceneSharing* sharing = nullptr;         ///< if the scene is to be that of other processes, too
+  std::shared_ptr<SurveyInputs> inputs{};  ///< default: found from the survey
+  SceneSharing* sharing = nullptr;         ///< for a scene shared with other processes
 };
 
-/// `helios::make_simulation`, which is heavy, compiled once.
+/// `helios::make_simulation`, compiled once because it is heavy.
 std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::SurveySettings& survey,
                                                     const pulsecast::helios::Simulation::Settings& settings);
 
-/// The same, with a scene that is kept from run to run and shared by processes. Notes on that, for those who want to know more, are added
-/// to `notes`, which must outlive the simulation.
+/// Overload with a scene kept between runs and shared by processes. Adds notes on that to `notes`, which must outlive the simulation.
 std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::SurveySettings& survey, const Loading& how,
                                                     std::vector<std::string>& notes);

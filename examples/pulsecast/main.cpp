@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Simulates the survey of an XML document, as users of HELIOS++ have them.
+// Simulates the survey of an XML document in the format of HELIOS++.
 
 #include <unistd.h>
 
@@ -55,12 +55,12 @@ std::atomic<int> signals = 0;
 std::atomic<bool> simulating = false;
 std::atomic<bool> follows = false;  // another process decides when to stop
 
-/// Results are made whole first; unless there are none, or whoever asks twice is in a hurry.
+/// Completes results before the end; exits at once if there are none, or at the second signal.
 extern "C" void on_signal(int) {
   if (!follows && (signals.fetch_add(1) > 0 || !simulating)) _exit(interrupted);
 }
 
-/// Seconds of the GPS week at a moment of UTC, given as seconds since 1970. Source: IS-GPS-200; leap seconds: IERS Bulletin C.
+/// Second of the GPS week for a time in UTC, in seconds since 1970. Source: IS-GPS-200; leap seconds: IERS Bulletin C.
 double gps_week_seconds(std::int64_t unix_time) {
   static constexpr std::int64_t leaps[] = {362793600, 394329600,  425865600,  489024000,  567993600,  631152000,
                                            662688000, 709948800,  741484800,  773020800,  820454400,  867715200,
@@ -71,7 +71,7 @@ double gps_week_seconds(std::int64_t unix_time) {
   return static_cast<double>(((gps % week) + week) % week);
 }
 
-/// A moment as users write it.
+/// Parses a time given by a user.
 std::int64_t unix_time_of(const std::string& text) {
   if (text.empty()) return std::time(nullptr);
   std::tm t{};
@@ -79,7 +79,7 @@ std::int64_t unix_time_of(const std::string& text) {
   if (text.find_first_not_of("0123456789") == std::string::npos && text.size() < 16) return std::stoll(text);
   in >> std::get_time(&t, "%Y-%m-%d %H:%M:%S");
   const std::tm given = t;
-  const std::int64_t moment = timegm(&t);  // which makes the 2nd of March of the 30th of February
+  const std::int64_t moment = timegm(&t);  // it turns the 30th of February into the 2nd of March
   const bool is_date = t.tm_mday == given.tm_mday && t.tm_hour == given.tm_hour && t.tm_sec == given.tm_sec && moment >= 0;
   if (!in || in.peek() != std::istringstream::traits_type::eof() || !is_date)
     throw std::invalid_argument("--gpsStartTime '" + text + "': expected YYYY-MM-DD hh:mm:ss in UTC, or whole seconds since 1970");
@@ -109,7 +109,7 @@ Loading loading_of(const Options& o, const SurveyFile& file, std::uint64_t seed)
           .store = o.store};
 }
 
-/// The command `run`.
+/// Command `run`.
 class Session {
  public:
   Session(const Options& options, const SurveyFile& file, std::uint64_t seed, Ranks& ranks, Notes& notes)
@@ -154,10 +154,10 @@ class Session {
  private:
   struct RunToResume {
     std::optional<fs::path> folder{};
-    bool is_complete = false;  ///< there is none, as the newest run is complete
+    bool is_complete = false;  ///< nothing to resume, as the newest run is complete
   };
 
-  /// The run that is to go on, if there is one. Says so if there is not.
+  /// Finds the run to resume, if there is one. Otherwise adds a note.
   [[nodiscard]] RunToResume run_to_resume(const fs::path& parent) {
     const RunFolders found = ranks_.first() ? lock_unfinished(parent, lock_) : RunFolders{};
     const fs::path unfinished = ranks_.from_first(found.unfinished.value_or(fs::path()).string());
@@ -178,28 +178,28 @@ class Session {
     return load(survey_, loading, scene_notes_);
   }
 
-  /// Throws unless the run that goes on is one of the survey's.
+  /// Throws unless the resumed run is one of the survey's repetitions.
   void require_run(const fs::path& folder, int runs) const {
     if (log_.run >= runs)
       throw FileError((folder / RunLog::name).string(), "line 3",
                       "'run " + std::to_string(log_.run) + "': there are " + std::to_string(runs) + ", from 0");
   }
 
-  /// The clock of a trajectory counts before the time that was asked for; of a run that goes on, its own time does.
+  /// Start time: that of a trajectory takes precedence over the option; a resumed run keeps its own.
   void settle_start_time(const Simulation& simulation, const std::optional<fs::path>& again, double asked) {
     const std::optional<double> clock = simulation.compiled().clock_start;
     if (again && !clock && !options_.gps_start_time.empty()) require_same(*again, second_of_week(log_.start_time), second_of_week(asked));
     if (!again && clock) log_.start_time = *clock;
   }
 
-  /// Removes the log of the repetition before, which an interrupted run may have left.
+  /// Removes the log of the previous repetition, a possible remnant of an interrupted run.
   void forget_run_before(const fs::path& parent) const {
     if (!ranks_.first() || log_.before.empty() || !fs::exists(parent / log_.before)) return;
     const RunLock lock(parent / log_.before);
     RunLog::remove(parent / log_.before);
   }
 
-  /// Simulates all repetitions that are left, each into a folder of its own.
+  /// Simulates all remaining repetitions, each into its own folder.
   RunSummary play_all(Simulation& simulation, const fs::path& parent, std::optional<fs::path> again) {
     RunSummary all;
     fs::path folder = again ? *again : new_folder(parent);
@@ -212,11 +212,11 @@ class Session {
       all.add(play(simulation, folder, std::exchange(again, std::nullopt).has_value()));
       const fs::path done = folder;
       if (!all.complete) break;
-      const std::optional<RunLock> lock_of_done = std::exchange(lock_, std::nullopt);  // until its log is gone
+      const std::optional<RunLock> lock_of_done = std::exchange(lock_, std::nullopt);  // held until its log is removed
       log_.run = r + 1;
       log_.files.clear();
       log_.before = done.filename().string();
-      if (r + 1 < simulation.runs()) folder = new_folder(parent);  // so that there is always one that is not finished
+      if (r + 1 < simulation.runs()) folder = new_folder(parent);  // at all times one folder is unfinished
       if (ranks_.first()) RunLog::remove(done);
     }
     return all;
@@ -236,7 +236,7 @@ class Session {
 
   [[nodiscard]] fs::path new_folder(const fs::path& parent) {
     fs::path folder;
-    simulating = true;  // from here on, whoever is interrupted has a folder to leave in order
+    simulating = true;  // from here on, an interruption must leave the folder in order
     if (ranks_.first()) {
       auto made = new_run_folder(parent, log_);
       folder = std::move(made.first);
@@ -251,7 +251,7 @@ class Session {
     notes_.require_none();
   }
 
-  /// Why there may be no point at all: mostly, scene and legs have coordinates of different origin.
+  /// Explains a cloud without points: mostly, scene and legs have coordinates of different origin.
   void tell_of_nothing(const Simulation& simulation) {
     const Simulation::Scene scene = simulation.scene();
     const CompiledSurvey& compiled = simulation.compiled();
@@ -265,7 +265,7 @@ class Session {
     notes_.odd(text.str() + " m");
   }
 
-  /// All that decides about the results beside the seed and the time, in one line.
+  /// Line with all inputs of the results except seed and time.
   [[nodiscard]] std::string how() const {
     io::Digest survey;
     survey.add(std::string_view(file_.text));
@@ -313,7 +313,7 @@ class Session {
     log_ = std::move(log);
   }
 
-  /// Whether results are whole; if not, the log forgets them.
+  /// True if results are complete; otherwise they are removed from the log.
   bool are_whole(const std::vector<fs::path>& results) {
     const std::vector<fs::path> damaged = log_.damaged(results);
     for (const fs::path& path : damaged) notes_.say(path.string() + " is not as long as when it was whole: its legs are simulated again");
@@ -331,7 +331,7 @@ class Session {
       for (const auto& c : survey_.scanner.channels) channels.push_back(c.id.empty() ? std::to_string(channels.size()) : c.id);
 
     simulating = true;
-    std::map<std::string, std::size_t> last;  // leg of each prefix
+    std::map<std::string, std::size_t> last;  // last leg of each prefix
     std::map<std::string, bool> skipped;
     const auto files_of = [&](const std::string& prefix) { return leg_files(folder, prefix, options_, channels); };
     for (std::size_t k = 0; k < compiled.legs.size(); ++k) {
@@ -341,7 +341,7 @@ class Session {
       if (again && !skipped.contains(prefix))
         skipped[prefix] = ranks_.from_first(ranks_.first() && are_whole(files_of(prefix)) ? "whole" : "") == "whole";
     }
-    if (again && ranks_.first()) log_.write(folder);  // without what is to be done again
+    if (again && ranks_.first()) log_.write(folder);  // without the results to be repeated
     PulseIndex total = 0, before = 0;
     for (const auto& leg : compiled.legs)
       if (leg.active && !skipped[prefix_of(leg)]) total += leg.end - leg.first;
@@ -375,7 +375,7 @@ class Session {
       open.erase(at);
       if (ranks_.first()) log_.add_files(folder, files_of(prefix));
     }
-    for (auto& [prefix, files] : open) files->close();  // of a run that was interrupted
+    for (auto& [prefix, files] : open) files->close();  // of an interrupted run
     pages_.end();
     return all;
   }
@@ -386,7 +386,7 @@ class Session {
   Ranks& ranks_;
   Pages pages_;
   RunLog log_;
-  std::optional<RunLock> lock_;  // of the folder that is written to, on the first process
+  std::optional<RunLock> lock_;  // of the output folder, on the first process
   std::vector<std::string> folders_, scene_notes_;
   Notes& notes_;
 };
@@ -433,7 +433,7 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
   constexpr PulseIndex enough = 400'000;
   const PulseIndex slots = simulation.compiled().source.size();
   PulseIndex stride = std::max<PulseIndex>(1, slots / enough);
-  if (stride > 1) stride |= 1;  // so that it is not in step with the channels
+  if (stride > 1) stride |= 1;  // odd, to be out of step with the channels
   Picture picture(path);
   const RunSummary summary =
       simulation.run({.threads = options.threads, .stride = stride}, [&](const EchoBatch& batch) { picture(batch); });
@@ -443,12 +443,12 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
 }
 
 int work(const Options& options, Ranks& ranks) {
-  if (options.command != "run" && !ranks.first()) return success;  // which are for one
+  if (options.command != "run" && !ranks.first()) return success;  // other commands use one process
   Notes notes(options);
   notes.say(options.notes);
   if (options.command == "catalogue") return print_catalogue(options), success;
   const SurveyFile file = read_survey_file(options, notes);
-  if (options.command != "check") notes.require_none();  // which tells all
+  if (options.command != "check") notes.require_none();  // it reports all first
   std::optional<std::uint64_t> seed = options.seed ? options.seed : file.survey.seed;
   if (!seed && options.command == "run")
     seed = std::stoull(ranks.from_first(std::to_string(std::random_device{}())));
@@ -466,7 +466,7 @@ int work(const Options& options, Ranks& ranks) {
     (void)helios::check_without_scene(file.survey, file.leg_places);
     return forecast(options, file, loading_of(options, file, *seed), notes) ? success : bad_input;
   } else {
-    (void)helios::check_without_scene(file.survey, file.leg_places);  // before anything expensive
+    (void)helios::check_without_scene(file.survey, file.leg_places);  // before expensive work
     Options settled = options;
     if (!options.epsg && options.format.starts_with("la")) settled.epsg = reference_system_of(file.survey.scene);
     if (ranks.count() > 1 && (options.page || options.live)) {
@@ -492,8 +492,8 @@ int main(int argc, char** argv) {
     follows = !ranks->first();
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that would exceed the limit is an error then, which is told
-    return naming(options->survey.string(), [&] { return work(*options, *ranks); });  // of what the survey says
+    std::signal(SIGXFSZ, SIG_IGN);  // makes exceeding the file size limit an error with a message
+    return naming(options->survey.string(), [&] { return work(*options, *ranks); });  // names the survey in errors of its settings
   } catch (const std::exception& error) {
     if (ranks) ranks->complain();
     std::cerr << (options && simulating && !options->quiet && isatty(STDERR_FILENO) != 0 ? "\n" : "") << "error: " << error.what() << '\n';

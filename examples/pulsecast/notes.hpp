@@ -11,12 +11,12 @@
 
 #include "options.hpp"
 
-/// Notes for whoever runs the program, each told once.
+/// Notes for the user, each printed once.
 class Notes {
  public:
   explicit Notes(const Options& options) : quiet_(options.quiet), strict_(options.strict) {}
 
-  /// Tells what is odd about the survey or its files: an error with `--strict`.
+  /// Notes an oddity of the survey or its files: an error with `--strict`.
   void odd(const std::string& text) {
     if (!strict_) return say(text);
     if (told_.insert(text).second) std::cerr << "error: " << text << '\n', ++errors_;
@@ -25,7 +25,7 @@ class Notes {
     for (const std::string& text : texts) odd(text);
   }
 
-  /// Tells what is odd about something else, or is just good to know.
+  /// Notes any other oddity or information.
   void say(const std::string& text) {
     if (!quiet_ && told_.insert(text).second) std::cerr << "note: " << text << '\n';
   }
@@ -33,7 +33,7 @@ class Notes {
     for (const std::string& text : texts) say(text);
   }
 
-  /// Throws if what was told is an error.
+  /// Throws if a note is an error.
   void require_none() const {
     if (errors_ > 0) throw std::invalid_argument("--strict takes notes as errors: there are " + std::to_string(errors_));
   }

@@ -37,7 +37,7 @@ std::string nearest_option(const CLI::App& app, const std::string& given) {
   return text.starts_with("; did") ? text : "";
 }
 
-/// Folders of assets that belong to the program: beside it in a build, and under its prefix where it is installed.
+/// Asset folders of the program: next to it in a build, below its prefix in an installation.
 std::vector<fs::path> own_assets() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -50,7 +50,7 @@ std::vector<fs::path> own_assets() {
   return all;
 }
 
-/// The folder of this user for scenes that are kept. Source: XDG Base Directory Specification 0.8.
+/// Folder of this user for stored scenes. Source: XDG Base Directory Specification 0.8.
 fs::path scene_folder() {
   const auto folder = [](const char* name) {
     const char* const value = std::getenv(name);
@@ -61,7 +61,7 @@ fs::path scene_folder() {
   return home.empty() ? home : home / ".cache" / "pulsecast";
 }
 
-/// `fullwaveNoise` and `fullwave-noise`, as CLI11 wants its names.
+/// Both spellings, `fullwaveNoise` and `fullwave-noise`, in the notation of CLI11.
 std::string both(const std::string& name) {
   std::string kebab;
   for (const char c : name) {
@@ -79,7 +79,7 @@ std::optional<Number> number_in(const std::string& text) {
   return value;
 }
 
-/// The number in a text, or a problem as CLI11 wants it: `holds(number)` says whether it will do.
+/// Number in a text, or a problem for CLI11; `holds(number)` is the condition.
 template <class Number, class Holds>
 auto number_check(const Holds& holds, const std::string& problem) {
   return [holds, problem](const std::string& text) {
@@ -88,7 +88,7 @@ auto number_check(const Holds& holds, const std::string& problem) {
   };
 }
 
-/// An option of HELIOS++ that makes no sense here.
+/// Option of HELIOS++ without a meaning here.
 struct Unused {
   const char* name;
   bool value;
@@ -105,7 +105,7 @@ constexpr Unused unused_options[] = {{"parallelization", true, "work is always s
                                      {"logFile", false, "the log goes to standard error"},
                                      {"logFileOnly", false, "the log goes to standard error"}};
 
-/// The options of the program, and what was given of them.
+/// Options of the program and their values.
 class CommandLine {
  public:
   CommandLine() {
@@ -122,7 +122,7 @@ class CommandLine {
     app_.allow_extras();  // reported by `problem_of_words`
   }
 
-  /// Reads the words after the name of the program. Empty if nothing is left to do; then `status` is set.
+  /// Reads the words after the name of the program. Empty if nothing remains to be done; then `status` is set.
   [[nodiscard]] std::optional<Options> read(std::vector<std::string> words, int& status) {
     take_command(words);
     std::string problem;
@@ -233,7 +233,7 @@ class CommandLine {
     }
   }
 
-  /// Takes the command from the words, and what users of HELIOS++ type.
+  /// Takes the command from the words, also in the notation of HELIOS++.
   void take_command(std::vector<std::string>& words) {
     const auto known = words.empty() ? std::end(all_commands) : std::find(std::begin(all_commands), std::end(all_commands), words.front());
     if (known != std::end(all_commands)) {
@@ -245,7 +245,7 @@ class CommandLine {
       if (word == "-v2" || word == "-vv") word = "-v";
   }
 
-  /// A problem with words that are no options; empty if there is none.
+  /// Problem with words that are not options; empty if there is none.
   [[nodiscard]] std::string problem_of_words() const {
     const std::vector<std::string> extras = app_.remaining();
     for (const std::string& extra : extras)
@@ -260,7 +260,7 @@ class CommandLine {
     return "";
   }
 
-  /// Settles what the command `forecast` is asked. Returns a problem; empty if there is none.
+  /// Checks and completes the options of `forecast`. Returns a problem; empty if there is none.
   [[nodiscard]] std::string problem_of_forecast() {
     for (const CLI::Option* option : of_forecast_)
       if (option->count() > 0 && o_.command != "forecast") return option->get_name() + " is for forecast only";
@@ -275,7 +275,7 @@ class CommandLine {
     return knows_why ? "" : "--apply must know what for: expected --range-error, --intensity-error, --time or --memory";
   }
 
-  /// Settles all else, with notes on what has no effect. Returns a problem; empty if there is none.
+  /// Checks and completes all other options, with notes on those without effect. Returns a problem; empty if there is none.
   [[nodiscard]] std::string settle() {
     for (std::size_t i = 0; i < std::size(unused_options); ++i)
       if (unused_[i]->count() > 0)

@@ -13,7 +13,7 @@
 
 #include "options.hpp"
 
-/// Names of the files of points of a prefix: one, or one for each channel.
+/// Names of the point files of a prefix: one, or one per channel.
 std::vector<std::filesystem::path> point_files(const std::filesystem::path& folder, const std::string& prefix, const Options& options,
                                                const std::vector<std::string>& channels);
 
@@ -21,13 +21,13 @@ std::vector<std::filesystem::path> point_files(const std::filesystem::path& fold
 std::vector<std::filesystem::path> leg_files(const std::filesystem::path& folder, const std::string& prefix, const Options& options,
                                              const std::vector<std::string>& channels);
 
-/// How they are written as LAS or LAZ.
+/// Settings for LAS and LAZ files.
 pulsecast::io::LasSettings las_settings(const Options& options, double start_time);
 
-/// The files of one leg, or of all legs of a strip. Each is there when it is whole, and not before.
+/// Files of one leg, or of all legs of a strip. A file appears only when it is complete.
 class LegFiles {
  public:
-  /// `prefix` as in `leg000`; `channels` are their ids if each is to have a file of its own.
+  /// `prefix` is like `leg000`; `channels` are ids for separate files, empty for one file.
   LegFiles(const std::filesystem::path& folder, const std::string& prefix, const Options& options, double start_time,
            const std::vector<std::string>& channels);
   ~LegFiles();
@@ -43,7 +43,7 @@ class LegFiles {
   std::unique_ptr<Inside> inside_;
 };
 
-/// A sink for a picture.
+/// Sink for a picture.
 class Picture {
  public:
   explicit Picture(const std::filesystem::path& path);

@@ -11,7 +11,7 @@
 
 #include "options.hpp"
 
-/// The page that a run leaves, and the one that shows it while it goes on, as far as they are asked for.
+/// Page file and live page of a run, if requested.
 class Pages {
  public:
   Pages(const Options& options, const pulsecast::helios::SurveySettings& survey);
@@ -19,17 +19,17 @@ class Pages {
   Pages(const Pages&) = delete;
   Pages& operator=(const Pages&) = delete;
 
-  /// Where the run can be watched; empty if it cannot.
+  /// URL of the live page; empty if there is none.
   [[nodiscard]] std::string address() const;
 
-  /// A run begins, whose results are left in a folder.
+  /// Starts a run with results in a folder.
   void begin(const std::filesystem::path& folder, const pulsecast::helios::CompiledSurvey& compiled);
   void operator()(const pulsecast::EchoBatch& batch);
   void tell(const pulsecast::Progress& progress);
   [[nodiscard]] bool stop_requested() const;
-  /// The run is over: leaves its page.
+  /// Ends the run and writes its page.
   void end();
-  /// There are no further runs: whoever watches gets the rest.
+  /// Ends the last run: live viewers get the remaining points.
   void finish(bool complete);
 
  private:

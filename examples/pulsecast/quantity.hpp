@@ -12,14 +12,14 @@
 #include <string>
 #include <system_error>
 
-/// A kind of quantity, as people write it on a command line.
+/// Kind of quantity on the command line.
 struct QuantityKind {
   struct Unit {
     const char* name;
     double size;  ///< in SI
   };
   std::span<const Unit> units;
-  const char* expected;  ///< in words
+  const char* expected;  ///< description in messages
 };
 
 inline constexpr QuantityKind::Unit length_units[] = {{"um", 1e-6}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}};
@@ -32,7 +32,7 @@ inline constexpr QuantityKind a_share{share_units, "a share, as in 2% or 0.02"};
 inline constexpr QuantityKind a_duration{duration_units, "a duration, as in 90s, 10min or 2h"};
 inline constexpr QuantityKind a_size{size_units, "a size, as in 500MB or 4GB"};
 
-/// A positive quantity in SI. Capitals of its unit do not matter, nor does a blank before it.
+/// Parses a positive quantity to SI. The unit ignores case; a blank may precede it.
 inline std::optional<double> quantity(const std::string& text, const QuantityKind& kind) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -14,37 +14,37 @@
 #include "options.hpp"
 #include "scene_sharing.hpp"
 
-/// What becomes of one leg, or of all legs of a strip: they are simulated, and written as `LegFiles` says.
+/// Run of one leg, or of all legs of a strip: simulates them and writes `LegFiles`.
 class LegRun {
  public:
   virtual ~LegRun() = default;
-  std::function<void(const pulsecast::EchoBatch&)> watch{};  ///< sees what is written; only where there is one process
+  std::function<void(const pulsecast::EchoBatch&)> watch{};  ///< receives the echoes written; with one process only
   virtual void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval) = 0;
   virtual pulsecast::RunSummary run(const pulsecast::helios::Simulation& simulation, const pulsecast::RunOptions& options) = 0;
   virtual void close() = 0;
 };
 
-/// The processes that run a survey together: one, or those that `mpirun` has started. All do the same, but what only one may do, as to name
-/// a folder, is done by the first, which tells the others; and only it is heard on the terminal.
+/// Processes of a survey: one, or those of `mpirun`. All do the same. The first one alone does unique tasks, such as naming a folder, and
+/// sends the result to the others. Only the first prints to the terminal.
 class Ranks : public SceneSharing {
  public:
   [[nodiscard]] virtual bool first() const = 0;
   [[nodiscard]] virtual int count() const = 0;
-  /// What the first says, by all.
+  /// Text of the first process, on all.
   [[nodiscard]] virtual std::string from_first(std::string text) = 0;
-  /// As many as are asked for; if none are, a fair share of the machine's.
+  /// Number of threads as requested; 0: a fair share of the machine.
   [[nodiscard]] virtual unsigned threads(unsigned asked) = 0;
   [[nodiscard]] virtual std::unique_ptr<LegRun> leg_run(const std::filesystem::path& folder, const std::string& prefix,
                                                         const Options& options, double start_time,
                                                         const std::vector<std::string>& channels) = 0;
-  /// What the processes have sent to each other, for the table that ends a run. Nothing if there is only one.
+  /// Messages between the processes, for the final table. Empty for one process.
   [[nodiscard]] virtual std::string traffic() = 0;
-  /// Something went wrong, maybe here only: lets this process be heard, unless the first says the same.
+  /// Lets this process print an error, unless the first one reports the same.
   virtual void complain() = 0;
-  /// Ends all processes, if there are others.
+  /// Ends all other processes, if any.
   virtual void abort(int status) = 0;
 };
 
-/// To be called before all else. Where `mpirun` or its like has started several processes, the program that knows MPI takes the place of
-/// this one; throws if it is not there.
+/// Joins the processes; must be called first. If `mpirun` or a similar launcher started several, the MPI program replaces this one; throws
+/// if it is missing.
 std::unique_ptr<Ranks> join_ranks(char** argv);

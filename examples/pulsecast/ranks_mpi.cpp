@@ -42,7 +42,7 @@ std::unique_ptr<MpiOutput> shared_points(MpiGroup& group, const fs::path& path, 
       [file](const mpi::MpiMessage& bytes) { file->write(bytes.rest()); }, [file] { file->commit(); });
 }
 
-/// `LegFiles`, written by all.
+/// `LegFiles`, written by all processes.
 class SharedLegRun final : public LegRun {
  public:
   SharedLegRun(MpiGroup& group, const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
@@ -75,7 +75,7 @@ class SharedLegRun final : public LegRun {
     return mpi::run_parts(group_, options.end, options, simulate, outputs);
   }
 
-  /// Points come last: a leg is complete when all its files are there.
+  /// Closes points last: a leg is complete when all its files exist.
   void close() override {
     if (trajectory_) trajectory_->close();
     for (auto output = outputs_.rbegin(); output != outputs_.rend(); ++output) (*output)->close();
@@ -85,7 +85,7 @@ class SharedLegRun final : public LegRun {
   MpiOutput* add(std::unique_ptr<MpiOutput> output) { return outputs_.emplace_back(std::move(output)).get(); }
 
   MpiGroup& group_;
-  std::optional<io::TrajectoryWriter> trajectory_;  // on the first
+  std::optional<io::TrajectoryWriter> trajectory_;  // on the first process
   std::vector<std::unique_ptr<MpiOutput>> outputs_;
 };
 
@@ -130,7 +130,7 @@ class ManyRanks final : public Ranks {
   }
 
   void complain() override {
-    if (!first()) {  // what all find wrong, the first says, and ends all meanwhile
+    if (!first()) {  // an error of all is reported by the first, which ends the others meanwhile
       std::signal(SIGTERM, SIG_DFL);
       ::sleep(2);
     }
@@ -151,7 +151,7 @@ class ManyRanks final : public Ranks {
  private:
   mpi::MpiSession session_;
   MpiGroup group_;
-  mpi::MpiChannel machine_;  // the processes of this one
+  mpi::MpiChannel machine_;  // processes of this machine
 };
 
 }  // namespace

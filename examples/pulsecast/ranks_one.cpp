@@ -34,7 +34,7 @@ class OneLegRun final : public LegRun {
   LegFiles files_;
 };
 
-/// There is only this one.
+/// Single process.
 class OneRank final : public Ranks {
  public:
   [[nodiscard]] bool first() const override { return true; }
@@ -55,7 +55,7 @@ class OneRank final : public Ranks {
   void barrier() override {}
 };
 
-/// Source: what Open MPI, MPICH and its kin, and Slurm with PMIx tell the processes that they start.
+/// True if a launcher started several processes. Source: environment variables of Open MPI, MPICH and its relatives, and Slurm with PMIx.
 bool one_of_many() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
     if (std::getenv(name) != nullptr) return true;

@@ -43,7 +43,7 @@ std::string local_time() {
 
 constexpr std::string_view stamp_form = "0000-00-00_00-00-00";  // 0 for a digit
 
-/// Whether a text is the name of the folder of a run.
+/// True if a text is the name of a run folder.
 bool is_run_name(std::string_view text) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   if (text.size() < stamp_form.size()) return false;
@@ -55,7 +55,7 @@ bool is_run_name(std::string_view text) {
 
 std::string reason_of(int error) { return std::generic_category().message(error); }
 
-/// Runs of one second are numbered, so that the longer name is the later.
+/// True if run `a` is later. Runs of the same second are numbered: the longer name is the later.
 bool is_later(const fs::path& a, const fs::path& b) {
   const auto key = [](const fs::path& path) {
     const std::string name = path.filename().string();
@@ -91,7 +91,7 @@ std::string RunLog::text() const {
 
 namespace {
 
-/// One line of a log: a key and its value.
+/// Line of a log: a key and its value.
 class LogLine {
  public:
   LogLine(std::string_view line, std::size_t number, const std::string& path) : line_(line), number_(number), path_(path) {
@@ -113,7 +113,7 @@ class LogLine {
     expect(error == std::errc{} && rest == digits.data() + digits.size());
   }
 
-  /// A number or fingerprint, and a name after it.
+  /// Splits a value into a number or fingerprint, and a name.
   [[nodiscard]] std::pair<std::string_view, std::string> split() const {
     const std::size_t at = std::min(value.find(' '), value.size());
     const std::string_view name = value.substr(std::min(at + 1, value.size()));
@@ -129,9 +129,9 @@ class LogLine {
   const std::string& path_;
 };
 
-constexpr std::array<std::string_view, 6> log_keys{"seed", "start_time", "run", "how", "input", "before"};  // in their order
+constexpr std::array<std::string_view, 6> log_keys{"seed", "start_time", "run", "how", "input", "before"};  // in the order of the file
 
-/// Reads the value of a key, by its place among them.
+/// Reads the value of a key by its index.
 void read_value(const LogLine& line, std::size_t key, RunLog& log) {
   switch (key) {
     case 0:
@@ -164,7 +164,7 @@ void read_value(const LogLine& line, std::size_t key, RunLog& log) {
 
 RunLog RunLog::parse(std::string_view text, const std::string& path) {
   RunLog log;
-  std::size_t number = 0, next = 0;  // of the line; of the key that may come next
+  std::size_t number = 0, next = 0;  // line number; index of the next key allowed
   bool complete = false;
   for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n')) {
     const LogLine line(text.substr(0, end), ++number, path);
@@ -244,7 +244,7 @@ void RunLog::remove(const fs::path& folder) {
 
 namespace {
 
-/// A process, as it stands in the file of a lock.
+/// Process in a lock file.
 struct Holder {
   pid_t process = 0;
   std::string machine{};
@@ -257,7 +257,7 @@ struct Holder {
 
   [[nodiscard]] std::string text() const { return std::to_string(process) + ' ' + machine + '\n'; }
 
-  /// None if nothing is there yet, or what another has left that is gone.
+  /// Reads the holder; none if the file is empty or its process has ended.
   static std::optional<Holder> read(int file) {
     std::array<char, 300> bytes{};
     const ssize_t count = ::pread(file, bytes.data(), bytes.size() - 1, 0);
@@ -271,7 +271,7 @@ struct Holder {
 
 [[noreturn]] void refuse(const fs::path& folder, int file) {
   std::optional<Holder> holder = Holder::read(file);
-  for (int tries = 0; !holder && tries < 50; ++tries) {  // whoever has just locked it is about to say so
+  for (int tries = 0; !holder && tries < 50; ++tries) {  // the new holder is about to write its name
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     holder = Holder::read(file);
   }
@@ -295,7 +295,7 @@ RunLock::RunLock(const fs::path& folder) : path_(folder / name) {
     if (!S_ISREG(status.st_mode)) fail(EEXIST);
     if (!io::lock_alone(file_)) refuse(folder, file_);
     if (io::stands_at(file_, path_)) break;
-    ::close(file_);  // whoever had it has removed it meanwhile
+    ::close(file_);  // the previous holder removed it meanwhile
   }
   const std::string text = Holder::self().text();
   if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
@@ -331,7 +331,7 @@ RunFolders lock_unfinished(const fs::path& parent, std::optional<RunLock>& lock)
     lock.emplace(*found.unfinished);
     const RunFolders now = runs_in(parent);
     if (now.unfinished == found.unfinished) return now;
-    lock.reset();  // it was completed meanwhile, or has a successor
+    lock.reset();  // completed or succeeded meanwhile
   }
 }
 
@@ -351,7 +351,7 @@ std::pair<fs::path, RunLock> new_run_folder(const fs::path& parent, const RunLog
       fs::path folder = parent / (n == 1 ? stamp : stamp + '_' + std::to_string(n));
       if (fs::exists(folder, error)) continue;
       fs::rename(making, folder, error);
-      if (error) continue;  // another run has taken the name
+      if (error) continue;  // another run took the name
       lock.renamed(folder);
       return {std::move(folder), std::move(lock)};
     }

@@ -4,14 +4,14 @@
 
 #include <string>
 
-/// The processes of one machine, which have one copy of a scene among them.
+/// Processes of one machine that share one copy of a scene.
 class SceneSharing {
  public:
   virtual ~SceneSharing() = default;
-  [[nodiscard]] virtual bool builds() const = 0;  ///< whether this is the one that builds it
-  [[nodiscard]] virtual bool shared() const = 0;  ///< whether there are others
-  /// What the one that builds says, by all.
+  [[nodiscard]] virtual bool builds() const = 0;  ///< true: this process builds the scene
+  [[nodiscard]] virtual bool shared() const = 0;  ///< true: there are other processes
+  /// Text of the building process, on all.
   [[nodiscard]] virtual std::string from_builder(std::string text) = 0;
-  /// Waits until all have come here.
+  /// Waits for all processes.
   virtual void barrier() = 0;
 };

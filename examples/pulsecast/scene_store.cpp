@@ -28,20 +28,20 @@ using io::Fingerprint;
 namespace {
 
 constexpr std::uintmax_t worth_keeping = std::uintmax_t{16}
-                                         << 20;                ///< of the scene's files: what is less is built in a second or so [byte]
-constexpr std::uintmax_t max_kept = std::uintmax_t{16} << 30;  ///< of all scenes, but for the newest [byte]
+                                         << 20;  ///< least size of the scene's files; smaller scenes build in about a second [byte]
+constexpr std::uintmax_t max_kept = std::uintmax_t{16} << 30;  ///< of all scenes except the newest [byte]
 
-/// Says which program this is: one that was built anew may make other scenes.
+/// Identifies this program: another build may make other scenes.
 std::string this_program() {
   std::error_code error;
   fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (program.filename() == "pulsecast-mpi") program.replace_filename("pulsecast");  // made of the same objects
+  if (program.filename() == "pulsecast-mpi") program.replace_filename("pulsecast");  // same objects
   const auto size = fs::file_size(program, error);
   if (error) return {};
   return std::to_string(size) + ' ' + std::to_string(fs::last_write_time(program, error).time_since_epoch().count());
 }
 
-/// One place for one scene: if its files change, what is kept of it is replaced.
+/// Name of a scene in the store. It does not depend on file contents, so that changes replace the scene.
 std::string place_of(const SceneInputs& inputs) {
   io::Digest digest;
   digest.add(std::string_view(inputs.settings));
@@ -53,7 +53,7 @@ std::string place_of(const SceneInputs& inputs) {
   return name + '-' + hex(digest.value().low);
 }
 
-/// What was odd about a scene is kept beside it, below the key of the scene.
+/// Reads the warnings of a scene from their own file, headed by the key of the scene.
 std::optional<std::vector<std::string>> read_warnings(const fs::path& path, const Fingerprint& key) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return std::nullopt;
@@ -64,7 +64,7 @@ std::optional<std::vector<std::string>> read_warnings(const fs::path& path, cons
   return std::vector(lines.begin() + 1, lines.end() - 1);
 }
 
-/// Puts a file in its place that `write` makes. The way there is no one else's, so that programs that start at the same time do no harm.
+/// Replaces a file atomically: `write` makes it under a unique name, so that programs that start at the same time do no harm.
 template <class Write>
 void replace(const fs::path& path, const Write& write) {
   const fs::path own = path.string() + '.' + hex(std::uint64_t{std::random_device{}()} << 32 | std::random_device{}());
@@ -77,7 +77,7 @@ void replace(const fs::path& path, const Write& write) {
   throw FileError(path.string(), "", "cannot be replaced: " + error.message());
 }
 
-/// Lets go of what was not used for the longest time, until the rest is not too much.
+/// Removes the least recently used scenes until the others fit into `max_kept`.
 void tidy(const fs::path& folder, const fs::path& newest) {
   struct Kept {
     fs::path path;
@@ -119,7 +119,7 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
   Fingerprint key;
   try {
     key = io::scene_key(sources, inputs.content);
-  } catch (const FileError&) {  // whoever builds the scene will say so
+  } catch (const FileError&) {  // the builder of the scene reports it
     return {.built = build()};
   }
   if (store.read) {
@@ -162,7 +162,7 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
 
 namespace {
 
-/// Puts a scene into a file for a while, in memory if there is room. No file if there is none anywhere.
+/// Writes a scene to a temporary file, in memory if there is room. No file if there is no room at all.
 void keep_for_now(KeptParts& kept) {
   const std::uint64_t mark = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
   std::error_code ignored;
@@ -207,7 +207,7 @@ KeptParts shared_parts(SceneSharing& sharing, const SceneStore& store, const Sce
 
   std::memcpy(&kept.key, key.data(), sizeof kept.key);
   std::string reason = "there is no room for it in a file";
-  if (!path.empty()) {  // whoever has built it lets its own copy go for this one
+  if (!path.empty()) {  // the builder drops its own copy for this one
     auto opened = io::open_scene<SurveyScene>(path, kept.key, MovingIndexSettings{.to = 1});
     reason = opened.reason;
     if (opened.scene) kept.built.parts.assign(opened.scene->parts().begin(), opened.scene->parts().end());

@@ -13,7 +13,7 @@
 #include "options.hpp"
 #include "scene_sharing.hpp"
 
-/// The parts of a scene, and the file that they stand in as well, if there is one.
+/// Parts of a scene, and its file, if there is one.
 struct KeptParts {
   pulsecast::helios::BuiltParts built{};
   std::filesystem::path file{};
@@ -23,20 +23,21 @@ struct KeptParts {
 /// Builds the parts of a scene.
 using BuildParts = std::function<pulsecast::helios::BuiltParts()>;
 
-/// What a scene depends on.
+/// Inputs of a scene.
 struct SceneInputs {
-  std::vector<std::filesystem::path> files{};  ///< the scene's own
-  std::vector<std::filesystem::path> more{};   ///< files and folders that count as well, and are not worth a store by themselves
-  std::string settings{};                      ///< all else, in words
-  std::string name{};                          ///< for people
-  std::function<pulsecast::io::Fingerprint(const std::filesystem::path&)> content = pulsecast::io::content_fingerprint;  ///< of them
+  std::vector<std::filesystem::path> files{};  ///< files of the scene
+  std::vector<std::filesystem::path> more{};   ///< further files and folders; they do not count towards the size that is worth storing
+  std::string settings{};                      ///< all other inputs, as text
+  std::string name{};                          ///< for file names
+  std::function<pulsecast::io::Fingerprint(const std::filesystem::path&)> content =
+      pulsecast::io::content_fingerprint;  ///< fingerprint of a file
 };
 
-/// What `build` makes, or what it made of the same inputs before, if that is kept: scenes of large files are. Notes, for those who want to
-/// know of it, are added to `notes`. Whatever goes wrong with the store, the scene is built.
+/// Parts from `build`, or from an earlier build with equal inputs: scenes of large files are stored. Adds notes on the store to `notes`. If
+/// the store fails, the scene is built.
 KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const BuildParts& build, std::vector<std::string>& notes);
 
-/// The same for all processes of a machine: one builds the scene, and all map it from one file. What is not kept stands in memory as a file
-/// that has no name any more when this returns. Where there is no room for it, each builds the scene for itself, and a note says so.
+/// Parts for all processes of a machine: one builds the scene, all map it from one file. A scene that is not stored is in a mapped file,
+/// which is unlinked on return. If there is no room, each process builds the scene, with a note.
 KeptParts shared_parts(SceneSharing& sharing, const SceneStore& store, const SceneInputs& inputs, const BuildParts& build,
                        std::vector<std::string>& notes);

@@ -46,7 +46,7 @@ std::uint16_t reference_system_of(const helios::SceneSettings& scene) {
 
 namespace {
 
-/// Where the tag that begins at `from` ends: its `>`.
+/// Position of the `>` of the tag that begins at `from`.
 std::size_t end_of_tag(const std::string& text, std::size_t from) {
   char quote = 0;
   for (std::size_t i = from; i < text.size(); ++i) {
@@ -59,7 +59,7 @@ std::size_t end_of_tag(const std::string& text, std::size_t from) {
   return text.size();
 }
 
-/// Puts a value into the tag whose name begins at `tag`, in place of that which is there.
+/// Sets an attribute of the tag whose name begins at `tag`.
 void set_attribute(std::string& text, std::size_t tag, const std::string& name, const std::string& value) {
   constexpr const char* blanks = " \t\r\n";
   const std::size_t end = end_of_tag(text, tag), name_end = text.find_first_of(" \t\r\n/>", tag);
@@ -77,7 +77,7 @@ void set_attribute(std::string& text, std::size_t tag, const std::string& name, 
   text.insert(name_end, ' ' + name + "=\"" + value + '"');
 }
 
-/// The file that a name leads to through symbolic links.
+/// Target of a path through symbolic links.
 fs::path target_of(fs::path path) {
   constexpr int max_links = 40;  // source: path_resolution(7)
   std::error_code error;
@@ -85,7 +85,7 @@ fs::path target_of(fs::path path) {
   return path;
 }
 
-/// Throws a `FileError` unless a text, read where `path` stands, says the same survey but for the change.
+/// Throws a `FileError` unless a text, read at `path`, gives the same survey except for the change.
 void require_same_survey(const Options& options, const SurveyFile& file, const WaveformChange& change, const std::string& text,
                          const fs::path& path) {
   struct Trial {
@@ -100,7 +100,7 @@ void require_same_survey(const Options& options, const SurveyFile& file, const W
   if (!(out << text).flush()) throw FileError(path.string(), "", "cannot be written");
   const helios::SurveySettings written = helios::read_survey(trial.path, {.assets = options.assets}).survey;
   helios::SurveySettings wanted = file.survey;
-  wanted.name = written.name;  // that of the file unless the survey has one
+  wanted.name = written.name;  // default name: that of the file
   for (helios::ChannelSettings& channel : wanted.scanner.channels)
     channel.waveform.rings = change.rings, channel.waveform.bin_size = change.bin_size;
   if (written != wanted) throw FileError(path.string(), "", "would not be the same survey; nothing is written");
@@ -115,7 +115,7 @@ void write_survey_file(const Options& options, const SurveyFile& file, const Wav
   if (!in || !document.load_buffer(text.data(), text.size())) throw FileError(options.survey.string(), "", "cannot be read again");
   const pugi::xml_node survey = document.document_element().child("survey"), waveforms = survey.child("FWFSettings");
   auto tag = static_cast<std::size_t>((waveforms ? waveforms : survey).offset_debug());
-  if (!waveforms) {  // a new element, indented as the one after it
+  if (!waveforms) {  // new element, indented like the next one
     const std::size_t end = end_of_tag(text, tag) + 1, next = text.find('<', end);
     const std::string before = text.substr(end, next - end) + "<";
     text.insert(end, before + "FWFSettings/>");
@@ -153,7 +153,7 @@ std::vector<fs::path> documents_of(const Options& options) {
   std::vector<fs::path> files;
   std::set<std::string> seen;
   std::error_code ignored;
-  const fs::path here_now = fs::current_path(ignored);  // its documents are surveys
+  const fs::path here_now = fs::current_path(ignored);  // documents of surveys
   for (const fs::path& folder : options.assets)
     for (const fs::path& inside : {folder, folder / "data"}) {
       if (inside == here_now) continue;

@@ -13,30 +13,28 @@
 #include "notes.hpp"
 #include "options.hpp"
 
-/// What reads documents, apart from the rest so that it is compiled once.
+/// Survey document with its texts. Documents are read in one source file, which compiles once.
 struct SurveyFile {
   pulsecast::helios::SurveySettings survey;
-  std::string text{}, scene_text{};       ///< of all settings, and of those of the scene: the same text, the same settings
-  std::vector<std::string> leg_places{};  ///< where each leg stands in it, for messages
-  std::string place{};                    ///< where the survey itself does
+  std::string text{}, scene_text{};       ///< of all settings, and of the scene's: equal texts mean equal settings
+  std::vector<std::string> leg_places{};  ///< position of each leg, for messages
+  std::string place{};                    ///< position of the survey
 };
-/// Reads the survey of the command line, and tells what is odd about it, also if something is wrong.
+/// Reads the survey of the command line. Notes its warnings, also if it throws.
 SurveyFile read_survey_file(const Options& options, Notes& notes);
 
-/// The code of the reference system that all rasters of the scene have; 0 if there is none, or another one. Rasters that a part moves do
-/// not count.
+/// EPSG code that all rasters of the scene share; 0 if there is none, or different ones. Rasters moved by their part do not count.
 std::uint16_t reference_system_of(const pulsecast::helios::SceneSettings& scene);
 
-/// What `write_survey_file` changes, of all channels.
+/// Changes by `write_survey_file`, to all channels.
 struct WaveformChange {
   int rings = 0;        ///< `beamSampleQuality`
   double bin_size = 0;  ///< `binSize_ns` [s]
 };
 
-/// Writes the document of a survey with other settings, and all else as it stands there, comments too: through
-/// symbolic links, with the mode that the file had. Throws a `FileError` and leaves what was there if what is written would not say the
-/// same.
+/// Writes a survey document with other settings and keeps the rest, comments too. Follows symbolic links and keeps the file mode. Throws a
+/// `FileError` and keeps the old file if the new text would give another survey.
 void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change, const std::filesystem::path& path);
 
-/// Scanners and platforms in the assets that the program finds.
+/// Prints the scanners and platforms in the program's assets.
 void print_catalogue(const Options& options);

@@ -42,7 +42,7 @@ std::map<std::string, std::string> SurveyInputs::fingerprints() {
   const auto add = [&](const fs::path& path) {
     try {
       all.emplace(path.string(), hex(fingerprint(path)));
-    } catch (const FileError&) {  // not there, or not to be read
+    } catch (const FileError&) {  // missing or unreadable
     }
   };
   for (const fs::path& path : scene_) add(path);

@@ -12,7 +12,7 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/digest.hpp>
 
-/// The files that the results of a survey depend on beside its documents: those of the scene, spectra and trajectories.
+/// Input files of a survey besides its documents: scene, spectra and trajectories.
 class SurveyInputs {
  public:
   SurveyInputs(const pulsecast::helios::SurveySettings& survey, const std::vector<std::filesystem::path>& assets);
@@ -20,15 +20,15 @@ class SurveyInputs {
   [[nodiscard]] const std::vector<std::filesystem::path>& scene() const noexcept { return scene_; }      ///< files
   [[nodiscard]] const std::vector<std::filesystem::path>& spectra() const noexcept { return spectra_; }  ///< folders
 
-  /// What a file or folder holds now. A file is read again only if its size or times have changed. Throws a `FileError` if it cannot be
-  /// read.
+  /// Fingerprint of the content of a file or folder. Rereads a file only if its size or times have changed. Throws a `FileError` if it
+  /// cannot be read.
   [[nodiscard]] pulsecast::io::Fingerprint fingerprint(const std::filesystem::path& path);
 
-  /// The fingerprint of each file, in hexadecimal digits. What cannot be read is left out: whoever needs it will say so.
+  /// Fingerprint of each file, in hexadecimal digits. Skips unreadable files: their readers report them.
   [[nodiscard]] std::map<std::string, std::string> fingerprints();
 
  private:
-  /// Size, times and number of a file: while they are the same, so is the file.
+  /// Device, inode, size and times of a file: equal marks mean an equal file.
   using Mark = std::vector<std::uint64_t>;
 
   std::vector<std::filesystem::path> scene_, spectra_, trajectories_;

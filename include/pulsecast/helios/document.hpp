@@ -12,21 +12,21 @@
 
 namespace pulsecast::helios {
 
-/// Where the files are that documents name, and what they are read for.
+/// Search folders and purpose of reading a document.
 struct XmlOptions {
-  std::vector<std::filesystem::path> assets{};  ///< folders; the first that has a file wins. Then come those of survey and document
-  bool channel_files = false;  ///< whether each channel is to have a file by its id: ids that cannot tell files apart are refused
+  std::vector<std::filesystem::path> assets{};  ///< search folders; the first match wins. The folders of survey and document follow
+  bool channel_files = false;                   ///< each channel gets a file named by its id: ambiguous ids are refused
 };
 
-/// What a document of a survey says.
+/// Content of a survey document.
 struct SurveyDocument {
   SurveySettings survey{};
-  std::vector<std::string> warnings{};    ///< what is odd, but could be read, as in `survey.xml:3:10: attribute 'numRuns' has no effect`
-  std::vector<std::string> leg_places{};  ///< where each leg stands, as in `survey.xml:12:5`, for `SurveyBuildOptions`
-  std::string place{};                    ///< where the survey stands
+  std::vector<std::string> warnings{};    ///< readable, but unusual, as in `survey.xml:3:10: attribute 'numRuns' has no effect`
+  std::vector<std::string> leg_places{};  ///< position of each leg, as in `survey.xml:12:5`, for `SurveyBuildOptions`
+  std::string place{};                    ///< position of the survey
 };
 
-/// What a document of assets holds, each in its order.
+/// Content of a document of assets, in document order.
 struct AssetDocument {
   std::vector<ScannerSettings> scanners{};
   std::vector<PlatformSettings> platforms{};
@@ -34,22 +34,22 @@ struct AssetDocument {
   std::vector<std::string> warnings{};
 };
 
-/// Reads a survey and all that it refers to, in the format of HELIOS++, and checks all that can be checked without loading the scene. The
-/// settings are resolved: what the survey sets of scanner and platform stands there, for every channel. Throws `XmlFaults`, with all that
-/// is wrong, if anything is; any other `FileError` if the file cannot be read.
+/// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's files. The settings are resolved: overrides
+/// of the survey are in scanner and platform, for every channel. Throws `XmlFaults` with all faults, or another `FileError` if the file
+/// cannot be read.
 [[nodiscard]] SurveyDocument read_survey(const std::filesystem::path& path, const XmlOptions& options = {});
 
-/// Writes a survey with its scanner, platform and scene as one document. Read again, it gives equal settings; where these were made by a
-/// program, a number that is not in SI in a document may differ in its last digit.
+/// Writes a survey with its scanner, platform and scene as one document. Reading it gives equal settings. Exception: values from a program
+/// may differ in the last digit where the document's unit is not SI.
 void write_survey(const std::filesystem::path& path, const SurveySettings& survey);
-[[nodiscard]] std::string xml_text(const SurveySettings& survey);  ///< what would be written
+[[nodiscard]] std::string xml_text(const SurveySettings& survey);  ///< the text of that document
 
 /// Reads the scanners, platforms and scenes of a document. Throws as `read_survey`.
 [[nodiscard]] AssetDocument read_assets(const std::filesystem::path& path, const XmlOptions& options = {});
 
 /// Writes scanners, platforms and scenes as one document.
 void write_assets(const std::filesystem::path& path, const AssetDocument& assets);
-[[nodiscard]] std::string xml_text(const AssetDocument& assets);  ///< what would be written
+[[nodiscard]] std::string xml_text(const AssetDocument& assets);  ///< the text of that document
 
 namespace detail {
 

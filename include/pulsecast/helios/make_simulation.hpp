@@ -33,26 +33,26 @@
 #include <pulsecast/run.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
-/// Loading of surveys: heavy to compile, so that programs of many sources include it in one of them.
+/// Loading of surveys. Compilation is slow: include it in one source file of a program.
 namespace pulsecast::helios {
 
-/// The parts of a scene, and what was odd about them.
+/// Parts of a scene and the warnings from building it.
 struct BuiltParts {
   std::vector<SurveyPart> parts{};
   std::vector<std::string> warnings{};
 };
 
-/// Gives the parts of the scene in a repetition: those that `build` makes of the survey's files, or equal ones that were made before.
+/// Gives the parts of the scene in a repetition: the result of `build`, or an equal earlier one.
 using PartProvider = std::function<BuiltParts(int run, const std::function<BuiltParts()>& build)>;
 
-/// Loads the scene of a survey and plans its legs, for the first repetition. Throws a `SettingError` that names leg or part and attribute,
-/// or a `FileError`.
+/// Loads the scene of a survey and plans its legs, for the first repetition. Throws a `SettingError` with leg or part and attribute, or a
+/// `FileError`.
 [[nodiscard]] std::unique_ptr<Simulation> make_simulation(const SurveySettings& survey, const Simulation::Settings& settings = {},
                                                           const PartProvider& provider = {});
 
 namespace detail {
 
-/// The spectra in folders, for the wavelengths of the channels. A folder that cannot be read becomes a warning, as no part may need it.
+/// Spectra in folders, for the wavelengths of the channels. An unreadable folder gives a warning, as no part may need it.
 [[nodiscard]] inline io::SpectralLibrary spectra_of(const SurveySettings& survey, const std::vector<std::filesystem::path>& folders) {
   io::SpectralLibrary all;
   for (const std::filesystem::path& folder : folders) {
@@ -68,20 +68,20 @@ namespace detail {
   return all;
 }
 
-/// Processor time that this thread has used [s].
+/// Processor time of this thread [s].
 [[nodiscard]] inline double processor_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// The detectors of a survey: its channels' waveform settings within the limits of batches and files, with a warning for each change.
+/// Detectors of a survey: waveform settings of its channels within the limits of batches and files, with a warning for each change.
 class WaveformLimits {
  public:
   WaveformLimits(const SurveySettings& survey, const Simulation::Settings& settings)
       : name_(settings.place.empty() ? "survey '" + survey.name + "'" : settings.place), las_(settings.las_waveforms) {}
 
-  /// A scanner whose channels are sampled as the finest of them is, as batches hold waveforms of one kind of bins.
+  /// Scanner with the smallest bin size in all channels, as a batch has one sample interval.
   [[nodiscard]] ScannerSettings sampled_alike(ScannerSettings scanner, std::vector<std::string>& warnings) const {
     double finest = scanner.channels.front().waveform.bin_size, coarsest = finest;
     for (const ChannelSettings& c : scanner.channels) {
@@ -95,10 +95,10 @@ class WaveformLimits {
     return scanner;
   }
 
-  /// Cuts waveforms that are too long for where they go.
+  /// Cuts waveforms to the longest that LAS or a batch takes.
   void limit_record(WaveformSettings& s, std::vector<std::string>& warnings) const {
     const double most = las_ ? io::LasPackets::max_samples : WaveformSettings::max_kept;
-    const double longest = (most - 0.5) * s.sample_interval;  // half a sample for rounding
+    const double longest = (most - 0.5) * s.sample_interval;  // margin for rounding: half a sample
     if (s.record_length <= longest) return;
     s.record_length = longest;
     warnings.push_back(name_ + ": waveforms are cut after " + xml_number(std::round(longest * 1e12) / 1e3) + " ns, " + xml_number(most) +
@@ -106,7 +106,7 @@ class WaveformLimits {
   }
 
  private:
-  /// LAS counts the time from sample to sample in picoseconds. Source: LAS 1.4 R15, Waveform Packet Descriptor.
+  /// Bin size for LAS, whose sample interval is in whole picoseconds [s]. Source: LAS 1.4 R15, Waveform Packet Descriptor.
   [[nodiscard]] double las_bins(double bin, std::vector<std::string>& warnings) const {
     constexpr double rounding = 1e-6;  // [ps]
     const double picoseconds = bin * 1e12;
@@ -121,7 +121,7 @@ class WaveformLimits {
   bool las_;
 };
 
-/// The one kind of `Simulation`.
+/// Only implementation of `Simulation`.
 class LoadedSimulation final : public Simulation {
  public:
   LoadedSimulation(const SurveySettings& survey, const Settings& settings, const PartProvider& provider)
@@ -194,7 +194,7 @@ class LoadedSimulation final : public Simulation {
     std::vector<Sample> all(blocks.size());
     for_each_index((blocks.size() + at_once - 1) / at_once, threads, [&](std::size_t task) {
       AnySurvey::Workspace workspace = survey.workspace();
-      ResultBuffer room;  // used again and again, as those of a run are
+      ResultBuffer room;  // reused, as in a run
       for (std::size_t k = task * at_once; k < std::min((task + 1) * at_once, blocks.size()); ++k) {
         const SampleBlock& block = blocks[k];
         Sample& sample = all[k];
@@ -275,8 +275,8 @@ class LoadedSimulation final : public Simulation {
   std::optional<CompiledSurvey> compiled_;
   std::optional<SurveyScene> scene_;
   std::unique_ptr<const AnySurvey> pipeline_;
-  std::vector<SurveyPart> meshes_;  // beside the survey's own parts
-  std::uint64_t seed_ = 0;          // of this repetition
+  std::vector<SurveyPart> meshes_;  // in addition to the survey's own parts
+  std::uint64_t seed_ = 0;          // seed of this repetition
   std::vector<std::string> scene_warnings_, warnings_;
 };
 

@@ -33,32 +33,34 @@
 #include <pulsecast/scene/variation.hpp>
 #include <pulsecast/scene/voxel_grid.hpp>
 
-/// The scene of a survey document, as parts of the library.
+/// Converts the scene of a survey document to parts of the library.
 namespace pulsecast::helios {
 
-/// Any shape that a document can name.
+/// Part with any shape of the document format.
 using SurveyPart = Part<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
+/// Scene of such parts.
 using SurveyScene =
     MovingScene<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
 
+/// Options for building a scene.
 struct SceneBuildOptions {
-  io::SpectralLibrary spectra{};  ///< what materials may name
-  double pulse_rate = 100e3;      ///< of the first leg: motions may be given per pulse [Hz]
-  std::uint64_t seed = 0;         ///< of what is random in the scene
-  bool fixed_incidence = false;   ///< all surfaces scatter as if they were met squarely
-  unsigned threads = 0;           ///< that read and build, at most `max_threads`; 0 for as many as the machine runs
+  io::SpectralLibrary spectra{};  ///< spectra for materials
+  double pulse_rate = 100e3;      ///< pulse rate of the first leg, for motions per pulse [Hz]
+  std::uint64_t seed = 0;         ///< seed of random properties of the scene
+  bool fixed_incidence = false;   ///< perpendicular incidence on all surfaces, for scattering
+  unsigned threads = 0;           ///< threads for reading and building, at most `max_threads`; 0: all of the machine
 
   void validate() const { require_within("SceneBuildOptions::threads", threads, 0, max_threads, ""); }
 };
 
-/// The parts of a scene, and what was odd about its files. Files and grids are kept, so that a further scene of the same files costs
+/// Builds the parts of a scene, with warnings about its files. Files and grids are kept, so that another scene of the same files costs
 /// little.
 class SceneBuilder {
  public:
   SceneBuilder(SceneSettings settings, SceneBuildOptions options)
       : settings_(validated(std::move(settings))), options_(validated(std::move(options))) {}
 
-  /// How many runs of the survey the swaps ask for.
+  /// Number of runs of the survey, from its swaps.
   [[nodiscard]] int runs() const {
     int most = 1;
     for (const PartSettings& part : settings_.parts) {
@@ -69,10 +71,10 @@ class SceneBuilder {
     return most;
   }
 
-  /// The parts in a run, from 0.
+  /// Parts in a run, from 0.
   [[nodiscard]] std::vector<SurveyPart> parts(int run = 0) {
     std::vector<SurveyPart> all;
-    std::vector<int> lifted;  // of each part: as its settings ask for
+    std::vector<int> lifted;  // `on_ground` of each part
     for (std::size_t i = 0; i < settings_.parts.size(); ++i) {
       const PartSettings& part = settings_.parts[i];
       const PartSource* source = &part.source;
@@ -98,7 +100,7 @@ class SceneBuilder {
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
-  /// Geometry that files hold, and its materials.
+  /// Geometry and materials of a file.
   struct Loaded {
     decltype(SurveyPart::geometry) geometry;
     MaterialTable materials;
@@ -109,7 +111,7 @@ class SceneBuilder {
       if (warned_.insert(text).second) warnings_.push_back(text);
   }
 
-  /// Reads once what is asked for twice.
+  /// Reads each source once.
   const std::vector<Loaded>& load(const PartSource& source) {
     for (const auto& [known, loaded] : loaded_)
       if (known == source) return loaded;
@@ -117,7 +119,7 @@ class SceneBuilder {
     return loaded_.emplace_back(source, std::move(made)).second;
   }
 
-  /// Loads one file after the other. A setting that a file comes to, and that cannot be, is told as an error of that file.
+  /// Loads files in order. A `SettingError` becomes a `FileError` of that file.
   template <class Load>
   static std::vector<Loaded> each(const std::vector<std::filesystem::path>& files, const Load& load) {
     std::vector<Loaded> all;
@@ -176,7 +178,7 @@ class SceneBuilder {
     });
   }
 
-  /// Leaves out the voxels in which no plane could be fitted.
+  /// Removes voxels without a fitted plane.
   void drop_bare(const std::filesystem::path& file, io::PointCloud& cloud) {
     VoxelData& v = cloud.voxels;
     const auto is_bare = [&](std::size_t i) { return v.normals[i] == std::array<float, 3>{}; };
@@ -206,7 +208,7 @@ class SceneBuilder {
         return;
       }
       MaterialTable materials = assign_materials(source.material, voxels.voxels);
-      if (!source.leaf_angles.empty())  // of surveys, where a `ladlut` is said to give 2 pi times the extinction of a unit of density
+      if (!source.leaf_angles.empty())  // convention of surveys: a `ladlut` gives 2 pi times the extinction of unit density
         for (float& density : voxels.voxels.densities) density /= static_cast<float>(2 * pi);
       if (source.mode == VoxelMode::transmittive)
         all.push_back({std::make_shared<const VoxelGrid<TransmissiveVoxels>>(voxels.voxels, TransmissiveVoxels{leaves}), materials});
@@ -239,7 +241,7 @@ class SceneBuilder {
     return material_table(std::move(materials));
   }
 
-  /// The material of voxels, or its variants, which they take in turn.
+  /// Material of voxels, or its variants in turn.
   MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels) {
     std::vector<Material> all{material(source)};
     if (source.random > 0) {
@@ -274,7 +276,7 @@ class SceneBuilder {
     }
   }
 
-  /// Says which parts the points do not tell apart.
+  /// Warns of the first two parts with the same number in their points.
   void tell_shared_objects(const std::vector<SurveyPart>& all) {
     std::map<ObjectId, const PartSettings*> first;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -314,7 +316,7 @@ class SceneBuilder {
       if (!settings_of_[i]->motions.empty()) all[i].motion = detail::part_motion(*settings_of_[i], box.centre(), step_of(*settings_of_[i]));
   }
 
-  /// The time from one step of a part to the next [s].
+  /// Time between two steps of a part [s].
   [[nodiscard]] double step_of(const PartSettings& part) const {
     if (settings_.dynamic_interval) {
       const double scene = *settings_.dynamic_interval;
@@ -326,7 +328,7 @@ class SceneBuilder {
   SceneSettings settings_;
   SceneBuildOptions options_;
   std::vector<std::pair<PartSource, std::vector<Loaded>>> loaded_;
-  std::vector<const PartSettings*> settings_of_;  // of each part of the last run
+  std::vector<const PartSettings*> settings_of_;  // one per part of the last run
   std::vector<std::string> warnings_;
   std::set<std::string> warned_;
 };

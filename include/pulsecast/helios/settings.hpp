@@ -14,12 +14,12 @@
 #include <pulsecast/helios/detail/settings/scanner.hpp>
 #include <pulsecast/helios/detail/settings/scene.hpp>
 
-/// What the documents of a survey say, as plain structs in SI units and radians that a program may change before it builds the survey from
-/// them. Templates, references and inheritance are resolved: each struct says all that counts. After each field stands the attribute
-/// or element that it is in a document. Where 0 stands for a default or for none, less is no setting: `validate` refuses it.
+/// Settings of a survey document, as plain structs in SI units and radians. A program may change them before it builds the survey.
+/// Templates, references and inheritance are resolved: each struct is complete. The comment of a member names its attribute or element. A 0
+/// may mean a default or none; `validate` refuses negative values there.
 namespace pulsecast::helios {
 
-/// By how much legs begin elsewhere than they should: `legRandomOffset`.
+/// Random offset of the start of legs: `legRandomOffset`.
 struct LegOffsetSettings {
   double mean = 0;         ///< along each axis; `legRandomOffsetMean` [m]
   double deviation = 0.1;  ///< along each axis; `legRandomOffsetStdev` [m]
@@ -27,9 +27,10 @@ struct LegOffsetSettings {
   bool operator==(const LegOffsetSettings&) const = default;
 };
 
-/// `<survey>`. What it sets of the scanner (`<FWFSettings>`, `<detectorSettings>`) and the platform (`<scannerMount>`, noise) stands there.
+/// `<survey>`. Its overrides of the scanner (`<FWFSettings>`, `<detectorSettings>`) and the platform (`<scannerMount>`, noise) are stored
+/// there.
 struct SurveySettings {
-  std::string name{};                             ///< the file's unless given; `name`
+  std::string name{};                             ///< default: that of the file; `name`
   std::optional<std::uint64_t> seed{};            ///< `seed`
   std::optional<LegOffsetSettings> leg_offset{};  ///< `legRandomOffset`...
   ScannerSettings scanner{};                      ///< `scanner`
@@ -40,22 +41,22 @@ struct SurveySettings {
   bool operator==(const SurveySettings&) const = default;
 };
 
-/// Whether legs of such a platform lead to the place where the next one begins.
+/// True if the legs of such a platform lead to the start of the next one.
 [[nodiscard]] constexpr bool legs_connect(PlatformKind kind) noexcept {
   return kind != PlatformKind::stationary && kind != PlatformKind::interpolated;
 }
 
-/// Whether a platform that moves does not in a leg.
+/// True if a moving platform stays in place in a leg.
 [[nodiscard]] inline bool is_stationary(const SurveySettings& survey, std::size_t leg) {
   return legs_connect(survey.platform.kind) && stays_in_place(survey.legs, leg);
 }
 
-/// Whether a leg only says where the one before it ends, and has no pulses: the last of several of a platform that moves.
+/// True if a leg only ends the one before it, without pulses: the last of several of a moving platform.
 [[nodiscard]] inline bool only_ends(const SurveySettings& survey, std::size_t leg) {
   return legs_connect(survey.platform.kind) && leg > 0 && leg + 1 == survey.legs.size();
 }
 
-/// Pulse rate of the first leg that sets one; the scanner's usual one if none does, and 100 kHz if it has none [Hz].
+/// Pulse rate of the first leg that sets one; else the scanner's default, else 100 kHz [Hz].
 [[nodiscard]] inline double first_pulse_rate(const SurveySettings& survey) {
   for (const LegSettings& leg : survey.legs)
     if (leg.scanner.pulse_rate > 0) return leg.scanner.pulse_rate;

@@ -19,29 +19,29 @@
 #include <pulsecast/platform/legs.hpp>
 #include <pulsecast/platform/platform.hpp>
 
-/// From the settings of a survey document to pulses.
+/// Compilation of survey settings to pulses.
 namespace pulsecast::helios {
 
-/// A survey that can be run, and what is known of its legs.
+/// Runnable survey, with data of its legs.
 struct CompiledSurvey {
   struct Leg {
-    std::size_t number = 0;  ///< in the document, from 0
+    std::size_t number = 0;  ///< index in the document, from 0
     bool active = true;
     std::optional<std::string> strip{};
-    PulseIndex first = 0, end = 0;  ///< its slots in the survey
+    PulseIndex first = 0, end = 0;  ///< range of its slots in the survey
     Tick start{}, duration{};
-    double trajectory_interval = 0;  ///< [s]; 0: no records
+    double trajectory_interval = 0;  ///< interval of trajectory records; 0: none [s]
     double pulse_rate = 0;           ///< [Hz]
   };
   Legs<SurveyLeg> source;
   std::vector<Leg> legs;
-  std::optional<double> clock_start{};  ///< when the survey begins, if a trajectory says so [s]
+  std::optional<double> clock_start{};  ///< start time of the survey, if a trajectory gives it [s]
   std::vector<std::string> warnings{};
 };
 
 namespace detail {
 
-/// Turns settings into a plan.
+/// Compiles settings to a plan of legs.
 class SurveyCompiler {
  public:
   SurveyCompiler(const SurveySettings& survey, const LegPaths& paths, const SurveyBuildOptions& options)
@@ -56,7 +56,7 @@ class SurveyCompiler {
     PulseIndex first = 0;
     Tick start{};
     double optic_time = 0;
-    std::unordered_map<std::string, std::size_t> strips;  // first leg of each
+    std::unordered_map<std::string, std::size_t> strips;  // first leg of each strip
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
       paths_.of_leg(k, [&] { leg.validate(); });
@@ -77,7 +77,7 @@ class SurveyCompiler {
       for (const ChannelSettings& channel : survey_.scanner.channels)
         channels.push_back(paths_.of_leg(k, [&] {
           return SurveyChannel(
-              slots > 0 ? optic(channel, leg.scanner, rate, optic_time) : SurveyOptic{},  // if there are none, nobody asks it
+              slots > 0 ? optic(channel, leg.scanner, rate, optic_time) : SurveyOptic{},  // without slots, it is never called
               Scanner{.pulse_rate = rate, .pulses = slots, .laser = survey_laser(channel, leg.scanner)});
         }));
       const Tick time = Tick::of(slots, rate);
@@ -95,13 +95,13 @@ class SurveyCompiler {
   }
 
  private:
-  static constexpr double max_records = 1e9;  ///< of a leg's trajectory: some 70 GB of text
+  static constexpr double max_records = 1e9;  ///< records of a leg's trajectory: some 70 GB of text
 
   [[nodiscard]] bool teleports(const LegSettings& leg) const {
     return survey_.platform.kind == PlatformKind::interpolated && leg.platform.trajectory && leg.platform.trajectory->teleports;
   }
 
-  /// A time for people, to the millisecond.
+  /// Time for messages, rounded to the millisecond.
   [[nodiscard]] static std::string brief(double seconds) { return pulsecast::detail::to_text(std::round(seconds * 1e3) / 1e3); }
 
   [[nodiscard]] double rate_of(const LegSettings& leg) const {
@@ -111,17 +111,17 @@ class SurveyCompiler {
     return rate;
   }
 
-  /// The number that the leg's pulses carry: legs of one strip have that of its first.
+  /// Strip number of the leg's pulses: index of the first leg of the strip.
   [[nodiscard]] static std::uint16_t strip_of(std::size_t k, const LegSettings& leg, std::unordered_map<std::string, std::size_t>& first) {
     return static_cast<std::uint16_t>(leg.strip ? first.try_emplace(*leg.strip, k).first->second : k);
   }
 
   SurveyOptic optic(const ChannelSettings& channel, const LegScannerSettings& leg, double rate, double active) const {
     if (leg.active) return survey_optic(channel, leg, rate, survey_.platform.mount.rotation.rotation(), {active});
-    return {};  // nobody asks it
+    return {};  // unused
   }
 
-  /// How long a leg lasts: until the platform is there and the head has turned, but not longer than it may.
+  /// Duration of a leg: until the platform has arrived and the head has turned, but at most `duration_max` [s].
   [[nodiscard]] double duration_of(std::size_t k) const {
     const LegSettings& leg = survey_.legs[k];
     const LegScannerSettings& s = leg.scanner;
@@ -155,7 +155,7 @@ class SurveyCompiler {
 
 }  // namespace detail
 
-/// The pulses of a survey. `ground` gives the height of the scene's ground. Throws a `SettingError` that names leg and attribute, or a
+/// Pulses of a survey. `ground` gives the height of the scene's ground [m]. Throws a `SettingError` with leg and attribute, or a
 /// `FileError` of a trajectory.
 [[nodiscard]] CompiledSurvey compile_survey(const SurveySettings& survey, const Ground auto& ground,
                                             const SurveyBuildOptions& options = {}) {

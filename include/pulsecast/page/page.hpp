@@ -30,15 +30,15 @@
 
 namespace pulsecast::page {
 
-/// Where the instrument was during a leg. A way of a single place is a set-up.
+/// Path of the instrument in a leg. A path of one place is a set-up.
 struct PageLeg {
   std::string name{};
   std::vector<double> times{};  ///< ascending, since the survey's start [s]
   std::vector<Vec3> places{};   ///< one for each time, in the world [m]
 };
 
-/// A trajectory from `start` to `start + duration` in the survey's time, as a page tells it: at so many moments, evenly spaced, or at one
-/// if it does not move. The trajectory is asked in its own time, from 0.
+/// Samples a trajectory from `start` to `start + duration` in the survey's time: evenly spaced, or once if it does not move. The
+/// trajectory's own time begins at 0.
 [[nodiscard]] PageLeg page_leg(std::string name, const Trajectory auto& trajectory, Tick start, Tick duration, int moments = 200) {
   PageLeg leg{std::move(name), {}, {}};
   bool moves = false;
@@ -52,17 +52,18 @@ struct PageLeg {
   return leg;
 }
 
-/// What a page tells beside the points. Texts may be any.
+/// Description of a survey on a page. Texts may contain any characters.
 struct PageSurvey {
   std::string name{}, scanner{}, platform{};
   std::vector<PageLeg> legs{};                ///< by number
-  std::map<ObjectId, std::string> objects{};  ///< names of objects, if they have any
+  std::map<ObjectId, std::string> objects{};  ///< names of objects, if any
 };
 
+/// Settings of a page.
 struct PageSettings {
-  std::size_t points_max = 1'000'000;  ///< from 2 to 2^27; more are thinned
-  double position_step = 0;            ///< of coordinates; 0 for one that suits the extent: see `page_step` [m]
-  int effort = 6;                      ///< of compression, from 1 to 9
+  std::size_t points_max = 1'000'000;  ///< from 2 to 2^27; larger clouds are thinned
+  double position_step = 0;            ///< step of coordinates; 0: chosen from the extent by `page_step` [m]
+  int effort = 6;                      ///< compression level, 1 to 9
 
   void validate() const {
     require_within("PageSettings::points_max", static_cast<double>(points_max), 2, 134'217'728, "");
@@ -73,7 +74,7 @@ struct PageSettings {
 
 namespace detail {
 
-/// The colours of pictures, for the page's own.
+/// Writes the colour scales of pictures, for the page.
 inline void write_colours(page::detail::JsonWriter& json) {
   const auto scale = [](std::span<const io::Srgb> colours) {
     return [colours](std::size_t i) { return io::to_srgb(io::along(colours, static_cast<double>(i) / 255)); };
@@ -119,7 +120,7 @@ inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool 
 
 }  // namespace detail
 
-/// A whole page: HTML that needs no other file and asks nobody for anything. With `live`, it has no points, but asks where it came from.
+/// Whole page as HTML, without other files or network requests. With `live`, it has no points and asks its own server for them.
 [[nodiscard]] inline std::string page_html(const PageSurvey& survey, std::uint64_t echoes, std::string_view columns, bool live = false) {
   std::string out;
   for (const std::string_view piece : page::detail::html_before_survey) out += piece;
@@ -130,10 +131,9 @@ inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool 
   return out;
 }
 
-/// A sink that leaves the cloud as one HTML file in which it can be looked at from all sides, coloured, played and asked for the attributes
-/// of its points, in any browser since 2023, without a network. What is written depends on echoes and settings alone. Points that are too
-/// many are thinned evenly: see `PageSample`; see `page_columns` for how exact the attributes are. Only `close()` makes the file: see
-/// `OutputFile`.
+/// Sink that writes the cloud as one HTML file: an interactive 3D view with colours, playback and point attributes. Works in any browser
+/// since 2023, without a network. The file depends on echoes and settings alone. `PageSample` thins larger clouds evenly; `page_columns`
+/// states the accuracy of attributes. Only `close()` makes the file: see `OutputFile`.
 class PageWriter {
  public:
   explicit PageWriter(std::filesystem::path path, PageSurvey survey = {}, const PageSettings& settings = {})
@@ -141,7 +141,7 @@ class PageWriter {
 
   void operator()(const EchoBatch& batch) { sample_(batch); }
 
-  /// What is told beside the points, which may be changed until the file is closed.
+  /// Description of the survey; may be changed until the file is closed.
   [[nodiscard]] PageSurvey& survey() noexcept { return survey_; }
 
   void close() {

@@ -31,16 +31,14 @@
 
 namespace pulsecast::page {
 
-/// A sink that shows the cloud while it grows: the page of `PageWriter`, at an address of this machine that nobody else can reach, with
-/// the progress of the run and a button that asks to stop it.
+/// Sink that shows the growing cloud: the page of `PageWriter` with progress and a stop button, at an address of this machine only.
 ///
-/// It is a `LocalServer`: at 127.0.0.1 only, and no client takes memory, descriptors or time from the run. Every address holds a secret
-/// drawn for this object, and is answered only if it was asked for by the name of this machine and from no other site's page; so other
-/// sites that are open in the same browser learn nothing and stop nothing. Whoever may read this user's screen may look, too. The functions
-/// may be called from any thread.
+/// It is a `LocalServer` at 127.0.0.1: no client takes memory, descriptors or time from the run. Every address contains a random secret of
+/// this object. Requests must use the name of this machine and come from no other site's page, so that other sites in the same browser
+/// learn and stop nothing. Anyone who can read this user's screen has access. The functions may be called from any thread.
 class PageServer {
  public:
-  /// Throws a `std::runtime_error` if nothing can be served. `port` is 0 for any that is free.
+  /// Throws a `std::runtime_error` if nothing can be served. `port` is 0 for any free one.
   explicit PageServer(PageSurvey survey = {}, const PageSettings& settings = {}, int port = 0)
       : settings_(validated(settings)), token_(secret()), survey_(std::move(survey)), sample_(settings.points_max) {
     server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
@@ -72,10 +70,10 @@ class PageServer {
     server_.start();
   }
 
-  /// What to type into a browser.
+  /// URL of the page.
   [[nodiscard]] std::string address() const { return "http://127.0.0.1" + host_ + '/' + token_ + '/'; }
 
-  /// Forgets all points, for another run.
+  /// Removes all points and starts another run.
   void begin(PageSurvey survey) {
     const std::lock_guard lock(mutex_);
     survey_ = std::move(survey);
@@ -95,17 +93,17 @@ class PageServer {
     progress_ = progress;
   }
 
-  /// Whether somebody pressed the button.
+  /// True if the stop button was pressed.
   [[nodiscard]] bool stop_requested() const noexcept { return stop_requested_; }
 
-  /// Says that the run is over, and waits until whoever looks has all of it: not at all if nobody does, and never longer than `patience`.
+  /// Ends the run, and waits until open pages have all points: not without a page, and at most `patience`.
   void finish(bool complete, std::chrono::milliseconds patience = std::chrono::seconds(20)) {
     {
       const std::lock_guard lock(mutex_);
       state_ = complete ? "complete" : "stopped";
     }
     const auto began = Clock::now();
-    constexpr auto quiet = std::chrono::milliseconds(1500);  // pages in the background ask once a second
+    constexpr auto quiet = std::chrono::milliseconds(1500);  // pages in the background poll once a second
     while (Clock::now() - began < patience) {
       {
         const std::lock_guard lock(mutex_);
@@ -136,8 +134,8 @@ class PageServer {
     return value;
   }
 
-  /// Whether this was asked for by the right name and, if by a page, by our own. Other names may be made to lead to this machine
-  /// ("DNS rebinding"), and other pages may ask without seeing the answer.
+  /// True if a request has the right host name and, if a page sent it, comes from this page. Other names may resolve to this machine ("DNS
+  /// rebinding"). Other pages may send requests without access to the response.
   [[nodiscard]] bool is_ours(const httplib::Request& request) const {
     const std::string host = request.get_header_value("Host");
     if (host != "127.0.0.1" + host_ && host != "localhost" + host_) return false;
@@ -151,8 +149,7 @@ class PageServer {
     return page_html(survey_, sample_.seen(), "", true);
   }
 
-  /// How far the run is, and points of later pulses than those the page has: four bytes that say how long the JSON text is which
-  /// follows, and columns.
+  /// Progress of the run, and points of later pulses than `after`: the length of a JSON text in four bytes, the text, and columns.
   [[nodiscard]] std::string news(std::optional<std::uint64_t> run, std::optional<std::uint64_t> after) {
     page::detail::JsonWriter json;
     std::vector<PagePoint> fresh;
@@ -176,7 +173,7 @@ class PageServer {
       }
       json.end_object();
     }
-    constexpr double step = 1e-3;  // that suits any extent: nothing is stored [m]
+    constexpr double step = 1e-3;  // suits any extent: nothing is stored [m]
     return detail::with_length(json.text()) +
            page_columns(fresh, {.position_step = settings_.position_step > 0 ? settings_.position_step : step, .keys = true, .effort = 1});
   }
@@ -189,9 +186,9 @@ class PageServer {
   Progress progress_{};
   std::string state_ = "running";
   std::uint64_t run_ = 1;
-  std::optional<Clock::time_point> asked_{};  // when somebody looked last
+  std::optional<Clock::time_point> asked_{};  // time of the last request
   std::atomic<bool> stop_requested_ = false;
-  LocalServer server_;  // neither made nor copied here: a `Request`, whose layout is as httplib was compiled
+  LocalServer server_;  // not made or copied here: the layout of a `Request` depends on how httplib was compiled
 };
 static_assert(EchoSink<PageServer>);
 

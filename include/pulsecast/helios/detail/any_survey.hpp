@@ -11,7 +11,7 @@
 
 namespace pulsecast::helios::detail {
 
-/// A survey of any kind of receiver, so that what runs and samples it is compiled once, and the pipeline of each kind in one place.
+/// Type-erased survey of any receiver: code that runs or samples it compiles once, and the pipeline of each kind in one place.
 class AnySurvey {
  public:
   struct Scratch {
@@ -31,6 +31,7 @@ class AnySurvey {
   [[nodiscard]] virtual Outcome operator()(PulseIndex i, Workspace& w) const noexcept = 0;
 };
 
+/// Wraps a `Survey` of one kind as an `AnySurvey`.
 template <class Survey>
 class SurveyOf final : public AnySurvey {
  public:

@@ -13,15 +13,15 @@
 
 namespace pulsecast::helios {
 
-/// What was found under a name, or why nothing was.
+/// Files found under a name, or the reason why there are none.
 struct AssetMatch {
-  std::vector<std::filesystem::path> files{};  ///< absolute, by name
+  std::vector<std::filesystem::path> files{};  ///< absolute, sorted by path
   std::string problem{};                       ///< empty if there are files
-  std::string warning{};                       ///< what is odd about where they are; empty if nothing is
+  std::string warning{};                       ///< unusual place of the files; empty if there is none
 };
 
-/// Looks for the files that documents name, in folders that a program gives. An absolute path is taken as it is. The first folder that has
-/// a relative one wins; a path that leads out of all folders counts after those that do not, with a warning.
+/// Finds the files that documents name, in the folders of a program. An absolute path is taken as it is. The first folder that contains a
+/// relative one wins. A path that leads out of all folders ranks after the others and gives a warning.
 class AssetSearch {
  public:
   explicit AssetSearch(const std::vector<std::filesystem::path>& folders) {
@@ -31,9 +31,9 @@ class AssetSearch {
     }
   }
 
-  [[nodiscard]] const std::vector<std::filesystem::path>& folders() const noexcept { return folders_; }  ///< absolute, in their order
+  [[nodiscard]] const std::vector<std::filesystem::path>& folders() const noexcept { return folders_; }  ///< absolute, in search order
 
-  /// The file of a name. A backslash separates as well.
+  /// Finds the file of a name. A backslash separates as well.
   [[nodiscard]] AssetMatch find(std::string name) const {
     std::replace(name.begin(), name.end(), '\\', '/');
     const std::vector<std::filesystem::path> places = candidates(name);
@@ -43,8 +43,8 @@ class AssetSearch {
     return {.problem = problem(name, places, "is not there")};
   }
 
-  /// All files whose names in their folder match a regular expression (ECMAScript, without back-references) as a whole: the last component
-  /// of `pattern`. Those of all folders count. Time is linear in the length of a name.
+  /// Finds the files whose names match a regular expression as a whole: the last component of `pattern` (ECMAScript, without
+  /// back-references). Searches all folders. Time is linear in the length of a name.
   [[nodiscard]] AssetMatch find_all(const std::string& pattern) const {
     const std::size_t slash = pattern.rfind('/');
     const std::string folder = slash == std::string::npos ? "." : pattern.substr(0, slash + 1), name = pattern.substr(slash + 1);
@@ -78,7 +78,7 @@ class AssetSearch {
  private:
   static constexpr std::size_t max_pattern_size = 200;
   static constexpr std::size_t max_entries = 1'000'000;
-#ifdef __GLIBCXX__  // follows all ways through the pattern at once; backtracking takes a power of the name's length
+#ifdef __GLIBCXX__  // matches in linear time; backtracking takes a power of the name's length
   static constexpr auto syntax = std::regex_constants::ECMAScript | std::regex_constants::__polynomial;
 #else
   static constexpr auto syntax = std::regex_constants::ECMAScript;
@@ -90,12 +90,12 @@ class AssetSearch {
     return whole.has_filename() ? whole : whole.parent_path();
   }
 
-  /// Whether there is a bound to the states of a pattern: counts in braces multiply them.
+  /// True if the number of states of a pattern is bounded: counts in braces multiply them.
   [[nodiscard]] static bool is_simple(std::string_view pattern) {
     std::size_t counts = 0;
     for (std::size_t i = 0; i < pattern.size(); ++i) {
       if (pattern[i] == '\\') {
-        if (++i < pattern.size() && pattern[i] >= '1' && pattern[i] <= '9') return false;  // what a group matched, again
+        if (++i < pattern.size() && pattern[i] >= '1' && pattern[i] <= '9') return false;  // back-reference
       } else if (pattern[i] == '{') {
         ++counts;
         if (i > 0 && pattern[i - 1] == ')') return false;
@@ -104,7 +104,7 @@ class AssetSearch {
     return pattern.size() <= max_pattern_size && counts <= 4;
   }
 
-  /// Where a name may be: inside the folders, and then outside.
+  /// Candidate paths of a name: those inside the folders, then those outside.
   [[nodiscard]] std::vector<std::filesystem::path> candidates(const std::string& name) const {
     const std::filesystem::path path(name);
     if (name.empty()) return {};
@@ -122,7 +122,7 @@ class AssetSearch {
     return std::any_of(folders_.begin(), folders_.end(), [&](const std::filesystem::path& folder) { return holds(folder, place); });
   }
 
-  /// What is odd about where a file of a name was found.
+  /// Warning if the file of a name lies outside the folders; empty otherwise.
   [[nodiscard]] std::string warning(const std::string& name, const std::filesystem::path& place) const {
     if (std::filesystem::path(name).is_absolute() || is_inside(place)) return "";
     return "leads out of the assets folders, to " + place.string();

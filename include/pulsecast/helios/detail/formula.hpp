@@ -16,11 +16,12 @@
 
 namespace pulsecast::helios {
 
-/// A formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, `+ - * / ^` with their usual precedence, all of
-/// them grouped from the left, parentheses, and `exp ln sqrt abs cos sin tan acos asin atan cosh sinh tanh atan2(y, x)`. Angles in radians.
+/// Formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, `+ - * / ^`, parentheses and functions. Operators have
+/// their usual precedence; all are left-associative. Functions: `exp ln sqrt abs cos sin tan acos asin atan cosh sinh tanh atan2(y, x)`.
+/// Angles in radians.
 class Formula {
  public:
-  /// Throws a `std::invalid_argument` that says what is wrong and where. Limits: 10,000 characters, parentheses 100 deep.
+  /// Throws a `std::invalid_argument` with the error and its position. Limits: 10,000 characters, parentheses 100 deep.
   Formula(std::string_view text, std::string_view variable) : text_(text), variable_(variable) {
     if (text.size() > 10'000) fail("is longer than 10000 characters");
     sum(0);
@@ -55,7 +56,7 @@ class Formula {
   }
 
  private:
-  static constexpr std::size_t depth = 256;  ///< of the stack
+  static constexpr std::size_t depth = 256;  ///< size of the evaluation stack
 
   enum class Kind : std::uint8_t { number, variable, negative, add, subtract, multiply, divide, power, atan2, function };
   struct Step {
@@ -182,7 +183,7 @@ class Formula {
     if (!two) push({Kind::function, 0, function});
   }
 
-  std::string_view text_, variable_;  // while it is read
+  std::string_view text_, variable_;  // views for the parser; empty afterwards
   std::size_t at_ = 0, height_ = 0;
   std::vector<Step> steps_;
 };

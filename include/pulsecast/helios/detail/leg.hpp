@@ -24,15 +24,15 @@
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
-/// The pulses of one leg of a survey, of whatever platform and scanner.
+/// Pulses of one leg of a survey, for any platform and scanner.
 namespace pulsecast::helios {
 
-/// The way of any platform, from a moment of it on. Legs share the plan that they are parts of.
+/// Path of any platform from a start time on. Legs of one plan share it.
 struct SurveyPath {
   using AnyPath = std::variant<Tripod, StraightLine, std::shared_ptr<const Waypoints>, std::shared_ptr<const MulticopterFlight>,
                                std::shared_ptr<const GroundVehicleDrive>>;
   AnyPath path{};
-  Tick start{};  ///< on the clock of the plan
+  Tick start{};  ///< start time on the clock of the plan
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     return std::visit(
@@ -48,7 +48,7 @@ struct SurveyPath {
 
 static_assert(Trajectory<SurveyPath>);
 
-/// Noise of a platform's pose: what it reports less what is true.
+/// Noise of a platform's pose: reported pose minus true pose.
 struct SurveyNoise {
   std::array<std::optional<NoiseSettings>, 3> position{};  ///< along x, y and z of the world [m]
   std::array<std::optional<NoiseSettings>, 3> attitude{};  ///< about right, forward and up of the beam [rad]
@@ -75,7 +75,7 @@ struct SurveyNoise {
   }
 };
 
-/// One leg of a survey: channels that fire together, on a platform.
+/// One leg of a survey: channels that fire together, on one platform.
 class SurveyLeg {
  public:
   SurveyLeg(SurveyPath path, Mount mount, std::vector<SurveyChannel> channels, Tick duration, SurveyNoise noise)

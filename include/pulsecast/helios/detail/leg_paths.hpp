@@ -28,24 +28,25 @@
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
-/// Where the legs of a survey document go.
+/// Paths of the legs of a survey document.
 namespace pulsecast::helios {
 
+/// Options for compiling a survey to pulses.
 struct SurveyBuildOptions {
-  std::uint64_t seed = 0;                 ///< of leg offsets and noise
-  bool platform_noise = true;             ///< whether there is any
-  bool leg_noise = true;                  ///< whether legs begin elsewhere than they should
-  std::vector<std::string> leg_places{};  ///< of each leg, where its document says it, for messages: `survey.xml:12:5`. May be empty
+  std::uint64_t seed = 0;                 ///< seed of leg offsets and noise
+  bool platform_noise = true;             ///< true: platform noise as in the survey; false: none
+  bool leg_noise = true;                  ///< true: random leg offsets as in the survey; false: none
+  std::vector<std::string> leg_places{};  ///< place of each leg in its document, for messages: `survey.xml:12:5`. May be empty
 };
 
-/// Where a leg begins and how it moves; what remains is its duration.
+/// Path and duration of a leg.
 struct LegPath {
   SurveyPath path{};
-  double duration = 0;  ///< until it is there [s]
+  double duration = 0;  ///< travel time [s]
 };
 
-/// The ways of all legs of a survey. `ground` gives the height of the scene's ground. Throws a `SettingError` that names leg and attribute,
-/// or a `FileError` of a trajectory. Settings and options must outlive it.
+/// Paths of all legs of a survey. `ground` gives the height of the scene's ground [m]. Throws a `SettingError` with leg and attribute, or a
+/// `FileError` of a trajectory. Settings and options must outlive it.
 class LegPaths {
  public:
   LegPaths(const SurveySettings& survey, const Ground auto& ground, const SurveyBuildOptions& options)
@@ -56,21 +57,23 @@ class LegPaths {
   }
 
   [[nodiscard]] const LegPath& operator[](std::size_t k) const noexcept { return paths_[k]; }
-  [[nodiscard]] std::optional<double> clock_start() const noexcept { return clock_start_; }  ///< if a trajectory says so [s]
+  [[nodiscard]] std::optional<double> clock_start() const noexcept {
+    return clock_start_;
+  }  ///< start time of the survey, if a trajectory gives it [s]
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-  /// For messages.
+  /// Name of a leg for messages.
   [[nodiscard]] std::string leg_name(std::size_t k) const {
     return (k < options_.leg_places.size() ? options_.leg_places[k] + ": leg " : "leg ") + std::to_string(k);
   }
 
-  /// Calls a function; a setting that it refuses is told as one of a leg.
+  /// Calls a function; prefixes the name of the leg to a `SettingError` of it.
   template <class Function>
   auto of_leg(std::size_t k, const Function& function) const {
     return naming(leg_name(k), function);
   }
 
-  /// Whether a platform that moves does not in this leg.
+  /// True if a moving platform stays in place in this leg.
   [[nodiscard]] bool is_stationary(std::size_t k) const { return helios::is_stationary(survey_, k); }
 
  private:
@@ -125,7 +128,7 @@ class LegPaths {
     return speed;
   }
 
-  static constexpr double max_duration = 1e15;  ///< as a Tick counts [s]
+  static constexpr double max_duration = 1e15;  ///< range of a Tick [s]
 
   void fly_straight() {
     double heading = heading_from(0, 0);
@@ -151,19 +154,19 @@ class LegPaths {
     return !now.smooth_turn || now.speed != next.speed;
   }
 
-  /// Of the first way from a leg on.
+  /// Heading of the first displacement from leg `k` on; `otherwise` if there is none [rad].
   [[nodiscard]] double heading_from(std::size_t k, double otherwise) const {
     while (k + 1 < places_.size() && places_[k + 1] == places_[k]) ++k;
     return k + 1 < places_.size() ? heading_of(places_[k + 1] - places_[k], otherwise) : otherwise;
   }
 
-  /// Where a multicopter looks when a leg begins.
+  /// Heading of a multicopter at the start of a leg [rad].
   [[nodiscard]] double departure_of(std::size_t k, double otherwise) const {
     const std::optional<double>& yaw = survey_.legs[k].platform.yaw_at_departure;
     return yaw ? -*yaw : otherwise;
   }
 
-  /// Legs that the multicopter flies without a stop are one flight.
+  /// Plans one flight for each run of legs that the multicopter flies without a stop.
   void fly() {
     const std::size_t last = places_.size() - 1;
     double heading = departure_of(0, heading_from(0, 0));
@@ -196,7 +199,7 @@ class LegPaths {
     paths_.back().path.path = Tripod{places_.back(), heading};
   }
 
-  /// A flight over its waypoints: as smooth turns cut corners, these are moved outwards until the way passes where it should.
+  /// Flight over its waypoints. Smooth turns cut corners: up to 8 rounds move the waypoints outwards until all misses are below 1 cm.
   [[nodiscard]] static MulticopterFlight over(std::vector<FlightPoint> points, const MulticopterSettings& s) {
     const std::vector<FlightPoint> wanted = points;
     MulticopterFlight flight = plan_multicopter(points, s);
@@ -224,7 +227,7 @@ class LegPaths {
       }
       std::size_t end = k + 1;
       while (end < last && !is_stationary(end) && survey_.legs[end - 1].platform.speed == survey_.legs[end].platform.speed) ++end;
-      if (end == last - 1 && !is_stationary(end)) end = last;  // the last leg only says where the way ends
+      if (end == last - 1 && !is_stationary(end)) end = last;  // the last leg only gives the end of the path
       std::vector<Vec2> points;
       for (std::size_t i = k; i <= end; ++i) points.push_back({places_[i].x, places_[i].y});
       const auto solid = [&](const Vec2& at) -> std::optional<double> {
@@ -241,7 +244,7 @@ class LegPaths {
     paths_.back().path = {before.path.path, before.path.start + Tick::of_seconds(before.duration)};
   }
 
-  /// A vehicle that rests stands as it came, or as it will leave.
+  /// Gives a vehicle at rest the pose of its arrival; that of its departure if it never arrived.
   void park(const Ground auto& ground) {
     for (std::size_t k = 0; k < paths_.size(); ++k) {
       if (!is_stationary(k)) continue;
@@ -257,8 +260,8 @@ class LegPaths {
     }
   }
 
-  /// Divides one plan among the legs from `k` to `end`, each until the way is nearest to where the next begins, and a flight has turned
-  /// to where it goes from there.
+  /// Divides a plan among the legs from `k` to `end`. A leg lasts until the path is nearest to the start of the next one. A flight also
+  /// completes its turn towards the following waypoint.
   template <class Plan>
   void split(std::size_t k, std::size_t end, const std::shared_ptr<const Plan>& plan, double whole) {
     double from = 0;
@@ -278,7 +281,7 @@ class LegPaths {
       auto operator<=>(const Key&) const = default;
     };
     std::map<Key, io::TrajectoryTable> tables;
-    std::map<std::string, TrajectorySettings> told;  // of each file: what the first leg that says it says of its columns
+    std::map<std::string, TrajectorySettings> told;  // columns and separator per file, each from the first leg that gives it
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       std::optional<TrajectorySettings> t = survey_.legs[k].platform.trajectory;
       if (!t) throw SettingError(leg_name(k) + ": trajectory (number)", 0, "", "1, for an interpolated platform");
@@ -307,7 +310,7 @@ class LegPaths {
 
   const SurveySettings& survey_;
   const SurveyBuildOptions& options_;
-  std::vector<Vec3> places_;  // where legs begin
+  std::vector<Vec3> places_;  // start positions of the legs [m]
   std::vector<LegPath> paths_;
   std::optional<double> clock_start_;
   std::vector<std::string> warnings_;

@@ -11,14 +11,14 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// What the motions of a survey document come to.
+/// Rigid motions of a survey document.
 namespace pulsecast::helios {
 
-/// A rigid motion, or one of a mirror image: each point p goes to `position + sign * rotation * p`.
+/// Proper or improper rigid motion: each point p goes to `position + sign * rotation * p`.
 struct MotionStep {
   Pose<frame::World, frame::World> move{};
   double sign = 1;
-  int mirrors = 0;  ///< that it is made of
+  int mirrors = 0;  ///< number of reflections in it
 
   [[nodiscard]] MotionStep after(const MotionStep& first) const {
     return {{move.rotation * first.move.rotation, move.position + sign * (move.rotation * first.move.position)},
@@ -26,14 +26,14 @@ struct MotionStep {
             mirrors + first.mirrors};
   }
 
-  /// Without the roundings of reflections that undo each other.
+  /// Pose without the rounding errors of reflections that cancel.
   [[nodiscard]] Pose<frame::World, frame::World> settled() const {
     const bool turns = mirrors == 0 || length(Vec3{move.rotation.x, move.rotation.y, move.rotation.z}) > 1e-14;
     return {turns ? move.rotation : no_rotation, move.position};
   }
 };
 
-/// Places are relative to the centre of the scene, unless they are corrected by it.
+/// Converts a motion. Coordinates are relative to the centre of the scene, unless `shift_factor` corrects them.
 [[nodiscard]] inline MotionStep motion_step(const MotionSettings& m, const Vec3& scene_centre) {
   MotionStep out;
   Vec3 centre = m.about_itself ? Vec3{} : (1 - m.shift_factor) * scene_centre, shift{};
@@ -45,7 +45,7 @@ struct MotionStep {
   } else if (const auto* r = std::get_if<RotationMotion>(&m.kind)) {
     about(r->center);
     out.move.rotation = rotation_about(r->axis, r->angle), shift = r->glide.value_or(0) * r->axis;
-  } else if (const auto* f = std::get_if<ReflectionMotion>(&m.kind)) {  // half a turn about the normal, and all through the centre
+  } else if (const auto* f = std::get_if<ReflectionMotion>(&m.kind)) {  // half a turn about the normal and a point reflection
     out = {{rotation_about(f->normal, pi), {}}, -1, 1};
     shift = f->shift.value_or(Vec3{});
   } else if (const auto* s = std::get_if<RotoreflectionMotion>(&m.kind)) {
@@ -56,12 +56,13 @@ struct MotionStep {
   return out;
 }
 
-/// What the motions of a sequence do in one step, one after the other.
+/// Composition of the motions of a sequence in one step.
 struct MotionSteps {
-  std::optional<MotionStep> all{};  ///< those about places of the scene
-  std::optional<MotionStep> own{};  ///< those of a part about itself
+  std::optional<MotionStep> all{};  ///< motions in the frame of the scene
+  std::optional<MotionStep> own{};  ///< motions of a part about itself
 };
 
+/// Composes the motions of a sequence, in their order.
 [[nodiscard]] inline MotionSteps motion_steps(const MotionSequenceSettings& sequence, const Vec3& scene_centre) {
   MotionSteps out;
   for (const MotionSettings& m : sequence.motions) {
@@ -71,14 +72,14 @@ struct MotionSteps {
   return out;
 }
 
-/// Why nothing can move like that, as what is expected instead; empty if it can.
+/// Expectation that a sequence fails, for a message; empty if the motion is possible.
 [[nodiscard]] inline std::string motion_problem(const MotionSequenceSettings& sequence) {
   const MotionSteps steps = motion_steps(sequence, {});
   for (const auto& s : {steps.all, steps.own})
     if (s && s->sign < 0)
       return "reflections even in number: nothing moves into its own mirror image, but two reflections are a turn or a way";
   const Rotation turn = steps.all.value_or(MotionStep{}).settled().rotation;
-  if (steps.own && turn != no_rotation && std::isfinite(length(turn)))  // an axis may be at fault itself
+  if (steps.own && turn != no_rotation && std::isfinite(length(turn)))  // a bad axis is reported elsewhere
     return "turns about a place or about itself, and not both in one sequence";
   return "";
 }

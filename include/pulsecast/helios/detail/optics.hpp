@@ -28,22 +28,22 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
-/// The instrument of a survey document, as stages of the library.
+/// Converts the instrument of a survey document to stages of the library.
 namespace pulsecast::helios {
 
-/// What sends the beam of one channel on its way: an optic of any kind, which sits somewhere in an instrument that a head turns. One type
-/// for all optics, so that a program that reads its scanner from a file compiles one pipeline.
+/// Beam path of one channel: an optic of any kind, mounted in an instrument that a head turns. One type for all optics, so that a program
+/// with scanners from files compiles one pipeline.
 struct SurveyOptic {
   using AnyOptic = std::variant<FixedBeam, OscillatingMirror, PolygonMirror, PalmerMirror, FiberArray, RisleyPrisms>;
 
   AnyOptic optic{};
-  Tick ahead{};                                          ///< by how much the optic's clock is ahead of the leg's
-  Pose<frame::Instrument, frame::Instrument> emitter{};  ///< of the channel, in an instrument that its head does not turn
+  Tick ahead{};                                          ///< lead of the optic's clock over that of the leg
+  Pose<frame::Instrument, frame::Instrument> emitter{};  ///< pose of the channel in the instrument, before the head turns it
   RotatingHead head{.rate = 0};
-  std::shared_ptr<const Formula> deflection_error{};  ///< added to the deflection, of it; none if empty [rad]
-  std::shared_ptr<const Formula> head_error{};        ///< added to the angle of the head, of the deflection [rad]
-  std::shared_ptr<const Formula> range_error{};       ///< added to what is reported of the range, of the deflection [m]
-  double head_zero_threshold = 0;                     ///< by which the deflection is kept off whole half turns for `head_error` [rad]
+  std::shared_ptr<const Formula> deflection_error{};  ///< error of the deflection, as a function of the deflection; none if empty [rad]
+  std::shared_ptr<const Formula> head_error{};        ///< error of the head angle, as a function of the deflection [rad]
+  std::shared_ptr<const Formula> range_error{};       ///< error of the reported range, as a function of the deflection [m]
+  double head_zero_threshold = 0;                     ///< least distance of the argument of `head_error` from multiples of pi [rad]
 
   void validate() const {
     std::visit([](const auto& o) { o.validate(); }, optic);
@@ -61,7 +61,7 @@ struct SurveyOptic {
         optic);
   }
 
-  /// Where the beam goes.
+  /// True pose of the beam, with the errors of deflection and head.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     if (!deflection_error && !head_error) return exact(t);
     const double angle = deflection(t);
@@ -73,13 +73,13 @@ struct SurveyOptic {
     return Pose<frame::Instrument, frame::Instrument>{rotation_about(head.axis, (*head_error)(kept_off)), {}} * pose;
   }
 
-  /// Where the instrument takes its beam to go.
+  /// Pose of the beam as the instrument measures it.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> exact(Tick t) const noexcept {
     const Pose<frame::Beam, frame::Instrument> pose = emitter * std::visit([&](const auto& o) noexcept { return o.at(t + ahead); }, optic);
     return head.rate == 0 && head.start == 0 ? pose : head.at(t) * pose;
   }
 
-  /// By how much the optic turns the beam up; 0 for those that do otherwise [rad].
+  /// Upward deflection of the beam; 0 for optics without a deflection angle [rad].
   [[nodiscard]] double deflection(Tick t) const noexcept {
     return std::visit(
         [&](const auto& o) noexcept -> double {
@@ -93,7 +93,7 @@ struct SurveyOptic {
 
   [[nodiscard]] bool errs() const noexcept { return deflection_error || head_error || range_error; }
 
-  /// The exact pose, so moved along the beam that ranges seem to err.
+  /// Measured pose, shifted along the beam by the range error.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> reported(Tick t) const noexcept {
     Pose<frame::Beam, frame::Instrument> pose = exact(t);
     if (range_error) pose.position += (*range_error)(deflection(t)) * pose.direction(axis::forward);
@@ -106,9 +106,9 @@ static_assert(Optic<SurveyOptic> && Gated<SurveyOptic>);
 /// One channel in one leg.
 using SurveyChannel = Deflector<SurveyOptic, Scanner>;
 
-/// What the settings of one leg make of a scanner's optic.
+/// State of a scanner's optic at the start of a leg.
 struct OpticClock {
-  double active = 0;  ///< how long the optic has run since it was last started; those that go on from leg to leg go on from there [s]
+  double active = 0;  ///< running time since the last start; optics that run on between legs continue from it [s]
 };
 
 namespace detail {
@@ -118,14 +118,14 @@ namespace detail {
   return channel.scan_angle_max > 0 ? std::min(angle, channel.scan_angle_max) : angle;
 }
 
-/// Between which angles pulses of a polygon mirror leave [rad].
+/// Vertical limits of the pulses of a polygon mirror [rad].
 struct MirrorGate {
   double low = 0, high = 0;
-  bool is_limited = false;  ///< the leg asks for angles that are further apart than the device measures in
+  bool is_limited = false;  ///< the leg asks for a wider gate than the device has
 };
 
-/// The gate of a leg. If it is too wide, what the mirror never points at does not count, and then it is as wide as the device, about the
-/// same middle.
+/// Gate of a leg. A gate that is too wide is first cut to the sweep of the mirror. If it is still too wide, it gets the width of the device
+/// about the same centre.
 [[nodiscard]] inline MirrorGate mirror_gate(const ChannelSettings& channel, const RotatingOptic& optic, const LegScannerSettings& leg) {
   const double sweep = channel.scan_angle_max, effective = optic.effective_angle_max.value_or(sweep);
   const double half = std::min(effective, scan_angle_of(channel, leg));
@@ -154,14 +154,14 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
                            (most > 0 ? pulsecast::detail::to_text(most) : "any") + " Hz");
 }
 
-/// Makes the optic of a channel; `tilt` is what it adds to the mount of the channel.
+/// Builds the optic of a channel. `tilt` is added to the mount of the channel.
 struct OpticBuilder {
   const ChannelSettings& channel;
   const LegScannerSettings& leg;
   double pulse_rate;
   double active;     ///< as in `OpticClock`
-  double ahead = 0;  ///< set [s]
-  double tilt = 0;   ///< set [rad]
+  double ahead = 0;  ///< result [s]
+  double tilt = 0;   ///< result [rad]
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const OscillatingOptic& optic) {
     ahead = active;
@@ -169,7 +169,7 @@ struct OpticBuilder {
     double f = leg.scan_frequency;
     if (!(f > 0)) throw SettingError("scanFreq_hz", f, "Hz", "greater than 0 for an oscillating mirror");
     if (angle * f > optic.scan_product_max) f = optic.scan_product_max / angle;
-    // a cycle is a whole number of pulses, and the mirror turns round within a hundred of them
+    // The cycle is rounded to whole pulses. The mirror turns round in 100 pulses at most.
     const double pulses = std::floor(pulse_rate / f);
     if (pulses >= 2) f = pulse_rate / pulses;
     return OscillatingMirror{.cycles_per_second = f, .half_angle = angle, .turning_time = std::min(100 / pulse_rate, 0.5 / f)};
@@ -177,7 +177,7 @@ struct OpticBuilder {
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RotatingOptic& optic) {
     const double sweep = channel.scan_angle_max, f = leg.scan_frequency;
-    if (!(f > 0) || !(sweep > 0)) return FixedBeam{};  // sensors whose head does the scanning
+    if (!(f > 0) || !(sweep > 0)) return FixedBeam{};  // sensors that scan by their head
     const auto [low, high, is_limited] = mirror_gate(channel, optic, leg);
     if (high < low) throw SettingError("verticalAngleMax_deg", degrees(high), "deg", "at least verticalAngleMin_deg");
     ahead = 0.5 / f;  // a leg begins in the middle of a facet
@@ -192,7 +192,7 @@ struct OpticBuilder {
     return PalmerMirror{.turns_per_second = f, .half_angle = scan_angle_of(channel, leg)};
   }
 
-  /// Fibres are evenly spread over the full scan angle, each at the lower end of its share.
+  /// Fibres divide the full scan angle evenly, each at the lower end of its share.
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const LineOptic& optic) {
     ahead = active;
     const double angle = scan_angle_of(channel, leg), n = optic.fibers;
@@ -215,19 +215,19 @@ struct OpticBuilder {
   }
 };
 
-/// By how much an optic turns the beam up at least and at most in a leg; 0 for those that do otherwise [rad].
+/// Least and greatest upward deflection of an optic in a leg; 0 for optics without a deflection angle [rad].
 [[nodiscard]] inline std::pair<double, double> deflections(const SurveyOptic::AnyOptic& optic) {
   const auto* const mirror = std::get_if<PolygonMirror>(&optic);
   return mirror ? std::pair(mirror->angle_min, mirror->angle_max) : std::pair(0.0, 0.0);
 }
 
-/// Refuses an error that is no number over a stretch of the angles that it is of. A pole in between is none that a beam meets.
+/// Refuses an error formula that is not finite, at 64 samples over its range of angles. Poles between samples pass, as no beam meets them.
 inline void require_finite(const char* field, const Formula& error, const std::pair<double, double>& angles) {
   constexpr int places = 64;
   for (int i = 0; i < places; ++i) {
     const double angle = angles.first + (angles.second - angles.first) * (i + 0.518) / places;
     const double value = error(angle);
-    if (!std::isfinite(value))  // without the sign that some give what is no number
+    if (!std::isfinite(value))  // drops the sign that some platforms give NaN
       throw SettingError(field, std::isnan(value) ? std::fabs(value) : value, "",
                          "a formula with a finite value, also for a THETA of " + pulsecast::detail::to_text(angle));
   }
@@ -235,24 +235,24 @@ inline void require_finite(const char* field, const Formula& error, const std::p
 
 }  // namespace detail
 
-/// The rate at which the head turns in a leg [rad/s].
+/// Turning rate of the head in a leg, within the limits of the device [rad/s].
 [[nodiscard]] inline double head_rate(const ChannelSettings& channel, const LegScannerSettings& leg) noexcept {
   return std::clamp(leg.head_speed, -channel.head_speed_max, channel.head_speed_max);
 }
 
-/// Whether the head turns away from where it is to stop.
+/// True if the head turns away from its stop angle.
 [[nodiscard]] inline bool turns_away(const LegScannerSettings& leg) noexcept {
   return (leg.head_speed > 0 && leg.head_stop < leg.head_start) || (leg.head_speed < 0 && leg.head_stop > leg.head_start);
 }
 
-/// Whether a leg waits for a head that does not turn.
+/// True if a leg waits for a head that does not turn.
 [[nodiscard]] inline bool head_never_stops(const ChannelSettings& channel, const LegSettings& leg) noexcept {
   return !leg.duration_max && head_rate(channel, leg.scanner) == 0 && leg.scanner.head_stop != leg.scanner.head_start;
 }
 
-/// The optic of a channel in a leg. Documents give the beam's origin along the axes of the platform, as they do the mount's, so that the
-/// two add up, and `boresight`, which turns the instrument on the body, does not turn it; heading and head do.
-/// Throws a `SettingError` that names the attribute at fault.
+/// Optic of a channel in a leg. Documents give the beam origin along the axes of the platform, like that of the mount: the two add up.
+/// `boresight` (rotation of the instrument on the body) does not turn it; heading and head do. Throws a `SettingError` with the attribute
+/// at fault.
 [[nodiscard]] inline SurveyOptic survey_optic(const ChannelSettings& channel, const LegScannerSettings& leg, double pulse_rate,
                                               const Rotation& boresight = no_rotation, const OpticClock& clock = {}) {
   if (leg.active) detail::require_scan_frequency(channel, leg);
@@ -273,7 +273,7 @@ inline void require_finite(const char* field, const Formula& error, const std::p
   return out;
 }
 
-/// The laser of a channel in a leg. With a beam quality, its waist is where the beam leaves, as wide as quality and divergence make it.
+/// Laser of a channel in a leg. A given beam quality puts the waist at the exit; quality and divergence give its diameter.
 [[nodiscard]] inline Laser survey_laser(const ChannelSettings& channel, const LegScannerSettings& leg) {
   const double divergence = leg.divergence.value_or(channel.divergence);
   Laser laser{.wavelength = channel.wavelength,
@@ -287,8 +287,8 @@ inline void require_finite(const char* field, const Formula& error, const std::p
 
 namespace detail {
 
-/// Noise of the range by a formula: a table so fine that it is off by less than 1e-4 of what a power of the range is. A factor below zero
-/// is as good as one above, as noise is as often positive as negative.
+/// Range noise by a formula, as a table. For a power of the range, interpolation errs by less than 1e-4. The sign of the factor has no
+/// effect, as noise is symmetric.
 [[nodiscard]] inline RangeErrors range_noise(const ChannelSettings& channel) {
   const Formula times(channel.errors.range_noise, "t");
   const double first = std::max(channel.range_min, 0.01), last = std::isfinite(channel.range_max) ? channel.range_max : 1e6;
@@ -306,7 +306,7 @@ namespace detail {
 
 }  // namespace detail
 
-/// The receiver of a channel. Throws a `SettingError` or a `std::invalid_argument` if there is no noise as its formula says.
+/// Receiver of a channel. Throws a `SettingError` or a `std::invalid_argument` if the noise formula is invalid.
 [[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel) {
   const bool by_formula = !channel.errors.range_noise.empty();
   const RangeErrors errors = by_formula ? detail::range_noise(channel) : RangeErrors{.deviation = channel.accuracy};
@@ -318,8 +318,8 @@ namespace detail {
           .range_errors = errors};
 }
 
-/// How the receiver of a channel makes echoes of a waveform, of which it keeps `record_length` [s]. The times of `winSize_ns` and
-/// `maxFullwaveRange_ns` are those of light on its way there only, and count twice here; `binSize_ns` is that of a digitiser, both ways.
+/// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are one-way times of
+/// light and count twice. `binSize_ns` is two-way time, as in a digitiser.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0) {
   const FullWaveformSettings& s = channel.waveform;
   WaveformSettings out;

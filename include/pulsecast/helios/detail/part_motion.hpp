@@ -17,7 +17,7 @@
 
 namespace pulsecast::helios::detail {
 
-/// What all motions of a sequence do in one step.
+/// Motion at constant rates that equals all motions of a sequence, once per `step` [s].
 [[nodiscard]] inline SteadyMotion steady_of(const PartSettings& part, const MotionSequenceSettings& sequence, const Vec3& scene_centre,
                                             double step) {
   if (const std::string problem = motion_problem(sequence); !problem.empty())
@@ -31,7 +31,7 @@ namespace pulsecast::helios::detail {
   return {.velocity = (own.position + all.position) / step, .axis = turn.axis, .rate = turn.rate};
 }
 
-/// The motion of a part that has any, with a step in each `step` [s]. Throws a `SettingError` that names part and sequence.
+/// Motion of a part that has at least one sequence, with a step in each `step` [s]. Throws a `SettingError` with part and sequence.
 [[nodiscard]] inline std::shared_ptr<const PartMotion> part_motion(const PartSettings& part, const Vec3& scene_centre, double step) {
   std::vector<MotionSequence> sequences;
   std::optional<std::size_t> again;

@@ -13,10 +13,10 @@
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
 
-/// Moments at which a planned path passes its waypoints.
+/// Times at which a planned path passes its waypoints.
 namespace pulsecast::helios::detail {
 
-/// When a plan passes its waypoint of a number, at a place, after a time: when it is nearest.
+/// Time after `from` at which a plan is horizontally nearest to waypoint `number` at `place` [s].
 template <class Plan>
 [[nodiscard]] double nearest_moment(const Plan& plan, std::size_t number, const Vec3& place, double from, double whole) {
   const auto distance = [&](double t) {
@@ -32,12 +32,12 @@ template <class Plan>
   const double step = (whole - from) / steps;
   const auto after = [&](int i) { return distance(from + i * step); };
   int nearest = steps;
-  if constexpr (std::same_as<Plan, MulticopterFlight>) {  // which says about when
+  if constexpr (std::same_as<Plan, MulticopterFlight>) {  // it gives an approximate time
     const double begun = (plan.passes()[number].seconds() - from) / step;
     nearest = begun > 0 ? static_cast<int>(std::min(begun, static_cast<double>(steps))) : 0;
     while (nearest > 0 && after(nearest - 1) < after(nearest)) --nearest;
     while (nearest < steps && after(nearest + 1) <= after(nearest)) ++nearest;
-  } else {  // the first of its nearest approaches that is no farther than any other by more than a metre
+  } else {  // the first local minimum within 1 m of the global one
     double least = after(0), before = least;
     for (int i = 1; i <= steps; ++i) least = std::min(least, after(i));
     for (int i = 1; i <= steps && nearest == steps; ++i) {
@@ -57,7 +57,7 @@ template <class Plan>
   return 0.5 * (low + high);
 }
 
-/// When a flight, from a time until another, first goes straight at a place, within a degree.
+/// First time in `from` to `until` at which a flight heads for `place` within 1 degree; `from` if there is none [s].
 [[nodiscard]] inline double end_of_turn(const MulticopterFlight& flight, double from, const Vec3& place, double until) {
   for (double t = from; t < until; t += 0.01) {
     const auto state = flight.motion().at(Tick::of_seconds(t));

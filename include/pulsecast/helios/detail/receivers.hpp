@@ -19,10 +19,10 @@
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/survey.hpp>
 
-/// Surveys of which each channel has a receiver of its own.
+/// Surveys with a separate receiver for each channel.
 namespace pulsecast::helios {
 
-/// The pulses of a survey, which several have in common.
+/// Pulses of a survey, shared by several receivers.
 struct SharedLegs {
   std::shared_ptr<const Legs<SurveyLeg>> legs;
 
@@ -33,7 +33,7 @@ struct SharedLegs {
 
 static_assert(WorldSource<SharedLegs>);
 
-/// The receiving half of a channel.
+/// Receiving half of a channel.
 template <Detector Instrument>
 struct ChannelReceiver {
   RingFootprint footprint;
@@ -41,13 +41,13 @@ struct ChannelReceiver {
   Instrument detector;
 };
 
-/// A `Survey` in which the pulses of each channel are received by its own receiver. It is run as any other.
+/// `Survey` with a receiver for each channel. It runs like any other.
 template <Target Map, Detector Instrument>
 class SurveyByChannel {
  public:
   using OfOne = Survey<SharedLegs, RingFootprint, Map, Instrument>;
 
-  /// `receivers` are those that differ; `of_channel` gives the place there of that of each channel. The detectors must sample alike.
+  /// `receivers` are the distinct ones; `of_channel` holds an index into them for each channel. Sample intervals must be equal.
   SurveyByChannel(Legs<SurveyLeg> legs, std::vector<ChannelReceiver<Instrument>> receivers, std::vector<std::size_t> of_channel,
                   const Map& map, std::uint64_t seed)
       : of_channel_(std::move(of_channel)) {
@@ -70,7 +70,7 @@ class SurveyByChannel {
   }
 
   [[nodiscard]] PulseIndex size() const noexcept { return all_.front().size(); }
-  /// Of a pulse: in the mean of the channels, if they differ.
+  /// Subrays of a pulse: the mean over the channels, if they differ.
   [[nodiscard]] std::size_t subrays() const noexcept {
     const auto add = [this](std::size_t sum, std::size_t place) { return sum + all_[place].subrays(); };
     return std::accumulate(of_channel_.begin(), of_channel_.end(), std::size_t{0}, add) / of_channel_.size();
@@ -78,7 +78,7 @@ class SurveyByChannel {
   [[nodiscard]] std::size_t recorded_subrays() const noexcept { return 0; }
   [[nodiscard]] double sample_interval() const noexcept { return all_.front().sample_interval(); }
 
-  /// What pulse i brings back. Channels take turns from slot to slot, in every leg.
+  /// Outcome of pulse `i`. Channels take turns from slot to slot, in every leg.
   [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
     const std::size_t place = all_.size() == 1 ? 0 : of_channel_[i % of_channel_.size()];
     return all_[place](i, w[place]);
@@ -89,7 +89,7 @@ class SurveyByChannel {
   std::vector<std::size_t> of_channel_;
 };
 
-/// Whether two channels receive alike, whatever they send.
+/// True if two channels have equal receivers; their lasers may differ.
 [[nodiscard]] inline bool same_receiver(const ChannelSettings& a, const ChannelSettings& b) {
   return a.receiver_diameter == b.receiver_diameter && a.efficiency == b.efficiency && a.visibility == b.visibility &&
          a.accuracy == b.accuracy && a.errors.range_noise == b.errors.range_noise && a.range_min == b.range_min &&
@@ -97,8 +97,8 @@ class SurveyByChannel {
          a.pulse_length == b.pulse_length && a.waveform == b.waveform;
 }
 
-/// A survey of channels: `make(channel)` gives the receiver of one, and is asked once for those that receive alike. The legs must be those
-/// of that scanner.
+/// Survey of channels. `make(channel)` gives a receiver; it is called once for channels with equal ones. The legs must be those of that
+/// scanner.
 template <Target Map, class Make>
 [[nodiscard]] auto survey_by_channel(const ScannerSettings& scanner, Legs<SurveyLeg> legs, const Map& map, std::uint64_t seed,
                                      const Make& make) {

@@ -20,14 +20,14 @@
 
 namespace pulsecast::helios {
 
-/// All files that a scene is built from, in any run, each once: those that its settings name, and the materials that OBJ files name. Files
-/// that are not there are left out; whoever builds the scene will say so.
+/// Files of a scene in all runs, each once: those in its settings and the material files of OBJ files. Missing files are left out; the
+/// builder of the scene reports them.
 [[nodiscard]] std::vector<std::filesystem::path> scene_files(const SceneSettings& scene);
 
-/// Whether any material is ground, in any run, as far as the MTL files say: a scene without cannot answer for `onGround`.
+/// True if an MTL file declares a ground material, in any run. A scene without one has no height for `onGround`.
 [[nodiscard]] bool has_ground(const SceneSettings& scene);
 
-/// The folders of spectra in folders of assets: `spectra` in each that has it.
+/// Folders of spectra: `spectra` in each folder of assets that has it.
 [[nodiscard]] std::vector<std::filesystem::path> spectra_folders(const std::vector<std::filesystem::path>& assets);
 
 namespace detail {
@@ -46,10 +46,10 @@ class SceneFiles {
   }
 
   [[nodiscard]] std::vector<std::filesystem::path> take() { return std::move(files_); }
-  [[nodiscard]] const std::vector<std::filesystem::path>& materials() const noexcept { return materials_; }  ///< the MTL files among them
+  [[nodiscard]] const std::vector<std::filesystem::path>& materials() const noexcept { return materials_; }  ///< MTL files among them
 
  private:
-  /// Whether it is there and was not before.
+  /// Adds a file. Returns true if it exists and is new.
   bool add(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored) || !seen_.insert(file).second) return false;
@@ -61,7 +61,7 @@ class SceneFiles {
     if (add(file)) materials_.push_back(file);
   }
 
-  /// What `mtllib` in an OBJ file may name.
+  /// Adds the files that `mtllib` in an OBJ file may name.
   void add_materials(const std::filesystem::path& obj) {
     try {
       const io::MappedFile file(obj);
@@ -71,14 +71,14 @@ class SceneFiles {
         std::size_t end = std::min(text.find('\n', at), text.size());
         while (end < text.size() && text.substr(at, end - at).find_last_of('\\') != text.npos &&
                text.substr(at, end - at).find_last_not_of(" \t\r") == text.substr(at, end - at).find_last_of('\\'))
-          end = std::min(text.find('\n', end + 1), text.size());  // the statement goes on
+          end = std::min(text.find('\n', end + 1), text.size());  // continued line
         add_named(obj.parent_path(), std::string(text.substr(at, end - at)));
       }
-    } catch (const FileError&) {  // cannot be read
+    } catch (const FileError&) {  // unreadable
     }
   }
 
-  /// Names one after the other, or one that has blanks.
+  /// Adds names separated by blanks, and the whole as one name with blanks.
   void add_named(const std::filesystem::path& folder, std::string names) {
     constexpr const char* blanks = " \t\r\n";
     std::replace(names.begin(), names.end(), '\\', '/');
@@ -106,7 +106,7 @@ inline SceneFiles files_of(const SceneSettings& scene) {
   return files;
 }
 
-/// Whether a line of an MTL file is `helios_isGround true` or `1`.
+/// True if a line of an MTL file is `helios_isGround true` or `1`.
 inline bool says_ground(const std::string& line) {
   std::istringstream words(line);
   std::string key, value;

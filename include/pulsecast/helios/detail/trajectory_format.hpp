@@ -28,7 +28,7 @@ inline void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format
                 [&](const std::string& c) { return std::find(format.columns.begin(), format.columns.end(), c) == format.columns.end(); });
 }
 
-/// The format of the file that a leg follows.
+/// Format of the trajectory file of a leg.
 [[nodiscard]] inline io::TrajectoryFormat trajectory_format(const TrajectorySettings& t, RotationSpec spec) {
   io::TrajectoryFormat format = io::helios_format();
   format.angles = spec == RotationSpec::canonical ? io::helios_canonical : io::helios_arinc_705;

@@ -24,11 +24,11 @@
 
 namespace pulsecast::page {
 
-/// How the points of a page are written.
+/// Settings for the encoding of points.
 struct PageColumnSettings {
-  double position_step = 0;  ///< of coordinates; 0 for one that suits the extent, see `page_step` [m]
-  bool keys = false;         ///< the keys as well
-  int effort = 6;            ///< of compression, from 1 to 9
+  double position_step = 0;  ///< step of coordinates; 0: chosen from the extent by `page_step` [m]
+  bool keys = false;         ///< write the sampling keys, too
+  int effort = 6;            ///< compression level, 1 to 9
 
   void validate() const {
     require_not_negative("PageColumnSettings::position_step", position_step, "m");
@@ -36,8 +36,7 @@ struct PageColumnSettings {
   }
 };
 
-/// A step of coordinates that suits an extent [m]: the least of 1, 2 and 5 times a power of ten, at least 0.1 mm, of which 2^17 reach
-/// across.
+/// Step of coordinates for an extent [m]: the least of 1, 2 and 5 times a power of ten with 2^17 steps across, at least 0.1 mm.
 [[nodiscard]] inline double page_step(double extent) noexcept {
   for (double power = 1e-4; power < 1e300; power *= 10)
     for (const double step : {power, 2 * power, 5 * power})
@@ -47,20 +46,20 @@ struct PageColumnSettings {
 
 namespace detail {
 
-/// One attribute of all points as codes, of which 0 stands for no value, and the description by which a page reads them.
+/// Codes of one attribute of all points (0: no value), with their description for the page.
 struct PageCodes {
   std::string name{};
   std::string_view kind{};              ///< "linear", "logarithmic" or "listed"
-  double offset = 0, step = 0;          ///< of what is not listed
-  std::vector<std::uint32_t> values{};  ///< of what is listed
-  std::optional<double> per_pulse{};    ///< what is to be added, times the number of the pulse
-  bool differences = true;              ///< whether neighbours are alike
+  double offset = 0, step = 0;          ///< for linear and logarithmic codes
+  std::vector<std::uint32_t> values{};  ///< for listed codes
+  std::optional<double> per_pulse{};    ///< term added, times the number of the pulse
+  bool differences = true;              ///< store differences, for attributes with similar neighbours
   std::vector<std::uint64_t> codes{};
 };
 
-inline constexpr double max_page_code = 0x1p52;  // which a double of the page can tell from its neighbours
+inline constexpr double max_page_code = 0x1p52;  // up to here, a double represents every integer
 
-/// Values that are 1 + code times a step above their least.
+/// Linear codes: 1 + the number of steps above the least value.
 template <class Value>
 PageCodes linear_codes(std::string name, std::span<const PagePoint> points, double step, const Value& value) {
   double least = std::numeric_limits<double>::infinity();
@@ -76,7 +75,7 @@ PageCodes linear_codes(std::string name, std::span<const PagePoint> points, doub
   return out;
 }
 
-/// Values whose logarithm is 1 + code times a step above the least; those that are not above zero have none.
+/// Logarithmic codes: 1 + the number of steps of the logarithm above the least value. Values not above zero have code 0.
 template <class Value>
 PageCodes logarithmic_codes(std::string name, std::span<const PagePoint> points, double step, const Value& value) {
   double least = std::numeric_limits<double>::infinity();
@@ -92,7 +91,7 @@ PageCodes logarithmic_codes(std::string name, std::span<const PagePoint> points,
   return out;
 }
 
-/// Values that are few; codes are 1 + their places in a list.
+/// Codes of few distinct values: 1 + the index in a list.
 template <class Value>
 PageCodes listed_codes(std::string name, std::span<const PagePoint> points, const Value& value) {
   std::vector<std::uint32_t> values;
@@ -107,13 +106,13 @@ PageCodes listed_codes(std::string name, std::span<const PagePoint> points, cons
   return out;
 }
 
-/// From pulse to pulse, on the whole [s].
+/// Mean time between pulses [s].
 inline double time_of_a_pulse(std::span<const PagePoint> points) {
   if (points.empty() || points.back().pulse <= points.front().pulse) return 0;
   return (points.back().time - points.front().time) / static_cast<double>(points.back().pulse - points.front().pulse);
 }
 
-/// Differences to the code before, signs in the last bit: small numbers where neighbours are alike.
+/// Replaces codes by differences to the previous one, with the sign in the lowest bit: small numbers for similar neighbours.
 inline void make_differences(std::vector<std::uint64_t>& codes) {
   std::uint64_t before = 0;
   for (std::uint64_t& code : codes) {
@@ -123,13 +122,13 @@ inline void make_differences(std::vector<std::uint64_t>& codes) {
   }
 }
 
-/// The deflated bytes, without head and sum. Source: RFC 1951.
+/// Appends bytes in deflate format, without zlib header and checksum. Source: RFC 1951.
 inline void deflate_into(std::string& out, std::span<const std::uint8_t> bytes, int effort) {
   z_stream stream{};
   constexpr int no_head = -15, memory_level = 9;
   if (deflateInit2(&stream, effort, Z_DEFLATED, no_head, memory_level, Z_FILTERED) != Z_OK) throw std::bad_alloc();
   std::vector<Bytef> room(std::size_t{1} << 18);
-  constexpr std::size_t most = std::size_t{1} << 30;  // at a time: zlib counts in 32 bits
+  constexpr std::size_t most = std::size_t{1} << 30;  // chunk size: zlib counts in 32 bits
   do {
     const auto part = bytes.first(std::min(bytes.size(), most));
     bytes = bytes.subspan(part.size());
@@ -138,21 +137,21 @@ inline void deflate_into(std::string& out, std::span<const std::uint8_t> bytes, 
     do {
       stream.next_out = room.data();
       stream.avail_out = static_cast<uInt>(room.size());
-      deflate(&stream, bytes.empty() ? Z_FINISH : Z_NO_FLUSH);  // cannot fail: the stream is whole, and there is room
+      deflate(&stream, bytes.empty() ? Z_FINISH : Z_NO_FLUSH);  // cannot fail: the stream is valid, and the output has room
       out.append(reinterpret_cast<const char*>(room.data()), room.size() - stream.avail_out);
     } while (stream.avail_out == 0);
   } while (!bytes.empty());
   deflateEnd(&stream);
 }
 
-/// A JSON text behind its length in four bytes, little-endian.
+/// JSON text after its length in four bytes, little-endian.
 inline std::string with_length(const std::string& text) {
   std::string out;
   for (int k = 0; k < 4; ++k) out += static_cast<char>(static_cast<std::uint32_t>(text.size()) >> 8 * k);
   return out + text;
 }
 
-/// Encoder of a block of columns: its head, and the byte planes of all codes.
+/// Encoder of a block of columns: JSON header, and byte planes of all codes.
 class PageBlock {
  public:
   explicit PageBlock(std::size_t count) { head_.begin_object().member("count", count).key("columns").begin_array(); }
@@ -174,7 +173,7 @@ class PageBlock {
     head_.member("differences", column.differences).member("planes", count).end_object();
   }
 
-  /// The bytes of the whole block; `effort` of compression is from 1 to 9.
+  /// Bytes of the whole block; `effort` is the compression level, 1 to 9.
   [[nodiscard]] std::string finish(int effort) {
     head_.end_array().end_object();
     std::string out = with_length(head_.text());
@@ -187,7 +186,7 @@ class PageBlock {
   std::vector<std::uint8_t> planes_;
 };
 
-/// Step of coordinates that the settings name, or else one that suits the extent of the points [m].
+/// Step of coordinates from the settings; if 0, chosen from the extent of the points [m].
 inline double position_step(std::span<const PagePoint> points, const PageColumnSettings& settings) {
   if (settings.position_step > 0) return settings.position_step;
   if (points.empty()) return 1e-3;
@@ -201,15 +200,15 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
 
 }  // namespace detail
 
-/// The points as a page reads them: four bytes that say how long the JSON text is which follows, little-endian, and deflated bytes.
+/// Encodes points for a page: the length of a JSON text in four bytes, little-endian; the text; deflated bytes.
 ///
 ///     {"count":N,"columns":[{"name":"x","kind":"linear","offset":0,"step":0.001,"differences":true,"planes":2},...]}
 ///
-/// The deflated bytes are, column by column, the lowest bytes of all codes, then the next ones, as many as there are planes. A value is
-/// offset + (code - 1) step, offset exp((code - 1) step), or the (code - 1)th of the values; code 0 stands for none. Differences are to
-/// the code before, twice their size, less one if negative. A column may say what is to be added `per_pulse`, times the pulse's number.
-/// Values are right to half a step: positions to that of the settings, `from_x` and so on, where the pulse left, as well; times to 0.1 us,
-/// scan angles to 0.05 and incidences to 0.5 degrees, reflectances to 0.002, widths to 1 ps; amplitudes to 1 %, and numbers are exact.
+/// The deflated bytes are the byte planes of each column in turn, lowest byte first. A value is offset + (code - 1) step, offset exp((code
+/// - 1) step), or the (code - 1)th of `values`. Code 0 means no value. Differences are to the previous code, doubled, less one if negative.
+/// `per_pulse`, times the pulse's number, is added to a value. Values are exact to half a step. Positions have that of the settings, also
+/// the origins of pulses (`from_x` and so on). Steps of others: time 0.1 us, scan angle 0.05 deg, incidence 0.5 deg, reflectance 0.002,
+/// width 1 ps. Amplitudes are exact to 1 %, integers exactly.
 [[nodiscard]] inline std::string page_columns(std::span<const PagePoint> points, const PageColumnSettings& settings = {}) {
   settings.validate();
   using detail::linear_codes, detail::logarithmic_codes, detail::listed_codes;
@@ -246,7 +245,7 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
   return block.finish(settings.effort);
 }
 
-/// Bytes as text of 64 characters. Source: RFC 4648, section 4.
+/// Encodes bytes in base64. Source: RFC 4648, section 4.
 [[nodiscard]] inline std::string base64(std::string_view bytes) {
   constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;

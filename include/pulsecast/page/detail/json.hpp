@@ -13,10 +13,10 @@
 
 namespace pulsecast::page::detail {
 
-/// Writer of JSON, token by token; commas are its own affair. Source: RFC 8259.
+/// JSON writer, token by token; it sets the commas. Source: RFC 8259.
 ///
-/// Every text is escaped so that it may stand in HTML, too: of `<`, `>` and `&` only the codes are left. A number that is not finite is
-/// `null`. The caller closes what it opens.
+/// Texts are escaped for HTML, too: `<`, `>` and `&` become codes. A number that is not finite becomes `null`. The caller closes each array
+/// and object.
 class JsonWriter {
  public:
   JsonWriter& begin_object() { return open('{'); }
@@ -24,7 +24,7 @@ class JsonWriter {
   JsonWriter& begin_array() { return open('['); }
   JsonWriter& end_array() { return close(']'); }
 
-  /// Name of the member whose value follows.
+  /// Writes the name of a member; its value follows.
   JsonWriter& key(std::string_view name) {
     value(name);
     text_ += ':';
@@ -48,7 +48,7 @@ class JsonWriter {
 
   JsonWriter& member(std::string_view name, const auto& its_value) { return key(name).value(its_value); }
 
-  /// Array of `item(0)` to `item(count - 1)`.
+  /// Writes an array of `item(0)` to `item(count - 1)`.
   JsonWriter& array(std::size_t count, const auto& item) {
     begin_array();
     for (std::size_t i = 0; i < count; ++i) value(item(i));
@@ -58,7 +58,7 @@ class JsonWriter {
   [[nodiscard]] const std::string& text() const noexcept { return text_; }  ///< UTF-8, if the texts are
 
  private:
-  /// Sets a comma, unless a first item or the value of a member follows.
+  /// Writes a comma, except before a first item or the value of a member.
   void separate() {
     constexpr std::string_view none_after = "{[:";
     if (!text_.empty() && none_after.find(text_.back()) == std::string_view::npos) text_ += ',';

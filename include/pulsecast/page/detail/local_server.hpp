@@ -22,17 +22,17 @@
 
 namespace pulsecast::page {
 
-/// Limits of a `LocalServer`, so that no client takes memory, descriptors or time from the program.
+/// Limits of a `LocalServer` that protect the program's memory, descriptors and time from clients.
 struct LocalServerLimits {
   std::size_t connections = 32;                     ///< open at once; one more closes the oldest
-  std::size_t request_bytes = 65'536;               ///< a request line with its headers
+  std::size_t request_bytes = 65'536;               ///< request line and headers
   std::chrono::milliseconds request_time{2'000};    ///< from the connection to the end of the headers
-  std::chrono::milliseconds response_time{10'000};  ///< from there to the last byte taken
+  std::chrono::milliseconds response_time{10'000};  ///< from there to the last byte sent
 };
 
 namespace detail {
 
-/// One request in memory, and the response to it, as httplib reads and writes them.
+/// In-memory stream of one request and its response, for httplib.
 class BufferedExchange final : public httplib::Stream {
  public:
   explicit BufferedExchange(std::string request) : request_(std::move(request)) {}
@@ -61,14 +61,13 @@ class BufferedExchange final : public httplib::Stream {
 
 }  // namespace detail
 
-/// A server at 127.0.0.1 whose clients, slow, many or large, are held to `LocalServerLimits`. It takes the routes of `httplib::Server`, and
-/// its parser. One thread waits for all connections, so that a client that does nothing costs nothing; a connection is one request, without
-/// a body.
+/// HTTP server at 127.0.0.1 that holds slow, many or large clients to `LocalServerLimits`. It uses the routes and the parser of
+/// `httplib::Server`. One thread polls all connections, so that idle clients cost nothing. A connection is one request, without a body.
 class LocalServer final : public httplib::Server {
  public:
   explicit LocalServer(const LocalServerLimits& limits = {}) : limits_(limits) {
     set_payload_max_length(0);
-    set_socket_options([](socket_t socket) {  // not those of httplib, by which two servers may share a port
+    set_socket_options([](socket_t socket) {  // instead of httplib's, by which two servers may share a port
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
       fcntl(socket, F_SETFL, O_NONBLOCK);
@@ -79,7 +78,7 @@ class LocalServer final : public httplib::Server {
   LocalServer& operator=(const LocalServer&) = delete;
   ~LocalServer() override { end(); }
 
-  /// Takes a port, 0 for any that is free, and returns it. Throws a `std::runtime_error` if it cannot be had.
+  /// Binds to a port, 0 for any free one, and returns it. Throws a `std::runtime_error` if the port is not available.
   int bind(int port) {
     const int bound = port > 0 ? (bind_to_port("127.0.0.1", port) ? port : -1) : bind_to_any_port("127.0.0.1");
     if (bound <= 0) throw std::runtime_error("127.0.0.1 has no port " + (port > 0 ? std::to_string(port) : "to give"));
@@ -87,12 +86,12 @@ class LocalServer final : public httplib::Server {
     return bound;
   }
 
-  /// Begins to answer; no route may be added afterwards.
+  /// Starts to answer; no route may be added afterwards.
   void start() {
     thread_ = std::thread([this] { serve(); });
   }
 
-  /// Closes all connections at once, whatever they are waiting for.
+  /// Closes all connections at once, in any state.
   void end() {
     ending_ = true;
     if (svr_sock_ != INVALID_SOCKET) shutdown(svr_sock_, SHUT_RDWR);  // wakes poll()
@@ -106,21 +105,21 @@ class LocalServer final : public httplib::Server {
   struct Connection {
     socket_t socket;
     Clock::time_point deadline;
-    std::string bytes{};    // the request as far as it came, then the response
-    std::size_t sent = 0;   // of the response
-    bool answered = false;  // bytes are the response
+    std::string bytes{};    // request received so far, then the response
+    std::size_t sent = 0;   // bytes sent of the response
+    bool answered = false;  // `bytes` is the response
     bool over = false;
   };
 
   void serve() {
-    constexpr int tick = 100;  // deadlines are looked at so often [ms]
-    bool may_accept = true;    // false for a tick after the system had no descriptor
+    constexpr int tick = 100;  // interval of deadline checks [ms]
+    bool may_accept = true;    // false for a tick after descriptors ran out
     std::vector<pollfd> ready;
     while (!ending_) {
       ready.assign(1, {may_accept ? svr_sock_.load() : -1, POLLIN, 0});
       for (const Connection& c : open_) ready.push_back({c.socket, static_cast<short>(c.answered ? POLLOUT : POLLIN), 0});
       poll(ready.data(), ready.size(), may_accept && open_.empty() ? -1 : tick);
-      const auto now = Clock::now();  // once a round: what one request takes to be answered is not held against the others
+      const auto now = Clock::now();  // once a round: the time of one response is not charged to the others
       for (std::size_t k = 0; k < open_.size(); ++k) {
         if (ready[k + 1].revents != 0) proceed(open_[k]);
         if (now > open_[k].deadline) open_[k].over = true;
@@ -131,7 +130,7 @@ class LocalServer final : public httplib::Server {
     close_if([](const Connection&) { return true; });
   }
 
-  /// Takes one connection only, so that all get their turn before the next. Returns false if the system has no descriptor left.
+  /// Accepts one connection only, so that all others are served before the next. Returns false if the system has no descriptor left.
   bool accept_one() {
     const socket_t socket = accept4(svr_sock_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (socket == INVALID_SOCKET) return errno != EMFILE && errno != ENFILE && errno != ENOBUFS && errno != ENOMEM;
@@ -155,7 +154,7 @@ class LocalServer final : public httplib::Server {
     if (c.sent == c.bytes.size()) c.over = true;
   }
 
-  /// Returns true once `bytes` are a response.
+  /// Returns true once `bytes` is a response.
   bool receive(Connection& c) {
     char room[4096];
     const ssize_t count = recv(c.socket, room, std::min(sizeof room, limits_.request_bytes - c.bytes.size()), 0);
@@ -171,7 +170,7 @@ class LocalServer final : public httplib::Server {
     bool closed = true;
     try {
       process_request(exchange, true, closed, nullptr);
-    } catch (...) {  // memory: this client has none, the next may
+    } catch (...) {  // out of memory for this client; the next may succeed
       exchange.response.clear();
     }
     c.bytes = std::move(exchange.response);
@@ -188,7 +187,7 @@ class LocalServer final : public httplib::Server {
   }
 
   LocalServerLimits limits_;
-  std::vector<Connection> open_{};  // the oldest first
+  std::vector<Connection> open_{};  // oldest first
   std::atomic<bool> ending_ = false;
   std::thread thread_{};
 };

@@ -17,24 +17,24 @@
 
 namespace pulsecast::page {
 
-/// A point of a page: an echo, and what its shot was.
+/// Point of a page: an echo with attributes of its shot.
 struct PagePoint {
   Vec3 position{};                       ///< in the world [m]
   double time = 0;                       ///< since the survey's start [s]
   PulseIndex pulse = 0;                  ///< number of the pulse
-  std::array<float, 3> to_instrument{};  ///< from the point to where its pulse left [m]
+  std::array<float, 3> to_instrument{};  ///< vector from the point to the origin of its pulse [m]
   float amplitude = 0, reflectance = 0;  ///< as in `Echo`, the amplitude in watts
   float width = 0;                       ///< as in `Echo` [s]
   float incidence = 0, scan_angle = 0;   ///< [rad]
   ObjectId object = 0;                   ///< as in `Echo`
-  std::uint32_t key = 0;                 ///< by which a cloud is thinned: see `page_key`
+  std::uint32_t key = 0;                 ///< for thinning: see `page_key`
   std::uint16_t classification = 0;      ///< as in `Echo`
   std::uint16_t leg = 0;                 ///< as in `Shot`
-  std::uint8_t number = 1, returns = 1;  ///< of the echo, and how many its pulse has
+  std::uint8_t number = 1, returns = 1;  ///< number of the echo, total of its pulse
   std::uint8_t channel = 0;              ///< as in `Shot`
 };
 
-/// A number that looks random, but is that of an echo, whatever else is in the cloud. Source: Appleby 2011, MurmurHash3, fmix64.
+/// Pseudo-random number of an echo, independent of the rest of the cloud. Source: Appleby 2011, MurmurHash3, fmix64.
 [[nodiscard]] constexpr std::uint32_t page_key(PulseIndex pulse, std::uint8_t number) noexcept {
   std::uint64_t h = pulse * 256 + number;
   h = (h ^ h >> 33) * 0xff51afd7ed558ccd;
@@ -42,8 +42,8 @@ struct PagePoint {
   return static_cast<std::uint32_t>((h ^ h >> 33) >> 32);
 }
 
-/// A sink that keeps at most so many points, those of the least keys, in pulse order: an even sample of the echoes that depends on them
-/// alone. Points that are not finite are passed over. Memory: a little more than a hundred bytes a point kept.
+/// Sink that keeps at most `most` points, those with the least keys, in pulse order: a uniform sample that depends on the echoes alone. It
+/// skips points that are not finite. Memory: a little more than a hundred bytes per point kept.
 class PageSample {
  public:
   /// `most` is from 2 to 2^27.
@@ -77,25 +77,25 @@ class PageSample {
       }
   }
 
-  /// Those kept, in pulse order; valid until the next batch.
+  /// Points kept, in pulse order; valid until the next batch.
   [[nodiscard]] std::span<const PagePoint> points() {
     if (points_.size() > most_) thin();
     return points_;
   }
 
   [[nodiscard]] std::uint64_t seen() const noexcept { return seen_; }  ///< echoes so far
-  /// No point kept has a larger key.
+  /// Upper bound of the keys kept.
   [[nodiscard]] std::uint32_t largest_key() const noexcept { return largest_key_; }
 
  private:
-  /// Leaves the points of the least keys; of equal keys, those that came first.
+  /// Keeps the points with the least keys; of equal keys, the earliest.
   void thin() {
     keys_.clear();
     for (const PagePoint& point : points_) keys_.push_back(point.key);
     const auto last = keys_.begin() + static_cast<std::ptrdiff_t>(most_ - 1);
     std::nth_element(keys_.begin(), last, keys_.end());
     largest_key_ = *last, thinned_ = true;
-    auto equal = 1 + std::count(keys_.begin(), last, largest_key_);  // that may stay
+    auto equal = 1 + std::count(keys_.begin(), last, largest_key_);  // number of them that stay
     std::erase_if(points_, [&](const PagePoint& p) { return p.key > largest_key_ || (p.key == largest_key_ && equal-- <= 0); });
   }
 

@@ -14,7 +14,7 @@
 
 namespace pulsecast::helios {
 
-/// The column of each quantity, from 0.
+/// Column of each quantity, from 0.
 struct TrajectoryIndices {
   int time = 0;   ///< `tIndex`
   int roll = 1;   ///< `rollIndex`
@@ -27,27 +27,27 @@ struct TrajectoryIndices {
   bool operator==(const TrajectoryIndices&) const = default;
 };
 
-/// What an interpolated platform follows: attributes of `<platformSettings>`.
+/// Trajectory of an interpolated platform: attributes of `<platformSettings>`.
 struct TrajectorySettings {
   std::filesystem::path file{};                ///< `trajectory`
-  std::optional<char> separator{};             ///< found unless given; `trajectory_separator`, or `trajectory_seperator`
-  std::optional<TrajectoryIndices> columns{};  ///< the file's own head says it unless given; `tIndex`...
+  std::optional<char> separator{};             ///< default: detected; `trajectory_separator`, or `trajectory_seperator`
+  std::optional<TrajectoryIndices> columns{};  ///< default: from the header of the file; `tIndex`...
   bool position_only = false;                  ///< `interpolationDomain="position"`
-  bool angles_in_degrees = true;               ///< of the file; `toRadians`
-  bool sync_clock = false;                     ///< the clock begins at the time in the file; `syncGPSTime`
-  bool teleports = false;                      ///< a jump comes before, as a leg without pulses: the optic starts anew. `teleportToStart`
-  std::optional<double> start{};               ///< by the clock of the file, its first sample unless given; `tStart` [s]
-  std::optional<double> end{};                 ///< by the clock of the file, its last sample unless given; `tEnd` [s]
+  bool angles_in_degrees = true;               ///< unit of angles in the file; `toRadians`
+  bool sync_clock = false;                     ///< start the clock at the time in the file; `syncGPSTime`
+  bool teleports = false;                      ///< jump to the start as by a leg without pulses: the optic starts anew. `teleportToStart`
+  std::optional<double> start{};               ///< on the clock of the file, default its first sample; `tStart` [s]
+  std::optional<double> end{};                 ///< on the clock of the file, default its last sample; `tEnd` [s]
 
   bool operator==(const TrajectorySettings&) const = default;
 };
 
 /// `<platformSettings>` of a leg
 struct LegPlatformSettings {
-  Vec3 position{};                                 ///< where the leg begins, in the scene's own coordinates; `x`, `y`, `z` [m]
-  bool on_ground = false;                          ///< z is that of the ground; `onGround`
+  Vec3 position{};                                 ///< start of the leg, in the coordinates of the scene; `x`, `y`, `z` [m]
+  bool on_ground = false;                          ///< take z from the ground; `onGround`
   double speed = 70;                               ///< `movePerSec_m` [m/s]
-  bool smooth_turn = false;                        ///< multicopter: turns as it flies on; `smoothTurn`, or `stopAndTurn="false"`
+  bool smooth_turn = false;                        ///< multicopter: turn without a stop; `smoothTurn`, or `stopAndTurn="false"`
   std::optional<double> yaw_at_departure{};        ///< multicopter; counter-clockwise from +y. `yawAtDeparture_deg` [rad]
   std::optional<TrajectorySettings> trajectory{};  ///< interpolated only
 
@@ -57,17 +57,17 @@ struct LegPlatformSettings {
 /// `<scannerSettings>` of a leg
 struct LegScannerSettings {
   bool active = true;                          ///< `active`
-  double pulse_rate = 0;                       ///< the scanner's first unless given; `pulseFreq_hz` [Hz]
+  double pulse_rate = 0;                       ///< default: the scanner's first; `pulseFreq_hz` [Hz]
   double scan_frequency = 0;                   ///< `scanFreq_hz` [Hz]
-  std::optional<double> scan_angle{};          ///< to either side; as far as the device can unless given. `scanAngle_deg` [rad]
+  std::optional<double> scan_angle{};          ///< half angle, default the device's limit; `scanAngle_deg` [rad]
   std::optional<double> vertical_angle_min{};  ///< rotating only; `verticalAngleMin_deg` [rad]
   std::optional<double> vertical_angle_max{};  ///< rotating only; `verticalAngleMax_deg` [rad]
   double head_speed = 0;                       ///< `headRotatePerSec_deg` [rad/s]
   double head_start = 0;                       ///< `headRotateStart_deg` [rad]
   double head_stop = 0;                        ///< `headRotateStop_deg` [rad]
-  std::optional<double> divergence{};          ///< of all channels; each one's own unless given. `beamDivergence_rad` [rad]
-  double trajectory_interval = 0;              ///< between records of the trajectory; 0: none. `trajectoryTimeInterval_s` [s]
-  double warm_up = 0;                          ///< for which head and optic run before the first pulse; `opticsWarmupPhase_s` [s]
+  std::optional<double> divergence{};          ///< common value of all channels, default each one's own; `beamDivergence_rad` [rad]
+  double trajectory_interval = 0;              ///< interval of trajectory records; 0: none. `trajectoryTimeInterval_s` [s]
+  double warm_up = 0;                          ///< running time of head and optic before the first pulse; `opticsWarmupPhase_s` [s]
 
   void validate() const {
     require_not_negative("pulseFreq_hz", pulse_rate, "Hz");
@@ -83,7 +83,7 @@ struct LegScannerSettings {
 /// `<leg>`
 struct LegSettings {
   std::optional<std::string> strip{};    ///< legs of one strip share their files; `stripId`
-  std::optional<double> duration_max{};  ///< after which the leg ends in any case; `maxDuration_s` of leg or scannerSettings [s]
+  std::optional<double> duration_max{};  ///< upper limit of the leg's duration; `maxDuration_s` of leg or scannerSettings [s]
   LegPlatformSettings platform{};
   LegScannerSettings scanner{};
 
@@ -95,7 +95,7 @@ struct LegSettings {
   bool operator==(const LegSettings&) const = default;
 };
 
-/// Whether a leg of a platform that moves stays where it begins: the next one begins there, too, or there is none.
+/// True if a leg of a moving platform stays in place: the next one begins there, too, or there is none.
 [[nodiscard]] inline bool stays_in_place(const std::vector<LegSettings>& legs, std::size_t k) {
   if (k + 1 >= legs.size()) return legs.size() == 1;
   const LegPlatformSettings &here = legs[k].platform, &next = legs[k + 1].platform;

@@ -15,16 +15,17 @@ namespace pulsecast::helios {
 
 namespace detail {
 
-/// Refuses a whole number less than `least`.
+/// Refuses an integer less than `least`.
 inline void require_at_least(int least, std::string_view field, int value) {
   require_within(field, value, least, std::numeric_limits<int>::max(), "");
 }
 
 }  // namespace detail
 
+/// Axis of a rotation: right, forward, up.
 enum class Axis : std::uint8_t { x, y, z };
 
-/// One turn of a list: `<rot>`.
+/// One rotation of a list: `<rot>`.
 struct AxisTurn {
   Axis axis = Axis::z;  ///< `axis`
   double angle = 0;     ///< right-handed; `angle_deg` [rad]
@@ -32,12 +33,12 @@ struct AxisTurn {
   bool operator==(const AxisTurn&) const = default;
 };
 
-/// Turns, one after the other: the `<rot>` children of an element.
+/// Rotations in sequence: the `<rot>` children of an element.
 struct RotationList {
   std::vector<AxisTurn> turns{};
-  bool local = false;  ///< about the axes of what is turned, rather than the fixed ones outside; `rotations="local"`
+  bool local = false;  ///< about the rotating axes instead of the fixed ones; `rotations="local"`
 
-  /// All turns in one.
+  /// Product of all rotations.
   [[nodiscard]] Rotation rotation() const {
     std::vector<AxisAngle> all;
     for (const AxisTurn& turn : turns)
@@ -48,10 +49,10 @@ struct RotationList {
   bool operator==(const RotationList&) const = default;
 };
 
-/// Where and how a thing sits on another: `<scannerMount>`, `<beamOrigin>`.
+/// Pose of a device on its carrier: `<scannerMount>`, `<beamOrigin>`.
 struct MountSettings {
-  Vec3 position{};          ///< in the frame of what carries it; `x`, `y`, `z` [m]
-  RotationList rotation{};  ///< from the frame of what is carried to that of what carries it
+  Vec3 position{};          ///< in the frame of the carrier; `x`, `y`, `z` [m]
+  RotationList rotation{};  ///< from the frame of the device to that of the carrier
 
   bool operator==(const MountSettings&) const = default;
 };

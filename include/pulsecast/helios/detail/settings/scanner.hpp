@@ -16,36 +16,36 @@
 
 namespace pulsecast::helios {
 
-/// A mirror that swings to and fro: `optics="oscillating"`.
+/// Oscillating mirror: `optics="oscillating"`.
 struct OscillatingOptic {
-  double scan_product_max = radians(1e6);  ///< of half the scan angle and the scan frequency; `scanProduct` in deg Hz [rad/s]
+  double scan_product_max = radians(1e6);  ///< maximum of half scan angle times scan frequency; `scanProduct` in deg Hz [rad/s]
 
   bool operator==(const OscillatingOptic&) const = default;
 };
 
-/// A polygon mirror that rotates: `optics="rotating"`. It sweeps `scan_angle_max` to either side and measures in part of that.
+/// Rotating polygon mirror: `optics="rotating"`. It sweeps `scan_angle_max` to either side and measures in part of that.
 struct RotatingOptic {
-  /// To either side, where it measures at most; all of `scan_angle_max` unless given. `scanAngleEffectiveMax_deg` [rad]
+  /// Maximum half angle of measurement, default `scan_angle_max`; `scanAngleEffectiveMax_deg` [rad]
   std::optional<double> effective_angle_max{};
 
   bool operator==(const RotatingOptic&) const = default;
 };
 
-/// A Palmer mirror, whose beam goes round a cone: `optics="conic"`.
+/// Palmer mirror (conical scan): `optics="conic"`.
 struct ConicOptic {
   bool operator==(const ConicOptic&) const = default;
 };
 
-/// An array of fibres, side by side: `optics="line"`.
+/// Array of fibres in a line: `optics="line"`.
 struct LineOptic {
   int fibers = 1;  ///< `numFibers`
 
   bool operator==(const LineOptic&) const = default;
 };
 
-/// One wedge of glass that rotates.
+/// One rotating glass wedge.
 struct RisleyPrism {
-  double angle = 0;             ///< of the wedge; inclined where light enters if positive, else where it leaves. `angle1_deg`... [rad]
+  double angle = 0;             ///< wedge; inclined entry face if positive, else exit face. `angle1_deg`... [rad]
   double rotor_frequency = 0;   ///< right-handed if positive; `rotorFreq1_Hz`... [Hz]
   double refractive_index = 1;  ///< `refrIndex1`...
 
@@ -54,21 +54,22 @@ struct RisleyPrism {
 
 /// Risley prisms: `optics="risley"`.
 struct RisleyOptic {
-  std::array<RisleyPrism, 3> prisms{};  ///< those without an angle are not there
+  std::array<RisleyPrism, 3> prisms{};  ///< those with angle 0 are absent
   double air_refractive_index = 1;      ///< `refrIndex_air`
-  Vec3 incident_beam = axis::forward;   ///< of any length but zero; `<incidentBeam>`
+  Vec3 incident_beam = axis::forward;   ///< non-zero, any length; `<incidentBeam>`
 
   bool operator==(const RisleyOptic&) const = default;
 };
 
+/// Any optic.
 using OpticSettings = std::variant<OscillatingOptic, RotatingOptic, ConicOptic, LineOptic, RisleyOptic>;
 
-/// How waveforms are sampled: `<FWFSettings>`.
+/// Sampling of waveforms: `<FWFSettings>`.
 struct FullWaveformSettings {
   double bin_size = 0.25e-9;       ///< `binSize_ns` [s]
-  std::optional<double> window{};  ///< to either side of a peak; a quarter of the pulse length unless given. `winSize_ns` [s]
-  int rings = 3;                   ///< of subrays, with the centre as the first; `beamSampleQuality`
-  double duration_max = 0;         ///< 0 stands for no limit; `maxFullwaveRange_ns` [s]
+  std::optional<double> window{};  ///< half width about a peak, default a quarter of the pulse length; `winSize_ns` [s]
+  int rings = 3;                   ///< number of subray rings, including the centre; `beamSampleQuality`
+  double duration_max = 0;         ///< 0: no limit; `maxFullwaveRange_ns` [s]
 
   void validate() const {
     detail::require_at_least(1, "beamSampleQuality", rings);
@@ -78,41 +79,41 @@ struct FullWaveformSettings {
   bool operator==(const FullWaveformSettings&) const = default;
 };
 
-/// How a scanner errs, as formulas of an angle or range: `<deflectionError>`, `<headError>`, `<rangeError>`.
+/// Errors of a scanner, as formulas of an angle or range: `<deflectionError>`, `<headError>`, `<rangeError>`.
 struct ErrorFormulas {
-  std::string deflection{};        ///< added to the deflection, of it [rad]; `expr` in THETA
-  std::string head{};              ///< added to the angle of the head, of the deflection [rad]; `expr` in THETA
-  double head_zero_threshold = 0;  ///< by which the argument is kept off 0 and pi; `zeroSinThreshold_deg` [rad]
-  std::string range{};             ///< added to the range, of the deflection [m]; `expr` in THETA
-  std::string range_noise{};       ///< by which noise of the range is multiplied, of it [m]; `distanceMeasurementError` in t
+  std::string deflection{};        ///< error of the deflection, as a function of it [rad]; `expr` in THETA
+  std::string head{};              ///< error of the head angle, as a function of the deflection [rad]; `expr` in THETA
+  double head_zero_threshold = 0;  ///< least distance of the argument from 0 and pi; `zeroSinThreshold_deg` [rad]
+  std::string range{};             ///< error of the range, as a function of the deflection [m]; `expr` in THETA
+  std::string range_noise{};       ///< factor of range noise, as a function of the range [m]; `distanceMeasurementError` in t
 
   bool operator==(const ErrorFormulas&) const = default;
 };
 
-/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements. The position of its `beam_origin` counts along
-/// the axes of the platform, as that of the mount: the rotation of the mount does not turn it, but heading and head do.
+/// One laser with its optic and receiver: `<scanner>`, or each of its `<channel>` elements. The position of `beam_origin` is along the axes
+/// of the platform, like that of the mount. The rotation of the mount does not turn it; heading and head do.
 struct ChannelSettings {
-  std::string id{};                                            ///< `id` of the channel; empty if the scanner has but one
-  OpticSettings optic{};                                       ///< `optics` and what belongs to it
-  double scan_angle_max = 0;                                   ///< to either side; `scanAngleMax_deg` [rad]
+  std::string id{};                                            ///< `id` of the channel; empty for the only channel
+  OpticSettings optic{};                                       ///< `optics` and its attributes
+  double scan_angle_max = 0;                                   ///< half angle; `scanAngleMax_deg` [rad]
   double scan_frequency_min = 0;                               ///< `scanFreqMin_Hz` [Hz]
-  double scan_frequency_max = 0;                               ///< 0 stands for no limit; `scanFreqMax_Hz` [Hz]
-  MountSettings beam_origin{};                                 ///< rotated in the frame of the instrument; `<beamOrigin>`
-  Vec3 head_axis = axis::up;                                   ///< of any length but zero; `<headRotateAxis>`
-  double head_speed_max = 0;                                   ///< 0: it cannot turn; `headRotatePerSecMax_deg` [rad/s]
+  double scan_frequency_max = 0;                               ///< 0: no limit; `scanFreqMax_Hz` [Hz]
+  MountSettings beam_origin{};                                 ///< rotation in the frame of the instrument; `<beamOrigin>`
+  Vec3 head_axis = axis::up;                                   ///< non-zero, any length; `<headRotateAxis>`
+  double head_speed_max = 0;                                   ///< 0: fixed; `headRotatePerSecMax_deg` [rad/s]
   double divergence = 0.3e-3;                                  ///< full angle at 1/e^2 of the peak; `beamDivergence_rad` [rad]
   double pulse_length = 4e-9;                                  ///< full width at half maximum; `pulseLength_ns` [s]
   double average_power = 4;                                    ///< `averagePower_w` [W]
-  std::optional<double> beam_quality{};                        ///< M^2; comes from a point unless given. `beamQualityFactor` but for 1
+  std::optional<double> beam_quality{};                        ///< M^2, default a point source; `beamQualityFactor` other than 1
   double wavelength = 1064e-9;                                 ///< `wavelength_nm` [m]
   double efficiency = 0.99;                                    ///< `opticalEfficiency`
   double receiver_diameter = 0.15;                             ///< `receiverDiameter_m` [m]
-  double visibility = 23e3;                                    ///< of the atmosphere; `atmosphericVisibility_km` [m]
+  double visibility = 23e3;                                    ///< atmospheric visibility; `atmosphericVisibility_km` [m]
   double accuracy = 0;                                         ///< standard deviation of the range; `accuracy_m` [m]
   double range_min = 0;                                        ///< `rangeMin_m` [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< `rangeMax_m` [m]
-  int returns_max = 0;                                         ///< of one pulse; 0 stands for no limit; `maxNOR`
-  double received_power_min = 1e-4 / 1e9;                      ///< of an echo; `receivedEnergyMin_W`, which is in nW [W]
+  int returns_max = 0;                                         ///< per pulse; 0: no limit. `maxNOR`
+  double received_power_min = 1e-4 / 1e9;                      ///< per echo; `receivedEnergyMin_W`, which is in nW [W]
   FullWaveformSettings waveform{};                             ///< `<FWFSettings>`
   ErrorFormulas errors{};                                      ///< `<deflectionError>`...
 
@@ -128,11 +129,11 @@ struct ChannelSettings {
   bool operator==(const ChannelSettings&) const = default;
 };
 
-/// `<scanner>`, with what the survey sets of it.
+/// `<scanner>`, with the overrides of the survey.
 struct ScannerSettings {
   std::string id{};                         ///< `id`
   std::string name{};                       ///< `name`
-  std::vector<double> pulse_rates{};        ///< that it is made for, the usual one first; `pulseFreqs_Hz` [Hz]
+  std::vector<double> pulse_rates{};        ///< supported rates, default first; `pulseFreqs_Hz` [Hz]
   std::vector<ChannelSettings> channels{};  ///< at least one; they fire at the same time, in this order
 
   void validate() const {

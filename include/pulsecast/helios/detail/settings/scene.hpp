@@ -17,12 +17,12 @@
 
 namespace pulsecast::helios {
 
-/// The materials of what brings none of its own.
+/// Materials of geometry files without any.
 struct MaterialSource {
-  std::filesystem::path file{};       ///< MTL; empty: all is undescribed. `matfile`
-  std::optional<std::string> name{};  ///< the first by alphabet unless given; `matname`
-  int random = 0;                     ///< how many variants are made; `randomMaterials`
-  double random_range = 1;            ///< by which colours of variants differ at most; `randomRange`
+  std::filesystem::path file{};       ///< MTL file; empty: undescribed material. `matfile`
+  std::optional<std::string> name{};  ///< default: first in alphabetical order; `matname`
+  int random = 0;                     ///< number of variants; `randomMaterials`
+  double random_range = 1;            ///< maximum colour difference of variants; `randomRange`
 
   void validate() const {
     detail::require_at_least(0, "randomMaterials", random);
@@ -34,15 +34,15 @@ struct MaterialSource {
 
 /// Triangles: filter `objloader`.
 struct ObjSource {
-  std::vector<std::filesystem::path> files{};  ///< `filepath`, or those that `efilepath` matches, by name
+  std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   bool y_up = false;                           ///< `up`
 
   bool operator==(const ObjSource&) const = default;
 };
 
-/// A raster of heights: filter `geotiffloader`.
+/// Elevation raster: filter `geotiffloader`.
 struct GeoTiffSource {
-  std::vector<std::filesystem::path> files{};  ///< `filepath`, or those that `efilepath` matches, by name
+  std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MaterialSource material{};
 
   void validate() const { material.validate(); }
@@ -50,15 +50,15 @@ struct GeoTiffSource {
   bool operator==(const GeoTiffSource&) const = default;
 };
 
-/// A point cloud that becomes voxels: filter `xyzloader`.
+/// Point cloud, converted to voxels: filter `xyzloader`.
 struct XyzSource {
-  std::vector<std::filesystem::path> files{};  ///< `filepath`, or those that `efilepath` matches, by name
+  std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MaterialSource material{};
-  std::string separator{};                     ///< any of these separates columns; found unless given. `separator`
-  double voxel_size = 1;                       ///< edge; `voxelSize` [m]
-  std::optional<Vec3> default_normal{};        ///< of any length but zero; `defaultNormal`
-  int estimate_normals = 0;                    ///< 0: from the file, else a plane is fitted in each voxel; `estimateNormals`
-  bool snap_neighbor_normal = false;           ///< the normal of the point nearest to the centre, not the mean; `snapNeighborNormal`
+  std::string separator{};                     ///< set of column separators, default detected; `separator`
+  double voxel_size = 1;                       ///< edge length; `voxelSize` [m]
+  std::optional<Vec3> default_normal{};        ///< non-zero, any length; `defaultNormal`
+  int estimate_normals = 0;                    ///< 0: from the file, else fitted to a plane in each voxel; `estimateNormals`
+  bool snap_neighbor_normal = false;           ///< normal of the point nearest to the centre, not the mean; `snapNeighborNormal`
   std::array<int, 3> normal_columns{3, 4, 5};  ///< from 0; `normalXIndex`, Y and Z
 
   void validate() const {
@@ -69,26 +69,28 @@ struct XyzSource {
   bool operator==(const XyzSource&) const = default;
 };
 
+/// Interaction of rays with voxels: `intersectionMode`.
 enum class VoxelMode : std::uint8_t {
-  transmittive,  ///< rays pass by chance
+  transmittive,  ///< random transmission of rays
   fixed,         ///< opaque cubes
-  scaled,        ///< opaque cubes, the smaller the less there is in them
+  scaled,        ///< opaque cubes, scaled by their content
 };
 
-/// Voxels with what fills them: filter `detailedvoxels`.
+/// Voxels with their content: filter `detailedvoxels`.
 struct VoxelSource {
-  std::vector<std::filesystem::path> files{};  ///< `filepath`, or those that `efilepath` matches, by name
+  std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
   MaterialSource material{};
   VoxelMode mode = VoxelMode::transmittive;  ///< `intersectionMode`
-  double scaling_exponent = 0.5;             ///< if scaled; `intersectionArgument`
-  bool random_shift = false;                 ///< if scaled, cubes stand anywhere in their cells; `randomShift`
-  std::filesystem::path leaf_angles{};       ///< look-up table; empty: there is none. `ladlut`
+  double scaling_exponent = 0.5;             ///< scaled mode only; `intersectionArgument`
+  bool random_shift = false;                 ///< scaled mode: random place of each cube in its cell; `randomShift`
+  std::filesystem::path leaf_angles{};       ///< look-up table; empty: none. `ladlut`
 
   void validate() const { material.validate(); }
 
   bool operator==(const VoxelSource&) const = default;
 };
 
+/// Any source of geometry.
 using PartSource = std::variant<ObjSource, GeoTiffSource, XyzSource, VoxelSource>;
 
 namespace detail {
@@ -99,12 +101,12 @@ inline void validate_source(const PartSource& source) {
 
 }  // namespace detail
 
-/// How geometry is placed: each vertex goes to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`, `translate`.
+/// Placement of geometry: each vertex goes to `translation + scale * (rotations * vertex)`. Filters `rotate`, `scale`, `translate`.
 struct TransformSettings {
   double scale = 1;                       ///< `scale`
-  std::vector<RotationList> rotations{};  ///< one after the other, about fixed axes; `rotation` of each filter
+  std::vector<RotationList> rotations{};  ///< in sequence, about fixed axes; `rotation` of each filter
   Vec3 translation{};                     ///< `offset` [m]
-  int on_ground = 0;                      ///< if not 0, it is let down onto the ground; the search depth. `onGround`
+  int on_ground = 0;                      ///< not 0: moved onto the ground, by its lowest point, or, if -1, at first contact. `onGround`
 
   bool operator==(const TransformSettings&) const = default;
 };
@@ -123,57 +125,57 @@ struct TranslationMotion {
 
 /// `<motion type="rotation">` and, with `glide`, `<motion type="helical">`
 struct RotationMotion {
-  Vec3 axis = axis::up;           ///< of any length but zero; `axis`
+  Vec3 axis = axis::up;           ///< non-zero, any length; `axis`
   double angle = 0;               ///< right-handed; `angle` in degrees [rad]
-  std::optional<Vec3> center{};   ///< through which the axis goes; the origin unless given. `center` [m]
-  std::optional<double> glide{};  ///< along the axis, in its lengths: helical only. `glide`
+  std::optional<Vec3> center{};   ///< point on the axis, default the origin; `center` [m]
+  std::optional<double> glide{};  ///< shift along the axis, in lengths of `axis`: helical only. `glide`
 
   bool operator==(const RotationMotion&) const = default;
 };
 
 /// `<motion type="reflection">` and, with `shift`, `<motion type="glideplane">`
 struct ReflectionMotion {
-  Vec3 normal = axis::up;       ///< of a plane through the origin, of any length but zero; `ortho`
+  Vec3 normal = axis::up;       ///< normal of a plane through the origin; non-zero, any length. `ortho`
   std::optional<Vec3> shift{};  ///< along the plane: glide plane only. `shift` [m]
 
   bool operator==(const ReflectionMotion&) const = default;
 };
 
-/// `<motion type="rotsym">`: a rotation, and then a reflection at the plane across the axis.
+/// `<motion type="rotsym">`: a rotation, then a reflection at the plane normal to the axis.
 struct RotoreflectionMotion {
-  Vec3 axis = axis::up;          ///< of any length but zero; `axis`
+  Vec3 axis = axis::up;          ///< non-zero, any length; `axis`
   double angle = 0;              ///< right-handed; `angle` in degrees [rad]
   std::optional<Vec3> center{};  ///< `center` [m]
 
   bool operator==(const RotoreflectionMotion&) const = default;
 };
 
-/// What a part does in each step: `<motion>`.
+/// Motion of a part in each step: `<motion>`.
 struct MotionSettings {
   std::variant<NoMotion, TranslationMotion, RotationMotion, ReflectionMotion, RotoreflectionMotion> kind{};
   bool about_itself = false;  ///< in a frame at the part's centre; `selfMode`
-  double shift_factor = 0;    ///< times the centre of the scene, added to the coordinates given; `autoCRS`
+  double shift_factor = 0;    ///< multiple of the scene centre, added to the coordinates given; `autoCRS`
 
   bool operator==(const MotionSettings&) const = default;
 };
 
-/// What a part does for a number of steps, and what then: `<dmotion>`.
+/// Motions of a part for a number of steps, and their successor: `<dmotion>`.
 struct MotionSequenceSettings {
   std::string id{};                       ///< `id`
-  int loop = 1;                           ///< for how many steps; 0 stands for ever. `loop`
-  std::optional<std::string> next{};      ///< the sequence that follows; it stops unless given. `next`
-  std::vector<MotionSettings> motions{};  ///< all of them in each step, one after the other
+  int loop = 1;                           ///< number of steps; 0: forever. `loop`
+  std::optional<std::string> next{};      ///< id of the next sequence, default rest; `next`
+  std::vector<MotionSettings> motions{};  ///< all applied in each step, in this order
 
   void validate() const { detail::require_at_least(0, "loop", loop); }
 
   bool operator==(const MotionSequenceSettings&) const = default;
 };
 
-/// What stands in a part's place in later runs of the survey: `<swap>`.
+/// Replacement of a part in later runs of the survey: `<swap>`.
 struct SwapSettings {
-  int step = 1;                        ///< for how many runs; `swapStep`
-  bool removes = false;                ///< nothing stands there; `force_null`
-  std::optional<PartSource> source{};  ///< the part's own unless given
+  int step = 1;                        ///< number of runs; `swapStep`
+  bool removes = false;                ///< removes the part; `force_null`
+  std::optional<PartSource> source{};  ///< default: that of the part
   TransformSettings transform{};
 
   void validate() const {
@@ -186,13 +188,13 @@ struct SwapSettings {
 
 /// `<part>`
 struct PartSettings {
-  std::string id{};                               ///< `id`; unless given, how many parts and files stand before it
-  PartSource source{};                            ///< the filter that loads
-  TransformSettings transform{};                  ///< the filters that place
-  int dynamic_step = 1;                           ///< it moves once in so many updates of the scene; `dynStep`
-  std::optional<double> dynamic_interval{};       ///< it moves once in this time, where the scene has one; `dynTimeStep` [s]
-  std::vector<MotionSequenceSettings> motions{};  ///< the first one begins; none: it stands still
-  std::vector<SwapSettings> swaps{};              ///< one after the other
+  std::string id{};                               ///< `id`, default the number of parts and files before it
+  PartSource source{};                            ///< loading filter
+  TransformSettings transform{};                  ///< placing filters
+  int dynamic_step = 1;                           ///< updates of the scene per motion step; `dynStep`
+  std::optional<double> dynamic_interval{};       ///< interval of motion steps, if the scene has one; `dynTimeStep` [s]
+  std::vector<MotionSequenceSettings> motions{};  ///< the first one begins; none: at rest
+  std::vector<SwapSettings> swaps{};              ///< in sequence
 
   void validate() const {
     detail::validate_source(source);
@@ -209,8 +211,8 @@ struct PartSettings {
 struct SceneSettings {
   std::string id{};                          ///< `id`
   std::string name{};                        ///< `name`
-  int dynamic_step = 1;                      ///< it is updated once in so many pulse slots; `dynStep`
-  std::optional<double> dynamic_interval{};  ///< instead, once in this time; `dynTimeStep` [s]
+  int dynamic_step = 1;                      ///< pulse slots per update; `dynStep`
+  std::optional<double> dynamic_interval{};  ///< interval of updates, instead of `dynStep`; `dynTimeStep` [s]
   std::vector<PartSettings> parts{};
 
   void validate() const {

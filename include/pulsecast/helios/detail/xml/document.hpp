@@ -20,28 +20,28 @@
 
 namespace pulsecast::helios {
 
-/// Where something stands in an XML file; line 0 stands for the file as a whole.
+/// Position in an XML file; line 0 stands for the whole file.
 struct XmlPlace {
   std::string path{};
   std::size_t line = 0, column = 0;  ///< from 1; columns count bytes
 
-  /// `path:line:column`, as editors understand it.
+  /// `path:line:column`, the notation of editors.
   [[nodiscard]] std::string text() const { return line == 0 ? path : path + ":" + std::to_string(line) + ":" + std::to_string(column); }
 
   bool operator==(const XmlPlace&) const = default;
 };
 
-/// One thing to mend.
+/// One error in a document.
 struct XmlFault {
   XmlPlace place{};
-  std::string problem{};  ///< what is wrong and what was expected
+  std::string problem{};  ///< the fault and the expectation
 };
 
-/// All that is wrong with a document and those that it refers to. `what()` has a line for each, `path:line:column: problem`; as a
-/// `FileError` it is about the first of them. What was odd beside that stands in `warnings`.
+/// All faults of a document and of those that it refers to. `what()` has a line for each, `path:line:column: problem`. As a `FileError` it
+/// is about the first of them. `warnings` are those of the same documents.
 class XmlFaults : public FileError {
  public:
-  static constexpr std::size_t max_told = 100;  ///< that are told
+  static constexpr std::size_t max_told = 100;  ///< faults in `what()`
 
   /// `faults` must not be empty.
   explicit XmlFaults(std::vector<XmlFault> faults, std::vector<std::string> warnings = {})
@@ -54,7 +54,7 @@ class XmlFaults : public FileError {
   }
 
   [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
-  [[nodiscard]] const std::vector<XmlFault>& faults() const noexcept { return faults_; }  ///< in the order in which they were found
+  [[nodiscard]] const std::vector<XmlFault>& faults() const noexcept { return faults_; }  ///< in order of detection
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
@@ -67,10 +67,10 @@ class XmlFaults : public FileError {
   std::string text_;
 };
 
-/// Gathers what is wrong and what is odd, each once.
+/// Collects faults and warnings, each once.
 class XmlReport {
  public:
-  static constexpr std::size_t max_told = 1000;  ///< of either; beyond, they are not kept
+  static constexpr std::size_t max_told = 1000;  ///< limit of faults and of warnings; later ones are dropped
 
   void fault(XmlPlace place, std::string problem) {
     if (is_full()) return;
@@ -87,7 +87,7 @@ class XmlReport {
     if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(max_told) + " are not told";
   }
 
-  /// Calls `read()`, with the faults of what nobody uses as warnings.
+  /// Calls `read()` and turns its faults into warnings, for elements without use.
   template <class Read>
   void leniently(Read read) {
     const bool before = std::exchange(lenient_, true);
@@ -95,15 +95,15 @@ class XmlReport {
     lenient_ = before;
   }
 
-  /// Whether no more faults are kept: it is not worth looking for them.
+  /// True if no more faults are kept, so that searching can stop.
   [[nodiscard]] bool is_full() const noexcept { return faults_.size() == max_told; }
 
   [[nodiscard]] bool is_full_of_warnings() const noexcept { return warnings_.size() == max_told; }
 
-  [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< how many there are
+  [[nodiscard]] std::size_t faults() const noexcept { return faults_.size(); }  ///< number of faults
   [[nodiscard]] bool is_clean() const noexcept { return faults_.empty(); }
 
-  /// Throws if anything is wrong.
+  /// Throws `XmlFaults` if there is a fault.
   void require_clean() const {
     if (!faults_.empty()) throw XmlFaults(faults_, warnings_);
   }
@@ -116,7 +116,7 @@ class XmlReport {
   bool lenient_ = false;
 };
 
-/// A text in quotation marks, cut if it is long.
+/// Text in quotation marks, cut after 80 bytes.
 [[nodiscard]] inline std::string xml_quoted(std::string_view text) {
   constexpr std::size_t longest = 80;
   std::string quoted = "'";
@@ -124,8 +124,8 @@ class XmlReport {
   return quoted + (text.size() > longest ? "...'" : "'");
 }
 
-/// How many letters must be put in, left out, changed or swapped with their neighbour to make one word of the other; capitals are no
-/// matter. Source: optimal string alignment distance, Damerau 1964.
+/// Number of insertions, deletions, changes and swaps of neighbours that turn one word into the other; case is ignored. Source: optimal
+/// string alignment distance, Damerau 1964.
 [[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   const auto is_same = [](char x, char y) {
     const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
@@ -145,7 +145,7 @@ class XmlReport {
   return last[b.size()];
 }
 
-/// "; did you mean 'pulseFreq_hz'?", with the one of the known names that is nearest; all of them if none is near.
+/// "; did you mean 'pulseFreq_hz'?", with the nearest of the known names; all of them if none is near.
 [[nodiscard]] inline std::string suggestion(std::string_view unknown, std::span<const std::string> known) {
   if (known.empty()) return "";
   const std::string_view word = unknown.substr(0, 100);
@@ -160,15 +160,15 @@ class XmlReport {
   return "; there are: " + list + (known.size() > 40 ? ", ..." : "");
 }
 
-/// An XML file in memory, in which every element and attribute has a place. External entities and those that a document declares itself
-/// are not known: a document that declares any is refused.
+/// XML file in memory, with the position of every element and attribute. External and declared entities are not supported: a document that
+/// declares any is refused.
 class XmlDocument {
  public:
   static constexpr std::size_t max_file_size = std::size_t{64} << 20;      ///< [byte]
   static constexpr std::size_t max_attribute_size = std::size_t{1} << 16;  ///< [byte]
-  static constexpr std::size_t max_attributes = 100;                       ///< of one element
+  static constexpr std::size_t max_attributes = 100;                       ///< per element
 
-  /// Throws `XmlFaults` if it is not XML.
+  /// Throws `XmlFaults` if the file is not XML.
   explicit XmlDocument(const std::filesystem::path& path) : path_(path.string()) {
     io::InputFile file(path, "an XML document");
     if (file.size() > max_file_size) file.fail("is longer than " + std::to_string(max_file_size) + " bytes: expected an XML document");
@@ -177,7 +177,7 @@ class XmlDocument {
       if (bytes.empty()) break;
       text_ += bytes;
     }
-    if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);  // the mark that some editors put before UTF-8
+    if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);  // byte order mark of UTF-8
     for (std::size_t i = 0; i < text_.size(); ++i)
       if (text_[i] == '\n') line_ends_.push_back(i);
     if (const std::size_t zero = text_.find('\0'); zero != std::string::npos) fail_at(zero, "holds binary data: expected an XML document");
@@ -197,13 +197,13 @@ class XmlDocument {
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] pugi::xml_node root() const noexcept { return root_; }
 
-  /// Of the file as a whole.
+  /// Position of the whole file.
   [[nodiscard]] XmlPlace place() const { return {.path = path_, .line = 1, .column = 1}; }
 
-  /// Where an element begins.
+  /// Position of an element.
   [[nodiscard]] XmlPlace place(pugi::xml_node node) const { return place_of(offset(node)); }
 
-  /// Where an attribute begins.
+  /// Position of an attribute.
   [[nodiscard]] XmlPlace place(pugi::xml_node node, std::string_view attribute) const {
     std::size_t found = offset(node);
     each_attribute(found, [&](std::size_t at, std::string_view name, std::string_view) {
@@ -225,7 +225,7 @@ class XmlDocument {
     }
   }
 
-  /// Of a byte after the `<` of the element.
+  /// Offset of the byte after the `<` of an element.
   [[nodiscard]] std::size_t offset(pugi::xml_node node) const {
     const std::ptrdiff_t at = node.offset_debug();
     return at < 0 ? 0 : std::min(static_cast<std::size_t>(at), text_.size());
@@ -262,7 +262,7 @@ class XmlDocument {
     }
   }
 
-  /// No attribute twice, and none that is too long: what pugixml takes without a word.
+  /// Refuses repeated and overlong attributes, which pugixml accepts silently.
   void check_attributes() const {
     for (pugi::xml_node node = root_; node; node = next(node)) {
       std::vector<std::string_view> names;
@@ -277,7 +277,7 @@ class XmlDocument {
     }
   }
 
-  /// The element that begins next after one, in the order of the text.
+  /// Next element in document order.
   [[nodiscard]] pugi::xml_node next(pugi::xml_node node) const {
     const auto element = [](pugi::xml_node found) {
       while (found && found.type() != pugi::node_element) found = found.next_sibling();

@@ -25,12 +25,12 @@
 #include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/detail/xml/output.hpp>
 
-/// An element is described once, by a function `fields(io, settings)` that names its attributes and children in turn. With an `XmlInput`
-/// it reads them, with an `XmlOutput` it writes them. What a document does not say stays as it was: to inherit is to read twice.
+/// Reading and writing of elements by one description: a function `fields(io, settings)` that names attributes and children in turn.
+/// `XmlInput` reads them, `XmlOutput` writes them. A missing attribute keeps its value, so that inheritance is reading twice.
 namespace pulsecast::helios {
 
-/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. Everything that was asked for is known; `finish`
-/// reports the rest.
+/// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. Requested names are known; `finish` reports the
+/// others.
 class XmlInput {
  public:
   static constexpr bool reads = true;
@@ -48,7 +48,7 @@ class XmlInput {
   [[nodiscard]] const AssetSearch& search() const noexcept { return search_; }
   [[nodiscard]] XmlPlace place() const { return document_.place(node_); }
 
-  /// Where an attribute stands; the element if it is not given.
+  /// Position of an attribute; that of the element if it is missing.
   [[nodiscard]] XmlPlace place(std::string_view name) const {
     if (!params_) return document_.place(node_, name);
     const pugi::xml_node given = param(name);
@@ -60,10 +60,10 @@ class XmlInput {
 
   [[nodiscard]] bool has(const char* name) const { return params_ ? !param(name).empty() : !node_.attribute(name).empty(); }
 
-  /// Whether a name was asked for before.
+  /// True if a name was requested before.
   [[nodiscard]] bool knows(std::string_view name) const { return is_among(known_, name); }
 
-  /// Reports attributes that are not there, but must be.
+  /// Reports missing attributes that are mandatory.
   void require(std::initializer_list<const char*> names) {
     for (const char* name : names) {
       required_.emplace_back(name);
@@ -72,7 +72,7 @@ class XmlInput {
     }
   }
 
-  /// What stands in an attribute, if it is given.
+  /// Text of an attribute, if it is given.
   [[nodiscard]] std::optional<std::string> given(const char* name) {
     if (!knows(name)) known_.emplace_back(name);
     if (params_) {
@@ -83,7 +83,7 @@ class XmlInput {
     return found ? std::optional<std::string>(found.value()) : std::nullopt;
   }
 
-  /// What stands in an attribute that an empty text says nothing in.
+  /// Text of an attribute; none if it is empty.
   [[nodiscard]] std::optional<std::string> value(const char* name) {
     auto text = given(name);
     if (!text || text->find_first_not_of(" \t\r\n") != std::string::npos) return text;
@@ -94,7 +94,7 @@ class XmlInput {
     return std::nullopt;
   }
 
-  /// A number; `low` and `high` are the least and greatest allowed, in the unit of the document.
+  /// Reads a number; `low` and `high` are the least and greatest allowed, in the unit of the document.
   void number(const char* name, double& number, const XmlUnit& unit, double low, double high) {
     if (const auto text = value(name))
       if (const auto found = within(name, *text, unit, low, high)) number = unit.si(*found);
@@ -131,7 +131,7 @@ class XmlInput {
     if (auto text = given(name)) value = std::move(text);
   }
 
-  /// One of several words; capitals are no matter.
+  /// Reads one of several words; case is ignored.
   template <class Value>
   void choice(const char* name, Value& chosen, XmlWords<Value> words) {
     const auto text = value(name);
@@ -147,7 +147,7 @@ class XmlInput {
     fault(name, said(name, *text) + " is not known" + suggestion(*text, known));
   }
 
-  /// Three numbers with semicolons between them.
+  /// Reads three numbers separated by semicolons.
   void vector(const char* name, Vec3& vector, double size_max) {
     const auto text = value(name);
     if (!text) return;
@@ -166,7 +166,7 @@ class XmlInput {
     if (finite(found)) vector = found;
   }
 
-  /// A file that must be there.
+  /// Reads the path of a file that must exist.
   void file(const char* name, std::filesystem::path& path) {
     if (const auto text = value(name)) {
       const AssetMatch match = search_.find(*text);
@@ -175,13 +175,13 @@ class XmlInput {
     }
   }
 
-  /// Reports what is wrong or odd about files that were looked for.
+  /// Reports faults and warnings of a file search.
   void take(const char* name, std::string_view text, const AssetMatch& match) const {
     if (!match.problem.empty()) fault(name, said(name, text) + " " + match.problem);
     if (!match.warning.empty()) warn(name, said(name, text) + " " + match.warning);
   }
 
-  /// A child element that may be there once: calls `read(XmlInput&)`. Returns whether it is.
+  /// Calls `read(XmlInput&)` for an optional child element. Returns true if it exists.
   template <class Read>
   bool child(const char* name, Read read) {
     known_children_.emplace_back(name);
@@ -195,7 +195,7 @@ class XmlInput {
     return true;
   }
 
-  /// All children of a name, in their order.
+  /// Reads all children of a name, in their order.
   template <class Value, class Fields>
   void children(const char* name, std::vector<Value>& values, Fields fields) {
     known_children_.emplace_back(name);
@@ -206,19 +206,19 @@ class XmlInput {
     }
   }
 
-  /// Attributes that may be there, but do nothing, with a warning.
+  /// Warns of attributes that are allowed, but have no effect.
   void without_effect(std::initializer_list<const char*> names, const char* why = "has no effect") {
     for (const char* name : names)
       if (given(name)) warn(name, (params_ ? "param " : "attribute ") + xml_quoted(name) + " " + why);
   }
 
-  /// Names that are known beside those asked for.
+  /// Adds known names that are not requested.
   void know(std::initializer_list<const char*> attributes, std::initializer_list<const char*> children = {}) {
     known_.insert(known_.end(), attributes.begin(), attributes.end());
     known_children_.insert(known_children_.end(), children.begin(), children.end());
   }
 
-  /// Reports attributes and children that nobody asked for.
+  /// Reports attributes and children that were not requested.
   void finish() {
     if (params_) {
       finish_params();
@@ -254,7 +254,7 @@ class XmlInput {
     return std::string(name) + "=\"" + std::string(text.substr(0, 80)) + (text.size() > 80 ? "...\"" : "\"");
   }
 
-  /// What stands between the tags.
+  /// Text between the tags.
   [[nodiscard]] std::string content() {
     takes_text_ = true;
     return node_.text().get();
@@ -278,7 +278,7 @@ class XmlInput {
  private:
   static constexpr std::size_t max_params = 100;
 
-  /// Whether two words are the same, but for capitals.
+  /// True if two words are equal, without regard to case.
   [[nodiscard]] static bool is_same_word(std::string_view a, std::string_view b) {
     return a.size() == b.size() && edit_distance(a, b) == 0;
   }

@@ -10,8 +10,8 @@
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// Every element of the documents is described here and in the headers that include this one: its attributes, their units and limits, and
-/// its children. The format is that of HELIOS++.
+/// Descriptions of all elements, here and in the headers that include this one: attributes with units and limits, and children. The format
+/// is that of HELIOS++.
 namespace pulsecast::helios::xml {
 
 /// Settings that are read into or written from.
@@ -19,7 +19,7 @@ template <class Io, class Settings>
 using Of = std::conditional_t<Io::reads, Settings, const Settings>;
 
 inline constexpr double any = std::numeric_limits<double>::infinity();
-inline constexpr double max_coordinate = 1e9;  ///< coordinate that makes sense [m]
+inline constexpr double max_coordinate = 1e9;  ///< greatest plausible coordinate [m]
 
 /// Attributes `x`, `y` and `z`.
 template <class Io>
@@ -29,7 +29,7 @@ void components(Io& io, Of<Io, Vec3>& v, double largest = max_coordinate) {
   io.number("z", v.z, units::metre, -largest, largest);
 }
 
-/// A child with the components of a direction.
+/// Child with the components of a direction.
 template <class Io>
 void direction(Io& io, const char* name, Of<Io, Vec3>& v) {
   io.child(name, [&](auto& inner) {

@@ -10,10 +10,10 @@
 
 namespace pulsecast::helios::detail {
 
-/// Whether a character may not stand in the name of a file.
+/// True if a character is forbidden in a file name.
 [[nodiscard]] inline bool fits_no_name(unsigned char c) { return c == '/' || c == '\\' || c < ' ' || c == 0x7f; }
 
-/// A text that becomes part of the name of a file or folder.
+/// Replaces forbidden characters in a part of a file or folder name, with a warning.
 inline void fit_for_name(const XmlInput& io, const char* name, std::string& text) {
   if (std::none_of(text.begin(), text.end(), fits_no_name)) return;
   const std::string given = XmlInput::said(name, text);

@@ -20,24 +20,24 @@
 
 namespace pulsecast::helios {
 
-/// Holds the legs of a survey against its scanner and platform: what could never end, give a pulse, or be done by the device is a fault.
+/// Checks the legs of a survey against its scanner and platform. Faults: legs that never end, give no pulse, or exceed the device.
 class LegChecks {
  public:
   /// `survey` must have a scanner with a channel.
   LegChecks(const XmlLibraryDocument& document, const SurveySettings& survey, XmlReport& report)
       : document_(document), survey_(survey), report_(report) {}
 
-  /// Checks one leg and where it leads; `leg` is its element, and `resolution` its `verticalResolution_deg` [rad], if it has one.
+  /// Checks one leg and its path; `leg` is its element, `resolution` its `verticalResolution_deg`, 0 if it has none [rad].
   void check(pugi::xml_node leg, std::size_t i, double resolution = 0) const {
     check_platform(leg, i);
     if (!only_ends(survey_, i)) check_scanner(leg, i, resolution);
   }
 
  private:
-  /// Whether the platform stays where it is for as long as a leg lasts.
+  /// True if the platform stays in place for the whole leg.
   [[nodiscard]] bool stays(std::size_t i) const { return survey_.platform.kind == PlatformKind::stationary || is_stationary(survey_, i); }
 
-  /// A number that was computed, to six decimals.
+  /// Computed number, to six decimals.
   [[nodiscard]] static std::string brief(double value) { return xml_number(std::round(value * 1e6) / 1e6); }
 
   void check_platform(pugi::xml_node leg, std::size_t i) const {
@@ -156,7 +156,7 @@ class LegChecks {
                                          "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
                                          "maxDuration_s");
     if (!stays(i) || s.head_stop != s.head_start) return;
-    if (speed == 0 && legs_connect(survey_.platform.kind)) return;  // has been told of already
+    if (speed == 0 && legs_connect(survey_.platform.kind)) return;  // reported already
     if (speed == 0)
       io.report().fault(io.place(), "the leg could never end: neither platform nor head moves; expected maxDuration_s" +
                                         std::string(i == 0 ? "" : " for each leg"));

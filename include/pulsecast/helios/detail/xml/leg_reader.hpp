@@ -23,7 +23,7 @@
 
 namespace pulsecast::helios::detail {
 
-/// Reads the legs of one survey, whose scanner and platform have been read.
+/// Reads the legs of a survey, after its scanner and platform.
 class LegReader {
  public:
   LegReader(XmlLibrary& library, const XmlLibraryDocument& document, XmlReport& report, SurveySettings& survey)
@@ -34,7 +34,7 @@ class LegReader {
     const XmlDocument& document = document_.document();
     io.know({}, {"leg"});
     std::vector<pugi::xml_node> nodes;
-    std::vector<double> resolutions;  // of each leg, or 0
+    std::vector<double> resolutions;  // per leg, 0 if none [rad]
     std::vector<std::string> places;
     for (pugi::xml_node node = io.node().child("leg"); node; node = node.next_sibling("leg")) {
       XmlInput leg(document, node, report_, document_.search());
@@ -56,7 +56,7 @@ class LegReader {
     return places;
   }
 
-  /// Templates of the survey's own document that no leg names: what is wrong there is odd, as it changes nothing.
+  /// Reads templates of the survey's own document that no leg uses. Faults there become warnings, as they have no effect.
   void read_unused_templates() {
     const auto all = [&](const char* element, const auto& read) {
       for (pugi::xml_node node = document_.document().root().child(element); node; node = node.next_sibling(element)) {
@@ -80,14 +80,14 @@ class LegReader {
   }
 
  private:
-  /// `<scannerSettings>`, with what goes elsewhere in the end.
+  /// `<scannerSettings>`, with values that are stored elsewhere later.
   struct LegScanner {
     LegScannerSettings settings{};
     std::optional<double> duration_max{};
     double vertical_resolution = 0, horizontal_resolution = 0;  // [rad]
   };
 
-  /// Returns its vertical resolution [rad].
+  /// Reads a leg. Returns its vertical resolution [rad].
   double read_leg(XmlInput& leg, LegSettings& settings) {
     std::optional<double> duration_max;
     leg.text("stripId", settings.strip);

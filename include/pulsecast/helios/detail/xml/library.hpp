@@ -22,8 +22,8 @@
 
 namespace pulsecast::helios {
 
-/// A document of a survey or of assets, with its elements by id. What it names is looked for in the assets folders, in the folder of the
-/// survey, and in its own.
+/// Document of a survey or of assets, with its elements by id. Search order of its files: the assets folders, the folder of the survey, its
+/// own folder.
 class XmlLibraryDocument {
  public:
   XmlLibraryDocument(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders, XmlReport& report)
@@ -46,13 +46,13 @@ class XmlLibraryDocument {
   [[nodiscard]] const XmlDocument& document() const noexcept { return document_; }
   [[nodiscard]] const AssetSearch& search() const noexcept { return search_; }
 
-  /// The element of a name and id; empty if there is none.
+  /// Element by name and id; empty if there is none.
   [[nodiscard]] pugi::xml_node find(std::string_view element, std::string_view id) const {
     const auto found = by_id_.find(key(element, id));
     return found == by_id_.end() ? pugi::xml_node() : found->second;
   }
 
-  /// All ids of elements of a name.
+  /// Ids of all elements of a name.
   [[nodiscard]] std::vector<std::string> ids(const char* element) const {
     std::vector<std::string> all;
     for (pugi::xml_node node = document_.root().child(element); node; node = node.next_sibling(element))
@@ -75,7 +75,7 @@ class XmlLibraryDocument {
   std::unordered_map<std::string, pugi::xml_node> by_id_;
 };
 
-/// An element that was referred to, and the document that it stands in; empty if it could not be found, which is then reported.
+/// Referenced element and its document; empty if it was not found, which is reported.
 struct XmlReference {
   const XmlLibraryDocument* document = nullptr;
   pugi::xml_node node{};
@@ -83,21 +83,21 @@ struct XmlReference {
   explicit operator bool() const noexcept { return document != nullptr; }
 };
 
-/// The documents that a survey refers to. Each is read once.
+/// Documents that a survey refers to. Each is read once.
 class XmlLibrary {
  public:
   static constexpr std::size_t max_documents = 256;
 
   XmlLibrary(std::vector<std::filesystem::path> folders, XmlReport& report) : folders_(std::move(folders)), report_(report) {}
 
-  /// The document of a path; throws if it cannot be read. What it holds beside known elements is reported.
+  /// Document of a path; throws if it is unreadable. Reports unknown elements.
   const XmlLibraryDocument& read(const std::filesystem::path& path) {
     auto& document = documents_[path.string()];
     if (!document) document = std::make_unique<XmlLibraryDocument>(path, folders_, report_);
     return *document;
   }
 
-  /// What an attribute refers to: `file.xml#id`, or `id` or `#id` for an element of the same document.
+  /// Resolves the reference of an attribute: `file.xml#id`, or `id` or `#id` for an element of the same document.
   [[nodiscard]] XmlReference find(const XmlInput& io, const XmlLibraryDocument& from, const char* attribute, const std::string& text,
                                   const char* element) {
     const std::size_t sign = text.find('#');

@@ -12,13 +12,13 @@
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// `<dmotion>` and what it holds.
+/// `<dmotion>` and its children.
 namespace pulsecast::helios::xml {
 
-/// Whether a motion's axis or normal has a direction.
+/// True if a motion's axis or normal has a direction.
 [[nodiscard]] inline bool has_direction(const Vec3& v) { return length(v) > 1e-9; }
 
-/// A motion's axis or normal.
+/// Axis or normal of a motion.
 template <class Io>
 void axis(Io& io, const char* name, Of<Io, Vec3>& v) {
   io.require({name});
@@ -39,7 +39,7 @@ inline MotionKind kind_of(const MotionSettings& motion) {
   return std::holds_alternative<RotoreflectionMotion>(motion.kind) ? MotionKind::rotoreflection : MotionKind::identity;
 }
 
-/// Makes a motion that is to be read one of a kind. Those that are identities stay what they were.
+/// Sets the kind of a motion before it is read. Identities keep their kind.
 inline void set_kind(MotionSettings& motion, MotionKind kind) {
   if (kind == MotionKind::translation) motion.kind = TranslationMotion{};
   if (kind == MotionKind::rotation || kind == MotionKind::helical) motion.kind = RotationMotion{};
@@ -47,7 +47,7 @@ inline void set_kind(MotionSettings& motion, MotionKind kind) {
   if (kind == MotionKind::rotoreflection) motion.kind = RotoreflectionMotion{};
 }
 
-/// A rotation; false if it does nothing, as its axis has no direction and its angle is 0.
+/// Rotation; false if it has no effect: the axis has no direction and the angle is 0.
 template <class Io>
 bool rotation_fields(Io& io, Of<Io, RotationMotion>& rotation, MotionKind kind) {
   axis(io, "axis", rotation.axis);

@@ -17,18 +17,18 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/vector.hpp>
 
-/// Numbers and units as documents have them.
+/// Numbers and units in documents.
 namespace pulsecast::helios {
 
-/// A unit that documents speak: so much times its number is SI, divided by so much.
+/// Unit of documents: SI value = number * `factor` / `divisor`.
 struct XmlUnit {
   const char* symbol = "";  ///< for messages
   double factor = 1;
-  double divisor = 1;  ///< so that 0.25 ns is the number nearest to 0.25e-9 s
+  double divisor = 1;  ///< makes 0.25 ns the number nearest to 0.25e-9 s
 
   [[nodiscard]] double si(double number) const noexcept { return number * factor / divisor; }
 
-  /// The number, as short as it can be so that `si` of it is the value again; the nearest if there is none.
+  /// Shortest number for which `si` gives the value again; the nearest if there is none.
   [[nodiscard]] double number(double value) const noexcept {
     const double about = value * divisor / factor;
     if (factor == 1 && divisor == 1) return value;
@@ -56,7 +56,7 @@ inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 
     nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", std::numbers::pi / 180};
 }  // namespace units
 
-/// A number as a text; without an exponent where that is legible.
+/// Number as text, without an exponent where that is legible.
 [[nodiscard]] inline std::string xml_number(double value) {
   if (value == 0) return "0";
   const double size = std::abs(value);
@@ -65,7 +65,7 @@ inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr};
 }
 
-/// The number that a text is, all of it, but for blanks around it.
+/// Parses a whole text as a number, except for blanks around it.
 [[nodiscard]] inline std::optional<double> number_of(std::string_view text) noexcept {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
@@ -76,7 +76,7 @@ inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 
   return value;
 }
 
-/// Three numbers with a separator between them; blanks may be several.
+/// Parses three numbers with a separator between them, and any number of blanks.
 [[nodiscard]] inline std::optional<Vec3> vector_of(std::string_view text, char separator, double size_max) {
   Vec3 found{};
   for (int i = 0; i < 3; ++i) {

@@ -18,11 +18,11 @@
 
 namespace pulsecast::helios {
 
-/// Words and what they stand for.
+/// Words with their values.
 template <class Value>
 using XmlWords = std::initializer_list<std::pair<std::string_view, Value>>;
 
-/// Writes an element: the same calls as `XmlInput`, the other way around.
+/// Writes an element, by the same calls as `XmlInput`.
 class XmlOutput {
  public:
   static constexpr bool reads = false;
@@ -31,7 +31,7 @@ class XmlOutput {
 
   [[nodiscard]] pugi::xml_node node() const noexcept { return node_; }
 
-  /// Infinity is not written: it stands for no limit, which is what a document says by silence.
+  /// Writes a number. Infinity is left out: no attribute means no limit.
   void number(const char* name, const double& value, const XmlUnit& unit, double /*low*/, double /*high*/) {
     if (std::isfinite(value)) put(name, "double", xml_number(unit.number(value)));
   }

@@ -9,7 +9,7 @@
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// `<platform>` and what it holds.
+/// `<platform>` and its children.
 namespace pulsecast::helios::xml {
 
 template <class Io>
@@ -29,7 +29,7 @@ void fields(Io& io, Of<Io, NoiseSettings>& noise) {
   }
 }
 
-/// The six noise elements, of a platform or of a survey; one replaces another.
+/// Six noise elements, of a platform or of a survey; a later one replaces an earlier one.
 template <class Io>
 void noise_fields(Io& io, Of<Io, PlatformSettings>& platform) {
   static constexpr std::array position{"positionXNoise", "positionYNoise", "positionZNoise"};
@@ -62,7 +62,7 @@ void fields(Io& io, Of<Io, PlatformSettings>& platform) {
                {"linearpath", PlatformKind::linear_path},
                {"multicopter", PlatformKind::multicopter},
                {"groundvehicle", PlatformKind::ground_vehicle}});
-  } else {  // what an interpolated platform stands on is no matter
+  } else {  // the base of an interpolated platform has no effect
     io.choice("type", platform.kind,
               {{"static", PlatformKind::stationary},
                {"linearpath", PlatformKind::linear_path},

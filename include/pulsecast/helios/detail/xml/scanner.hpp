@@ -20,7 +20,7 @@
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// `<scanner>` and what it holds.
+/// `<scanner>` and its children.
 namespace pulsecast::helios::xml {
 
 template <class Io>
@@ -65,7 +65,7 @@ void fields(Io& io, Of<Io, RisleyOptic>& optic) {
   direction(io, "incidentBeam", optic.incident_beam);
 }
 
-/// An empty one of the same kind as the other.
+/// Default optic of a kind.
 template <std::size_t... I>
 OpticSettings optic_of(std::size_t kind, std::index_sequence<I...>) {
   OpticSettings optic;
@@ -73,7 +73,7 @@ OpticSettings optic_of(std::size_t kind, std::index_sequence<I...>) {
   return optic;
 }
 
-/// `optics` and what belongs to it. With another kind than before, it begins anew.
+/// `optics` and its attributes. Another kind than before starts from defaults.
 template <class Io>
 void fields(Io& io, Of<Io, OpticSettings>& optic) {
   std::size_t kind = optic.index();
@@ -88,7 +88,7 @@ void fields(Io& io, Of<Io, OpticSettings>& optic) {
   }
 }
 
-/// Reports a formula that is none, or is no number between two values of its variable.
+/// Reports a formula that is invalid, or not finite between two values of its variable.
 inline void check_formula(const XmlInput& io, const char* name, const std::string& text, const char* variable, double low, double high) {
   constexpr int places = 256;
   try {
@@ -102,7 +102,7 @@ inline void check_formula(const XmlInput& io, const char* name, const std::strin
   }
 }
 
-/// An element with a formula, if there is one.
+/// Optional element with a formula.
 template <class Io, class More>
 void formula(Io& io, const char* name, Of<Io, std::string>& text, More more) {
   const auto all = [&](auto& inner) {
@@ -128,7 +128,7 @@ void fields(Io& io, Of<Io, ErrorFormulas>& errors) {
   formula(io, "rangeError", errors.range, nothing);
 }
 
-/// What the detector can, as a scanner, a channel and a survey say it.
+/// Attributes of a detector, of a scanner, a channel or a survey.
 template <class Io>
 void detector_fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("accuracy_m", channel.accuracy, units::metre, 0, 1e4);
@@ -136,7 +136,7 @@ void detector_fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("rangeMax_m", channel.range_max, units::metre, 0, any);
 }
 
-/// Reads the factor of the noise, once `detector_fields` have been.
+/// Reads the factor of the noise, after `detector_fields`.
 inline void range_noise(XmlInput& io, ChannelSettings& channel) {
   static constexpr const char* name = "distanceMeasurementError";
   io.text(name, channel.errors.range_noise);
@@ -151,7 +151,7 @@ inline void range_noise(XmlInput& io, ChannelSettings& channel) {
   }
 }
 
-/// All that may be said of a scanner or of each of its channels.
+/// Attributes of a scanner or of each of its channels.
 template <class Io>
 void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   fields(io, channel.optic);
@@ -166,7 +166,7 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("averagePower_w", channel.average_power, units::watt, 1e-12, 1e9);
   io.number("beamQualityFactor", channel.beam_quality, units::one, 0.1, 1e3);
   if constexpr (Io::reads)
-    if (channel.beam_quality == 1.0) channel.beam_quality.reset();  // the default of the format, which says nothing of the instrument
+    if (channel.beam_quality == 1.0) channel.beam_quality.reset();  // the default of the format does not describe the instrument
   io.number("wavelength_nm", channel.wavelength, units::nanometre, 100, 1e5);
   io.number("opticalEfficiency", channel.efficiency, units::one, 0, 1);
   io.number("receiverDiameter_m", channel.receiver_diameter, units::metre, 1e-6, 1e3);
@@ -176,7 +176,7 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("receivedEnergyMin_W", channel.received_power_min, units::nanowatt, 0, 1e12);
   io.child("FWFSettings", [&](auto& inner) { fields(inner, channel.waveform); });
   fields(io, channel.errors);
-  // Of ours: where the survey says it, it is in <detectorSettings>.
+  // Extension: a survey has it in <detectorSettings>.
   if constexpr (Io::reads) {
     range_noise(io, channel);
   } else if (!channel.errors.range_noise.empty()) {
@@ -184,7 +184,7 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   }
 }
 
-/// What cannot be, though each figure alone could.
+/// Checks limits against each other.
 inline void check(const XmlInput& io, ChannelSettings& channel) {
   if (!(channel.range_min < channel.range_max)) io.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
   if (channel.scan_frequency_max > 0 && channel.scan_frequency_max < channel.scan_frequency_min)
@@ -201,7 +201,7 @@ inline void check(const XmlInput& io, ChannelSettings& channel) {
     io.report().warn(io.place("optics"), "no prism has an angle: the beam stays where it is");
 }
 
-/// `pulseFreqs_Hz`: numbers with commas between them.
+/// `pulseFreqs_Hz`: numbers separated by commas.
 template <class Io>
 void pulse_rates(Io& io, Of<Io, std::vector<double>>& rates) {
   if constexpr (Io::reads) {

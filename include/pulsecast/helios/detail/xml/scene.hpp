@@ -22,7 +22,7 @@
 #include <pulsecast/helios/detail/xml/source.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// `<scene>`, its parts, and the filters that place them.
+/// `<scene>`, its parts, and their placing filters.
 namespace pulsecast::helios::xml {
 
 /// Writes the filters of a part or swap.
@@ -126,7 +126,7 @@ void fields(Io& io, Of<Io, SwapSettings>& swap) {
   }
 }
 
-/// Of a part, all but its geometry and id.
+/// Attributes and children of a part, except its geometry and id.
 template <class Io>
 void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
   io.whole("dynStep", part.dynamic_step, 1, 1'000'000'000);

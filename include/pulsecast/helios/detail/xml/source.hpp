@@ -15,7 +15,7 @@
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// The filters that load the geometry of a part.
+/// Filters that load the geometry of a part.
 namespace pulsecast::helios::xml {
 
 template <class Io>
@@ -26,7 +26,7 @@ void fields(Io& io, Of<Io, MaterialSource>& material) {
   io.number("randomRange", material.random_range, units::one, 0, 1e6);
 }
 
-/// `filepath`, `efilepath`, or, of ours, `filepaths` with `|` between them.
+/// `filepath`, `efilepath`, or, as an extension, `filepaths` with `|` between them.
 template <class Io>
 void files(Io& io, Of<Io, std::vector<std::filesystem::path>>& paths) {
   if constexpr (Io::reads) {

@@ -39,7 +39,7 @@ class SurveyReader {
   SurveyReader(const std::filesystem::path& path, const std::vector<std::filesystem::path>& assets, bool channel_files)
       : library_(folders(path, assets), report_), document_(library_.read(path)), channel_files_(channel_files) {}
 
-  /// The survey of the document. Throws `XmlFaults`.
+  /// Reads the survey of the document. Throws `XmlFaults`.
   [[nodiscard]] SurveySettings read() {
     const XmlDocument& document = document_.document();
     const pugi::xml_node node = document.root().child("survey");
@@ -57,15 +57,15 @@ class SurveyReader {
     return survey_;
   }
 
-  /// All elements of a name in the document.
+  /// Reads all elements of a name in the document.
   template <class Settings>
   void read_all(const char* element, std::vector<Settings>& values) {
     for (pugi::xml_node node = document_.document().root().child(element); node; node = node.next_sibling(element))
       asset({&document_, node}, values.emplace_back());
   }
 
-  [[nodiscard]] const std::vector<std::string>& leg_places() const noexcept { return leg_places_; }  ///< of the survey
-  [[nodiscard]] const std::string& place() const noexcept { return place_; }                         ///< of the survey
+  [[nodiscard]] const std::vector<std::string>& leg_places() const noexcept { return leg_places_; }  ///< per leg, of the survey
+  [[nodiscard]] const std::string& place() const noexcept { return place_; }                         ///< position of the survey
   [[nodiscard]] const XmlReport& report() const noexcept { return report_; }
 
  private:
@@ -149,7 +149,7 @@ class SurveyReader {
     return found;
   }
 
-  /// Channels without an id have their number as such.
+  /// Checks ids of channels; those without one have their number as id.
   void check_channel_ids(const XmlReference& scanner) {
     const XmlDocument& document = scanner.document->document();
     std::map<std::string, std::size_t> numbers;
@@ -192,7 +192,7 @@ class SurveyReader {
     io.child("scannerMount", [&](XmlInput& inner) { xml::fields(inner, survey_.platform.mount); });
   }
 
-  /// What a survey sets of the scanner, of all channels.
+  /// Reads the scanner overrides of a survey, for all channels.
   void read_overrides(XmlInput& io) {
     std::vector<ChannelSettings> none(1);
     std::vector<ChannelSettings>& channels = survey_.scanner.channels.empty() ? none : survey_.scanner.channels;
@@ -208,7 +208,7 @@ class SurveyReader {
     limit_bins(io);
   }
 
-  /// A pulse would fall between bins that are longer, and `FullWaveform` takes no more than so many in one.
+  /// Limits bins to the pulse length, as pulses would fall between longer ones, and a pulse to `WaveformSettings::max_samples` bins.
   void limit_bins(const XmlInput& io) {
     constexpr double most = WaveformSettings::max_samples;
     const pugi::xml_node own = io.node().child("FWFSettings");

@@ -19,7 +19,7 @@
 
 namespace pulsecast::helios::detail {
 
-/// Writes a document with a root.
+/// Writes a document with one root element.
 class DocumentWriter {
  public:
   DocumentWriter() {
@@ -64,7 +64,7 @@ inline void write_leg(XmlOutput& io, const LegSettings& leg) {
   io.child("scannerSettings", [&](XmlOutput& inner) { xml::fields(inner, leg.scanner); });
 }
 
-/// Gives what has no id one, so that it can be referred to.
+/// Gives settings without an id one for references.
 template <class Settings>
 Settings with_id(Settings settings, const char* id) {
   if (settings.id.empty()) settings.id = id;
