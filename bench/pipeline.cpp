@@ -129,7 +129,7 @@ void measure(Report& report, const std::string& name, const Source& source, cons
   if (go(survey_of(known, FullWaveform{})) != sum) std::printf("%s gives other echoes by its known hits\n", prefix.c_str()), std::exit(1);
 
   const auto whole = survey_of(scene, FullWaveform{});
-  const Traced traced{*std::get<0>(scene.parts()[0].geometry), known};
+  const Traced traced{*scene.parts()[0].geometry, known};
   Stages stages;
   add_sources(source, sources, stages);
   stages.add("rays", [&, survey = survey_of(nothing, Blind{})] { keep(go(survey)); });

@@ -43,7 +43,7 @@ template <class Mesh>
 [[nodiscard]] MeshData flattened(const Scene<Mesh>& scene) {
   MeshData all;
   for (const auto& part : scene.parts()) {
-    const Mesh& mesh = *std::get<0>(part.geometry);
+    const Mesh& mesh = *part.geometry;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       const Triangle t = mesh.triangle(static_cast<PrimitiveIndex>(i));
       const auto first = static_cast<std::uint32_t>(all.vertices.size());

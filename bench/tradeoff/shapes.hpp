@@ -47,7 +47,7 @@ template <class Other, class Function>
   std::map<const void*, std::shared_ptr<const Other>> made;
   std::vector<typename Scene<Other>::Part> parts;
   for (const auto& part : scene.parts()) {
-    const auto& mesh = std::get<0>(part.geometry);
+    const auto& mesh = part.geometry;
     auto& other = made[mesh.get()];
     if (!other) other = std::make_shared<const Other>(function(data_of(*mesh)));
     parts.push_back({other, part.materials, part.placement, part.object});

@@ -19,7 +19,8 @@ struct Cloud {
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
       for (const Echo& echo : batch.echoes_of(shot)) {
-        points.push_back(point_of(shot, echo));
+        const Vec3 point = point_of(shot, echo);
+        points.push_back(point);
         echoes.push_back(echo);
         pulses.push_back(shot.index);
         ticks.push_back(shot.tick);

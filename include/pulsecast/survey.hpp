@@ -63,7 +63,7 @@ class Survey {
     Laser laser;  ///< laser of `budget` and `directions`
     LinkBudget budget;
     SubrayDirections directions;
-    std::vector<Hit> hits;                ///< hits of a bundle
+    std::array<Hit, RayBundle::capacity> hits;  ///< hits of a bundle
     std::vector<Reflection> reflections;  ///< reflections of a pulse, with room for all subrays
     std::vector<SubrayHit> subrays;       ///< all of a pulse, if recorded
     decltype(std::declval<const Instrument&>().workspace(0)) detector;
@@ -81,7 +81,7 @@ class Survey {
     Workspace w{laser,
                 {receiver_, laser},
                 {column, column, column, column, std::vector<Vec3>(n)},
-                std::vector<Hit>(RayBundle::capacity),
+                {},
                 std::vector<Reflection>(n),
                 std::vector<SubrayHit>(recorded_subrays()),
                 detector_.workspace(n)};

@@ -20,7 +20,7 @@ const hills::Scene& valley() {
   return scene;
 }
 
-const hills::Mesh& mesh_of(const hills::Scene::Part& part) { return *std::get<0>(part.geometry); }
+const hills::Mesh& mesh_of(const hills::Scene::Part& part) { return *part.geometry; }
 
 /// What a plumb line meets at a place relative to the middle; `height` is of what is met [m].
 struct Met {

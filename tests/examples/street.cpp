@@ -22,7 +22,7 @@ const street::Scene& town() {
   return scene;
 }
 
-const street::Mesh& mesh_of(const street::Scene::Part& part) { return *std::get<0>(part.geometry); }
+const street::Mesh& mesh_of(const street::Scene::Part& part) { return *part.geometry; }
 
 std::vector<Vec3> corners(const street::Mesh& mesh) {
   std::vector<Vec3> all;

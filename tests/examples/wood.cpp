@@ -28,7 +28,7 @@ const wood::Scene& second_wood() {
   return scene;
 }
 
-const wood::Mesh& mesh_of(const wood::Scene::Part& part) { return *std::get<0>(part.geometry); }
+const wood::Mesh& mesh_of(const wood::Scene::Part& part) { return *part.geometry; }
 
 std::vector<Vec3> corners(const wood::Mesh& mesh) {
   std::vector<Vec3> all;

@@ -159,8 +159,8 @@ TEST_CASE_TEMPLATE("a scene from its cache is met in every bit as the one that w
   CHECK(differences(scene, *opened.scene, met) == 0);
   CHECK(met > 1000);
   CHECK(opened.scene->bounds() == scene.bounds());
-  const auto shape = [](const S& s) { return std::get<0>(s.parts()[0].geometry); };
-  CHECK(shape(*opened.scene)->memory() == shape(scene)->memory());
+  const auto memory = [](const S& s) { return visit_shape([](const auto& shape) { return shape->memory(); }, s.parts()[0].geometry); };
+  CHECK(memory(*opened.scene) == memory(scene));
 }
 
 TEST_CASE("every word about a part comes back, for several shapes in one scene") {

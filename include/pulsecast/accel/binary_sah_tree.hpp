@@ -47,11 +47,12 @@ class BinarySahTree {
     const std::size_t grain = threads == 1 ? primitives.size() : std::max<std::size_t>(primitives.size() / (8 * threads), 4096);
     std::vector<Step> steps{{{0, static_cast<std::uint32_t>(primitives.size()), 0, false, &root_, bounds(threads)}}};
     std::vector<std::size_t> subtrees;
-    std::vector<ChunkBins> space(1);
+    const SharedBuffer<ChunkBins> space(threads == 1 ? 1 : chunk_count(primitives.size()));
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (steps[i].task.size() <= grain) {
-        const auto larger = [&](std::size_t a, std::size_t b) { return steps[a].task.size() > steps[b].task.size(); };
-        subtrees.insert(std::upper_bound(subtrees.begin(), subtrees.end(), i, larger), i);  // largest first
+        subtrees.push_back(i);
+        for (std::size_t k = subtrees.size() - 1; k > 0 && steps[subtrees[k - 1]].task.size() < steps[i].task.size(); --k)
+          std::swap(subtrees[k - 1], subtrees[k]);  // largest first
         continue;
       }
       const auto halves = split(steps[i].task, space, threads);
@@ -60,8 +61,7 @@ class BinarySahTree {
     }
     for_each_index(subtrees.size(), threads, [&](std::size_t i) {
       Step& step = steps[subtrees[i]];
-      std::vector<ChunkBins> own(1);
-      step.sums = build(step.task, own);
+      step.sums = build(step.task, SharedBuffer<ChunkBins>(1));
     });
     for (std::size_t i = steps.size(); i-- > 0;)
       if (const std::size_t halves = steps[i].halves; halves > 0) {
@@ -80,12 +80,21 @@ class BinarySahTree {
   /// True if the collapsed tree has a leaf here.
   [[nodiscard]] bool leaf(const Range& range) const noexcept { return range.middle == 0 || nodes_[range.middle].leaf; }
 
+  /// Children of a node of the collapsed tree.
+  struct Children {
+    std::array<Range, places> ranges;
+    std::size_t count = 0;
+  };
+
   /// Appends the children that this range contributes when given `given` of its parent's eight slots.
-  void gather(const Range& range, std::size_t given, std::vector<Range>& children) const {
+  void gather(const Range& range, std::size_t given, Children& children) const {
     const std::uint8_t left = given > 1 && range.middle != 0 ? nodes_[range.middle].left[given - 2] : 0;
-    if (left == 0) return children.push_back(range);
-    gather(first(range), left, children);
-    gather(second(range), given - left, children);
+    if (left == 0) {
+      children.ranges[children.count++] = range;
+    } else {
+      gather(first(range), left, children);
+      gather(second(range), given - left, children);
+    }
   }
 
  private:
@@ -154,7 +163,7 @@ class BinarySahTree {
   };
 
   [[nodiscard]] Bounds bounds(unsigned threads) const {
-    std::vector<Bounds> all(chunk_count(primitives_.size()));
+    const SharedBuffer<Bounds> all(chunk_count(primitives_.size()));
     for_each_chunk(primitives_.size(), threads, [&](std::size_t i, std::size_t begin, std::size_t end) {
       Bounds own;
       for (std::size_t at = begin; at < end; ++at) own.extend(primitives_[at]);
@@ -169,7 +178,7 @@ class BinarySahTree {
   [[nodiscard]] Boxed<Real>* array(bool spare) const noexcept { return spare ? spare_.data() : primitives_.data(); }
 
   /// Builds and plans a subtree.
-  Sums build(const Task& task, std::vector<ChunkBins>& space) {
+  Sums build(const Task& task, const SharedBuffer<ChunkBins>& space) {
     if (task.size() > 2) {
       const auto [first, second] = split(task, space, 1);
       const Sums of_first = build(first, space), of_second = build(second, space);
@@ -189,11 +198,10 @@ class BinarySahTree {
   }
 
   /// Splits a node of three or more primitives. Both halves keep enough levels for halving down to single primitives.
-  std::array<Task, 2> split(const Task& task, std::vector<ChunkBins>& space, unsigned threads) {
+  std::array<Task, 2> split(const Task& task, const SharedBuffer<ChunkBins>& space, unsigned threads) {
     const Boxed<Real>* const from = array(task.spare) + task.begin;
     if (threads == 1 || task.size() <= 2 * chunk_size) threads = 1;
     const std::size_t parts = threads == 1 ? 1 : chunk_count(task.size());
-    space.resize(std::max(space.size(), parts));
     const auto each_part = [&](const auto& act) {
       if (threads == 1) return act(space[0], from, from + task.size());
       for_each_chunk(task.size(), threads,

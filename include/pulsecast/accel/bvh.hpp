@@ -202,40 +202,38 @@ class Bvh {
     nodes_ = all, primitives_ = primitives, depth_ = depth;
   }
 
-  /// Fills the reserved node of `top` and makes its subtree. Ranges of at most `grain` primitives go to `below` instead. Returns the depth.
-  static std::size_t make_nodes(const BinaryTree& binary, const Open& top, std::vector<Node>& nodes,
+  /// Fills the reserved node `open.node` and makes its subtree. Ranges of at most `grain` primitives go to `below` instead. Returns the
+  /// depth.
+  static std::size_t make_nodes(const BinaryTree& binary, const Open& open, std::vector<Node>& nodes,
                                 const SharedBuffer<PrimitiveIndex>& primitives, std::size_t& next, std::size_t grain,
                                 std::vector<Open>& below) {
-    std::size_t depth = 0;
-    std::vector<Open> tasks{top};
-    std::vector<typename BinaryTree::Range> children;
-    while (!tasks.empty()) {
-      const Open task = tasks.back();
-      tasks.pop_back();
-      if (task.range.size() <= grain) {
-        below.push_back(task);
-        continue;
-      }
-      children.clear();
-      binary.gather(task.range, places, children);
-      Node node;
-      node.children = static_cast<std::uint32_t>(nodes.size()), node.primitives = static_cast<std::uint32_t>(next);
-      node.boxes.begin(binary.box(task.range));
-      for (std::size_t place = 0; place < children.size(); ++place) {
-        const auto& child = children[place];
-        node.boxes.add(binary.box(child));
-        if (binary.leaf(child)) {
-          node.kinds[place] = static_cast<std::uint8_t>((next - node.primitives) << 3U | child.size());
-          for (std::uint32_t i = child.begin; i < child.end; ++i) primitives[next++] = binary.primitives()[i].primitive;
-        } else {
-          node.kinds[place] = static_cast<std::uint8_t>((nodes.size() - node.children) << 3U);
-          tasks.push_back({child, static_cast<std::uint32_t>(nodes.size()), task.depth + 1});
-          nodes.emplace_back();
-        }
-      }
-      nodes[task.node] = node;
-      depth = std::max<std::size_t>(depth, task.depth);
+    if (open.range.size() <= grain) {
+      below.push_back(open);
+      return 0;
     }
+    typename BinaryTree::Children children;
+    binary.gather(open.range, places, children);
+    Node node;
+    node.children = static_cast<std::uint32_t>(nodes.size()), node.primitives = static_cast<std::uint32_t>(next);
+    node.boxes.begin(binary.box(open.range));
+    std::uint32_t inner = 0;
+    for (std::size_t place = 0; place < children.count; ++place) {
+      const auto& child = children.ranges[place];
+      node.boxes.add(binary.box(child));
+      if (binary.leaf(child)) {
+        node.kinds[place] = static_cast<std::uint8_t>((next - node.primitives) << 3U | child.size());
+        for (std::uint32_t i = child.begin; i < child.end; ++i) primitives[next++] = binary.primitives()[i].primitive;
+      } else {
+        node.kinds[place] = static_cast<std::uint8_t>(inner++ << 3U);
+      }
+    }
+    nodes[open.node] = node;
+    nodes.resize(nodes.size() + inner);
+    std::size_t depth = open.depth;
+    for (std::size_t place = children.count; place-- > 0;)
+      if (node.size(place) == 0)
+        depth = std::max(
+            depth, make_nodes(binary, {children.ranges[place], node.first(place), open.depth + 1}, nodes, primitives, next, grain, below));
     return depth;
   }
 

@@ -172,7 +172,7 @@ struct BuildInput {
       Box bounds;
       std::size_t first = 0, met = 0;  // index of the first in `primitives`, and count
     };
-    std::vector<ChunkBounds> all(chunk_count(boxes.size()));
+    const SharedBuffer<ChunkBounds> all(chunk_count(boxes.size()));
     for_each_chunk(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
       ChunkBounds own;
       boxes.for_each(begin, end, [&](std::size_t, const Box& box) {

@@ -122,8 +122,10 @@ class FullWaveform {
       }
     }
     keep_echoes(s_, w.peaks);
-    for (const Peak& peak : w.peaks)
-      w.echoes.push_back(echo_of(peak, reflections, shape, noisy ? EchoTiming::peak : s_.timing, w.echoes.size() + 1));
+    for (const Peak& peak : w.peaks) {
+      const Echo echo = echo_of(peak, reflections, shape, noisy ? EchoTiming::peak : s_.timing, w.echoes.size() + 1);
+      w.echoes.push_back(echo);
+    }
     return {w.echoes, w.record, record_start * s_.sample_interval};
   }
 
@@ -145,7 +147,8 @@ class FullWaveform {
     const auto [offset, height] = vertex(&y[top]);
     if (height < s_.threshold) return true;
     const double time = (before - 2 + static_cast<double>(top) + offset) * s_.sample_interval;
-    echoes.push_back(group.echo(time, height, s_.timing));
+    const Echo echo = group.echo(time, height, s_.timing);
+    echoes.push_back(echo);
     return true;
   }
 

@@ -289,7 +289,7 @@ class SceneBuilder {
   }
 
   static Box box_of(const SurveyPart& part) {
-    return std::visit([&](const auto& shape) { return part.placement.box(shape->bounds()); }, part.geometry);
+    return visit_shape([&](const auto& shape) { return part.placement.box(shape->bounds()); }, part.geometry);
   }
 
   void stand_on_ground(std::vector<SurveyPart>& all, const std::vector<int>& lifted) {

@@ -10,6 +10,7 @@
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -124,7 +125,7 @@ class LatticeFootprint {
       double multiple;
       std::size_t number;
     };
-    std::vector<Column> columns(subrays);
+    const SharedBuffer<Column> columns(subrays);
     for (std::size_t j = 0; j < subrays; ++j) {
       const double m = (static_cast<double>(j) + 0.5) * 0.5 * (std::sqrt(5.0) - 1);
       columns[j] = {m - std::floor(m), j};

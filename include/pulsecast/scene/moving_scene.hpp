@@ -78,7 +78,7 @@ class MovingScene {
   };
 
   static Box bounds_of(const Part& part) noexcept {
-    return std::visit([](const auto& shape) noexcept { return shape->bounds(); }, part.geometry);
+    return visit_shape([](const auto& shape) noexcept { return shape->bounds(); }, part.geometry);
   }
 
   static std::vector<Mover> movers(std::span<const Part> parts) {

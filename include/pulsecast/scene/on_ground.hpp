@@ -89,7 +89,7 @@ template <Geometry... Shapes>
     if (!shape) throw SettingError("Part::geometry (number)", 0, "", "1");
     return lift_onto_ground(*shape, part.placement, ground, ground_placement);
   };
-  const std::optional<double> lift = std::visit(lift_of, part.geometry);
+  const std::optional<double> lift = visit_shape(lift_of, part.geometry);
   if (!lift) return std::nullopt;
   part.placement.translation.z += *lift;
   return part;

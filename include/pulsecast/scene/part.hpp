@@ -91,10 +91,31 @@ using MaterialTable = std::shared_ptr<const std::vector<Material>>;
   return table;
 }
 
+/// Shared shape of one of several kinds.
+template <Geometry... Shapes>
+struct SharedShape {
+  using type = std::variant<std::shared_ptr<const Shapes>...>;
+};
+/// Shared shape of the only kind: a variant of one would take a twentieth of the time to compile a scene.
+template <Geometry Shape>
+struct SharedShape<Shape> {
+  using type = std::shared_ptr<const Shape>;
+};
+
+/// Calls `visitor` with the shared pointer to a part's shape.
+template <class Visitor, class Shape>
+constexpr decltype(auto) visit_shape(const Visitor& visitor, const std::shared_ptr<const Shape>& geometry) {
+  return visitor(geometry);
+}
+template <class Visitor, class... Pointers>
+constexpr decltype(auto) visit_shape(const Visitor& visitor, const std::variant<Pointers...>& geometry) {
+  return std::visit(visitor, geometry);
+}
+
 /// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
-  std::variant<std::shared_ptr<const Shapes>...> geometry;
+  typename SharedShape<Shapes...>::type geometry;  ///< shared pointer to the shape; a variant of them for several kinds
   MaterialTable materials = material_table();
   Similarity placement{};
   ObjectId object = 0;                         ///< object id of its points

@@ -10,10 +10,10 @@
 #include <span>
 #include <unordered_set>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/scene/part.hpp>
 
 namespace pulsecast {
@@ -47,7 +47,7 @@ class Scene {
     std::unordered_set<const void*> counted;
     for (const Part& part : parts_) {
       bytes += detail::heap_bytes(part.name);
-      std::visit([&](const auto& shape) { bytes += counted.insert(shape.get()).second ? shape->memory() : 0; }, part.geometry);
+      visit_shape([&](const auto& shape) { bytes += counted.insert(shape.get()).second ? shape->memory() : 0; }, part.geometry);
       if (!counted.insert(part.materials.get()).second) continue;
       bytes += sizeof(*part.materials) + part.materials->capacity() * sizeof(Material);
       for (const Material& material : *part.materials) {
@@ -84,7 +84,6 @@ class Scene {
 
   /// Refuses moving parts, or leaves them out of the index.
   Scene(std::vector<Part> parts, Motions motions) : parts_(placed(std::move(parts))), index_(boxes(parts_, motions), 0, 1) {
-    parts_.shrink_to_fit();
     alone_ = parts_.size() == 1 && !parts_[0].motion;
   }
 
@@ -93,20 +92,19 @@ class Scene {
     return parts;
   }
 
-  static std::vector<Box> boxes(const std::vector<Part>& parts, Motions motions) {
-    std::vector<Box> boxes;
-    boxes.reserve(parts.size());
-    for (const Part& part : parts) {
+  static SharedBuffer<Box> boxes(const std::vector<Part>& parts, Motions motions) {
+    const SharedBuffer<Box> boxes(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const Part& part = parts[i];
       if (part.motion && motions == Motions::refused)
-        throw SettingError("Part::motion (number)", 1, "", "0 in a Scene; a MovingScene moves parts");
-      boxes.push_back(std::visit(
-          [&](const auto& shape) {
-            if (!shape) throw SettingError("Part::geometry (number)", 0, "", "1");
-            const double materials = part.materials ? static_cast<double>(part.materials->size()) : 0;
-            require_within("Part::materials (number)", materials, static_cast<double>(shape->material_count()), 4294967295.0, "");
-            return part.motion ? Box{} : part.placement.box(shape->bounds());
-          },
-          part.geometry));
+        throw_setting_error("Part::motion (number)", 1, "", "0 in a Scene; a MovingScene moves parts");
+      const auto box_of = [&](const auto& shape) {
+        if (!shape) throw_setting_error("Part::geometry (number)", 0, "", "1");
+        const double materials = part.materials ? static_cast<double>(part.materials->size()) : 0;
+        require_within("Part::materials (number)", materials, static_cast<double>(shape->material_count()), 4294967295.0, "");
+        return part.motion ? Box{} : part.placement.box(shape->bounds());
+      };
+      boxes[i] = visit_shape(box_of, part.geometry);
     }
     return boxes;
   }
@@ -128,13 +126,13 @@ class Scene {
     const Part& part = parts_[nearest.part_of(0)];
     const RayBundle local = part.placement.to_local(rays);
     const auto material = [&](const auto& shape) noexcept { return shape->surface(nearest.primitive_of(0), local, 0).material; };
-    return (*part.materials)[std::visit(material, part.geometry)];
+    return (*part.materials)[visit_shape(material, part.geometry)];
   }
 
   void closest_in(std::size_t part, const Similarity& placement, const RayBundle& rays, ClosestHits& nearest) const noexcept {
     nearest.part = std::uint64_t{part} << 32;
     const auto closest = [&](const RayBundle& local) noexcept {
-      std::visit([&](const auto& shape) noexcept { shape->closest(local, nearest); }, parts_[part].geometry);
+      visit_shape([&](const auto& shape) noexcept { shape->closest(local, nearest); }, parts_[part].geometry);
     };
     placement.identity() ? closest(rays) : closest(placement.to_local(rays));
   }
@@ -160,7 +158,7 @@ class Scene {
               .classification = material.classification,
               .flat = detail::flat<Shape>};
     };
-    return std::visit(look, part.geometry);
+    return visit_shape(look, part.geometry);
   }
 
   /// `placement_of(i)` returns the placement of part i.
