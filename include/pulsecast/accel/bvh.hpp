@@ -36,7 +36,8 @@ class Bvh {
   explicit Bvh(const detail::BoxRangeRef& boxes, unsigned threads = 0, std::uint32_t leaf_size = 4) {
     require_within("Bvh::leaf_size", leaf_size, 1, 7, "");
     detail::BuildInput<Real> input(boxes, threads);
-    bounds_ = input.bounds, centre_ = input.centre;
+    bounds_ = input.bounds;
+    centre_ = input.centre;
     if (input.primitives.empty()) return;
     const BinaryTree binary(input.primitives, leaf_size, threads);
     collapse(binary, threads);
@@ -180,7 +181,10 @@ class Bvh {
       std::size_t first_node = 0, first_primitive = 0, depth = 0;
     };
     std::vector<Subtree> subtrees(below.size());
-    for (std::size_t i = 0; i < below.size(); ++i) subtrees[i].first_primitive = next, next += below[i].range.size();
+    for (std::size_t i = 0; i < below.size(); ++i) {
+      subtrees[i].first_primitive = next;
+      next += below[i].range.size();
+    }
     for_each_index(below.size(), threads, [&](std::size_t i) {
       Subtree& own = subtrees[i];
       own.nodes.resize(1);
@@ -189,7 +193,11 @@ class Bvh {
       own.depth = make_nodes(binary, {below[i].range, 0, below[i].depth}, own.nodes, primitives, at, 0, none);
     });
     std::size_t nodes = upper.size();
-    for (Subtree& own : subtrees) own.first_node = nodes, nodes += own.nodes.size() - 1, depth = std::max(depth, own.depth);
+    for (Subtree& own : subtrees) {
+      own.first_node = nodes;
+      nodes += own.nodes.size() - 1;
+      depth = std::max(depth, own.depth);
+    }
     const SharedBuffer<Node> all(nodes);
     std::copy(upper.begin(), upper.end(), all.begin());
     for_each_index(subtrees.size(), threads, [&](std::size_t i) {  // the first node of a subtree takes its reserved slot
@@ -199,7 +207,9 @@ class Bvh {
         node.children += static_cast<std::uint32_t>(own.first_node - 1);
       }
     });
-    nodes_ = all, primitives_ = primitives, depth_ = depth;
+    nodes_ = all;
+    primitives_ = primitives;
+    depth_ = depth;
   }
 
   /// Fills the reserved node of `top` and makes its subtree. Ranges of at most `grain` primitives go to `below` instead. Returns the depth.
@@ -219,7 +229,8 @@ class Bvh {
       children.clear();
       binary.gather(task.range, places, children);
       Node node;
-      node.children = static_cast<std::uint32_t>(nodes.size()), node.primitives = static_cast<std::uint32_t>(next);
+      node.children = static_cast<std::uint32_t>(nodes.size());
+      node.primitives = static_cast<std::uint32_t>(next);
       node.boxes.begin(binary.box(task.range));
       for (std::size_t place = 0; place < children.size(); ++place) {
         const auto& child = children[place];
