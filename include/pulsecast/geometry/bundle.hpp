@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -70,7 +71,7 @@ struct RayBundle : BundleOrigin {
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
     const Column* const columns[] = {&x, &y, &z};
     if (size == 1) {
-      const auto number = [](double d, double otherwise) noexcept { return d == d ? d : otherwise; };
+      const auto number = [](double d, double otherwise) noexcept { return std::isnan(d) ? otherwise : d; };
       constexpr double infinity = std::numeric_limits<double>::infinity();
       least = {number(x[0], infinity), number(y[0], infinity), number(z[0], infinity)};
       most = {number(x[0], -infinity), number(y[0], -infinity), number(z[0], -infinity)};

@@ -298,9 +298,8 @@ class RayInterval {
     put(1, o - outwards, slowness * Axes(1 + tolerance));
     for (std::size_t k = 0; k < 3; ++k) upper_[k] = direction[k] < 0 ? 1 : 0;
     const Axes both = o + direction;
-    const double sum = both[0] + both[1] + both[2];
-    near_ =
-        sum - sum == 0 ? static_cast<Real>(ray.near * (1 - tolerance)) : std::numeric_limits<Real>::infinity();  // an invalid ray misses
+    const bool is_valid = std::isfinite(both[0] + both[1] + both[2]);  // infinity and NaN survive sums; an invalid ray misses
+    near_ = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) : std::numeric_limits<Real>::infinity();
   }
 
   /// Largest range at which the ray can still find a closer hit.
