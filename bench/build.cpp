@@ -46,7 +46,8 @@ template <class Shape>
 void check(const std::string& name, const Shape& shape, const MeshData& mesh) {
   const Bundles some = incoherent_rays(bounds_of(mesh), 32);
   if (answers(shape, some) == answers(TriangleMesh<Linear<>>(mesh), some)) return;
-  std::printf("%s DIFFERS from Linear\n", name.c_str()), std::exit(1);
+  std::printf("%s DIFFERS from Linear\n", name.c_str());
+  std::exit(1);
 }
 
 /// On so many threads, if it can be told.
@@ -64,7 +65,8 @@ Entrant ours(const std::string& name, const MeshData& mesh, unsigned threads) {
             MeshData data = mesh;  // the mesh takes it over: a copy is not its cost
             const double wall = wall_seconds(), processor = process_seconds();
             const Shape made = build<Shape>(std::move(data), threads);
-            self.wall.push_back(wall_seconds() - wall), self.processor.push_back(process_seconds() - processor);
+            self.wall.push_back(wall_seconds() - wall);
+            self.processor.push_back(process_seconds() - processor);
             if (self.bytes == 0) check(self.name, made, mesh);
             self.bytes = static_cast<double>(made.memory());
           }};
@@ -85,8 +87,10 @@ void add_embree(std::vector<Entrant>& all, const std::string& name, const MeshDa
   for (unsigned threads = 1; threads <= most; threads = threads == most ? most + 1 : most)
     all.push_back({name + "/" + std::to_string(threads), [&mesh, quality, threads](Entrant& self) {
                      const EmbreeMesh made(mesh, quality, false, threads);
-                     self.wall.push_back(made.build_wall_seconds()), self.processor.push_back(made.build_seconds());
-                     self.bytes = made.bytes(), self.max_bytes = made.max_bytes();
+                     self.wall.push_back(made.build_wall_seconds());
+                     self.processor.push_back(made.build_seconds());
+                     self.bytes = made.bytes();
+                     self.max_bytes = made.max_bytes();
                    }});
 }
 #endif
@@ -134,7 +138,8 @@ int main(int count, char** words) {
       Raster copy = raster;
       const double start = wall_seconds();
       const HeightField field(std::move(copy));
-      times.push_back(wall_seconds() - start), bytes = field.memory();
+      times.push_back(wall_seconds() - start);
+      bytes = field.memory();
     }
     const double triangles = 2 * 866.0 * 866.0;
     report.heading("the same hills as a raster");

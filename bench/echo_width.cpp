@@ -76,7 +76,8 @@ void compare(const char* name, const Source& source, const wood::Scene& scene) {
     REQUIRE(echoes[k] == echoes[k / 3 * 3]);
     std::array<double, rounds> ratios{};
     for (std::size_t round = 0; round < rounds; ++round) ratios[round] = times[k][round] / times[k / 3 * 3][round];
-    std::sort(times[k].begin(), times[k].end()), std::sort(ratios.begin(), ratios.end());
+    std::sort(times[k].begin(), times[k].end());
+    std::sort(ratios.begin(), ratios.end());
     std::printf("  %-18s %7.2f us a pulse, ratio %.2f\n", names[k], times[k][rounds / 2] / static_cast<double>(source.size()) * 1e6,
                 ratios[rounds / 2]);
   }

@@ -45,13 +45,19 @@ class EmbreeMesh {
     rtcReleaseGeometry(geometry);
     const double start = process_seconds(), start_wall = wall_seconds();
     rtcCommitScene(scene_);
-    build_seconds_ = process_seconds() - start, build_wall_seconds_ = wall_seconds() - start_wall;
-    if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
-      std::fprintf(stderr, "Embree fails with error %d\n", static_cast<int>(error)), std::exit(1);
+    build_seconds_ = process_seconds() - start;
+    build_wall_seconds_ = wall_seconds() - start_wall;
+    if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE) {
+      std::fprintf(stderr, "Embree fails with error %d\n", static_cast<int>(error));
+      std::exit(1);
+    }
   }
   EmbreeMesh(const EmbreeMesh&) = delete;
   EmbreeMesh& operator=(const EmbreeMesh&) = delete;
-  ~EmbreeMesh() { rtcReleaseScene(scene_), rtcReleaseDevice(device_); }
+  ~EmbreeMesh() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
 
   [[nodiscard]] RTCScene scene() const noexcept { return scene_; }
   [[nodiscard]] double build_seconds() const noexcept { return build_seconds_; }            ///< of the processor, all threads [s]
@@ -124,11 +130,18 @@ class EmbreeRays {
     sizes_.push_back(std::min(Width, rays.size - first));
     for (std::size_t k = 0; k < Width; ++k) {
       const std::size_t j = std::min(first + k, rays.size - 1);
-      lane(packet.org_x, k) = static_cast<float>(rays.origin.x), lane(packet.dir_x, k) = static_cast<float>(rays.x[j]);
-      lane(packet.org_y, k) = static_cast<float>(rays.origin.y), lane(packet.dir_y, k) = static_cast<float>(rays.y[j]);
-      lane(packet.org_z, k) = static_cast<float>(rays.origin.z), lane(packet.dir_z, k) = static_cast<float>(rays.z[j]);
-      lane(packet.tnear, k) = static_cast<float>(rays.near), lane(packet.tfar, k) = static_cast<float>(rays.far);
-      lane(packet.time, k) = 0, lane(packet.mask, k) = ~0U, lane(packet.id, k) = 0, lane(packet.flags, k) = 0;
+      lane(packet.org_x, k) = static_cast<float>(rays.origin.x);
+      lane(packet.dir_x, k) = static_cast<float>(rays.x[j]);
+      lane(packet.org_y, k) = static_cast<float>(rays.origin.y);
+      lane(packet.dir_y, k) = static_cast<float>(rays.y[j]);
+      lane(packet.org_z, k) = static_cast<float>(rays.origin.z);
+      lane(packet.dir_z, k) = static_cast<float>(rays.z[j]);
+      lane(packet.tnear, k) = static_cast<float>(rays.near);
+      lane(packet.tfar, k) = static_cast<float>(rays.far);
+      lane(packet.time, k) = 0;
+      lane(packet.mask, k) = ~0U;
+      lane(packet.id, k) = 0;
+      lane(packet.flags, k) = 0;
     }
   }
 

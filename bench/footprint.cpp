@@ -37,7 +37,8 @@ Cost cost(const Pattern& footprint, const Map& map, double waist_diameter) {
   Cost best;
   for (int time = 0; time < 5; ++time) {
     const RunSummary summary = run(survey, {.threads = 1});
-    best.seconds = std::min(best.seconds, summary.seconds), best.echoes = summary.echoes;
+    best.seconds = std::min(best.seconds, summary.seconds);
+    best.echoes = summary.echoes;
   }
   return best;
 }

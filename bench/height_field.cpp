@@ -40,7 +40,8 @@ using Pulses = std::vector<RayBundle>;
 RayBundle pulse(const Vec3& place, const Rotation& aim, std::size_t subrays) {
   const SunflowerFootprint footprint(subrays);
   RayBundle rays;
-  rays.origin = place, rays.size = subrays;
+  rays.origin = place;
+  rays.size = subrays;
   for (std::size_t j = 0; j < subrays; ++j) rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.3_mrad));
   rays.pad();
   return rays;
@@ -108,7 +109,10 @@ void measure(const char* what, const HeightField& field, const TriangleMesh<>* m
   std::printf("%-14s bundles of %2zu: %7.3f million rays/s", what, all[0].size, rays / median(of_field));
   if (mesh) std::printf(", mesh %7.3f, mesh's time over the field's %5.2f", rays / median(of_mesh), median(ratios));
   std::printf("\n");
-  if (mesh && sum != expected) std::printf("the two DIFFER: %.17g, mesh %.17g\n", sum, expected), std::exit(1);
+  if (mesh && sum != expected) {
+    std::printf("the two DIFFER: %.17g, mesh %.17g\n", sum, expected);
+    std::exit(1);
+  }
 }
 
 void measure_all(const HeightField& field, const TriangleMesh<>* mesh) {

@@ -99,7 +99,10 @@ std::size_t checked(const Cars& scene, const std::vector<RayBundle>& all) {
   std::size_t met = 0;
   for (std::size_t i = 0; i < all.size(); i += all.size() / 200) {
     std::vector<Cars::Part> still(scene.parts().begin(), scene.parts().end());
-    for (std::size_t k = 0; k < still.size(); ++k) still[k].placement = scene.placement(k, all[i].tick), still[k].motion = nullptr;
+    for (std::size_t k = 0; k < still.size(); ++k) {
+      still[k].placement = scene.placement(k, all[i].tick);
+      still[k].motion = nullptr;
+    }
     std::array<Hit, 1> hit, expected;
     scene.closest(all[i], hit);
     Scene<Mesh>(std::move(still)).closest(all[i], expected);

@@ -98,7 +98,10 @@ struct Stages {
   std::vector<std::string> names;
   std::vector<std::function<void()>> works;
 
-  void add(const std::string& name, std::function<void()> work) { names.push_back(name), works.push_back(std::move(work)); }
+  void add(const std::string& name, std::function<void()> work) {
+    names.push_back(name);
+    works.push_back(std::move(work));
+  }
 };
 
 /// The pulses of a source and of all that it stands on, the innermost first.
@@ -124,9 +127,14 @@ void measure(Report& report, const std::string& name, const Source& source, cons
   const Noting noting{scene, known, bundles};
   const double sum = go(survey_of(noting, FullWaveform{}));
   const MeshData flat = flattened(scene);
-  if (const Bundles some = bundles.sample(16); answers(Mesh(flat), some) != answers(TriangleMesh<Linear<>>(flat), some))
-    std::printf("%s DIFFERS from Linear\n", prefix.c_str()), std::exit(1);
-  if (go(survey_of(known, FullWaveform{})) != sum) std::printf("%s gives other echoes by its known hits\n", prefix.c_str()), std::exit(1);
+  if (const Bundles some = bundles.sample(16); answers(Mesh(flat), some) != answers(TriangleMesh<Linear<>>(flat), some)) {
+    std::printf("%s DIFFERS from Linear\n", prefix.c_str());
+    std::exit(1);
+  }
+  if (go(survey_of(known, FullWaveform{})) != sum) {
+    std::printf("%s gives other echoes by its known hits\n", prefix.c_str());
+    std::exit(1);
+  }
 
   const auto whole = survey_of(scene, FullWaveform{});
   const Traced traced{*scene.parts()[0].geometry, known};

@@ -118,7 +118,8 @@ class Report {
         int done = 0;
         do {
           works[i]();
-          ++done, passed = clock() - start;
+          ++done;
+          passed = clock() - start;
         } while (passed < seconds_);
         times[i].push_back(passed / done);
       }
@@ -127,24 +128,32 @@ class Report {
 
   /// A line above rows that belong together.
   void heading(const std::string& text) {
-    std::printf(markdown_ ? "\n%s:\n\n" : "\n%s\n", text.c_str()), std::fflush(stdout);
+    std::printf(markdown_ ? "\n%s:\n\n" : "\n%s\n", text.c_str());
+    std::fflush(stdout);
     columns_.clear();
   }
 
   /// A line below a heading.
-  void note(const std::string& text) const { std::printf(markdown_ ? "%s\n\n" : "  %s\n", text.c_str()), std::fflush(stdout); }
+  void note(const std::string& text) const {
+    std::printf(markdown_ ? "%s\n\n" : "  %s\n", text.c_str());
+    std::fflush(stdout);
+  }
 
   void row(const std::string& name, const Figures& figures) {
     if (markdown_) {
       std::string columns = "| |", rule = "|---|";
-      for (const auto& [what, figure] : figures) columns += " " + what + " |", rule += "---|";
+      for (const auto& [what, figure] : figures) {
+        columns += " " + what + " |";
+        rule += "---|";
+      }
       if (columns != columns_) std::printf("%s%s\n%s\n", columns_.empty() ? "" : "\n", columns.c_str(), rule.c_str());
       columns_ = columns;
     }
     std::printf(markdown_ ? "| `%s` |" : "  %-44s", name.c_str());
     for (const auto& [what, figure] : figures)
       markdown_ ? std::printf(" %s |", rounded(figure).c_str()) : std::printf(" %10.4g %s", figure, what.c_str());
-    std::printf("\n"), std::fflush(stdout);
+    std::printf("\n");
+    std::fflush(stdout);
     rows_.emplace_back(name, figures);
   }
 
@@ -176,7 +185,10 @@ class Report {
     const auto take = [&](std::string_view key, std::string& to) {
       if (const std::size_t colon = line.find(": "); line.starts_with(key) && colon != line.npos) to = line.substr(colon + 2);
     };
-    while (std::getline(in, line) && !line.empty()) take("model name", name), take("model\t", model);
+    while (std::getline(in, line) && !line.empty()) {
+      take("model name", name);
+      take("model\t", model);
+    }
     if (!model.empty()) name += ", model " + model;
     return name + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads";
   }

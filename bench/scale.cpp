@@ -32,7 +32,10 @@ namespace {
 
 std::string named(const std::string& what, std::size_t number) { return what + "/" + std::to_string(number); }
 
-void fail(const std::string& name) { std::printf("%s DIFFERS from Linear\n", name.c_str()), std::exit(1); }
+void fail(const std::string& name) {
+  std::printf("%s DIFFERS from Linear\n", name.c_str());
+  std::exit(1);
+}
 
 void grow_threads(Report& report) {
   const unsigned most = std::thread::hardware_concurrency();
@@ -44,7 +47,8 @@ void grow_threads(Report& report) {
   busy.reserve(most);
   for (unsigned n = 1; n <= most; n = n < most && 2 * n > most ? most : 2 * n) {
     if (!report.wanted(named("threads", n))) continue;
-    names.push_back(named("threads", n)), busy.emplace_back();
+    names.push_back(named("threads", n));
+    busy.emplace_back();
     works.emplace_back([&survey, &busy = busy.back(), n] {
       const double start = process_seconds(), start_wall = wall_seconds();
       run(survey, {.threads = n}, [](const EchoBatch&) {});

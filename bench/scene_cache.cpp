@@ -35,14 +35,16 @@ void write_hills(const std::filesystem::path& path, int cells) {
   for (int j = 0; j <= cells; ++j)
     for (int i = 0; i <= cells; ++i) {
       const double x = i * step, y = j * step;
-      file.write("v "),
-          file.write(row.add(x, 3).add(y, 3).add(20 * std::sin(x / 90) * std::cos(y / 70) + std::sin(x / 7 + y / 11), 3).end());
+      file.write("v ");
+      file.write(row.add(x, 3).add(y, 3).add(20 * std::sin(x / 90) * std::cos(y / 70) + std::sin(x / 7 + y / 11), 3).end());
     }
   for (int j = 0; j < cells; ++j)
     for (int i = 1; i <= cells; ++i) {
       const int a = j * (cells + 1) + i, c = a + cells + 1;
-      file.write("f "), file.write(row.add(a).add(a + 1).add(c + 1).end());
-      file.write("f "), file.write(row.add(a).add(c + 1).add(c).end());
+      file.write("f ");
+      file.write(row.add(a).add(a + 1).add(c + 1).end());
+      file.write("f ");
+      file.write(row.add(a).add(c + 1).add(c).end());
     }
   file.commit();
 }

@@ -90,8 +90,10 @@ inline constexpr std::size_t pulse_count = 4096;
   for (int i = 0; i < 8; ++i) {
     const Vec3 to = Vec3{i & 1 ? box.min.x : box.max.x, i & 2 ? box.min.y : box.max.y, i & 4 ? box.min.z : box.max.z} - place;
     const double turn = std::atan2(to.y, -to.x), elevation = std::atan2(to.z, std::hypot(to.x, to.y));
-    min_turn = std::min(min_turn, turn), max_turn = std::max(max_turn, turn);
-    low = std::min(low, elevation), high = std::max(high, elevation);
+    min_turn = std::min(min_turn, turn);
+    max_turn = std::max(max_turn, turn);
+    low = std::min(low, elevation);
+    high = std::max(high, elevation);
   }
   Aims all;
   for (std::size_t sweep = 0; sweep < sweeps; ++sweep)
@@ -120,7 +122,8 @@ inline constexpr std::size_t pulse_count = 4096;
 class Bundles {
  public:
   void add(const RayBundle& rays) {
-    origins_.push_back(rays), first_.push_back(directions_.size());
+    origins_.push_back(rays);
+    first_.push_back(directions_.size());
     for (const RayBundle::Column* column : {&rays.x, &rays.y, &rays.z})
       directions_.insert(directions_.end(), column->begin(), column->begin() + static_cast<std::ptrdiff_t>(rays.size));
   }
@@ -157,7 +160,8 @@ class Bundles {
   for (const Aim& aim : aims)
     for (std::size_t first = 0; first < subrays; first += RayBundle::capacity) {
       RayBundle rays;
-      rays.origin = aim.place, rays.size = std::min(subrays - first, RayBundle::capacity);
+      rays.origin = aim.place;
+      rays.size = std::min(subrays - first, RayBundle::capacity);
       rays.first_subray = static_cast<std::uint32_t>(first);
       for (std::size_t j = 0; j < rays.size; ++j)
         rays.set_direction(j, aim.rotation * subray_direction(footprint.offset(first + j), divergence));

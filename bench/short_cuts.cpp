@@ -41,10 +41,15 @@ struct WatchedScene {
     for (std::size_t j = 0; j < rays.size; ++j) {
       if (!nearest.met(j)) continue;
       ++met;
-      if (nearest.id[j] != known) ++described, known = nearest.id[j];
+      if (nearest.id[j] != known) {
+        ++described;
+        known = nearest.id[j];
+      }
     }
-    counts.hits += met, counts.described += described;
-    counts.met += met > 0 ? 1 : 0, counts.described_once += described == 1 ? 1 : 0;
+    counts.hits += met;
+    counts.described += described;
+    counts.met += met > 0 ? 1 : 0;
+    counts.described_once += described == 1 ? 1 : 0;
   }
 };
 

@@ -58,7 +58,8 @@ struct Recording {
 
   void operator()(const EchoBatch& batch) {
     for (Shot shot : batch.shots) {
-      shot.first_echo += static_cast<std::uint32_t>(echoes.size()), shot.first_sample += samples.size();
+      shot.first_echo += static_cast<std::uint32_t>(echoes.size());
+      shot.first_sample += samples.size();
       shots.push_back(shot);
     }
     echoes.insert(echoes.end(), batch.echoes.begin(), batch.echoes.end());

@@ -109,7 +109,10 @@ void print_agreement(const Report& report, const Group& group, const EmbreeSubje
   std::snprintf(note, sizeof note, "%.1f %% of %zu rays meet something; Embree gives the same range for %.3f %%",
                 100 * static_cast<double>(met) / all, theirs.size(), 100 * share);
   report.note(note);
-  if (share < 0.98) std::printf("these are not the same rays\n"), std::exit(1);
+  if (share < 0.98) {
+    std::printf("these are not the same rays\n");
+    std::exit(1);
+  }
 }
 
 #endif
@@ -117,8 +120,10 @@ void print_agreement(const Report& report, const Group& group, const EmbreeSubje
 class Races {
  public:
   Races(Report& report, const Course& course) : report_(report), course_(course), groups_(groups(course)) {
-    add<Bvh<float>>("Bvh<float>"), add<Bvh<double>>("Bvh<double>");
-    add<KdTree<float>>("KdTree<float>"), add<KdTree<double>>("KdTree<double>");
+    add<Bvh<float>>("Bvh<float>");
+    add<Bvh<double>>("Bvh<double>");
+    add<KdTree<float>>("KdTree<float>");
+    add<KdTree<double>>("KdTree<double>");
     if (course.field && wanted("HeightField")) subjects_.push_back(subject("HeightField", course.field()));
 #ifdef PULSECAST_BENCH_EMBREE
     for (const auto& [name, quality, robust] :
@@ -149,7 +154,10 @@ class Races {
     auto found = subject.answers(some);
     if (subject.name == "HeightField")  // its triangles have other numbers
       for (std::size_t i = 0; i < found.size(); ++i) found[i].id = found[i].range == expected[i].range ? expected[i].id : found[i].id;
-    if (found != expected) std::printf("%s/%s DIFFERS from Linear\n", group.name.c_str(), subject.name.c_str()), std::exit(1);
+    if (found != expected) {
+      std::printf("%s/%s DIFFERS from Linear\n", group.name.c_str(), subject.name.c_str());
+      std::exit(1);
+    }
   }
 
   void run(const Group& group) {
@@ -216,8 +224,7 @@ int main(int count, char** words) {
   const Raster ground = hills(866);
   race({"hills", ground.mesh(), from_the_air(), 0.25_mrad, [&] { return std::make_shared<const HeightField>(ground); }});
   beside("tree", tree());
-  for (const std::string& file : report.files())
-    beside(std::filesystem::path(file).stem().string() + ".obj", io::read_obj(file).mesh);
+  for (const std::string& file : report.files()) beside(std::filesystem::path(file).stem().string() + ".obj", io::read_obj(file).mesh);
   race({"street", flattened(street::scene(1)), from_a_car(), 0.3_mrad});
   return report.finish();
 }

@@ -76,7 +76,9 @@ std::vector<RayBundle> pulses(const VoxelGrid<Filling>& grid, std::size_t subray
     const Vec3 towards = normalize(box.min + size * Vec3{across, along, 0.5} - place);
     const Rotation aim = rotation_about(cross(axis::forward, towards), std::acos(dot(axis::forward, towards)));
     RayBundle rays;
-    rays.origin = place, rays.size = subrays, rays.pulse = i;
+    rays.origin = place;
+    rays.size = subrays;
+    rays.pulse = i;
     for (std::size_t j = 0; j < subrays; ++j) rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.3_mrad));
     rays.pad();
     all.push_back(rays);

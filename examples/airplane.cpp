@@ -60,7 +60,8 @@ int main(int argc, char** argv) {
     io::ImageWriter image(line.output / "cloud.png", {.azimuth = 15_deg, .elevation = 35_deg, .colour_by = io::ColourBy::classification});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
-    las.close(), image.close();
+    las.close();
+    image.close();
     io::TrajectoryWriter trajectory(line.output / "trajectory.txt");
     for (std::size_t k = 0; k < legs.size(); ++k)
       trajectory.add(legs[k].platform.trajectory(), survey.source().start(k), legs[k].platform.duration(), 0.1);

@@ -50,7 +50,8 @@ int main(int argc, char** argv) {
     io::ImageWriter image(line.output / "cloud.png", {.azimuth = 65_deg, .elevation = 42_deg, .colour_by = io::ColourBy::classification});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
-    las.close(), image.close();
+    las.close();
+    image.close();
     io::TrajectoryWriter trajectory(line.output / "trajectory.txt");
     trajectory.add(drive, {}, drive.duration(), 0.1);
     trajectory.close();

@@ -63,7 +63,8 @@ int main(int argc, char** argv) {
     io::ImageWriter image(line.output / "cloud.png", {.azimuth = 20_deg, .elevation = 40_deg, .field_of_view = 20_deg, .point_size = 3});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
 
-    las.close(), image.close();
+    las.close();
+    image.close();
     io::TrajectoryWriter trajectory(line.output / "trajectory.txt");
     trajectory.add(flight, {}, flight.duration(), 0.1);
     trajectory.close();

@@ -99,7 +99,8 @@ Forest plant(std::uint64_t seed, std::size_t count, double side, const std::vect
     const Similarity placement{rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.7, 1.15), {at.x, at.y, ground(seed, at)}};
     const auto model = static_cast<std::size_t>(dice.between(0, static_cast<double>(models.size())));
     for (Forest::Part part : models[model]) {
-      part.placement = placement, part.object = static_cast<ObjectId>(tree);
+      part.placement = placement;
+      part.object = static_cast<ObjectId>(tree);
       parts.push_back(std::move(part));
     }
   }
@@ -150,7 +151,8 @@ int main(int argc, char** argv) {
     io::LasWriter las(line.output / "cloud.las");
     io::ImageWriter image(line.output / "cloud.png", {.azimuth = 30_deg, .elevation = 25_deg, .field_of_view = 20_deg, .point_size = 2});
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
-    las.close(), image.close();
+    las.close();
+    image.close();
 
     const auto mebibytes = [](std::size_t bytes) { return static_cast<double>(bytes) / 1024 / 1024; };
     std::cout << std::fixed << std::setprecision(1) << trees << " trees on " << std::round(size.x) << " m by " << std::round(size.y)

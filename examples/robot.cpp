@@ -51,7 +51,12 @@ struct Scan {
   std::vector<float> time_offsets;           ///< since the scan's start [s]
   std::vector<float> intensities;            ///< 1 for a white surface
 
-  void clear() { points.clear(), rings.clear(), time_offsets.clear(), intensities.clear(); }
+  void clear() {
+    points.clear();
+    rings.clear();
+    time_offsets.clear();
+    intensities.clear();
+  }
 
   void add(const Vec3& origin, const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)

@@ -299,11 +299,15 @@ using Scene = pulsecast::Scene<Mesh>;
     }
   };
   const double x = front, y = front, far = half_size.y - 4, near = 2 * front;
-  build_row({x, far}, {x, y}), build_row({x, -y}, {x, -far});
-  build_row({-x, -far}, {-x, -y}), build_row({-x, y}, {-x, far});
+  build_row({x, far}, {x, y});
+  build_row({x, -y}, {x, -far});
+  build_row({-x, -far}, {-x, -y});
+  build_row({-x, y}, {-x, far});
   const double side = half_size.x - 4;
-  build_row({near, y}, {side, y}), build_row({-side, y}, {-near, y});
-  build_row({side, -y}, {near, -y}), build_row({-near, -y}, {-side, -y});
+  build_row({near, y}, {side, y});
+  build_row({-side, y}, {-near, y});
+  build_row({side, -y}, {near, -y});
+  build_row({-near, -y}, {-side, -y});
   return Scene(std::move(parts));
 }
 

@@ -17,7 +17,8 @@ class ProgressLine {
   void operator()(const pulsecast::Progress& progress) {
     const bool last = progress.done == progress.total;
     if (progress.done == 0 || (progress.seconds < next_ && !(last && shown_))) return;
-    next_ = progress.seconds + interval_, shown_ = true;
+    next_ = progress.seconds + interval_;
+    shown_ = true;
     const double done = static_cast<double>(progress.done), total = static_cast<double>(progress.total), rate = done / progress.seconds;
     std::cerr << (terminal_ ? "\r" : "") << std::fixed << std::setprecision(0) << std::setw(4) << 100 * done / total << " %  "
               << std::setprecision(2) << rate / 1e6 << " million pulses/s  " << std::setprecision(0) << (total - done) / rate

@@ -171,7 +171,8 @@ inline void add_twig(MeshData& mesh, Dice& dice, const Broadleaf& kind, const Ve
   MeshData mesh;
   Axis stem = grow(dice, {0, 0, -0.4}, pulsecast::axis::up,
                    {.length = kind.height * 0.95, .radius = kind.girth, .wander = 0.06, .lift = 0.08, .steps = 16});
-  stem.radii[0] *= 1.8, stem.radii[1] *= 1.1;
+  stem.radii[0] *= 1.8;
+  stem.radii[1] *= 1.1;
   add_tube(mesh, stem, 12, kind.stem);
 
   for (int i = 0; i < kind.limbs; ++i) {

@@ -101,7 +101,8 @@ int main(int argc, char** argv) {
     };
     const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image, write_text);
 
-    las.close(), image.close();
+    las.close();
+    image.close();
     if (text) text->close();
     io::TrajectoryWriter trajectory(line.output / "trajectory.txt");
     const auto& legs = survey.source();

@@ -17,7 +17,8 @@ TEST_CASE("a hit as made has met nothing") {
 
 TEST_CASE("an echo stands on the axis of its shot") {
   Shot shot;
-  shot.origin = {500000, 5400000, 300}, shot.direction = {0, 0.6, -0.8};
+  shot.origin = {500000, 5400000, 300};
+  shot.direction = {0, 0.6, -0.8};
   Echo echo;
   echo.range = 100;
   CHECK(length(point_of(shot, echo) - Vec3{500000, 5400060, 220}) < 1e-9);

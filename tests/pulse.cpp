@@ -20,7 +20,12 @@ TEST_CASE("a pulse leaves where its pose is, along the pose's forward") {
 
 TEST_CASE("a pulse seen from a surrounding frame has another pose and is otherwise the same") {
   Pulse<frame::Beam> inner;
-  inner.index = 7, inner.tick = {8, 0.25}, inner.laser.wavelength = 532e-9, inner.scan_angle = 0.1, inner.leg = 3, inner.channel = 2;
+  inner.index = 7;
+  inner.tick = {8, 0.25};
+  inner.laser.wavelength = 532e-9;
+  inner.scan_angle = 0.1;
+  inner.leg = 3;
+  inner.channel = 2;
   inner.pose.position = {0, 1, 0};
   const Pose<frame::Beam, frame::Instrument> outer_from_inner{rotation_about(axis::up, pi / 2), {10, 0, 0}};
   const Pulse outer(outer_from_inner, inner);

@@ -95,7 +95,8 @@ struct Rain {
     if (asked)
       for (PulseIndex seen = *asked; seen < i + 1 && !asked->compare_exchange_weak(seen, i + 1);) continue;
     Pulse<frame::World> p;
-    p.index = i, p.tick = Tick::of(i, 1e5);
+    p.index = i;
+    p.tick = Tick::of(i, 1e5);
     p.pose = {rotation_about(axis::right, -90_deg), {0.001 * static_cast<double>(i), 0, 10}};
     return p;
   }
@@ -304,7 +305,9 @@ TEST_CASE("progress ascends, one call at a time, and reaches the total") {
       CHECK(p.total == 100000);
       CHECK(p.done > done);
       CHECK(p.echoes >= echoes);
-      done = p.done, echoes = p.echoes, ++calls;
+      done = p.done;
+      echoes = p.echoes;
+      ++calls;
       --inside;
     };
     support::LawfulSink sink;
@@ -395,7 +398,10 @@ Ahead ahead_of_a_slow_sink(const Survey& survey, unsigned threads, const std::at
     if (delivered == 0) {  // the others get all the time that they could want
       PulseIndex seen = 0;
       for (int k = 0; k < 100000 && seen < survey.size(); ++k, std::this_thread::yield())
-        if (asked > seen) seen = asked, k = 0;
+        if (asked > seen) {
+          seen = asked;
+          k = 0;
+        }
     }
     farthest = std::max(farthest, asked - delivered);
     delivered += batch.shots.size();

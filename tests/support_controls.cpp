@@ -121,7 +121,9 @@ struct Flawed {
     std::size_t n = 0;
     for (const Reflection& r : reflections) {
       w.echoes[n] = Echo{};
-      w.echoes[n].range = r.range, w.echoes[n].amplitude = r.power, w.echoes[n].number = static_cast<std::uint8_t>(n + 1);
+      w.echoes[n].range = r.range;
+      w.echoes[n].amplitude = r.power;
+      w.echoes[n].number = static_cast<std::uint8_t>(n + 1);
       ++n;
     }
     flaw(w, n);
@@ -187,17 +189,21 @@ TEST_CASE("a checksum does not depend on where the pieces are cut, and asking fo
 
 TEST_CASE("a checksum of a number is that of its bytes, least significant first, and sees the last bit") {
   Checksum number, bytes, one, next, zero, minus_zero;
-  number.add(std::uint32_t{0x04030201}), bytes.add("\x01\x02\x03\x04");
+  number.add(std::uint32_t{0x04030201});
+  bytes.add("\x01\x02\x03\x04");
   CHECK(number.hex() == bytes.hex());
-  one.add(1.0), next.add(std::nextafter(1.0, 2.0));
+  one.add(1.0);
+  next.add(std::nextafter(1.0, 2.0));
   CHECK(one.hex() != next.hex());
-  zero.add(0.0), minus_zero.add(-0.0);
+  zero.add(0.0);
+  minus_zero.add(-0.0);
   CHECK(zero.hex() != minus_zero.hex());
 }
 
 TEST_CASE("a checksum of a batch sees every field of shots, echoes and samples") {
   Sample sample(4);
-  sample.samples = {1.0F}, sample.shots[1].samples = 1;
+  sample.samples = {1.0F};
+  sample.shots[1].samples = 1;
   std::set<std::string> sums;
   const auto note = [&] {
     Checksum sum;
@@ -206,7 +212,11 @@ TEST_CASE("a checksum of a batch sees every field of shots, echoes and samples")
   };
   std::size_t changes = 1;
   note();
-  const auto after = [&](auto change) { change(sample.shots[1], sample.echoes[2]), note(), ++changes; };
+  const auto after = [&](auto change) {
+    change(sample.shots[1], sample.echoes[2]);
+    note();
+    ++changes;
+  };
   after([](Shot& s, Echo&) { s.index = 99; });
   after([](Shot& s, Echo&) { s.tick.fraction = 0.5; });
   after([](Shot& s, Echo&) { s.origin.z = 1; });
@@ -301,7 +311,10 @@ TEST_CASE("detectors that keep the law pass, and those that break it do not") {
   CHECK(names(flaw_found([](auto& w, std::size_t&) { w.echoes[0].amplitude = -1; }), "an echo of -1 W"));
   CHECK(names(flaw_found([](auto& w, std::size_t&) { w.echoes[0].number = 2; }), "number"));
   CHECK(names(flaw_found([](auto& w, std::size_t& n) {
-                if (n == 0) w.echoes[0] = Echo{}, n = 1;
+                if (n == 0) {
+                  w.echoes[0] = Echo{};
+                  n = 1;
+                }
               }),
               "of nothing"));
   CHECK(names(flaw_found([](auto& w, std::size_t&) { w.echoes[0].width = w.uses; }), "used workspace"));
@@ -309,7 +322,8 @@ TEST_CASE("detectors that keep the law pass, and those that break it do not") {
 
 TEST_CASE("a lawful caller of a sink passes, and others do not") {
   LawfulSink lawful;
-  lawful(Sample(4).batch()), lawful(Sample(6).batch());
+  lawful(Sample(4).batch());
+  lawful(Sample(6).batch());
   CHECK(lawful.broken() == "");
   CHECK(lawful.batches() == 2);
   CHECK(lawful.shots() == 4);
@@ -318,9 +332,11 @@ TEST_CASE("a lawful caller of a sink passes, and others do not") {
   CHECK(lawful.last() == 7);
 
   LawfulSink disordered, again;
-  disordered(Sample(4).batch()), disordered(Sample(2).batch());
+  disordered(Sample(4).batch());
+  disordered(Sample(2).batch());
   CHECK(names(disordered.broken(), "pulse 2 follows pulse 5"));
-  again(Sample(4).batch()), again(Sample(5).batch());
+  again(Sample(4).batch());
+  again(Sample(5).batch());
   CHECK(names(again.broken(), "pulse 5 follows pulse 5"));
 
   CHECK(names(broken_by([](Sample& s) { std::swap(s.shots[0].index, s.shots[1].index); }), "follows"));
@@ -374,7 +390,8 @@ TEST_CASE("generated cases keep to what was asked for") {
     ++wholes[w];
     const Vec3 u = any.unit(), t = any.rotation() * axis::forward;
     REQUIRE(std::fabs(length(u) - 1) < 1e-14);
-    mean += u / 6000.0, turned += t / 6000.0;
+    mean += u / 6000.0;
+    turned += t / 6000.0;
     const Box box = any.box(10, 0.1, 2);
     REQUIRE(max_norm(box.centre()) < 10);
     REQUIRE(std::min({box.size().x, box.size().y, box.size().z}) > 0.0999);

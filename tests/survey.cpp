@@ -84,7 +84,8 @@ std::string checksum_of(const S& survey, const std::vector<PulseIndex>& order) {
   for (const PulseIndex i : order) {
     const Outcome o = survey(i, workspace);
     Shot shot = o.shot;
-    shot.echoes = static_cast<std::uint32_t>(o.echoes.size()), shot.samples = static_cast<std::uint32_t>(o.waveform.size());
+    shot.echoes = static_cast<std::uint32_t>(o.echoes.size());
+    shot.samples = static_cast<std::uint32_t>(o.waveform.size());
     support::Checksum sum;
     sum.add(EchoBatch{{&shot, 1}, o.echoes, o.waveform, survey.sample_interval()});
     sums[i] = sum.hex();
@@ -538,7 +539,8 @@ TEST_CASE("ranges err as the receiver is told, each echo on its own, and the sam
     const double error = survey(i, w).echoes.front().range - 100;
     CHECK(again(i, w).echoes.front().range == error + 100);
     unlike += other(i, w).echoes.front().range != error + 100 ? 1 : 0;
-    sum += error, square += (error - 0.5) * (error - 0.5);
+    sum += error;
+    square += (error - 0.5) * (error - 0.5);
   }
   CHECK(std::fabs(sum / n - 0.5) < 4 * 0.02 / std::sqrt(n));
   CHECK(std::sqrt(square / n) == support::relative(0.02, 0.02));

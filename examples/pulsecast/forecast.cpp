@@ -83,10 +83,14 @@ Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned th
       const double from = static_cast<double>(size) * static_cast<double>(i) / static_cast<double>(strata);
       const double width = static_cast<double>(size) / static_cast<double>(strata);
       const double place = strata == size ? static_cast<double>(i) : from + width * uniform({.seed = seed, .pulse = i, .subray = 2});
-      numbers.push_back(i), slots.push_back(std::min(size - 1, static_cast<PulseIndex>(place)));
+      numbers.push_back(i);
+      slots.push_back(std::min(size - 1, static_cast<PulseIndex>(place)));
     }
     const std::vector<SlotCount> found = simulation.count(slots, threads);
-    for (std::size_t k = 0; k < slots.size(); ++k) counts[numbers[k]] = found[k], places[numbers[k]] = slots[k];
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+      counts[numbers[k]] = found[k];
+      places[numbers[k]] = slots[k];
+    }
   }
   Census census;
   double sum = 0, differences = 0, before = 0;
@@ -96,8 +100,10 @@ Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned th
     const double echoes = counts[i]->echoes;
     const Kind kind = kind_of(counts[i]->fate);
     if (census.sampled > 0) differences += (echoes - before) * (echoes - before);
-    before = echoes, sum += echoes;
-    ++census.sampled, ++of_kind[kind];
+    before = echoes;
+    sum += echoes;
+    ++census.sampled;
+    ++of_kind[kind];
     census.found[kind].push_back(places[i]);
   }
   if (census.sampled == 0) return census;
@@ -213,7 +219,9 @@ struct TemporaryFolder {
 /// Pulses of a sample with echoes, or those without.
 Sample only(const Sample& sample, bool with_echoes) {
   Sample some;
-  some.echoes = sample.echoes, some.samples = sample.samples, some.sample_interval = sample.sample_interval;
+  some.echoes = sample.echoes;
+  some.samples = sample.samples;
+  some.sample_interval = sample.sample_interval;
   for (const Shot& shot : sample.shots)
     if ((shot.echoes > 0) == with_echoes) some.shots.push_back(shot);
   return some;
@@ -331,10 +339,12 @@ struct Differences {
       for (std::size_t k = next; k < other.size(); ++k)
         if (distance(k) < distance(nearest)) nearest = k;
       if (nearest >= other.size() || distance(nearest) > reach) continue;
-      range.push_back(distance(nearest)), intensity.push_back(std::fabs(other[nearest].amplitude / echo.amplitude - 1));
+      range.push_back(distance(nearest));
+      intensity.push_back(std::fabs(other[nearest].amplitude / echo.amplitude - 1));
       next = nearest + 1;
     }
-    of_finer += static_cast<double>(finer.size()), of_other += static_cast<double>(other.size());
+    of_finer += static_cast<double>(finer.size());
+    of_other += static_cast<double>(other.size());
   }
 };
 
@@ -401,8 +411,10 @@ class Forecaster {
     for (std::uint64_t round = 0; round < max_rounds && (round == 0 || allowance.left()); ++round)
       for (const Kind kind : {met, missed, blocked}) {
         const std::uint64_t each = kind == met ? 16 : 4;
-        for (Sample& sample : simulation_.sample(blocks(kind, round * each, (round + 1) * each, 128, 896), threads_))
-          samples.push_back(std::move(sample)), begin_at.push_back(kind);
+        for (Sample& sample : simulation_.sample(blocks(kind, round * each, (round + 1) * each, 128, 896), threads_)) {
+          samples.push_back(std::move(sample));
+          begin_at.push_back(kind);
+        }
       }
     const std::vector<double> weights = weights_of(census_, begin_at);
     const ByKind cost = cost_of_kinds(samples, samples, weights);
@@ -413,7 +425,8 @@ class Forecaster {
       rest += std::pow(weights[b] * (sample.seconds - dot(kinds_in(sample), cost)), 2);
       sum += weights[b] * sample.seconds;
       const double chunk = bytes_of(sample) * 2048 / static_cast<double>(sample.counts.slots);
-      bytes += weights[b] * chunk, squares += weights[b] * chunk * chunk;
+      bytes += weights[b] * chunk;
+      squares += weights[b] * chunk * chunk;
       sampled_ += sample.counts.slots;
     }
     chunk_ = bytes > 0 ? squares / bytes : 0;
@@ -434,8 +447,10 @@ class Forecaster {
     };
     const std::uint64_t n = affordable(0.8, 1.4 * 80 * trials, 8, 96);
     for (const Kind kind : {met, missed, blocked})
-      for (const SampleBlock& block : blocks(kind, 0, kind == met ? n : n / 4, 16, 64))
-        blocks_.push_back(block), kind_of_block_.push_back(kind);
+      for (const SampleBlock& block : blocks(kind, 0, kind == met ? n : n / 4, 16, 64)) {
+        blocks_.push_back(block);
+        kind_of_block_.push_back(kind);
+      }
     weights_ = weights_of(census_, kind_of_block_);
     own_ = simulation_.sample(blocks_, threads_);
     own_cost_ = dot(census_.slots, cost_of_kinds(own_, own_, weights_));
@@ -485,18 +500,22 @@ class Forecaster {
         auto& [difference, slots] = all.emplace_back(0, 0);
         for (std::size_t k = 0; k < own_[b].shots.size(); ++k) {
           if (kind_of(own_[b].shots[k].fate) != kind) continue;
-          difference += static_cast<double>(samples[b].shots[k].echoes) - static_cast<double>(own_[b].shots[k].echoes), ++slots;
+          difference += static_cast<double>(samples[b].shots[k].echoes) - static_cast<double>(own_[b].shots[k].echoes);
+          ++slots;
         }
-        sum += difference, number += slots;
+        sum += difference;
+        number += slots;
       }
       if (number == 0) continue;
       for (const auto& [difference, slots] : all) squares += std::pow(difference - sum / number * slots, 2);
-      more += census_.slots[kind] * sum / number, variance += std::pow(census_.slots[kind] / number, 2) * squares;
+      more += census_.slots[kind] * sum / number;
+      variance += std::pow(census_.slots[kind] / number, 2) * squares;
     }
     const auto margin = [&](double end) { return std::sqrt(std::pow(end - points.value, 2) + 4 * variance); };
     const double low = margin(points.low), high = margin(points.high);
     points.value = std::max(0.0, points.value + more);
-    points.low = std::max(0.0, points.value - low), points.high = points.value + high;
+    points.low = std::max(0.0, points.value - low);
+    points.high = points.value + high;
   }
 
   /// Estimates time, memory and files from the measurements.
@@ -535,7 +554,8 @@ class Forecaster {
       for (std::size_t k = 0; k < samples[b].shots.size(); ++k)
         all.add(finer_[b].batch().echoes_of(finer_[b].shots[k]), samples[b].batch().echoes_of(samples[b].shots[k]), reach);
     const double of_both = static_cast<double>(all.range.size());
-    f.range_error = exceeded_by_few(all.range), f.intensity_error = exceeded_by_few(all.intensity);
+    f.range_error = exceeded_by_few(all.range);
+    f.intensity_error = exceeded_by_few(all.intensity);
     f.lost = all.of_finer > 0 ? 1 - of_both / all.of_finer : 0;
     f.invented = all.of_other > 0 ? 1 - of_both / all.of_other : 0;
   }

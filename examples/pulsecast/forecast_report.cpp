@@ -122,9 +122,15 @@ class SettingsChooser {
     for (const Forecast* f : table()) {
       const auto column = [](int width, const std::string& text) { std::cout << std::setw(width) << text; };
       std::cout << (f == &as_is ? "  *" : "   ");
-      column(16, std::to_string(rings(*f))), column(9, std::to_string(f->subrays)), column(12, digits(bin_size(*f) * 1e9));
-      column(12, digits(f->seconds.value)), column(12, digits(f->points.value)), column(18, digits(f->range_error.value * 1e3));
-      column(21, digits(f->intensity_error.value * 1e2)), column(10, digits(f->lost * 1e2)), column(11, digits(f->invented * 1e2));
+      column(16, std::to_string(rings(*f)));
+      column(9, std::to_string(f->subrays));
+      column(12, digits(bin_size(*f) * 1e9));
+      column(12, digits(f->seconds.value));
+      column(12, digits(f->points.value));
+      column(18, digits(f->range_error.value * 1e3));
+      column(21, digits(f->intensity_error.value * 1e2));
+      column(10, digits(f->lost * 1e2));
+      column(11, digits(f->invented * 1e2));
       std::cout << '\n';
     }
     std::cout << "  * as it is\n";
@@ -150,8 +156,10 @@ class SettingsChooser {
     const auto hold = [&](const Estimate& e, const std::optional<double>& asked) {
       if (asked) most = std::max(most, e.high / *asked);
     };
-    hold(f.range_error, asked_.range_error), hold(f.intensity_error, asked_.intensity_error);
-    hold(f.seconds, asked_.time), hold(f.memory, asked_.memory);
+    hold(f.range_error, asked_.range_error);
+    hold(f.intensity_error, asked_.intensity_error);
+    hold(f.seconds, asked_.time);
+    hold(f.memory, asked_.memory);
     return most;
   }
 

@@ -261,7 +261,8 @@ class Session {
     const auto put = [&](const char* words, const Vec3& v) { text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')'; };
     text << std::fixed << std::setprecision(1) << "there is no point: leg " << leg->number;
     put(" begins at ", compiled.source.legs()[leg->number].path().at({}).position);
-    put(" m, and the scene is from ", scene.least), put(" to ", scene.most);
+    put(" m, and the scene is from ", scene.least);
+    put(" to ", scene.most);
     notes_.odd(text.str() + " m");
   }
 
@@ -446,7 +447,10 @@ int work(const Options& options, Ranks& ranks) {
   if (options.command != "run" && !ranks.first()) return success;  // other commands use one process
   Notes notes(options);
   notes.say(options.notes);
-  if (options.command == "catalogue") return print_catalogue(options), success;
+  if (options.command == "catalogue") {
+    print_catalogue(options);
+    return success;
+  }
   const SurveyFile file = read_survey_file(options, notes);
   if (options.command != "check") notes.require_none();  // it reports all first
   std::optional<std::uint64_t> seed = options.seed ? options.seed : file.survey.seed;

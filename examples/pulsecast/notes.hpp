@@ -19,7 +19,10 @@ class Notes {
   /// Notes an oddity of the survey or its files: an error with `--strict`.
   void odd(const std::string& text) {
     if (!strict_) return say(text);
-    if (told_.insert(text).second) std::cerr << "error: " << text << '\n', ++errors_;
+    if (told_.insert(text).second) {
+      std::cerr << "error: " << text << '\n';
+      ++errors_;
+    }
   }
   void odd(const std::vector<std::string>& texts) {
     for (const std::string& text : texts) odd(text);

@@ -121,8 +121,10 @@ class ManyRanks final : public Ranks {
 
   [[nodiscard]] std::string traffic() override {
     mpi::MpiTraffic sum;
-    for (const mpi::MpiTraffic& one : group_.channel().gather(group_.channel().traffic()))
-      sum.messages += one.messages, sum.bytes += one.bytes;
+    for (const mpi::MpiTraffic& one : group_.channel().gather(group_.channel().traffic())) {
+      sum.messages += one.messages;
+      sum.bytes += one.bytes;
+    }
     std::ostringstream text;
     text << std::setw(12) << sum.messages << " among " << count() << " processes, " << std::fixed << std::setprecision(2)
          << static_cast<double>(sum.bytes) / (1 << 20) << " MiB";

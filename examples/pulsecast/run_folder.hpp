@@ -53,7 +53,8 @@ class RunLock {
   explicit RunLock(const std::filesystem::path& folder);
   RunLock(RunLock&& other) noexcept : path_(std::move(other.path_)), file_(std::exchange(other.file_, -1)) {}
   RunLock& operator=(RunLock&& other) noexcept {
-    std::swap(path_, other.path_), std::swap(file_, other.file_);
+    std::swap(path_, other.path_);
+    std::swap(file_, other.file_);
     return *this;
   }
   ~RunLock();

@@ -101,8 +101,10 @@ void require_same_survey(const Options& options, const SurveyFile& file, const W
   const helios::SurveySettings written = helios::read_survey(trial.path, {.assets = options.assets}).survey;
   helios::SurveySettings wanted = file.survey;
   wanted.name = written.name;  // default name: that of the file
-  for (helios::ChannelSettings& channel : wanted.scanner.channels)
-    channel.waveform.rings = change.rings, channel.waveform.bin_size = change.bin_size;
+  for (helios::ChannelSettings& channel : wanted.scanner.channels) {
+    channel.waveform.rings = change.rings;
+    channel.waveform.bin_size = change.bin_size;
+  }
   if (written != wanted) throw FileError(path.string(), "", "would not be the same survey; nothing is written");
 }
 

@@ -33,7 +33,10 @@ Fingerprint SurveyInputs::fingerprint(const fs::path& path) {
         static_cast<std::intmax_t>(status.st_ctim.tv_sec), static_cast<std::intmax_t>(status.st_ctim.tv_nsec)})
     mark.push_back(static_cast<std::uint64_t>(number));
   auto& [known_mark, known] = known_[path];
-  if (known_mark != mark) known = io::content_fingerprint(path), known_mark = std::move(mark);
+  if (known_mark != mark) {
+    known = io::content_fingerprint(path);
+    known_mark = std::move(mark);
+  }
   return known;
 }
 

@@ -62,7 +62,8 @@ Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::arra
   };
   const auto numbers = py::array::ensure(triangles_given);
   if (!numbers) throw py::type_error("Mesh triangles: expected an array, not " + std::string(py::repr(triangles_given)));
-  require_rows_of_three(vertices, "Mesh::vertices"), require_rows_of_three(numbers, "Mesh::triangles");
+  require_rows_of_three(vertices, "Mesh::vertices");
+  require_rows_of_three(numbers, "Mesh::triangles");
   if (const char kind = numbers.dtype().kind(); kind != 'i' && kind != 'u')  // else 1.7 would become 1
     throw py::type_error("Mesh triangles: expected whole numbers, not " + std::string(py::str(numbers.dtype())));
   const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles(numbers);

@@ -95,12 +95,18 @@ template <class T>
 T number_of(py::handle object, const std::string& where) {
   if constexpr (std::floating_point<T>) {
     const double number = PyFloat_AsDouble(object.ptr());
-    if (number == -1 && PyErr_Occurred()) PyErr_Clear(), refuse(where, "a number", object);
+    if (number == -1 && PyErr_Occurred()) {
+      PyErr_Clear();
+      refuse(where, "a number", object);
+    }
     if (std::isnan(number)) throw SettingError(where, number, "", "a number");
     return number;
   } else {
     const py::object whole = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
-    if (!whole) PyErr_Clear(), refuse(where, "a whole number", object);
+    if (!whole) {
+      PyErr_Clear();
+      refuse(where, "a whole number", object);
+    }
     try {
       return whole.cast<T>();
     } catch (const py::cast_error&) {
@@ -143,7 +149,10 @@ T value_of(py::handle object, const std::string& where) {
     return text.front();
   } else if constexpr (std::same_as<T, std::filesystem::path>) {
     const py::object path = py::reinterpret_steal<py::object>(PyOS_FSPath(object.ptr()));
-    if (!path || !py::isinstance<py::str>(path)) PyErr_Clear(), refuse(where, "a path", object);
+    if (!path || !py::isinstance<py::str>(path)) {
+      PyErr_Clear();
+      refuse(where, "a path", object);
+    }
     return path.cast<std::string>();
   } else if constexpr (std::same_as<T, Vec3>) {
     const auto [x, y, z] = value_of<std::array<double, 3>>(object, where);
@@ -163,10 +172,8 @@ T value_of(py::handle object, const std::string& where) {
     } else {
       all.resize(n);
     }
-    for (std::size_t i = 0; i < n; ++i) {
-      const py::object one = sequence[i];
-      all[i] = value_of<typename T::value_type>(one, where + "[" + std::to_string(i) + "]");
-    }
+    for (std::size_t i = 0; i < n; ++i)
+      all[i] = value_of<typename T::value_type>(py::object(sequence[i]), where + "[" + std::to_string(i) + "]");
     return all;
   } else if constexpr (Struct<T>) {
     if (!py::isinstance(object, class_of<T>())) refuse(where, Described<T>::name, object);
@@ -218,6 +225,8 @@ helios::SurveySettings survey_of(py::handle settings) { return value_of<helios::
 
 py::object to_python(const helios::AssetDocument& assets) {
   py::dict all;
-  all["scanners"] = object_of(assets.scanners), all["platforms"] = object_of(assets.platforms), all["scenes"] = object_of(assets.scenes);
+  all["scanners"] = object_of(assets.scanners);
+  all["platforms"] = object_of(assets.platforms);
+  all["scenes"] = object_of(assets.scenes);
   return all;
 }

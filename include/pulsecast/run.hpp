@@ -72,8 +72,15 @@ struct RunSummary {
 
   /// Adds the totals of another run, or of another part of the same run.
   void add(const RunSummary& other) noexcept {
-    slots += other.slots, echoes += other.echoes, rays += other.rays, energy += other.energy, seconds += other.seconds;
-    for (std::size_t f = 0; f < fate_count; ++f) fates[f] += other.fates[f], energy_by_fate[f] += other.energy_by_fate[f];
+    slots += other.slots;
+    echoes += other.echoes;
+    rays += other.rays;
+    energy += other.energy;
+    seconds += other.seconds;
+    for (std::size_t f = 0; f < fate_count; ++f) {
+      fates[f] += other.fates[f];
+      energy_by_fate[f] += other.energy_by_fate[f];
+    }
     complete = complete && other.complete;
   }
 
@@ -90,15 +97,23 @@ struct ResultBuffer {
   std::vector<SubrayHit> subrays{};
   RunSummary counts{};  ///< without rays and seconds
 
-  void clear() noexcept { shots.clear(), echoes.clear(), samples.clear(), subrays.clear(), counts = {}; }
+  void clear() noexcept {
+    shots.clear();
+    echoes.clear();
+    samples.clear();
+    subrays.clear();
+    counts = {};
+  }
 
   void append(const Outcome& outcome) {
     ++counts.slots;
     ++counts.fates[static_cast<std::size_t>(outcome.shot.fate)];
     if (outcome.shot.fate == Fate::blocked) return;
     Shot& shot = shots.emplace_back(outcome.shot);
-    shot.first_echo = static_cast<std::uint32_t>(echoes.size()), shot.echoes = static_cast<std::uint32_t>(outcome.echoes.size());
-    shot.first_sample = samples.size(), shot.samples = static_cast<std::uint32_t>(outcome.waveform.size());
+    shot.first_echo = static_cast<std::uint32_t>(echoes.size());
+    shot.echoes = static_cast<std::uint32_t>(outcome.echoes.size());
+    shot.first_sample = samples.size();
+    shot.samples = static_cast<std::uint32_t>(outcome.waveform.size());
     for (const Echo& echo : outcome.echoes) echoes.push_back(echo);
     if (!outcome.waveform.empty()) {
       samples.resize(samples.size() + outcome.waveform.size());

@@ -115,9 +115,11 @@ class Survey {
     }
     const Pose<frame::Beam, frame::World>& reported = pulse->reported ? *pulse->reported : pulse->pose;
     out.shot.tick = pulse->tick;
-    out.shot.origin = reported.position, out.shot.direction = reported.direction(axis::forward);
+    out.shot.origin = reported.position;
+    out.shot.direction = reported.direction(axis::forward);
     out.shot.scan_angle = pulse->scan_angle;
-    out.shot.leg = pulse->leg, out.shot.channel = pulse->channel;
+    out.shot.leg = pulse->leg;
+    out.shot.channel = pulse->channel;
 
     if (pulse->laser != w.laser) adapt_to(pulse->laser, w);
     const EnergyByFate by_fate = trace(*pulse, reported, w);
@@ -193,7 +195,9 @@ class Survey {
   void fill_subrays(const Laser& laser, SubrayDirections& directions) const noexcept {
     for (std::size_t j = 0; j < footprint_.size(); ++j) {
       const Vec3 direction = subray_direction(footprint_.offset(j), laser.divergence);
-      directions.x[j] = direction.x, directions.y[j] = direction.y, directions.z[j] = direction.z;
+      directions.x[j] = direction.x;
+      directions.y[j] = direction.y;
+      directions.z[j] = direction.z;
       if (!laser.from_a_point()) directions.exits[j] = subray_exit(footprint_.offset(j), laser);
     }
   }
@@ -202,7 +206,8 @@ class Survey {
     if (laser.divergence != w.laser.divergence || laser.waist_diameter != w.laser.waist_diameter ||
         laser.waist_range != w.laser.waist_range)
       fill_subrays(laser, w.directions);
-    w.budget = LinkBudget(receiver_, laser), w.white_target = {};
+    w.budget = LinkBudget(receiver_, laser);
+    w.white_target = {};
     w.laser = laser;
   }
 
@@ -218,7 +223,10 @@ class Survey {
     EnergyByFate by_fate;
     RayBundle rays;
     rays.origin = pulse.origin();
-    rays.wavelength = pulse.laser.wavelength, rays.tick = pulse.tick, rays.seed = seed_, rays.pulse = pulse.index;
+    rays.wavelength = pulse.laser.wavelength;
+    rays.tick = pulse.tick;
+    rays.seed = seed_;
+    rays.pulse = pulse.index;
     const Matrix3 world_from_beam = matrix_of(pulse.pose.rotation);
     const bool from_a_point = pulse.laser.from_a_point();
     const std::size_t subrays = footprint_.size();

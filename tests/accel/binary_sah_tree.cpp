@@ -45,7 +45,9 @@ Shape shape_of(const Tree<Real>& tree) {
   std::vector<typename Tree<Real>::Range> open{tree.root()}, children;
   while (!open.empty()) {
     const auto range = open.back();
-    open.pop_back(), children.clear(), ++shape.nodes;
+    open.pop_back();
+    children.clear();
+    ++shape.nodes;
     tree.gather(range, 8, children);
     shape.max_children = std::max(shape.max_children, children.size());
     std::uint32_t at = range.begin;
@@ -56,7 +58,8 @@ Shape shape_of(const Tree<Real>& tree) {
         open.push_back(child);
         continue;
       }
-      shape.primitives += child.size(), shape.leaves.push_back(child.begin);
+      shape.primitives += child.size();
+      shape.leaves.push_back(child.begin);
       shape.largest_leaf = std::max<std::size_t>(shape.largest_leaf, child.size());
       for (std::uint32_t i = child.begin; i < child.end; ++i)
         if (!holds(tree.box(child), tree.primitives()[i].box)) ++shape.torn;

@@ -48,7 +48,8 @@ std::vector<Closed> closed_meshes() {
 
 RayBundle inside_out(Generator& random, const Closed& mesh, std::size_t size) {
   RayBundle rays;
-  rays.origin = mesh.centre + random.point(mesh.room), rays.size = size;
+  rays.origin = mesh.centre + random.point(mesh.room);
+  rays.size = size;
   const bool narrow = random.coin();
   Vec3 aim = target(random, mesh.data);
   for (std::size_t j = 0; j < size; ++j) {
@@ -67,7 +68,8 @@ void check(const G& shape, const Closed& mesh, std::uint64_t rays, std::uint64_t
   std::uint64_t sent = 0, lost = 0;
   while (sent < rays) {
     const RayBundle out = inside_out(random, mesh, random.coin() ? 64 : 1 + random.whole(19));
-    lost += escaped(shape, out), sent += out.size;
+    lost += escaped(shape, out);
+    sent += out.size;
   }
   CAPTURE(mesh.name);
   CAPTURE(mesh.centre.x);

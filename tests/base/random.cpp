@@ -35,7 +35,9 @@ struct Moments {
     mean /= static_cast<double>(n);
     for (const double v : x) {
       const double d = v - mean;
-      variance += d * d, skewness += d * d * d, kurtosis += d * d * d * d;
+      variance += d * d;
+      skewness += d * d * d;
+      kurtosis += d * d * d * d;
     }
     variance /= static_cast<double>(n);
     skewness /= static_cast<double>(n) * std::pow(variance, 1.5);

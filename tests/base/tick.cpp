@@ -24,7 +24,10 @@ struct Exact {
   /// A rate is a whole number of 2^-bits, as every double is.
   Exact(PulseIndex i, double rate, unsigned frequency = 1) {
     int bits = 0;
-    while (rate != std::floor(rate)) rate *= 2, ++bits;
+    while (rate != std::floor(rate)) {
+      rate *= 2;
+      ++bits;
+    }
     const Wide numerator = (static_cast<Wide>(i) * frequency) << bits, denominator = static_cast<std::uint64_t>(rate);
     quotient = numerator / denominator;
     rest = static_cast<long double>(static_cast<std::uint64_t>(numerator % denominator)) /

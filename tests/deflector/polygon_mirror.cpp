@@ -94,7 +94,9 @@ TEST_CASE("a facet ends where its line ends, however long the mirror turns and h
       const Tick t = Tick::of_seconds(begin) + Tick::of_seconds(j / (rate * 50.3));
       const bool over = t.phase(rate) < phase;  // the next line has begun
       REQUIRE(mirror.facet(t) == (facet + (over ? 1 : 0)) % n);
-      phase = t.phase(rate), facet = mirror.facet(t), changes += over;
+      phase = t.phase(rate);
+      facet = mirror.facet(t);
+      changes += over;
     }
     CHECK(changes >= 9);
   }

@@ -105,7 +105,8 @@ TEST_CASE("a rosette's field of view reaches from where the prisms cancel to whe
   double low = pi, high = 0;
   for (PulseIndex i = 0; i < 100000; ++i) {
     const double off = off_forward(*optic.direction(Tick::of(i, 100e3)));
-    low = std::min(low, off), high = std::max(high, off);
+    low = std::min(low, off);
+    high = std::max(high, off);
   }
   CHECK(high <= widest + 1e-14);
   CHECK(low >= narrowest - 1e-14);

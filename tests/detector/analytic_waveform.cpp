@@ -42,7 +42,8 @@ Received received(const std::vector<Reflection>& reflections, double time) {
     const double u = (time - arrival(r)) / shape.tau + PulseShape::peak;
     if (u < 0) continue;
     const double p = r.power * std::exp(-u) * PulseShape::to_unit_peak;
-    sum.power += p * u * u, sum.slope += p * (2 * u - u * u);
+    sum.power += p * u * u;
+    sum.slope += p * (2 * u - u * u);
   }
   return sum;
 }
@@ -88,7 +89,8 @@ TEST_CASE("between two edges, ages give the sum of pulses, where it turns, and i
     double now = 0;
     for (std::size_t k = any.whole(9) + 1; k-- > 0;) {
       const double step = any.uniform(0, 2), power = any.log_uniform(0.1, 10);
-      ages.advance(step), now += step;
+      ages.advance(step);
+      now += step;
       ages.add(power);
       reflections.push_back({(now + PulseShape::peak) * metres_per_tau, power});
     }
@@ -108,7 +110,9 @@ TEST_CASE("between two edges, ages give the sum of pulses, where it turns, and i
       const double step = std::fmin(end, 60) / 4000;
       for (double x = 0.5 * step; x < std::fmin(end, 60); x += step) {
         const double p = at(x).power * step;
-        sum.energy += p, sum.first += p * x, sum.second += p * x * x;
+        sum.energy += p;
+        sum.first += p * x;
+        sum.second += p * x * x;
       }
       CHECK(found.energy == support::relative(sum.energy, 1e-4));
       CHECK(found.first == support::relative(sum.first, 1e-4));
@@ -156,7 +160,8 @@ TEST_CASE("both waveform detectors find the same peaks, but for those that are l
     const auto reflections = some(any, 12);
     const auto a = echoes_of(exact, reflections), b = echoes_of(sampled, reflections);
     if (a.size() != b.size()) continue;
-    ++alike, peaks += a.size();
+    ++alike;
+    peaks += a.size();
     for (std::size_t e = 0; e < a.size(); ++e) {
       CHECK(std::fabs(a[e].range - b[e].range) < 0.0375);  // a bin, where an edge bends the top
       close += std::fabs(a[e].range - b[e].range) < 0.00375 && std::fabs(a[e].amplitude / b[e].amplitude - 1) < 0.001;
@@ -182,7 +187,10 @@ TEST_CASE("the echo of a group, found directly, is what the pass over its edges 
       const double start = any.log_uniform(1e-3, 1e5), spread = any.log_uniform(1e-9, 1.999) * metres_per_tau;
       for (Reflection& r : reflections) r = {start + any.uniform(0, spread), any.log_uniform(1e-11, 1e-7)};
       for (std::size_t k = 0; k < reflections.size(); ++k) reflections[k].object = static_cast<ObjectId>(k);
-      if (seed % 2 == 0) reflections.front().range = start, reflections.back().range = start + spread;  // as far apart as may be
+      if (seed % 2 == 0) {  // as far apart as may be
+        reflections.front().range = start;
+        reflections.back().range = start + spread;
+      }
       const auto [found, expected] = both(detector, reflections);
       REQUIRE(found.size() == 1);
       REQUIRE(expected.size() == 1);

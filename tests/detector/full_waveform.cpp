@@ -46,7 +46,10 @@ struct Peak {
 std::vector<Peak> distinct_peaks(const std::vector<Reflection>& reflections) {
   const double step = 0.005e-9;
   double first = std::numeric_limits<double>::infinity(), last = 0;
-  for (const Reflection& r : reflections) first = std::min(first, r.range), last = std::max(last, r.range);
+  for (const Reflection& r : reflections) {
+    first = std::min(first, r.range);
+    last = std::max(last, r.range);
+  }
   const double begin = 2 * first / speed_of_light - 3e-9;
   const auto n = static_cast<std::size_t>((2 * last / speed_of_light + 3e-9 - begin) / step);
   std::vector<double> y(n);
@@ -57,12 +60,14 @@ std::vector<Peak> distinct_peaks(const std::vector<Reflection>& reflections) {
   for (std::size_t i = 1; i + 1 < n; ++i) {
     if (y[i] < y[i - 1] && y[i] <= y[i + 1]) {
       if (!peaks.empty() && y[i] > 0.98 * peaks.back().height) return {};
-      valley = y[i], turns.push_back(i);
+      valley = y[i];
+      turns.push_back(i);
     }
     if (y[i] > y[i - 1] && y[i] >= y[i + 1]) {
       if (valley > 0.98 * y[i]) return {};
       const double offset = 0.5 * (y[i - 1] - y[i + 1]) / (y[i - 1] - 2 * y[i] + y[i + 1]);
-      peaks.push_back({0.5 * speed_of_light * (begin + (static_cast<double>(i) + offset) * step), y[i]}), turns.push_back(i);
+      peaks.push_back({0.5 * speed_of_light * (begin + (static_cast<double>(i) + offset) * step), y[i]});
+      turns.push_back(i);
     }
   }
   // a level shoulder is no peak yet, but rounding may make one of it
@@ -155,13 +160,15 @@ TEST_CASE("echoes are the peaks of the sum of all pulses, as found on a finer gr
     for (Reflection& r : reflections) r = {start + any.uniform(0, spread), any.log_uniform(1e-9, 1e-7)};
     const auto peaks = distinct_peaks(reflections);
     if (peaks.empty()) continue;
-    ++compared, several += peaks.size() > 1;
+    ++compared;
+    several += peaks.size() > 1;
     const auto echoes = echoes_of(detector, reflections);
     REQUIRE(echoes.size() == peaks.size());
     for (std::size_t k = 0; k < peaks.size(); ++k) {
       const double off = std::fabs(echoes[k].range - peaks[k].range);
       CHECK(off < 0.019);  // half a sample: where another pulse's leading edge bends the top, nothing finer can be told
-      ++peaks_compared, off_by_a_millimetre += off > 1e-3;
+      ++peaks_compared;
+      off_by_a_millimetre += off > 1e-3;
       CHECK(echoes[k].amplitude == support::relative(peaks[k].height, 0.005));
     }
   }
@@ -178,8 +185,10 @@ TEST_CASE("reflections close to one another, of which the echo is found directly
     std::vector<Reflection> reflections(1 + any.whole(30));
     const double start = any.log_uniform(1, 3000), spread = any.log_uniform(1e-6, 3) * 0.5 * speed_of_light * laser.pulse_length / 3.5;
     for (Reflection& r : reflections) r = {start + any.uniform(0, spread), any.log_uniform(1e-9, 1e-8)};
-    for (std::size_t k = 0; k < reflections.size(); ++k)
-      reflections[k].object = static_cast<ObjectId>(k), reflections[k].cos_incidence = any.uniform();
+    for (std::size_t k = 0; k < reflections.size(); ++k) {
+      reflections[k].object = static_cast<ObjectId>(k);
+      reflections[k].cos_incidence = any.uniform();
+    }
     WaveformSettings settings{.sample_interval = any.log_uniform(0.05e-9, 2e-9),
                               .threshold = any.log_uniform(1e-9, 1e-6),
                               .timing = any.coin() ? EchoTiming::energy : EchoTiming::peak};
@@ -404,7 +413,8 @@ TEST_CASE("samples of noise have the deviation and the mean asked for, as long a
   double sum = 0, square = 0;
   for (std::size_t i = 0; i < a.waveform.size(); ++i) {
     const double error = static_cast<double>(a.waveform[i]) - (i < b.waveform.size() ? static_cast<double>(b.waveform[i]) : 0);
-    sum += error, square += error * error;
+    sum += error;
+    square += error * error;
   }
   const double mean = sum / 40000, deviation = noise.deviation_of_sample(laser.wavelength, settings.sample_interval);
   CHECK(std::fabs(mean - 5e-9) < 5 * deviation / 200);
@@ -428,7 +438,8 @@ TEST_CASE("false echoes come at the rate that the normal distribution predicts")
       // where the number of returns ends the search, it was over there
       const double end = d.echoes.size() < 255 ? static_cast<double>(d.waveform.size())
                                                : std::round((2 * d.echoes[254].range / speed_of_light - d.waveform_start) / 0.25e-9);
-      found += d.echoes.size(), looked_at += static_cast<std::size_t>(end);
+      found += d.echoes.size();
+      looked_at += static_cast<std::size_t>(end);
       for (const Echo& e : d.echoes) CHECK(e.amplitude >= threshold * 1e-9);
     }
     const double below = 0.5 * std::erfc(-threshold / std::sqrt(2.0));

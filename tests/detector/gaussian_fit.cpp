@@ -59,7 +59,8 @@ TEST_CASE("at a signal-to-noise ratio of 50, planted Gaussians are recovered wit
     CHECK(r.iterations <= 10);
     amplitude += std::pow(r.gaussian.amplitude / g.amplitude - 1, 2);
     position += std::pow((r.gaussian.position - g.position) / g.width, 2);
-    width += std::pow(r.gaussian.width / g.width - 1, 2), mean_width += r.gaussian.width / g.width - 1;
+    width += std::pow(r.gaussian.width / g.width - 1, 2);
+    mean_width += r.gaussian.width / g.width - 1;
   }
   CHECK(std::sqrt(amplitude / cases) < 0.01);
   CHECK(std::sqrt(position / cases) < 0.01);
@@ -130,7 +131,8 @@ TEST_CASE("a pulse has the same fitted width wherever its samples lie") {
     std::vector<double> y;
     for (double t = -2 * shape.tau - 0.005e-9 * k; t < 20 * shape.tau; t += 0.25e-9) y.push_back(shape(t));
     const double width = GaussianFit{}.width(y, 0.25e-9);
-    least = std::fmin(least, width), most = std::fmax(most, width);
+    least = std::fmin(least, width);
+    most = std::fmax(most, width);
   }
   CHECK(most < 1.006 * least);
   CHECK(pulse_width(GaussianFit{}, shape, 0.25e-9) == support::relative(least, 0.006));

@@ -47,7 +47,11 @@ TEST_CASE("a pulse's deviation is that of its shape") {
   const PulseShape shape(4e-9);
   double sum = 0, first = 0, second = 0;
   const double step = shape.tau / 1000;
-  for (double t = -2 * shape.tau; t < 60 * shape.tau; t += step) sum += shape(t), first += t * shape(t), second += t * t * shape(t);
+  for (double t = -2 * shape.tau; t < 60 * shape.tau; t += step) {
+    sum += shape(t);
+    first += t * shape(t);
+    second += t * t * shape(t);
+  }
   const double mean = first / sum;
   CHECK(mean == support::relative(shape.tau, 1e-6));  // the mean of a gamma distribution of order 3 is one tau after its peak
   CHECK(std::sqrt(second / sum - mean * mean) == support::relative(shape.deviation(), 1e-6));

@@ -61,7 +61,9 @@ TEST_CASE("several subrays at once bring back what each brings back alone") {
     simd::Doubles share{}, backscatter{}, ranges{};
     for (std::size_t k = 0; k < simd::lane_count; ++k) {
       const double n = static_cast<double>(k);
-      share[k] = 0.1 + 0.01 * n, backscatter[k] = 0.3 * n, ranges[k] = range * (1 + 0.1 * n);
+      share[k] = 0.1 + 0.01 * n;
+      backscatter[k] = 0.3 * n;
+      ranges[k] = range * (1 + 0.1 * n);
     }
     const simd::Doubles power = budget.power(share, backscatter, ranges);
     for (std::size_t k = 0; k < simd::lane_count; ++k) {

@@ -88,7 +88,10 @@ TEST_CASE("the range of a group is the mean by power, and its strongest reflecti
     SinglePeakGroup::Workspace w(reflections.size());
     const SinglePeakGroup group(reflections, shape, interval, w);
     double power = 0, weighted = 0;
-    for (const Reflection& r : reflections) power += r.power, weighted += r.power * (r.range - reflections[0].range);
+    for (const Reflection& r : reflections) {
+      power += r.power;
+      weighted += r.power * (r.range - reflections[0].range);
+    }
     CHECK(std::fabs(group.mean_range() - (reflections[0].range + weighted / power)) < 1e-12 * group.mean_range());
     const double x = any.uniform(0, 4), time = group.last_edge() + x * shape.tau;
     const auto share = [&](const Reflection& r) { return r.power * shape(time - arrival(r)); };

@@ -159,7 +159,8 @@ TEST_CASE("every platform of the catalogue goes where it is sent") {
     SurveySettings survey{.scanner = scanner, .platform = platform};
     for (const double y : {0.0, 40.0}) {
       LegSettings leg{.duration_max = 60};
-      leg.platform.position = {5, y, 10}, leg.platform.speed = 4;
+      leg.platform.position = {5, y, 10};
+      leg.platform.speed = 4;
       leg.scanner.scan_frequency = scan_frequency_of(scanner);
       survey.legs.push_back(leg);
     }

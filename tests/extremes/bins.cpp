@@ -70,7 +70,8 @@ TEST_CASE("bins of all sizes before a wall") {
     Errors errors;
     for (int k = 0; k < 10; ++k) {  // wherever the bins lie
       const Errors here = errors_at_wall(Laser{.pulse_length = pulse}, 100 + 0.05 * k * bin * speed_of_light, settings);
-      errors.range = std::max(errors.range, here.range), errors.amplitude = std::max(errors.amplitude, here.amplitude);
+      errors.range = std::max(errors.range, here.range);
+      errors.amplitude = std::max(errors.amplitude, here.amplitude);
       errors.width = std::max(errors.width, here.width);
     }
     const std::string bins = name + std::string(", wall at 100 m, all detectors and widths: ");
@@ -112,7 +113,9 @@ TEST_CASE("bins that do not fit the pulse") {
         const auto echoes = validation::one_pulse(wall, SingleRay{}, laser, validation::vacuum, detector).echoes;
         all.add(detector, echoes, 100, from_wall(laser, 100), width_of(4e-9));
       };
-      judge(FirstHit{}), judge(AnalyticWaveform<>(settings)), judge(AnalyticWaveform<MomentWidth>(settings));
+      judge(FirstHit{});
+      judge(AnalyticWaveform<>(settings));
+      judge(AnalyticWaveform<MomentWidth>(settings));
     }
     return all;
   }();
@@ -135,10 +138,11 @@ TEST_CASE("waveforms of ten million bins") {
   const Record full(FullWaveform{settings}, walls, laser), analytic(AnalyticWaveform{settings}, walls, laser);
   const double samples = std::ceil((2 * (1'400'000 - 100) / speed_of_light + 22 * tau) / 1e-9);
   row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, FullWaveform: samples kept", samples, static_cast<double>(full.samples), 10);
-  row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: samples kept", samples, static_cast<double>(analytic.samples),
-      10);
+  row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: samples kept", samples,
+      static_cast<double>(analytic.samples), 10);
   row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, FullWaveform: energy, of the right one", 1, full.energy / energy, 1e-3);
-  row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: energy, of the right one", 1, analytic.energy / energy, 1e-3);
+  row(quantity, "1e7 bins of 1 ns, walls at 100 m and 1400 km, AnalyticWaveform: energy, of the right one", 1, analytic.energy / energy,
+      1e-3);
 
   const Record noisy(FullWaveform{settings, NoWidth{}, ReceiverNoise{.deviation = 1e-12, .background = 1e-9}}, walls, laser);
   row(quantity, "1e7 bins of 1 ns, all of noise: samples kept", 1e7, static_cast<double>(noisy.samples), 0);

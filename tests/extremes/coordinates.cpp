@@ -93,7 +93,8 @@ TEST_CASE("no ray leaves a closed mesh of 1 m, wherever it is") {
     const Meshes meshes(data);
     for (int time = 0; time < 300; ++time) {
       RayBundle rays;
-      rays.origin = place.at + random.point(0.5), rays.size = 16;
+      rays.origin = place.at + random.point(0.5);
+      rays.size = 16;
       for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, normalize(target(random, data) - rays.origin));
       rays.pad();
       lost += escaped(meshes.linear, rays) + escaped(meshes.bvh, rays) + escaped(meshes.exact_bvh, rays) + escaped(meshes.kd_tree, rays) +
@@ -133,10 +134,14 @@ double worst_of_part(const Vec3& own, double scale, const Vec3& centre, std::uin
     for (std::size_t i = 0; i < data.triangles.size(); ++i) {
       const ExactCrossing crossing = exact_crossing(data.triangle(i), origin, direction);
       const auto at = static_cast<double>(crossing.range);
-      if (crossing.inside >= 0 && at > 0 && at < range) range = at, expected = crossing;
+      if (crossing.inside >= 0 && at > 0 && at < range) {
+        range = at;
+        expected = crossing;
+      }
     }
     if (!(expected.sine > 0.1)) continue;  // edges and silhouettes are for other tests
-    ++met, worst = std::max(worst, std::fabs(hit.range - range));
+    ++met;
+    worst = std::max(worst, std::fabs(hit.range - range));
   }
   CHECK(met > 100);
   return worst;

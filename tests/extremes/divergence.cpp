@@ -44,7 +44,8 @@ auto wall() {
   for (std::uint32_t i = 0; i < n; ++i)
     for (std::uint32_t k = 0; k < n; ++k) {
       const std::uint32_t a = i * (n + 1) + k, b = a + n + 1;
-      data.triangles.push_back({a, b, b + 1}), data.triangles.push_back({a, b + 1, a + 1});
+      data.triangles.push_back({a, b, b + 1});
+      data.triangles.push_back({a, b + 1, a + 1});
     }
   using Mesh = TriangleMesh<Index>;
   return Scene<Mesh>({{std::make_shared<const Mesh>(data), material_table({{.reflectance = 1}}), {}, 1}});
@@ -62,7 +63,9 @@ struct Expected {
       const Real cosine = std::cos(std::hypot(x, y)), range = distance / cosine;
       const Real radius = 0.5L * validation::vacuum.diameter;
       const Real power = footprint.share(j) * cosine / (range * range + radius * radius);  // of a Lambertian surface
-      nearest = std::min(nearest, range), mean += power * range, sum += power;
+      nearest = std::min(nearest, range);
+      mean += power * range;
+      sum += power;
     }
     mean /= sum;
   }

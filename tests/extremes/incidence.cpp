@@ -67,7 +67,8 @@ TEST_CASE("a plane at any incidence") {
       Verdict verdict;
       judge(meshes.linear, data, rays, verdict);
       meshes.compare(rays, others);
-      wrong += verdict.wrong + (verdict.met == 1 ? 0 : 1), worst = std::max(worst, verdict.worst);
+      wrong += verdict.wrong + (verdict.met == 1 ? 0 : 1);
+      worst = std::max(worst, verdict.worst);
       const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(data)}});
       Hit hit;
       scene.closest(rays, std::span(&hit, 1));
@@ -248,8 +249,10 @@ TEST_CASE("a ray through an edge and through a corner") {
       const double range = length(aim - origin);
       return std::fabs(range_of(meshes.linear, rays) - range) < 1e-14 * range ? 0U : 1U;
     };
-    corners += misses(at_corner, corner), edges += misses(at_edge, edge);
-    meshes.compare(at_corner, others), meshes.compare(at_edge, others);
+    corners += misses(at_corner, corner);
+    edges += misses(at_edge, edge);
+    meshes.compare(at_corner, others);
+    meshes.compare(at_edge, others);
   }
   INFO(others.first);
   CHECK(others.different == 0);
@@ -281,7 +284,8 @@ TEST_CASE("a ray along the border of cells") {
           // down by one and on by `way`, so as to meet the corner of cells (c, r) in its plane
           const Vec3 aim{first.x + c, first.y - r, static_cast<double>(c)}, down{way.x, way.y, -1};
           const RayBundle rays = bundle_of({aim - 4.0 * down, down});
-          ++sent, of_field += range_of(field, rays) == 4 ? 0 : 1;
+          ++sent;
+          of_field += range_of(field, rays) == 4 ? 0 : 1;
           compare(meshes.linear, field, "HeightField", rays, others);
           meshes.compare(rays, others);
           if (way.x != 0) continue;  // others meet voxels farther west first

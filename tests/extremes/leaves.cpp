@@ -38,7 +38,10 @@ constexpr std::uint64_t seed = 5;
 /// A row of cells along the beam, from 10 m on.
 Leaves row_of_cells(float density, double edge, std::uint32_t cells, const LeafAngles& angles = LeafAngles::spherical()) {
   VoxelData data{.corner = {-0.5 * edge, before, -0.5 * edge}, .edge = edge};
-  for (std::uint32_t k = 0; k < cells; ++k) data.cells.push_back({0, k, 0}), data.densities.push_back(density);
+  for (std::uint32_t k = 0; k < cells; ++k) {
+    data.cells.push_back({0, k, 0});
+    data.densities.push_back(density);
+  }
   return Leaves({{std::make_shared<const Grid>(data, TransmissiveVoxels{.leaf_angles = angles}), material_table(), {}, 1}});
 }
 
@@ -61,7 +64,8 @@ struct Depths {
       const Outcome outcome = survey(i, workspace);
       const Real path = -std::log(static_cast<Real>(uniform({seed, i, 0, Purpose::free_path}))) / (0.5L * density);
       const bool meets = path < depth, found = !outcome.echoes.empty();
-      met += found ? 1 : 0, wrong += found == meets ? 0 : 1;
+      met += found ? 1 : 0;
+      wrong += found == meets ? 0 : 1;
       if (!found || !meets) continue;
       worst = std::max(worst, static_cast<double>(std::fabs(outcome.echoes[0].range / (before + path) - 1)));
     }

@@ -64,7 +64,8 @@ TEST_CASE("ground at any range") {
     for (int time = 0; time < 60; ++time) {
       const Vec3 from = normalize(random.unit() + Vec3{0, 0, 1.5});
       RayBundle rays;
-      rays.origin = from * d.range, rays.size = random.coin() ? 1 : 8;
+      rays.origin = from * d.range;
+      rays.size = random.coin() ? 1 : 8;
       for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, normalize(target(random, data) - rays.origin));
       if (random.coin()) rays.far = (1 + random.uniform(-1e-6, 1e-6)) * d.range;
       if (random.coin()) rays.near = (1 - 1e-2) * d.range;
@@ -92,11 +93,16 @@ TEST_CASE("what lies at the very ends of a ray, at any range") {
         mesh.closest(rays, nearest);
         met += nearest.met(0) && nearest.range[0] == d.range ? 1 : 0;
       };
-      ask(meshes.linear), ask(meshes.bvh), ask(meshes.exact_bvh), ask(meshes.kd_tree), ask(meshes.exact_kd_tree);
+      ask(meshes.linear);
+      ask(meshes.bvh);
+      ask(meshes.exact_bvh);
+      ask(meshes.kd_tree);
+      ask(meshes.exact_kd_tree);
       return met;
     };
     const double before = std::nextafter(d.range, 0), after = std::nextafter(d.range, 1e9);
-    good += meet(0, d.range) + meet(before, after), bad += meet(0, before) + meet(d.range, after);
+    good += meet(0, d.range) + meet(before, after);
+    bad += meet(0, before) + meet(d.range, after);
   }
   row(quantity, "wall at these ranges: answers, of 50, that meet it up to its range, or from a rounding before it", 50,
       static_cast<double>(good), 0);
@@ -150,5 +156,7 @@ TEST_CASE("a pulse's echo from a wall, at any range") {
     row(quantity, detector + ", wall at these ranges: largest error of the power [1e-12]", 0, worst_power * 1e12, 1);
   };
   const WaveformSettings settings{.threshold = 0};
-  ask("FirstHit", FirstHit{}), ask("AnalyticWaveform", AnalyticWaveform{settings}), ask("FullWaveform", FullWaveform{settings});
+  ask("FirstHit", FirstHit{});
+  ask("AnalyticWaveform", AnalyticWaveform{settings});
+  ask("FullWaveform", FullWaveform{settings});
 }

@@ -70,9 +70,12 @@ TEST_CASE("a scene without parts, and shapes without primitives, are met nowhere
     for (const std::vector<Box>& boxes : {no_boxes, empty_boxes}) {
       ClosestHits nearest(rays);
       const auto test = [&](std::span<const PrimitiveIndex> some) { met += some.size(); };
-      Linear<float>(boxes).closest(rays, test, nearest), Linear<double>(boxes).closest(rays, test, nearest);
-      Bvh<float>(boxes).closest(rays, test, nearest), Bvh<double>(boxes).closest(rays, test, nearest);
-      KdTree<float>(boxes).closest(rays, test, nearest), KdTree<double>(boxes).closest(rays, test, nearest);
+      Linear<float>(boxes).closest(rays, test, nearest);
+      Linear<double>(boxes).closest(rays, test, nearest);
+      Bvh<float>(boxes).closest(rays, test, nearest);
+      Bvh<double>(boxes).closest(rays, test, nearest);
+      KdTree<float>(boxes).closest(rays, test, nearest);
+      KdTree<double>(boxes).closest(rays, test, nearest);
     }
   }
   CHECK(none.bounds().empty());
@@ -109,13 +112,17 @@ TEST_CASE("more primitives than can be counted are refused before memory is aske
   refused_as(quantity, "2^32 - 1 boxes, KdTree<float>", "in number", [&] { return KdTree<float>(many); });
   refused_as(quantity, "2^32 - 1 boxes, KdTree<double>", "in number", [&] { return KdTree<double>(many); });
   refused_as(quantity, "2^32 - 1 boxes, Linear", "in number", [&] { return Linear<float>(many); });
-  const auto counts = [](std::size_t vertices, std::size_t triangles) { return MeshData::validate_counts(vertices, triangles), true; };
+  const auto counts = [](std::size_t vertices, std::size_t triangles) {
+    MeshData::validate_counts(vertices, triangles);
+    return true;
+  };
   CHECK_NOTHROW(static_cast<void>(counts(4294967295, 4294967294)));  // 2^31 + 1 triangles are served
   refused_as(quantity, "mesh of 2^32 - 1 triangles", "MeshData::triangles (number)", [&] { return counts(3, 4294967295); });
   refused_as(quantity, "mesh of 2^32 vertices", "MeshData::vertices (number)", [&] { return counts(4294967296, 1); });
   refused_as(quantity, "raster of 65537 x 32769 pixels, 2^31 cells", "cells between them",
              [] { return HeightField({.columns = 65537, .rows = 32769}); });
-  refused_as(quantity, "raster of 65536 x 65536 pixels", "cells between them", [] { return HeightField({.columns = 65536, .rows = 65536}); });
+  refused_as(quantity, "raster of 65536 x 65536 pixels", "cells between them",
+             [] { return HeightField({.columns = 65536, .rows = 65536}); });
   refused_as(quantity, "raster of 2^32 - 1 columns", "Raster::columns is", [] { return HeightField({.columns = 4294967295, .rows = 2}); });
   refused_as(quantity, "voxels 2^21 cells apart", "within 2097152 cells", [] {
     return VoxelGrid<>({.cells = {{0, 0, 0}, {0, 0, 1U << 21}}});
@@ -137,7 +144,8 @@ TEST_CASE("a lattice of 9e18 cells, of which the outermost are there, is served"
       const Vec3 centre = data.corner + cell + Vec3(0.5);
       const RayBundle before = bundle_of({centre - way * 10.0, way}), after = bundle_of({centre + way * 10.0, way});
       ClosestHits first(before), second(after);
-      grid.closest(before, first), grid.closest(after, second);
+      grid.closest(before, first);
+      grid.closest(after, second);
       wrong += first.met(0) && first.range[0] == 9.5 ? 0 : 1;
       wrong += second.met(0) && second.range[0] == last - 10.5 ? 0 : 1;
     }
@@ -158,16 +166,22 @@ struct FlatGround {
   void operator()(pulsecast::detail::RasterGrid& grid, auto& levels, std::uint32_t& top, Vec2& per_metre, Vec2& pad, Vec3& centre,
                   Box& bounds, SharedArray<float>& heights, SharedArray<float>& pyramid) const {
     grid = {.columns = columns, .rows = rows};
-    per_metre = {1, -1}, pad = Vec2(1e-6 * columns), centre = {0.5 * columns, -0.5 * rows, 0};
+    per_metre = {1, -1};
+    pad = Vec2(1e-6 * columns);
+    centre = {0.5 * columns, -0.5 * rows, 0};
     bounds = {{0, 1.0 - rows, 0}, {columns - 1.0, 0, 0}};
-    levels[0].columns = columns - 1, levels[0].rows = rows - 1;
+    levels[0].columns = columns - 1;
+    levels[0].rows = rows - 1;
     std::size_t floats = 0;
     for (top = 0; top == 0 || levels[top].columns > 1 || levels[top].rows > 1;) {
       const auto& below = levels[top];
       auto& level = levels[++top];
       const std::uint32_t wide = top % 2 == 1 ? 2 : 1, tall = 3 - wide;
-      level.columns = ((below.columns - 1) >> wide) + 1, level.rows = ((below.rows - 1) >> tall) + 1, level.begin = floats;
-      level.below = below.shift, level.shift = {below.shift[0] + wide, below.shift[1] + tall};
+      level.columns = ((below.columns - 1) >> wide) + 1;
+      level.rows = ((below.rows - 1) >> tall) + 1;
+      level.begin = floats;
+      level.below = below.shift;
+      level.shift = {below.shift[0] + wide, below.shift[1] + tall};
       level.size = {static_cast<float>(1U << below.shift[0]), static_cast<float>(1U << below.shift[1])};
       for (std::uint32_t i = 0; i < 8; ++i) {
         level.east[i] = static_cast<float>((i & ((1U << wide) - 1)) << below.shift[0]);
@@ -179,7 +193,8 @@ struct FlatGround {
       REQUIRE(count * sizeof(float) <= size);
       return SharedArray<float>({static_cast<const float*>(zeros.get()), count}, zeros);
     };
-    heights = of(std::size_t{columns} * rows), pyramid = of(floats);
+    heights = of(std::size_t{columns} * rows);
+    pyramid = of(floats);
   }
 };
 

@@ -222,8 +222,10 @@ TEST_CASE("trajectories") {
   for (PulseIndex i = late; i < late + window; ++i) {
     const Turns t = turns(i, 16);
     const Real time = static_cast<Real>(t.whole) + t.phase, since = (static_cast<Real>(t.whole) - static_cast<Real>(begin)) + t.phase;
-    slow = std::max(slow, error(survey, 0.0078125L * time, i)), fast = std::max(fast, error(orbit, 32 * time - 1e9L, i));
-    between = std::max(between, error(linear, 32 * since, i)), smooth = std::max(smooth, error(cubic, 32 * since, i));
+    slow = std::max(slow, error(survey, 0.0078125L * time, i));
+    fast = std::max(fast, error(orbit, 32 * time - 1e9L, i));
+    between = std::max(between, error(linear, 32 * since, i));
+    smooth = std::max(smooth, error(cubic, 32 * since, i));
   }
   row(quantity, "StraightLine at 8 mm/s, 246 km on: largest error of the position [m]", 0, static_cast<double>(slow), 1e-8);
   row(quantity, "StraightLine at 32 m/s, 1 000 000 km on: largest error of the position [m]", 0, static_cast<double>(fast), 1e-5);
@@ -281,14 +283,17 @@ TEST_CASE("random numbers") {
   std::uint64_t same = 0;
   for (PulseIndex i = late; i < late + n; ++i) {
     const double x = normal({.seed = 3, .pulse = i}), wrapped = normal({.seed = 3, .pulse = i & 0xFFFFFFFF});
-    sum += x, squares += x * x, neighbours += x * before, before = x;
+    sum += x;
+    squares += x * x;
+    neighbours += x * before;
+    before = x;
     same += x == wrapped ? 1 : 0;
   }
   row(quantity, "normal numbers of 1e6 pulses from pulse 1e12: mean", 0, sum / n, 0.004);
   row(quantity, "normal numbers of 1e6 pulses from pulse 1e12: variance", 1, squares / n, 0.006);
   row(quantity, "normal numbers of 1e6 pulses from pulse 1e12: correlation of neighbours", 0, neighbours / n, 0.004);
-  row(quantity, "normal numbers of 1e6 pulses from pulse 1e12: how many are those of a pulse 232 * 2^32 before", 0, static_cast<double>(same),
-      0);
+  row(quantity, "normal numbers of 1e6 pulses from pulse 1e12: how many are those of a pulse 232 * 2^32 before", 0,
+      static_cast<double>(same), 0);
 }
 
 TEST_CASE("a whole survey") {

@@ -39,7 +39,8 @@ void shoot(const MeshData& data, double size, double farthest, Generator& random
   const Meshes meshes(data);
   for (int time = 0; time < 200; ++time) {
     RayBundle rays;
-    rays.origin = target(random, data) + random.unit() * (size * random.log_uniform(1, farthest)), rays.size = random.coin() ? 1 : 8;
+    rays.origin = target(random, data) + random.unit() * (size * random.log_uniform(1, farthest));
+    rays.size = random.coin() ? 1 : 8;
     for (std::size_t j = 0; j < rays.size; ++j)
       rays.set_direction(j, normalize(target(random, data) + random.point(random.coin() ? 0 : size) - rays.origin));
     rays.pad();
@@ -134,8 +135,9 @@ TEST_CASE("triangles of any aspect") {
     Comparison others;
     shoot(data, 1, 1e3, random, verdict, others);
     check(verdict, others);
-    row(quantity, "needles 1 m long, aspect " + std::string(text) + ": rays that do not answer as stated, of " + std::to_string(verdict.rays),
-        0, static_cast<double>(verdict.wrong), 0);
+    row(quantity,
+        "needles 1 m long, aspect " + std::string(text) + ": rays that do not answer as stated, of " + std::to_string(verdict.rays), 0,
+        static_cast<double>(verdict.wrong), 0);
     const TriangleMesh<> mesh(data);
     for (PrimitiveIndex i = 0; i < 40; ++i) {
       const Triangle t = data.triangle(i);
@@ -170,12 +172,15 @@ TEST_CASE("triangles without area are never met, and hide nothing") {
   for (int time = 0; time < 2000; ++time) {
     const RayBundle rays = bundle(random, time % 2 == 0 ? flat : both, mixed.bvh.bounds(), random.coin() ? 1 : 19);
     ClosestHits none(rays), found(rays), expected(rays);
-    degenerate.linear.closest(rays, none), mixed.linear.closest(rays, found), alone.closest(rays, expected);
+    degenerate.linear.closest(rays, none);
+    mixed.linear.closest(rays, found);
+    alone.closest(rays, expected);
     for (std::size_t j = 0; j < rays.size; ++j) {
       met += none.met(j) ? 1 : 0;
       other += found.range[j] == expected.range[j] || (rays.x[j] != rays.x[j]) ? 0 : 1;
     }
-    degenerate.compare(rays, others), mixed.compare(rays, others);
+    degenerate.compare(rays, others);
+    mixed.compare(rays, others);
   }
   INFO(others.first);
   CHECK(others.different == 0);
@@ -221,7 +226,8 @@ TEST_CASE("one triangle very many times over") {
     const RayBundle rays = bundle_of({at + Vec3{0, 0, 5}, -axis::up});
     meshes.compare(rays, others);
     const Answer first = ask(meshes.linear, rays.ray(0));
-    ++asked, wrong += std::fabs(first.range - 5) < 1e-14 && first.primitive >= 1 ? 0 : 1;
+    ++asked;
+    wrong += std::fabs(first.range - 5) < 1e-14 && first.primitive >= 1 ? 0 : 1;
   }
   INFO(others.first);
   CHECK(others.different == 0);

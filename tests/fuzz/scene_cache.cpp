@@ -90,7 +90,9 @@ std::shared_ptr<std::byte> mapped(const std::string& file) {
 
 void seal(std::string& file) {
   io::detail::CacheHeader header;
-  header.program = io::detail::program_of<Tested::Part>(), header.key = key, header.size = file.size();
+  header.program = io::detail::program_of<Tested::Part>();
+  header.key = key;
+  header.size = file.size();
   header.checksum = io::detail::checksum_of(header, std::as_bytes(std::span(file)).subspan(sizeof header));
   std::memcpy(file.data(), &header, sizeof header);
 }

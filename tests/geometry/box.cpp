@@ -47,8 +47,11 @@ TEST_CASE("extending boxes is the same in any order and holds all that was put i
     const Box a = random.box(10, 1e-3, 10), b = random.box(10, 1e-3, 10);
     const Vec3 p = random.point(20);
     Box one = a, other;
-    one.extend(b), one.extend(p);
-    other.extend(p), other.extend(b), other.extend(a);
+    one.extend(b);
+    one.extend(p);
+    other.extend(p);
+    other.extend(b);
+    other.extend(a);
     CHECK(one == other);
     CHECK(min(one.min, p) == one.min);
     CHECK(max(one.max, b.max) == one.max);

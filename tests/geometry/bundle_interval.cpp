@@ -34,7 +34,8 @@ Stretch stretch(const Box& box, const Vec3& origin, const Vec3& direction) {
       if (low > 0 || high < 0) return {infinity, -infinity};
       continue;
     }
-    s.entry = std::max(s.entry, std::min(low / d, high / d)), s.exit = std::min(s.exit, std::max(low / d, high / d));
+    s.entry = std::max(s.entry, std::min(low / d, high / d));
+    s.exit = std::min(s.exit, std::max(low / d, high / d));
   }
   return s;
 }
@@ -175,7 +176,8 @@ TEST_CASE_TEMPLATE("no compact box that any ray of a bundle meets is passed over
     const Vec3 centre = bounds.centre();
     Box node;  // small or large in its tree
     const double share = random.log_uniform(1e-5, 1);
-    node.min = bounds.min + bounds.size() * ((1 - share) * random.uniform()), node.max = node.min + bounds.size() * share;
+    node.min = bounds.min + bounds.size() * ((1 - share) * random.uniform());
+    node.max = node.min + bounds.size() * share;
     std::vector<Box> boxes;
     QuantizedBox8<Real> compact;
     compact.begin(BoundingBox<Real>::around(node, centre));
@@ -183,9 +185,11 @@ TEST_CASE_TEMPLATE("no compact box that any ray of a bundle meets is passed over
       Box box;
       for (int k = 0; k < 3; ++k) {
         const double low = random.uniform(0, 0.9), high = random.whole(8) == 0 ? low : random.uniform(low, 1);
-        box.min[k] = node.min[k] + low * node.size()[k], box.max[k] = node.min[k] + high * node.size()[k];
+        box.min[k] = node.min[k] + low * node.size()[k];
+        box.max[k] = node.min[k] + high * node.size()[k];
       }
-      boxes.push_back(box), compact.add(BoundingBox<Real>::around(box, centre));
+      boxes.push_back(box);
+      compact.add(BoundingBox<Real>::around(box, centre));
     }
     const Box& aimed_at = boxes[random.whole(8)];
     const Vec3 aim = aimed_at.min + aimed_at.size() * random.uniform();
@@ -261,7 +265,9 @@ TEST_CASE_TEMPLATE("rays that are not numbers do not hide what the others meet, 
   const auto around = BoundingBox<Real>::around(box, {});
   RayBundle rays = bundle_of({{}, axis::forward});
   rays.size = 3;
-  rays.set_direction(0, {nan, nan, nan}), rays.set_direction(1, axis::forward), rays.set_direction(2, {0, 1, nan});
+  rays.set_direction(0, {nan, nan, nan});
+  rays.set_direction(1, axis::forward);
+  rays.set_direction(2, {0, 1, nan});
   rays.pad();
   CHECK(holds<Real>(BundleInterval<Real>(rays, box, {}).inside(around), 5));
   rays.set_direction(1, {nan, nan, nan});
@@ -269,7 +275,8 @@ TEST_CASE_TEMPLATE("rays that are not numbers do not hide what the others meet, 
   CHECK(BundleInterval<Real>(rays, box, {}).inside(around).empty());
   CHECK(BundleInterval<Real>(bundle_of({{nan, 0, 0}, axis::forward}), box, {}).inside(around).empty());
   QuantizedBox8<Real> boxes;
-  boxes.begin(around), boxes.add(around);
+  boxes.begin(around);
+  boxes.add(around);
   std::array<Real, 8> entries;
   const auto found = [&](const Ray& ray) { return RayInterval<Real>(bundle_of(ray), box, {}).inside(boxes, 100, entries); };
   CHECK(found({{}, axis::forward}) == 1);

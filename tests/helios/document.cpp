@@ -515,7 +515,10 @@ TEST_CASE("hostile documents are refused at once") {
   refuses(std::string("<document>\0</document>", 22), "holds binary data");
   refuses("<document/><document/>", "a second root element");
   std::string many, params;
-  for (int i = 0; i < 100'000; ++i) many += "<unknown_" + std::to_string(i) + "/>", params += "<param key=\"a\" value=\"b\"/>";
+  for (int i = 0; i < 100'000; ++i) {
+    many += "<unknown_" + std::to_string(i) + "/>";
+    params += "<param key=\"a\" value=\"b\"/>";
+  }
   try {
     (void)read_text("<document>" + many + "</document>");
     FAIL("was read");

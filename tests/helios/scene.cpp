@@ -57,7 +57,8 @@ SurveyScene built(SceneSettings settings, SceneBuildOptions options = {}, int ru
 TEST_CASE("parts are turned, scaled and moved, and keep their ids and materials") {
   const Files files;
   PartSettings cube = files.part("cube.obj", "17");
-  cube.transform.scale = 2, cube.transform.translation = {10, 5, 0};
+  cube.transform.scale = 2;
+  cube.transform.translation = {10, 5, 0};
   cube.transform.rotations = {{.turns = {{Axis::z, pi / 4}}}};
   const SurveyScene scene = built(scene_of({files.part("plane.obj", "0"), cube}));
   const Hit top = below(scene, 10, 5), ground = below(scene, 0, 0), corner = below(scene, 10 + 2.7, 5),
@@ -95,7 +96,8 @@ TEST_CASE("parts that points do not tell apart are told of") {
 TEST_CASE("a part is let down onto the ground") {
   const Files files;
   PartSettings cube = files.part("cube.obj", "1");
-  cube.transform.translation = {3, 3, 8}, cube.transform.on_ground = 1;
+  cube.transform.translation = {3, 3, 8};
+  cube.transform.on_ground = 1;
   CHECK(below(built(scene_of({cube, files.part("plane.obj", "0")})), 3, 3).range == relative(98, 1e-9));
   cube.transform.translation = {300, 3, 8};
   SceneBuilder nowhere(scene_of({cube, files.part("plane.obj", "0")}), {});
@@ -179,7 +181,8 @@ TEST_CASE("swaps take a part's place in later runs") {
   const Files files;
   PartSettings cube = files.part("cube.obj", "1");
   SwapSettings larger, gone;
-  larger.step = 2, larger.transform.scale = 3;
+  larger.step = 2;
+  larger.transform.scale = 3;
   gone.removes = true;
   cube.swaps = {larger, gone};
   SceneBuilder builder(scene_of({files.part("plane.obj", "0"), cube}), {});

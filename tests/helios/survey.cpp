@@ -31,7 +31,8 @@ SurveySettings survey_of(PlatformKind kind, const std::vector<Vec3>& places, dou
   s.platform.kind = kind;
   for (const Vec3& place : places) {
     LegSettings leg;
-    leg.platform.position = place, leg.platform.speed = speed;
+    leg.platform.position = place;
+    leg.platform.speed = speed;
     leg.scanner.scan_frequency = 10;
     s.legs.push_back(leg);
   }
@@ -42,7 +43,10 @@ Vec3 origin(const CompiledSurvey& compiled, PulseIndex i) { return compiled.sour
 
 TEST_CASE("a tripod stands where each leg says, until the head has turned") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}, {4, 5, 6}});
-  for (LegSettings& leg : s.legs) leg.scanner.head_speed = radians(90), leg.scanner.head_stop = radians(180);
+  for (LegSettings& leg : s.legs) {
+    leg.scanner.head_speed = radians(90);
+    leg.scanner.head_stop = radians(180);
+  }
   s.platform.mount.position = {0, 0, 1.5};
   const CompiledSurvey compiled = compile_survey(s, flat);
   REQUIRE(compiled.legs.size() == 2);
@@ -77,17 +81,21 @@ TEST_CASE("a tripod stands where each leg says, until the head has turned") {
     CHECK(none.legs[1].end == none.legs[1].first);
   }
   SUBCASE("nor of more pulses than can be counted") {
-    s.legs[1].duration_max = 1e14, s.legs[1].scanner.head_speed = 0, s.legs[1].scanner.head_stop = 0;
+    s.legs[1].duration_max = 1e14;
+    s.legs[1].scanner.head_speed = 0;
+    s.legs[1].scanner.head_stop = 0;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1 (pulses) is 1e+17"), SettingError);
   }
   SUBCASE("nor faster than a laser can be") {
-    s.legs[1].scanner.pulse_rate = 1e13, s.legs[1].duration_max = 1;
+    s.legs[1].scanner.pulse_rate = 1e13;
+    s.legs[1].duration_max = 1;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: Scanner::pulse_rate is 1e+13"), SettingError);
     s.legs[1].scanner.pulse_rate = -1;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: pulseFreq_hz is -1"), SettingError);
   }
   SUBCASE("a leg that would never end is refused") {
-    s.legs[1].scanner.head_speed = 0, s.legs[1].scanner.head_stop = 0;
+    s.legs[1].scanner.head_speed = 0;
+    s.legs[1].scanner.head_stop = 0;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: maxDuration_s"), SettingError);
     s.legs[1].scanner.head_stop = 1;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: headRotatePerSec_deg"), SettingError);
@@ -109,7 +117,8 @@ TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with 
   CHECK(length(compiled.source.pulse(0)->direction() - axis::right) < 1e-9);
 
   SUBCASE("a head that outlasts the way is told of") {
-    s.legs[0].scanner.head_speed = radians(90), s.legs[0].scanner.head_stop = radians(900);
+    s.legs[0].scanner.head_speed = radians(90);
+    s.legs[0].scanner.head_stop = radians(900);
     const CompiledSurvey waits = compile_survey(s, flat);
     CHECK(waits.legs[0].duration.seconds() == 10);
     REQUIRE(waits.warnings.size() == 1);
@@ -186,7 +195,8 @@ TEST_CASE("a platform that moves stays where the next leg begins at the same pla
       CAPTURE(smooth);
       SurveySettings s = survey_of(kind, places, 5);
       for (LegSettings& leg : s.legs) leg.platform.smooth_turn = smooth;
-      s.legs[0].duration_max = 2, s.legs[2].duration_max = 3;
+      s.legs[0].duration_max = 2;
+      s.legs[2].duration_max = 3;
       s.leg_offset = LegOffsetSettings{.mean = 0, .deviation = 0.5};
       const CompiledSurvey compiled = compile_survey(s, flat, {.seed = 3});
       CHECK(compiled.legs[0].duration.seconds() == 2);
@@ -214,11 +224,13 @@ TEST_CASE("a platform that moves, and has but one leg, stays there") {
     CHECK(origin(compiled, 0) == Vec3{3, 4, 7});
     CHECK(compiled.source.pulse(1999)->pose.position == Vec3{3, 4, 7});
     s.legs[0].duration_max.reset();
-    s.legs[0].scanner.head_speed = radians(90), s.legs[0].scanner.head_stop = radians(360);
+    s.legs[0].scanner.head_speed = radians(90);
+    s.legs[0].scanner.head_stop = radians(360);
     CHECK(compile_survey(s, flat).source.size() == 4000);
   }
   SurveySettings s = survey_of(PlatformKind::multicopter, {{0, 0, 40}});
-  s.legs[0].duration_max = 1, s.legs[0].platform.yaw_at_departure = radians(90);
+  s.legs[0].duration_max = 1;
+  s.legs[0].platform.yaw_at_departure = radians(90);
   CHECK(length(compile_survey(s, flat).source.pulse(0)->direction() + axis::right) < 1e-9);
 }
 
@@ -228,7 +240,8 @@ TEST_CASE("an interpolated platform follows its file, with the columns that the 
   SurveySettings s = survey_of(PlatformKind::interpolated, {{}});
   s.platform.rotation_spec = RotationSpec::canonical;
   TrajectorySettings t{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
-  t.sync_clock = true, t.start = 1;
+  t.sync_clock = true;
+  t.start = 1;
   s.legs[0].platform.trajectory = t;
   const CompiledSurvey compiled = compile_survey(s, flat);
   CHECK(compiled.legs[0].duration.seconds() == 3);
@@ -247,7 +260,8 @@ TEST_CASE("what one leg says of the columns of a file, and what separates them, 
   SurveySettings s = survey_of(PlatformKind::interpolated, {{}, {}});
   const TrajectoryIndices columns{.time = 3, .x = 0, .y = 1, .z = 2};
   for (LegSettings& leg : s.legs) leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .position_only = true};
-  s.legs[0].platform.trajectory->columns = columns, s.legs[0].platform.trajectory->separator = ',';
+  s.legs[0].platform.trajectory->columns = columns;
+  s.legs[0].platform.trajectory->separator = ',';
   s.legs[1].platform.trajectory->start = 1;
   const CompiledSurvey compiled = compile_survey(s, flat);
   CHECK(compiled.legs[0].duration.seconds() == 2);
@@ -263,7 +277,8 @@ TEST_CASE("legs end before a jump of their file, begin after it, or jump, with a
   for (LegSettings& leg : s.legs) leg.platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
   for (const bool position_only : {false, true}) {
     for (LegSettings& leg : s.legs) leg.platform.trajectory->position_only = position_only;
-    s.legs[0].platform.trajectory->end = 2, s.legs[1].platform.trajectory->start = 2;
+    s.legs[0].platform.trajectory->end = 2;
+    s.legs[1].platform.trajectory->start = 2;
     const CompiledSurvey compiled = compile_survey(s, flat);
     const auto at = [&](std::size_t k, double t) { return compiled.source.legs()[k].path().at(Tick::of_seconds(t)); };
     CHECK(compiled.legs[0].duration.seconds() == 2);
@@ -310,7 +325,8 @@ TEST_CASE("a leg has at most 1e9 records of its trajectory, and as many pulses a
                        doctest::Contains("a.xml:4:5: leg 1: trajectoryTimeInterval_s (records) is 1e+15"), SettingError);
   s.legs[1].scanner.active = false;
   CHECK_NOTHROW((void)compile_survey(s, flat, options));
-  s.legs[1].scanner.active = true, s.legs[1].scanner.trajectory_interval = 1e-3;
+  s.legs[1].scanner.active = true;
+  s.legs[1].scanner.trajectory_interval = 1e-3;
   CHECK(compile_survey(s, flat, options).legs[1].trajectory_interval == 1e-3);
   s.legs[1].duration_max = 1e13;
   CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options), doctest::Contains("a.xml:4:5: leg 1 (pulses) is 1e+16"), SettingError);
@@ -327,7 +343,8 @@ TEST_CASE("a leg that is too slow to end, or too fast for its platform, is told 
     CHECK_THROWS_WITH_AS((void)compile_survey(survey_of(kind, {{}, {20, 0, 0}}, speed), flat), doctest::Contains("leg 0: movePerSec_m is "),
                          SettingError);
   SurveySettings s = survey_of(stationary, {{}});
-  s.legs[0].scanner.head_speed = 1e-300, s.legs[0].scanner.head_stop = 2;
+  s.legs[0].scanner.head_speed = 1e-300;
+  s.legs[0].scanner.head_stop = 2;
   CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 0 (duration) is "), SettingError);
 }
 

@@ -52,7 +52,8 @@ TEST_CASE("the fingerprint is XXH3 of 128 bits, in however many pieces the bytes
 TEST_CASE("it matters where one text ends and the next begins") {
   const auto of = [](std::string_view a, std::string_view b) {
     Digest digest;
-    digest.add(a), digest.add(b);
+    digest.add(a);
+    digest.add(b);
     return digest.value();
   };
   CHECK(of("ab", "c") == of("ab", "c"));
@@ -61,14 +62,18 @@ TEST_CASE("it matters where one text ends and the next begins") {
 }
 
 TEST_CASE("a file counts by what it holds, wherever it is and however long it is") {
-  write(folder / "a", "one"), write(folder / "b", "one"), write(folder / "c", "onf"), write(folder / "empty", "");
+  write(folder / "a", "one");
+  write(folder / "b", "one");
+  write(folder / "c", "onf");
+  write(folder / "empty", "");
   CHECK(of_content(folder / "a") == of_content(folder / "b"));
   CHECK(of_content(folder / "a") != of_content(folder / "c"));
   CHECK(of_content(folder / "empty") != Digest().value());
   std::string text((std::size_t{2} << 20) + 5, 'x');
   write(folder / "long", text);
   const Fingerprint before = of_content(folder / "long");
-  text.back() = 'y', write(folder / "long", text);
+  text.back() = 'y';
+  write(folder / "long", text);
   CHECK(of_content(folder / "long") != before);
   CHECK_THROWS_WITH_AS((void)of_content(folder / "none"), doctest::Contains("is not there"), FileError);
   CHECK_THROWS_WITH_AS((void)of_content("/dev/null"), doctest::Contains("neither a file nor a folder"), FileError);
@@ -77,7 +82,8 @@ TEST_CASE("a file counts by what it holds, wherever it is and however long it is
 TEST_CASE("a folder counts as all files in it, with their names") {
   const std::filesystem::path spectra = folder / "spectra";
   std::filesystem::create_directories(spectra / "more");
-  write(spectra / "oak.txt", "1 2"), write(spectra / "more" / "elm.txt", "3 4");
+  write(spectra / "oak.txt", "1 2");
+  write(spectra / "more" / "elm.txt", "3 4");
   const Fingerprint before = of_content(spectra);
   CHECK(of_content(spectra) == before);
   write(spectra / "more" / "elm.txt", "3 5");

@@ -89,10 +89,14 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
                                                  {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("keys")},
                                                  {42113, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("nodata")}};
   TIFFMergeFieldInfo(tiff, fields.data(), static_cast<std::uint32_t>(fields.size()));
-  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, columns), TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, rows);
-  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, form.samples), TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, form.planes);
-  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, form.bits), TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, form.format);
-  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, form.photometric), TIFFSetField(tiff, TIFFTAG_COMPRESSION, form.compression);
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, columns);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, rows);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, form.samples);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, form.planes);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, form.bits);
+  TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, form.format);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, form.photometric);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, form.compression);
   if (form.predictor != 1) TIFFSetField(tiff, TIFFTAG_PREDICTOR, form.predictor);
   if (!place.scale.empty()) TIFFSetField(tiff, 33550, static_cast<int>(place.scale.size()), place.scale.data());
   if (!place.ties.empty()) TIFFSetField(tiff, 33922, static_cast<int>(place.ties.size()), place.ties.data());
@@ -100,9 +104,10 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
   if (!place.keys.empty()) TIFFSetField(tiff, 34735, static_cast<int>(place.keys.size()), place.keys.data());
   if (!place.nodata.empty()) TIFFSetField(tiff, 42113, place.nodata.c_str());
   const std::uint32_t wide = form.tiled ? 16 : columns, high = form.tiled ? 16 : 5;
-  if (form.tiled)
-    TIFFSetField(tiff, TIFFTAG_TILEWIDTH, wide), TIFFSetField(tiff, TIFFTAG_TILELENGTH, high);
-  else
+  if (form.tiled) {
+    TIFFSetField(tiff, TIFFTAG_TILEWIDTH, wide);
+    TIFFSetField(tiff, TIFFTAG_TILELENGTH, high);
+  } else
     TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, high);
   const bool apart = form.planes == PLANARCONFIG_SEPARATE;
   for (std::uint16_t plane = 0; plane < (apart ? form.samples : 1); ++plane)
@@ -170,8 +175,12 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 std::string bare(const std::vector<std::array<std::uint32_t, 4>>& entries, const std::string& rest = {}) {
   std::vector<unsigned char> bytes{'I', 'I', 42, 0, 8, 0, 0, 0};
   put(bytes, static_cast<std::uint16_t>(entries.size()));
-  for (const auto& [tag, type, count, value] : entries)
-    put(bytes, static_cast<std::uint16_t>(tag)), put(bytes, static_cast<std::uint16_t>(type)), put(bytes, count), put(bytes, value);
+  for (const auto& [tag, type, count, value] : entries) {
+    put(bytes, static_cast<std::uint16_t>(tag));
+    put(bytes, static_cast<std::uint16_t>(type));
+    put(bytes, count);
+    put(bytes, value);
+  }
   put(bytes, std::uint32_t{0});
   return std::string(bytes.begin(), bytes.end()) + rest;
 }
@@ -530,7 +539,8 @@ TEST_CASE("a mutated file gives a sound raster, or a FileError, and libtiff prin
       ++refused;
     }
   }
-  TIFFSetErrorHandler(errors), TIFFSetWarningHandler(warnings);
+  TIFFSetErrorHandler(errors);
+  TIFFSetWarningHandler(warnings);
   CHECK(printed == 0);
   CHECK(read > 200);  // the mutations are neither harmless nor hopeless
   CHECK(refused > 200);

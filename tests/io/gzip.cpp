@@ -90,14 +90,21 @@ TEST_CASE("every text writer writes compressed what it writes else") {
   std::vector<float> samples(10 * shots.size(), 1e-9F);
   std::vector<SubrayHit> subrays(2 * shots.size());
   for (std::uint32_t i = 0; i < shots.size(); ++i) {
-    shots[i].index = i, shots[i].origin = random.point(1e6), shots[i].direction = random.unit();
-    shots[i].first_echo = i, shots[i].echoes = 1, shots[i].first_sample = 10 * i, shots[i].samples = 10;
+    shots[i].index = i;
+    shots[i].origin = random.point(1e6);
+    shots[i].direction = random.unit();
+    shots[i].first_echo = i;
+    shots[i].echoes = 1;
+    shots[i].first_sample = 10 * i;
+    shots[i].samples = 10;
     echoes[i].range = subrays[2 * i].range = random.log_uniform(1, 1000);
   }
   const EchoBatch batch{shots, echoes, samples, 1e-9, subrays};
   const auto same = [&](auto plain, auto compressed) {
-    plain(batch), compressed(batch);
-    plain.close(), compressed.close();
+    plain(batch);
+    compressed(batch);
+    plain.close();
+    compressed.close();
     const std::string text = content(folder / "a.txt");
     CHECK(text.size() > 10 * shots.size());
     CHECK((unzipped(content(folder / "a.gz")) == text));

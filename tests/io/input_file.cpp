@@ -101,7 +101,8 @@ TEST_CASE("what is no file is refused, and says what was expected") {
 TEST_CASE("errors name the line or the byte") {
   const TemporaryFolder folder;
   InputFile file(put(folder, "a\nb\n"), "text");
-  (void)file.take_line(), (void)file.take_line();
+  (void)file.take_line();
+  (void)file.take_line();
   CHECK_THROWS_WITH_AS(file.fail_at_line("is odd"), doctest::Contains("a, line 2: is odd"), FileError);
   CHECK_THROWS_WITH_AS(file.fail_at_byte(7, "is odd"), doctest::Contains("a, byte 7: is odd"), FileError);
 }

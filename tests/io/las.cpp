@@ -322,7 +322,10 @@ TEST_CASE("no points make a good file, with and without pulses") {
 TEST_CASE("from the fifteenth on, returns are written as the fifteenth of fifteen") {
   Survey survey;
   std::vector<Echo> echoes(20);
-  for (std::uint8_t n = 1; n <= 20; ++n) echoes[n - 1U].number = n, echoes[n - 1U].range = n;
+  for (std::uint8_t n = 1; n <= 20; ++n) {
+    echoes[n - 1U].number = n;
+    echoes[n - 1U].range = n;
+  }
   survey.add({.direction = {0, 0, 1}}, echoes);
   const LasFile file = survey.written();
   REQUIRE(file.points.size() == 20);
@@ -649,7 +652,8 @@ TEST_CASE("the bytes of packets do not depend on batches; without close, or with
   Survey bad = survey;
   bad.echoes.back().range = nan;
   bad.shots.back() = bad.shots[0];
-  bad.shots.back().first_echo = static_cast<std::uint32_t>(bad.echoes.size() - 1), bad.shots.back().echoes = 1;
+  bad.shots.back().first_echo = static_cast<std::uint32_t>(bad.echoes.size() - 1);
+  bad.shots.back().echoes = 1;
   {
     LasWriter open(other / "open.las", {.waveforms = true});
     open(survey.batch());

@@ -37,7 +37,9 @@ TEST_CASE("tallies of parts add up to that of the whole, in any order") {
                       [&](LasEncoder::Record& record, const Vec3& at) { CHECK(encoder->locate(record.data(), at)); });
   }
   LasTally sum = c.tally();
-  sum.add(nothing), sum.add(a.tally()), sum.add(b.tally());
+  sum.add(nothing);
+  sum.add(a.tally());
+  sum.add(b.tally());
   CHECK(sum.least == whole.tally().least);
   CHECK(sum.most == whole.tally().most);
   CHECK(sum.points == 750);

@@ -73,7 +73,8 @@ std::string polygon(const std::vector<Vec3>& outline) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     char line[128];
     std::snprintf(line, sizeof line, "v %.17g %.17g %.17g\n", outline[i].x, outline[i].y, outline[i].z);
-    vertices += line, face.append(" ").append(std::to_string(i + 1));
+    vertices += line;
+    face.append(" ").append(std::to_string(i + 1));
   }
   return vertices + face + "\n";
 }

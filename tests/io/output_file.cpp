@@ -151,7 +151,10 @@ TEST_CASE("what was written reads back, and writing goes on at the end") {
 TEST_CASE("an encoder gets every byte once and in order, is told the end, and what it makes is the file") {
   struct Doubler final : OutputEncoder {
     void encode(std::span<const std::byte> bytes, bool last, std::vector<std::byte>& out) override {
-      for (const std::byte b : bytes) out.push_back(b), out.push_back(b);
+      for (const std::byte b : bytes) {
+        out.push_back(b);
+        out.push_back(b);
+      }
       if (last) out.push_back(std::byte{'.'});
     }
   };

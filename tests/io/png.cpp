@@ -45,7 +45,8 @@ void give(ImageWriter& writer, const std::vector<Point>& points, std::size_t a_b
       echoes.push_back({.range = 8, .reflectance = p.reflectance, .object = p.object, .number = p.number});
     }
     EchoBatch batch;
-    batch.shots = shots, batch.echoes = echoes;
+    batch.shots = shots;
+    batch.echoes = echoes;
     writer(batch);
   }
 }

@@ -98,7 +98,10 @@ TEST_CASE("clouds beside each other share a lattice at multiples") {
     const double edge = random.log_uniform(1e-2, 10);
     const Vec3 place{477000, 5429000, 100};
     std::vector<Vec3> left, right;
-    for (int k = 0; k < 50; ++k) left.push_back(place + random.point(20)), right.push_back(place + random.point(20));
+    for (int k = 0; k < 50; ++k) {
+      left.push_back(place + random.point(20));
+      right.push_back(place + random.point(20));
+    }
     std::vector<Vec3> all = left;
     all.insert(all.end(), right.begin(), right.end());
     const PointCloudSettings settings{.voxel_size = edge, .lattice = VoxelLattice::at_multiples};
@@ -147,8 +150,12 @@ TEST_CASE("the normal of a tilted plane is found to 1e-9") {
       const double a = i == 0 ? 1 : i == 1 ? -1 : i == 2 ? 0 : random.uniform(-1, 1), b = i == 2 ? 1 : i < 2 ? 0 : random.uniform(-1, 1);
       const Vec3 d = offset + u * (a * size) + v * (b * size);
       sum += d;
-      products[0] += d.x * d.x, products[1] += d.x * d.y, products[2] += d.x * d.z;
-      products[3] += d.y * d.y, products[4] += d.y * d.z, products[5] += d.z * d.z;
+      products[0] += d.x * d.x;
+      products[1] += d.x * d.y;
+      products[2] += d.x * d.z;
+      products[3] += d.y * d.y;
+      products[4] += d.y * d.z;
+      products[5] += d.z * d.z;
     }
     const std::optional<Vec3> found = detail::plane_normal(static_cast<double>(points), sum, products);
     REQUIRE(found);
@@ -305,7 +312,8 @@ TEST_CASE("random clouds give what a cloud in memory gives") {
       points.push_back(place + random.point(reach));
       normals.push_back(random.unit() * random.log_uniform(1e-3, 1e3));
       colours.push_back({random.uniform(0, 255), random.uniform(0, 255), double(random.whole(256))});
-      least = min(least, points.back()), most = max(most, points.back());
+      least = min(least, points.back());
+      most = max(most, points.back());
     }
     const auto expected = by_cell(points, edge, least, most);
     const std::string text = text_of(points, normals, colours);
@@ -335,10 +343,14 @@ TEST_CASE("random clouds give what a cloud in memory gives") {
       Eigen::Vector3d middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < members.size(); ++k) {
         const std::size_t i = members[k];
-        sum += normalize(normals[i]), squares += colours[i] * colours[i] / (255.0 * 255.0);
-        if (length(points[i] - centre) < distance) distance = length(points[i] - centre), closest = normalize(normals[i]);
+        sum += normalize(normals[i]);
+        squares += colours[i] * colours[i] / (255.0 * 255.0);
+        if (length(points[i] - centre) < distance) {
+          distance = length(points[i] - centre);
+          closest = normalize(normals[i]);
+        }
         const Vec3 d = points[i] - least;
-        matrix.col(static_cast<Eigen::Index>(k)) << d.x, d.y, d.z;
+        matrix.col(static_cast<Eigen::Index>(k)) = Eigen::Vector3d(d.x, d.y, d.z);
         middle += matrix.col(static_cast<Eigen::Index>(k)) / static_cast<double>(members.size());
       }
       wrong += !same(mean.voxels.normals[found->second], normalize(sum));
@@ -373,7 +385,10 @@ TEST_CASE("a cloud is read in blocks without a seam") {
   const std::string text = text_of(points);
   REQUIRE(text.size() > 2 * InputFile::block_size);
   Vec3 least(1e300), most(-1e300);
-  for (const Vec3& p : points) least = min(least, p), most = max(most, p);
+  for (const Vec3& p : points) {
+    least = min(least, p);
+    most = max(most, p);
+  }
   const PointCloud cloud = read(text, {.voxel_size = 0.75});
   CHECK(cloud.points == points.size());
   CHECK(cloud.voxels.cells.size() == by_cell(points, 0.75, least, most).size());

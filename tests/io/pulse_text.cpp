@@ -26,7 +26,11 @@ std::string written(const std::vector<Shot>& shots, PulseTextSettings settings =
 
 TEST_CASE("a pulse is a line of ten columns, nine of which are HELIOS++'s") {
   Shot shot;
-  shot.index = 41, shot.tick = {7, 0.25}, shot.origin = {100, 200.00004, -50}, shot.direction = {0.6, 0, -0.8}, shot.channel = 3;
+  shot.index = 41;
+  shot.tick = {7, 0.25};
+  shot.origin = {100, 200.00004, -50};
+  shot.direction = {0.6, 0, -0.8};
+  shot.channel = 3;
   shot.fate = Fate::returned;
   CHECK(written({shot}) == "100.0000 200.0000 -50.0000 0.600000000 0.000000000 -0.800000000 7250000000.0000 41 3 0\n");
   CHECK(written({shot}, {.start_time = 4e8}) ==
@@ -36,7 +40,10 @@ TEST_CASE("a pulse is a line of ten columns, nine of which are HELIOS++'s") {
 TEST_CASE("pulses are written whatever became of them, and their fates have the numbers that are documented") {
   const std::vector<Fate> fates{Fate::returned, Fate::missed, Fate::out_of_range, Fate::below_threshold, Fate::absorbed};
   std::vector<Shot> shots(fates.size());
-  for (std::size_t i = 0; i < fates.size(); ++i) shots[i].index = i, shots[i].fate = fates[i];
+  for (std::size_t i = 0; i < fates.size(); ++i) {
+    shots[i].index = i;
+    shots[i].fate = fates[i];
+  }
   std::string expected, zeros = "0.0000 0.0000 0.0000 0.000000000 0.000000000 0.000000000 0.0000 ";
   for (const char* end : {"0 0 0\n", "1 0 2\n", "2 0 3\n", "3 0 4\n", "4 0 5\n"}) expected += zeros + end;
   CHECK(written(shots) == expected);

@@ -87,7 +87,11 @@ S some_scene() {
     typename S::Part part{
         .geometry = first, .materials = materials, .placement = placement, .object = 100 + i, .name = "part " + std::to_string(i)};
     if (i % 2 == 1) part.geometry = second;
-    if (i == 5) part.materials = others, part.placement = {}, part.name.clear();
+    if (i == 5) {
+      part.materials = others;
+      part.placement = {};
+      part.name.clear();
+    }
     parts.push_back(part);
   }
   return S(std::move(parts));
@@ -111,7 +115,8 @@ std::size_t differences(const S& a, const S& b, std::size_t& met) {
     RayBundle rays = random.cone(random.point(30), random.unit(), 0.3, 19);
     rays.wavelength = random.uniform(0.4e-6, 2.2e-6);
     std::array<Hit, 19> of_a, of_b;
-    a.closest(rays, of_a), b.closest(rays, of_b);
+    a.closest(rays, of_a);
+    b.closest(rays, of_b);
     for (std::size_t j = 0; j < rays.size; ++j) {
       met += of_a[j].met() ? 1 : 0;
       const bool same = of_a[j].range == of_b[j].range && of_a[j].cos_incidence == of_b[j].cos_incidence &&
@@ -408,7 +413,9 @@ TEST_CASE("a material or a mesh that cannot be is refused, whatever the checksum
 }
 
 TEST_CASE("the key is that of the contents: it changes with every byte, the order and the settings, but not with the place") {
-  write(folder / "a", "one"), write(folder / "b", "two"), write(folder / "empty", "");
+  write(folder / "a", "one");
+  write(folder / "b", "two");
+  write(folder / "empty", "");
   const auto of = [](std::vector<std::filesystem::path> files, std::string settings = {}) {
     return scene_key({std::move(files), std::move(settings)});
   };
@@ -422,7 +429,8 @@ TEST_CASE("the key is that of the contents: it changes with every byte, the orde
   CHECK(of({folder / "c", folder / "b"}) == before);
   write(folder / "c", "onf");
   CHECK(of({folder / "c", folder / "b"}) != before);
-  write(folder / "c", "onet"), write(folder / "b", "wo");  // the same bytes in all
+  write(folder / "c", "onet");
+  write(folder / "b", "wo");  // the same bytes in all
   CHECK(of({folder / "c", folder / "b"}) != before);
   CHECK_THROWS_WITH_AS((void)of({folder / "a"}), doctest::Contains("is not there"), FileError);
   const SceneSources sources{.files = {folder / "a", folder / "c"}};  // of which the caller knows the contents
@@ -444,7 +452,10 @@ TEST_CASE("a scene is built once, and again when a source changes, the cache is 
   write(source, "first");
   int builds = 0;
   const auto scene = [&](const std::string& settings = {}) {
-    return cached_scene<Small>(cache, {.files = {source}, .settings = settings}, [&] { return ++builds, smallest_parts(); });
+    return cached_scene<Small>(cache, {.files = {source}, .settings = settings}, [&] {
+      ++builds;
+      return smallest_parts();
+    });
   };
   const CachedScene<Small> first = scene();
   CHECK_FALSE(first.from_cache);

@@ -161,8 +161,12 @@ TEST_CASE("a library is all spectra of a folder, by the names of their files") {
   const std::filesystem::path many = folder / "library";
   std::filesystem::create_directory(many);
   const auto write = [&](const char* name, const char* text) { std::ofstream(many / name, std::ios::binary) << text; };
-  write("oak.v2.txt", "500 20\n1500 60\n"), write("grass.txt", "0.5 0.1\n"), write("grass.csv", "0.5 0.3\n");
-  write("readme.md", "words\n"), write(".hidden", "0.5 0.3\n"), write("empty", "");
+  write("oak.v2.txt", "500 20\n1500 60\n");
+  write("grass.txt", "0.5 0.1\n");
+  write("grass.csv", "0.5 0.3\n");
+  write("readme.md", "words\n");
+  write(".hidden", "0.5 0.3\n");
+  write("empty", "");
   const SpectralLibrary library = read_spectral_library(many);
   REQUIRE(library.spectra.size() == 2);
   CHECK(library.spectra.at("oak.v2")->reflectance(1e-6) == relative(0.4, 1e-12));

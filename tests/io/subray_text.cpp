@@ -18,15 +18,21 @@ using support::TemporaryFolder;
 
 SubrayHit hit(double range, double power, const Vec3& point) {
   SubrayHit hit;
-  hit.range = range, hit.power = power, hit.point = point;
-  hit.cos_incidence = 0.5, hit.backscatter = 0.25, hit.object = 12, hit.classification = 5;
+  hit.range = range;
+  hit.power = power;
+  hit.point = point;
+  hit.cos_incidence = 0.5;
+  hit.backscatter = 0.25;
+  hit.object = 12;
+  hit.classification = 5;
   return hit;
 }
 
 TEST_CASE("a hit is a line of eleven columns; subrays that met nothing have none, and keep their numbers") {
   const TemporaryFolder folder;
   std::vector<Shot> shots(2);
-  shots[0].index = 40, shots[1].index = 41;
+  shots[0].index = 40;
+  shots[1].index = 41;
   const std::vector<SubrayHit> subrays{hit(10, 2.5e-9, {1, 2, 3}), SubrayHit{}, SubrayHit{}, hit(20.00016, 0, {-1, 0, 5e6})};
   SubrayTextWriter writer(folder / "subrays.txt");
   writer(EchoBatch{shots, {}, {}, 0, subrays});

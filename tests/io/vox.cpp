@@ -117,7 +117,9 @@ TEST_CASE("shifted cubes stay inside their cells, evenly, and depend on the seed
     double sum = 0, squares = 0, most = 0;
     for (std::size_t n = 0; n < 8000; ++n) {
       const double s = file.voxels.shifts[n][axis];
-      sum += s, squares += s * s, most = std::max(most, std::fabs(s));
+      sum += s;
+      squares += s * s;
+      most = std::max(most, std::fabs(s));
       shifts[file.voxels.cells[n]] = file.voxels.shifts[n];
     }
     CHECK(most <= 0.25);

@@ -29,8 +29,13 @@ std::string written(const EchoBatch& batch, WaveformTextSettings settings = {}) 
 
 TEST_CASE("a waveform is a line of ten columns and its samples; times are one-way, in nanoseconds") {  // samples have a float's 7 digits
   Shot shot;
-  shot.index = 41, shot.tick = {7, 0.25}, shot.origin = {100, 200, 50}, shot.direction = {0, 0, -1};
-  shot.waveform_start = 200e-9, shot.first_sample = 1, shot.samples = 3;
+  shot.index = 41;
+  shot.tick = {7, 0.25};
+  shot.origin = {100, 200, 50};
+  shot.direction = {0, 0, -1};
+  shot.waveform_start = 200e-9;
+  shot.first_sample = 1;
+  shot.samples = 3;
   const std::vector<Shot> shots{Shot{}, shot};
   const std::vector<float> samples{99, 0.5e-9F, 0, -0.25e-9F, 99};
   CHECK(written({shots, {}, samples, 2e-9}, {.start_time = 1000}) ==
@@ -45,8 +50,12 @@ TEST_CASE("each sample is found at the range that its column says, and keeps its
   std::vector<float> samples;
   for (PulseIndex i = 0; i < 100; ++i) {
     Shot shot;
-    shot.index = i, shot.origin = random.point(1e6), shot.direction = random.unit(), shot.waveform_start = random.uniform(1e-9, 1e-4);
-    shot.first_sample = samples.size(), shot.samples = static_cast<std::uint32_t>(2 + random.whole(200));
+    shot.index = i;
+    shot.origin = random.point(1e6);
+    shot.direction = random.unit();
+    shot.waveform_start = random.uniform(1e-9, 1e-4);
+    shot.first_sample = samples.size();
+    shot.samples = static_cast<std::uint32_t>(2 + random.whole(200));
     for (std::uint32_t k = 0; k < shot.samples; ++k) samples.push_back(static_cast<float>(random.log_uniform(1e-12, 1e-3)));
     shots.push_back(shot);
   }

@@ -33,7 +33,11 @@ std::string written(const TemporaryFolder& folder, const std::vector<Shot>& shot
 TEST_CASE("a point is a line of eleven columns") {
   const TemporaryFolder folder;
   Shot shot;
-  shot.index = 41, shot.tick = {7, 0.25}, shot.origin = {100, 200, 50}, shot.direction = {0, 0, -1}, shot.echoes = 2;
+  shot.index = 41;
+  shot.tick = {7, 0.25};
+  shot.origin = {100, 200, 50};
+  shot.direction = {0, 0, -1};
+  shot.echoes = 2;
   const Echo first{
       .range = 10.00016, .amplitude = 2.5e-9, .reflectance = 0.5, .width = 1.25e-9, .object = 12, .classification = 5, .number = 1};
   const Echo second{.range = 50, .amplitude = 1e-10, .width = 0, .object = 3, .classification = 2, .number = 2};
@@ -56,7 +60,10 @@ TEST_CASE("whatever is written reads back to the last decimal, in every locale")
   std::vector<Echo> echoes;
   for (std::uint64_t i = 0; i < 500; ++i) {
     Shot shot;
-    shot.index = i * 1'000'000'007, shot.tick = Tick::of(i, 3e5), shot.origin = random.point(6e6), shot.direction = random.unit();
+    shot.index = i * 1'000'000'007;
+    shot.tick = Tick::of(i, 3e5);
+    shot.origin = random.point(6e6);
+    shot.direction = random.unit();
     shot.first_echo = static_cast<std::uint32_t>(echoes.size());
     shot.echoes = static_cast<std::uint32_t>(random.whole(5));
     for (std::uint8_t n = 1; n <= shot.echoes; ++n) {
@@ -95,7 +102,8 @@ TEST_CASE("whatever is written reads back to the last decimal, in every locale")
 TEST_CASE("a point without a place is an error, and no file is left") {
   const TemporaryFolder folder;
   Shot shot;
-  shot.direction = {0, 0, 1}, shot.echoes = 1;
+  shot.direction = {0, 0, 1};
+  shot.echoes = 1;
   for (const double range : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     const std::vector<Echo> echoes{{.range = range}};
     const std::vector<Shot> shots{shot};

@@ -52,7 +52,10 @@ TEST_CASE("a run that is stopped leaves whole results up to some slot") {
   options.progress = [&](const Progress&) { source.request_stop(); };
   PulseIndex pulses = 0, last = 0;
   const RunSummary summary = run(mpi_group(), survey, options, [&](const EchoBatch& batch) {
-    for (const Shot& shot : batch.shots) ++pulses, last = shot.index;
+    for (const Shot& shot : batch.shots) {
+      ++pulses;
+      last = shot.index;
+    }
   });
   CHECK(!summary.complete);
   CHECK(summary.slots > 0);

@@ -35,7 +35,8 @@ void give(PageWriter& writer, std::size_t n, std::size_t a_batch) {
       echoes.push_back({.range = 50 + 0.01 * static_cast<double>(i % 7), .amplitude = 1e-6, .object = static_cast<ObjectId>(i % 5)});
     }
     EchoBatch batch;
-    batch.shots = shots, batch.echoes = echoes;
+    batch.shots = shots;
+    batch.echoes = echoes;
     writer(batch);
   }
 }

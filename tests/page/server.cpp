@@ -30,7 +30,8 @@ struct Address {
 
   explicit Address(const std::string& all) {
     const auto begin = std::string("http://").size(), slash = all.find('/', begin);
-    host = all.substr(begin, slash - begin), path = all.substr(slash);
+    host = all.substr(begin, slash - begin);
+    path = all.substr(slash);
     port = std::atoi(host.substr(host.find(':') + 1).c_str());
   }
 };
@@ -69,7 +70,8 @@ void give(PageServer& server, PulseIndex first, PulseIndex end) {
     echoes.push_back({.range = 5});
   }
   EchoBatch batch;
-  batch.shots = shots, batch.echoes = echoes;
+  batch.shots = shots;
+  batch.echoes = echoes;
   server(batch);
 }
 
@@ -109,7 +111,9 @@ TEST_CASE("only this machine is listened to") {
   const Address a(server.address());
   const int s = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in all{};  // were every address taken, none could be bound; were another one, it would be refused here
-  all.sin_family = AF_INET, all.sin_port = htons(static_cast<std::uint16_t>(a.port)), all.sin_addr.s_addr = htonl(0x7f000002);
+  all.sin_family = AF_INET;
+  all.sin_port = htons(static_cast<std::uint16_t>(a.port));
+  all.sin_addr.s_addr = htonl(0x7f000002);
   CHECK(bind(s, reinterpret_cast<const sockaddr*>(&all), sizeof all) == 0);
   close(s);
 }

@@ -46,7 +46,8 @@ TEST_CASE("every place of the area lies in the swath of a line, and neighbours o
     CAPTURE(seed);
     support::Generator any(seed);
     BlockFlight block{.area = any.box(1e6, 10, 3000), .heading = any.uniform(-7, 7)};
-    block.swath = any.log_uniform(20, 2000), block.overlap = any.uniform(0, 0.9);
+    block.swath = any.log_uniform(20, 2000);
+    block.overlap = any.uniform(0, 0.9);
     const auto lines = plan_block_flight(block);
     const auto offset = [](const StraightLine& line, const Vec3& p) {  // to the right of the line, and share of its length
       const Vec3 path = line.to - line.from, d{p.x - line.from.x, p.y - line.from.y, 0};

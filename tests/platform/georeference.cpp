@@ -61,7 +61,10 @@ Matrix turn(std::size_t axis, Real angle_deg) {
   const Real c = std::cos(radians_of(angle_deg)), s = std::sin(radians_of(angle_deg));
   const std::size_t j = (axis + 1) % 3, k = (axis + 2) % 3;
   Matrix m{};
-  m[axis][axis] = 1, m[j][j] = m[k][k] = c, m[k][j] = s, m[j][k] = -s;
+  m[axis][axis] = 1;
+  m[j][j] = m[k][k] = c;
+  m[k][j] = s;
+  m[j][k] = -s;
   return m;
 }
 

@@ -92,7 +92,8 @@ TEST_CASE("white noise has the deviation that was asked for, and no memory") {
     const auto p = platform.pulse(i);
     const Tick t = p->tick;
     const Vec3 off = platform.reported(t).position - platform.truth().trajectory().at(t).position;
-    square += dot(off, off), product += dot(off, before);
+    square += dot(off, off);
+    product += dot(off, before);
     const double angle = 2 * std::asin(length(cross(platform.reported(t).direction(axis::up), axis::up)) / 2);
     turned += angle * angle;
     before = off;
@@ -111,7 +112,8 @@ TEST_CASE("a drift has the deviation that was asked for, and forgets itself in i
       const Tick tick = Tick::of_seconds(at);
       return platform.reported(tick).position - platform.truth().trajectory().at(tick).position;
     };
-    square += dot(off(t), off(t)), product += dot(off(t), off(t + 0.5));
+    square += dot(off(t), off(t));
+    product += dot(off(t), off(t + 0.5));
   }
   CHECK(std::sqrt(square / (3 * n)) == support::relative(5_cm, 0.05));
   CHECK(product / square == doctest::Approx(std::exp(-1)).epsilon(0.06));

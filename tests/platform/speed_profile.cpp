@@ -83,7 +83,9 @@ TEST_CASE("profiles keep their limits, join up, and end where and as fast as the
         CHECK(state.velocity >= -1e-12 * limits.speed);
         CHECK(state.acceleration <= limits.acceleration * (1 + 1e-12));
         CHECK(-state.acceleration <= limits.braking * (1 + 1e-12));
-        position = state.position, velocity = state.velocity, acceleration = state.acceleration;
+        position = state.position;
+        velocity = state.velocity;
+        acceleration = state.acceleration;
       }
     }
     CHECK(position == relative(way, 1e-12));

@@ -97,7 +97,8 @@ TEST_CASE("points and pulses in Python are those of the same survey in C++, to t
     CHECK(row.waveform_start == shots[i].waveform_start);
     CHECK(row.first_sample == sample);
     CHECK(row.first_point == point);
-    sample += row.samples, point += row.points;
+    sample += row.samples;
+    point += row.points;
   }
   const auto waveforms = scope["result"].attr("waveforms").cast<py::array_t<float>>();
   CHECK(std::vector<float>(waveforms.data(), waveforms.data() + waveforms.size()) == samples);

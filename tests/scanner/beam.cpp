@@ -67,7 +67,8 @@ TEST_CASE("a focused beam has Carlsson's radius at every range") {
 TEST_CASE("a laser that leaves by an exit keeps all that is not the exit's") {
   const Laser laser{.wavelength = 905_nm, .peak_power = 75, .pulse_length = 5_ns};
   Laser gaussian = gaussian_beam({}, laser);
-  gaussian.divergence = laser.divergence, gaussian.waist_diameter = 0;
+  gaussian.divergence = laser.divergence;
+  gaussian.waist_diameter = 0;
   CHECK(gaussian == laser);
 }
 

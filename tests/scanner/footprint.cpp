@@ -126,7 +126,9 @@ TEST_CASE("a lattice's subrays carry equal energy and spread as a Gaussian beam 
     REQUIRE(f.share(j) == f.share(0));
     if (j > 0) REQUIRE(f.offset(j).x > f.offset(j - 1).x);  // each has a column of its own
     const Vec2 offset = f.offset(j);
-    xx += f.share(j) * offset.x * offset.x, yy += f.share(j) * offset.y * offset.y, xy += f.share(j) * offset.x * offset.y;
+    xx += f.share(j) * offset.x * offset.x;
+    yy += f.share(j) * offset.y * offset.y;
+    xy += f.share(j) * offset.x * offset.y;
     inside += radius(offset) < 1;
   }
   // Source: the variance across and up of exp(-2 r^2) is 1/4, and 1 - exp(-2) of it is inside of r = 1

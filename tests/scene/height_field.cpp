@@ -331,7 +331,8 @@ TEST_CASE("rays that are not numbers meet nothing and spoil nothing") {
   RayBundle rays = bundle_of({{120, 180, 100}, -axis::up});
   rays.size = 3;
   const double nothing = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
-  rays.set_direction(1, {nothing, nothing, nothing}), rays.set_direction(2, {0, endless, 0});
+  rays.set_direction(1, {nothing, nothing, nothing});
+  rays.set_direction(2, {0, endless, 0});
   rays.pad();
   ClosestHits nearest(rays);
   field.closest(rays, nearest);
@@ -412,9 +413,11 @@ TEST_CASE("arrays that are not as long as the grid says are noticed") {
     const auto keep = [&](auto&... members) { (kept.push_back(&members), ...); };
     other.archive(keep);
     std::size_t i = 0;
-    const auto replace = [&]<class... Members>(Members&... members) {
-      ((members = i == from_smaller ? *static_cast<Members*>(kept[i]) : members, ++i), ...);
+    const auto replace_one = [&]<class Member>(Member& member) {
+      if (i == from_smaller) member = *static_cast<Member*>(kept[i]);
+      ++i;
     };
+    const auto replace = [&](auto&... members) { (replace_one(members), ...); };
     mixed.archive(replace);
     CAPTURE(from_smaller);
     CHECK(mixed.is_consistent() ==

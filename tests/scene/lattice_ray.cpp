@@ -45,13 +45,17 @@ TEST_CASE("a box beside a ray is not gone through, whichever axis says so") {
     RayBundle rays = bundle_of({random.point(4), random.unit()});
     Vec3 d = rays.direction(0);
     d[static_cast<int>(random.whole(3))] = 0;
-    rays.set_direction(0, d), rays.pad();
+    rays.set_direction(0, d);
+    rays.pad();
     const Box box = random.box(4, 0.1, 3);
     double in = -infinity, out = infinity;
     for (int k = 0; k < 3; ++k) {
       const double low = box.min[k] - rays.origin[k], high = box.max[k] - rays.origin[k];
       if (d[k] == 0 && (low > 0 || high <= 0)) in = infinity;
-      if (d[k] != 0) in = std::max(in, std::min(low / d[k], high / d[k])), out = std::min(out, std::max(low / d[k], high / d[k]));
+      if (d[k] != 0) {
+        in = std::max(in, std::min(low / d[k], high / d[k]));
+        out = std::min(out, std::max(low / d[k], high / d[k]));
+      }
     }
     const auto passage = LatticeRay({0, 0, 0}, 1, rays, 0).through({box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z});
     CHECK(passage.in.before(passage.out) == (in < out));

@@ -198,7 +198,9 @@ TEST_CASE("what an archive keeps of leaf angles is all of them") {
   LeafAngles made = LeafAngles::planophile(), other;
   const auto keep = [&](double chi, double half_surface, const SharedArray<LeafProjection>& table) { kept = {chi, half_surface, table}; };
   const auto fill = [&](double& chi, double& half_surface, SharedArray<LeafProjection>& table) {
-    chi = kept.chi, half_surface = kept.half_surface, table = kept.table;
+    chi = kept.chi;
+    half_surface = kept.half_surface;
+    table = kept.table;
   };
   made.archive(keep);
   other.archive(fill);

@@ -78,7 +78,10 @@ Plan any_plan(support::Generator& any) {
     for (std::uint64_t m = 1 + any.whole(3); sequence.motions.size() < m;) {
       SteadyMotion motion{.duration = any.log_uniform(0.1, 3)};
       if (any.coin()) motion.velocity = any.point(2);
-      if (any.coin()) motion.axis = any.log_uniform(0.01, 100) * any.unit(), motion.rate = any.uniform(-3, 3);
+      if (any.coin()) {
+        motion.axis = any.log_uniform(0.01, 100) * any.unit();
+        motion.rate = any.uniform(-3, 3);
+      }
       if (any.coin()) motion.centre = any.point(5);
       if (any.whole(4) == 0) motion.spin = any.coin() ? Vec3{} : any.point(2);
       sequence.motions.push_back(motion);
@@ -316,12 +319,14 @@ TEST_CASE("what a body sweeps is inside of the box, whatever it does and however
       const double t = k == 0 ? from : k == 1 ? from + span : any.uniform(from, from + span);
       const Vec3 p = moved(motion, t, box.min + box.size() * Vec3{any.uniform(), any.uniform(), any.uniform()}, box.centre());
       const Vec3 corner = moved(motion, t, corners[any.whole(8)], box.centre());
-      passed.extend(p), passed.extend(corner);
+      passed.extend(p);
+      passed.extend(corner);
     }
     Box both = swept;
     both.extend(passed);
     REQUIRE(both == swept);
-    ++all, close += max_norm(swept.size()) < 2 * max_norm(passed.size()) ? 1 : 0;
+    ++all;
+    close += max_norm(swept.size()) < 2 * max_norm(passed.size()) ? 1 : 0;
   }
   CHECK(close > all / 2);  // ... and mostly not much larger
 }

@@ -90,7 +90,10 @@ TEST_CASE("windows overlap, so that no rounding of a time leaves it between two"
   const Cube cube{{0, 0, 0}, {10, 0, 0}};
   std::vector<Tick> starts, ends;  // of the windows, as the index asks for them at last
   const MovingIndex index(1, {1e9, 1e9 + 64}, [&](PrimitiveIndex, const Tick& from, const Tick& to) {
-    if (from < to) starts.push_back(from), ends.push_back(to);
+    if (from < to) {
+      starts.push_back(from);
+      ends.push_back(to);
+    }
     return cube.swept(from, to);
   });
   const auto first = static_cast<std::size_t>(std::min_element(starts.begin() + 20, starts.end()) - starts.begin());

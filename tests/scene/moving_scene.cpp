@@ -151,7 +151,10 @@ TEST_CASE("a scene of moving parts answers as one of still parts that stand wher
       CAPTURE(seconds);
       const Tick tick = Tick::of_seconds(seconds);
       auto still = parts;
-      for (std::size_t i = 0; i < still.size(); ++i) still[i].placement = scene.placement(i, tick), still[i].motion = nullptr;
+      for (std::size_t i = 0; i < still.size(); ++i) {
+        still[i].placement = scene.placement(i, tick);
+        still[i].motion = nullptr;
+      }
       const Scene<Mesh, LeastGeometry> expected(still);
       const std::size_t aim = any.whole(parts.size());
       const Vec3 from = any.point(40), to = still[aim].placement.translation + any.point(0.3);
@@ -251,7 +254,8 @@ TEST_CASE("every point of a survey lies on what it met, where that was at its ow
     const double off = object == 1   ? length(p - 10.0 * Vec3{std::cos(orbit * t), std::sin(orbit * t), 0}) - 1
                        : object == 2 ? max_norm(rotation_about(axis::up, -spin * t) * (p - start - t * drift)) - 1
                                      : p.z - (-9 + climb * t);
-    ++met[object], worst[object] = std::max(worst[object], std::fabs(off));
+    ++met[object];
+    worst[object] = std::max(worst[object], std::fabs(off));
   }
   for (const std::size_t object : {1U, 2U, 3U}) {
     CAPTURE(object);

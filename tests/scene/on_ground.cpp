@@ -111,7 +111,10 @@ TEST_CASE("any part stands on any ground as it is meant to") {
       for (const Vec3& v : data.vertices) {
         const Vec3 p = stood.placement.point(v);
         if (!lowest_only) least = std::min(least, p.z - hills({p.x, p.y}).value());
-        if (lowest_only && p.z < lowest) lowest = p.z, least = p.z - hills({p.x, p.y}).value();
+        if (lowest_only && p.z < lowest) {
+          lowest = p.z;
+          least = p.z - hills({p.x, p.y}).value();
+        }
       }
       return least;
     };

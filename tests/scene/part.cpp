@@ -61,7 +61,12 @@ TEST_CASE("rays in a part's own frame reach at the same range the point that the
     support::Generator any(seed);
     const Similarity s = any_similarity(any);
     RayBundle world = any.cone(s.translation + any.point(100), any.unit(), 0.1, 1 + any.whole(RayBundle::capacity));
-    world.near = 0.5, world.far = 1234, world.seed = 7, world.pulse = 8, world.first_subray = 9, world.tick = {1, 0.5};
+    world.near = 0.5;
+    world.far = 1234;
+    world.seed = 7;
+    world.pulse = 8;
+    world.first_subray = 9;
+    world.tick = {1, 0.5};
     const RayBundle local = s.to_local(world);
     CHECK(local.size == world.size);
     CHECK(local.near == 0.5);

@@ -65,7 +65,10 @@ struct Counted {
   void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
     for (std::size_t j = 0; j < rays.size; ++j) nearest.offer(j, -rays.origin.z / rays.z[j], 0);
   }
-  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return ++asked, Surface{axis::up, 0}; }
+  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept {
+    ++asked;
+    return Surface{axis::up, 0};
+  }
 };
 
 /// How often it is for a bundle of seven rays, each of which is described as it should be.
@@ -73,7 +76,8 @@ template <class Shape>
 int surfaces_asked() {
   const Scene<Shape> scene({{std::make_shared<const Shape>()}});
   RayBundle rays;
-  rays.origin = {0, 0, 5}, rays.size = 7;
+  rays.origin = {0, 0, 5};
+  rays.size = 7;
   for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, normalize(Vec3{0.01 * static_cast<double>(j), 0, -1}));
   rays.pad();
   std::vector<Hit> hits(rays.size);
@@ -289,7 +293,8 @@ TEST_CASE("a scene for each repetition of a survey, of the same geometries, cost
   using Mesh = TriangleMesh<>;
   MeshData data = some_triangles(any, 20'000);
   const auto summer = std::make_shared<const Mesh>(data);
-  data.triangles.resize(5'000), data.materials.resize(5'000);  // the leaves have fallen
+  data.triangles.resize(5'000);
+  data.materials.resize(5'000);  // the leaves have fallen
   const auto winter = std::make_shared<const Mesh>(data);
   const auto materials = material_table(std::vector<Material>(3));
   std::vector<Scene<Mesh>> repetitions;

@@ -124,8 +124,10 @@ TEST_CASE("a mesh that cannot be is refused, and the refusal says what is wrong"
     return refusal(data);
   };
   CHECK(refusal(square()) == "");
-  CHECK(with([](MeshData& m) { m.triangles.clear(), m.materials.clear(); }) ==
-        "MeshData::triangles is 0, but must be at least one in number");
+  CHECK(with([](MeshData& m) {
+          m.triangles.clear();
+          m.materials.clear();
+        }) == "MeshData::triangles is 0, but must be at least one in number");
   CHECK(with([](MeshData& m) { m.triangles[1][2] = 4; }) ==
         "MeshData::triangles is 4, but must be less than the number of vertices, 4; see triangle 1");
   CHECK(with([](MeshData& m) { m.vertices[2].y = std::numeric_limits<double>::infinity(); }) ==
@@ -175,7 +177,8 @@ bool same_bits(const Triangle& a, const Triangle& b) { return std::memcmp(&a, &b
 TEST_CASE_TEMPLATE("triangles of a mesh of several blocks keep their numbers and corners on any number of threads", Mesh, TriangleMesh<>,
                    TriangleMesh<Bvh<double>>, TriangleMesh<KdTree<>>, TriangleMesh<Linear<>>) {
   MeshData data = torn_ground(100);
-  data.vertices[4].x = -0.0, data.vertices[5].x = 0.0;
+  data.vertices[4].x = -0.0;
+  data.vertices[5].x = 0.0;
   for (const unsigned threads : {1U, 3U}) {
     CAPTURE(threads);
     const Mesh mesh(data, threads);

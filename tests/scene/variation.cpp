@@ -23,7 +23,8 @@ TEST_CASE("variants fill the range evenly, keep the rest of the material, and ca
   double sum = 0, squares = 0;
   for (const Material& m : variants) {
     REQUIRE(std::fabs(m.reflectance - 0.5) <= 0.2);
-    sum += m.reflectance, squares += (m.reflectance - 0.5) * (m.reflectance - 0.5);
+    sum += m.reflectance;
+    squares += (m.reflectance - 0.5) * (m.reflectance - 0.5);
     REQUIRE(m.scattering == Scattering::phong);
     REQUIRE(m.specular_share == 0.2);
     REQUIRE(m.classification == 5);
@@ -43,7 +44,8 @@ TEST_CASE("variants are clipped to fractions, and none is wanted without a range
   bool at_0 = false, at_1 = false;
   for (const Material& m : vary_reflectance({.reflectance = 0.5}, 200, 1, 1)) {
     CHECK_NOTHROW(m.validate());
-    at_0 |= m.reflectance == 0, at_1 |= m.reflectance == 1;
+    at_0 |= m.reflectance == 0;
+    at_1 |= m.reflectance == 1;
   }
   CHECK(at_0);
   CHECK(at_1);

@@ -14,7 +14,8 @@ namespace {
 
 VoxelData two_cells() {
   VoxelData data;
-  data.corner = {500000, 5400000, 100}, data.edge = 0.5;
+  data.corner = {500000, 5400000, 100};
+  data.edge = 0.5;
   data.cells = {{0, 0, 0}, {7, 2, 4294967295}};
   data.normals = {{0, 0, 1}, {0, 0, 0}};
   data.densities = {0, 3.5F};

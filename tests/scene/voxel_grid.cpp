@@ -90,10 +90,14 @@ struct Inside {
     for (int k = 0; k < 3; ++k) {
       const double low = box.min[k] - ray.origin[k], high = box.max[k] - ray.origin[k], d = ray.direction[k];
       if (d == 0) {
-        if (low > 0 || high < 0) in = infinity, out = -infinity;
+        if (low > 0 || high < 0) {
+          in = infinity;
+          out = -infinity;
+        }
         continue;
       }
-      in = std::max(in, (d > 0 ? low : high) / d), out = std::min(out, (d > 0 ? high : low) / d);
+      in = std::max(in, (d > 0 ? low : high) / d);
+      out = std::min(out, (d > 0 ? high : low) / d);
     }
   }
 };
@@ -270,7 +274,8 @@ TEST_CASE("normals are kept to a few millionths, and those along axes exactly") 
 
 TEST_CASE("a scaled cube is as large as it is said and where it is said") {
   VoxelData data{.corner = {10, 20, 30}, .edge = 2, .cells = {{1, 1, 1}}};
-  data.scales = {0.5F}, data.shifts = {{0.25F, -0.25F, 0}};
+  data.scales = {0.5F};
+  data.shifts = {{0.25F, -0.25F, 0}};
   const VoxelGrid<ScaledVoxels> grid(data);  // the cube goes from (13, 22, 32.5) to (14, 23, 33.5)
   CHECK(grid.bounds() == Box{{12, 22, 32}, {14, 24, 34}});
   CHECK(range(grid, {{13.5, 22.5, 40}, -axis::up}) == relative(6.5, 1e-6));
@@ -281,7 +286,8 @@ TEST_CASE("a scaled cube is as large as it is said and where it is said") {
   CHECK(range(grid, {{13.5, 22.5, 33}, axis::up}) == relative(0.5, 1e-5));
   CHECK(range(grid, {{12.5, 22.5, 33}, axis::right}) == relative(0.5, 1e-5));
   CHECK(normal(grid, {{12.5, 22.5, 33}, axis::right}) == -axis::right);
-  data.scales = {1}, data.shifts.clear();
+  data.scales = {1};
+  data.shifts.clear();
   CHECK(range(VoxelGrid<ScaledVoxels>(data), {{13, 23, 40}, -axis::up}) == 6);
 }
 
@@ -299,7 +305,8 @@ TEST_CASE("a grid is met as if every cube had been tested") {
       for (std::size_t i = 0; i < scaled.cells.size(); ++i) {
         const double scale = random.uniform(0.1, 1), room = (1 - scale) / 2;
         const auto shift = [&] { return static_cast<float>(random.uniform(-room, room)); };
-        scaled.scales.push_back(static_cast<float>(scale)), scaled.shifts.push_back({shift(), shift(), shift()});
+        scaled.scales.push_back(static_cast<float>(scale));
+        scaled.shifts.push_back({shift(), shift(), shift()});
       }
       compare_with_every_cube<ScaledVoxels>(scaled, 417, 60);
     }
@@ -379,7 +386,8 @@ TEST_CASE("rays of no number, without direction or without range meet nothing, a
   const VoxelGrid<> grid(block(5, 5, 5, 1));
   const double nan = std::nan("");
   RayBundle rays;
-  rays.origin = {2.5, 2.5, 9}, rays.size = 7;
+  rays.origin = {2.5, 2.5, 9};
+  rays.size = 7;
   const Vec3 directions[] = {-axis::up, {nan, 0, -1}, {0, 0, 0}, {0, 0, -infinity}, {nan, nan, nan}, {0, 1e-320, 0}, {0, 0, -0.5}};
   for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, directions[j]);
   rays.pad();
@@ -426,7 +434,10 @@ TEST_CASE("no grid takes more than 40 bytes a voxel") {
     const std::size_t n = data.cells.size();
     CAPTURE(n);
     for (std::size_t i = 0; i < n; ++i) {
-      data.normals.push_back({0, 0, 1}), data.densities.push_back(1), data.scales.push_back(0.5F), data.shifts.push_back({0, 0.1F, 0});
+      data.normals.push_back({0, 0, 1});
+      data.densities.push_back(1);
+      data.scales.push_back(0.5F);
+      data.shifts.push_back({0, 0.1F, 0});
       data.materials.push_back(1);
     }
     CHECK(VoxelGrid<OpaqueVoxels>(data).memory() <= 40 * n + 16);
@@ -440,7 +451,10 @@ TEST_CASE("no grid takes more than 40 bytes a voxel") {
   check(block(300, 300, 1, 1));
   VoxelData apart;  // one a brick, one a block
   for (std::uint32_t i = 0; i < 20; ++i)
-    for (std::uint32_t j = 0; j < 20; ++j) apart.cells.push_back({4 * i, 4 * j, 0}), apart.cells.push_back({16 * i, 16 * j, 100});
+    for (std::uint32_t j = 0; j < 20; ++j) {
+      apart.cells.push_back({4 * i, 4 * j, 0});
+      apart.cells.push_back({16 * i, 16 * j, 100});
+    }
   check(apart);
 }
 
@@ -505,7 +519,11 @@ constexpr double five_zeniths[] = {0.0, 0.35, 0.7, 1.05, 1.3};
 template <class Target>
 double share_that_passes(const Target& target, const Ray& ray, std::size_t n, std::uint64_t seed) {
   RayBundle rays;
-  rays.origin = ray.origin, rays.near = ray.near, rays.far = ray.far, rays.size = 50, rays.seed = seed;
+  rays.origin = ray.origin;
+  rays.near = ray.near;
+  rays.far = ray.far;
+  rays.size = 50;
+  rays.seed = seed;
   for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, ray.direction);
   rays.pad();
   std::size_t passed = 0;
@@ -577,7 +595,8 @@ TEST_CASE("leaves are met at depths of an exponential distribution, and at the s
   double apart = 0;
   for (PulseIndex pulse = 0; pulse < 40'000; ++pulse) {
     RayBundle rays = bundle_of({{0, 0, 2}, direction});
-    rays.pulse = pulse, rays.seed = 426;
+    rays.pulse = pulse;
+    rays.seed = 426;
     const ClosestHits one = met(coarse, rays), other = met(fine, rays);
     REQUIRE(one.met(0) == other.met(0));
     if (!one.met(0)) continue;
@@ -648,11 +667,15 @@ TEST_CASE("a subray draws the same whatever bundle it comes in, and leaves have 
   const VoxelGrid<TransmissiveVoxels> grid(slab(3, 1));
   Generator random(433);
   RayBundle rays = random.cone({0, 0, 4}, -axis::up, 0.2, 40);
-  rays.seed = 434, rays.pulse = 435, rays.first_subray = 7;
+  rays.seed = 434;
+  rays.pulse = 435;
+  rays.first_subray = 7;
   const ClosestHits all = met(grid, rays);
   for (std::size_t j = 0; j < rays.size; ++j) {
     RayBundle alone = bundle_of(rays.ray(j));
-    alone.seed = rays.seed, alone.pulse = rays.pulse, alone.first_subray = 7 + static_cast<std::uint32_t>(j);
+    alone.seed = rays.seed;
+    alone.pulse = rays.pulse;
+    alone.first_subray = 7 + static_cast<std::uint32_t>(j);
     CHECK(met(grid, alone).range[0] == all.range[j]);
     if (all.met(j)) CHECK(grid.surface(all.primitive_of(j), rays, j).normal == Vec3{});
   }

@@ -52,7 +52,10 @@ std::vector<Visited> by_every_cell(const VoxelIndex& index, const LatticeRay& ra
   for (std::uint32_t i = 0; i < index.size(); ++i) {
     const LatticeCell c = index.cell(i);
     std::array<double, 3> low, high;
-    for (std::size_t k = 0; k < 3; ++k) low[k] = c[k], high[k] = c[k] + 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = c[k];
+      high[k] = c[k] + 1;
+    }
     LatticeRay::Passage cell = ray.through(low, high);
     if (cell.in.before(begin)) cell.in = begin;
     if (cell.in.before(cell.out) && cell.in.range <= limit) all.push_back({i, cell.in, cell.out});
@@ -124,7 +127,10 @@ TEST_CASE("a walk ends where its visitor says") {
   const RayBundle rays = bundle_of({{-1, 0.5, 0.5}, axis::right});
   const auto visits = [&](double limit, auto answer) {
     int n = 0;
-    index.walk(index.ray(rays, 0), 0, limit, [&](auto, const LatticeCell&, const Crossing& in, auto) { return ++n, answer(in); });
+    index.walk(index.ray(rays, 0), 0, limit, [&](auto, const LatticeCell&, const Crossing& in, auto) {
+      ++n;
+      return answer(in);
+    });
     return n;
   };
   CHECK(visits(infinity, [](const Crossing&) { return infinity; }) == 40);
@@ -142,7 +148,10 @@ TEST_CASE("a ray that all but stands still ends its walk") {
     for (const Vec3& d : {Vec3{0, 1e-308, 0}, Vec3{0, 1e-320, 0}, Vec3{0, 0, 0}, Vec3{0, -1e-308, 1e-308}}) {
       int n = 0;
       const RayBundle rays = bundle_of({origin, d});
-      index.walk(index.ray(rays, 0), 0, infinity, [&](auto, const LatticeCell&, auto, auto) { return ++n, infinity; });
+      index.walk(index.ray(rays, 0), 0, infinity, [&](auto, const LatticeCell&, auto, auto) {
+        ++n;
+        return infinity;
+      });
       CHECK(n <= 1);
     }
 }

@@ -55,6 +55,7 @@ notices 'concepts, never enable_if' "echo 'template <class T, class = std::enabl
 notices 'a header begins with #pragma once' 'sed -i "/^#pragma once/d" include/pulsecast/echo.hpp'
 notices 'a file begins with two SPDX lines' 'sed -i 2d tests/base/frame.cpp'
 notices 'a file begins with two SPDX lines' 'sed -i 2d include/pulsecast/page/web/page.css'
+notices 'no statements joined by commas' "echo 'inline void f(int& x, int& y) { x = 1, y = 2; }' >> include/pulsecast/echo.hpp"
 notices 'no open ends in the tree' 'echo "// TO""DO" >> include/pulsecast/echo.hpp'
 notices 'no absolute paths' 'echo "see /ho""me/me" >> CHANGELOG.md'
 notices 'pulsecast.hpp includes the contract and the pipeline' 'sed -i "/run.hpp/d" include/pulsecast/pulsecast.hpp'
@@ -63,6 +64,43 @@ notices 'every header has its test' 'sed -i "/^#include <pulsecast.base.frame/d"
 notices 'CMakeLists.txt knows what a header needs' "$add #include <pugixml.hpp>\" include/pulsecast/io/las.hpp"
 notices 'the code in the README is compiled' "printf '\140\140\140cpp\nint x;\n\140\140\140\n' >> README.md"
 notices 'the README shows examples/embed.cpp' 'echo "// more" >> examples/embed.cpp'
+
+# commas LINE: what commas.awk prints of a line of C++.
+commas() {
+  printf '%s\n' "$1" > "$copy/line.cpp"
+  awk -f "$root/tests/structure/commas.awk" "$copy/line.cpp"
+}
+while read -r line; do
+  tried=$((tried + 1))
+  [ -n "$(commas "void f() { $line }")" ] && continue
+  echo "not noticed: $line"
+  missed=1
+done << 'END'
+++x, y = 2;
+if (x < y) x = 1, y = 2; else g();
+for (;; ++x, --y) g(x), g(y);
+switch (x) { case 1: y = 2, x = 3; }
+return ++x, y;
+throw ++x, y;
+g([&] { std::swap(x, y), g(); }, x);
+x = (g(x, y), y);
+while (g(x), x < y) {}
+x = y<0, y = x> 0;
+END
+while read -r line; do
+  [ -z "$(commas "$line")" ] && continue
+  echo "no comma operator: $line"
+  missed=1
+done << 'END'
+void f() { for (int i = 0, j = 9; i < j; ++i, --j) g(i, j); }
+void f() { double x = 1, y(2), *z = &x; const auto [u, v] = g(x, y); (g(xs), ...); }
+void f() { std::map<int, std::pair<int, int>> m, n{{1, {2, 3}}}; m = {{1, {2, 3}}, {4, {5, 6}}}; alignas(64) Column x, y; }
+void f() { g(x, [&](int i, int j) -> std::pair<int, int> { return {i, j}; }, y); throw E(x, y); }
+void f() { if (const auto [x, y] = g(1, 2); x < y) g("x, y; z", R"(x = 1, y = 2;)", 1'000, ','); } // x, y;
+struct S : A, B { S() : x(1), y{2}, z(3) {} };
+struct S : A, B { friend bool operator==(const S&, const S&) = default; };
+template <class T, class U = int> using P = std::pair<T, U>; enum class E { x, y }; using F = std::function<void(int, int)>;
+END
 
 [ $missed = 0 ] && echo "The check notices all $tried violations."
 exit $missed

@@ -33,7 +33,8 @@ struct LeastSource {
   Tick duration() const noexcept { return {10, 0}; }
   std::optional<Pulse<Frame>> pulse(PulseIndex i) const noexcept {
     Pulse<Frame> p;
-    p.index = i, p.tick = {static_cast<std::int64_t>(i), 0};
+    p.index = i;
+    p.tick = {static_cast<std::int64_t>(i), 0};
     return p;
   }
 };
@@ -42,7 +43,10 @@ struct LeastSource {
 class LeastAccelerator {
  public:
   explicit LeastAccelerator(std::span<const Box> boxes) {
-    for (const Box& b : boxes) bounds_.extend(b), all_.push_back(static_cast<PrimitiveIndex>(all_.size()));
+    for (const Box& b : boxes) {
+      bounds_.extend(b);
+      all_.push_back(static_cast<PrimitiveIndex>(all_.size()));
+    }
   }
   const Box& bounds() const noexcept { return bounds_; }
   std::size_t memory() const noexcept { return all_.size() * sizeof(PrimitiveIndex); }
@@ -113,7 +117,9 @@ struct LeastDetector {
       if (!nearest || r.range < nearest->range) nearest = &r;
     if (!nearest) return {};
     workspace[0] = Echo{};
-    workspace[0].range = nearest->range, workspace[0].amplitude = nearest->power, workspace[0].object = nearest->object;
+    workspace[0].range = nearest->range;
+    workspace[0].amplitude = nearest->power;
+    workspace[0].object = nearest->object;
     return {workspace, {}, 0};
   }
 };

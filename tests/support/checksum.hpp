@@ -46,16 +46,38 @@ class Checksum {
     }
   }
 
-  void add(const Vec3& v) noexcept { add(v.x), add(v.y), add(v.z); }
-  void add(const Tick& t) noexcept { add(t.second), add(t.fraction); }
+  void add(const Vec3& v) noexcept {
+    add(v.x);
+    add(v.y);
+    add(v.z);
+  }
+  void add(const Tick& t) noexcept {
+    add(t.second);
+    add(t.fraction);
+  }
 
   /// Everything that a shot and its echoes say, but not where in the batch they stand: how the pulses are cut into batches does not count.
   void add(const EchoBatch& batch) noexcept {
     for (const Shot& s : batch.shots) {
-      add(s.index), add(s.tick), add(s.origin), add(s.direction), add(s.scan_angle), add(s.leg), add(s.channel), add(s.fate);
-      add(s.echoes), add(s.samples), add(s.waveform_start);
+      add(s.index);
+      add(s.tick);
+      add(s.origin);
+      add(s.direction);
+      add(s.scan_angle);
+      add(s.leg);
+      add(s.channel);
+      add(s.fate);
+      add(s.echoes);
+      add(s.samples);
+      add(s.waveform_start);
       for (const Echo& e : batch.echoes_of(s)) {
-        add(e.range), add(e.amplitude), add(e.reflectance), add(e.width), add(e.object), add(e.classification), add(e.number);
+        add(e.range);
+        add(e.amplitude);
+        add(e.reflectance);
+        add(e.width);
+        add(e.object);
+        add(e.classification);
+        add(e.number);
       }
       if (s.samples > 0) add(batch.sample_interval);
       for (const float power : batch.waveform_of(s)) add(power);
@@ -106,7 +128,14 @@ class Checksum {
       const std::uint32_t t1 = h + s1 + ((e & f) ^ (~e & g)) + constants[t] + w[t];
       const std::uint32_t s0 = std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22);
       const std::uint32_t t2 = s0 + ((a & b) ^ (a & c) ^ (b & c));
-      h = g, g = f, f = e, e = d + t1, d = c, c = b, b = a, a = t1 + t2;
+      h = g;
+      g = f;
+      f = e;
+      e = d + t1;
+      d = c;
+      c = b;
+      b = a;
+      a = t1 + t2;
     }
     const std::array<std::uint32_t, 8> sum = {a, b, c, d, e, f, g, h};
     for (std::size_t k = 0; k < 8; ++k) state_[k] += sum[k];

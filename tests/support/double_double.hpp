@@ -95,7 +95,8 @@ struct ExactCrossing {
   for (int k = 0; k < 3; ++k) {
     const ExactVec3 edge = corners[(k + 1) % 3] - corners[k];
     const double off = static_cast<double>(dot(cross(normal, edge), at - corners[k])) / (area * length(Vec3(edge)));
-    crossing.inside = std::min(crossing.inside, off), longest = std::max(longest, length(Vec3(edge)));
+    crossing.inside = std::min(crossing.inside, off);
+    longest = std::max(longest, length(Vec3(edge)));
   }
   crossing.aspect = longest * longest / area;
   return crossing;

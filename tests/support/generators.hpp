@@ -72,7 +72,8 @@ class Generator {
   /// Unit rays from one point that stay within an angle of an axis; the first ray is the axis itself.
   [[nodiscard]] RayBundle cone(const Vec3& origin, const Vec3& axis, double half_angle, std::size_t size) noexcept {
     RayBundle rays;
-    rays.origin = origin, rays.size = size;
+    rays.origin = origin;
+    rays.size = size;
     rays.set_direction(0, axis);
     for (std::size_t j = 1; j < size; ++j) {
       const Vec3 across = cross(axis, unit());

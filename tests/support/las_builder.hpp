@@ -35,11 +35,17 @@ struct LasBuilder {
   [[nodiscard]] std::string bytes() const {
     std::string file(header_size() + records, '\0');
     file.replace(0, 4, "LASF");
-    put(file, 24, 1, 1), put(file, 25, minor, 1);
-    put(file, 94, header_size(), 2), put(file, 96, file.size(), 4);
-    put(file, 104, format, 1), put(file, 105, point_size(), 2);
+    put(file, 24, 1, 1);
+    put(file, 25, minor, 1);
+    put(file, 94, header_size(), 2);
+    put(file, 96, file.size(), 4);
+    put(file, 104, format, 1);
+    put(file, 105, point_size(), 2);
     if (format < 6) put(file, 107, points.size(), 4);
-    if (minor == 4) put(file, 247, points.size(), 8), put(file, 255, points.size(), 8);
+    if (minor == 4) {
+      put(file, 247, points.size(), 8);
+      put(file, 255, points.size(), 8);
+    }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       put(file, 131 + 8 * axis, std::bit_cast<std::uint64_t>(scale[axis]), 8);
       put(file, 155 + 8 * axis, std::bit_cast<std::uint64_t>(offset[axis]), 8);

@@ -131,7 +131,8 @@ inline void las_expect(bool condition, const std::string& what) {
 
   LasFile file;
   las_expect(in.bytes(0, 4) == "LASF", "signature");
-  file.minor = static_cast<unsigned>(in.whole(25, 1)), file.format = static_cast<unsigned>(in.whole(104, 1));
+  file.minor = static_cast<unsigned>(in.whole(25, 1));
+  file.format = static_cast<unsigned>(in.whole(104, 1));
   las_expect(in.whole(24, 1) == 1 && (file.minor == 0 || file.minor == 4), "version");
   las_expect(in.whole(94, 2) == (file.minor == 0 ? 227 : 375), "header size");
   las_expect(file.format == 1 || (file.minor == 4 && (file.format == 4 || file.format == 6 || file.format == 9)), "point format");
@@ -140,14 +141,18 @@ inline void las_expect(bool condition, const std::string& what) {
   las_expect((file.global_encoding & ~(waves ? 21U : 17U)) == 0, "global encoding claims what is not there");
   las_expect(!waves || (file.global_encoding & 4U) != 0, "waveforms are neither here nor there");
   las_expect(file.minor == 4 || in.whole(4, 4) == 0, "reserved bytes");
-  file.system = in.text(26, 32), file.software = in.text(58, 32);
-  file.day = static_cast<unsigned>(in.whole(90, 2)), file.year = static_cast<unsigned>(in.whole(92, 2));
+  file.system = in.text(26, 32);
+  file.software = in.text(58, 32);
+  file.day = static_cast<unsigned>(in.whole(90, 2));
+  file.year = static_cast<unsigned>(in.whole(92, 2));
   for (std::size_t at = 107; !old && at < 131; at += 4) las_expect(in.whole(at, 4) == 0, "legacy numbers are not zero");
   if (file.minor == 4)
     las_expect(in.whole(227, 8) == 0 && in.whole(235, 8) == 0 && in.whole(243, 4) == 0, "waveforms inside, or extended records");
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    file.scale[axis] = in.real(131 + 8 * axis), file.offset[axis] = in.real(155 + 8 * axis);
-    file.max[axis] = in.real(179 + 16 * axis), file.min[axis] = in.real(187 + 16 * axis);
+    file.scale[axis] = in.real(131 + 8 * axis);
+    file.offset[axis] = in.real(155 + 8 * axis);
+    file.max[axis] = in.real(179 + 16 * axis);
+    file.min[axis] = in.real(187 + 16 * axis);
     las_expect(file.scale[axis] > 0, "scale");
   }
 
@@ -221,14 +226,22 @@ inline void las_expect(bool condition, const std::string& what) {
     const auto numbers = static_cast<unsigned>(in.whole(at + 14, 1)), byte_15 = static_cast<unsigned>(in.whole(at + 15, 1));
     p.user_data = static_cast<unsigned>(in.whole(at + 17, 1));
     if (old) {
-      p.return_number = numbers % 8, p.returns = numbers / 8 % 8, p.scan_direction = numbers / 64 % 2, p.edge = numbers / 128;
-      p.classification = byte_15 % 32, p.flags = byte_15 / 32;
+      p.return_number = numbers % 8;
+      p.returns = numbers / 8 % 8;
+      p.scan_direction = numbers / 64 % 2;
+      p.edge = numbers / 128;
+      p.classification = byte_15 % 32;
+      p.flags = byte_15 / 32;
       p.scan_angle_deg = static_cast<std::int8_t>(in.whole(at + 16, 1));
       p.source = static_cast<unsigned>(in.whole(at + 18, 2));
       p.gps_time = in.real(at + 20);
     } else {
-      p.return_number = numbers % 16, p.returns = numbers / 16;
-      p.flags = byte_15 % 16, p.channel = byte_15 / 16 % 4, p.scan_direction = byte_15 / 64 % 2, p.edge = byte_15 / 128;
+      p.return_number = numbers % 16;
+      p.returns = numbers / 16;
+      p.flags = byte_15 % 16;
+      p.channel = byte_15 / 16 % 4;
+      p.scan_direction = byte_15 / 64 % 2;
+      p.edge = byte_15 / 128;
       p.classification = static_cast<unsigned>(in.whole(at + 16, 1));
       p.scan_angle_deg = static_cast<std::int16_t>(in.whole(at + 18, 2)) * 0.006;
       p.source = static_cast<unsigned>(in.whole(at + 20, 2));

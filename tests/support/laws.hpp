@@ -255,7 +255,8 @@ class LawfulSink {
       if ((s.fate == Fate::returned) != (s.echoes > 0)) break_law(detail::sentence("the fate of pulse ", s.index, " belies its echoes"));
       if (s.echoes > 0 && s.first_echo != next_echo) break_law(detail::sentence("echoes before those of pulse ", s.index, " are nobody's"));
       if (s.samples > 0 && s.first_sample != next_sample) break_law(detail::sentence("samples before pulse ", s.index, " are nobody's"));
-      next_echo += s.echoes, next_sample += s.samples;
+      next_echo += s.echoes;
+      next_sample += s.samples;
       if (next_echo > batch.echoes.size() || next_sample > batch.samples.size()) {
         break_law(detail::sentence("pulse ", s.index, " reaches beyond the batch"));
         return;
@@ -265,7 +266,8 @@ class LawfulSink {
         if (echoes[e].number != e + 1) break_law(detail::sentence("the echoes of pulse ", s.index, " are not numbered from 1"));
         if (e > 0 && echoes[e].range < echoes[e - 1].range) break_law(detail::sentence("the echoes of pulse ", s.index, " are not sorted"));
       }
-      ++shots_, echoes_ += s.echoes;
+      ++shots_;
+      echoes_ += s.echoes;
     }
     if (next_echo != batch.echoes.size() || next_sample != batch.samples.size()) break_law("echoes or samples are left over");
   }

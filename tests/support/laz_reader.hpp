@@ -80,7 +80,8 @@ struct LazBitShares {
     all += since;
     since = 0;
     if (all > 8192) {
-      all = (all + 1) / 2, zeros = (zeros + 1) / 2;
+      all = (all + 1) / 2;
+      zeros = (zeros + 1) / 2;
       if (zeros == all) ++all;
     }
     zero_share = 2147483648U / all * zeros / 262144;
@@ -232,7 +233,10 @@ class LazClock {
         const auto product = static_cast<std::int32_t>(static_cast<std::uint32_t>(multiple * std::int64_t{s.usual}));
         const std::int32_t step = go_on(product, context);
         if (multiple == 1) s.unusual = 0;
-        if ((multiple == 0 || multiple == 500 || multiple == -10) && ++s.unusual > 3) s.usual = step, s.unusual = 0;
+        if ((multiple == 0 || multiple == 500 || multiple == -10) && ++s.unusual > 3) {
+          s.usual = step;
+          s.unusual = 0;
+        }
         return s.last;
       }
       other = what - 511;
@@ -378,7 +382,8 @@ struct LazReadChunk {
     mx.add(dx);
     const std::int64_t dy = number(0, 32, "y", channel, my.value(), only + (x_bits < 20 ? x_bits / 2 * 2 : 20), &y_bits);
     my.add(dy);
-    p.x = as_signed(static_cast<std::uint64_t>(before.x + dx), 32), p.y = as_signed(static_cast<std::uint64_t>(before.y + dy), 32);
+    p.x = as_signed(static_cast<std::uint64_t>(before.x + dx), 32);
+    p.y = as_signed(static_cast<std::uint64_t>(before.y + dy), 32);
 
     const Point& origin = first_before.at(channel);
     const unsigned bits = (x_bits + y_bits) / 2;
@@ -414,8 +419,10 @@ struct LazReadChunk {
     put(static_cast<std::uint64_t>(p.intensity), 2);
     put(static_cast<std::uint64_t>(p.r + 16 * p.n), 1);
     put(static_cast<std::uint64_t>(p.flags % 16 + 16 * p.channel + p.flags / 16 * 64), 1);
-    put(static_cast<std::uint64_t>(p.kind), 1), put(static_cast<std::uint64_t>(p.user), 1);
-    put(static_cast<std::uint64_t>(p.angle), 2), put(static_cast<std::uint64_t>(p.source), 2);
+    put(static_cast<std::uint64_t>(p.kind), 1);
+    put(static_cast<std::uint64_t>(p.user), 1);
+    put(static_cast<std::uint64_t>(p.angle), 2);
+    put(static_cast<std::uint64_t>(p.source), 2);
     put(p.time, 8);
     chunk.records += extras;
   }

@@ -42,7 +42,8 @@ struct Showers {
   [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const {
     const std::uint64_t mixed = (i + 1) * 0x9e3779b97f4a7c15U;
     const auto bits = [&](int from, std::uint64_t below) { return (mixed >> from) % below; };
-    w.echoes.clear(), w.waveform.clear();
+    w.echoes.clear();
+    w.waveform.clear();
     const std::uint64_t echoes = i < 3000 ? 0 : bits(40, 4);
     for (std::uint64_t k = 0; k < echoes; ++k)
       w.echoes.push_back({.range = 100 + 7 * static_cast<double>(k) + 1e-3 * static_cast<double>(bits(20, 4000)),
@@ -66,7 +67,8 @@ struct Showers {
                     .waveform_start = 5e-7};
     if (outcome.shot.fate == Fate::blocked) return outcome;
     outcome.energy = 1;
-    outcome.echoes = w.echoes, outcome.waveform = w.waveform;
+    outcome.echoes = w.echoes;
+    outcome.waveform = w.waveform;
     return outcome;
   }
 };

@@ -92,7 +92,8 @@ template <class Height>
     const Vec3 a{std::round(p.x), std::round(p.y), std::round(p.z)};
     const int k = static_cast<int>(random.whole(3));
     Vec3 b = a, c = a;
-    b[(k + 1) % 3] += 1 + double(random.whole(4)), c[(k + 2) % 3] += 1 + double(random.whole(4));
+    b[(k + 1) % 3] += 1 + double(random.whole(4));
+    c[(k + 2) % 3] += 1 + double(random.whole(4));
     add_triangle(mesh, {a, b, c});
   }
   return mesh;
@@ -164,8 +165,10 @@ template <class Height>
   };
   const std::uint32_t row = cells + 1;
   for (std::uint32_t i = 0; i < cells; ++i) {
-    wall(i, i + 1), wall(cells * row + i, cells * row + i + 1);
-    wall(i * row, (i + 1) * row), wall(i * row + cells, (i + 1) * row + cells);
+    wall(i, i + 1);
+    wall(cells * row + i, cells * row + i + 1);
+    wall(i * row, (i + 1) * row);
+    wall(i * row + cells, (i + 1) * row + cells);
   }
   return mesh;
 }
@@ -243,7 +246,8 @@ void compare(const Believed& believed, const Other& other, const char* name, con
   believed.closest(rays, expected);
   other.closest(rays, found);
   for (std::size_t j = 0; j < rays.size; ++j) {
-    ++result.rays, result.met += expected.met(j) ? 1 : 0;
+    ++result.rays;
+    result.met += expected.met(j) ? 1 : 0;
     if (std::bit_cast<std::uint64_t>(expected.range[j]) == std::bit_cast<std::uint64_t>(found.range[j]) && expected.id[j] == found.id[j])
       continue;
     if (++result.different > 1) continue;
@@ -269,7 +273,8 @@ template <Geometry G>
 /// Rays from one point into all octants, to every box that there is.
 [[nodiscard]] inline RayBundle all_around(const Vec3& origin) {
   RayBundle rays;
-  rays.origin = origin, rays.size = 8;
+  rays.origin = origin;
+  rays.size = 8;
   for (std::size_t j = 0; j < 8; ++j) rays.set_direction(j, normalize(Vec3{j & 1 ? 1.0 : -1.0, j & 2 ? 1.0 : -1.0, j & 4 ? 1.0 : -1.0}));
   rays.pad();
   return rays;

@@ -45,7 +45,10 @@ double passed(const LeafAngles& leaves, double zenith, std::uint64_t seed) {
   VoxelData slab{.corner = {-20, -20, 0}, .edge = 0.5};
   for (std::uint32_t x = 0; x < 80; ++x)
     for (std::uint32_t y = 0; y < 80; ++y)
-      for (std::uint32_t z = 0; z < 4; ++z) slab.cells.push_back({x, y, z}), slab.densities.push_back(0.6F);
+      for (std::uint32_t z = 0; z < 4; ++z) {
+        slab.cells.push_back({x, y, z});
+        slab.densities.push_back(0.6F);
+      }
   const Scene<Grid> scene({{std::make_shared<const Grid>(slab, TransmissiveVoxels{.leaf_angles = leaves}), material_table(), {}, 1}});
   const Platform source{Tripod{.position = {0, 0, 10}}, Mount{.boresight = rotation_about(axis::right, zenith - pi / 2)},
                         Deflector{FixedBeam{}, Scanner{.pulses = 2000, .laser = {.divergence = 1e-6}}}};

@@ -113,7 +113,8 @@ TEST_CASE("two detectors on a tree") {
         auto v = other.workspace();
         const auto a = one(0, w).echoes, b = other(0, v).echoes;
         if (a.empty() && b.empty()) continue;
-        ++pulses, alike += a.size() == b.size();
+        ++pulses;
+        alike += a.size() == b.size();
       }
     REQUIRE(pulses > 1000);
     row(Kind::second_implementation,

@@ -63,8 +63,10 @@ double recorded() {
   std::vector<Reflection> reflections;
   support::Generator any(7);
   double power = 0;
-  for (int k = 0; k < 100; ++k)
-    reflections.push_back({any.uniform(50, 120), any.log_uniform(1e-10, 1e-8)}), power += reflections.back().power;
+  for (int k = 0; k < 100; ++k) {
+    reflections.push_back({any.uniform(50, 120), any.log_uniform(1e-10, 1e-8)});
+    power += reflections.back().power;
+  }
   auto workspace = detector.workspace(100);
   double sum = 0;
   for (const float sample : detector.detect(laser, reflections, workspace).waveform) sum += static_cast<double>(sample);

@@ -30,7 +30,8 @@ TEST_CASE("rate of false echoes") {
     for (PulseIndex pulse = 0; pulse < 500; ++pulse) {
       std::vector<Reflection> faint{{100, 1e-30}};
       const Detection d = detector.detect({}, faint, workspace, {.seed = 3, .pulse = pulse});
-      found += static_cast<double>(d.echoes.size()), samples += static_cast<double>(d.waveform.size() - 4);  // the ends have no peaks
+      found += static_cast<double>(d.echoes.size());
+      samples += static_cast<double>(d.waveform.size() - 4);  // the ends have no peaks
     }
     // A false echo is a sample above the threshold T whose neighbours are below it: the integral of f F^2 from T on, with f the density
     // and F the distribution of the normal distribution

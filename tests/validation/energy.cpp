@@ -71,7 +71,8 @@ TEST_CASE("energy by its fate, over a survey in which pulses have all of them") 
   for (std::size_t f = 0; f < fate_count; ++f) {
     CAPTURE(f);
     CHECK(summary.fates[f] > 0);
-    spent += summary.energy_by_fate[f], slots += summary.fates[f];
+    spent += summary.energy_by_fate[f];
+    slots += summary.fates[f];
   }
   row(Kind::consistency, "50 000 pulses of all fates: sum of the energies of all fates, of what was sent", 1, spent / summary.energy, 1e-6);
   const double each = Laser{}.peak_power * Laser{}.pulse_length * static_cast<double>(summary.pulses());

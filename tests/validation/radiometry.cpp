@@ -92,7 +92,11 @@ double slope(const Power& power) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const double range : ranges) {
     const double a = std::log(range), b = std::log(power(range));
-    n += 1, x += a, y += b, xx += a * a, xy += a * b;
+    n += 1;
+    x += a;
+    y += b;
+    xx += a * a;
+    xy += a * b;
   }
   return (n * xy - x * y) / (n * xx - x * x);
 }

@@ -98,7 +98,6 @@ class BinarySahTree {
   }
 
  private:
-  static constexpr std::size_t max_slices = 16;
   static constexpr std::size_t few = 4096;  ///< primitives; trees up to this size always take all slices: they build at once, and their
                                             ///< primitives may be shapes with trees of their own
   static constexpr double leaf_cost = 1;    ///< SAH cost of the tests in a leaf; a traversal step costs 1
@@ -114,6 +113,7 @@ class BinarySahTree {
     bool leaf;
   };
 
+  using Bins = detail::Bins<Real>;
   using Corner = simd::Vec4<Real>;
   using Growing = GrowingBox<Real>;
 
@@ -122,9 +122,13 @@ class BinarySahTree {
 
     void extend(const Boxed<Real>& boxed) noexcept {
       const Corner low = boxed.low(), high = boxed.high(), centre = low + high;
-      boxes.extend(low, high), centres.extend(centre, centre);
+      boxes.extend(low, high);
+      centres.extend(centre, centre);
     }
-    void extend(const Bounds& by) noexcept { boxes.extend(by.boxes), centres.extend(by.centres); }
+    void extend(const Bounds& by) noexcept {
+      boxes.extend(by.boxes);
+      centres.extend(by.centres);
+    }
   };
 
   struct Task {
@@ -134,20 +138,6 @@ class BinarySahTree {
     Bounds bounds;
 
     [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
-  };
-
-  /// Bins along each axis.
-  struct Bins {
-    Growing boxes[3][max_slices];
-    std::uint32_t counts[3][max_slices];
-
-    void clear(std::size_t slices) noexcept {
-      for (std::size_t k = 0; k < 3; ++k) std::fill_n(boxes[k], slices, Growing()), std::fill_n(counts[k], slices, 0U);
-    }
-    void add(const Bins& others, std::size_t slices) noexcept {
-      for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t i = 0; i < slices; ++i) boxes[k][i].extend(others.boxes[k][i]), counts[k][i] += others.counts[k][i];
-    }
   };
 
   /// Bins of one chunk of a node's primitives, for the parallel split.
@@ -193,7 +183,8 @@ class BinarySahTree {
     *task.number = task.size() == 1 ? 0 : task.end - 1;
     if (task.size() == 1) return sums_of(task.begin);
     Node& node = nodes_[*task.number];
-    node.box = task.bounds.boxes.box(), node.first = node.second = 0;
+    node.box = task.bounds.boxes.box();
+    node.first = node.second = 0;
     return plan(node, sums_of(task.begin), 1, sums_of(task.begin + 1), 1);
   }
 
@@ -207,10 +198,9 @@ class BinarySahTree {
       for_each_chunk(task.size(), threads,
                      [&](std::size_t i, std::size_t begin, std::size_t end) { act(space[i], from + begin, from + end); });
     };
-    const std::size_t count = primitives_.size() <= few ? max_slices : std::min<std::size_t>(max_slices, 4 + task.size() / 16);
+    const std::size_t count = primitives_.size() <= few ? Bins::max_slices : std::min<std::size_t>(Bins::max_slices, 4 + task.size() / 16);
     const Slices<Real> slices(task.bounds.centres.min, task.bounds.centres.max, count);
-    each_part(
-        [&](ChunkBins& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept { put_in_bins(part.bins, slices, begin, end); });
+    each_part([&](ChunkBins& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept { part.bins.fill(slices, begin, end); });
     Bins together;
     const Bins* all = &space[0].bins;
     if (parts > 1) {
@@ -237,32 +227,20 @@ class BinarySahTree {
     each_part([&](ChunkBins& part, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
       scatter(part, slices, split, array(!task.spare), begin, end);
     });
-    for (std::size_t i = 0; i < parts; ++i)
-      first.bounds.centres.extend(space[i].centres[0]), second.bounds.centres.extend(space[i].centres[1]);
+    for (std::size_t i = 0; i < parts; ++i) {
+      first.bounds.centres.extend(space[i].centres[0]);
+      second.bounds.centres.extend(space[i].centres[1]);
+    }
     return made(task, first, second);
   }
 
   std::array<Task, 2> made(const Task& task, Task& first, Task& second) noexcept {
     Node& node = nodes_[second.begin];
     node.box = task.bounds.boxes.box();
-    *task.number = second.begin, first.number = &node.first, second.number = &node.second;
+    *task.number = second.begin;
+    first.number = &node.first;
+    second.number = &node.second;
     return {first, second};
-  }
-
-  static void put_in_bins(Bins& bins, const Slices<Real>& slices, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
-    const auto put = [&](const Boxed<Real>& boxed, Bins& to) noexcept {
-      const Corner low = boxed.low(), high = boxed.high();
-      const auto of = slices.of(low + high);
-      for (std::size_t k = 0; k < 3; ++k) to.boxes[k][of[k]].extend(low, high), ++to.counts[k][of[k]];
-    };
-    bins.clear(slices.count());
-    if (end - begin > 256) {  // alternates two sets of bins, since neighbours often share a slice and would serialize
-      Bins other;
-      other.clear(slices.count());
-      for (; end - begin > 1; begin += 2) put(begin[0], bins), put(begin[1], other);
-      bins.add(other, slices.count());
-    }
-    for (; begin != end; ++begin) put(*begin, bins);
   }
 
   /// Moves primitives to their halves, stable in order.
@@ -299,17 +277,20 @@ class BinarySahTree {
     Split best;
     for (std::size_t k = 0; k < 3; ++k) {
       if (!slices.valid(k)) continue;
-      std::array<double, max_slices> second_cost;
+      std::array<double, Bins::max_slices> second_cost;
       Growing box;
       std::uint32_t count = 0;
       for (std::size_t i = slices.count(); i-- > 1;) {
-        box.extend(bins.boxes[k][i]), count += bins.counts[k][i];
+        box.extend(bins.boxes[k][i]);
+        count += bins.counts[k][i];
         second_cost[i] = count == 0 ? 0 : box.half_area() * count;
       }
-      box = Growing(), count = 0;
+      box = Growing();
+      count = 0;
       for (std::size_t i = 1; i < slices.count(); ++i) {
         if (bins.counts[k][i - 1] == 0) continue;  // same split as the one before
-        box.extend(bins.boxes[k][i - 1]), count += bins.counts[k][i - 1];
+        box.extend(bins.boxes[k][i - 1]);
+        count += bins.counts[k][i - 1];
         if (count == size) break;
         const double cost = box.half_area() * count + second_cost[i];
         if (cost < best.cost) best = {k, i, cost};
@@ -327,20 +308,26 @@ class BinarySahTree {
     const std::size_t size = in_first + in_second;
     for (std::size_t j = 1; j < places; ++j) {
       if (j >= size) {  // more places than primitives
-        sums[j] = sums[j - 1], node.left[j - 1] = node.left[j - 2];
+        sums[j] = sums[j - 1];
+        node.left[j - 1] = node.left[j - 2];
         continue;
       }
       sums[j] = std::numeric_limits<double>::infinity();
       for (std::size_t k = j > in_second ? j - in_second : 0; k < std::min(j, in_first); ++k)
-        if (const double sum = first[k] + second[j - 1 - k]; sum < sums[j])
-          sums[j] = sum, node.left[j - 1] = static_cast<std::uint8_t>(k + 1);
+        if (const double sum = first[k] + second[j - 1 - k]; sum < sums[j]) {
+          sums[j] = sum;
+          node.left[j - 1] = static_cast<std::uint8_t>(k + 1);
+        }
     }
     const double area = half_area(node.box), as_node = area + sums[places - 1];
     const double as_leaf = size <= leaf_size_ ? area * leaf_cost : std::numeric_limits<double>::infinity();
     node.leaf = as_leaf <= as_node;
     sums[0] = std::min(as_leaf, as_node);
     for (std::size_t j = 1; j < places - 1; ++j)  // the last entry is the node itself
-      if (sums[0] <= sums[j]) sums[j] = sums[0], node.left[j - 1] = 0;
+      if (sums[0] <= sums[j]) {
+        sums[j] = sums[0];
+        node.left[j - 1] = 0;
+      }
     return sums;
   }
 

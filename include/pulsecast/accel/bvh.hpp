@@ -36,7 +36,8 @@ class Bvh {
   explicit Bvh(const detail::BoxRangeRef& boxes, unsigned threads = 0, std::uint32_t leaf_size = 4) {
     require_within("Bvh::leaf_size", leaf_size, 1, 7, "");
     detail::BuildInput<Real> input(boxes, threads);
-    bounds_ = input.bounds, centre_ = input.centre;
+    bounds_ = input.bounds;
+    centre_ = input.centre;
     if (input.primitives.empty()) return;
     const BinaryTree binary(input.primitives, leaf_size, threads);
     collapse(binary, threads);
@@ -180,7 +181,10 @@ class Bvh {
       std::size_t first_node = 0, first_primitive = 0, depth = 0;
     };
     std::vector<Subtree> subtrees(below.size());
-    for (std::size_t i = 0; i < below.size(); ++i) subtrees[i].first_primitive = next, next += below[i].range.size();
+    for (std::size_t i = 0; i < below.size(); ++i) {
+      subtrees[i].first_primitive = next;
+      next += below[i].range.size();
+    }
     for_each_index(below.size(), threads, [&](std::size_t i) {
       Subtree& own = subtrees[i];
       own.nodes.resize(1);
@@ -189,7 +193,11 @@ class Bvh {
       own.depth = make_nodes(binary, {below[i].range, 0, below[i].depth}, own.nodes, primitives, at, 0, none);
     });
     std::size_t nodes = upper.size();
-    for (Subtree& own : subtrees) own.first_node = nodes, nodes += own.nodes.size() - 1, depth = std::max(depth, own.depth);
+    for (Subtree& own : subtrees) {
+      own.first_node = nodes;
+      nodes += own.nodes.size() - 1;
+      depth = std::max(depth, own.depth);
+    }
     const SharedBuffer<Node> all(nodes);
     std::copy(upper.begin(), upper.end(), all.begin());
     for_each_index(subtrees.size(), threads, [&](std::size_t i) {  // the first node of a subtree takes its reserved slot
@@ -199,7 +207,9 @@ class Bvh {
         node.children += static_cast<std::uint32_t>(own.first_node - 1);
       }
     });
-    nodes_ = all, primitives_ = primitives, depth_ = depth;
+    nodes_ = all;
+    primitives_ = primitives;
+    depth_ = depth;
   }
 
   /// Fills the reserved node `open.node` and makes its subtree. Ranges of at most `grain` primitives go to `below` instead. Returns the
@@ -214,7 +224,8 @@ class Bvh {
     typename BinaryTree::Children children;
     binary.gather(open.range, places, children);
     Node node;
-    node.children = static_cast<std::uint32_t>(nodes.size()), node.primitives = static_cast<std::uint32_t>(next);
+    node.children = static_cast<std::uint32_t>(nodes.size());
+    node.primitives = static_cast<std::uint32_t>(next);
     node.boxes.begin(binary.box(open.range));
     std::uint32_t inner = 0;
     for (std::size_t place = 0; place < children.count; ++place) {
@@ -230,10 +241,11 @@ class Bvh {
     nodes[open.node] = node;
     nodes.resize(nodes.size() + inner);
     std::size_t depth = open.depth;
-    for (std::size_t place = children.count; place-- > 0;)
-      if (node.size(place) == 0)
-        depth = std::max(
-            depth, make_nodes(binary, {children.ranges[place], node.first(place), open.depth + 1}, nodes, primitives, next, grain, below));
+    for (std::size_t place = children.count; place-- > 0;) {
+      if (node.size(place) > 0) continue;
+      const Open child{children.ranges[place], node.first(place), open.depth + 1};
+      depth = std::max(depth, make_nodes(binary, child, nodes, primitives, next, grain, below));
+    }
     return depth;
   }
 

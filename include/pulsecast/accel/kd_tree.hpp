@@ -28,7 +28,8 @@ class KdTree {
   /// Builds the tree over boxes [m]. @throws SettingError for coordinates beyond 1e18 m, or more than 4294967294 boxes
   explicit KdTree(std::span<const Box> boxes) {
     detail::BuildInput<Real> input(boxes);
-    bounds_ = input.bounds, centre_ = input.centre;
+    bounds_ = input.bounds;
+    centre_ = input.centre;
     if (input.primitives.empty()) return;
     build({input.primitives.begin(), input.primitives.end()});
   }
@@ -91,7 +92,8 @@ class KdTree {
           stack[stack_size++] = low_first ? StackEntry{children + 1, high} : StackEntry{children, low};
         }
         if (into_low || into_high) {
-          node = low_first ? children : children + 1, span = low_first ? low : high;
+          node = low_first ? children : children + 1;
+          span = low_first ? low : high;
           continue;
         }
       } else if (node->count > 0) {
@@ -100,7 +102,8 @@ class KdTree {
       }
       do {
         if (stack_size == 0) return;
-        node = stack[--stack_size].node, span = stack[stack_size].span;
+        node = stack[--stack_size].node;
+        span = stack[stack_size].span;
       } while (span.entry > limit);
     }
   }
@@ -160,7 +163,8 @@ class KdTree {
       tasks.pop_back();
       const std::span<const Boxed> part(heap.data() + task.begin, heap.size() - task.begin);
       const Split split = task.depth < deepest ? best_split(part, task.cell) : Split{};
-      lower.clear(), upper.clear();
+      lower.clear();
+      upper.clear();
       if (split.axis >= 0) {
         for (const Boxed& boxed : part) {
           if (reaches_lower(boxed, split)) lower.push_back(boxed);
@@ -171,13 +175,15 @@ class KdTree {
       depth_ = std::max(depth_, task.depth);
       Node& node = nodes[task.node];
       if (split.axis < 0 || both > task.allowance || std::min(lower.size(), upper.size()) == part.size()) {
-        node.place(order.size(), 3), node.count = static_cast<std::uint32_t>(part.size());
+        node.place(order.size(), 3);
+        node.count = static_cast<std::uint32_t>(part.size());
         for (const Boxed& boxed : part) order.push_back(boxed.primitive);
         heap.resize(task.begin);
         continue;
       }
       const std::size_t children = nodes.size();
-      node.place(children, split.axis), node.split = split.at;
+      node.place(children, split.axis);
+      node.split = split.at;
       nodes.resize(children + 2);
       const auto share = [&](const std::vector<Boxed>& side) { return task.allowance * static_cast<double>(side.size()) / both; };
       Task below{task.begin, children + 1, task.depth + 1, task.cell, share(upper)};
@@ -190,7 +196,8 @@ class KdTree {
       heap.insert(heap.end(), lower.begin(), lower.end());
       tasks.push_back(below);
     }
-    nodes_ = std::move(nodes), order_ = std::move(order);
+    nodes_ = std::move(nodes);
+    order_ = std::move(order);
   }
 
   static detail::GrowingBox<Real> box_of(std::span<const Boxed> part) noexcept {
@@ -211,21 +218,30 @@ class KdTree {
     std::array<std::uint32_t, slice_count> begun[3] = {}, ended[3] = {};
     for (const Boxed& boxed : part) {
       const auto first = slices.of(boxed.low()), last = slices.of(boxed.high());
-      for (std::size_t k = 0; k < 3; ++k) ++begun[k][first[k]], ++ended[k][last[k]];
+      for (std::size_t k = 0; k < 3; ++k) {
+        ++begun[k][first[k]];
+        ++ended[k][last[k]];
+      }
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!slices.valid(axis)) continue;
       const int k = static_cast<int>(axis);
       double lower = 0, upper = n;
       for (std::size_t i = 0; i <= slice_count; ++i) {
-        if (i > 0) lower += begun[axis][i - 1], upper -= ended[axis][i - 1];
+        if (i > 0) {
+          lower += begun[axis][i - 1];
+          upper -= ended[axis][i - 1];
+        }
         const Real at = i == slice_count ? high[axis] : slices.edge(axis, i);
         if (!(at > cell.min[k] && at < cell.max[k])) continue;
         BoundingBox<Real> below = cell, above = cell;
         below.max[k] = above.min[k] = at;
         const double tests = (detail::half_area(below) * lower + detail::half_area(above) * upper) / area;
         const double cost = (1 + detail::test_cost * tests) * (lower == 0 || upper == 0 ? empty_bonus : 1);
-        if (cost < best_cost) best_cost = cost, best = {k, at};
+        if (cost < best_cost) {
+          best_cost = cost;
+          best = {k, at};
+        }
       }
     }
     return best;

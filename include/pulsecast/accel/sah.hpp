@@ -60,7 +60,10 @@ template <std::floating_point Real>
 struct GrowingBox {
   simd::Vec4<Real> min{std::numeric_limits<Real>::max()}, max{-std::numeric_limits<Real>::max()};
 
-  void extend(const simd::Vec4<Real>& low, const simd::Vec4<Real>& high) noexcept { min = simd::min(low, min), max = simd::max(high, max); }
+  void extend(const simd::Vec4<Real>& low, const simd::Vec4<Real>& high) noexcept {
+    min = simd::min(low, min);
+    max = simd::max(high, max);
+  }
   void extend(const GrowingBox& by) noexcept { extend(by.min, by.max); }
   [[nodiscard]] BoundingBox<Real> box() const noexcept { return {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}}; }
   /// Half of the surface area, equal to that of `box()` up to rounding [m^2].
@@ -81,7 +84,8 @@ class Slices {
     for (std::size_t k = 0; k < 3; ++k) {
       const Real extent = high[k] - low[k], slices = static_cast<Real>(count) / extent;
       valid_[k] = extent > 0 && slices <= std::numeric_limits<Real>::max();
-      width_[k] = extent / static_cast<Real>(count), per_width[k] = valid_[k] ? slices : 0;
+      width_[k] = extent / static_cast<Real>(count);
+      per_width[k] = valid_[k] ? slices : 0;
     }
     per_width_ = simd::Vec4<Real>::from(per_width[0]);
   }
@@ -112,6 +116,52 @@ class Slices {
   simd::Vec4<Real> low_, last_, per_width_;
   Real width_[3];
   bool valid_[3];
+};
+
+/// Bounds and number of the primitives in each slice of a box, along each axis.
+template <std::floating_point Real>
+struct Bins {
+  static constexpr std::size_t max_slices = 16;
+
+  GrowingBox<Real> boxes[3][max_slices];
+  std::uint32_t counts[3][max_slices];
+
+  void clear(std::size_t slices) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::fill_n(boxes[k], slices, GrowingBox<Real>());
+      std::fill_n(counts[k], slices, 0U);
+    }
+  }
+  void add(const Bins& others, std::size_t slices) noexcept {
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < slices; ++i) {
+        boxes[k][i].extend(others.boxes[k][i]);
+        counts[k][i] += others.counts[k][i];
+      }
+  }
+
+  /// Bins of the primitives from `begin` to `end`, each by its centre. The slices are those of the centres, times two.
+  void fill(const Slices<Real>& slices, const Boxed<Real>* begin, const Boxed<Real>* end) noexcept {
+    const auto put = [&](const Boxed<Real>& boxed, Bins& to) noexcept {
+      const simd::Vec4<Real> low = boxed.low(), high = boxed.high();
+      const auto of = slices.of(low + high);
+      for (std::size_t k = 0; k < 3; ++k) {
+        to.boxes[k][of[k]].extend(low, high);
+        ++to.counts[k][of[k]];
+      }
+    };
+    clear(slices.count());
+    if (end - begin > 256) {  // alternates two sets of bins, since neighbours often share a slice and would serialize
+      Bins other;
+      other.clear(slices.count());
+      for (; end - begin > 1; begin += 2) {
+        put(begin[0], *this);
+        put(begin[1], other);
+      }
+      add(other, slices.count());
+    }
+    for (; begin != end; ++begin) put(*begin, *this);
+  }
 };
 
 /// Calls act(i, begin, end) for the i-th chunk of an array, on several threads if there is more than one chunk. Results merged in chunk
@@ -178,12 +228,17 @@ struct BuildInput {
       boxes.for_each(begin, end, [&](std::size_t, const Box& box) {
         const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
         if (!(extent <= max_coordinate)) throw SettingError("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
-        own.bounds.extend(box), ++own.met;
+        own.bounds.extend(box);
+        ++own.met;
       });
       all[part] = own;
     });
     std::size_t met = 0;
-    for (ChunkBounds& own : all) bounds.extend(own.bounds), own.first = met, met += own.met;
+    for (ChunkBounds& own : all) {
+      bounds.extend(own.bounds);
+      own.first = met;
+      met += own.met;
+    }
     if (met == 0) return;
     centre = bounds.centre();
     primitives = SharedBuffer<Boxed<Real>>(met);

@@ -24,7 +24,10 @@ struct AxisAngle {
 /// tilts a forward view down, then turns it left. Throws a `SettingError` for an invalid turn.
 [[nodiscard]] inline Rotation extrinsic(const std::vector<AxisAngle>& turns) {
   Rotation all = no_rotation;
-  for (const AxisAngle& turn : turns) turn.validate(), all = rotation_about(turn.axis, turn.angle) * all;
+  for (const AxisAngle& turn : turns) {
+    turn.validate();
+    all = rotation_about(turn.axis, turn.angle) * all;
+  }
   return normalize(all);
 }
 
@@ -32,7 +35,10 @@ struct AxisAngle {
 /// `SettingError` for an invalid turn.
 [[nodiscard]] inline Rotation intrinsic(const std::vector<AxisAngle>& turns) {
   Rotation all = no_rotation;
-  for (const AxisAngle& turn : turns) turn.validate(), all = all * rotation_about(turn.axis, turn.angle);
+  for (const AxisAngle& turn : turns) {
+    turn.validate();
+    all = all * rotation_about(turn.axis, turn.angle);
+  }
   return normalize(all);
 }
 

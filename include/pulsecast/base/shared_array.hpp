@@ -82,7 +82,8 @@ class SharedArray {
     } else {
       const SharedBuffer<T> copy(size_);
       std::copy(made.begin(), made.end(), copy.data());
-      elements_ = copy.data(), owner_ = copy.memory();
+      elements_ = copy.data();
+      owner_ = copy.memory();
     }
   }
   SharedArray(const SharedBuffer<T>& made)  // NOLINT(google-explicit-constructor): a buffer, too

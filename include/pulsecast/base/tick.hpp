@@ -22,8 +22,14 @@ struct Tick {
   [[nodiscard]] static Tick of(PulseIndex i, double rate) noexcept {
     const double n = static_cast<double>(i);
     double whole = std::floor(n / rate), rest = std::fma(-whole, rate, n);  // exact, if `whole` is the right one of two candidates
-    if (rest < 0) --whole, rest = std::fma(-whole, rate, n);
-    if (rest >= rate) ++whole, rest = std::fma(-whole, rate, n);
+    if (rest < 0) {
+      --whole;
+      rest = std::fma(-whole, rate, n);
+    }
+    if (rest >= rate) {
+      ++whole;
+      rest = std::fma(-whole, rate, n);
+    }
     return normal(static_cast<std::int64_t>(whole), rest / rate);
   }
 

@@ -128,7 +128,9 @@ class AnalyticWaveform {
 
   /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted.
   [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> all, Workspace& w) const noexcept {
-    w.peaks.clear(), w.echoes.clear(), w.record.clear();
+    w.peaks.clear();
+    w.echoes.clear();
+    w.record.clear();
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
     if (!by_samples && s_.record_length == 0) {
       const SinglePeakGroup group(all, shape, s_.sample_interval, w.group);
@@ -192,7 +194,11 @@ class AnalyticWaveform {
         x = std::fmax(ages.until_valley(), 0);
         if constexpr (by_moments) m.add(ages.until(x), since);
         finish(edge + x * shape.tau);
-        peak = {.begin = peak.end}, m = {}, since = 0, met = false, rising = true;
+        peak = {.begin = peak.end};
+        m = {};
+        since = 0;
+        met = false;
+        rising = true;
         ages.advance(x);
       }
       const double rest = next - x;
@@ -201,7 +207,9 @@ class AnalyticWaveform {
         EdgeAgeMoments then = ages;
         then.advance(ahead);
         peak.time = edge + (x + ahead) * shape.tau;
-        peak.height = then.power(), met = true, rising = false;
+        peak.height = then.power();
+        met = true;
+        rising = false;
       }
       if constexpr (by_moments) m.add(ages.until(rest), since);
       since += rest;

@@ -45,7 +45,9 @@ struct MomentWidth {
     WaveformMoments m;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double t = static_cast<double>(i);
-      m.energy += samples[i], m.first += samples[i] * t, m.second += samples[i] * t * t;
+      m.energy += samples[i];
+      m.first += samples[i] * t;
+      m.second += samples[i] * t * t;
     }
     return interval * m.deviation();
   }

@@ -77,7 +77,9 @@ class FullWaveform {
   /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted. Noise is drawn per
   /// sample from the seed and pulse of `key`.
   [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> all, Workspace& w, RandomKey key = {}) const noexcept {
-    w.peaks.clear(), w.echoes.clear(), w.record.clear();
+    w.peaks.clear();
+    w.echoes.clear();
+    w.record.clear();
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
     if (std::same_as<Width, NoWidth> && s_.record_length == 0 && noise_.none()) {
       const SinglePeakGroup group(all, shape, s_.sample_interval, w.group);
@@ -105,7 +107,8 @@ class FullWaveform {
         next = sum.next();
         if (noisy) {
           const auto number = static_cast<std::uint64_t>(n - record_start);
-          key.subray = static_cast<std::uint32_t>(number), key.part = static_cast<std::uint32_t>(number >> 32);
+          key.subray = static_cast<std::uint32_t>(number);
+          key.part = static_cast<std::uint32_t>(number >> 32);
           power += deviation * normal(key);
         }
         w.samples.push_back(power);

@@ -65,7 +65,9 @@ struct GaussianFit {
     double sum = 0, first = 0, second = 0, x = 0;
     for (const double y : samples) {
       const double square = y * y;
-      sum += square, first += square * x, second += square * x * x;
+      sum += square;
+      first += square * x;
+      second += square * x * x;
       ++x;
     }
     const double position = first / sum;
@@ -82,7 +84,9 @@ struct GaussianFit {
       const bool possible = next.amplitude > 0 && next.width > 0.1 && std::isfinite(size);
       const Equations there = possible ? equations(samples, next) : Equations{};
       if (possible && there.squares <= e.squares) {
-        r.gaussian = next, e = there, damping *= 0.1;
+        r.gaussian = next;
+        e = there;
+        damping *= 0.1;
         r.converged = size < small_enough;
       } else if (possible && size < small_enough) {
         r.converged = true;  // at the minimum within rounding
@@ -125,10 +129,18 @@ struct GaussianFit {
         for (std::size_t k = i; k < samples.size(); ++k) y[k - i] = samples[k];
       const simd::Doubles residual = y - g.amplitude * value, weighted = y * value, xx = x * x;
       const simd::Doubles s = weighted * value, r = weighted * residual, sx = s * x, sxx = s * xx;
-      s0 += s, s1 += sx, s2 += sxx, s3 += sx * xx, s4 += sxx * xx;
-      r0 += r, r1 += r * x, r2 += r * xx;
+      s0 += s;
+      s1 += sx;
+      s2 += sxx;
+      s3 += sx * xx;
+      s4 += sxx * xx;
+      r0 += r;
+      r1 += r * x;
+      r2 += r * xx;
       squares += y * residual * residual;
-      x += step, value *= ratio, ratio *= decay;
+      x += step;
+      value *= ratio;
+      ratio *= decay;
     }
     const double k = g.amplitude * h;
     return {simd::sum(s0),         simd::sum(s1) * k, simd::sum(s2) * k, simd::sum(s2) * k * k, simd::sum(s3) * k * k,

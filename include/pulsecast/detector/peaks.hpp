@@ -31,7 +31,10 @@ struct Peak {
 inline bool merge_or_append(const Peak& peak, double min_separation, std::vector<Peak>& peaks) noexcept {
   if (!peaks.empty() && peak.time - peaks.back().time < min_separation) {
     Peak& one = peaks.back();
-    if (peak.height > one.height) one.time = peak.time, one.height = peak.height;
+    if (peak.height > one.height) {
+      one.time = peak.time;
+      one.height = peak.height;
+    }
     one.end = peak.end;
     return true;
   }
@@ -80,12 +83,17 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
     const double power = r->power * shape(peak.time - arrival(*r));
     if (!(power > strongest)) continue;
     strongest = power;
-    echo.cos_incidence = r->cos_incidence, echo.object = r->object, echo.classification = r->classification;
+    echo.cos_incidence = r->cos_incidence;
+    echo.object = r->object;
+    echo.classification = r->classification;
   }
   if (timing == EchoTiming::energy) {
     const auto first = from(peak.begin);
     double sum = 0, beyond = 0;
-    for (auto r = first; r != end && arrival(*r) < peak.end; ++r) sum += r->power, beyond += r->power * (r->range - first->range);
+    for (auto r = first; r != end && arrival(*r) < peak.end; ++r) {
+      sum += r->power;
+      beyond += r->power * (r->range - first->range);
+    }
     if (sum > 0) echo.range = first->range + beyond / sum;
   }
   return echo;

@@ -74,7 +74,9 @@ class SampledSum {
     zeroth_ *= decay_;
     for (const double t = time(); next_edge_ <= t; ++next_, find_next_edge()) {
       const double u = (t - next_edge_) / shape_.tau, p = reflections_[next_].power * exponential(-u);
-      zeroth_ += p, first_ += p * u, second_ += p * u * u;
+      zeroth_ += p;
+      first_ += p * u;
+      second_ += p * u * u;
     }
     ++sample_;
     return second_ * PulseShape::to_unit_peak;

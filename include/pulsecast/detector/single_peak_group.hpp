@@ -41,7 +41,8 @@ class SinglePeakGroup {
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
     bool useful = true;
     for (const Reflection& r : reflections) {
-      nearest = r.range < nearest ? r.range : nearest, farthest = r.range > farthest ? r.range : farthest;
+      nearest = r.range < nearest ? r.range : nearest;
+      farthest = r.range > farthest ? r.range : farthest;
       useful &= can_count(r, sample_interval);
     }
     const double per_metre = 2 / (speed_of_light * shape.tau);
@@ -50,17 +51,29 @@ class SinglePeakGroup {
     last_edge_ = 2 * farthest / speed_of_light - PulseShape::peak * shape.tau;
 
     const std::size_t n = reflections.size();
-    for (std::size_t j = 0; j < n; ++j) ages_[j] = farthest - reflections[j].range, weights_[j] = reflections[j].power;
-    for (std::size_t j = n; j < n + simd::lane_count; ++j) ages_[j] = 0, weights_[j] = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      ages_[j] = farthest - reflections[j].range;
+      weights_[j] = reflections[j].power;
+    }
+    for (std::size_t j = n; j < n + simd::lane_count; ++j) {
+      ages_[j] = 0;
+      weights_[j] = 0;
+    }
     simd::Doubles power{}, before{}, zeroth{}, first{}, second{};
     for (std::size_t j = 0; j < n; j += simd::lane_count) {
       const simd::Doubles distance = simd::load<simd::Doubles>(ages_[j]), p = simd::load<simd::Doubles>(weights_[j]);
       const simd::Doubles age = distance * per_metre, weight = p * exponential(simd::Doubles(-age));
-      power += p, before += p * distance;
-      zeroth += weight, first += weight * age, second += weight * age * age;
-      simd::store(age, ages_[j]), simd::store(weight, weights_[j]);
+      power += p;
+      before += p * distance;
+      zeroth += weight;
+      first += weight * age;
+      second += weight * age * age;
+      simd::store(age, ages_[j]);
+      simd::store(weight, weights_[j]);
     }
-    zeroth_ = simd::sum(zeroth), first_ = simd::sum(first), second_ = simd::sum(second);
+    zeroth_ = simd::sum(zeroth);
+    first_ = simd::sum(first);
+    second_ = simd::sum(second);
     mean_range_ = farthest - simd::sum(before) / simd::sum(power);
   }
 
@@ -84,7 +97,9 @@ class SinglePeakGroup {
     double sum = 0, first = 0, second = 0;
     for (std::size_t j = 0; j < reflections_.size(); ++j) {
       const double p = reflections_[j].power, age = ages_[j];
-      sum += p, first += p * age, second += p * age * age;
+      sum += p;
+      first += p * age;
+      second += p * age * age;
     }
     // the moments of u^2 e^-u from 0 on are 2, 6 and 24
     constexpr double c = PulseShape::to_unit_peak;
@@ -97,7 +112,8 @@ class SinglePeakGroup {
     for (std::size_t lane = 0; lane < simd::lane_count; ++lane) number[lane] = static_cast<double>(lane);
     for (std::size_t j = 0; j < reflections_.size(); j += simd::lane_count) {
       const simd::Doubles u = simd::load<simd::Doubles>(ages_[j]) + x, power = simd::load<simd::Doubles>(weights_[j]) * u * u;
-      best = power > most ? number : best, most = simd::max(power, most);
+      best = power > most ? number : best;
+      most = simd::max(power, most);
       number += simd::lane_count;
     }
     std::size_t first = 0;

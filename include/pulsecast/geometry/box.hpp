@@ -17,8 +17,14 @@ struct Box {
   [[nodiscard]] Vec3 centre() const noexcept { return min * 0.5 + max * 0.5; }
   [[nodiscard]] Vec3 size() const noexcept { return max - min; }
 
-  void extend(const Vec3& p) noexcept { min = pulsecast::min(min, p), max = pulsecast::max(max, p); }
-  void extend(const Box& b) noexcept { min = pulsecast::min(min, b.min), max = pulsecast::max(max, b.max); }
+  void extend(const Vec3& p) noexcept {
+    min = pulsecast::min(min, p);
+    max = pulsecast::max(max, p);
+  }
+  void extend(const Box& b) noexcept {
+    min = pulsecast::min(min, b.min);
+    max = pulsecast::max(max, b.max);
+  }
 
   /// Half of the surface area, proportional to the probability of a ray hit; 0 if empty [m^2].
   [[nodiscard]] double half_area() const noexcept {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -57,7 +58,11 @@ struct RayBundle : BundleOrigin {
   [[nodiscard]] Vec3 direction(std::size_t j) const noexcept { return {x[j], y[j], z[j]}; }
   [[nodiscard]] Ray ray(std::size_t j) const noexcept { return {origin, direction(j), near, far}; }
 
-  void set_direction(std::size_t j, const Vec3& d) noexcept { x[j] = d.x, y[j] = d.y, z[j] = d.z; }
+  void set_direction(std::size_t j, const Vec3& d) noexcept {
+    x[j] = d.x;
+    y[j] = d.y;
+    z[j] = d.z;
+  }
 
   /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect, and finds `least` and `most`. To be
   /// called once the directions are set.
@@ -66,7 +71,7 @@ struct RayBundle : BundleOrigin {
     for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
     const Column* const columns[] = {&x, &y, &z};
     if (size == 1) {
-      const auto number = [](double d, double otherwise) noexcept { return d == d ? d : otherwise; };
+      const auto number = [](double d, double otherwise) noexcept { return std::isnan(d) ? otherwise : d; };
       constexpr double infinity = std::numeric_limits<double>::infinity();
       least = {number(x[0], infinity), number(y[0], infinity), number(z[0], infinity)};
       most = {number(x[0], -infinity), number(y[0], -infinity), number(z[0], -infinity)};
@@ -76,23 +81,33 @@ struct RayBundle : BundleOrigin {
       simd::Doubles low = simd::Doubles{} + std::numeric_limits<double>::infinity(), high = -low;
       for (std::size_t j = 0; j < size; j += simd::lane_count) {
         const simd::Doubles d = simd::load<simd::Doubles>((*columns[k])[j]);
-        low = simd::min(d, low), high = simd::max(d, high);  // NaN fails every comparison
+        low = simd::min(d, low);  // NaN fails every comparison
+        high = simd::max(d, high);
       }
-      least[k] = simd::min(low), most[k] = simd::max(high);
+      least[k] = simd::min(low);
+      most[k] = simd::max(high);
     }
   }
 
  private:
   void copy_directions(const RayBundle& other) noexcept {
-    for (std::size_t j = 0; j < padded_size(); ++j) x[j] = other.x[j], y[j] = other.y[j], z[j] = other.z[j];
-    least = other.least, most = other.most;
+    for (std::size_t j = 0; j < padded_size(); ++j) {
+      x[j] = other.x[j];
+      y[j] = other.y[j];
+      z[j] = other.z[j];
+    }
+    least = other.least;
+    most = other.most;
   }
 };
 
 /// Bundle of one ray.
 [[nodiscard]] inline RayBundle bundle_of(const Ray& ray) noexcept {
   RayBundle rays;
-  rays.origin = ray.origin, rays.near = ray.near, rays.far = ray.far, rays.size = 1;
+  rays.origin = ray.origin;
+  rays.near = ray.near;
+  rays.far = ray.far;
+  rays.size = 1;
   rays.set_direction(0, ray.direction);
   rays.pad();
   return rays;
@@ -121,7 +136,10 @@ struct ClosestHits {
   /// Records a hit of ray j with a primitive of the current part, if it is closer than the one before.
   void offer(std::size_t j, double at, PrimitiveIndex primitive) noexcept {
     const std::uint64_t candidate = part | primitive;
-    if (at < range[j] || (at == range[j] && candidate < id[j])) range[j] = at, id[j] = candidate;
+    if (at < range[j] || (at == range[j] && candidate < id[j])) {
+      range[j] = at;
+      id[j] = candidate;
+    }
   }
 
   /// Largest range at which any ray of the bundle can still find a closer hit [m].

@@ -67,12 +67,15 @@ struct Box8 {
 
   Box8() noexcept {
     constexpr Real most = std::numeric_limits<Real>::max();
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t place = 0; place < 8; ++place) min[k][place] = most, max[k][place] = -most;
+    for (auto& side : min) std::fill(std::begin(side), std::end(side), most);
+    for (auto& side : max) std::fill(std::begin(side), std::end(side), -most);
   }
 
   void put(std::size_t place, const BoundingBox<Real>& box) noexcept {
-    for (std::size_t k = 0; k < 3; ++k) min[k][place] = box.min[k], max[k][place] = box.max[k];
+    for (std::size_t k = 0; k < 3; ++k) {
+      min[k][place] = box.min[k];
+      max[k][place] = box.max[k];
+    }
   }
 };
 
@@ -93,7 +96,8 @@ struct QuantizedBox8 {
       const double extent = static_cast<double>(around.max[k]) - static_cast<double>(around.min[k]);
       int e;  // exponent of a power of two above the ratio
       std::frexp(extent / (steps - 1), &e);
-      origin[k] = around.min[k], exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 && e > min_exponent ? e : min_exponent));
+      origin[k] = around.min[k];
+      exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 && e > min_exponent ? e : min_exponent));
       for (auto& side : walls[k]) std::fill(std::begin(side), std::end(side), std::uint16_t{0});
     }
     count = 0;
@@ -147,15 +151,14 @@ class BundleInterval {
       // rounding to Real; a wall is at most three half extents away from the origin of a grid, see `inside`
       const double extent = 0.5 * (bounds.max[k] - bounds.min[k]);
       const double margin = slack + (4 * std::fabs(o) + 8 * extent) * static_cast<double>(std::numeric_limits<Real>::epsilon());
-      Axis& axis = axes_[k];
-      axis.origin_low = static_cast<Real>(o - margin), axis.origin_high = static_cast<Real>(o + margin);
+      const Real origin_low = static_cast<Real>(o - margin), origin_high = static_cast<Real>(o + margin);
       if (low > 0)
-        axis.sense = 1, axis.per_min = slowness(high, 1 - tolerance), axis.per_max = slowness(low, 1 + tolerance);
+        axes_[k] = {origin_low, origin_high, slowness(high, 1 - tolerance), slowness(low, 1 + tolerance), 1};
       else if (high < 0)
-        axis.sense = -1, axis.per_min = -slowness(-high, 1 + tolerance), axis.per_max = -slowness(-low, 1 - tolerance);
+        axes_[k] = {origin_low, origin_high, -slowness(-high, 1 + tolerance), -slowness(-low, 1 - tolerance), -1};
       else
-        axis.sense = 0, axis.per_min = high > 0 ? slowness(high, 1 - tolerance) : infinity,
-        axis.per_max = low < 0 ? -slowness(-low, 1 - tolerance) : -infinity;
+        axes_[k] = {origin_low, origin_high, high > 0 ? slowness(high, 1 - tolerance) : infinity,
+                    low < 0 ? -slowness(-low, 1 - tolerance) : -infinity, 0};
     }
   }
 
@@ -184,7 +187,8 @@ class BundleInterval {
     // two roundings of a wall's distance from the origin, as the steps of its grid are powers of two
     Real to_low[3], to_high[3], steps[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      to_low[k] = boxes.origin[k] - axes_[k].origin_high, to_high[k] = boxes.origin[k] - axes_[k].origin_low;
+      to_low[k] = boxes.origin[k] - axes_[k].origin_high;
+      to_high[k] = boxes.origin[k] - axes_[k].origin_low;
       steps[k] = boxes.step(k);
     }
     const unsigned met = inside(limit, entries, [&](std::size_t k, std::size_t first) noexcept -> Walls {
@@ -229,11 +233,13 @@ class BundleInterval {
                          exit = simd::Packet<Real>{} + std::min(limit, std::numeric_limits<Real>::max());
       for (std::size_t k = 0; k < 3; ++k) {
         const Walls walls = walls_of(k, first);
-        if (axes_[k].sense > 0)  // NaN fails every comparison
-          entry = simd::max(walls.low, entry), exit = simd::min(walls.high, exit);
-        else if (axes_[k].sense < 0)
-          entry = simd::max(walls.high, entry), exit = simd::min(walls.low, exit);
-        else
+        if (axes_[k].sense > 0) {  // NaN fails every comparison
+          entry = simd::max(walls.low, entry);
+          exit = simd::min(walls.high, exit);
+        } else if (axes_[k].sense < 0) {
+          entry = simd::max(walls.high, entry);
+          exit = simd::min(walls.low, exit);
+        } else
           entry = simd::max(walls.high, simd::max(walls.low, entry));
       }
       simd::store(entry, entries[first]);
@@ -292,9 +298,8 @@ class RayInterval {
     put(1, o - outwards, slowness * Axes(1 + tolerance));
     for (std::size_t k = 0; k < 3; ++k) upper_[k] = direction[k] < 0 ? 1 : 0;
     const Axes both = o + direction;
-    const double sum = both[0] + both[1] + both[2];
-    near_ =
-        sum - sum == 0 ? static_cast<Real>(ray.near * (1 - tolerance)) : std::numeric_limits<Real>::infinity();  // an invalid ray misses
+    const bool is_valid = std::isfinite(both[0] + both[1] + both[2]);  // infinity and NaN survive sums; an invalid ray misses
+    near_ = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) : std::numeric_limits<Real>::infinity();
   }
 
   /// Largest range at which the ray can still find a closer hit.
@@ -315,8 +320,10 @@ class RayInterval {
         return simd::packet_from<Real>(boxes.walls[k][upper_[k] ^ side][first]) * (steps[k] * per) + start;
       };
       simd::Packet<Real> entry = near_ - simd::Packet<Real>{}, exit = limit - simd::Packet<Real>{};
-      for (std::size_t k = 0; k < 3; ++k)  // NaN fails every comparison
-        entry = simd::max(ranges(k, 0), entry), exit = simd::min(ranges(k, 1), exit);
+      for (std::size_t k = 0; k < 3; ++k) {  // NaN fails every comparison
+        entry = simd::max(ranges(k, 0), entry);
+        exit = simd::min(ranges(k, 1), exit);
+      }
       simd::store(entry, entries[first]);
       met |= simd::bits(entry <= exit) << first;
     }

@@ -23,7 +23,9 @@ struct Triangle {
 
   [[nodiscard]] Box bounds() const noexcept {
     Box box;
-    box.extend(a), box.extend(b), box.extend(c);
+    box.extend(a);
+    box.extend(b);
+    box.extend(c);
     return box;
   }
 
@@ -55,7 +57,9 @@ struct TrianglePacket {
       };
       return Corner{coordinate(&Vec3::x), coordinate(&Vec3::y), coordinate(&Vec3::z)};
     };
-    a = corner(&Triangle::a), b = corner(&Triangle::b), c = corner(&Triangle::c);
+    a = corner(&Triangle::a);
+    b = corner(&Triangle::b);
+    c = corner(&Triangle::c);
   }
 };
 
@@ -158,7 +162,8 @@ struct TrianglePacket {
       const auto between_walls = [&](const simd::Doubles& direction, double low, double high) noexcept {
         const simd::Doubles per = 1 / (direction * direction > 0 ? direction : tiny);
         const simd::Doubles to_low = low * per, to_high = high * per;
-        entry = simd::max(simd::min(to_low, to_high), entry), exit = simd::min(simd::max(to_low, to_high), exit);
+        entry = simd::max(simd::min(to_low, to_high), entry);
+        exit = simd::min(simd::max(to_low, to_high), exit);
       };
       between_walls(x, lowest.x[t] - margin[t], highest.x[t] + margin[t]);
       between_walls(y, lowest.y[t] - margin[t], highest.y[t] + margin[t]);

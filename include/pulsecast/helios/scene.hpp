@@ -83,7 +83,9 @@ class SceneBuilder {
       bool removed = false;
       for (const SwapSettings& swap : part.swaps) {
         if (run < begin) break;
-        removed = swap.removes, source = swap.source ? &*swap.source : &part.source, transform = &swap.transform;
+        removed = swap.removes;
+        source = swap.source ? &*swap.source : &part.source;
+        transform = &swap.transform;
         begin += swap.step;
       }
       if (removed) continue;
@@ -185,9 +187,15 @@ class SceneBuilder {
     std::size_t kept = 0;
     const std::size_t all = v.normals.size();
     for (std::size_t i = 0; i < all; ++i)
-      if (!is_bare(i)) v.cells[kept] = v.cells[i], v.normals[kept++] = v.normals[i];
+      if (!is_bare(i)) {
+        v.cells[kept] = v.cells[i];
+        v.normals[kept++] = v.normals[i];
+      }
     if (kept == all) return warn(cloud.warnings);
-    if (all > 0) v.cells.resize(kept), v.normals.resize(kept);
+    if (all > 0) {
+      v.cells.resize(kept);
+      v.normals.resize(kept);
+    }
     warn({file.string() + ": " + std::to_string(all - kept) + " of " + std::to_string(all) +
           " voxels have too few points for a normal, and are left out; defaultNormal would keep them"});
   }

@@ -49,7 +49,8 @@ class SurveyCompiler {
 
   [[nodiscard]] CompiledSurvey compile() const {
     if (survey_.scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
-    survey_.scanner.validate(), survey_.platform.validate();
+    survey_.scanner.validate();
+    survey_.platform.validate();
     std::vector<Leg<SurveyLeg>> legs;
     std::vector<CompiledSurvey::Leg> compiled;
     std::vector<std::string> warnings = paths_.warnings();
@@ -83,13 +84,17 @@ class SurveyCompiler {
       const Tick time = Tick::of(slots, rate);
       if (leg.scanner.active) optic_time += time.seconds();
       SurveyNoise noise{.seed = options_.seed + 0x9e3779b97f4a7c15U * (k + 1)};
-      if (options_.platform_noise) noise.position = survey_.platform.position_noise, noise.attitude = survey_.platform.attitude_noise;
+      if (options_.platform_noise) {
+        noise.position = survey_.platform.position_noise;
+        noise.attitude = survey_.platform.attitude_noise;
+      }
       const Mount mount{.lever_arm = survey_.platform.mount.position, .boresight = survey_.platform.mount.rotation.rotation()};
       legs.push_back(
           {SurveyLeg(paths_[k].path, mount, std::move(channels), time, std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
       const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
       compiled.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
-      first += size, start = start + time;
+      first += size;
+      start = start + time;
     }
     return {Legs<SurveyLeg>(std::move(legs)), std::move(compiled), paths_.clock_start(), std::move(warnings)};
   }

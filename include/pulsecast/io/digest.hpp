@@ -35,9 +35,15 @@ class Digest {
   /// Adds bytes; two adjoining runs count as one.
   void add(std::span<const std::byte> bytes) { XXH3_128bits_update(state_.get(), bytes.data(), bytes.size()); }
   void add(std::uint64_t number) { add(std::as_bytes(std::span(&number, 1))); }
-  void add(const Fingerprint& other) { add(other.low), add(other.high); }
+  void add(const Fingerprint& other) {
+    add(other.low);
+    add(other.high);
+  }
   /// Adds a text with its length, so that the boundary between texts matters.
-  void add(std::string_view text) { add(std::uint64_t{text.size()}), add(std::as_bytes(std::span(text))); }
+  void add(std::string_view text) {
+    add(std::uint64_t{text.size()});
+    add(std::as_bytes(std::span(text)));
+  }
 
   /// Adds the content of a file; of a folder, the content and names of all files below it. The path itself does not matter.
   /// Throws a `FileError` if it cannot be read.
@@ -70,7 +76,10 @@ class Digest {
       if (std::error_code ignored; entry->is_regular_file(ignored)) files.push_back(entry->path());
     if (error) throw FileError(path.string(), "", "cannot be read: " + error.message());
     std::sort(files.begin(), files.end());
-    for (const std::filesystem::path& file : files) add(std::string_view(file.lexically_relative(path).string())), add_file(file);
+    for (const std::filesystem::path& file : files) {
+      add(std::string_view(file.lexically_relative(path).string()));
+      add_file(file);
+    }
     add(std::uint64_t{files.size()});
   }
 

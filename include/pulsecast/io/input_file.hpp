@@ -95,7 +95,8 @@ class InputFile {
 
   [[nodiscard]] std::string_view advance(std::size_t bytes) noexcept {
     const std::string_view taken(block_.data() + begin_, bytes);
-    begin_ += bytes, position_ += bytes;
+    begin_ += bytes;
+    position_ += bytes;
     return taken;
   }
 

@@ -84,7 +84,8 @@ inline LeafAngles read_leaf_angles(const std::filesystem::path& path) {
     if (step <= same && !result.empty()) continue;
     // a midpoint by interpolation: rounded rows 10 degrees apart may exceed the gap that `LeafAngles` bridges
     if (step > widest / 2) result.push_back({last.zenith + step / 2, (last.g + projection.g) / 2});
-    result.push_back(projection), line = row;
+    result.push_back(projection);
+    line = row;
   }
   return LeafAngles::table(std::move(result));
 }

@@ -158,7 +158,10 @@ class StatementBuffer : public std::streambuf {
   }
 
   /// Returns to the beginning of the text.
-  void rewind() noexcept { at_ = 0, lines_ = lines_before_; }
+  void rewind() noexcept {
+    at_ = 0;
+    lines_ = lines_before_;
+  }
 
   /// Advances to the next statement that is not empty; false at the end of the text.
   bool next_statement() {
@@ -285,7 +288,8 @@ class MtlReader : private StatementBuffer {
     Material made = undescribed(m.name);
     const double diffuse = m.diffuse[0] + m.diffuse[1] + m.diffuse[2], specular = m.specular[0] + m.specular[1] + m.specular[2];
     if (specular > 0) {
-      made.scattering = Scattering::phong, made.specular_share = specular / (diffuse + specular);
+      made.scattering = Scattering::phong;
+      made.specular_share = specular / (diffuse + specular);
     } else if (diffuse > 0) {
       made.scattering = Scattering::lambert;
     }

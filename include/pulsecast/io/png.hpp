@@ -111,7 +111,8 @@ class Camera {
 
   /// Places the camera at a given position.
   void stand(const ImageSettings& s, const Vec3& eye) {
-    distance_ = 10, near_ = 0.3;  // distance of the set point size; nearer points would fill the picture [m]
+    distance_ = 10;  // distance of the set point size [m]
+    near_ = 0.3;     // nearer points would fill the picture [m]
     centre_ = eye + distance_ * forward_;
     scale_ = 0.5 * s.width / (distance_ * std::tan(0.5 * s.field_of_view));
     shift_ = {0.5 * s.width, 0.5 * s.height};
@@ -186,7 +187,9 @@ class Canvas {
       const Vec3 p = camera_.pixel(point);
       if (!(p.x >= 0 && p.x < settings_.width && p.y >= 0 && p.y < settings_.height)) continue;
       const std::size_t i = static_cast<std::size_t>(p.y / cell) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(p.x / cell);
-      cells += !taken[i], taken[i] = true, ++points;
+      cells += !taken[i];
+      taken[i] = true;
+      ++points;
     }
     const double spacing = cell * std::sqrt(static_cast<double>(cells) / static_cast<double>(std::max<std::size_t>(points, 1)));
     return std::clamp(2.2 * spacing, 1.2, 8.0);  // by eye
@@ -203,7 +206,8 @@ class Canvas {
       for (int x = first(p.x - radius); x <= last(p.x + radius, width_); ++x) {
         const double dx = x + 0.5 - p.x, dy = y + 0.5 - p.y;
         if (dx * dx + dy * dy > radius * radius || !(depth < depth_[index(x, y)])) continue;
-        depth_[index(x, y)] = depth, nearest_[index(x, y)] = i;
+        depth_[index(x, y)] = depth;
+        nearest_[index(x, y)] = i;
       }
   }
 

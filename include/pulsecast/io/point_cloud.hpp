@@ -107,8 +107,8 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
 [[nodiscard]] inline std::optional<Vec3> plane_normal(double count, const Vec3& sum, const std::array<double, 6>& products) {
   if (count < 3) return std::nullopt;
   const Eigen::Vector3d offset(sum.x, sum.y, sum.z);
-  Eigen::Matrix3d about;
-  about << products[0], products[1], products[2], products[1], products[3], products[4], products[2], products[4], products[5];
+  Eigen::Matrix3d about{
+      {products[0], products[1], products[2]}, {products[1], products[3], products[4]}, {products[2], products[4], products[5]}};
   const double size = about.trace();
   if (!(size > 0)) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver((about - offset * offset.transpose() / count) / size);
@@ -147,7 +147,8 @@ class PointCloudReader {
   /// First pass: finds the extent, and the normals and colours available.
   void measure(const std::vector<std::filesystem::path>& paths) {
     const bool from_file = settings_.normals == VoxelNormals::mean || settings_.normals == VoxelNormals::nearest;
-    normals_ = settings_.normals != VoxelNormals::none, colours_ = settings_.colours;
+    normals_ = settings_.normals != VoxelNormals::none;
+    colours_ = settings_.colours;
     for (const std::filesystem::path& path : paths)
       with_points(path, settings_, [&](auto& points) {
         const std::uint64_t before = cloud_.points;
@@ -170,10 +171,12 @@ class PointCloudReader {
     const double edge = settings_.voxel_size, extent = bounds_.max[axis] - bounds_.min[axis];
     double cells = std::max(std::ceil(extent / edge), 1.0);
     if (settings_.lattice == VoxelLattice::at_multiples) {
-      origin_[axis] = 0, first_[axis] = std::floor(bounds_.min[axis] / edge);
+      origin_[axis] = 0;
+      first_[axis] = std::floor(bounds_.min[axis] / edge);
       cells = std::floor(bounds_.max[axis] / edge) - first_[axis] + 1;
     } else {
-      origin_[axis] = extent > 0 ? bounds_.min[axis] : bounds_.min[axis] - edge / 2, first_[axis] = 0;
+      origin_[axis] = extent > 0 ? bounds_.min[axis] : bounds_.min[axis] - edge / 2;
+      first_[axis] = 0;
     }
     if (!(cells <= 0x1p32))
       throw FileError(path.string(), "",
@@ -228,8 +231,12 @@ class PointCloudReader {
     if (settings_.normals == VoxelNormals::fitted) {
       sums_[voxel] += d;
       std::array<double, 6>& products = products_[voxel];
-      products[0] += d.x * d.x, products[1] += d.x * d.y, products[2] += d.x * d.z;
-      products[3] += d.y * d.y, products[4] += d.y * d.z, products[5] += d.z * d.z;
+      products[0] += d.x * d.x;
+      products[1] += d.x * d.y;
+      products[2] += d.x * d.z;
+      products[3] += d.y * d.y;
+      products[4] += d.y * d.z;
+      products[5] += d.z * d.z;
       return;
     }
     const Vec3 given = points.normal();
@@ -238,7 +245,8 @@ class PointCloudReader {
     if (settings_.normals == VoxelNormals::mean) {
       sums_[voxel] += normal;
     } else if (dot(d, d) < nearest_[voxel]) {
-      nearest_[voxel] = dot(d, d), sums_[voxel] = normal;
+      nearest_[voxel] = dot(d, d);
+      sums_[voxel] = normal;
     }
   }
 

@@ -207,7 +207,9 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
     if (part.motion && !detail::Restorable<PartMotion>) throw FileError(path.string(), "", "cannot be written: motions are not kept");
     writer(part);
   }
-  header.program = detail::program_of<typename S::Part>(), header.key = key, header.size = file.position();
+  header.program = detail::program_of<typename S::Part>();
+  header.key = key;
+  header.size = file.position();
   header.checksum = detail::checksum_of(header, writer.digest());
   file.overwrite(0, header_bytes);
   file.commit();

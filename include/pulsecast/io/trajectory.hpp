@@ -112,10 +112,20 @@ namespace detail {
   QuantityValues values;
   using enum Quantity;
   values[time] = start_time + pose.time;
-  values[x] = in_file.x, values[y] = in_file.y, values[z] = in_file.z;
-  values[east] = p.x, values[north] = p.y, values[up] = p.z, values[down] = -p.z;
-  values[roll] = angles.roll, values[pitch] = angles.pitch, values[yaw] = turn < 2 * pi ? turn : 0;
-  values[qx] = q.x, values[qy] = q.y, values[qz] = q.z, values[qw] = q.w;
+  values[x] = in_file.x;
+  values[y] = in_file.y;
+  values[z] = in_file.z;
+  values[east] = p.x;
+  values[north] = p.y;
+  values[up] = p.z;
+  values[down] = -p.z;
+  values[roll] = angles.roll;
+  values[pitch] = angles.pitch;
+  values[yaw] = turn < 2 * pi ? turn : 0;
+  values[qx] = q.x;
+  values[qy] = q.y;
+  values[qz] = q.z;
+  values[qw] = q.w;
   return values;
 }
 

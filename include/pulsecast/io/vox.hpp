@@ -146,7 +146,8 @@ class VoxelFileReader {
       table_.fail_here("'res' is " + TextTable::quoted(value) + ": expected the edge of a voxel [m], above 0");
     if (given.size() == 3 && (given[1] != given[0] || given[2] != given[0]))
       table_.fail_here("'res' is " + TextTable::quoted(value) + ": expected voxels that are cubes");
-    edge_ = given[0], edge_line_ = table_.line();
+    edge_ = given[0];
+    edge_line_ = table_.line();
   }
 
   [[nodiscard]] Vec3 vector(const std::string& key, std::string_view value) const {
@@ -190,7 +191,8 @@ class VoxelFileReader {
   void check_keys() {
     if (!min_corner_) table_.fail("has no key 'min_corner': expected '#min_corner: x y z' above the rows");
     if (!edge_) table_.fail("has no key 'res': expected '#res: edge' above the rows");
-    file_.voxels.corner = *min_corner_, file_.voxels.edge = *edge_;
+    file_.voxels.corner = *min_corner_;
+    file_.voxels.edge = *edge_;
     if (const double least = VoxelData::min_edge(*min_corner_); !(*edge_ >= least))
       throw FileError(table_.path(), TextTable::place(edge_line_),
                       "'res' is " + pulsecast::detail::to_text(*edge_) + ": expected at least " + pulsecast::detail::to_text(least) +

@@ -34,7 +34,9 @@ class MpiLasPiece final : public MpiPiece {
   }
 
   void clear() override {
-    records_.clear(), points_.clear(), packet_bytes_.clear();
+    records_.clear();
+    points_.clear();
+    packet_bytes_.clear();
     encoder_.tally() = {};
     if (packets_) packets_.emplace(io::OutputFile(path_, packet_bytes_));
   }
@@ -95,7 +97,10 @@ struct MpiLasShare {
   io::LasTally tally{};
   std::uint32_t spacing = 0;  ///< interval of samples [ps]
 
-  void add(const MpiLasShare& other) noexcept { tally.add(other.tally), spacing = std::max(spacing, other.spacing); }
+  void add(const MpiLasShare& other) noexcept {
+    tally.add(other.tally);
+    spacing = std::max(spacing, other.spacing);
+  }
 };
 
 /// Sum of the shares of all processes; valid on the first.
@@ -137,12 +142,14 @@ class MpiLas final : public MpiOutput {
   [[nodiscard]] MpiPlace place(const MpiExtent& extent, int /*owner*/) override {
     if (points_ == 0) first_ = extent.first;
     const MpiPlace place{{points_, packets_end_}, first_};
-    points_ += extent.amounts[0], packets_end_ += extent.amounts[1];
+    points_ += extent.amounts[0];
+    packets_end_ += extent.amounts[1];
     return place;
   }
 
   void close() override {
-    points_file_.close(), packets_file_.close();
+    points_file_.close();
+    packets_file_.close();
     const detail::MpiLasShare all = detail::sum_of_shares(group(), share_);
     if (!whole_) return;
     whole_->adopt(all.tally, first_, begin_ + points_ * record_, packets_end_, all.spacing);

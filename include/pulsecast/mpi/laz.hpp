@@ -55,7 +55,8 @@ class MpiLaz final : public MpiOutput {
         add(at, some);
       else
         send(place.chunk_owner, std::move(MpiMessage().add(MessageKind::part).add(at).add(some)));
-      records = records.subspan(some.size()), at += some.size() / record_;
+      records = records.subspan(some.size());
+      at += some.size() / record_;
     }
   }
 

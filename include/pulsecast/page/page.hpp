@@ -48,7 +48,10 @@ struct PageLeg {
     leg.places.push_back(trajectory.at(Tick::of_seconds(time)).position);
     moves = moves || length(leg.places.back() - leg.places.front()) > 1e-4;
   }
-  if (!moves) leg.times.resize(1), leg.places.resize(1);
+  if (!moves) {
+    leg.times.resize(1);
+    leg.places.resize(1);
+  }
   return leg;
 }
 

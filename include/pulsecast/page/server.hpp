@@ -123,7 +123,10 @@ class PageServer {
     if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
       throw std::runtime_error("no page can be served: the system has no random numbers");
     std::string out;
-    for (const unsigned char byte : bytes) out += "0123456789abcdef"[byte / 16], out += "0123456789abcdef"[byte % 16];
+    for (const unsigned char byte : bytes) {
+      out += "0123456789abcdef"[byte / 16];
+      out += "0123456789abcdef"[byte % 16];
+    }
     return out;
   }
 

@@ -69,7 +69,8 @@ struct PathPiece {
       const PathPiece third{second.end(), radius * outer, curvature, 1, k + 1};
       path.insert(path.end(), {first, second, third});
     }
-    looks += angle, taken = left;
+    looks += angle;
+    taken = left;
   }
   return path;
 }

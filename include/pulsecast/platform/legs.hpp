@@ -55,7 +55,11 @@ class Legs {
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     const std::size_t k = leg_of(i);
     auto p = legs_[k].pulse(i - starts_[k].pulse);
-    if (p) p->index = i, p->tick = starts_[k].tick + p->tick, p->leg = starts_[k].number;
+    if (p) {
+      p->index = i;
+      p->tick = starts_[k].tick + p->tick;
+      p->leg = starts_[k].number;
+    }
     return p;
   }
 

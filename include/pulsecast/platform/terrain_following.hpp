@@ -33,7 +33,8 @@ struct TerrainFollowing {
 /// there the last known height counts, or else the first one. The path is the lowest that keeps its height at every query and its slope
 /// within the limit. Without any known ground it is the line itself. Throws a `SettingError`.
 [[nodiscard]] Waypoints plan_terrain_following(const StraightLine& line, const Ground auto& ground, const TerrainFollowing& settings = {}) {
-  line.validate(), settings.validate();
+  line.validate();
+  settings.validate();
   const Vec3 path = line.to - line.from;
   const double distance = std::hypot(path.x, path.y);
   require_within("TerrainFollowing::step (steps)", distance / settings.step, 0, 1e7, "");

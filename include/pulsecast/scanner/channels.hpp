@@ -43,7 +43,10 @@ class Channels {
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const Source&>().pulse(i)) {
     const std::size_t k = i % channels_.size();
     auto p = channels_[k].pulse(i / channels_.size());
-    if (p) p->index = i, p->channel = static_cast<std::uint8_t>(k);
+    if (p) {
+      p->index = i;
+      p->channel = static_cast<std::uint8_t>(k);
+    }
     return p;
   }
 

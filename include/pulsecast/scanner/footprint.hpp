@@ -37,7 +37,8 @@ class RingFootprint {
     };
     std::size_t subrays = 0;
     for (std::size_t i = 0; i < circles; ++i) subrays += subrays_on(i);
-    offsets_ = std::vector<Vec2>(subrays), shares_ = std::vector<double>(subrays);
+    offsets_ = std::vector<Vec2>(subrays);
+    shares_ = std::vector<double>(subrays);
     for (std::size_t i = 0, j = 0; i < circles; ++i) {
       const double radius = static_cast<double>(i) / (n - 0.5);
       const double inner = i == 0 ? 0 : radius - 0.5 / (n - 0.5), outer = radius + 0.5 / (n - 0.5);

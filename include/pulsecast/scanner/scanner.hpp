@@ -41,7 +41,9 @@ struct Scanner {
 
   [[nodiscard]] std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept {
     std::optional<Pulse<frame::Beam>> p(std::in_place);
-    p->index = i, p->tick = Tick::of(i, pulse_rate) + Tick::of_seconds(delay), p->laser = laser;
+    p->index = i;
+    p->tick = Tick::of(i, pulse_rate) + Tick::of_seconds(delay);
+    p->laser = laser;
     return p;
   }
 };

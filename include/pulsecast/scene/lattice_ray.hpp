@@ -38,7 +38,8 @@ class LatticeRay {
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
       start_[axis] = corner[k] - rays.origin[k];
-      speed_[axis] = direction[k], per_speed_[axis] = 1 / direction[k];
+      speed_[axis] = direction[k];
+      per_speed_[axis] = 1 / direction[k];
       sense_[axis] = !std::isfinite(per_speed_[axis]) ? 0 : direction[k] > 0 ? 1 : -1;
     }
     valid_ = finite(rays.origin) && finite(direction) && (sense_[0] != 0 || sense_[1] != 0 || sense_[2] != 0);

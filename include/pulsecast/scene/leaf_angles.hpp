@@ -144,7 +144,8 @@ class LeafAngles {
           slope = size * (x * p - before) / (x * x - 1);
           x -= p / slope;
         }
-        at[i] = (1 - x) / 2, weight[i] = 1 / ((1 - x * x) * slope * slope);
+        at[i] = (1 - x) / 2;
+        weight[i] = 1 / ((1 - x * x) * slope * slope);
       }
     }
   };

@@ -66,7 +66,9 @@ struct Material {
         all.cosine = 1;
         break;
       case Scattering::phong:
-        all.cosine = 1 - specular_share, all.lobe = specular_share, all.exponent = specular_exponent;
+        all.cosine = 1 - specular_share;
+        all.lobe = specular_share;
+        all.exponent = specular_exponent;
         break;
       case Scattering::direction_independent:
         all.even = 1;

@@ -57,7 +57,10 @@ template <Geometry Shape>
     const double asked = *height - p.z;
     lift = !lift ? asked : most ? std::max(*lift, asked) : std::min(*lift, asked);
   };
-  if (ground_placement == GroundPlacement::origin) return ask(placement.translation, true), lift;
+  if (ground_placement == GroundPlacement::origin) {
+    ask(placement.translation, true);
+    return lift;
+  }
   if (shape.bounds().empty()) return std::nullopt;
   if (ground_placement == GroundPlacement::touching) {
     detail::visit_points(shape, placement, [&](const Vec3& p) { ask(p, true); });
@@ -76,7 +79,8 @@ template <Geometry Shape>
     if (p.z <= box.min.z + rounding) lowest.extend(p);
   });
   const Vec3 middle = lowest.centre();
-  return ask({middle.x, middle.y, box.min.z}, true), lift;
+  ask({middle.x, middle.y, box.min.z}, true);
+  return lift;
 }
 
 /// Part lifted or lowered onto the ground of others; empty without ground. A motion of the part is ignored: it starts there.

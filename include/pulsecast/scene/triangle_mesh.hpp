@@ -140,7 +140,8 @@ class TriangleMesh {
       intersect(primitives, triangle_of, rays, nearest);
     }
     void prefetch(std::span<const PrimitiveIndex> primitives) const noexcept {
-      pulsecast::prefetch(primitives.data()), pulsecast::prefetch(mesh.triangles_.data() + place_of(primitives));
+      pulsecast::prefetch(primitives.data());
+      pulsecast::prefetch(mesh.triangles_.data() + place_of(primitives));
     }
 
     [[nodiscard]] std::size_t place_of(std::span<const PrimitiveIndex> primitives) const noexcept {
@@ -199,7 +200,10 @@ class TriangleMesh {
       for (const std::uint64_t word : bits) hash = (hash ^ hash >> 32 ^ word) * 0x9E3779B97F4A7C15;
       for (std::size_t i = hash >> 32;; ++i) {
         std::uint16_t& place = places_[i & (places_.size() - 1)];
-        if (place == nowhere) place = static_cast<std::uint16_t>(corners_.size()), corners_.push_back(corner);
+        if (place == nowhere) {
+          place = static_cast<std::uint16_t>(corners_.size());
+          corners_.push_back(corner);
+        }
         if (std::bit_cast<Bits>(corners_[place]) == bits) return place;
       }
     }
@@ -233,11 +237,17 @@ class TriangleMesh {
     });
     const SharedBuffer<std::uint64_t> first_corners(parts.size());
     std::size_t count = 0;
-    for (std::size_t block = 0; block < parts.size(); ++block) first_corners[block] = count, count += parts[block].size();
+    for (std::size_t block = 0; block < parts.size(); ++block) {
+      first_corners[block] = count;
+      count += parts[block].size();
+    }
     const SharedBuffer<Vec3> corners(count);
     for_each_index(parts.size(), threads,
                    [&](std::size_t block) { std::copy(parts[block].begin(), parts[block].end(), corners.data() + first_corners[block]); });
-    corners_ = corners, first_corners_ = first_corners, triangles_ = triangles, places_ = places;
+    corners_ = corners;
+    first_corners_ = first_corners;
+    triangles_ = triangles;
+    places_ = places;
   }
 
   SharedArray<Vec3> corners_;

@@ -58,7 +58,10 @@ TEST_CASE("noise moves what is reported, and has the distribution asked for") {
     const auto p = leg.pulse(i);
     CHECK(p->pose.position == Vec3(1, 2, 3));
     const Vec3 off = p->reported.value().position - p->pose.position;
-    sum += off.x, squares += off.x * off.x, least = std::min(least, off.y), most = std::max(most, off.y);
+    sum += off.x;
+    squares += off.x * off.x;
+    least = std::min(least, off.y);
+    most = std::max(most, off.y);
     CHECK(off.z == 2);
   }
   CHECK(std::fabs(sum / 10'000) < 0.004);

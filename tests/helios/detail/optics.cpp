@@ -84,7 +84,8 @@ TEST_CASE("a Palmer mirror turns as often as the leg asks for, on from where the
 
 TEST_CASE("prisms without a wedge are not there, and those with a negative one are inclined where light leaves") {
   RisleyOptic risley;
-  risley.prisms[0] = {radians(-18), -121, 1.51}, risley.prisms[2] = {radians(17), 77, 1.51};
+  risley.prisms[0] = {radians(-18), -121, 1.51};
+  risley.prisms[2] = {radians(17), 77, 1.51};
   const SurveyOptic optic = survey_optic(channel(risley, 0), {}, rate);
   const auto& prisms = std::get<RisleyPrisms>(optic.optic).prisms;
   REQUIRE(prisms.size() == 2);
@@ -95,7 +96,8 @@ TEST_CASE("prisms without a wedge are not there, and those with a negative one a
 
 TEST_CASE("scan frequencies that the device cannot are refused, but for legs that do not scan") {
   ChannelSettings c = channel(RotatingOptic{}, 60);
-  c.scan_frequency_min = 5, c.scan_frequency_max = 100;
+  c.scan_frequency_min = 5;
+  c.scan_frequency_max = 100;
   CHECK_THROWS_AS((void)survey_optic(c, {.scan_frequency = 4}, rate), SettingError);
   CHECK_THROWS_AS((void)survey_optic(c, {.scan_frequency = 101}, rate), SettingError);
   CHECK_NOTHROW((void)survey_optic(c, {.active = false, .scan_frequency = 0}, rate));
@@ -166,7 +168,8 @@ TEST_CASE("what warms up has moved when the first pulse leaves") {
 
 TEST_CASE("mechanical errors move the beam, and not what is reported of it") {
   ChannelSettings c = channel(RotatingOptic{}, 120);
-  c.errors.deflection = "0.01 + 0*THETA", c.errors.range = "2*THETA";
+  c.errors.deflection = "0.01 + 0*THETA";
+  c.errors.range = "2*THETA";
   const SurveyOptic optic = survey_optic(c, {.scan_frequency = 20}, rate);
   CHECK(optic.errs());
   const Tick t = Tick::of(100, rate);
@@ -200,7 +203,8 @@ TEST_CASE("noise of the range may depend on it by any formula that is finite whe
     }
   c.errors.range_noise = "sqrt(t-5)";
   CHECK_THROWS_AS((void)survey_receiver(c), SettingError);
-  c.range_min = 6, c.range_max = 10;
+  c.range_min = 6;
+  c.range_max = 10;
   CHECK(survey_receiver(c).range_errors.deviation_at(9) == relative(0.02, 1e-6));
   c.errors.range_noise = "1/(t-";
   CHECK_THROWS_AS((void)survey_receiver(c), std::invalid_argument);
@@ -218,10 +222,13 @@ TEST_CASE("a beam of known quality has its waist where it leaves; one of unknown
 
 TEST_CASE("echoes are sought in both ways of light, as documents count one") {
   ChannelSettings c;
-  c.pulse_length = 4e-9, c.returns_max = 0;
+  c.pulse_length = 4e-9;
+  c.returns_max = 0;
   CHECK(survey_waveform(c).window == relative(2e-9, 1e-9));
   CHECK(survey_waveform(c).returns_max == 255);
-  c.waveform.window = 3e-9, c.waveform.duration_max = 10e-9, c.returns_max = 4;
+  c.waveform.window = 3e-9;
+  c.waveform.duration_max = 10e-9;
+  c.returns_max = 4;
   CHECK(survey_waveform(c, 1e-6).window == relative(6e-9, 1e-9));
   CHECK(survey_waveform(c, 1e-6).record_length == relative(20e-9, 1e-9));
   CHECK(survey_waveform(c, 0).record_length == 0);

@@ -51,7 +51,8 @@ auto build(const SurveySettings& survey, const Wall& wall) {
 ChannelSettings ahead() {
   ChannelSettings channel;
   channel.optic = RotatingOptic{};
-  channel.divergence = 5e-3, channel.visibility = 1e6;
+  channel.divergence = 5e-3;
+  channel.visibility = 1e6;
   return channel;
 }
 
@@ -96,7 +97,9 @@ TEST_CASE("each channel has its own aperture, efficiency, range gate, threshold,
 
 TEST_CASE("channels that receive alike share a receiver, whatever they send, and give what a plain survey gives") {
   std::vector<ChannelSettings> channels(3, ahead());
-  channels[1].average_power = 10, channels[2].wavelength = 532e-9, channels[2].beam_origin.position = {0, 5, 0};
+  channels[1].average_power = 10;
+  channels[2].wavelength = 532e-9;
+  channels[2].beam_origin.position = {0, 5, 0};
   const SurveySettings survey = survey_of(channels);
   const Wall wall;
   int made = 0;

@@ -46,7 +46,13 @@ void change(std::span<std::uint8_t> record, support::Generator& random, double c
     }
   };
   for (std::size_t at : {0U, 4U, 8U}) any(at, 4);
-  any(12, 2), any(14, 1), any(15, 1), any(16, 1), any(17, 1), any(18, 2), any(20, 2);
+  any(12, 2);
+  any(14, 1);
+  any(15, 1);
+  any(16, 1);
+  any(17, 1);
+  any(18, 2);
+  any(20, 2);
   const std::uint64_t channel = channels == 1 ? 2 : random.whole(channels);
   record[15] = static_cast<std::uint8_t>((record[15] & ~48U) | channel << 4);
   for (std::size_t i = 30; i < record.size(); ++i) any(i, 1);

@@ -23,7 +23,8 @@ TEST_CASE("blocks cover all slots once, and become smaller towards the end") {
       CHECK(block->number == blocks++);
       CHECK(block->from == next);
       CHECK(block->to > block->from);
-      next = block->to, last = block->to - block->from;
+      next = block->to;
+      last = block->to - block->from;
       scheduler.finish(block->number, {}, {.slots = last, .bytes = last, .seconds = 1e-7 * static_cast<double>(last)});
     }
     CHECK(next == slots);
@@ -70,9 +71,11 @@ TEST_CASE("blocks are placed in order, whatever the order in which they come bac
     scheduler.finish(out[k].number, {extent}, {.slots = out[k].to - out[k].from});
     out.erase(out.begin() + static_cast<std::ptrdiff_t>(k));
     const std::size_t before = placed.size();
-    may = false, settle();
+    may = false;
+    settle();
     CHECK(placed.size() == before);
-    may = true, settle();
+    may = true;
+    settle();
   }
   CHECK(placed.size() == blocks);
   CHECK(scheduler.cost().slots == 40'000);

@@ -40,9 +40,12 @@ struct Listener final : MpiOutput {
 
 TEST_CASE("what an output says is heard by the same output everywhere") {
   Listener one(mpi_group()), other(mpi_group());
-  one.expected = 5 * mpi_group().size(), other.expected = 7 * mpi_group().size();
-  other.say(7), one.say(5);
-  one.close(), other.close();
+  one.expected = 5 * mpi_group().size();
+  other.expected = 7 * mpi_group().size();
+  other.say(7);
+  one.say(5);
+  one.close();
+  other.close();
   CHECK(one.heard == one.expected);
   CHECK(other.heard == other.expected);
   mpi_group().channel().barrier([] {});

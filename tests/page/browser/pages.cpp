@@ -113,7 +113,8 @@ int main(int argc, char** argv) {
   const Shots shots(0, 60'000, 60'000);
   page::PageWriter writer(folder + "/page.html", survey(), {.points_max = 70'000});
   page::PageSample sample(70'000);
-  writer(shots.batch()), sample(shots.batch());
+  writer(shots.batch());
+  sample(shots.batch());
   writer.close();
   write_truth(folder + "/points.json", sample.points());
 }

@@ -42,7 +42,8 @@ Decoded decoded(const std::string& bytes, std::size_t count) {
   REQUIRE(inflateInit2(&stream, -15) == Z_OK);
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + 4 + size));
   stream.avail_in = static_cast<uInt>(bytes.size() - 4 - size);
-  stream.next_out = planes.data(), stream.avail_out = static_cast<uInt>(planes.size());
+  stream.next_out = planes.data();
+  stream.avail_out = static_cast<uInt>(planes.size());
   CHECK(inflate(&stream, Z_FINISH) == Z_STREAM_END);
   CHECK(stream.avail_in == 0);
   const std::size_t whole = stream.total_out;
@@ -149,7 +150,10 @@ TEST_CASE("every attribute is read back, right to half its step") {
 TEST_CASE("what has no value is told as such") {
   auto points = random_points(4, 2);
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  points[1].amplitude = 0, points[2].amplitude = nan, points[1].width = nan, points[2].reflectance = std::numeric_limits<float>::infinity();
+  points[1].amplitude = 0;
+  points[2].amplitude = nan;
+  points[1].width = nan;
+  points[2].reflectance = std::numeric_limits<float>::infinity();
   const Decoded all = decoded(page_columns(points), 4);
   CHECK(std::isnan(all.columns.at("amplitude")[1]));
   CHECK(std::isnan(all.columns.at("amplitude")[2]));

@@ -30,7 +30,8 @@ void give(PageSample& sample, PulseIndex n, PulseIndex a_batch) {
       for (std::uint32_t k = 1; k <= number; ++k) echoes.push_back({.range = 10.0 * k, .number = static_cast<std::uint8_t>(k)});
     }
     EchoBatch batch;
-    batch.shots = shots, batch.echoes = echoes;
+    batch.shots = shots;
+    batch.echoes = echoes;
     sample(batch);
   }
 }
@@ -57,7 +58,8 @@ TEST_CASE("what fits is kept, in pulse order, with all that its shot and echo we
       {.range = 10, .amplitude = 1e-6, .reflectance = 0.5, .width = 2e-9, .cos_incidence = 0.5, .object = 9, .classification = 5},
       {.range = 20, .number = 2}};
   EchoBatch batch;
-  batch.shots = {&shot, 1}, batch.echoes = echoes;
+  batch.shots = {&shot, 1};
+  batch.echoes = echoes;
   sample(batch);
   REQUIRE(sample.points().size() == 2);
   const PagePoint& p = sample.points()[0];
@@ -138,7 +140,8 @@ TEST_CASE("points that are not finite are passed over, and sizes that cannot be 
                         {.index = 1, .direction = axis::forward, .first_echo = 1, .echoes = 1}};
   const Echo echoes[] = {{.range = 1}, {.range = infinity}};
   EchoBatch batch;
-  batch.shots = shots, batch.echoes = echoes;
+  batch.shots = shots;
+  batch.echoes = echoes;
   sample(batch);
   CHECK(sample.points().empty());
   CHECK_THROWS_AS(PageSample(1), SettingError);

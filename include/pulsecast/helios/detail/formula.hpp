@@ -27,7 +27,8 @@ class Formula {
     sum(0);
     skip();
     if (at_ != text_.size()) fail("cannot go on like this");
-    text_ = {}, variable_ = {};
+    text_ = {};
+    variable_ = {};
   }
 
   [[nodiscard]] double operator()(double value) const noexcept {
@@ -93,11 +94,13 @@ class Formula {
     if (deep > 100) fail("is too deep");
     product(deep);
     for (;;) {
-      if (take('+'))
-        product(deep), push({Kind::add});
-      else if (take('-'))
-        product(deep), push({Kind::subtract});
-      else
+      if (take('+')) {
+        product(deep);
+        push({Kind::add});
+      } else if (take('-')) {
+        product(deep);
+        push({Kind::subtract});
+      } else
         return;
     }
   }
@@ -105,11 +108,13 @@ class Formula {
   void product(int deep) {
     signed_power(deep);
     for (;;) {
-      if (take('*'))
-        signed_power(deep), push({Kind::multiply});
-      else if (take('/'))
-        signed_power(deep), push({Kind::divide});
-      else
+      if (take('*')) {
+        signed_power(deep);
+        push({Kind::multiply});
+      } else if (take('/')) {
+        signed_power(deep);
+        push({Kind::divide});
+      } else
         return;
     }
   }
@@ -149,9 +154,18 @@ class Formula {
       ++end;
     const std::string_view name = text_.substr(at_, end - at_);
     if (name.empty()) fail("lacks a number, the variable or a function");
-    if (name == variable_) return at_ = end, push({Kind::variable});
-    if (name == "pi") return at_ = end, push({Kind::number, std::numbers::pi});
-    if (name == "e") return at_ = end, push({Kind::number, std::numbers::e});
+    if (name == variable_) {
+      at_ = end;
+      return push({Kind::variable});
+    }
+    if (name == "pi") {
+      at_ = end;
+      return push({Kind::number, std::numbers::pi});
+    }
+    if (name == "e") {
+      at_ = end;
+      return push({Kind::number, std::numbers::e});
+    }
     call(name, deep, end);
   }
 
@@ -177,7 +191,8 @@ class Formula {
     sum(deep + 1);
     if (two) {
       if (!take(',')) fail("lacks the second argument of atan2");
-      sum(deep + 1), push({Kind::atan2});
+      sum(deep + 1);
+      push({Kind::atan2});
     }
     if (!take(')')) fail("lacks a closing parenthesis");
     if (!two) push({Kind::function, 0, function});

@@ -93,7 +93,8 @@ class SurveyLeg {
     if (!inner) return std::nullopt;
     const Pose<frame::Instrument, frame::World> instrument = path_.at(inner->tick) * mount_.pose();
     std::optional<Pulse<frame::World>> out(std::in_place, instrument, *inner);
-    out->index = i, out->channel = static_cast<std::uint8_t>(k);
+    out->index = i;
+    out->channel = static_cast<std::uint8_t>(k);
     const Vec3 on_body = mount_.boresight * inner->direction();
     out->scan_angle = std::atan2(on_body.x, -on_body.z);
     const SurveyOptic& optic = channels_[k].moving();

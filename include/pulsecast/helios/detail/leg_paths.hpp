@@ -210,7 +210,8 @@ class LegPaths {
       for (std::size_t i = 1; i + 1 < points.size(); ++i) {
         from = detail::nearest_moment(flight, i, wanted[i].position, from, whole);
         const Vec3 miss = wanted[i].position - flight.at(Tick::of_seconds(from)).position;
-        points[i].position += miss, most = std::max(most, length(miss));
+        points[i].position += miss;
+        most = std::max(most, length(miss));
       }
       if (most < 0.01) break;
       flight = plan_multicopter(points, s);
@@ -288,7 +289,8 @@ class LegPaths {
       TrajectorySettings& of_file = told[t->file.string()];
       if (!of_file.columns) of_file.columns = t->columns;
       if (!of_file.separator) of_file.separator = t->separator;
-      t->columns = of_file.columns, t->separator = of_file.separator;
+      t->columns = of_file.columns;
+      t->separator = of_file.separator;
       const io::TrajectoryFormat format = detail::trajectory_format(*t, survey_.platform.rotation_spec);
       const Key key{t->file.string(), t->start, t->end};
       if (!tables.contains(key)) {

@@ -132,9 +132,13 @@ struct MirrorGate {
   MirrorGate gate{leg.vertical_angle_min.value_or(-half), leg.vertical_angle_max.value_or(half)};
   gate.is_limited = gate.high - gate.low > 2 * effective + 1e-9;
   if (!gate.is_limited) return gate;
-  gate.low = std::max(gate.low, -sweep), gate.high = std::min(gate.high, sweep);
+  gate.low = std::max(gate.low, -sweep);
+  gate.high = std::min(gate.high, sweep);
   const double middle = (gate.low + gate.high) / 2;
-  if (gate.high - gate.low > 2 * effective) gate.low = middle - effective, gate.high = middle + effective;
+  if (gate.high - gate.low > 2 * effective) {
+    gate.low = middle - effective;
+    gate.high = middle + effective;
+  }
   return gate;
 }
 
@@ -264,8 +268,10 @@ inline void require_finite(const char* field, const Formula& error, const std::p
   const double rate = head_rate(channel, leg);
   out.head = {.rate = rate, .start = leg.head_start + rate * leg.warm_up, .axis = channel.head_axis};
   const auto formula = [](const std::string& text) { return text.empty() ? nullptr : std::make_shared<const Formula>(text, "THETA"); };
-  out.deflection_error = formula(channel.errors.deflection), out.head_error = formula(channel.errors.head);
-  out.range_error = formula(channel.errors.range), out.head_zero_threshold = channel.errors.head_zero_threshold;
+  out.deflection_error = formula(channel.errors.deflection);
+  out.head_error = formula(channel.errors.head);
+  out.range_error = formula(channel.errors.range);
+  out.head_zero_threshold = channel.errors.head_zero_threshold;
   const std::pair<double, double> angles = detail::deflections(out.optic);
   if (out.deflection_error) detail::require_finite("deflectionError", *out.deflection_error, angles);
   if (out.head_error) detail::require_finite("headError", *out.head_error, angles);

@@ -114,7 +114,10 @@ class ArchiveWriter {
   void put_bytes(std::span<const std::byte> bytes, std::size_t alignment) {
     static constexpr std::array<std::byte, detail::array_alignment> zeros{};
     const std::span<const std::byte> gap(zeros.data(), detail::aligned(file_.position(), alignment) - file_.position());
-    for (const std::span<const std::byte> next : {gap, bytes}) digest_.add(next), file_.write(next);
+    for (const std::span<const std::byte> next : {gap, bytes}) {
+      digest_.add(next);
+      file_.write(next);
+    }
   }
 
   template <detail::Plain T>
@@ -236,7 +239,7 @@ class ArchiveReader {
   }
   template <class Choice, std::size_t... I>
   void take_option(Choice& choice, std::uint64_t index, std::index_sequence<I...>) {
-    (void)((index == I && (take(choice.template emplace<I>()), true)) || ...);
+    ((index == I ? take(choice.template emplace<I>()) : void()), ...);
   }
   template <class T>
   void take(std::shared_ptr<const T>& shared) {

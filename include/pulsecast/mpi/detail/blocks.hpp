@@ -65,7 +65,10 @@ class MpiBlockScheduler {
   /// Records the results and cost of a block.
   void finish(std::uint64_t number, std::vector<MpiExtent> extents, const MpiCost& cost) {
     finished_.emplace(number, std::move(extents));
-    cost_.slots += cost.slots, cost_.echoes += cost.echoes, cost_.bytes += cost.bytes, cost_.seconds += cost.seconds;
+    cost_.slots += cost.slots;
+    cost_.echoes += cost.echoes;
+    cost_.bytes += cost.bytes;
+    cost_.seconds += cost.seconds;
   }
 
   /// Calls place(number, owner, extents) in order for each finished block without an unfinished one before it, as long as may() is true.
@@ -74,7 +77,8 @@ class MpiBlockScheduler {
     for (auto due = finished_.find(placed_); due != finished_.end() && may(); due = finished_.find(placed_)) {
       const auto owner = owners_.find(placed_);
       place(placed_, owner->second, std::as_const(due->second));
-      owners_.erase(owner), finished_.erase(due);
+      owners_.erase(owner);
+      finished_.erase(due);
       ++placed_;
     }
   }

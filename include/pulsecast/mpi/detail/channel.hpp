@@ -80,7 +80,8 @@ class MpiChannel {
   void send(int to, int kind, Bytes bytes) {
     require_within("MPI message size", static_cast<double>(bytes.size()), 0, std::numeric_limits<int>::max(), "bytes");
     if (to == rank_) return void(to_itself_.push_back({rank_, kind, std::move(bytes)}));
-    ++traffic_.messages, traffic_.bytes += bytes.size();
+    ++traffic_.messages;
+    traffic_.bytes += bytes.size();
     Sent& sent = sent_.emplace_back(Sent{std::move(bytes), MPI_REQUEST_NULL});
     MPI_Isend(sent.bytes.data(), static_cast<int>(sent.bytes.size()), MPI_BYTE, to, kind, communicator_, &sent.request);
   }

@@ -36,7 +36,8 @@ class MpiFile {
       const ssize_t written = file_ < 0 ? -1 : ::pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(position));
       if (written < 0 && errno == EINTR) continue;
       if (written < 0) fail(bytes.size());
-      bytes = bytes.subspan(static_cast<std::size_t>(written)), position += static_cast<std::uint64_t>(written);
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+      position += static_cast<std::uint64_t>(written);
     }
   }
 

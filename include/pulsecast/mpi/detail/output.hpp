@@ -143,7 +143,9 @@ class MpiOutput {
 };
 
 inline void MpiGroup::begin(void* run, Handler handler) {
-  run_ = run, handler_ = handler, parity_ = 1 - parity_;
+  run_ = run;
+  handler_ = handler;
+  parity_ = 1 - parity_;
   for (Early& message : std::exchange(early_, {})) hand_over(message.from, message.kind, std::move(message.bytes));
 }
 

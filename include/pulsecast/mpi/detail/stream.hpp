@@ -52,7 +52,10 @@ void for_each_batch(MpiMessage bytes, Sink&& sink) {
   std::vector<SubrayHit> subrays;
   while (!bytes.rest().empty()) {
     const auto head = bytes.next<MpiBatchWriter::Head>();
-    bytes.next(shots, head.shots), bytes.next(echoes, head.echoes), bytes.next(samples, head.samples), bytes.next(subrays, head.subrays);
+    bytes.next(shots, head.shots);
+    bytes.next(echoes, head.echoes);
+    bytes.next(samples, head.samples);
+    bytes.next(subrays, head.subrays);
     sink(EchoBatch{shots, echoes, samples, head.sample_interval, subrays});
   }
 }

@@ -94,7 +94,8 @@ class PageSample {
     for (const PagePoint& point : points_) keys_.push_back(point.key);
     const auto last = keys_.begin() + static_cast<std::ptrdiff_t>(most_ - 1);
     std::nth_element(keys_.begin(), last, keys_.end());
-    largest_key_ = *last, thinned_ = true;
+    largest_key_ = *last;
+    thinned_ = true;
     auto equal = 1 + std::count(keys_.begin(), last, largest_key_);  // number of them that stay
     std::erase_if(points_, [&](const PagePoint& p) { return p.key > largest_key_ || (p.key == largest_key_ && equal-- <= 0); });
   }

@@ -59,7 +59,8 @@ FileError error(const std::string& bytes) {
 
 LasBuilder random_file(support::Generator& random, unsigned minor, unsigned format) {
   LasBuilder las{.minor = minor, .format = format, .scale = {0.001, 0.01, 0.25}, .offset = {477000, 5429000, -3}};
-  las.extra = random.whole(3) * 7, las.records = random.whole(200);
+  las.extra = random.whole(3) * 7;
+  las.records = random.whole(200);
   for (int i = 0; i < 100; ++i) {
     const auto steps = [&] { return static_cast<std::int32_t>(random.uniform(-0x1p31, 0x1p31)); };
     const auto channel = [&] { return static_cast<std::uint16_t>(random.whole(65536)); };

@@ -94,8 +94,10 @@ TEST_CASE("a layer is there if its attribute changes, and only then") {
 TEST_CASE("points in even steps cost less than two bits") {
   const auto chunk = through(points(50'000, 30,
                                     [](std::string& p, std::size_t i) {
-                                      put(p, 0, static_cast<std::int32_t>(25 * i)), put(p, 4, static_cast<std::int32_t>(i % 2));
-                                      put(p, 8, std::int32_t{100}), put(p, 22, 0x1p20 + static_cast<double>(i) * 0x1p-17);
+                                      put(p, 0, static_cast<std::int32_t>(25 * i));
+                                      put(p, 4, static_cast<std::int32_t>(i % 2));
+                                      put(p, 8, std::int32_t{100});
+                                      put(p, 22, 0x1p20 + static_cast<double>(i) * 0x1p-17);
                                     }),
                              30);
   CHECK(chunk.size < 12'500);
@@ -156,12 +158,18 @@ TEST_CASE("coordinates at the ends of their range come back") {
 
 TEST_CASE("points of one channel that is not the first, and of one that comes late, come back") {
   through(points(3'000, 40,
-                 [](std::string& p, std::size_t i) { p[15] = 0x20, p[35] = static_cast<char>(i / 3), p[16] = static_cast<char>(i % 7); }),
+                 [](std::string& p, std::size_t i) {
+                   p[15] = 0x20;
+                   p[35] = static_cast<char>(i / 3);
+                   p[16] = static_cast<char>(i % 7);
+                 }),
           40);
   through(points(3'000, 40,
                  [](std::string& p, std::size_t i) {
                    p[15] = static_cast<char>(i < 2'000 ? 0x10 : i % 5 < 3 ? 0x30 : 0x10);
-                   p[35] = static_cast<char>(i / 3), p[16] = static_cast<char>(i % 7), put(p, 8, static_cast<std::int32_t>(i * i));
+                   p[35] = static_cast<char>(i / 3);
+                   p[16] = static_cast<char>(i % 7);
+                   put(p, 8, static_cast<std::int32_t>(i * i));
                  }),
           40);
 }

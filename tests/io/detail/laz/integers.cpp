@@ -101,8 +101,10 @@ TEST_CASE("numbers of 16 and 32 bits come back from whatever was expected, in al
         item.context = static_cast<unsigned>(random.whole(4));
         item.expected = static_cast<std::int32_t>(expected & (range - 1));
         item.number = static_cast<std::int32_t>(number & (range - 1));
-        if (bits == 16 && random.coin())
-          item.expected = static_cast<std::int16_t>(item.expected), item.number = static_cast<std::int16_t>(item.number);
+        if (bits == 16 && random.coin()) {
+          item.expected = static_cast<std::int16_t>(item.expected);
+          item.number = static_cast<std::int16_t>(item.number);
+        }
       }
       CHECK(wrong(items, bits) == 0);
     }

@@ -38,7 +38,8 @@ TEST_CASE("a point's numbers are where point format 6 has them") {
 TEST_CASE("a return is the first, the last, the only one, or none of these") {
   const auto point = [](std::uint8_t number, std::uint8_t returns) {
     LazPoint p;
-    p.number = number, p.returns = returns;
+    p.number = number;
+    p.returns = returns;
     return p;
   };
   CHECK((point(1, 1).first() && point(1, 1).last() && point(1, 1).only()));

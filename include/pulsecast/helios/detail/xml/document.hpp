@@ -152,8 +152,10 @@ class XmlReport {
   const std::string* nearest = nullptr;
   std::size_t least = std::max<std::size_t>(word.size() / 2, 2);
   for (const std::string& name : known)
-    if (const std::size_t distance = edit_distance(word, name.substr(0, 100)); distance < least || (distance == least && !nearest))
-      nearest = &name, least = distance;
+    if (const std::size_t distance = edit_distance(word, name.substr(0, 100)); distance < least || (distance == least && !nearest)) {
+      nearest = &name;
+      least = distance;
+    }
   if (nearest) return "; did you mean '" + *nearest + "'?";
   std::string list;
   for (std::size_t i = 0; i < std::min<std::size_t>(known.size(), 40); ++i) list += (list.empty() ? "" : ", ") + known[i];

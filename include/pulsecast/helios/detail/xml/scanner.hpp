@@ -192,7 +192,8 @@ inline void check(const XmlInput& io, ChannelSettings& channel) {
   const auto* const rotating = std::get_if<RotatingOptic>(&channel.optic);
   if (!rotating && (!channel.errors.deflection.empty() || !channel.errors.head.empty())) {
     io.warn("optics", "<deflectionError> and <headError> have no effect with these optics");
-    channel.errors.deflection.clear(), channel.errors.head.clear();
+    channel.errors.deflection.clear();
+    channel.errors.head.clear();
   }
   if (rotating && rotating->effective_angle_max.value_or(1) == 0)
     io.fault("scanAngleEffectiveMax_deg", "scanAngleEffectiveMax_deg is 0: no pulse could leave");

@@ -21,11 +21,19 @@ struct LazPoint {
     std::array<std::uint8_t, laz_point_size> bytes{};
     std::memcpy(bytes.data(), record, bytes.size());
     const auto take = [&](auto& to, std::size_t at) { std::memcpy(&to, bytes.data() + at, sizeof to); };
-    take(x, 0), take(y, 4), take(z, 8), take(intensity, 12), take(angle, 18), take(source, 20), take(time, 22);
-    number = bytes[14] & 15U, returns = bytes[14] >> 4;
+    take(x, 0);
+    take(y, 4);
+    take(z, 8);
+    take(intensity, 12);
+    take(angle, 18);
+    take(source, 20);
+    take(time, 22);
+    number = bytes[14] & 15U;
+    returns = bytes[14] >> 4;
     flags = static_cast<std::uint8_t>((bytes[15] & 15U) | (bytes[15] >> 2 & 48U));
     channel = bytes[15] >> 4 & 3U;
-    classification = bytes[16], user = bytes[17];
+    classification = bytes[16];
+    user = bytes[17];
   }
 
   [[nodiscard]] bool first() const noexcept { return number == 1; }

@@ -136,7 +136,10 @@ inline constexpr auto units = std::to_array<Unit>({
   std::size_t fewest = 1000;
   const auto consider = [&](const std::string& known) {
     const std::size_t edits = detail::edits_between(whole, known);
-    if (edits < fewest) fewest = edits, nearest = known;
+    if (edits < fewest) {
+      fewest = edits;
+      nearest = known;
+    }
   };
   for (const auto& [known, quantity] : detail::quantity_names) {
     consider(std::string(known));
@@ -156,9 +159,10 @@ class TrajectoryColumns {
       columns_.push_back(std::any_of(left_out.begin(), left_out.end(), same) ? std::nullopt : trajectory_column(names[i], angles));
       if (columns_.back())
         put(i);
-      else if (std::none_of(left_out.begin(), left_out.end(), same))
-        problem_ = "is no known column: expected perhaps '" + nearest_trajectory_column(names[i]) + "', or that it is to be left out",
+      else if (std::none_of(left_out.begin(), left_out.end(), same)) {
+        problem_ = "is no known column: expected perhaps '" + nearest_trajectory_column(names[i]) + "', or that it is to be left out";
         culprit_ = i;
+      }
     }
     if (problem_.empty()) require_whole();
   }
@@ -177,9 +181,10 @@ class TrajectoryColumns {
  private:
   void put(std::size_t i) {
     std::optional<std::size_t>& place = places_[static_cast<std::size_t>(columns_[i]->quantity)];
-    if (place)
-      problem_ = "says the same as column " + std::to_string(*place + 1) + ": expected one of them, or that one is to be left out",
+    if (place) {
+      problem_ = "says the same as column " + std::to_string(*place + 1) + ": expected one of them, or that one is to be left out";
       culprit_ = i;
+    }
     place = i;
   }
 

@@ -67,7 +67,10 @@ class TrajectoryReader {
       } else if (!columns_ && format_.names == ColumnNames::first_line) {
         take_names();
       } else if (!columns_ && format_.more_columns && has_names_only()) {
-        if (format_.names == ColumnNames::comments && !named_) named_ = true, take_names();
+        if (format_.names == ColumnNames::comments && !named_) {
+          named_ = true;
+          take_names();
+        }
       } else {
         if (!columns_) settle_names();
         row();
