@@ -13,7 +13,6 @@
 #include "support/aborts.hpp"
 #include "support/archetypes.hpp"
 #include "support/checksum.hpp"
-#include "support/generators.hpp"
 #include "support/laws.hpp"
 #include "support/relative.hpp"
 
@@ -366,60 +365,6 @@ TEST_CASE("a sink that is called while it is busy says so") {
   call();
   other.join();
   CHECK(sink.broken() == "two calls at a time");
-}
-
-TEST_CASE("a generator gives the same cases for the same seed and others for another") {
-  Generator a(1), b(1), c(2);
-  const Vec3 first = a.point(1);
-  CHECK(first == b.point(1));
-  CHECK(first != c.point(1));
-  CHECK(first != a.point(1));
-}
-
-TEST_CASE("generated cases keep to what was asked for") {
-  Generator any(7);
-  std::array<int, 6> decades{}, wholes{};
-  Vec3 mean{0, 0, 0}, turned{0, 0, 0};
-  for (int k = 0; k < 6000; ++k) {
-    const double x = any.log_uniform(1e-3, 1e3);
-    REQUIRE(x >= 1e-3);
-    REQUIRE(x <= 1e3);
-    ++decades[static_cast<std::size_t>(std::min(5.0, std::floor(std::log10(x) + 3)))];
-    const std::uint64_t w = any.whole(6);
-    REQUIRE(w < 6);
-    ++wholes[w];
-    const Vec3 u = any.unit(), t = any.rotation() * axis::forward;
-    REQUIRE(std::fabs(length(u) - 1) < 1e-14);
-    mean += u / 6000.0;
-    turned += t / 6000.0;
-    const Box box = any.box(10, 0.1, 2);
-    REQUIRE(max_norm(box.centre()) < 10);
-    REQUIRE(std::min({box.size().x, box.size().y, box.size().z}) > 0.0999);
-    REQUIRE(max_norm(box.size()) < 2.0001);
-    REQUIRE(max_norm(any.pose<frame::Body, frame::World>(3).position) < 3);
-  }
-  for (std::size_t k = 0; k < 6; ++k) {
-    CHECK(std::abs(decades[k] - 1000) < 150);
-    CHECK(std::abs(wholes[k] - 1000) < 150);
-  }
-  CHECK(length(mean) < 0.05);
-  CHECK(length(turned) < 0.05);
-}
-
-TEST_CASE("a generated cone of rays is padded, unit and within its angle") {
-  for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    CAPTURE(seed);
-    Generator any(seed);
-    const Vec3 axis = any.unit();
-    const double angle = any.log_uniform(1e-5, 1);
-    const RayBundle rays = any.cone(any.point(100), axis, angle, 1 + any.whole(RayBundle::capacity));
-    CHECK(rays.direction(0) == axis);
-    for (std::size_t j = 0; j < rays.padded_size(); ++j) {
-      REQUIRE(std::fabs(length(rays.direction(j)) - 1) < 1e-14);
-      REQUIRE(length(cross(rays.direction(j), axis)) <= std::sin(angle) * (1 + 1e-9) + 1e-15);
-      REQUIRE(dot(rays.direction(j), axis) > 0);
-    }
-  }
 }
 
 TEST_CASE("a call that aborts is told from one that returns, or ends otherwise") {

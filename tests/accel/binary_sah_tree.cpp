@@ -87,25 +87,6 @@ TEST_CASE_TEMPLATE("a binary tree holds every primitive once, in boxes that hold
   }
 }
 
-TEST_CASE("a binary tree is the same on any number of threads") {
-  const std::vector<Box> boxes = random_boxes(61, 200'000);  // more than one chunk, and subtrees enough for all
-  pulsecast::detail::BuildInput<float> input(boxes);
-  std::vector<pulsecast::detail::Boxed<float>> alone(input.primitives.begin(), input.primitives.end());
-  const Tree<float> tree(alone, 4, 1);
-  const Shape shape = shape_of(tree);
-  CHECK(shape.primitives == boxes.size());
-  CHECK(shape.torn == 0);
-  for (const unsigned threads : {2U, 7U}) {
-    CAPTURE(threads);
-    std::vector<pulsecast::detail::Boxed<float>> primitives(input.primitives.begin(), input.primitives.end());
-    const Tree<float> other(primitives, 4, threads);
-    CHECK(shape_of(other).leaves == shape.leaves);
-    std::size_t different = 0;
-    for (std::size_t i = 0; i < primitives.size(); ++i) different += primitives[i].primitive == alone[i].primitive ? 0 : 1;
-    CHECK(different == 0);
-  }
-}
-
 TEST_CASE("boxes in a row are put in leaves of neighbours") {
   std::vector<Box> boxes;
   for (int i = 0; i < 64; ++i) boxes.push_back({{i * 10.0, 0, 0}, {i * 10.0 + 1, 1, 1}});

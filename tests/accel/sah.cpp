@@ -105,25 +105,6 @@ TEST_CASE_TEMPLATE("a build sees every box but the empty ones, relative to the c
   }
 }
 
-TEST_CASE_TEMPLATE("a build sees the same on any number of threads", Real, float, double) {
-  Generator random(42);
-  std::vector<Box> boxes;
-  for (int i = 0; i < 50'000; ++i) boxes.push_back(i % 7 == 3 ? Box{} : random.box(500, 1e-3, 10));  // several chunks
-  const pulsecast::detail::BuildInput<Real> alone(boxes);
-  const pulsecast::detail::BuildInput<Real> shared(boxes, 3);
-  CHECK(shared.bounds == alone.bounds);
-  REQUIRE(shared.primitives.size() == alone.primitives.size());
-  std::size_t different = 0;
-  for (std::size_t i = 0; i < alone.primitives.size(); ++i) {
-    const auto &a = alone.primitives[i], &b = shared.primitives[i];
-    different +=
-        a.primitive == b.primitive && std::equal(a.box.min, a.box.min + 3, b.box.min) && std::equal(a.box.max, a.box.max + 3, b.box.max)
-            ? 0
-            : 1;
-  }
-  CHECK(different == 0);
-}
-
 TEST_CASE("boxes too far away and too many primitives are refused") {
   using Input = pulsecast::detail::BuildInput<float>;
   Box box{{0, 0, 0}, {1, 1, 1}};

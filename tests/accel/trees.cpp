@@ -35,11 +35,6 @@ TEST_CASE_TEMPLATE("a tree leaves out empty boxes among others", Tree, TREES) {
   for (std::size_t i = 0; i < boxes.size(); ++i) CHECK((count[i] > 0) == (i % 3 != 0));
 }
 
-TEST_CASE_TEMPLATE("a tree of more than 2^32 - 2 primitives is refused", Tree, TREES) {
-  const Box box{{0, 0, 0}, {1, 1, 1}};
-  CHECK_THROWS_AS(Tree(std::span<const Box>(&box, std::size_t{0xFFFFFFFF})), SettingError);
-}
-
 TEST_CASE_TEMPLATE("a tree is not entered by rays that are not numbers, nor by those that pass by or end before", Tree, TREES) {
   Generator random(53);
   std::vector<Box> boxes;

@@ -38,13 +38,6 @@ TEST_CASE("a file error about a file as a whole names no place") {
   CHECK(std::string(FileError("roof.obj", "", "no such file").what()) == "roof.obj: no such file");
 }
 
-TEST_CASE("errors survive being copied") {
-  const SettingError original("a", 1, "m", "b");
-  const SettingError copy = original;
-  CHECK(std::string(copy.what()) == original.what());
-  CHECK(copy.field() == "a");
-}
-
 TEST_CASE("a setting error gets the name of what the setting belongs to, once") {
   const auto refused = [] { return naming("leg 3", []() -> int { throw SettingError("Scanner::pulse_rate", -5, "Hz", "at least 0"); }); };
   CHECK_THROWS_WITH_AS(refused(), "leg 3: Scanner::pulse_rate is -5 Hz, but must be at least 0", SettingError);

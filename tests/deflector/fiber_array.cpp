@@ -28,20 +28,13 @@ TEST_CASE("a fibre array draws equally spaced points from end to end, both ends 
   }
 }
 
-TEST_CASE("a fibre array still lights one fibre a pulse after a million million pulses") {
-  const FiberArray array{.fibers = 127, .fibers_per_second = 300e3};
-  for (PulseIndex i = 1000000000000; i < 1000000000500; ++i) REQUIRE(array.fiber(Tick::of(i, 300e3)) == i % 127);
-}
-
 TEST_CASE("a fibre array of one shines forward") {
   CHECK(FiberArray{.fibers = 1}.angle({0, 0.3}) == 0);
   CHECK(FiberArray{.fibers = 1}.at({0, 0.3}).direction(axis::forward) == axis::forward);
 }
 
 TEST_CASE("a fibre array keeps the laws of a motion") {
-  support::Generator any(3);
-  std::vector<Tick> ticks{{0, 0}};
-  for (int k = 0; k < 200; ++k) ticks.push_back(Tick::of_seconds(any.log_uniform(1e-9, 1e8)));
+  const auto ticks = support::some_ticks(3);
   CHECK(support::motion_laws(FiberArray{.fibers = 13, .fibers_per_second = 777.7}, ticks) == "");
 }
 

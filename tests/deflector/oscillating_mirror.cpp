@@ -20,13 +20,6 @@ using namespace pulsecast;
 using namespace pulsecast::literals;
 
 namespace {
-std::vector<Tick> some_ticks(std::uint64_t seed) {
-  support::Generator any(seed);
-  std::vector<Tick> ticks{{0, 0}};
-  for (int k = 0; k < 200; ++k) ticks.push_back(Tick::of_seconds(any.log_uniform(1e-9, 1e8)));
-  return ticks;
-}
-
 /// Rounded triangle, plain triangle and sine, all at a cycle a second.
 std::array<OscillatingMirror, 3> mirrors() {
   return {OscillatingMirror{.cycles_per_second = 1, .half_angle = 20_deg, .turning_time = 0.1},
@@ -58,7 +51,7 @@ TEST_CASE("an oscillating mirror goes back as it came") {
 
 TEST_CASE("an oscillating mirror turns the beam up by its angle, in the plane of forward and up") {
   for (const OscillatingMirror& mirror : mirrors())
-    for (const Tick t : some_ticks(1)) {
+    for (const Tick t : support::some_ticks(1)) {
       const double a = mirror.angle(t);
       CHECK(length(mirror.at(t).direction(axis::forward) - Vec3{0, std::cos(a), std::sin(a)}) < 1e-15);
     }
@@ -118,7 +111,7 @@ TEST_CASE("an oscillating mirror's angle does not wear out with time") {
 }
 
 TEST_CASE("an oscillating mirror keeps the laws of a motion") {
-  for (const OscillatingMirror& mirror : mirrors()) CHECK(support::motion_laws(mirror, some_ticks(2)) == "");
+  for (const OscillatingMirror& mirror : mirrors()) CHECK(support::motion_laws(mirror, support::some_ticks(2)) == "");
 }
 
 TEST_CASE("an oscillating mirror refuses what cannot be") {

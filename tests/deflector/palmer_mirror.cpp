@@ -51,9 +51,7 @@ TEST_CASE("a Palmer mirror's angle does not wear out with time") {
 }
 
 TEST_CASE("a Palmer mirror keeps the laws of a motion") {
-  support::Generator any(4);
-  std::vector<Tick> ticks{{0, 0}};
-  for (int k = 0; k < 200; ++k) ticks.push_back(Tick::of_seconds(any.log_uniform(1e-9, 1e8)));
+  const auto ticks = support::some_ticks(4);
   CHECK(support::motion_laws(PalmerMirror{.turns_per_second = 33.3}, ticks) == "");
   CHECK(support::motion_laws(PalmerMirror{.turns_per_second = 33.3, .half_angle_across = 1}, ticks) == "");
 }

@@ -40,9 +40,7 @@ TEST_CASE("a pattern table goes through its entries, one a pulse, and begins aga
 }
 
 TEST_CASE("a pattern table keeps the laws of a motion") {
-  support::Generator any(5);
-  std::vector<Tick> ticks{{0, 0}};
-  for (int k = 0; k < 200; ++k) ticks.push_back(Tick::of_seconds(any.log_uniform(1e-9, 1e8)));
+  const auto ticks = support::some_ticks(5);
   CHECK(support::motion_laws(some_table(2, 100, 1234.5), ticks) == "");
 }
 

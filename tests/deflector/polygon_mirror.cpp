@@ -17,15 +17,6 @@
 using namespace pulsecast;
 using namespace pulsecast::literals;
 
-namespace {
-std::vector<Tick> some_ticks(std::uint64_t seed) {
-  support::Generator any(seed);
-  std::vector<Tick> ticks{{0, 0}};
-  for (int k = 0; k < 200; ++k) ticks.push_back(Tick::of_seconds(any.log_uniform(1e-9, 1e8)));
-  return ticks;
-}
-}  // namespace
-
 TEST_CASE("a polygon mirror sweeps from low to high once per line and starts over") {
   const PolygonMirror mirror{.lines_per_second = 100, .sweep = 60_deg};
   CHECK(mirror.angle({0, 0}) == -60_deg);
@@ -39,7 +30,7 @@ TEST_CASE("a polygon mirror sweeps from low to high once per line and starts ove
 
 TEST_CASE("a polygon mirror turns the beam up by its angle, in the plane of forward and up") {
   const PolygonMirror mirror{.lines_per_second = 100, .sweep = 60_deg};
-  for (const Tick t : some_ticks(1)) {
+  for (const Tick t : support::some_ticks(1)) {
     const double a = mirror.angle(t);
     CHECK(length(mirror.at(t).direction(axis::forward) - Vec3{0, std::cos(a), std::sin(a)}) < 1e-15);
     CHECK(length(mirror.at(t).direction(axis::right) - axis::right) < 1e-15);
@@ -60,7 +51,7 @@ TEST_CASE("a polygon mirror's gate lets through the part of each line that it is
 }
 
 TEST_CASE("a polygon mirror without a gate is always open") {
-  for (const Tick t : some_ticks(2)) CHECK(PolygonMirror{}.open(t));
+  for (const Tick t : support::some_ticks(2)) CHECK(PolygonMirror{}.open(t));
 }
 
 TEST_CASE("a polygon mirror's facets take turns, and each sends its line out of the plane by its own tilt") {
@@ -120,12 +111,13 @@ TEST_CASE("at the very beginning of a line, angle and facet tell of the same lin
 
 TEST_CASE("a polygon mirror without tilts is one whose tilts are zero") {
   const PolygonMirror plain{.lines_per_second = 77}, tilted{.lines_per_second = 77, .facet_tilts = {0}};
-  for (const Tick t : some_ticks(5)) CHECK(length(plain.at(t).direction(axis::forward) - tilted.at(t).direction(axis::forward)) == 0);
+  for (const Tick t : support::some_ticks(5))
+    CHECK(length(plain.at(t).direction(axis::forward) - tilted.at(t).direction(axis::forward)) == 0);
 }
 
 TEST_CASE("a polygon mirror keeps the laws of a motion") {
-  CHECK(support::motion_laws(PolygonMirror{.lines_per_second = 33.3, .facet_tilts = {0.1, -0.1, 0, 0.2}}, some_ticks(6)) == "");
-  CHECK(support::motion_laws(PolygonMirror{.lines_per_second = 33.3, .angle_min = -0.3, .angle_max = 1}, some_ticks(3)) == "");
+  CHECK(support::motion_laws(PolygonMirror{.lines_per_second = 33.3, .facet_tilts = {0.1, -0.1, 0, 0.2}}, support::some_ticks(6)) == "");
+  CHECK(support::motion_laws(PolygonMirror{.lines_per_second = 33.3, .angle_min = -0.3, .angle_max = 1}, support::some_ticks(3)) == "");
 }
 
 TEST_CASE("a polygon mirror refuses what no mirror can do") {

@@ -160,9 +160,7 @@ TEST_CASE("a rosette does not wear out with time") {
 }
 
 TEST_CASE("Risley prisms keep the laws of a motion") {
-  support::Generator any(6);
-  std::vector<Tick> ticks{{0, 0}};
-  for (int k = 0; k < 200; ++k) ticks.push_back(Tick::of_seconds(any.log_uniform(1e-9, 1e8)));
+  const auto ticks = support::some_ticks(6);
   CHECK(support::motion_laws(two_wedges(-121.5657, 77.7430), ticks) == "");
   RisleyPrisms three = two_wedges(100, -77);
   three.prisms.push_back({.wedge = 5_deg, .turns_per_second = 3.3, .start = 1});

@@ -51,9 +51,7 @@ TEST_CASE("a head's angle does not wear out with time") {
 }
 
 TEST_CASE("a head keeps the laws of a motion") {
-  support::Generator any(5);
-  std::vector<Tick> ticks{{0, 0}};
-  for (int k = 0; k < 200; ++k) ticks.push_back(Tick::of_seconds(any.log_uniform(1e-9, 1e8)));
+  const auto ticks = support::some_ticks(5);
   CHECK(support::motion_laws(RotatingHead{.rate = 0.37, .start = 1, .axis = {1, 2, 3}}, ticks) == "");
 }
 

@@ -150,27 +150,6 @@ TEST_CASE("every echo is where the sum of pulses has no slope, as high as the su
   CHECK(several > 200);
 }
 
-TEST_CASE("both waveform detectors find the same peaks, but for those that are lower than the digitiser can tell") {
-  const AnalyticWaveform exact(all_peaks);
-  const FullWaveform sampled(all_peaks);
-  std::size_t alike = 0, peaks = 0, close = 0;
-  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
-    CAPTURE(seed);
-    support::Generator any(seed);
-    const auto reflections = some(any, 12);
-    const auto a = echoes_of(exact, reflections), b = echoes_of(sampled, reflections);
-    if (a.size() != b.size()) continue;
-    ++alike;
-    peaks += a.size();
-    for (std::size_t e = 0; e < a.size(); ++e) {
-      CHECK(std::fabs(a[e].range - b[e].range) < 0.0375);  // a bin, where an edge bends the top
-      close += std::fabs(a[e].range - b[e].range) < 0.00375 && std::fabs(a[e].amplitude / b[e].amplitude - 1) < 0.001;
-    }
-  }
-  CHECK(alike > 960);
-  CHECK(close * 100 > peaks * 97);
-}
-
 TEST_CASE("the echo of a group, found directly, is what the pass over its edges finds") {
   // A reflection without power makes the group none, and nothing else.
   const auto both = [](const auto& detector, std::vector<Reflection> reflections) {

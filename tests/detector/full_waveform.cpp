@@ -118,14 +118,6 @@ TEST_CASE("a coarser digitiser errs more, by what a quartic through five of its 
   }
 }
 
-TEST_CASE("many subrays on the same spot are one hit of their summed power") {
-  const FullWaveform detector;
-  const auto echoes = echoes_of(detector, std::vector<Reflection>(19, {123.456, 1e-8}));
-  REQUIRE(echoes.size() == 1);
-  CHECK(std::fabs(echoes[0].range - 123.456) < 1e-4);
-  CHECK(echoes[0].amplitude == support::relative(19e-8, 0.01));
-}
-
 TEST_CASE("two equal hits far apart are two echoes of full strength, and two close together are one between them") {
   const FullWaveform detector;
   for (const double apart : {2.0, 5.0, 20.0, 100.0, 1000.0, 100000.0}) {
@@ -273,14 +265,6 @@ TEST_CASE("no more returns than allowed are reported, the nearest ones") {
     REQUIRE(echoes.size() == std::min<std::size_t>(most, 20));
     for (std::size_t k = 0; k < echoes.size(); ++k) CHECK(echoes[k].range == support::relative(105 + 5 * static_cast<double>(k), 1e-5));
   }
-}
-
-TEST_CASE("an echo's object is that of the strongest contributor at its peak") {
-  const FullWaveform detector;
-  const auto echoes = echoes_of(detector, {{50, 1e-8, 1, 11}, {50.05, 3e-8, 2, 12}, {50.1, 2e-8, 3, 13}});
-  REQUIRE(echoes.size() == 1);
-  CHECK(echoes[0].object == 2);
-  CHECK(echoes[0].classification == 12);
 }
 
 TEST_CASE("a kept waveform is the sum of the pulses, sample by sample, as long as asked for") {
@@ -447,26 +431,6 @@ TEST_CASE("false echoes come at the rate that the normal distribution predicts")
     CHECK(std::fabs(static_cast<double>(found) - expected) <
           5 * std::sqrt(expected) + 0.005 * expected);  // the ends of a record have no peaks
   }
-}
-
-TEST_CASE("the more noise, the more an echo's range and amplitude vary, and without noise nothing does") {
-  const auto spread = [](double deviation) {
-    const FullWaveform detector(WaveformSettings{.threshold = 3e-9, .window = 10e-9}, NoWidth{}, ReceiverNoise{.deviation = deviation});
-    auto workspace = detector.workspace(1);
-    double sum = 0;
-    for (PulseIndex pulse = 0; pulse < 500; ++pulse) {
-      std::vector<Reflection> one{{100, 1e-8}};
-      const Detection d = detector.detect(laser, one, workspace, {.pulse = pulse});
-      REQUIRE(d.echoes.size() == 1);
-      sum += std::pow(d.echoes[0].range - 100, 2);
-    }
-    return std::sqrt(sum / 500);
-  };
-  CHECK(spread(0) < 1e-9);
-  CHECK(spread(1e-16) < 1e-4);
-  CHECK(spread(1e-11) < spread(1e-10));
-  CHECK(spread(1e-10) < spread(5e-10));
-  CHECK(spread(5e-10) < 0.3);
 }
 
 TEST_CASE("noise does not break the laws of a detector, nor grow beyond the workspace") {

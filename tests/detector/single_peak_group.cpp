@@ -64,22 +64,6 @@ TEST_CASE("the sum of a group is that of its pulses from the last edge on, and h
   }
 }
 
-TEST_CASE("a group rises until its last edge has come in, so that nothing else is a peak") {
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    CAPTURE(seed);
-    support::Generator any(seed);
-    const auto reflections = close_together(any);
-    SinglePeakGroup::Workspace w(reflections.size());
-    const SinglePeakGroup group(reflections, shape, interval, w);
-    double before = 0;
-    for (double x = -2; x < 0; x += 0.01) {
-      const double now = received(reflections, group.last_edge() + x * shape.tau);
-      REQUIRE(now >= before);
-      before = now;
-    }
-  }
-}
-
 TEST_CASE("the range of a group is the mean by power, and its strongest reflection is that whose pulse is highest at the time") {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     CAPTURE(seed);

@@ -12,6 +12,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/generators.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -215,6 +216,74 @@ TEST_CASE("a platform that moves stays where the next leg begins at the same pla
     }
 }
 
+TEST_CASE("a place is finite, whatever the platform, and may get its height from the ground") {
+  for (const PlatformKind kind :
+       {PlatformKind::stationary, PlatformKind::linear_path, PlatformKind::multicopter, PlatformKind::ground_vehicle})
+    for (const double bad : {std::nan(""), HUGE_VAL}) {
+      CAPTURE(static_cast<int>(kind));
+      CAPTURE(bad);
+      CHECK_THROWS_WITH_AS(LegPaths(survey_of(kind, {{0, 0, 9}, {bad, 0, 9}}), flat, {}), doctest::Contains("leg 1: position"),
+                           SettingError);
+    }
+  SurveySettings s = survey_of(PlatformKind::stationary, {{0, 0, std::nan("")}});
+  s.legs[0].platform.on_ground = true;
+  CHECK(LegPaths(s, flat, {})[0].path.at({}).position == Vec3{0, 0, 7});
+}
+
+TEST_CASE("a multicopter that hovers before, between and after ways looks along them, or where it is told to") {
+  SurveySettings s = survey_of(PlatformKind::multicopter, {{0, 0, 40}, {0, 0, 40}, {40, 0, 40}, {40, 0, 40}, {40, -40, 40}}, 5);
+  const SurveyBuildOptions options;
+  const auto looks = [&](std::size_t k) { return LegPaths(s, flat, options)[k].path.at({}).direction(axis::forward); };
+  CHECK(length(looks(0) - axis::right) < 1e-9);
+  CHECK(length(looks(2) + axis::forward) < 1e-9);
+  CHECK(LegPaths(s, flat, options)[2].duration == 0);
+  s.legs[0].platform.yaw_at_departure = radians(30), s.legs[2].platform.yaw_at_departure = radians(0);
+  CHECK(length(looks(0) - rotation_about(axis::up, radians(30)) * axis::forward) < 1e-9);
+  CHECK(length(looks(1) - rotation_about(axis::up, radians(30)) * axis::forward) < 1e-9);  // it turns as it begins
+  CHECK(length(looks(2) - axis::forward) < 1e-9);
+  const LegPaths paths(s, flat, options);
+  CHECK(length(paths[1].path.at(Tick::of_seconds(paths[1].duration)).direction(axis::forward) - axis::forward) < 1e-6);
+}
+
+TEST_CASE("a flight of smooth turns goes from place to place, however often its ways cross") {
+  std::vector<Vec3> places;
+  support::Generator any(1);
+  for (int k = 0; k < 40; ++k) places.push_back({any.uniform(-300, 300), any.uniform(-300, 300), any.uniform(30, 60)});
+  SurveySettings s = survey_of(PlatformKind::multicopter, places, 8);
+  for (LegSettings& leg : s.legs) leg.platform.smooth_turn = true;
+  const SurveyBuildOptions options;
+  const LegPaths paths(s, flat, options);
+  double way = 0, time = 0;
+  for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+    CAPTURE(k);
+    CHECK(paths[k].duration > 1);
+    CHECK(std::fabs(paths[k].path.start.seconds() - time) < 1e-6);
+    way += length(places[k + 1] - places[k]), time += paths[k].duration;
+    double nearest = 1e9;  // to where the leg begins, until it begins
+    const double since = k > 0 ? paths[k - 1].duration : 0;
+    for (double t = -since; t <= 0; t += 0.02)
+      nearest = std::min(nearest, length(paths[k].path.at(Tick::of_seconds(t)).position - places[k]));
+    CHECK(nearest < 0.3);
+  }
+  CHECK(time > way / 8);
+  CHECK(time < way / 8 + 40 * 5);
+}
+
+TEST_CASE("a vehicle parks as it came, or as it will leave, on the ground") {
+  const SurveySettings s = survey_of(PlatformKind::ground_vehicle, {{0, 0, 0}, {0, 0, 0}, {0, 30, 0}, {0, 30, 0}, {0, 90, 0}}, 5);
+  const auto slope = [](const Vec2& at) -> std::optional<double> { return 0.1 * at.y; };
+  const SurveyBuildOptions options;
+  const LegPaths paths(s, slope, options);
+  for (const std::size_t k : {0U, 2U}) {
+    CAPTURE(k);
+    const auto pose = paths[k].path.at({}), later = paths[k].path.at(Tick::of_seconds(9)), leaves = paths[k + 1].path.at({});
+    CHECK(pose.position == later.position);
+    CHECK(length(pose.position - leaves.position) < 0.01);
+    CHECK(std::fabs(pose.position.z - (k == 0 ? 0 : 3)) < 0.05);
+    CHECK(pose.direction(axis::forward).z > 0.09);
+  }
+}
+
 TEST_CASE("a platform that moves, and has but one leg, stays there") {
   for (const PlatformKind kind : {PlatformKind::linear_path, PlatformKind::multicopter, PlatformKind::ground_vehicle}) {
     SurveySettings s = survey_of(kind, {{3, 4, 7}}, 5);
@@ -364,17 +433,47 @@ TEST_CASE("channels fire together, each from its own place") {
   CHECK(b->laser.wavelength == 1550e-9);
 }
 
-TEST_CASE("noise of platform and legs is as the settings say, and can be left out") {
+TEST_CASE("noise of the platform is reported alone, as the settings say, and can be left out") {
+  SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}});
+  s.legs[0].duration_max = 10;
+  s.legs[0].scanner.scan_frequency = 0;
+  s.platform.position_noise = {NoiseSettings{.deviation = 0.1},
+                               NoiseSettings{.distribution = NoiseDistribution::uniform, .low = 1, .high = 3},
+                               NoiseSettings{.mean = 5, .deviation = 0, .clipped = true, .clip_low = 0, .clip_high = 2}};
+  const CompiledSurvey compiled = compile_survey(s, flat, {.seed = 4});
+  double sum = 0, squares = 0, least = 9, most = -9;
+  for (PulseIndex i = 0; i < 10'000; ++i) {
+    const auto p = compiled.source.pulse(i);
+    CHECK(p->pose.position == Vec3(1, 2, 3));
+    const Vec3 off = p->reported.value().position - p->pose.position;
+    sum += off.x, squares += off.x * off.x, least = std::min(least, off.y), most = std::max(most, off.y);
+    CHECK(off.z == 2);
+  }
+  CHECK(std::fabs(sum / 10'000) < 0.004);
+  CHECK(std::sqrt(squares / 10'000) == relative(0.1, 0.03));
+  CHECK(least == relative(1, 0.01));
+  CHECK(most == relative(3, 0.01));
+  CHECK_FALSE(compile_survey(s, flat, {.seed = 4, .platform_noise = false}).source.pulse(0)->reported);
+
+  s.platform.position_noise = {NoiseSettings{.lifespan = 3}};
+  s.platform.attitude_noise[2] = NoiseSettings{.mean = pi / 2, .deviation = 0};
+  const CompiledSurvey turned = compile_survey(s, flat, {.seed = 4});
+  const auto off = [&](PulseIndex i) { return turned.source.pulse(i)->reported->position.x; };
+  CHECK(off(0) == off(2));
+  CHECK(off(2) != off(3));
+  CHECK(length(turned.source.pulse(0)->direction() - axis::forward) < 1e-12);
+  CHECK(length(turned.source.pulse(0)->reported->direction(axis::forward) + axis::right) < 1e-12);
+}
+
+TEST_CASE("legs are beside where they should be by chance, alike for the same seed, or exact") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{}});
   s.legs[0].duration_max = 1;
-  s.legs[0].scanner.scan_frequency = 0;
-  s.platform.position_noise[2] = NoiseSettings{.mean = 5, .deviation = 0};
-  const auto first = compile_survey(s, flat, {.seed = 4}).source.pulse(0);
-  CHECK(first->reported.value().position.z - first->pose.position.z == 5);
-  CHECK_FALSE(compile_survey(s, flat, {.seed = 4, .platform_noise = false}).source.pulse(0)->reported);
   s.leg_offset = LegOffsetSettings{.mean = 10, .deviation = 0};
   CHECK(length(origin(compile_survey(s, flat), 0) - Vec3{10, 10, 10}) < 1e-12);
   CHECK(length(origin(compile_survey(s, flat, {.leg_noise = false}), 0)) < 1e-12);
+  s.leg_offset->deviation = 0.1;
+  CHECK(origin(compile_survey(s, flat, {.seed = 5}), 0) == origin(compile_survey(s, flat, {.seed = 5}), 0));
+  CHECK(origin(compile_survey(s, flat, {.seed = 5}), 0) != origin(compile_survey(s, flat, {.seed = 6}), 0));
 }
 
 TEST_CASE("what is wrong with an optic names its leg") {

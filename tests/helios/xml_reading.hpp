@@ -10,6 +10,7 @@
 
 #include <pulsecast/helios/detail/xml/element.hpp>
 
+#include "support/file_errors.hpp"
 #include "support/temporary_folder.hpp"
 
 /// Short texts of elements, read beside a file `mesh.obj`.
@@ -36,7 +37,5 @@ std::string xml_told(const std::string& text, Fields fields) {
   for (const std::string& warning : report.warnings()) told += "\nwarning " + warning;
   return told;
 }
-
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace pulsecast::support

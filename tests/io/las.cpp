@@ -148,36 +148,6 @@ One one(const Shot& shot, const Echo& echo, const LasSettings& settings = {}) {
   return {file, file.points[0]};
 }
 
-TEST_CASE("every field of a point is what the echo says") {
-  const Shot shot{.index = 0xFEDCBA9876543210,
-                  .tick = {12, 0.5},
-                  .origin = {100, 200, 60},
-                  .direction = {0, 0, -1},
-                  .scan_angle = radians(-12.3),
-                  .leg = 4,
-                  .channel = 6};
-  const Echo echo{.range = 50, .amplitude = 1e-7, .reflectance = 0.1, .width = 2.5e-9, .object = 0xFFFFFFFE, .classification = 200};
-  const auto [file, p] = one(shot, echo, {.start_time = 3e8});
-  CHECK(p.place[0] == support::relative(100, 1e-12));
-  CHECK(p.place[1] == support::relative(200, 1e-12));
-  CHECK(p.place[2] == support::relative(10, 1e-12));
-  CHECK(p.intensity == 6554);  // 6553.5, to the even one
-  CHECK(p.return_number == 1);
-  CHECK(p.returns == 1);
-  CHECK(p.classification == 200);
-  CHECK(p.channel == 2);
-  CHECK(p.source == 5);
-  CHECK(p.scan_angle_deg == doctest::Approx(-12.3));
-  CHECK(p.gps_time == 300000012.5);
-  CHECK((p.flags == 0 && p.scan_direction == 0 && p.edge == 0 && p.user_data == 0));
-  CHECK(las_real(file, p, "Range") == 50);
-  CHECK(las_real(file, p, "Amplitude") == doctest::Approx(20));     // 100 nW against 1 nW
-  CHECK(las_real(file, p, "Reflectance") == doctest::Approx(-10));  // a tenth
-  CHECK(las_real(file, p, "EchoWidth") == doctest::Approx(2.5));
-  CHECK(las_whole(file, p, "PulseIndex") == 0xFEDCBA9876543210);
-  CHECK(las_whole(file, p, "ObjectId") == 0xFFFFFFFE);
-}
-
 TEST_CASE("the header says who wrote the file and how, and nothing of the day unless told") {
   LasFile file = Survey::of_points({{1, 2, 3}}).written();
   CHECK(file.software == "pulsecast " PULSECAST_VERSION);
@@ -354,11 +324,6 @@ TEST_CASE("what is more than a field can hold is cut, and nothing at all has a l
   CHECK(one({.direction = {0, 0, -1}, .scan_angle = -4}, {.range = 1}).point.scan_angle_deg == doctest::Approx(-180));
 }
 
-TEST_CASE("ranges of ten kilometres keep a tenth of a millimetre, and much more") {
-  const auto [file, p] = one({.direction = {0, 0, -1}}, {.range = 9999.99991});
-  CHECK(las_real(file, p, "Range") == 9999.99991);
-}
-
 TEST_CASE("whatever is written reads back, field by field, and its header is exact") {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     CAPTURE(seed);
@@ -378,6 +343,7 @@ TEST_CASE("whatever is written reads back, field by field, and its header is exa
                 0.5 * settings.scale + 1e-15 * std::fabs(place[axis]) + 1e-9);
         }
         CHECK(std::fabs(p.intensity - std::min(echo.reflectance, 1.0) * 65535) <= 0.5 + 1e-9);
+        CHECK((p.flags == 0 && p.scan_direction == 0 && p.edge == 0 && p.user_data == 0));
         CHECK(p.return_number == std::min<unsigned>(echo.number, 15));
         CHECK(p.returns == std::min<unsigned>(shot.echoes, 15));
         CHECK(p.channel == shot.channel % 4);
@@ -413,34 +379,17 @@ TEST_CASE("the bytes of a file do not depend on how the pulses are cut into batc
 
 // ---------------------------------------------------------------------------------------------------------------- formats
 
-TEST_CASE("points of legacy formats hold what they can") {
-  const Shot shot{.index = 7,
-                  .tick = {12, 0.5},
-                  .origin = {100, 200, 60},
-                  .direction = {0, 0, -1},
-                  .scan_angle = radians(-12.6),
-                  .leg = 4,
-                  .channel = 6};
-  const Echo echo{.range = 50, .amplitude = 1e-7, .reflectance = 0.1, .width = 2.5e-9, .object = 12, .classification = 5};
+TEST_CASE("points of legacy formats hold what they can, and headers say which they are") {
+  const Shot sideways{.direction = {0, 0, -1}, .scan_angle = pi};
   for (const LasFormat format : {LasFormat::las_1_4_legacy, LasFormat::las_1_0}) {
-    const auto [file, p] = one(shot, echo, {.format = format, .start_time = 3e8});
+    const auto [file, p] = one(sideways, {.range = 1, .classification = 300}, {.format = format});
     CHECK(file.minor == (format == LasFormat::las_1_0 ? 0 : 4));
     CHECK(file.format == 1);
     CHECK(file.global_encoding == (format == LasFormat::las_1_0 ? 0 : 1));
-    CHECK(p.place[2] == support::relative(10, 1e-12));
-    CHECK(p.intensity == 6554);
-    CHECK((p.return_number == 1 && p.returns == 1));
-    CHECK(p.classification == 5);
-    CHECK(p.source == 5);
-    CHECK(p.scan_angle_deg == -13);
-    CHECK(p.gps_time == 300000012.5);
+    CHECK(p.classification == 31);
+    CHECK(p.scan_angle_deg == 90);
     CHECK((p.flags == 0 && p.scan_direction == 0 && p.edge == 0 && p.user_data == 0));
-    CHECK(las_real(file, p, "Range") == 50);
-    CHECK(las_whole(file, p, "PulseIndex") == 7);
-    CHECK(las_whole(file, p, "ObjectId") == 12);
-
-    CHECK(one(shot, {.range = 1, .classification = 300}, {.format = format}).point.classification == 31);
-    CHECK(one({.direction = {0, 0, -1}, .scan_angle = pi}, {.range = 1}, {.format = format}).point.scan_angle_deg == 90);
+    CHECK(one({.direction = {0, 0, -1}, .scan_angle = radians(-12.6)}, {.range = 1}, {.format = format}).point.scan_angle_deg == -13);
     Survey survey;
     std::vector<Echo> echoes(7);
     for (std::uint8_t n = 1; n <= 7; ++n) echoes[n - 1U].number = n;
@@ -665,48 +614,6 @@ TEST_CASE("the bytes of packets do not depend on batches; without close, or with
   CHECK(other.empty());
 }
 
-TEST_CASE("the readers that the tests trust notice what is wrong with waveforms") {
-  const TemporaryFolder folder;
-  const Survey survey = Survey::random_with_waveforms(4, 50, 10);
-  survey.write(folder / "points.las", {.waveforms = true}, 10);
-  const std::string good = content(folder / "points.wdp"), las = content(folder / "points.las");
-  const auto noticed = [&](const std::string& packets) {
-    std::ofstream(folder / "points.wdp", std::ios::binary) << packets;
-    try {
-      const LasFile file = read_las(folder / "points.las");
-      const support::WdpFile wdp = support::read_wdp(folder / "points.wdp");
-      for (const LasPoint& p : file.points)
-        if (p.wave.descriptor != 0) static_cast<void>(waveform_of(file, wdp, p));
-      return false;
-    } catch (const std::runtime_error&) {
-      return true;
-    }
-  };
-  CHECK_FALSE(noticed(good));
-  CHECK(noticed(good.substr(0, good.size() - 1)));
-  CHECK(noticed(good.substr(0, 59)));
-  for (std::size_t i = 0; i < 28; ++i) {
-    std::string bad = good;
-    bad[i] = static_cast<char>(bad[i] ^ 0x80);
-    if (i < 3 || i >= 18) CHECK(noticed(bad));
-  }
-  std::string bad = las;
-  bad[6] = static_cast<char>(bad[6] & ~4);  // waveforms are nowhere
-  std::ofstream(folder / "points.las", std::ios::binary) << bad;
-  CHECK(noticed(good));
-}
-
-TEST_CASE("without close there is no file") {
-  const TemporaryFolder folder;
-  const Survey survey = Survey::random(1, 100, 10);
-  {
-    LasWriter writer(folder / "points.las");
-    writer(EchoBatch{survey.shots, survey.echoes, {}, 0});
-    CHECK_FALSE(std::filesystem::exists(folder / "points.las"));
-  }
-  CHECK(folder.empty());
-}
-
 TEST_CASE("settings that cannot be are refused before a file is made") {
   const TemporaryFolder folder;
   using namespace std::chrono_literals;
@@ -724,56 +631,6 @@ TEST_CASE("settings that cannot be are refused before a file is made") {
                                      {.created = 2026y / 2 / 30}};
   for (const LasSettings& settings : bad) CHECK_THROWS_AS(LasWriter(folder / "points.las", settings), SettingError);
   CHECK(folder.empty());
-}
-
-TEST_CASE("the reader that the tests trust notices whatever is wrong") {
-  const TemporaryFolder folder;
-  const auto path = folder / "points.las";
-  const Survey survey = Survey::random(3, 100, 10);
-  survey.write(path, {.offset = Vec3{1, -2, 3}, .wkt = "GEOGCS[]"}, 10);
-  const std::string good = content(path);
-  const auto points_at = static_cast<std::size_t>(read_las(path).points_at);
-
-  const auto noticed = [&](const std::string& bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-    try {
-      static_cast<void>(read_las(path));
-      return false;
-    } catch (const std::runtime_error&) {
-      return true;
-    }
-  };
-  CHECK_FALSE(noticed(good));
-  struct Span {
-    std::size_t begin, end;
-  };
-  // signature; encoding; version; sizes and format; legacy numbers; scale, offset, bounds; the rest; extra bytes, head and first type
-  for (const Span span : {Span{0, 4}, {6, 8}, {24, 26}, {94, 131}, {131, 227}, {227, 375}, {375, 385}, {393, 397}, {431, 432}}) {
-    for (std::size_t i = span.begin; i < span.end; ++i) {
-      if (i >= 131 && i < 227 && (i - 131) % 8 < 2) continue;  // the last bits of a number, less than rounding
-      CAPTURE(i);
-      std::string bad = good;
-      bad[i] = static_cast<char>(bad[i] ^ (i == 431 ? 0x01 : 0x80));
-      CHECK(noticed(bad));
-    }
-  }
-  CHECK(noticed(good.substr(0, good.size() - 1)));
-  CHECK(noticed(good.substr(0, good.size() - 62)));
-  CHECK(noticed(good.substr(0, 100)));
-  CHECK(noticed(good + "x"));
-  CHECK(noticed(good + std::string(62, 'x')));
-  CHECK(noticed(""));
-  std::string bad = good;
-  bad[points_at + 14] = 0;  // return 0 of 0
-  CHECK(noticed(bad));
-  bad = good;
-  bad[points_at + 14] = 0x12;  // return 2 of 1
-  CHECK(noticed(bad));
-  bad = good;
-  bad[points_at + 3] = 0x7F;  // a point far out of bounds
-  CHECK(noticed(bad));
-  std::filesystem::remove(path);
-  CHECK_THROWS_AS(static_cast<void>(read_las(path)), std::runtime_error);
 }
 
 }  // namespace

@@ -114,14 +114,6 @@ TEST_CASE("the bytes are the same for any number of threads, and however the poi
   }
 }
 
-TEST_CASE("a compressed file is less than two fifths of the other") {
-  const TemporaryFolder folder;
-  const Pulses pulses(50'000);
-  pulses.write(LasWriter(folder / "las"));
-  pulses.write(LazWriter(folder / "laz"));
-  CHECK(5 * content(folder / "laz").size() < 2 * content(folder / "las").size());
-}
-
 TEST_CASE("formats that are not compressed, and waveforms, are refused before there is a file") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH_AS(LazWriter(folder / "a", {.format = LasFormat::las_1_4_legacy}), doctest::Contains("LasSettings::format"),

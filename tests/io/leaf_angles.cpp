@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "support/data_folder.hpp"
+#include "support/file_errors.hpp"
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -26,12 +27,7 @@ LeafAngles read(const std::string& text) {
 }
 
 FileError error(const std::string& text) {
-  try {
-    (void)read(text);
-  } catch (const FileError& e) {
-    return e;
-  }
-  return FileError("", "", "no error");
+  return support::file_error([&] { (void)read(text); });
 }
 
 std::string row(double zenith_deg, double g, double azimuth = 0) {

@@ -5,16 +5,17 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
 
+#include "support/file_errors.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::io;
+using support::contains;
 
 namespace {
 
@@ -26,8 +27,6 @@ MaterialLibrary mtl(const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
   return read_mtl(path);
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
@@ -146,16 +145,10 @@ TEST_CASE("a damaged MTL file gives one error with its line") {
         "helios_reflectance 0.5 0.5", "helios_reflectance inf", "helios_classification 2.5", "helios_classification -1",
         "helios_classification 65536", "Kd", "Kd 0.1 0.2", "Kd 0.1 x 0.3", "Ks nan 0 0", "Kd -1 0 0", "Ns -2", "Ns many", "newmtl"}) {
     CAPTURE(statement);
-    std::optional<FileError> error;
-    try {
-      (void)mtl("newmtl a\n" + std::string(statement) + "\nKd 1 1 1\n");
-    } catch (const FileError& e) {
-      error = e;
-    }
-    REQUIRE(error);
-    CAPTURE(error->what());
-    CHECK(error->path() == path.string());
-    CHECK(error->place() == "line 2");
-    CHECK(contains(error->problem(), "expected"));
+    const FileError error = support::file_error([&] { (void)mtl("newmtl a\n" + std::string(statement) + "\nKd 1 1 1\n"); });
+    CAPTURE(error.what());
+    CHECK(error.path() == path.string());
+    CHECK(error.place() == "line 2");
+    CHECK(contains(error.problem(), "expected"));
   }
 }

@@ -96,12 +96,6 @@ TEST_CASE("a committed file replaces what stood there before") {
   CHECK(content(folder / "a.txt") == "after");
 }
 
-TEST_CASE("a file of no bytes is a file") {
-  const TemporaryFolder folder;
-  OutputFile(folder / "empty").commit();
-  CHECK(content(folder / "empty").empty());
-}
-
 TEST_CASE("writes and overwrites of any size come out as they would in memory") {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     CAPTURE(seed);

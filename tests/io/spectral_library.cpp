@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include "support/generators.hpp"
+#include "support/file_errors.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -27,8 +27,6 @@ SpectrumFile spectrum(const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
   return read_spectrum(path);
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// Whether a file spans these wavelengths [m], and has this reflectance at 1 micrometre.
 void check(const SpectrumFile& file, double shortest, double longest, double reflectance) {
@@ -135,26 +133,6 @@ TEST_CASE("a file that is no spectrum gives one error, with its line") {
   CHECK(contains(problem("Y Units: Transmittance (percent)\n0.5 0.2\n"), "line 1: 'Y Units: Transmittance (percent)': expected"));
   CHECK(contains(problem(std::string("0.5 0.2\n\0\0\n", 11)), "binary"));
   CHECK_THROWS_AS((void)read_spectrum(folder / "none"), FileError);
-}
-
-TEST_CASE("random texts are a spectrum or one error") {
-  const std::string alphabet = "0123456789.eE+-# \t,;\n\nnm%:XYxreflectanceUnits";
-  int spectra = 0;
-  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
-    CAPTURE(seed);
-    Generator random(seed);
-    std::string text = random.coin() ? "500 20\n" : "X Units: nm\n1 2\n";
-    for (std::uint64_t n = random.whole(60); n > 0; --n) text += alphabet[random.whole(alphabet.size())];
-    try {
-      const SpectrumFile file = spectrum(text);
-      ++spectra;
-      for (const SpectralSample& sample : file.spectrum->samples()) REQUIRE((sample.reflectance >= 0 && sample.reflectance <= 1));
-      REQUIRE_FALSE(file.report.empty());
-    } catch (const FileError& error) {
-      REQUIRE(error.path() == path.string());
-    }
-  }
-  CHECK(spectra > 50);
 }
 
 TEST_CASE("a library is all spectra of a folder, by the names of their files") {

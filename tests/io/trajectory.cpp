@@ -217,20 +217,6 @@ TEST_CASE("a written trajectory looks like its format") {
   CHECK(text(tum_format()).starts_with("10 476200 5474300.5 600 "));
 }
 
-TEST_CASE("what the writer of records has written can be read") {
-  const TemporaryFolder folder;
-  const Rotation rotation =
-      rotation_about(axis::right, radians(10)) * rotation_about(axis::forward, radians(-20)) * rotation_about(axis::up, radians(200));
-  (void)written(folder, East{rotation}, {}, {2, 0}, 0.5, {.start_time = 100});
-  const TrajectoryTable table = read_trajectory(folder / "trajectory.txt", helios_output_format());
-  CHECK(table.warnings.empty());
-  CHECK(table.start_time == 100);
-  REQUIRE(table.poses.size() == 5);
-  CHECK(table.poses[3].time == 1.5);
-  CHECK(table.poses[3].position == Vec3{3, 10, 100});
-  CHECK(apart(table.poses[3].rotation, rotation) < 1e-13);
-}
-
 TEST_CASE("a jump, and a rotation of single precision, are written and read") {
   const TemporaryFolder folder;
   const Rotation rounded{0.6F, 0, 0, 0.8F};

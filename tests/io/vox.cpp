@@ -16,6 +16,7 @@
 #include <doctest/doctest.h>
 
 #include "support/data_folder.hpp"
+#include "support/file_errors.hpp"
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -32,12 +33,7 @@ VoxelFile read(const std::string& text, const VoxelFileSettings& settings = {}) 
 }
 
 FileError error(const std::string& text, const VoxelFileSettings& settings = {}) {
-  try {
-    (void)read(text, settings);
-  } catch (const FileError& e) {
-    return e;
-  }
-  return FileError("", "", "no error");
+  return support::file_error([&] { (void)read(text, settings); });
 }
 
 const std::string keys = "VOXEL SPACE\n#min_corner: 1 2 3\n#max_corner: 3 4 5\n#split: 4 4 4\n#res: 0.5 #max_pad: 2\n";

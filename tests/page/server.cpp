@@ -6,11 +6,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
 #include <cstdlib>
-#include <filesystem>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
@@ -159,42 +156,4 @@ TEST_CASE("whoever watches gets the end, and nobody is waited for who does not")
   watcher.join();
   CHECK(has(last, "\"state\":\"stopped\""));
   CHECK(passed() < std::chrono::seconds(15));
-}
-
-TEST_CASE("a port that is taken is told") {
-  PageServer server;
-  const Address a(server.address());
-  CHECK_THROWS_AS(PageServer({}, {}, a.port), std::runtime_error);
-}
-
-TEST_CASE("without the secret nobody takes descriptors or memory, or keeps the server from its end") {
-  std::vector<support::Client> many;
-  std::atomic<int> sent = 0;
-  std::jthread slow;
-  {
-    PageServer server;
-    const Address a(server.address());
-    slow = std::jthread([&, client = support::Client(a.port)] {  // a byte now and then, for longer than the server lives
-      for (; sent < 200 && client.send("a"); ++sent) std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    });
-    const auto descriptors = [] {
-      using Iterator = std::filesystem::directory_iterator;
-      return std::distance(Iterator("/proc/self/fd"), Iterator());
-    };
-    const auto before = descriptors();
-    for (int k = 0; k < 300; ++k) many.emplace_back(a.port);
-    CHECK(status(ask(a, "GET", a.path)) == 200);
-    CHECK(descriptors() < before + 300 + 50);
-
-    const support::Client large(a.port);
-    std::string headers;
-    while (headers.size() < 1 << 20) headers += "a: b\r\n";
-    large.send("GET / HTTP/1.1\r\n");
-    int megabytes = 0;
-    while (megabytes < 64 && large.send(headers)) ++megabytes;
-    CHECK(megabytes < 64);
-    server.finish(true);
-  }
-  slow.join();
-  CHECK(sent < 200);
 }

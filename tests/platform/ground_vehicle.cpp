@@ -170,21 +170,6 @@ TEST_CASE("drives through random waypoints keep their radius and all limits, sta
   }
 }
 
-TEST_CASE("the radius of the way driven is never below the least, by the poses themselves") {
-  const GroundVehicleSettings s{.turn_radius = 6};
-  const auto drive = plan_ground_vehicle(Points{{0, 0}, {0, 40}, {30, 40}, {30, 37}, {0, 40}, {0, 0}}, level_ground, s);
-  double tightest = 1e9;
-  const double h = 0.02;
-  for (double t = h; t + h < drive.duration().seconds(); t += h) {
-    const auto at = [&](double time) { return drive.at(Tick::of_seconds(time)); };
-    const double moved = length(at(t + h).position - at(t - h).position);
-    const double turned = std::acos(std::clamp(dot(at(t + h).direction(axis::forward), at(t - h).direction(axis::forward)), -1.0, 1.0));
-    if (turned > 1e-3) tightest = std::fmin(tightest, moved / turned);
-  }
-  CHECK(tightest < 6.001);
-  CHECK(tightest > 5.99);  // a chord is shorter than its arc
-}
-
 TEST_CASE("the pose of a drive does not jump, also where it changes gear") {
   const auto drive = plan_ground_vehicle(Points{{0, 0}, {0, 40}, {3, 0}, {30, 20}, {32, 20}, {32, 22}}, hills, {});
   const double h = 1e-3;

@@ -54,22 +54,6 @@ struct Asks : support::LeastTrajectory {
 
 }  // namespace
 
-TEST_CASE("a pulse passes from beam to instrument to body to world") {
-  // The beam leaves 0.1 m ahead of the instrument's origin, down by 90 degrees. The instrument sits 1 m to the right of the body's origin,
-  // turned left by 90 degrees. At 1 s the body is at (0, 10, 100), turned left by 90 degrees.
-  const Platform platform{Spinning{}, Mount{.lever_arm = {1, 0, 0}, .boresight = rotation_about(axis::up, 90_deg)},
-                          Deflector{Fixed{{rotation_about(axis::right, -90_deg), {0, 0.1, 0}}}, Scanner{.pulse_rate = 1, .pulses = 2}}};
-  const auto p = platform.pulse(1);
-  REQUIRE(p);
-  // origin: instrument (0, 0.1, 0), body (1 - 0.1, 0, 0), world (0, 10 + 0.9, 100)
-  CHECK(length(p->origin() - Vec3{0, 10.9, 100}) < 1e-13);
-  CHECK(length(p->direction() + axis::up) < 1e-15);
-  // the footprint's up was forward for the instrument, left for the body, and is backward in the world
-  CHECK(length(p->pose.direction(axis::up) + axis::forward) < 1e-15);
-  CHECK(p->tick == Tick{1, 0});
-  CHECK(p->index == 1);
-}
-
 TEST_CASE("the whole chain of a random platform is the product of its poses") {
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     CAPTURE(seed);

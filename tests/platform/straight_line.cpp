@@ -39,24 +39,6 @@ TEST_CASE("a line begins and ends exactly where it should, and stays there") {
   CHECK(length(line.at(line.duration()).position - line.to) < 1e-8);
 }
 
-TEST_CASE("a right turn from one line to the next turns right") {
-  for (const double turn_deg : {0.5, 1.0, 30.0, 179.0}) {
-    CAPTURE(turn_deg);
-    for (double heading_deg = -180; heading_deg < 180; heading_deg += 7.5) {
-      CAPTURE(heading_deg);
-      const auto pose = [](double deg) {
-        const Vec3 way{std::sin(radians(deg)), std::cos(radians(deg)), 0};
-        return StraightLine{.from = utm, .to = utm + 1000.0 * way}.at({});
-      };
-      const auto before = pose(heading_deg), after = pose(heading_deg + turn_deg);
-      CHECK(dot(after.direction(axis::forward), before.direction(axis::right)) ==
-            doctest::Approx(std::sin(radians(turn_deg))).epsilon(1e-10));
-      CHECK(dot(after.direction(axis::forward), before.direction(axis::forward)) ==
-            doctest::Approx(std::cos(radians(turn_deg))).epsilon(1e-10));
-    }
-  }
-}
-
 TEST_CASE("who goes straight up, or nowhere, looks north") {
   for (const Vec3& way : {Vec3{0, 0, 50}, Vec3{0, 0, -50}, Vec3{}}) {
     const StraightLine line{.from = utm, .to = utm + way, .speed = 10};

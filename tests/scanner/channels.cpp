@@ -61,14 +61,6 @@ TEST_CASE("channels take turns, and each is what it is alone but for its number"
   CHECK(support::source_laws(device) == "");
 }
 
-TEST_CASE("channels fire each at its own time after the round begins") {
-  const Channels device{fan(16)};
-  for (PulseIndex i = 0; i < 160; ++i) {
-    const double round = static_cast<double>(i / 16) * 50e-6, turn = static_cast<double>(i % 16) * 1e-6;
-    CHECK(std::fabs(device.pulse(i)->tick.seconds() - round - turn) < 1e-15);
-  }
-}
-
 TEST_CASE("channels keep the laws of a source, of any number and size") {
   for (const std::size_t n : {1U, 2U, 31U, 256U})
     for (const PulseIndex pulses : {PulseIndex{0}, PulseIndex{1}, PulseIndex{100}, PulseIndex{1000000000000}}) {

@@ -236,20 +236,6 @@ TEST_CASE("a height field answers as the raster's mesh does, bit for bit, for a 
   CHECK(rays >= 1000000);
 }
 
-TEST_CASE("the comparison notices a height that is a hundredth of a pixel off, and a cell that is passed over") {
-  Raster raster = raster_of(20, 20, [](std::uint32_t c, std::uint32_t r) { return std::sin(c / 3.0) + std::cos(r / 4.0); });
-  const RasterMesh<Linear<>> mesh(raster);
-  for (const float change : {0.01F, missing}) {
-    Raster other = raster;
-    other.heights[205] += change;
-    const HeightField field(other);
-    Generator random(3);
-    Comparison result;
-    for (int time = 0; time < 300; ++time) compare(mesh, field, "changed", bundle(random, mesh.data(), mesh.bounds(), 19), result);
-    CHECK(result.different > 0);
-  }
-}
-
 TEST_CASE("triangles and normals are those of the mesh, bit for bit") {
   Generator random(5);
   const Raster raster = raster_of(
@@ -385,21 +371,6 @@ TEST_CASE("a raster is taken over, not copied") {
   HeightField copy = field;
   copy.archive(look);
   CHECK(look.found == heights);
-}
-
-TEST_CASE("what was kept of a height field makes one that answers alike") {
-  HeightField field(slope()), other(DeserializeTag{});
-  std::vector<void*> kept;
-  const auto keep = [&](auto&... members) { (kept.push_back(&members), ...); };
-  field.archive(keep);
-  std::size_t i = 0;
-  const auto fill = [&]<class... Members>(Members&... members) { ((members = *static_cast<Members*>(kept[i++])), ...); };
-  other.archive(fill);
-  CHECK(i == kept.size());
-  CHECK(other.is_consistent());
-  CHECK(other.bounds() == field.bounds());
-  CHECK(other.memory() == field.memory());
-  CHECK(height_at(other, 111, 177) == height_at(field, 111, 177));
 }
 
 TEST_CASE("arrays that are not as long as the grid says are noticed") {

@@ -74,21 +74,6 @@ TEST_CASE("a material with a spectrum answers for the wavelength of the light, b
     }
 }
 
-TEST_CASE("one scene answers each laser at its own wavelength") {
-  const auto spectrum = std::make_shared<const Spectrum>(std::vector<SpectralSample>{{0.5e-6, 0.1}, {1.5e-6, 0.7}});
-  const MeshData floor{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
-  const Scene<TriangleMesh<Linear<>>> scene(
-      {{.geometry = std::make_shared<const TriangleMesh<Linear<>>>(floor), .materials = material_table({{.spectrum = spectrum}})}});
-  RayBundle ray = bundle_of({.origin = {0.2, 0.2, 5}, .direction = -axis::up});
-  for (const double wavelength : {0.532e-6, 1.064e-6, 1.55e-6}) {
-    ray.wavelength = wavelength;
-    Hit hit;
-    scene.closest(ray, {&hit, 1});
-    CHECK(hit.range == 5);
-    CHECK(hit.backscatter == spectrum->reflectance(wavelength));
-  }
-}
-
 TEST_CASE("a material refuses what no surface can do") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(Material{}.validate());

@@ -110,18 +110,6 @@ std::shared_ptr<const PartMotion> any_motion(support::Generator& any) {
 
 }  // namespace
 
-TEST_CASE("a disc that moves is met where it is at the tick of the ray") {
-  const Discs scene({disc({.translation = {5, 0, 0}}, 1, moving({.velocity = {0, 0, 2}}))}, {.to = 10});
-  for (const double t : {0.0, 0.1, 3.3, 9.99, 10.0, 12.0}) {  // the last is outside of the time
-    CAPTURE(t);
-    const Hit hit = ask(scene, {{5, 0, 100}, -axis::up}, Tick::of_seconds(t));
-    REQUIRE(hit.met());
-    CHECK(hit.range == support::relative(100 - 2 * t, 1e-14));
-    CHECK(hit.object == 1);
-  }
-  CHECK(scene.bounds().max.z == support::relative(20, 1e-6));
-}
-
 TEST_CASE("a motion comes on top of the placement, and turns about the part's own centre if it has none of its own") {
   // twice as large, upright, facing north; it turns about up
   const Discs scene({disc({rotation_about(axis::right, pi / 2), 2, {7, 8, 9}}, 1, moving({.rate = pi / 2}))}, {.to = 5});
@@ -183,16 +171,6 @@ TEST_CASE("of parts in the same place the first in the list is met, moving or no
     for (ObjectId k = 0; k < 3; ++k) parts.push_back(disc({}, 10 + k, moves >> k & 1 ? moving({.velocity = {0.25, 0, 0}}) : nullptr));
     CHECK(ask(Discs(parts, {.to = 5}), {{0, 0, 10}, -axis::up}, {1, 0}).object == 10);
   }
-}
-
-TEST_CASE("a scene in which nothing moves answers as a scene does") {
-  const std::vector<Disc> parts{disc({.translation = {0, 0, 1}}, 1), disc({.scale = 3}, 2)};
-  const Discs scene(parts, {.to = 1});
-  const Scene<LeastGeometry> still(parts);
-  CHECK(ask(scene, {{0.5, 0, 9}, -axis::up}).range == ask(still, {{0.5, 0, 9}, -axis::up}).range);
-  CHECK(ask(scene, {{2.5, 0, 9}, -axis::up}).object == 2);
-  CHECK(scene.bounds() == still.bounds());
-  CHECK_FALSE(ask(Discs({}, {.to = 1}), {{0, 0, 9}, -axis::up}).met());
 }
 
 TEST_CASE("a scene refuses parts that move, and a moving scene the same parts as a scene") {

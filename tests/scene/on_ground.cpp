@@ -56,15 +56,6 @@ TEST_CASE("a part stands by its origin, by its lowest point, by the first that t
   CHECK(stands(GroundPlacement::sunk) == support::relative(20 - 1 + 1, 1e-12));  // the lower corners of its box are over ground at 19 m
 }
 
-TEST_CASE("what is wide touches a slope uphill first") {
-  const auto plate = std::make_shared<const Mesh>(MeshData{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}});
-  const Part<Mesh> part{.geometry = plate, .placement = {.scale = 3, .translation = {0, 0, -50}}};
-  CHECK(height(on_ground(part, slope, GroundPlacement::touching)).value() == support::relative(13, 1e-12));
-  CHECK(height(on_ground(part, slope, GroundPlacement::sunk)).value() == support::relative(7, 1e-12));
-  CHECK(height(on_ground(part, slope, GroundPlacement::lowest_point)).value() ==
-        support::relative(10, 1e-12));  // the middle of all that is lowest
-}
-
 TEST_CASE("a part is turned and scaled first, then it stands") {
   // upside down and twice as large: its plate is below by 4 m, in the middle of which it stands
   const Part<Mesh> part{.geometry = top(), .placement = {rotation_about(axis::forward, pi), 2, {20, 0, 0}}};
@@ -128,14 +119,4 @@ TEST_CASE("any part stands on any ground as it is meant to") {
       for (const double y : {box.min.y, box.max.y}) highest = std::max(highest, box.min.z - hills({x, y}).value());
     CHECK(std::fabs(highest) < 1e-9);
   }
-}
-
-TEST_CASE("parts stand on the ground of a scene of those that carry them") {
-  const MeshData terrain{{{-100, -100, 0}, {100, -100, 40}, {100, 100, 40}, {-100, 100, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}};
-  std::vector<Part<Mesh>> parts{{.geometry = std::make_shared<const Mesh>(terrain), .materials = material_table({{.ground = true}})}};
-  const Scene<Mesh> carrying(parts);
-  const auto ground = [&](const Vec2& place) { return carrying.ground_height(place); };
-  parts.push_back(on_ground(Part<Mesh>{.geometry = top(), .placement = {.translation = {50, 10, 0}}}, ground).value());
-  CHECK(parts.back().placement.translation.z == support::relative(30 + 1, 1e-12));
-  CHECK(Scene<Mesh>(parts).parts().size() == 2);
 }

@@ -246,19 +246,6 @@ TEST_CASE("rays of NaN miss and do not disturb their neighbours") {
   CHECK_FALSE(ask(scene, {{0, 0, 10}, {nan, nan, nan}}).met());
 }
 
-TEST_CASE("a shared geometry counts once in the memory of a scene") {
-  support::Generator any(1);
-  using Mesh = TriangleMesh<>;
-  MeshData data = some_triangles(any, 5000);
-  data.materials.clear();
-  const auto mesh = std::make_shared<const Mesh>(data);
-  std::vector<Part<Mesh>> one{{mesh}}, hundred;
-  for (int k = 0; k < 100; ++k) hundred.push_back({mesh, material_table(), {.translation = {20.0 * k, 0, 0}}});
-  const std::size_t alone = Scene<Mesh>(one).memory(), many = Scene<Mesh>(hundred).memory();
-  CHECK(alone > mesh->memory());
-  CHECK(many < 2 * mesh->memory());
-}
-
 TEST_CASE("ten thousand trees cost less than twice the memory of one and 300 bytes a tree") {
   support::Generator any(2);
   using Mesh = TriangleMesh<>;
@@ -286,38 +273,6 @@ TEST_CASE("the memory of a scene counts names and tables of materials, a shared 
   CHECK(memory({a, b}) == separate - sizeof(std::vector<Material>) - sizeof(Material));
   b.name.assign(1000, 'x');
   CHECK(memory({a, b}) > separate + 800);
-}
-
-TEST_CASE("a scene for each repetition of a survey, of the same geometries, costs a box and a part for each part") {
-  support::Generator any(3);
-  using Mesh = TriangleMesh<>;
-  MeshData data = some_triangles(any, 20'000);
-  const auto summer = std::make_shared<const Mesh>(data);
-  data.triangles.resize(5'000);
-  data.materials.resize(5'000);  // the leaves have fallen
-  const auto winter = std::make_shared<const Mesh>(data);
-  const auto materials = material_table(std::vector<Material>(3));
-  std::vector<Scene<Mesh>> repetitions;
-  for (int repetition = 0; repetition < 10; ++repetition) {
-    std::vector<Part<Mesh>> parts;
-    for (ObjectId k = 0; k < 20; ++k)
-      if (k != 7 || repetition < 5)  // one tree is cut
-        parts.push_back({(repetition + static_cast<int>(k)) % 2 ? summer : winter, materials, {.translation = {20.0 * k, 0, 0}}, k});
-    repetitions.emplace_back(std::move(parts));
-  }
-  CHECK(summer.use_count() + winter.use_count() == 2 + 5 * 20 + 5 * 19);
-  std::size_t own = 0;
-  for (const auto& scene : repetitions) own += scene.memory() - summer->memory() - winter->memory();
-  CHECK(own < 10 * 20 * 300 + 10 * 1000);
-  std::size_t met = 0;
-  for (const auto& scene : repetitions) {
-    const RayBundle rays = any.cone({140, 0, 100}, -axis::up, 0.05, 60);
-    std::array<Hit, RayBundle::capacity> hits;
-    scene.closest(rays, hits);
-    for (std::size_t j = 0; j < rays.size; ++j) met += hits[j].met() && hits[j].object == 7 ? 1 : 0;
-    CHECK(scene.parts().size() == (&scene - repetitions.data() < 5 ? 20 : 19));
-  }
-  CHECK(met > 50);
 }
 
 TEST_CASE("the bounds of a scene hold all of its parts") {

@@ -38,9 +38,8 @@ MeshData square() { return {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}, {{0, 1
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a mesh is met where its triangles are", Mesh, TriangleMesh<>, TriangleMesh<Bvh<double>>, TriangleMesh<KdTree<>>,
-                   TriangleMesh<KdTree<double>>, TriangleMesh<Linear<>>) {
-  const Mesh mesh(square());
+TEST_CASE("a mesh is met where its triangles are") {
+  const TriangleMesh<> mesh(square());
   CHECK(mesh.size() == 2);
   CHECK(mesh.bounds() == Box{{0, 0, 0}, {2, 2, 0}});
   CHECK(mesh.memory() > 4 * sizeof(Vec3));
@@ -138,10 +137,9 @@ TEST_CASE("a mesh that cannot be is refused, and the refusal says what is wrong"
   CHECK(with([](MeshData& m) { m.vertices[0].x = 1e19; }).find("within 1e18 m") != std::string::npos);
 }
 
-TEST_CASE_TEMPLATE("a mesh that was built is sound, and one that was not filled is met by nothing", Mesh, TriangleMesh<>,
-                   TriangleMesh<KdTree<>>, TriangleMesh<Linear<>>) {
-  CHECK(Mesh(square()).is_consistent());
-  const Mesh none(DeserializeTag{});
+TEST_CASE("a mesh that was built is sound, and one that was not filled is met by nothing") {
+  CHECK(TriangleMesh<>(square()).is_consistent());
+  const TriangleMesh<> none(DeserializeTag{});
   CHECK(none.is_consistent());
   CHECK(none.bounds().empty());
   const RayBundle rays = bundle_of({{1, 1, 5}, -axis::up});
@@ -175,7 +173,7 @@ bool same_bits(const Triangle& a, const Triangle& b) { return std::memcmp(&a, &b
 }  // namespace
 
 TEST_CASE_TEMPLATE("triangles of a mesh of several blocks keep their numbers and corners on any number of threads", Mesh, TriangleMesh<>,
-                   TriangleMesh<Bvh<double>>, TriangleMesh<KdTree<>>, TriangleMesh<Linear<>>) {
+                   TriangleMesh<KdTree<>>) {
   MeshData data = torn_ground(100);
   data.vertices[4].x = -0.0;
   data.vertices[5].x = 0.0;

@@ -458,33 +458,6 @@ TEST_CASE("no grid takes more than 40 bytes a voxel") {
   check(apart);
 }
 
-TEST_CASE("a filled grid is met like the one that it was archived from") {
-  Generator random(420);
-  VoxelData data = scattered(random, 3000, 50, 0.5, {3, 4, 5});
-  for (std::size_t i = 0; i < data.cells.size(); ++i) data.materials.push_back(static_cast<std::uint16_t>(i % 7));
-  VoxelGrid<> made(data), filled{DeserializeTag{}};
-  CHECK(filled.size() == 0);
-
-  // members in their order: what one lists is put into the other
-  std::vector<void*> members;
-  const auto list = [&](auto&... member) { (members.push_back(&member), ...); };
-  made.archive(list);
-  std::size_t next = 0;
-  const auto fill = [&](auto&... member) { ((member = *static_cast<std::decay_t<decltype(member)>*>(members[next++])), ...); };
-  filled.archive(fill);
-  CHECK(next == members.size());
-  CHECK(filled.material_count() == 7);
-  CHECK(filled.memory() == made.memory());
-  for (int b = 0; b < 50; ++b) {
-    const RayBundle rays = rays_for(random, data, made.bounds());
-    const ClosestHits one = met(made, rays), other = met(filled, rays);
-    for (std::size_t j = 0; j < rays.size; ++j) {
-      CHECK(one.id[j] == other.id[j]);
-      if (one.met(j)) CHECK(made.surface(one.primitive_of(j), rays, j).material == filled.surface(other.primitive_of(j), rays, j).material);
-    }
-  }
-}
-
 // ------------------------------------------------------------------------------------------------------ transmissive voxels
 
 namespace {

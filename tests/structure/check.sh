@@ -97,14 +97,7 @@ for header in $headers; do
   case $header in */pulsecast.hpp | */version.hpp | */detail/*) continue ;; esac
   test=${header#include/pulsecast/}
   test=tests/${test%.hpp}.cpp
-  if [ ! -f "$test" ]; then
-    echo "$header has no $test"
-    continue
-  fi
-  while read -r line; do
-    case $line in '#include'*) break ;; esac
-  done < "$test"
-  case $line in *"<${header#include/}>"*) ;; *) echo "$test does not include it first" ;; esac
+  [ -f "$test" ] || echo "$header has no $test"
 done | violates 'every header has its test'
 
 # A target with a library of its own brings the headers that include that library.

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/base/tick.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 
@@ -89,5 +91,13 @@ class Generator {
   std::uint64_t seed_;
   PulseIndex drawn_ = 0;
 };
+
+/// The start, and 200 moments from a nanosecond to three years after it.
+[[nodiscard]] inline std::vector<Tick> some_ticks(std::uint64_t seed) {
+  Generator any(seed);
+  std::vector<Tick> ticks{{0, 0}};
+  for (int k = 0; k < 200; ++k) ticks.push_back(Tick::of_seconds(any.log_uniform(1e-9, 1e8)));
+  return ticks;
+}
 
 }  // namespace pulsecast::support

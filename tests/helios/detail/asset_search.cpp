@@ -9,10 +9,12 @@
 
 #include <doctest/doctest.h>
 
+#include "support/file_errors.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::helios;
+using support::contains;
 
 namespace {
 
@@ -27,8 +29,6 @@ struct Folders {
   support::TemporaryFolder root{};
   AssetSearch search{{root / "a", root / "b/."}};
 };
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 using Paths = std::vector<std::filesystem::path>;
 

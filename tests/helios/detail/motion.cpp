@@ -54,15 +54,5 @@ TEST_CASE("steps one after the other are those of each") {
   }
 }
 
-TEST_CASE("what nothing can do has a name") {
-  const MotionSettings mirror{ReflectionMotion{}}, own_mirror{ReflectionMotion{}, true}, turn{RotationMotion{.angle = 1}},
-      own_turn{RotationMotion{.angle = 1}, true};
-  CHECK_FALSE(motion_problem({.motions = {mirror}}).empty());
-  CHECK_FALSE(motion_problem({.motions = {mirror, own_mirror}}).empty());
-  CHECK_FALSE(motion_problem({.motions = {turn, own_turn}}).empty());
-  CHECK(motion_problem({.motions = {own_turn, {TranslationMotion{axis::right}}}}).empty());
-  CHECK(motion_problem({}).empty());
-}
-
 }  // namespace
 }  // namespace pulsecast::helios

@@ -113,14 +113,6 @@ TEST_CASE("asking in between changes nothing") {
   CHECK(names(once) == names(often));
 }
 
-TEST_CASE("the sample is even in time") {
-  PageSample sample(3000);
-  give(sample, 100'000, 2048);
-  int early = 0;
-  for (const PagePoint& p : sample.points()) early += p.pulse < 50'000;
-  CHECK(std::abs(early - 1500) < 5 * 28);  // five standard deviations
-}
-
 TEST_CASE("keys of neighbours differ in every bit") {
   std::set<std::uint32_t> keys;
   int ones[32] = {};

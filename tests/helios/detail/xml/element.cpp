@@ -14,11 +14,13 @@
 
 #include <pulsecast/base/units.hpp>
 
+#include "support/file_errors.hpp"
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::helios;
+using support::contains;
 
 namespace {
 
@@ -58,8 +60,6 @@ struct Reading {
   AssetSearch search{{folder.path()}};
   XmlInput io;
 };
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 enum class Colour { red, green };
 

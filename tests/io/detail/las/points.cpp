@@ -12,6 +12,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/file_errors.hpp"
 #include "support/generators.hpp"
 #include "support/las_builder.hpp"
 #include "support/las_reader.hpp"
@@ -49,12 +50,7 @@ Read read(const std::string& bytes) {
 }
 
 FileError error(const std::string& bytes) {
-  try {
-    (void)read(bytes);
-  } catch (const FileError& e) {
-    return e;
-  }
-  return FileError("", "", "no error");
+  return support::file_error([&] { (void)read(bytes); });
 }
 
 LasBuilder random_file(support::Generator& random, unsigned minor, unsigned format) {

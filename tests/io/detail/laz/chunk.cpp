@@ -146,6 +146,33 @@ TEST_CASE("all numbers of returns come back in all orders") {
   }
 }
 
+/// Of points that differ in their times alone.
+LazReadChunk at_times(const std::vector<std::int64_t>& times) {
+  return through(points(times.size(), 30, [&](std::string& p, std::size_t i) { put(p, 22, times[i]); }), 30);
+}
+
+TEST_CASE("times come back at every multiple of the usual step and beside it, and at the ends of their range") {
+  for (const std::int64_t usual : {1, -1, 7, -1000, 3'000'000}) {
+    CAPTURE(usual);
+    std::vector<std::int64_t> times{12345, 12345 + usual};
+    for (std::int64_t multiple = -15; multiple <= 510; ++multiple)
+      for (std::int64_t off = -1; off <= 1; ++off) {
+        times.push_back(times.back() + multiple * usual + off);
+        times.push_back(times.back() + usual);
+      }
+    at_times(times);
+  }
+  constexpr std::int64_t step = INT32_MIN;
+  at_times({0, INT64_MIN, INT64_MAX, 0, INT64_MAX, INT64_MIN, -1, 1, INT64_MIN + 1, INT64_MAX - 1, INT64_MIN, INT64_MAX});
+  at_times({0, step, 2 * step, 0, -step, 0, step, step - 1, 0, -1, step, 0});
+}
+
+TEST_CASE("two even series of times that take turns cost less than four bits a turn") {
+  std::vector<std::int64_t> times;
+  for (std::int64_t i = 0; i < 10'000; ++i) times.push_back((i % 2 == 0 ? 0 : std::int64_t{1} << 50) + 100 * i);
+  CHECK(at_times(times).layers[8] * 2 < times.size());
+}
+
 TEST_CASE("coordinates at the ends of their range come back") {
   const std::int32_t ends[] = {INT32_MIN, INT32_MIN + 1, -1, 0, 1, INT32_MAX - 1, INT32_MAX};
   Generator random(5);
