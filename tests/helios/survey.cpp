@@ -237,7 +237,8 @@ TEST_CASE("a multicopter that hovers before, between and after ways looks along 
   CHECK(length(looks(0) - axis::right) < 1e-9);
   CHECK(length(looks(2) + axis::forward) < 1e-9);
   CHECK(LegPaths(s, flat, options)[2].duration == 0);
-  s.legs[0].platform.yaw_at_departure = radians(30), s.legs[2].platform.yaw_at_departure = radians(0);
+  s.legs[0].platform.yaw_at_departure = radians(30);
+  s.legs[2].platform.yaw_at_departure = radians(0);
   CHECK(length(looks(0) - rotation_about(axis::up, radians(30)) * axis::forward) < 1e-9);
   CHECK(length(looks(1) - rotation_about(axis::up, radians(30)) * axis::forward) < 1e-9);  // it turns as it begins
   CHECK(length(looks(2) - axis::forward) < 1e-9);
@@ -258,7 +259,8 @@ TEST_CASE("a flight of smooth turns goes from place to place, however often its 
     CAPTURE(k);
     CHECK(paths[k].duration > 1);
     CHECK(std::fabs(paths[k].path.start.seconds() - time) < 1e-6);
-    way += length(places[k + 1] - places[k]), time += paths[k].duration;
+    way += length(places[k + 1] - places[k]);
+    time += paths[k].duration;
     double nearest = 1e9;  // to where the leg begins, until it begins
     const double since = k > 0 ? paths[k - 1].duration : 0;
     for (double t = -since; t <= 0; t += 0.02)
@@ -446,7 +448,10 @@ TEST_CASE("noise of the platform is reported alone, as the settings say, and can
     const auto p = compiled.source.pulse(i);
     CHECK(p->pose.position == Vec3(1, 2, 3));
     const Vec3 off = p->reported.value().position - p->pose.position;
-    sum += off.x, squares += off.x * off.x, least = std::min(least, off.y), most = std::max(most, off.y);
+    sum += off.x;
+    squares += off.x * off.x;
+    least = std::min(least, off.y);
+    most = std::max(most, off.y);
     CHECK(off.z == 2);
   }
   CHECK(std::fabs(sum / 10'000) < 0.004);

@@ -484,7 +484,8 @@ TEST_CASE("a file that is cut anywhere is refused, and libtiff prints nothing") 
     CHECK(refused > 100);
     CHECK(printed == 0);
   }
-  TIFFSetErrorHandler(errors), TIFFSetWarningHandler(warnings);
+  TIFFSetErrorHandler(errors);
+  TIFFSetWarningHandler(warnings);
   keep(file.path, "");
   CHECK(contains(file.refusal_of(), "is empty"));
   keep(file.path, "x y z\n1 2 3\n");

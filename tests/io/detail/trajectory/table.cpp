@@ -333,9 +333,14 @@ TEST_CASE("impossible formats are refused") {
     CAPTURE(name);
     refused([&](TrajectoryFormat& f) { f.columns[4] = name; });
   }
-  refused([](TrajectoryFormat& f) { f.columns[4] = "Roll [deg]", f.separator = ' '; });
+  refused([](TrajectoryFormat& f) {
+    f.columns[4] = "Roll [deg]";
+    f.separator = ' ';
+  });
   TrajectoryFormat format;
-  format.columns[4] = "rol_deg", format.left_out = {"rol_deg"}, format.columns[5] = "Roll [deg]";
+  format.columns[4] = "rol_deg";
+  format.left_out = {"rol_deg"};
+  format.columns[5] = "Roll [deg]";
   CHECK_NOTHROW(format.validate());
 }
 
