@@ -56,7 +56,7 @@ found() {
 }
 found 'GLM is named in base/vector.hpp only' '<glm/|glm::' 'base/vector\.hpp'
 found 'threads live in run.hpp and base/parallel.hpp only' \
-      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel|page/(server|detail/local_server)|python/bind)\.hpp'
+      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel|page/(server|detail/local_server)|python/detail/interrupt_watch)\.hpp'
 found 'files are for the rooms beside the core' '#include <(fstream|filesystem|cstdio|stdio\.h)>' '(io|helios|mpi|page|python)/[^:]*'
 found 'degrees and nanoseconds are for the rooms beside the core' '[a-z]_(deg|ns)\>[^(]*[;=]' '(io|helios|mpi|page|python)/[^:]*|base/units\.hpp'
 found 'the library never prints and never exits' '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('
