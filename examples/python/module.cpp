@@ -142,15 +142,7 @@ py::array legs_of(const Simulation& simulation) {
   return rows.take();
 }
 
-}  // namespace
-
-PYBIND11_MODULE(_core, m) {
-  m.attr("__version__") = PULSECAST_VERSION;
-  python::bind_common(m);
-  bind_settings(m);
-  PYBIND11_NUMPY_DTYPE(PoseRow, time, x, y, z, roll, pitch, yaw, leg);
-  PYBIND11_NUMPY_DTYPE(LegRow, number, active, start, duration, pulse_rate, first, end);
-
+void bind_documents(py::module_& m) {
   m.def(
       "read_survey",
       [](const std::filesystem::path& path, const Paths& assets) {
@@ -174,7 +166,9 @@ PYBIND11_MODULE(_core, m) {
         return to_python(document);
       },
       "path"_a, "assets"_a = Paths{}, "Reads an XML document of scanners, platforms and scenes: a dict of three lists of settings.");
+}
 
+void bind_mesh(py::module_& m) {
   py::class_<Simulation::Mesh>(m, "Mesh", "Triangles that stand in the scene beside the parts that the survey names.")
       .def(py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
            "ground"_a = false,
@@ -185,7 +179,11 @@ PYBIND11_MODULE(_core, m) {
       .def("__repr__", [](const Simulation::Mesh& mesh) {
         return "<Mesh of " + std::to_string(mesh.data.triangles.size()) + " triangles, object " + std::to_string(mesh.object) + '>';
       });
+}
 
+void bind_simulation(py::module_& m) {
+  PYBIND11_NUMPY_DTYPE(PoseRow, time, x, y, z, roll, pitch, yaw, leg);
+  PYBIND11_NUMPY_DTYPE(LegRow, number, active, start, duration, pulse_rate, first, end);
   py::class_<Simulation> simulation(m, "Simulation", "A survey with its scene loaded and its legs planned, ready to run.");
   simulation
       .def(py::init(&simulation_of), "survey"_a, py::kw_only(), "assets"_a = Paths{}, "meshes"_a = std::vector<Simulation::Mesh>{},
@@ -227,4 +225,15 @@ PYBIND11_MODULE(_core, m) {
   python::bind_run(simulation, [](const Simulation& s) {
     return [&s](const RunOptions& options, const auto& sink) { return s.run(options, [&](const EchoBatch& batch) { sink(batch); }); };
   });
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_core, m) {
+  m.attr("__version__") = PULSECAST_VERSION;
+  python::bind_common(m);
+  bind_settings(m);
+  bind_documents(m);
+  bind_mesh(m);
+  bind_simulation(m);
 }

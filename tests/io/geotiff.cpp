@@ -15,6 +15,8 @@
 #include <tuple>
 #include <vector>
 
+#include <pulsecast/scene/height_field.hpp>
+
 #include "support/data_folder.hpp"
 #include "support/file_errors.hpp"
 #include "support/generators.hpp"

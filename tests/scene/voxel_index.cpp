@@ -11,6 +11,8 @@
 #include <set>
 #include <vector>
 
+#include <pulsecast/scene/voxel_grid.hpp>
+
 #include "support/generators.hpp"
 
 using namespace pulsecast;

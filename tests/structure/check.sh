@@ -56,7 +56,7 @@ found() {
 }
 found 'GLM is named in base/vector.hpp only' '<glm/|glm::' 'base/vector\.hpp'
 found 'threads live in run.hpp and base/parallel.hpp only' \
-      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel|page/(server|detail/local_server)|python/bind)\.hpp'
+      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel|page/(server|detail/local_server)|python/detail/interrupt_watch)\.hpp'
 found 'files are for the rooms beside the core' '#include <(fstream|filesystem|cstdio|stdio\.h)>' '(io|helios|mpi|page|python)/[^:]*'
 found 'degrees and nanoseconds are for the rooms beside the core' '[a-z]_(deg|ns)\>[^(]*[;=]' '(io|helios|mpi|page|python)/[^:]*|base/units\.hpp'
 found 'the library never prints and never exits' '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('
@@ -66,6 +66,55 @@ found 'a header begins with #pragma once' '#(ifndef|define) [A-Z_]*_(H|HPP)_?$'
 
 # shellcheck disable=SC2086
 grep -L '^#pragma once$' $headers | violates 'a header begins with #pragma once'
+
+# shellcheck disable=SC2086
+awk 'FNR == 351 { print FILENAME }' $headers | violates 'a header has at most 350 lines'
+
+# A function begins with its statement, as clang-format sets it: at the line after the end of another. A body ends with its closing brace.
+# The test of a packet of triangles is one loop over lanes, which parts would slow down.
+find include examples bench tests/support -name '*.[ch]pp' -o -name '*.js' | sort | xargs awk -v limit=60 '
+  FNR == 1 { depth = 0; statement = raw = ""; split("", begin); split("", name) }
+  {
+    line = $0
+    if (raw != "") {  # in a raw string
+      at = index(line, raw)
+      if (at == 0) next
+      line = "\"\"" substr(line, at + length(raw))
+      raw = ""
+    }
+    gsub(/\\./, "", line)
+    gsub(FILENAME ~ /js$/ ? "'"'[^']*'"'" : "'"'[^']'"'", "0", line)
+    if (match(line, /R"[^(]*\(/)) {
+      end = ")" substr(line, RSTART + 2, RLENGTH - 3) "\""
+      if (index(line, end) == 0) raw = end
+      line = substr(line, 1, RSTART - 1) "0" (raw == "" ? substr(line, index(line, end) + length(end)) : "")
+    }
+    gsub(/"[^"]*"/, "0", line)
+    sub(/ *\/\/.*/, "", line)
+    sub(/^ +/, "", line)
+    if (line == "" || line ~ /^#|^(public|private|protected):$/) { statement = ""; next }
+    if (statement == "") first = FNR
+    statement = statement line " "
+    while (gsub(/{[^{}]*}/, "", line)) continue
+    closed = gsub(/}/, "}", line)
+    opened = gsub(/{/, "{", line)
+    for (d = depth; d > depth - closed; --d)
+      if (d in begin) {
+        if (name[d] != "" && FNR - begin[d] >= limit) print FILENAME ":" begin[d] ": " FNR - begin[d] + 1 " lines: " name[d]
+        delete begin[d]
+      }
+    depth += opened - closed
+    if (line ~ /{$/) {
+      sub(/^} */, "", statement)
+      begin[depth] = first
+      name[depth] = statement
+      if (statement !~ /\(/ || statement ~ /[=({,] *{ $/ || statement ~ /^(template <.*> )?(struct|class|union|enum) / ||
+          statement ~ /^(if|for|while|switch|do|else|catch|try|namespace|case|return) /) name[depth] = ""
+      sub(/ {.*/, "", name[depth])
+    }
+    if (line ~ /[;{}]$/) statement = ""
+  }' | grep -v '^include/pulsecast/geometry/triangle.hpp:.* void intersect(const TrianglePacket&' |
+  violates 'a function has at most 60 lines'
 
 # shellcheck disable=SC2086
 awk 'FNR <= 3 && /SPDX-FileCopyrightText: / { holder[FILENAME] = 1 }

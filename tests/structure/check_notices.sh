@@ -53,6 +53,19 @@ notices 'the library never prints and never exits' "echo 'inline void f() { std:
 notices 'random numbers come from base/random.hpp only' "$add #include <random>\" include/pulsecast/io/xyz.hpp"
 notices 'concepts, never enable_if' "echo 'template <class T, class = std::enable_if_t<true>> struct A;' >> include/pulsecast/echo.hpp"
 notices 'a header begins with #pragma once' 'sed -i "/^#pragma once/d" include/pulsecast/echo.hpp'
+notices 'a header has at most 350 lines' 'seq 351 | sed "s|^|// |" >> include/pulsecast/echo.hpp'
+# long FUNCTION: one of 61 lines
+long() {
+  echo "$1 {"
+  seq 59 | sed 's/.*/  int a{0}, b = "}"[0];  \/\/ }/'
+  echo '}'
+}
+short='a function has at most 60 lines'
+notices "$short" "long 'inline int f()' >> include/pulsecast/echo.hpp"
+notices "$short" "long 'template <class T> inline T intersect(T t)' >> include/pulsecast/geometry/triangle.hpp"
+notices "$short" "long 'A::A() : a_{1}, b_(2)' >> examples/embed.cpp"
+notices "$short" "long 'auto f = [](int a) noexcept -> int' >> tests/support/las_reader.hpp"
+notices "$short" "long 'function f(a)' >> include/pulsecast/page/web/panel.js"
 notices 'a file begins with two SPDX lines' 'sed -i 2d tests/base/frame.cpp'
 notices 'a file begins with two SPDX lines' 'sed -i 2d include/pulsecast/page/web/page.css'
 notices 'no statements joined by commas' "echo 'inline void f(int& x, int& y) { x = 1, y = 2; }' >> include/pulsecast/echo.hpp"

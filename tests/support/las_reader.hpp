@@ -119,122 +119,158 @@ inline void las_expect(bool condition, const std::string& what) {
   return input.short_real(field.offset);
 }
 
-/// Reads a LAS file, version 1.4 with point format 1, 4, 6 or 9 or version 1.0 with point format 1, and checks all that it says twice:
-/// sizes against the file's length, numbers and bounds in the header against the points, return numbers against their count. Throws
-/// `std::runtime_error` at the first thing that is not so. Written from the ASPRS LAS Specification 1.4 R15; shares nothing with the
-/// writer.
-[[nodiscard]] inline LasFile read_las(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  detail::las_expect(stream.good(), "cannot be opened");
-  const detail::LasInput in(std::string(std::istreambuf_iterator<char>(stream), {}));
-  using detail::las_expect;
+namespace detail {
 
-  LasFile file;
-  las_expect(in.bytes(0, 4) == "LASF", "signature");
-  file.minor = static_cast<unsigned>(in.whole(25, 1));
-  file.format = static_cast<unsigned>(in.whole(104, 1));
-  las_expect(in.whole(24, 1) == 1 && (file.minor == 0 || file.minor == 4), "version");
-  las_expect(in.whole(94, 2) == (file.minor == 0 ? 227 : 375), "header size");
-  las_expect(file.format == 1 || (file.minor == 4 && (file.format == 4 || file.format == 6 || file.format == 9)), "point format");
-  const bool old = file.format < 6, waves = file.format == 4 || file.format == 9;  // of the format's points
-  file.global_encoding = static_cast<unsigned>(in.whole(6, 2));
-  las_expect((file.global_encoding & ~(waves ? 21U : 17U)) == 0, "global encoding claims what is not there");
-  las_expect(!waves || (file.global_encoding & 4U) != 0, "waveforms are neither here nor there");
-  las_expect(file.minor == 4 || in.whole(4, 4) == 0, "reserved bytes");
-  file.system = in.text(26, 32);
-  file.software = in.text(58, 32);
-  file.day = static_cast<unsigned>(in.whole(90, 2));
-  file.year = static_cast<unsigned>(in.whole(92, 2));
-  for (std::size_t at = 107; !old && at < 131; at += 4) las_expect(in.whole(at, 4) == 0, "legacy numbers are not zero");
-  if (file.minor == 4)
-    las_expect(in.whole(227, 8) == 0 && in.whole(235, 8) == 0 && in.whole(243, 4) == 0, "waveforms inside, or extended records");
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    file.scale[axis] = in.real(131 + 8 * axis);
-    file.offset[axis] = in.real(155 + 8 * axis);
-    file.max[axis] = in.real(179 + 16 * axis);
-    file.min[axis] = in.real(187 + 16 * axis);
-    las_expect(file.scale[axis] > 0, "scale");
+/// Reader of a LAS file from beginning to end.
+class LasReader {
+ public:
+  explicit LasReader(std::string bytes) : in_(std::move(bytes)) {}
+
+  [[nodiscard]] LasFile read() {
+    read_header();
+    record_ = in_.whole(105, 2);
+    standard_ = (old_ ? 28 : 30) + std::size_t{waves_ ? 29U : 0U};
+    expected_record_ = standard_;
+    at_ = file_.minor == 0 ? 227 : 375;
+    read_records();
+    check_beginning();
+    for (; at_ < in_.size(); at_ += record_) read_point();
+    check_counts();
+    check_bounds();
+    return std::move(file_);
   }
 
-  const std::size_t record = in.whole(105, 2);
-  const std::size_t standard = (old ? 28 : 30) + std::size_t{waves ? 29U : 0U};
-  std::size_t at = file.minor == 0 ? 227 : 375, expected_record = standard;
-  for (std::uint64_t i = in.whole(100, 4); i > 0; --i) {
-    const std::string user = in.text(at + 2, 16);
-    const std::uint64_t id = in.whole(at + 18, 2);
-    const std::size_t length = in.whole(at + 20, 2), body = at + 54;
-    las_expect(in.whole(at, 2) == (file.minor == 0 ? 0xAABB : 0), "record signature, or reserved bytes");
-    if (user == "LASF_Projection" && id == 2112) {
-      file.wkt = in.bytes(body, length);
-      las_expect(!file.wkt.empty() && file.wkt.back() == '\0', "the WKT has no end");
-      file.wkt.pop_back();
-    } else if (user == "LASF_Projection" && id == 34735) {
-      las_expect(length % 8 == 0 && length >= 8 && in.whole(body, 2) == 1 && in.whole(body + 6, 2) == length / 8 - 1, "GeoTIFF keys");
-      for (std::size_t k = body + 8; k < body + length; k += 8) {
-        las_expect(in.whole(k + 2, 2) == 0 && in.whole(k + 4, 2) == 1, "a GeoTIFF key that is not read here");
-        las_expect(k == body + 8 || in.whole(k, 2) > in.whole(k - 8, 2), "GeoTIFF keys are not in order");
-        if (in.whole(k, 2) == 3072) file.epsg = static_cast<unsigned>(in.whole(k + 6, 2));
-        if (in.whole(k, 2) == 1024) las_expect(in.whole(k + 6, 2) == 1, "not a projected reference system");
-        if (in.whole(k, 2) == 3076) las_expect(in.whole(k + 6, 2) == 9001, "not in metres");
-      }
-    } else if (user == "LASF_Spec" && id == 4) {
-      las_expect(length % 192 == 0, "extra bytes record");
-      for (std::size_t d = body; d < body + length; d += 192) {
-        constexpr std::array<std::size_t, 11> sizes{0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-        las_expect(in.whole(d, 2) == 0 && in.whole(d + 3, 1) == 0, "options of an extra field that are not read here");
-        const auto type = static_cast<std::uint8_t>(in.whole(d + 2, 1));
-        las_expect(type >= 1 && type <= 10, "type of an extra field");
-        file.extras.push_back({in.text(d + 4, 32), in.text(d + 160, 32), type, expected_record});
-        expected_record += sizes[type];
-      }
-    } else if (user == "LASF_Spec" && id >= 100 && id < 355) {
-      las_expect(waves && length == 26 && in.whole(body + 1, 1) == 0, "waveform descriptor");
-      file.descriptors.push_back({static_cast<unsigned>(id - 99), static_cast<unsigned>(in.whole(body, 1)), in.whole(body + 2, 4),
-                                  in.whole(body + 6, 4), in.real(body + 10), in.real(body + 18)});
-    } else {
-      las_expect(false, "unknown record " + user);
-    }
-    at = body + length;
-  }
-  if (file.minor == 0) {
-    las_expect(in.whole(at, 2) == 0xCCDD, "point data start signature");
-    at += 2;
-  }
-  file.points_at = in.whole(96, 4);
-  las_expect(at == file.points_at, "points do not begin where the records end");
-  las_expect(record == expected_record, "record length");
-  const bool wkt_bit = (file.global_encoding & 16U) != 0;
-  las_expect(wkt_bit == (old ? !file.wkt.empty() : file.epsg == 0),
-             "the WKT bit belongs to formats 6 and 9, unless there are GeoTIFF keys");
-  const std::uint64_t count = file.minor == 0 ? in.whole(107, 4) : in.whole(247, 8);
-  las_expect(!old || in.whole(107, 4) == count, "legacy number of points");
-  las_expect(in.size() >= at && (in.size() - at) % record == 0 && (in.size() - at) / record == count, "number of points");
-
-  std::array<std::uint64_t, 15> counted{};
-  std::array<std::int32_t, 3> least{}, most{};
-  file.points.reserve(count);
-  for (; at < in.size(); at += record) {
-    LasPoint p;
-    p.bytes = in.bytes(at, record);
+ private:
+  void read_header() {
+    las_expect(in_.bytes(0, 4) == "LASF", "signature");
+    file_.minor = static_cast<unsigned>(in_.whole(25, 1));
+    file_.format = static_cast<unsigned>(in_.whole(104, 1));
+    las_expect(in_.whole(24, 1) == 1 && (file_.minor == 0 || file_.minor == 4), "version");
+    las_expect(in_.whole(94, 2) == (file_.minor == 0 ? 227 : 375), "header size");
+    las_expect(file_.format == 1 || (file_.minor == 4 && (file_.format == 4 || file_.format == 6 || file_.format == 9)), "point format");
+    old_ = file_.format < 6;
+    waves_ = file_.format == 4 || file_.format == 9;
+    file_.global_encoding = static_cast<unsigned>(in_.whole(6, 2));
+    las_expect((file_.global_encoding & ~(waves_ ? 21U : 17U)) == 0, "global encoding claims what is not there");
+    las_expect(!waves_ || (file_.global_encoding & 4U) != 0, "waveforms are neither here nor there");
+    las_expect(file_.minor == 4 || in_.whole(4, 4) == 0, "reserved bytes");
+    file_.system = in_.text(26, 32);
+    file_.software = in_.text(58, 32);
+    file_.day = static_cast<unsigned>(in_.whole(90, 2));
+    file_.year = static_cast<unsigned>(in_.whole(92, 2));
+    for (std::size_t at = 107; !old_ && at < 131; at += 4) las_expect(in_.whole(at, 4) == 0, "legacy numbers are not zero");
+    if (file_.minor == 4)
+      las_expect(in_.whole(227, 8) == 0 && in_.whole(235, 8) == 0 && in_.whole(243, 4) == 0, "waveforms inside, or extended records");
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      p.stored[axis] = static_cast<std::int32_t>(in.whole(at + 4 * axis, 4));
-      p.place[axis] = p.stored[axis] * file.scale[axis] + file.offset[axis];
-      least[axis] = file.points.empty() ? p.stored[axis] : std::min(least[axis], p.stored[axis]);
-      most[axis] = file.points.empty() ? p.stored[axis] : std::max(most[axis], p.stored[axis]);
+      file_.scale[axis] = in_.real(131 + 8 * axis);
+      file_.offset[axis] = in_.real(155 + 8 * axis);
+      file_.max[axis] = in_.real(179 + 16 * axis);
+      file_.min[axis] = in_.real(187 + 16 * axis);
+      las_expect(file_.scale[axis] > 0, "scale");
     }
-    p.intensity = static_cast<unsigned>(in.whole(at + 12, 2));
-    const auto numbers = static_cast<unsigned>(in.whole(at + 14, 1)), byte_15 = static_cast<unsigned>(in.whole(at + 15, 1));
-    p.user_data = static_cast<unsigned>(in.whole(at + 17, 1));
-    if (old) {
+  }
+
+  void read_records() {
+    for (std::uint64_t i = in_.whole(100, 4); i > 0; --i) {
+      const std::string user = in_.text(at_ + 2, 16);
+      const std::uint64_t id = in_.whole(at_ + 18, 2);
+      const std::size_t length = in_.whole(at_ + 20, 2), body = at_ + 54;
+      las_expect(in_.whole(at_, 2) == (file_.minor == 0 ? 0xAABB : 0), "record signature, or reserved bytes");
+      if (user == "LASF_Projection" && id == 2112) {
+        file_.wkt = in_.bytes(body, length);
+        las_expect(!file_.wkt.empty() && file_.wkt.back() == '\0', "the WKT has no end");
+        file_.wkt.pop_back();
+      } else if (user == "LASF_Projection" && id == 34735) {
+        read_keys(body, length);
+      } else if (user == "LASF_Spec" && id == 4) {
+        read_extra_fields(body, length);
+      } else if (user == "LASF_Spec" && id >= 100 && id < 355) {
+        las_expect(waves_ && length == 26 && in_.whole(body + 1, 1) == 0, "waveform descriptor");
+        file_.descriptors.push_back({static_cast<unsigned>(id - 99), static_cast<unsigned>(in_.whole(body, 1)), in_.whole(body + 2, 4),
+                                     in_.whole(body + 6, 4), in_.real(body + 10), in_.real(body + 18)});
+      } else {
+        las_expect(false, "unknown record " + user);
+      }
+      at_ = body + length;
+    }
+  }
+
+  void read_keys(std::size_t body, std::size_t length) {
+    las_expect(length % 8 == 0 && length >= 8 && in_.whole(body, 2) == 1 && in_.whole(body + 6, 2) == length / 8 - 1, "GeoTIFF keys");
+    for (std::size_t k = body + 8; k < body + length; k += 8) {
+      las_expect(in_.whole(k + 2, 2) == 0 && in_.whole(k + 4, 2) == 1, "a GeoTIFF key that is not read here");
+      las_expect(k == body + 8 || in_.whole(k, 2) > in_.whole(k - 8, 2), "GeoTIFF keys are not in order");
+      if (in_.whole(k, 2) == 3072) file_.epsg = static_cast<unsigned>(in_.whole(k + 6, 2));
+      if (in_.whole(k, 2) == 1024) las_expect(in_.whole(k + 6, 2) == 1, "not a projected reference system");
+      if (in_.whole(k, 2) == 3076) las_expect(in_.whole(k + 6, 2) == 9001, "not in metres");
+    }
+  }
+
+  void read_extra_fields(std::size_t body, std::size_t length) {
+    las_expect(length % 192 == 0, "extra bytes record");
+    for (std::size_t d = body; d < body + length; d += 192) {
+      constexpr std::array<std::size_t, 11> sizes{0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+      las_expect(in_.whole(d, 2) == 0 && in_.whole(d + 3, 1) == 0, "options of an extra field that are not read here");
+      const auto type = static_cast<std::uint8_t>(in_.whole(d + 2, 1));
+      las_expect(type >= 1 && type <= 10, "type of an extra field");
+      file_.extras.push_back({in_.text(d + 4, 32), in_.text(d + 160, 32), type, expected_record_});
+      expected_record_ += sizes[type];
+    }
+  }
+
+  /// Checks that points begin where the records end, and are as many as the header says.
+  void check_beginning() {
+    if (file_.minor == 0) {
+      las_expect(in_.whole(at_, 2) == 0xCCDD, "point data start signature");
+      at_ += 2;
+    }
+    file_.points_at = in_.whole(96, 4);
+    las_expect(at_ == file_.points_at, "points do not begin where the records end");
+    las_expect(record_ == expected_record_, "record length");
+    const bool wkt_bit = (file_.global_encoding & 16U) != 0;
+    las_expect(wkt_bit == (old_ ? !file_.wkt.empty() : file_.epsg == 0),
+               "the WKT bit belongs to formats 6 and 9, unless there are GeoTIFF keys");
+    const std::uint64_t count = file_.minor == 0 ? in_.whole(107, 4) : in_.whole(247, 8);
+    las_expect(!old_ || in_.whole(107, 4) == count, "legacy number of points");
+    las_expect(in_.size() >= at_ && (in_.size() - at_) % record_ == 0 && (in_.size() - at_) / record_ == count, "number of points");
+    file_.points.reserve(count);
+  }
+
+  void read_point() {
+    LasPoint p;
+    p.bytes = in_.bytes(at_, record_);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      p.stored[axis] = static_cast<std::int32_t>(in_.whole(at_ + 4 * axis, 4));
+      p.place[axis] = p.stored[axis] * file_.scale[axis] + file_.offset[axis];
+      least_[axis] = file_.points.empty() ? p.stored[axis] : std::min(least_[axis], p.stored[axis]);
+      most_[axis] = file_.points.empty() ? p.stored[axis] : std::max(most_[axis], p.stored[axis]);
+    }
+    p.intensity = static_cast<unsigned>(in_.whole(at_ + 12, 2));
+    p.user_data = static_cast<unsigned>(in_.whole(at_ + 17, 1));
+    read_fields(p);
+    if (const std::size_t w = at_ + standard_ - 29; waves_) {
+      p.wave = {static_cast<unsigned>(in_.whole(w, 1)), in_.whole(w + 1, 8), in_.whole(w + 9, 4), in_.short_real(w + 13), {}};
+      for (std::size_t axis = 0; axis < 3; ++axis) p.wave.direction[axis] = in_.short_real(w + 17 + 4 * axis);
+    }
+    las_expect(p.return_number >= 1 && p.return_number <= p.returns, "return number");
+    las_expect(std::fabs(p.scan_angle_deg) <= (old_ ? 90 : 180) + 1e-9, "scan angle");
+    ++counted_[p.return_number - 1];
+    file_.points.push_back(std::move(p));
+  }
+
+  /// Fields behind the intensity, which depend on the format.
+  void read_fields(LasPoint& p) const {
+    const auto numbers = static_cast<unsigned>(in_.whole(at_ + 14, 1)), byte_15 = static_cast<unsigned>(in_.whole(at_ + 15, 1));
+    if (old_) {
       p.return_number = numbers % 8;
       p.returns = numbers / 8 % 8;
       p.scan_direction = numbers / 64 % 2;
       p.edge = numbers / 128;
       p.classification = byte_15 % 32;
       p.flags = byte_15 / 32;
-      p.scan_angle_deg = static_cast<std::int8_t>(in.whole(at + 16, 1));
-      p.source = static_cast<unsigned>(in.whole(at + 18, 2));
-      p.gps_time = in.real(at + 20);
+      p.scan_angle_deg = static_cast<std::int8_t>(in_.whole(at_ + 16, 1));
+      p.source = static_cast<unsigned>(in_.whole(at_ + 18, 2));
+      p.gps_time = in_.real(at_ + 20);
     } else {
       p.return_number = numbers % 16;
       p.returns = numbers / 16;
@@ -242,34 +278,51 @@ inline void las_expect(bool condition, const std::string& what) {
       p.channel = byte_15 / 16 % 4;
       p.scan_direction = byte_15 / 64 % 2;
       p.edge = byte_15 / 128;
-      p.classification = static_cast<unsigned>(in.whole(at + 16, 1));
-      p.scan_angle_deg = static_cast<std::int16_t>(in.whole(at + 18, 2)) * 0.006;
-      p.source = static_cast<unsigned>(in.whole(at + 20, 2));
-      p.gps_time = in.real(at + 22);
+      p.classification = static_cast<unsigned>(in_.whole(at_ + 16, 1));
+      p.scan_angle_deg = static_cast<std::int16_t>(in_.whole(at_ + 18, 2)) * 0.006;
+      p.source = static_cast<unsigned>(in_.whole(at_ + 20, 2));
+      p.gps_time = in_.real(at_ + 22);
     }
-    if (const std::size_t w = at + standard - 29; waves) {
-      p.wave = {static_cast<unsigned>(in.whole(w, 1)), in.whole(w + 1, 8), in.whole(w + 9, 4), in.short_real(w + 13), {}};
-      for (std::size_t axis = 0; axis < 3; ++axis) p.wave.direction[axis] = in.short_real(w + 17 + 4 * axis);
+  }
+
+  void check_counts() {
+    for (std::size_t i = 0; i < (file_.minor == 0 ? 5 : 15); ++i) {
+      file_.by_return[i] = file_.minor == 0 ? in_.whole(111 + 4 * i, 4) : in_.whole(255 + 8 * i, 8);
+      las_expect(!old_ || i >= 5 || in_.whole(111 + 4 * i, 4) == counted_[i], "legacy number of points of return " + std::to_string(i + 1));
+      las_expect(file_.by_return[i] == counted_[i], "number of points of return " + std::to_string(i + 1));
     }
-    las_expect(p.return_number >= 1 && p.return_number <= p.returns, "return number");
-    las_expect(std::fabs(p.scan_angle_deg) <= (old ? 90 : 180) + 1e-9, "scan angle");
-    ++counted[p.return_number - 1];
-    file.points.push_back(std::move(p));
   }
-  for (std::size_t i = 0; i < (file.minor == 0 ? 5 : 15); ++i) {
-    file.by_return[i] = file.minor == 0 ? in.whole(111 + 4 * i, 4) : in.whole(255 + 8 * i, 8);
-    las_expect(!old || i >= 5 || in.whole(111 + 4 * i, 4) == counted[i], "legacy number of points of return " + std::to_string(i + 1));
-    las_expect(file.by_return[i] == counted[i], "number of points of return " + std::to_string(i + 1));
+
+  void check_bounds() const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool empty = file_.points.empty();
+      const auto fits = [&](double bound, std::int32_t stored) {  // to rounding, not to a step
+        const double error = empty ? bound : bound - (stored * file_.scale[axis] + file_.offset[axis]);
+        return std::fabs(error) <= 1e-15 * (std::fabs(bound) + std::fabs(file_.offset[axis]));
+      };
+      las_expect(fits(file_.min[axis], least_[axis]) && fits(file_.max[axis], most_[axis]), "bounds");
+    }
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const bool empty = file.points.empty();
-    const auto fits = [&](double bound, std::int32_t stored) {  // to rounding, not to a step
-      const double error = empty ? bound : bound - (stored * file.scale[axis] + file.offset[axis]);
-      return std::fabs(error) <= 1e-15 * (std::fabs(bound) + std::fabs(file.offset[axis]));
-    };
-    las_expect(fits(file.min[axis], least[axis]) && fits(file.max[axis], most[axis]), "bounds");
-  }
-  return file;
+
+  LasInput in_;
+  LasFile file_;
+  bool old_ = false, waves_ = false;                             ///< of the format's points
+  std::size_t record_ = 0, standard_ = 0, expected_record_ = 0;  ///< sizes of a point [byte]
+  std::size_t at_ = 0;
+  std::array<std::uint64_t, 15> counted_{};
+  std::array<std::int32_t, 3> least_{}, most_{};
+};
+
+}  // namespace detail
+
+/// Reads a LAS file, version 1.4 with point format 1, 4, 6 or 9 or version 1.0 with point format 1, and checks all that it says twice:
+/// sizes against the file's length, numbers and bounds in the header against the points, return numbers against their count. Throws
+/// `std::runtime_error` at the first thing that is not so. Written from the ASPRS LAS Specification 1.4 R15; shares nothing with the
+/// writer.
+[[nodiscard]] inline LasFile read_las(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  detail::las_expect(stream.good(), "cannot be opened");
+  return detail::LasReader(std::string(std::istreambuf_iterator<char>(stream), {})).read();
 }
 
 }  // namespace pulsecast::support

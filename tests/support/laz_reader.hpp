@@ -273,164 +273,208 @@ struct LazReadChunk {
   std::size_t size = 0;             ///< of all of it [byte]
 };
 
-/// Reads the chunk that begins at some byte, of points of format 6 with records of so many bytes.
-[[nodiscard]] inline LazReadChunk read_laz_chunk(const std::string& bytes, std::size_t at, std::size_t record) {
-  using detail::laz_expect;
-  using detail::laz_whole;
-  LazReadChunk chunk;
-  const std::size_t begin = at, layer_count = 9 + record - 30;
-  chunk.records = bytes.substr(at, record);
-  chunk.points = laz_whole(bytes, at + record, 4);
-  laz_expect(chunk.points > 0, "a chunk without a point");
-  at += record + 4;
-  for (std::size_t i = 0; i < layer_count; ++i, at += 4) chunk.layers.push_back(laz_whole(bytes, at, 4));
-  std::vector<LazDecoder> decoders;
-  const std::string still(4, '\0');  // in place of a layer that is left out
-  for (const std::size_t size : chunk.layers) {
-    laz_expect(at + size <= bytes.size(), "a layer ends beyond the file");
-    decoders.emplace_back(size > 0 ? bytes.substr(at, size) : still);
-    at += size;
-  }
-  chunk.size = at - begin;
+namespace detail {
 
+/// What a number of returns and a return number share with others, by both.
+inline constexpr std::array<std::array<int, 16>, 16> laz_return_kinds{{{0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
+                                                                       {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},
+                                                                       {2, 1, 2, 4, 4, 4, 4, 4, 4, 4, 4, 3, 3, 3, 3, 3},
+                                                                       {3, 3, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
+                                                                       {4, 3, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
+                                                                       {5, 3, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
+                                                                       {3, 3, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4},
+                                                                       {4, 3, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4},
+                                                                       {4, 3, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4},
+                                                                       {5, 3, 4, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4},
+                                                                       {5, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4},
+                                                                       {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 4, 4, 4},
+                                                                       {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 4, 4},
+                                                                       {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 4},
+                                                                       {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5},
+                                                                       {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5}}};
+
+/// Reader of one chunk: all that is learnt is kept by channel and by what it depends on.
+class LazChunkReader {
+ public:
+  LazChunkReader(const std::string& bytes, std::size_t at, std::size_t record) : p_(open(bytes, at, record)) {
+    last_of_.emplace(p_.channel, p_);
+    first_before_.emplace(p_.channel, p_);
+    told_ = p_.channel;
+    extras_of_[told_] = chunk_.records.substr(30, record - 30);
+  }
+
+  [[nodiscard]] LazReadChunk read() {
+    for (std::size_t i = 1; i < chunk_.points; ++i) next_point();
+    for (std::size_t i = 0; i < decoders_.size(); ++i) {
+      laz_expect(decoders_[i].at_end(), "bytes are left over in layer " + std::to_string(i));
+      chunk_.information.push_back(decoders_[i].information());
+    }
+    return std::move(chunk_);
+  }
+
+ private:
   struct Point {
     std::int64_t x, y, z, intensity, angle, source, r, n, flags, channel, kind, user;
     std::uint64_t time;
     bool new_time;
   };
-  const auto as_signed = [](std::uint64_t value, unsigned bits) { return static_cast<std::int64_t>(value << (64 - bits)) >> (64 - bits); };
-  const std::string& b = chunk.records;
-  const std::int64_t byte_14 = std::int64_t(laz_whole(b, 14, 1)), byte_15 = std::int64_t(laz_whole(b, 15, 1));
-  Point p{as_signed(laz_whole(b, 0, 4), 32),
-          as_signed(laz_whole(b, 4, 4), 32),
-          as_signed(laz_whole(b, 8, 4), 32),
-          std::int64_t(laz_whole(b, 12, 2)),
-          as_signed(laz_whole(b, 18, 2), 16),
-          std::int64_t(laz_whole(b, 20, 2)),
-          byte_14 % 16,
-          byte_14 / 16,
-          byte_15 % 16 + byte_15 / 64 * 16,
-          byte_15 / 16 % 4,
-          std::int64_t(laz_whole(b, 16, 1)),
-          std::int64_t(laz_whole(b, 17, 1)),
-          laz_whole(b, 22, 8),
-          false};
 
-  // Everything that is learnt is kept by channel and by what it depends on.
-  std::map<std::tuple<std::string, std::int64_t, std::int64_t>, LazShares> shares;
-  std::map<std::pair<std::string, std::int64_t>, LazNumbers> numbers;
-  std::map<std::tuple<char, std::int64_t, std::int64_t>, LazMiddle> middles;
-  std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> heights, intensities;
-  std::map<std::int64_t, LazClock> clocks;
-  std::map<std::int64_t, Point> last_of, first_before;  // by channel; the point with which a channel began
-  std::map<std::int64_t, std::string> extras_of;
-  const auto symbol = [&](std::size_t layer, std::size_t symbols, const std::string& what, std::int64_t channel, std::int64_t context) {
-    return static_cast<std::int64_t>(decoders[layer].decode(shares.try_emplace({what, channel, context}, symbols).first->second));
-  };
-  const auto number = [&](std::size_t layer, unsigned bits, const std::string& what, std::int64_t channel, std::int64_t expected,
-                          std::int64_t context, unsigned* length = nullptr) {
-    LazNumbers& n = numbers.try_emplace({what, channel}, bits).first->second;
-    const std::int64_t value = n.decode(decoders[layer], expected, static_cast<unsigned>(context));
+  static std::int64_t as_signed(std::uint64_t value, unsigned bits) {
+    return static_cast<std::int64_t>(value << (64 - bits)) >> (64 - bits);
+  }
+
+  /// Takes layers and the first point, which is not compressed.
+  Point open(const std::string& bytes, std::size_t at, std::size_t record) {
+    const std::size_t begin = at, layer_count = 9 + record - 30;
+    chunk_.records = bytes.substr(at, record);
+    chunk_.points = laz_whole(bytes, at + record, 4);
+    laz_expect(chunk_.points > 0, "a chunk without a point");
+    at += record + 4;
+    for (std::size_t i = 0; i < layer_count; ++i, at += 4) chunk_.layers.push_back(laz_whole(bytes, at, 4));
+    const std::string still(4, '\0');  // in place of a layer that is left out
+    for (const std::size_t size : chunk_.layers) {
+      laz_expect(at + size <= bytes.size(), "a layer ends beyond the file");
+      decoders_.emplace_back(size > 0 ? bytes.substr(at, size) : still);
+      at += size;
+    }
+    chunk_.size = at - begin;
+    const std::string& b = chunk_.records;
+    const std::int64_t byte_14 = std::int64_t(laz_whole(b, 14, 1)), byte_15 = std::int64_t(laz_whole(b, 15, 1));
+    return {.x = as_signed(laz_whole(b, 0, 4), 32),
+            .y = as_signed(laz_whole(b, 4, 4), 32),
+            .z = as_signed(laz_whole(b, 8, 4), 32),
+            .intensity = std::int64_t(laz_whole(b, 12, 2)),
+            .angle = as_signed(laz_whole(b, 18, 2), 16),
+            .source = std::int64_t(laz_whole(b, 20, 2)),
+            .r = byte_14 % 16,
+            .n = byte_14 / 16,
+            .flags = byte_15 % 16 + byte_15 / 64 * 16,
+            .channel = byte_15 / 16 % 4,
+            .kind = std::int64_t(laz_whole(b, 16, 1)),
+            .user = std::int64_t(laz_whole(b, 17, 1)),
+            .time = laz_whole(b, 22, 8),
+            .new_time = false};
+  }
+
+  std::int64_t symbol(std::size_t layer, std::size_t symbols, const std::string& what, std::int64_t channel, std::int64_t context) {
+    return static_cast<std::int64_t>(decoders_[layer].decode(shares_.try_emplace({what, channel, context}, symbols).first->second));
+  }
+
+  std::int64_t number(std::size_t layer, unsigned bits, const std::string& what, std::int64_t expected, std::int64_t context,
+                      unsigned* length = nullptr) {
+    LazNumbers& n = numbers_.try_emplace({what, p_.channel}, bits).first->second;
+    const std::int64_t value = n.decode(decoders_[layer], expected, static_cast<unsigned>(context));
     if (length != nullptr) *length = n.length;
     return as_signed(static_cast<std::uint64_t>(value), bits);
-  };
-  last_of.emplace(p.channel, p);
-  first_before.emplace(p.channel, p);
-  std::int64_t told = p.channel;
-  extras_of[told] = b.substr(30, record - 30);
+  }
 
-  for (std::size_t i = 1; i < chunk.points; ++i) {
-    const Point last = p;
+  void next_point() {
+    const Point last = p_;
     const std::int64_t end = (last.r == 1 ? 1 : 0) + (last.r >= last.n ? 2 : 0) + (last.new_time ? 4 : 0);
     const std::int64_t news = symbol(0, 128, "news", last.channel, end);
     std::int64_t channel = last.channel;
     if ((news & 64) != 0) channel = (channel + 1 + symbol(0, 3, "channel", channel, 0)) % 4;
-    first_before.try_emplace(channel, last);
-    const Point before = last_of.try_emplace(channel, last).first->second;
-    p = before;
-    p.channel = channel;
-    p.new_time = (news & 16) != 0;
-    if ((news & 4) != 0) p.n = symbol(0, 16, "n", channel, before.n);
+    first_before_.try_emplace(channel, last);
+    const Point before = last_of_.try_emplace(channel, last).first->second;
+    p_ = before;
+    p_.channel = channel;
+    p_.new_time = (news & 16) != 0;
+    returns(before, news);
+    place(before);
+    values(before, news);
+    LazClock& clock = clocks_.try_emplace(channel, first_before_.at(channel).time).first->second;
+    if (p_.new_time) p_.time = clock.decode(decoders_[8]);
+    last_of_.insert_or_assign(channel, p_);
+    extra_bytes((news & 64) != 0 ? channel : 0);  // so it is in version 3
+  }
+
+  void returns(const Point& before, std::int64_t news) {
+    if ((news & 4) != 0) p_.n = symbol(0, 16, "n", p_.channel, before.n);
     if (const std::int64_t how = news & 3; how == 1) {
-      p.r = (before.r + 1) % 16;
+      p_.r = (before.r + 1) % 16;
     } else if (how == 2) {
-      p.r = (before.r + 15) % 16;
+      p_.r = (before.r + 15) % 16;
     } else if (how == 3) {
-      p.r = p.new_time ? symbol(0, 16, "r", channel, before.r) : (before.r + 2 + symbol(0, 13, "r, same time", channel, 0)) % 16;
+      p_.r = p_.new_time ? symbol(0, 16, "r", p_.channel, before.r) : (before.r + 2 + symbol(0, 13, "r, same time", p_.channel, 0)) % 16;
     }
-    constexpr std::array<std::array<int, 16>, 16> kinds{{{0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
-                                                         {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},
-                                                         {2, 1, 2, 4, 4, 4, 4, 4, 4, 4, 4, 3, 3, 3, 3, 3},
-                                                         {3, 3, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
-                                                         {4, 3, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
-                                                         {5, 3, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4},
-                                                         {3, 3, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4, 4},
-                                                         {4, 3, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4, 4},
-                                                         {4, 3, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4, 4},
-                                                         {5, 3, 4, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4, 4},
-                                                         {5, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 4, 4, 4, 4, 4},
-                                                         {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 4, 4, 4},
-                                                         {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 4, 4},
-                                                         {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5, 4},
-                                                         {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5},
-                                                         {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5}}};
-    const std::int64_t kind = 2 * kinds[static_cast<std::size_t>(p.n)][static_cast<std::size_t>(p.r)] + (p.new_time ? 1 : 0);
-    const std::int64_t only = p.n == 1 ? 1 : 0;
-    LazMiddle &mx = middles[{'x', channel, kind}], &my = middles[{'y', channel, kind}];
+  }
+
+  void place(const Point& before) {
+    const int returns = laz_return_kinds[static_cast<std::size_t>(p_.n)][static_cast<std::size_t>(p_.r)];
+    const std::int64_t kind = 2 * returns + (p_.new_time ? 1 : 0);
+    const std::int64_t only = p_.n == 1 ? 1 : 0;
+    LazMiddle &mx = middles_[{'x', p_.channel, kind}], &my = middles_[{'y', p_.channel, kind}];
     unsigned x_bits = 0, y_bits = 0;
-    const std::int64_t dx = number(0, 32, "x", channel, mx.value(), only, &x_bits);
+    const std::int64_t dx = number(0, 32, "x", mx.value(), only, &x_bits);
     mx.add(dx);
-    const std::int64_t dy = number(0, 32, "y", channel, my.value(), only + (x_bits < 20 ? x_bits / 2 * 2 : 20), &y_bits);
+    const std::int64_t dy = number(0, 32, "y", my.value(), only + (x_bits < 20 ? x_bits / 2 * 2 : 20), &y_bits);
     my.add(dy);
-    p.x = as_signed(static_cast<std::uint64_t>(before.x + dx), 32);
-    p.y = as_signed(static_cast<std::uint64_t>(before.y + dy), 32);
+    p_.x = as_signed(static_cast<std::uint64_t>(before.x + dx), 32);
+    p_.y = as_signed(static_cast<std::uint64_t>(before.y + dy), 32);
 
-    const Point& origin = first_before.at(channel);
     const unsigned bits = (x_bits + y_bits) / 2;
-    std::int64_t& height = heights.try_emplace({channel, std::min<std::int64_t>(std::abs(p.n - p.r), 7)}, origin.z).first->second;
-    p.z = height = number(1, 32, "z", channel, height, only + (bits < 18 ? bits / 2 * 2 : 18));
+    const std::pair key{p_.channel, std::min<std::int64_t>(std::abs(p_.n - p_.r), 7)};
+    std::int64_t& height = heights_.try_emplace(key, first_before_.at(p_.channel).z).first->second;
+    height = number(1, 32, "z", height, only + (bits < 18 ? bits / 2 * 2 : 18));
+    p_.z = height;
+  }
 
-    const std::int64_t first = p.r == 1 ? 1 : 0, at_last = p.r >= p.n ? 1 : 0;
-    if (chunk.layers[2] > 0) p.kind = symbol(2, 256, "class", channel, before.kind % 32 * 2 + first * at_last);
-    if (chunk.layers[3] > 0) p.flags = symbol(3, 64, "flags", channel, before.flags);
-    if (chunk.layers[4] > 0) {
+  void values(const Point& before, std::int64_t news) {
+    const std::int64_t first = p_.r == 1 ? 1 : 0, at_last = p_.r >= p_.n ? 1 : 0;
+    if (chunk_.layers[2] > 0) p_.kind = symbol(2, 256, "class", p_.channel, before.kind % 32 * 2 + first * at_last);
+    if (chunk_.layers[3] > 0) p_.flags = symbol(3, 64, "flags", p_.channel, before.flags);
+    if (chunk_.layers[4] > 0) {
       const std::int64_t which = 2 * first + at_last;
-      std::int64_t& intensity = intensities.try_emplace({channel, 2 * which + (p.new_time ? 1 : 0)}, origin.intensity).first->second;
-      p.intensity = intensity = number(4, 16, "intensity", channel, intensity, which) & 65535;
+      const std::pair key{p_.channel, 2 * which + (p_.new_time ? 1 : 0)};
+      std::int64_t& intensity = intensities_.try_emplace(key, first_before_.at(p_.channel).intensity).first->second;
+      intensity = number(4, 16, "intensity", intensity, which) & 65535;
+      p_.intensity = intensity;
     }
-    if ((news & 8) != 0) p.angle = number(5, 16, "angle", channel, before.angle, p.new_time ? 1 : 0);
-    if (chunk.layers[6] > 0) p.user = symbol(6, 256, "user", channel, before.user / 4);
-    if ((news & 32) != 0) p.source = number(7, 16, "source", channel, before.source, 0) & 65535;
-    LazClock& clock = clocks.try_emplace(channel, origin.time).first->second;
-    if (p.new_time) p.time = clock.decode(decoders[8]);
-    last_of.insert_or_assign(channel, p);
+    if ((news & 8) != 0) p_.angle = number(5, 16, "angle", before.angle, p_.new_time ? 1 : 0);
+    if (chunk_.layers[6] > 0) p_.user = symbol(6, 256, "user", p_.channel, before.user / 4);
+    if ((news & 32) != 0) p_.source = number(7, 16, "source", before.source, 0) & 65535;
+  }
 
-    const std::int64_t told_before = told;
-    told = (news & 64) != 0 ? channel : 0;  // so it is in version 3
-    const bool known = extras_of.try_emplace(told, extras_of.at(told_before)).second == false;
-    std::string& extras = extras_of.at(known ? told_before : told);
+  /// Decodes the extra bytes, learnt by `told`, and puts down the point.
+  void extra_bytes(std::int64_t told) {
+    const std::int64_t told_before = std::exchange(told_, told);
+    const bool known = extras_of_.try_emplace(told, extras_of_.at(told_before)).second == false;
+    std::string& extras = extras_of_.at(known ? told_before : told);
     for (std::size_t k = 0; k < extras.size(); ++k)
-      if (chunk.layers[9 + k] > 0) extras[k] = static_cast<char>(extras[k] + symbol(9 + k, 256, "extra " + std::to_string(k), told, 0));
-
+      if (chunk_.layers[9 + k] > 0) extras[k] = static_cast<char>(extras[k] + symbol(9 + k, 256, "extra " + std::to_string(k), told, 0));
     const auto put = [&](std::uint64_t value, int n) {
-      for (; n > 0; --n, value >>= 8) chunk.records.push_back(static_cast<char>(value));
+      for (; n > 0; --n, value >>= 8) chunk_.records.push_back(static_cast<char>(value));
     };
-    for (const std::int64_t c : {p.x, p.y, p.z}) put(static_cast<std::uint64_t>(c), 4);
-    put(static_cast<std::uint64_t>(p.intensity), 2);
-    put(static_cast<std::uint64_t>(p.r + 16 * p.n), 1);
-    put(static_cast<std::uint64_t>(p.flags % 16 + 16 * p.channel + p.flags / 16 * 64), 1);
-    put(static_cast<std::uint64_t>(p.kind), 1);
-    put(static_cast<std::uint64_t>(p.user), 1);
-    put(static_cast<std::uint64_t>(p.angle), 2);
-    put(static_cast<std::uint64_t>(p.source), 2);
-    put(p.time, 8);
-    chunk.records += extras;
+    for (const std::int64_t c : {p_.x, p_.y, p_.z}) put(static_cast<std::uint64_t>(c), 4);
+    put(static_cast<std::uint64_t>(p_.intensity), 2);
+    put(static_cast<std::uint64_t>(p_.r + 16 * p_.n), 1);
+    put(static_cast<std::uint64_t>(p_.flags % 16 + 16 * p_.channel + p_.flags / 16 * 64), 1);
+    put(static_cast<std::uint64_t>(p_.kind), 1);
+    put(static_cast<std::uint64_t>(p_.user), 1);
+    put(static_cast<std::uint64_t>(p_.angle), 2);
+    put(static_cast<std::uint64_t>(p_.source), 2);
+    put(p_.time, 8);
+    chunk_.records += extras;
   }
-  for (std::size_t i = 0; i < decoders.size(); ++i) {
-    laz_expect(decoders[i].at_end(), "bytes are left over in layer " + std::to_string(i));
-    chunk.information.push_back(decoders[i].information());
-  }
-  return chunk;
+
+  LazReadChunk chunk_;
+  std::vector<LazDecoder> decoders_;  ///< of the layers
+  std::map<std::tuple<std::string, std::int64_t, std::int64_t>, LazShares> shares_;
+  std::map<std::pair<std::string, std::int64_t>, LazNumbers> numbers_;
+  std::map<std::tuple<char, std::int64_t, std::int64_t>, LazMiddle> middles_;
+  std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> heights_, intensities_;
+  std::map<std::int64_t, LazClock> clocks_;
+  Point p_;
+  std::map<std::int64_t, Point> last_of_, first_before_;  ///< by channel; the point with which a channel began
+  std::map<std::int64_t, std::string> extras_of_;
+  std::int64_t told_ = 0;  ///< channel that the extra bytes were learnt by
+};
+
+}  // namespace detail
+
+/// Reads the chunk that begins at some byte, of points of format 6 with records of so many bytes.
+[[nodiscard]] inline LazReadChunk read_laz_chunk(const std::string& bytes, std::size_t at, std::size_t record) {
+  return detail::LazChunkReader(bytes, at, record).read();
 }
 
 /// A LAZ file, and the LAS file that it is when it is not compressed.

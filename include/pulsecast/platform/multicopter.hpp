@@ -184,6 +184,31 @@ class FlightPlan {
   return points;
 }
 
+/// Legs of a flight: from each waypoint to the next.
+struct FlightLegs {
+  std::vector<Vec3> directions;       ///< unit
+  std::vector<double> headings;       ///< [rad]
+  std::vector<PathSection> sections;  ///< lengths, and limits along the leg
+
+  FlightLegs(const std::vector<FlightPoint>& points, const MulticopterSettings& settings)
+      : directions(points.size() - 1), headings(directions.size()), sections(directions.size()) {
+    double heading = settings.departure_heading.value_or(0);
+    bool level_leg = settings.departure_heading.has_value();  // true once a heading is known
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+      const Vec3 way = points[k + 1].position - points[k].position;
+      directions[k] = normalize(way);
+      const double ahead = acceleration_along(directions[k], settings), back = acceleration_along(-directions[k], settings);
+      sections[k] = {length(way), {settings.speed, ahead, back, settings.jerk}};
+      if (std::hypot(directions[k].x, directions[k].y) > 1e-6) {
+        heading = heading_of(directions[k]);
+        if (!level_leg) std::fill_n(headings.begin(), k, heading);  // a vertical start faces the first level leg
+        level_leg = true;
+      }
+      headings[k] = heading;
+    }
+  }
+};
+
 }  // namespace detail
 
 /// Plans a flight from the first waypoint to the last, at rest at both. The vehicle faces its leg, keeps its heading on a vertical one, and
@@ -195,24 +220,7 @@ class FlightPlan {
   std::vector<std::size_t> numbers;
   const std::vector<FlightPoint> points = detail::checked(waypoints, numbers);
   const std::size_t legs = points.size() - 1;
-
-  std::vector<Vec3> directions(legs);
-  std::vector<double> headings(legs);
-  std::vector<PathSection> sections(legs);
-  double heading = settings.departure_heading.value_or(0);
-  bool level_leg = settings.departure_heading.has_value();  // true once a heading is known
-  for (std::size_t k = 0; k < legs; ++k) {
-    const Vec3 way = points[k + 1].position - points[k].position;
-    directions[k] = normalize(way);
-    const double ahead = detail::acceleration_along(directions[k], settings), back = detail::acceleration_along(-directions[k], settings);
-    sections[k] = {length(way), {settings.speed, ahead, back, settings.jerk}};
-    if (std::hypot(directions[k].x, directions[k].y) > 1e-6) {
-      heading = heading_of(directions[k]);
-      if (!level_leg) std::fill_n(headings.begin(), k, heading);  // a vertical start faces the first level leg
-      level_leg = true;
-    }
-    headings[k] = heading;
-  }
+  const auto [directions, headings, sections] = detail::FlightLegs(points, settings);
 
   std::vector<double> speeds(points.size(), 0.0);  // at the waypoints
   std::vector<detail::SmoothTurn> turns(points.size());

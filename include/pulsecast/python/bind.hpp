@@ -8,21 +8,19 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <new>
 #include <optional>
 #include <stop_token>
 #include <string>
-#include <type_traits>
 #include <utility>
 
+#include <pulsecast/python/detail/exceptions.hpp>
+#include <pulsecast/python/detail/interrupt_watch.hpp>
+#include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/run.hpp>
 
 /// Python bindings of surveys: any compile-time pipeline, with user-defined optics too, becomes a class whose runs return NumPy arrays.
@@ -79,45 +77,6 @@ namespace [[gnu::visibility("hidden")]] python {
 inline constexpr std::array<const char*, fate_count> fate_names{"returned",     "blocked",         "missed",
                                                                 "out_of_range", "below_threshold", "absorbed"};
 
-/// Rows that become a NumPy array in place. Growth avoids copies as far as the C library can: a large array never takes twice its memory.
-template <class Row>
-requires std::is_trivially_copyable_v<Row>
-class Rows {
- public:
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-
-  void push_back(const Row& row) {
-    if (size_ == capacity_) resize(std::max<std::size_t>(1024, 2 * capacity_));
-    rows_.get()[size_++] = row;
-  }
-
-  /// Array that owns the rows; leaves this empty.
-  [[nodiscard]] pybind11::array_t<Row> take() {
-    resize(std::max<std::size_t>(1, size_));
-    Row* const rows = rows_.get();
-    const pybind11::capsule owner(rows, [](void* p) { std::free(p); });
-    (void)rows_.release();
-    capacity_ = 0;
-    return pybind11::array_t<Row>(static_cast<pybind11::ssize_t>(std::exchange(size_, 0)), rows, owner);
-  }
-
- private:
-  struct Free {
-    void operator()(Row* rows) const noexcept { std::free(rows); }
-  };
-
-  void resize(std::size_t capacity) {
-    auto* const moved = static_cast<Row*>(std::realloc(rows_.get(), capacity * sizeof(Row)));
-    if (!moved) throw std::bad_alloc();
-    (void)rows_.release();
-    rows_.reset(moved);
-    capacity_ = capacity;
-  }
-
-  std::unique_ptr<Row, Free> rows_;
-  std::size_t size_ = 0, capacity_ = 0;
-};
-
 /// Results of a run, for Python.
 struct Batch {
   pybind11::array_t<PointRow> points;  ///< one row an echo
@@ -167,36 +126,6 @@ class RowSink {
   Rows<PulseRow> pulses_;
   Rows<float> samples_;
   double sample_interval_ = 0;
-};
-
-/// Records Ctrl-C during its life, where Python would notice it only later: on the main thread, which alone gets signals, and only if
-/// Ctrl-C raises `KeyboardInterrupt`. The program's own handler, or none, stays as it is.
-class InterruptWatch {
- public:
-  InterruptWatch() {
-    const pybind11::module_ threading = pybind11::module_::import("threading"), signal = pybind11::module_::import("signal");
-    watching_ = threading.attr("current_thread")().is(threading.attr("main_thread")()) &&
-                signal.attr("getsignal")(SIGINT).is(signal.attr("default_int_handler"));
-    if (!watching_) return;
-    seen() = false;
-    before_ = PyOS_setsig(SIGINT, [](int) { seen() = true; });
-  }
-  ~InterruptWatch() {
-    if (watching_) PyOS_setsig(SIGINT, before_);
-  }
-  InterruptWatch(const InterruptWatch&) = delete;
-  InterruptWatch& operator=(const InterruptWatch&) = delete;
-
-  [[nodiscard]] bool interrupted() const noexcept { return watching_ && seen(); }
-
- private:
-  [[nodiscard]] static std::atomic<bool>& seen() noexcept {
-    static std::atomic<bool> interrupted = false;
-    return interrupted;
-  }
-
-  bool watching_ = false;
-  PyOS_sighandler_t before_ = nullptr;
 };
 
 /// Arguments of a survey's `run`, as in Python.
@@ -262,61 +191,45 @@ template <class Run>
   return result;
 }
 
-/// Exception class shared by all modules, created by the first that asks.
-[[nodiscard]] inline pybind11::handle shared_exception(const char* name, PyObject* base, const char* doc) {
-  const std::string key = std::string("pulsecast.") + name;
-  if (void* const known = pybind11::get_shared_data(key)) return static_cast<PyObject*>(known);
-  PyObject* const made = PyErr_NewExceptionWithDoc(key.c_str(), doc, base, nullptr);
-  if (!made) throw pybind11::error_already_set();
-  pybind11::set_shared_data(key, made);
-  return made;
+/// Declares the rows to NumPy, in one registry for all modules.
+inline void bind_rows() {
+  if (pybind11::detail::get_numpy_internals().get_type_info<PointRow>(false)) return;
+  PYBIND11_NUMPY_DTYPE(PointRow, x, y, z, time, range, intensity, reflectance, echo_width, cos_incidence, pulse, object, classification,
+                       leg, return_number, number_of_returns, channel);
+  PYBIND11_NUMPY_DTYPE(PulseRow, pulse, time, x, y, z, direction_x, direction_y, direction_z, scan_angle, waveform_start, first_sample,
+                       first_point, samples, points, leg, channel, fate);
 }
 
-/// Raises a Python exception with attributes.
-template <class... Values>
-void raise(pybind11::handle type, const std::string& message, std::pair<const char*, Values>... attributes) {
-  const pybind11::object exception = type(message);
-  ((exception.attr(attributes.first) = attributes.second), ...);
-  PyErr_SetObject(type.ptr(), exception.ptr());
-}
-
-/// Exception classes of the library in Python.
-struct Exceptions {
-  pybind11::handle setting =
-      shared_exception("SettingError", PyExc_ValueError, "A setting that cannot be. Attributes: field, value, unit, allowed.");
-  pybind11::handle file = shared_exception("FileError", PyExc_OSError,
-                                           "A file that is missing, malformed or cannot be written. Attributes: path, place, problem.");
-  pybind11::handle interrupted = shared_exception(
-      "Interrupted", PyExc_KeyboardInterrupt, "Ctrl-C while a survey ran. Attribute: result, all that came until then, which is whole.");
-};
-
-/// Adds exceptions and result types to a module; further calls do nothing.
-inline void bind_common(pybind11::module_& m) {
+/// Samples of the pulse in a row of a `Batch`, as its method `waveform_of`.
+[[nodiscard]] inline pybind11::array_t<float> waveform_of(const pybind11::object& self, pybind11::ssize_t row) {
   namespace py = pybind11;
-  if (py::hasattr(m, "Batch")) return;
-  if (!py::detail::get_numpy_internals().get_type_info<PointRow>(false)) {  // one registry for all modules
-    PYBIND11_NUMPY_DTYPE(PointRow, x, y, z, time, range, intensity, reflectance, echo_width, cos_incidence, pulse, object, classification,
-                         leg, return_number, number_of_returns, channel);
-    PYBIND11_NUMPY_DTYPE(PulseRow, pulse, time, x, y, z, direction_x, direction_y, direction_z, scan_angle, waveform_start, first_sample,
-                         first_point, samples, points, leg, channel, fate);
-  }
-  const Exceptions exceptions;
-  m.attr("SettingError") = exceptions.setting;
-  m.attr("FileError") = exceptions.file;
-  m.attr("Interrupted") = exceptions.interrupted;
-  py::register_local_exception_translator([](std::exception_ptr raised) {
-    const Exceptions types;
-    try {
-      if (raised) std::rethrow_exception(raised);
-    } catch (const SettingError& e) {
-      raise(types.setting, e.what(), std::pair{"field", e.field()}, std::pair{"value", e.value()}, std::pair{"unit", e.unit()},
-            std::pair{"allowed", e.allowed()});
-    } catch (const FileError& e) {
-      raise(types.file, e.what(), std::pair{"path", e.path()}, std::pair{"place", e.place()}, std::pair{"problem", e.problem()});
-    }
-  });
-  m.attr("FATES") = py::tuple(py::cast(fate_names));
+  const auto& pulses = self.cast<const Batch&>().pulses;
+  if (row < 0 || row >= pulses.size())
+    throw py::index_error("row " + std::to_string(row) + " of " + std::to_string(pulses.size()) + " pulses");
+  const PulseRow& p = pulses.data()[row];
+  return self.attr("waveforms")[py::slice(p.first_sample, p.first_sample + p.samples, 1)].cast<py::array_t<float>>();
+}
 
+/// State of a `Batch` for `pickle`.
+[[nodiscard]] inline pybind11::tuple state_of(const Batch& b) {
+  return pybind11::make_tuple(b.points, b.pulses, b.waveforms, b.sample_interval,
+                              pybind11::bytes(reinterpret_cast<const char*>(&b.summary), sizeof b.summary));
+}
+
+/// Inverse of `state_of`. Throws a `ValueError` for the state of another version.
+[[nodiscard]] inline Batch batch_of(const pybind11::tuple& state) {
+  namespace py = pybind11;
+  const auto summary = state[4].cast<std::string>();
+  Batch b{state[0].cast<py::array_t<PointRow>>(), state[1].cast<py::array_t<PulseRow>>(), state[2].cast<py::array_t<float>>(),
+          state[3].cast<double>()};
+  if (summary.size() != sizeof b.summary) throw py::value_error("a Batch of another version of pulsecast");
+  std::memcpy(&b.summary, summary.data(), sizeof b.summary);
+  return b;
+}
+
+/// Adds the class `Batch` to a module.
+inline void bind_batch(pybind11::module_& m) {
+  namespace py = pybind11;
   const auto by_fate = [](const auto& of) {
     py::dict all;
     for (std::size_t f = 0; f < fate_count; ++f) all[fate_names[f]] = of(static_cast<Fate>(f));
@@ -347,34 +260,22 @@ inline void bind_common(pybind11::module_& m) {
       .def_property_readonly(
           "energy", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.energy_by_fate[static_cast<std::size_t>(f)]; }); },
           "Energy sent, by what became of the subrays that carried it [J].")
-      .def(
-          "waveform_of",
-          [](const py::object& self, py::ssize_t row) -> py::array_t<float> {
-            const auto& pulses = self.cast<const Batch&>().pulses;
-            if (row < 0 || row >= pulses.size())
-              throw py::index_error("row " + std::to_string(row) + " of " + std::to_string(pulses.size()) + " pulses");
-            const PulseRow& p = pulses.data()[row];
-            return self.attr("waveforms")[py::slice(p.first_sample, p.first_sample + p.samples, 1)].cast<py::array_t<float>>();
-          },
-          py::arg("row"), "The samples of the pulse in a row of `pulses`, shape (n,) [W].")
+      .def("waveform_of", &waveform_of, py::arg("row"), "The samples of the pulse in a row of `pulses`, shape (n,) [W].")
       .def("__repr__",
            [](const Batch& b) {
              return "<Batch of " + std::to_string(b.points.size()) + " points, " + std::to_string(b.pulses.size()) + " pulses, " +
                     std::to_string(b.waveforms.size()) + " samples>";
            })
-      .def(py::pickle(
-          [](const Batch& b) {
-            return py::make_tuple(b.points, b.pulses, b.waveforms, b.sample_interval,
-                                  py::bytes(reinterpret_cast<const char*>(&b.summary), sizeof b.summary));
-          },
-          [](const py::tuple& state) {
-            const auto summary = state[4].cast<std::string>();
-            Batch b{state[0].cast<py::array_t<PointRow>>(), state[1].cast<py::array_t<PulseRow>>(), state[2].cast<py::array_t<float>>(),
-                    state[3].cast<double>()};
-            if (summary.size() != sizeof b.summary) throw py::value_error("a Batch of another version of pulsecast");
-            std::memcpy(&b.summary, summary.data(), sizeof b.summary);
-            return b;
-          }));
+      .def(py::pickle(&state_of, &batch_of));
+}
+
+/// Adds exceptions and result types to a module; further calls do nothing.
+inline void bind_common(pybind11::module_& m) {
+  if (pybind11::hasattr(m, "Batch")) return;
+  bind_rows();
+  bind_exceptions(m);
+  m.attr("FATES") = pybind11::tuple(pybind11::cast(fate_names));
+  bind_batch(m);
 }
 
 /// Adds the method `run` to a class; `runner(self)` returns a callable of options and sink.

@@ -11,121 +11,17 @@
 #include <cstring>
 #include <limits>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include <pulsecast/base/parallel.hpp>
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 #include <pulsecast/geometry/triangle.hpp>
-#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/scene/detail/height_pyramid.hpp>
+#include <pulsecast/scene/raster.hpp>
 
 namespace pulsecast {
-
-namespace detail {
-
-inline constexpr std::uint32_t max_pixels = std::uint32_t{1} << 27;  ///< per row or column
-
-/// Placement of a raster's pixels: row 0 is the northernmost, column 0 the westernmost.
-struct RasterGrid {
-  std::uint32_t columns = 0, rows = 0;
-  Vec2 first{}, pixel{1, 1};
-
-  [[nodiscard]] Vec3 vertex(std::uint32_t column, std::uint32_t row, float height) const noexcept {
-    return {first.x + column * pixel.x, first.y - row * pixel.y, static_cast<double>(height)};
-  }
-
-  [[nodiscard]] std::size_t index(std::uint32_t column, std::uint32_t row) const noexcept { return std::size_t{row} * columns + column; }
-};
-
-/// Corners of a cell: north-west, south-west, south-east, north-east. Its triangles are (0, 1, 3) and (1, 2, 3).
-struct RasterCell {
-  std::uint32_t column, row;
-  float heights[4];
-
-  RasterCell(const RasterGrid& grid, const float* all, std::uint32_t c, std::uint32_t r) noexcept : column(c), row(r) {
-    const float *north = all + grid.index(c, r), *south = north + grid.columns;
-    heights[0] = north[0], heights[1] = south[0], heights[2] = south[1], heights[3] = north[1];
-  }
-
-  /// True if no corner of a triangle is missing, that is NaN.
-  [[nodiscard]] bool has(int triangle) const noexcept {
-    const float own = heights[2 * triangle];
-    return own == own && heights[1] == heights[1] && heights[3] == heights[3];
-  }
-
-  [[nodiscard]] Vec3 corner(const RasterGrid& grid, int k) const noexcept {
-    return grid.vertex(column + (k >= 2 ? 1 : 0), row + (k == 1 || k == 2 ? 1 : 0), heights[k]);
-  }
-
-  [[nodiscard]] Triangle triangle(const RasterGrid& grid, int which) const noexcept {
-    return {corner(grid, which), corner(grid, which + 1), corner(grid, 3)};
-  }
-};
-
-}  // namespace detail
-
-/// Heights at pixel centres, as in a terrain file. Between the centres of four pixels there are two triangles that meet along the
-/// south-west to north-east diagonal; a triangle with a missing corner is left out.
-struct Raster {
-  std::uint32_t columns = 0, rows = 0;  ///< pixels, from 2 to 2^27 each
-  Vec2 first{};                         ///< centre of the first pixel, in the north-west [m east, m north]
-  Vec2 pixel{1, 1};                     ///< spacing of the centres, to the next column in the east and the next row in the south [m]
-  std::vector<float> heights{};         ///< heights, row by row from the north [m]; NaN if missing
-
-  void validate() const {
-    require_within("Raster::columns", columns, 2, detail::max_pixels, "");
-    require_within("Raster::rows", rows, 2, detail::max_pixels, "");
-    // two primitives per cell, none of which is `ClosestHits::none`
-    require_within("Raster::columns and rows, cells between them", (columns - 1.0) * (rows - 1.0), 1, 2147483647, "");
-    require_within("Raster::first.x", first.x, -1e15, 1e15, "m");
-    require_within("Raster::first.y", first.y, -1e15, 1e15, "m");
-    // far from the origin, coordinates round by at most an eighth of the least pixel, so no two centres coincide
-    constexpr double least = 4 * std::numeric_limits<double>::epsilon();
-    require_within("Raster::pixel.x", pixel.x, std::max(1e-9, least * std::fabs(first.x)), 1e6, "m");
-    require_within("Raster::pixel.y", pixel.y, std::max(1e-9, least * std::fabs(first.y)), 1e6, "m");
-    if (heights.size() != std::size_t{columns} * rows)
-      throw SettingError("Raster::heights", static_cast<double>(heights.size()), "",
-                         "as many as pixels, " + std::to_string(std::size_t{columns} * rows));
-    for (std::size_t i = 0; i < heights.size(); ++i)
-      if (std::fabs(heights[i]) > 1e15F)
-        throw SettingError("Raster::heights", static_cast<double>(heights[i]), "m",
-                           "within 1e15 m, or NaN; see pixel " + std::to_string(i));
-  }
-
-  [[nodiscard]] detail::RasterGrid grid() const noexcept { return {columns, rows, first, pixel}; }
-
-  /// The same ground as a mesh, with the same hits and some 13 times the memory. @throws SettingError as `validate`
-  [[nodiscard]] MeshData mesh() const {
-    validate();
-    constexpr std::uint32_t missing = std::numeric_limits<std::uint32_t>::max();
-    const detail::RasterGrid grid = this->grid();
-    MeshData mesh;
-    std::vector<std::uint32_t> number(heights.size(), missing);
-    for (std::uint32_t row = 0; row + 1 < rows; ++row)
-      for (std::uint32_t column = 0; column + 1 < columns; ++column) {
-        const detail::RasterCell cell(grid, heights.data(), column, row);
-        const std::size_t north = grid.index(column, row), south = grid.index(column, row + 1);
-        const std::size_t corners[4] = {north, south, south + 1, north + 1};
-        for (const int which : {0, 1}) {
-          if (!cell.has(which)) continue;
-          std::array<std::uint32_t, 3> triangle{};
-          for (std::size_t i = 0; i < 3; ++i) {
-            const int k = i == 2 ? 3 : which + static_cast<int>(i);
-            std::uint32_t& vertex = number[corners[k]];
-            if (vertex == missing) vertex = static_cast<std::uint32_t>(mesh.vertices.size()), mesh.vertices.push_back(cell.corner(grid, k));
-            triangle[i] = vertex;
-          }
-          mesh.triangles.push_back(triangle);
-        }
-      }
-    return mesh;
-  }
-};
 
 /// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell. Two-sided. The two
 /// triangles of cell i, row by row, are primitives 2 i and 2 i + 1.
@@ -141,7 +37,16 @@ class HeightField {
     raster.validate();
     grid_ = raster.grid();
     heights_ = std::move(raster.heights);
-    build(threads);
+    const detail::PyramidLayout layout(grid_);
+    levels_ = layout.levels;
+    top_ = layout.top;
+    detail::HeightPyramid built(grid_, heights_.data(), layout, threads);
+    pyramid_ = std::move(built.heights);
+    bounds_ = built.bounds;
+    per_metre_ = {1 / grid_.pixel.x, -1 / grid_.pixel.y};
+    constexpr double single = std::numeric_limits<float>::epsilon();
+    pad_ = {16 * single * grid_.columns * grid_.pixel.x, 16 * single * grid_.rows * grid_.pixel.y};
+    centre_ = {grid_.first.x + 0.5 * grid_.columns * grid_.pixel.x, grid_.first.y - 0.5 * grid_.rows * grid_.pixel.y, 0};
   }
 
   explicit HeightField(DeserializeTag) {}
@@ -153,11 +58,9 @@ class HeightField {
   /// True if the array sizes match the grid.
   [[nodiscard]] bool is_consistent() const noexcept {
     if (grid_.columns < 2 || grid_.rows < 2 || grid_.columns > detail::max_pixels || grid_.rows > detail::max_pixels) return false;
-    HeightField other(DeserializeTag{});
-    other.grid_ = grid_;
-    const std::size_t size = other.lay_out();
-    return heights_.size() == std::size_t{grid_.columns} * grid_.rows && pyramid_.size() == size && top_ == other.top_ &&
-           levels_ == other.levels_;
+    const detail::PyramidLayout layout(grid_);
+    return heights_.size() == std::size_t{grid_.columns} * grid_.rows && pyramid_.size() == layout.size && top_ == layout.top &&
+           levels_ == layout.levels;
   }
 
   [[nodiscard]] std::uint32_t columns() const noexcept { return grid_.columns; }
@@ -210,41 +113,9 @@ class HeightField {
 
   static constexpr std::size_t few = 4;  ///< cells up to this number are tested without traversal
 
-  /// Rectangle of cells or nodes, ends included.
-  struct Cells {
-    std::uint32_t west, east, north, south;
-
-    [[nodiscard]] std::size_t count() const noexcept { return (std::size_t{east} - west + 1) * (south - north + 1); }
-    /// Nodes that hold the cells; a node is 2^wide by 2^tall cells.
-    [[nodiscard]] Cells in_nodes(std::uint32_t wide, std::uint32_t tall) const noexcept {
-      return {west >> wide, east >> wide, north >> tall, south >> tall};
-    }
-  };
-
-  /// Level 0 are the cells. A node of a higher level has eight children in the level below: 4 by 2 cells, then alternately 2 by 4 and 4 by
-  /// 2 nodes. `pyramid_` holds the heights of the children, node by node: eight minima, then eight maxima; an empty interval where there is
-  /// no triangle.
-  struct Level {
-    std::uint32_t columns = 0, rows = 0;
-    std::size_t begin = 0;                 ///< start in `pyramid_`
-    std::array<std::uint32_t, 2> shift{};  ///< log2 of a node's width and height [cells]
-    std::array<std::uint32_t, 2> below{};  ///< log2 of a child's width and height [cells]
-    std::array<float, 8> east{}, south{};  ///< offsets of the children from the node's north-west corner [m]
-    std::array<float, 2> size{};           ///< size of a child, east and south [m]
-
-    [[nodiscard]] std::size_t node(std::uint32_t column, std::uint32_t row) const noexcept {
-      return begin + (std::size_t{row} * columns + column) * 16;
-    }
-    /// Index of a child's least height, by the child's column and row; the greatest is eight numbers on.
-    [[nodiscard]] std::size_t of_child(std::uint32_t column, std::uint32_t row) const noexcept {
-      const std::uint32_t w = wide(), tall = 3 - w;
-      return node(column >> w, row >> tall) + (column & ((1U << w) - 1)) + ((row & ((1U << tall) - 1)) << w);
-    }
-    /// Number of column bits in a child's slot.
-    [[nodiscard]] std::uint32_t wide() const noexcept { return shift[0] - below[0]; }
-    friend bool operator==(const Level&, const Level&) = default;
-  };
-  static constexpr std::size_t max_levels = 18;  // two levels reduce 8 by 8 nodes to one
+  using Cells = detail::CellRectangle;
+  using Heights = detail::HeightInterval;
+  using Level = detail::PyramidLevel;
 
   /// Traversal of one bundle.
   struct Walk {
@@ -267,13 +138,16 @@ class HeightField {
       const double rounding = 128 * std::numeric_limits<double>::epsilon() * scale;
       for (int k = 0; k < 2; ++k) {
         const double per_metre = field.per_metre_[k];
-        least[k] = (k == 0 ? r.least[k] : r.most[k]) * per_metre, greatest[k] = (k == 0 ? r.most[k] : r.least[k]) * per_metre;
+        least[k] = (k == 0 ? r.least[k] : r.most[k]) * per_metre;
+        greatest[k] = (k == 0 ? r.most[k] : r.least[k]) * per_metre;
         from[k] = (r.origin[k] - field.grid_.first[k]) * per_metre;
         slack[k] = rounding * std::fabs(per_metre);
         pad[k] = static_cast<float>(field.pad_[k] + rounding);
       }
-      westward = least[0] < 0, northward = least[1] < 0;
-      turns[0] = (westward ? 1U : 0U) | (northward ? 6U : 0U), turns[1] = (westward ? 3U : 0U) | (northward ? 4U : 0U);
+      westward = least[0] < 0;
+      northward = least[1] < 0;
+      turns[0] = (westward ? 1U : 0U) | (northward ? 6U : 0U);
+      turns[1] = (westward ? 3U : 0U) | (northward ? 4U : 0U);
     }
 
     using Span = BundleInterval<float>::Span;
@@ -283,8 +157,10 @@ class HeightField {
       const detail::RasterCell cell(field.grid_, field.heights_.data(), column, row);
       const auto first = static_cast<PrimitiveIndex>(2 * (std::size_t{row} * (field.grid_.columns - 1) + column));
       for (const int which : {0, 1})
-        if (cell.has(which))
-          triangles[taken] = cell.triangle(field.grid_, which), primitives[taken++] = first + static_cast<unsigned>(which);
+        if (cell.has(which)) {
+          triangles[taken] = cell.triangle(field.grid_, which);
+          primitives[taken++] = first + static_cast<unsigned>(which);
+        }
       if (taken + 2 > triangles.size()) test();
     }
 
@@ -293,7 +169,8 @@ class HeightField {
       if (taken == 0) return;
       const auto triangle_of = [this](std::size_t n) noexcept { return triangles[n]; };
       intersect(std::span<const PrimitiveIndex>(primitives.data(), taken), triangle_of, rays, nearest);
-      taken = 0, limit = round_up<float>(nearest.limit(rays));
+      taken = 0;
+      limit = round_up<float>(nearest.limit(rays));
     }
 
     /// Clips a rectangle to the cells that any ray passes in a range interval. False if none is left.
@@ -324,14 +201,6 @@ class HeightField {
     }
     return level;
   }
-
-  struct Heights {
-    float least = most, greatest = -most;
-
-    void extend(float low, float high) noexcept {  // NaN fails every comparison
-      least = low < least ? low : least, greatest = high > greatest ? high : greatest;
-    }
-  };
 
   /// Bounds of the heights of cells, from the nodes of a level that hold them.
   [[nodiscard]] Heights heights(const Cells& cells, unsigned level) const noexcept {
@@ -388,8 +257,10 @@ class HeightField {
     for (std::size_t i = 0; i < 8; i += simd::packet_size<float>) {
       const simd::Packet<float> x = simd::load<simd::Packet<float>>(own.east[i]) + west,
                                 y = north - simd::load<simd::Packet<float>>(own.south[i]);
-      simd::store(x, boxes.min[0][i]), simd::store(simd::Packet<float>(x + width), boxes.max[0][i]);
-      simd::store(simd::Packet<float>(y - height), boxes.min[1][i]), simd::store(y, boxes.max[1][i]);
+      simd::store(x, boxes.min[0][i]);
+      simd::store(simd::Packet<float>(x + width), boxes.max[0][i]);
+      simd::store(simd::Packet<float>(y - height), boxes.min[1][i]);
+      simd::store(y, boxes.max[1][i]);
     }
   }
 
@@ -397,7 +268,8 @@ class HeightField {
   unsigned put_nodes(Box8<float>& boxes, unsigned level, std::uint32_t column, std::uint32_t row) const noexcept {
     const Level &own = levels_[level], &below = levels_[level - 1];
     const float* heights = pyramid_.data() + own.node(column, row);
-    std::memcpy(boxes.min[2], heights, sizeof boxes.min[2]), std::memcpy(boxes.max[2], heights + 8, sizeof boxes.max[2]);
+    std::memcpy(boxes.min[2], heights, sizeof boxes.min[2]);
+    std::memcpy(boxes.max[2], heights + 8, sizeof boxes.max[2]);
     const std::uint32_t wide = own.wide(), tall = 3 - wide;
     const std::uint32_t columns = below.columns - (column << wide), rows = below.rows - (row << tall);
     unsigned taken = rows >= 1U << tall ? 0xFF : (1U << (rows << wide)) - 1;
@@ -410,7 +282,8 @@ class HeightField {
     using FourHeights = simd::Vec<float, 4>;
     const std::uint32_t c = 4 * column, r = 2 * row;
     const float* rows[3] = {heights_.data() + grid_.index(c, r), nullptr, nullptr};
-    rows[1] = rows[0] + grid_.columns, rows[2] = rows[1] + grid_.columns;
+    rows[1] = rows[0] + grid_.columns;
+    rows[2] = rows[1] + grid_.columns;
     float ends[3][5];
     unsigned taken = 0xFF;
     if (c + 5 > grid_.columns || r + 3 > grid_.rows) {  // at the raster's edge
@@ -426,10 +299,12 @@ class HeightField {
     const FourHeights zero = {};
     FourHeights low[3], high[3];
     for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = zero + most, high[i] = zero - most;
+      low[i] = zero + most;
+      high[i] = zero - most;
       for (const float* from : {rows[i], rows[i] + 1}) {  // NaN fails every comparison
         const FourHeights heights = simd::load<FourHeights>(*from);
-        low[i] = heights < low[i] ? heights : low[i], high[i] = heights > high[i] ? heights : high[i];
+        low[i] = heights < low[i] ? heights : low[i];
+        high[i] = heights > high[i] ? heights : high[i];
       }
     }
     for (std::size_t i = 0; i < 2; ++i) {
@@ -445,86 +320,8 @@ class HeightField {
   }
   [[nodiscard]] float north_of(std::uint32_t row) const noexcept { return static_cast<float>((0.5 * grid_.rows - row) * grid_.pixel.y); }
 
-  /// Lays out the levels of the grid and returns the size of the pyramid.
-  std::size_t lay_out() noexcept {
-    levels_ = {};
-    levels_[0] = {.columns = grid_.columns - 1, .rows = grid_.rows - 1};
-    top_ = 0;
-    std::size_t size = 0;
-    do {
-      const Level& below = levels_[top_];
-      Level& level = levels_[++top_];
-      const std::uint32_t wide = top_ % 2 == 1 ? 2 : 1, tall = 3 - wide;
-      level.columns = ((below.columns - 1) >> wide) + 1, level.rows = ((below.rows - 1) >> tall) + 1;
-      level.begin = size;
-      level.below = below.shift, level.shift = {below.shift[0] + wide, below.shift[1] + tall};
-      level.size = {static_cast<float>((1U << below.shift[0]) * grid_.pixel.x), static_cast<float>((1U << below.shift[1]) * grid_.pixel.y)};
-      for (std::uint32_t i = 0; i < 8; ++i) {
-        level.east[i] = static_cast<float>(((i & ((1U << wide) - 1)) << below.shift[0]) * grid_.pixel.x);
-        level.south[i] = static_cast<float>((i >> wide << below.shift[1]) * grid_.pixel.y);
-      }
-      if (top_ > 1) size = level.node(0, level.rows);  // level 1 reads the heights themselves
-    } while (levels_[top_].columns > 1 || levels_[top_].rows > 1);
-    return size;
-  }
-
-  void build(unsigned threads) {
-    per_metre_ = {1 / grid_.pixel.x, -1 / grid_.pixel.y};
-    constexpr double single = std::numeric_limits<float>::epsilon();
-    pad_ = {16 * single * grid_.columns * grid_.pixel.x, 16 * single * grid_.rows * grid_.pixel.y};
-    centre_ = {grid_.first.x + 0.5 * grid_.columns * grid_.pixel.x, grid_.first.y - 0.5 * grid_.rows * grid_.pixel.y, 0};
-    std::vector<float> pyramid(lay_out());
-    for (std::size_t i = 0; i < pyramid.size(); ++i) pyramid[i] = i % 16 < 8 ? most : -most;
-    std::vector<Box> grounds(levels_[1].rows);
-    if (heights_.size() < 1'000'000) threads = 1;  // starting threads would take longer
-    for (unsigned level = 1; level <= top_; ++level)
-      for_each_index(levels_[level].rows, level <= 2 ? threads : 1, [&](std::size_t task) {
-        const auto row = static_cast<std::uint32_t>(task);
-        for (std::uint32_t column = 0; column < levels_[level].columns; ++column) {
-          Heights own;
-          if (level == 1) {
-            const Box ground = ground_of(column, row);
-            if (ground.empty()) continue;
-            grounds[row].extend(ground);
-            own = {static_cast<float>(ground.min.z), static_cast<float>(ground.max.z)};
-          } else {
-            const float* below = pyramid.data() + levels_[level].node(column, row);
-            own = {*std::min_element(below, below + 8), *std::max_element(below + 8, below + 16)};
-          }
-          if (level == top_) continue;
-          float* place = pyramid.data() + levels_[level + 1].of_child(column, row);
-          place[0] = own.least, place[8] = own.greatest;
-        }
-      });
-    for (const Box& ground : grounds) bounds_.extend(ground);
-    pyramid_ = std::move(pyramid);
-  }
-
-  /// Bounding box of the triangles of 4 by 2 cells.
-  [[nodiscard]] Box ground_of(std::uint32_t node_column, std::uint32_t node_row) const {
-    const std::uint32_t west = 4 * node_column, north = 2 * node_row;
-    const std::uint32_t east = std::min(west + 4, grid_.columns - 1), south = std::min(north + 2, grid_.rows - 1);
-    float low = most, high = -most;
-    bool whole = true;
-    for (std::uint32_t row = north; row <= south; ++row)
-      for (const float* at = &heights_[grid_.index(west, row)]; at <= &heights_[grid_.index(east, row)]; ++at)
-        low = *at < low ? *at : low, high = *at > high ? *at : high, whole = whole && *at == *at;
-    Box box;
-    if (whole) {
-      box.extend(grid_.vertex(west, south, low)), box.extend(grid_.vertex(east, north, high));
-      return box;
-    }
-    for (std::uint32_t row = north; row < south; ++row)
-      for (std::uint32_t column = west; column < east; ++column)
-        for (const int which : {0, 1}) {
-          const detail::RasterCell cell(grid_, heights_.data(), column, row);
-          if (cell.has(which)) box.extend(cell.triangle(grid_, which).bounds());
-        }
-    return box;
-  }
-
   detail::RasterGrid grid_;
-  std::array<Level, max_levels + 1> levels_{};
+  std::array<Level, detail::PyramidLayout::max_levels + 1> levels_{};
   std::uint32_t top_ = 0;
   Vec2 per_metre_{};  ///< pixels east per metre east, and pixels south per metre north
   Vec2 pad_{};        ///< error bound of walls in single precision [m]

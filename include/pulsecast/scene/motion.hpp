@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +18,8 @@
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/geometry/box.hpp>
-#include <pulsecast/scene/part.hpp>
+#include <pulsecast/scene/detail/motion_sweep.hpp>
+#include <pulsecast/scene/detail/motion_timeline.hpp>
 #include <pulsecast/scene/screw.hpp>
 
 namespace pulsecast {
@@ -65,35 +65,6 @@ struct Displacement {
 
   [[nodiscard]] Vec3 point(const Vec3& p) const noexcept { return about + shift + rotation * (p - about); }
 };
-
-namespace detail {
-
-/// Accumulated change of a body: its rotation, and the rigid motion of its own centre. The two differ after rotation about its own centre.
-struct Change {
-  Rotation attitude = no_rotation;
-  Screw path{};
-};
-
-[[nodiscard]] inline Change then(const Change& first, const Change& second) noexcept {
-  if (first.attitude == no_rotation && first.path.turn == no_rotation && first.path.shift == Vec3{}) return second;
-  return {normalize(second.attitude * first.attitude), then(first.path, second.path)};
-}
-
-[[nodiscard]] inline Change repeated(const Change& once, std::int64_t n) noexcept {
-  return {repeated(Screw{once.attitude, {}}, n).turn, repeated(once.path, n)};
-}
-
-[[nodiscard]] inline Box grown(const Box& b, double by) noexcept { return {b.min - Vec3(by), b.max + Vec3(by)}; }
-
-/// Greatest deviation of a point from uniform straight motion, while it turns by an angle [rad] at this distance from an axis in uniform
-/// straight motion; in the unit of the distance.
-/// Source: the error of linear interpolation, |f''| h^2 / 8 (Davis 1975, Interpolation and Approximation, ch. 3).
-[[nodiscard]] inline double bulge(double distance, double angle) noexcept { return distance * angle * angle / 8; }
-
-/// Angle beyond which the bound of a turning point is its whole sphere [rad]; affects only the size of boxes.
-inline constexpr double wide_turn = 2;
-
-}  // namespace detail
 
 /// Steady motion that takes every point p of the world to `position + rotation * p` in `seconds` [s]: a screw, the shorter way around.
 /// Source: Chasles 1830; the centre of a plane displacement, Bottema & Roth 1979, Theoretical Kinematics, ch. III.
@@ -162,22 +133,18 @@ class PartMotion {
   explicit PartMotion(DeserializeTag) {}
   template <class Archive>
   void archive(Archive& a) {
-    a(runs_, pieces_, cycle_first_, cycle_start_, cycle_before_, cycle_, cycle_duration_, reference_, from_origin_);
+    detail::MotionTimeline& t = timeline_;
+    a(t.runs, t.pieces, t.cycle_first, t.cycle_start, t.cycle_before, t.cycle, t.cycle_duration, reference_, from_origin_);
   }
-  [[nodiscard]] bool is_consistent() const noexcept {
-    const auto has_pieces = [this](const Run& run) { return run.first < run.end && run.end <= pieces_.size() && run.times > 0; };
-    return !runs_.empty() && cycle_first_ <= runs_.size() && std::all_of(runs_.begin(), runs_.end(), has_pieces);
-  }
+  [[nodiscard]] bool is_consistent() const noexcept { return timeline_.is_consistent(); }
 
   /// Memory held [byte].
-  [[nodiscard]] std::size_t memory() const noexcept {
-    return sizeof(*this) + runs_.capacity() * sizeof(Run) + pieces_.capacity() * sizeof(Piece);
-  }
+  [[nodiscard]] std::size_t memory() const noexcept { return sizeof(*this) + timeline_.heap_bytes(); }
 
   /// Displacement at a time of a body with its own centre placed at `own_centre` [m].
   [[nodiscard]] Displacement at(const Tick& tick, const Vec3& own_centre) const noexcept {
     const Vec3 centre = from_origin_ ? Vec3{} : own_centre, start = centre - reference_;
-    const State state = state_at(place_of(tick), start);
+    const detail::BodyState state = state_at(timeline_.place_of(tick), start);
     return {state.attitude, centre, state.centre - start};
   }
 
@@ -185,75 +152,16 @@ class PartMotion {
   /// changes of motion in this time, loose otherwise.
   [[nodiscard]] Box swept(std::span<const Vec3> points, const Vec3& own_centre, const Tick& from, const Tick& to) const noexcept {
     const Vec3 centre = from_origin_ ? Vec3{} : own_centre, start = centre - reference_;
-    Box box;
-    Tick tick = std::max(from, Tick{});
-    int pieces = 0;
-    for (; pieces < max_pieces; ++pieces) {
-      const Place place = place_of(tick);
-      const double rest = std::max(0.0, detail::since(tick, to).seconds());
-      const double span = std::min(rest, std::max(0.0, place.piece->duration - place.time.seconds()));
-      const Tick end = place.time + Tick::of_seconds(span);
-      extend_by(box, points, centre, start, place, end, span);
-      if (!(span < rest)) break;
-      tick = tick + Tick::of_seconds(std::max(span, 1e-12));
-    }
     double radius = 0;
     for (const Vec3& p : points) radius = std::max(radius, length(p - centre));
-    if (pieces == max_pieces) box.extend(detail::grown(roughly(start, tick, to), radius));
-    box.min = box.min + reference_, box.max = box.max + reference_;
+    Box box = detail::swept_box(timeline_, points, centre, start, from, to, radius);
+    box.min = box.min + reference_;
+    box.max = box.max + reference_;
     return detail::grown(box, 1e-12 * (max_norm(box.min) + max_norm(box.max)) + 1e-7 * radius);  // above rounding
   }
 
  private:
-  static constexpr int max_pieces = 32;  ///< pieces bounded one by one in `swept`; affects only the size of the box
-
   using Change = detail::Change;
-  using Screw = detail::Screw;
-
-  /// Rotation at a constant rate.
-  struct Turning {
-    Vec3 axis = axis::up;  ///< unit
-    double rate = 0;       ///< [rad/s]
-
-    [[nodiscard]] Rotation until(const Tick& time) const noexcept {
-      return rate == 0 ? no_rotation : rotation_about(axis, 2 * pi * time.phase(rate / (2 * pi)));
-    }
-  };
-
-  /// Steady motion, or interpolation between two poses, in a run.
-  struct Piece {
-    Change before;             ///< since the start of the run
-    Vec3 velocity{};           ///< [m/s]
-    Turning orbit{};           ///< rotation of its own centre, unless about itself
-    Vec3 centre{};             ///< centre of the orbit, relative to the reference [m]
-    bool about_itself = true;  ///< true for rotation about its own centre, which moves straight
-    bool spins = false;        ///< true for an attitude other than the orbit's
-    Turning attitude{};
-    double start = 0;                                           ///< since the start of the run [s]
-    double duration = std::numeric_limits<double>::infinity();  ///< [s]
-  };
-
-  /// Pieces repeated `times` times.
-  struct Run {
-    Change before;           ///< since the start, or since that of the cycle
-    Tick start;              ///< since the start, or since that of the cycle
-    Change pass;             ///< change in one pass
-    double pass_duration;    ///< [s]
-    std::int64_t times;      ///< at least 1
-    std::size_t first, end;  ///< its pieces
-  };
-
-  /// Piece at a time.
-  struct Place {
-    Change before;
-    const Piece* piece;
-    Tick time;  ///< since the start of the piece
-  };
-
-  struct State {
-    Rotation attitude;
-    Vec3 centre;  ///< relative to the reference [m]
-  };
 
   /// State of the construction, since the start or since that of the cycle.
   struct SoFar {
@@ -263,37 +171,39 @@ class PartMotion {
   };
 
   void begin_cycle(SoFar& so_far) {
-    cycle_first_ = runs_.size(), cycle_start_ = so_far.time, cycle_before_ = so_far.change;
+    timeline_.cycle_first = timeline_.runs.size();
+    timeline_.cycle_start = so_far.time;
+    timeline_.cycle_before = so_far.change;
     so_far = {};
   }
 
   void add(const MotionSequence& sequence, const std::string& field, bool last, SoFar& so_far) {
     if (sequence.motions.empty()) throw SettingError(field + ".motions (number)", 0, "", "at least 1");
     require_within(field + ".times", static_cast<double>(sequence.times), 1, 1e15, "");
-    Run run{so_far.change, so_far.time, {}, 0, static_cast<std::int64_t>(sequence.times), pieces_.size(), 0};
+    detail::MotionRun run{so_far.change, so_far.time, {}, 0, static_cast<std::int64_t>(sequence.times), timeline_.pieces.size(), 0};
     for (std::size_t k = 0; k < sequence.motions.size(); ++k) {
       const SteadyMotion& m = sequence.motions[k];
       m.validate();
       const bool may_be_infinite = last && k + 1 == sequence.motions.size() && sequence.times == 1;
       if (!may_be_infinite) require_within(field + ".motions[" + std::to_string(k) + "].duration", m.duration, 1e-6, 1e15, "s");
-      const Turning orbit{normalize(m.axis), m.rate};
-      Turning attitude = orbit;
-      if (m.spin) attitude = length(*m.spin) > 0 ? Turning{normalize(*m.spin), length(*m.spin)} : Turning{};
-      pieces_.push_back({.before = run.pass,
-                         .velocity = m.velocity,
-                         .orbit = orbit,
-                         .centre = m.centre ? *m.centre - reference_ : Vec3{},
-                         .about_itself = !m.centre,
-                         .spins = m.centre && m.spin,
-                         .attitude = attitude,
-                         .start = run.pass_duration,
-                         .duration = m.duration});
+      const detail::Turning orbit{normalize(m.axis), m.rate};
+      detail::Turning attitude = orbit;
+      if (m.spin) attitude = length(*m.spin) > 0 ? detail::Turning{normalize(*m.spin), length(*m.spin)} : detail::Turning{};
+      timeline_.pieces.push_back({.before = run.pass,
+                                  .velocity = m.velocity,
+                                  .orbit = orbit,
+                                  .centre = m.centre ? *m.centre - reference_ : Vec3{},
+                                  .about_itself = !m.centre,
+                                  .spins = m.centre && m.spin,
+                                  .attitude = attitude,
+                                  .start = run.pass_duration,
+                                  .duration = m.duration});
       run.pass_duration += m.duration;
-      if (std::isfinite(m.duration)) run.pass = detail::then(run.pass, change(pieces_.back(), Tick::of_seconds(m.duration)));
+      if (std::isfinite(m.duration)) run.pass = detail::then(run.pass, change(timeline_.pieces.back(), Tick::of_seconds(m.duration)));
     }
     run.pass = rounded(run.pass);
-    run.end = pieces_.size();
-    runs_.push_back(run);
+    run.end = timeline_.pieces.size();
+    timeline_.runs.push_back(run);
     if (!std::isfinite(run.pass_duration)) return void(so_far.endless = true);
     const double duration = run.pass_duration * static_cast<double>(run.times);
     require_within(field + " (duration)", duration, 0, 1e15, "s");
@@ -307,179 +217,40 @@ class PartMotion {
 
   /// Adds a piece known from its two poses alone, so that errors do not accumulate.
   void add_way(const TimedPose& from, const TimedPose& to) {
-    if (runs_.empty()) runs_.push_back({{}, {}, {}, 0, 1, 0, 0});
-    Run& run = runs_.back();
+    if (timeline_.runs.empty()) timeline_.runs.push_back({{}, {}, {}, 0, 1, 0, 0});
+    detail::MotionRun& run = timeline_.runs.back();
     const double duration = to.time - from.time;
     const Rotation a = normalize(from.rotation);
     const detail::RotationParts turn(normalize(to.rotation) * conjugate(a));
-    pieces_.push_back({.before = {a, {no_rotation, from.position}},
-                       .velocity = (to.position - from.position) / duration,
-                       .attitude = {turn.axis, turn.angle / duration},
-                       .start = run.pass_duration,
-                       .duration = duration});
+    timeline_.pieces.push_back({.before = {a, {no_rotation, from.position}},
+                                .velocity = (to.position - from.position) / duration,
+                                .attitude = {turn.axis, turn.angle / duration},
+                                .start = run.pass_duration,
+                                .duration = duration});
     run.pass_duration = to.time;
-    run.end = pieces_.size();
+    run.end = timeline_.pieces.size();
   }
 
   void end_cycle(const Tick& duration, const Change& change) {
-    cycle_duration_ = duration.seconds(), cycle_ = change;
-    runs_.shrink_to_fit(), pieces_.shrink_to_fit();
+    timeline_.cycle_duration = duration.seconds();
+    timeline_.cycle = change;
+    timeline_.shrink_to_fit();
   }
 
   /// Appends a rest to a finite motion.
   void end(const SoFar& so_far) {
     if (!so_far.endless) {
-      pieces_.emplace_back();
-      runs_.push_back({so_far.change, so_far.time, {}, pieces_.back().duration, 1, pieces_.size() - 1, pieces_.size()});
+      timeline_.pieces.emplace_back();
+      timeline_.runs.push_back(
+          {so_far.change, so_far.time, {}, timeline_.pieces.back().duration, 1, timeline_.pieces.size() - 1, timeline_.pieces.size()});
     }
-    cycle_first_ = runs_.size();
-    runs_.shrink_to_fit(), pieces_.shrink_to_fit();
+    timeline_.cycle_first = timeline_.runs.size();
+    timeline_.shrink_to_fit();
   }
 
-  /// Change from the start of a piece to a time in it.
-  static Change change(const Piece& p, const Tick& time) noexcept {
-    const Vec3 way = p.velocity * static_cast<double>(time.second) + p.velocity * time.fraction;
-    const Rotation attitude = p.attitude.until(time);
-    if (p.about_itself) return {attitude, {no_rotation, way}};
-    const Rotation orbit = p.spins ? p.orbit.until(time) : attitude;
-    return {attitude, {orbit, p.centre - orbit * p.centre + way}};
-  }
-
-  static State state_at(const Place& place, const Vec3& start) noexcept {
-    const Change all = detail::then(place.before, change(*place.piece, place.time));
-    return {all.attitude, all.path.point(start)};
-  }
-
-  Place place_of(const Tick& tick) const noexcept {
-    Tick time = tick < Tick{} ? Tick{} : tick;
-    Change before;
-    auto first = runs_.begin(), end = runs_.begin() + static_cast<std::ptrdiff_t>(cycle_first_);
-    if (cycle_first_ < runs_.size() && !(time < cycle_start_)) {
-      const detail::Periods cycles(detail::since(cycle_start_, time), cycle_duration_);
-      before = detail::then(cycle_before_, detail::repeated(cycle_, cycles.whole));
-      time = cycles.rest, first = end, end = runs_.end();
-    }
-    const Run& run = *(std::upper_bound(first + 1, end, time, [](const Tick& t, const Run& r) { return t < r.start; }) - 1);
-    time = detail::since(run.start, time);
-    before = detail::then(before, run.before);
-    if (run.times > 1) {
-      detail::Periods passes(time, run.pass_duration);
-      if (passes.whole >= run.times) passes.whole = run.times - 1, passes.rest = Tick::of_seconds(run.pass_duration);
-      before = detail::then(before, detail::repeated(run.pass, passes.whole));
-      time = passes.rest;
-    }
-    const auto begin = pieces_.begin();
-    const auto from = begin + static_cast<std::ptrdiff_t>(run.first), to = begin + static_cast<std::ptrdiff_t>(run.end);
-    const double seconds = time.seconds();
-    const Piece& piece = *(std::upper_bound(from + 1, to, seconds, [](double t, const Piece& p) { return t < p.start; }) - 1);
-    return {detail::then(before, piece.before), &piece, piece.start > 0 ? detail::since(Tick::of_seconds(piece.start), time) : time};
-  }
-
-  /// Extends a box by the paths of the points, from a place in a piece to its time `end`, `span` seconds later.
-  static void extend_by(Box& box, std::span<const Vec3> points, const Vec3& centre, const Vec3& start, const Place& place, const Tick& end,
-                        double span) noexcept {
-    const State a = state_at(place, start), b = state_at({place.before, place.piece, end}, start);
-    const Piece& piece = *place.piece;
-    const Vec3 middle = piece.about_itself ? a.centre : piece.centre + piece.velocity * place.time.seconds();
-    const double angle = std::fabs(piece.spins ? piece.orbit.rate : piece.attitude.rate) * span;
-    double radius = 0, own_radius = 0;  // radius about the middle; and about the body's own centre
-    Box ends;
-    const auto extend_ends = [&](const Vec3& first, const Vec3& last) {
-      radius = std::max(radius, length(first - middle));
-      ends.extend(first), ends.extend(last);
-    };
-    if (piece.spins) extend_ends(a.centre, b.centre);
-    for (const Vec3& p : points)
-      if (piece.spins)
-        own_radius = std::max(own_radius, length(p - centre));
-      else
-        extend_ends(a.centre + a.attitude * (p - centre), b.centre + b.attitude * (p - centre));
-    if (angle > detail::wide_turn) {
-      ends = Box{};
-      ends.extend(middle), ends.extend(middle + piece.velocity * span);
-    }
-    box.extend(detail::grown(ends, own_radius + (angle > detail::wide_turn ? radius : detail::bulge(radius, angle))));
-  }
-
-  /// Box of all positions of the body's own centre between two times, from whole runs and cycles.
-  Box roughly(const Vec3& start, const Tick& from, const Tick& to) const noexcept {
-    Box box, own;
-    own.extend(start);
-    const double end = to.seconds();
-    const bool cycles = cycle_first_ < runs_.size();
-    if (!cycles || from < cycle_start_)
-      for (std::size_t i = 0; i < cycle_first_; ++i) {
-        if (to < runs_[i].start || (i + 1 < cycle_first_ && runs_[i + 1].start < from)) continue;
-        const std::int64_t whole =
-            runs_[i].times > 1 ? detail::Periods(detail::since(runs_[i].start, to), runs_[i].pass_duration).whole : 0;
-        const Tick early = runs_[i].start < from ? detail::since(runs_[i].start, from) : Tick{};
-        const std::int64_t first = runs_[i].times > 1 ? detail::Periods(early, runs_[i].pass_duration).whole : 0;
-        extend_by_run(box, own, runs_[i], std::min(first, runs_[i].times - 1), std::min(whole, runs_[i].times - 1), end);
-      }
-    if (cycles && !(to < cycle_start_)) {
-      const Tick early = cycle_start_ < from ? detail::since(cycle_start_, from) : Tick{};
-      const std::int64_t first = detail::Periods(early, cycle_duration_).whole;
-      const std::int64_t last = detail::Periods(detail::since(cycle_start_, to), cycle_duration_).whole;
-      const Box before = repeated_box(moved(own, cycle_before_.path), cycle_.path, first, last);
-      for (std::size_t i = cycle_first_; i < runs_.size(); ++i) extend_by_run(box, before, runs_[i], 0, runs_[i].times - 1, end);
-    }
-    return box;
-  }
-
-  /// Extends a box by passes `first` to `last` of a run, for a body whose own centre is in `own` at the start or at that of a cycle.
-  void extend_by_run(Box& box, const Box& own, const Run& run, std::int64_t first, std::int64_t last, double end) const noexcept {
-    const Box before = repeated_box(moved(own, run.before.path), run.pass.path, first, last);
-    for (std::size_t k = run.first; k < run.end; ++k) {
-      const Piece& piece = pieces_[k];
-      const Box at_start = moved(before, piece.before.path);
-      const double span = std::min(piece.duration, std::max(0.0, end));
-      const Vec3 way = piece.velocity * span;
-      Box ends = at_start;
-      ends.extend(Box{at_start.min + way, at_start.max + way});
-      if (piece.about_itself) {
-        box.extend(ends);
-        continue;
-      }
-      double radius = 0;
-      for (const Vec3& p : detail::corners(at_start)) radius = std::max(radius, length(p - piece.centre));
-      Box axis;
-      axis.extend(piece.centre), axis.extend(piece.centre + way);
-      box.extend(piece.orbit.rate == 0 ? ends : detail::grown(axis, radius));
-    }
-  }
-
-  static Box moved(const Box& box, const Screw& by) noexcept {
-    Box out;
-    for (const Vec3& p : detail::corners(box)) out.extend(by.point(p));
-    return out;
-  }
-
-  /// Box around a box after `first` to `last` repetitions of a rigid motion.
-  static Box repeated_box(const Box& box, const Screw& once, std::int64_t first, std::int64_t last) noexcept {
-    Box out = moved(box, detail::repeated(once, first));
-    out.extend(moved(box, detail::repeated(once, last)));
-    const detail::RotationParts turn(once.turn);
-    if (turn.angle == 0 || first == last) return out;
-    // about the axis of the screw, see `steady_motion`
-    const Vec3 along = dot(once.shift, turn.axis) * turn.axis, across = once.shift - along;
-    const Vec3 centre = 0.5 * (across + cross(turn.axis, across) / std::tan(turn.angle / 2));
-    double radius = 0;
-    for (const Vec3& p : detail::corners(box)) radius = std::max(radius, length(p - centre));
-    const double angle = turn.angle * static_cast<double>(last - first);
-    if (angle <= detail::wide_turn) return detail::grown(out, detail::bulge(radius, angle));
-    Box axis;
-    axis.extend(centre + static_cast<double>(first) * along), axis.extend(centre + static_cast<double>(last) * along);
-    return detail::grown(axis, radius);
-  }
-
-  std::vector<Run> runs_;        ///< the cycle's last
-  std::vector<Piece> pieces_;    ///< pieces of all runs
-  std::size_t cycle_first_ = 0;  ///< first run of the cycle; the number of runs without a cycle
-  Tick cycle_start_{};
-  Change cycle_before_{}, cycle_{};  ///< change until the cycle's start, and in one cycle
-  double cycle_duration_ = 0;        ///< [s]
-  Vec3 reference_{};                 ///< origin of the paths: near the motion, so that no digits are lost [m]
-  bool from_origin_ = false;         ///< true for timed poses: rotation about the world's origin, not the body's own centre
+  detail::MotionTimeline timeline_;
+  Vec3 reference_{};          ///< origin of the paths: near the motion, so that no digits are lost [m]
+  bool from_origin_ = false;  ///< true for timed poses: rotation about the world's origin, not the body's own centre
 };
 
 }  // namespace pulsecast

@@ -17,6 +17,9 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
+#include <pulsecast/scene/detail/solid_meeting.hpp>
+#include <pulsecast/scene/detail/voxel_columns.hpp>
+#include <pulsecast/scene/detail/voxel_index_builder.hpp>
 #include <pulsecast/scene/leaf_angles.hpp>
 #include <pulsecast/scene/voxel_data.hpp>
 #include <pulsecast/scene/voxel_index.hpp>
@@ -29,85 +32,6 @@ enum class Incidence : std::uint8_t {
   face,           ///< normal of the face of the cube that the ray meets
   perpendicular,  ///< always towards the scanner
 };
-
-namespace detail {
-
-/// Three numbers from -1 to 1, each within 5e-7; -1, 0 and 1 are exact.
-class PackedVector {
- public:
-  PackedVector() = default;
-  explicit PackedVector(const std::array<float, 3>& v) noexcept {
-    for (const float x : v) bits_ = bits_ << 21 | static_cast<std::uint64_t>(std::lround(std::clamp(x, -1.0F, 1.0F) * steps) + middle);
-  }
-
-  [[nodiscard]] Vec3 unpacked() const noexcept { return {part(42), part(21), part(0)}; }
-
- private:
-  static constexpr double steps = 1048575;
-  static constexpr std::int64_t middle = 1048576;
-
-  double part(int shift) const noexcept {
-    return static_cast<double>(static_cast<std::int64_t>(bits_ >> shift & 0x1FFFFF) - middle) / steps;
-  }
-
-  std::uint64_t bits_ = 0;
-};
-
-/// Reorders and converts a column of the data; empty for an empty column.
-template <class To, class From>
-[[nodiscard]] SharedArray<To> reordered(const std::vector<From>& column, std::span<const std::uint32_t> order) {
-  std::vector<To> kept;
-  if (column.empty()) return kept;
-  kept.reserve(order.size());
-  for (const std::uint32_t i : order) kept.push_back(To(column[i]));
-  return kept;
-}
-
-/// Intersection of a ray's walk with solid cubes, equal to that with a mesh of them without walls between two. A ray that begins inside a
-/// cube meets its far side, or the cube that touches it there.
-template <class Columns>
-class SolidMeeting {
- public:
-  SolidMeeting(const Columns& columns, const LatticeRay& ray, const RayBundle& rays, std::size_t j, ClosestHits& nearest) noexcept
-      : columns_(columns), ray_(ray), begin_{rays.near, Crossing::begin}, j_(j), nearest_(nearest) {}
-
-  double operator()(std::uint32_t number, const LatticeCell& cell, const Crossing& in, const Crossing& out) noexcept {
-    const LatticeRay::Passage cube = columns_.passage(ray_, number, cell, in, out);
-    if (!cube.in.before(cube.out) || !begin_.before(cube.out)) return far_side_;
-    if (cube.in.before(begin_) || cube.in.axis == Crossing::begin) {
-      far_side_ = cube.out.range, around_ = number;
-      return far_side_;
-    }
-    if (cube.in.range <= far_side_) far_side_ = infinity, nearest_.offer(j_, cube.in.range, number);
-    return -infinity;
-  }
-
-  void finish() noexcept {
-    if (far_side_ < infinity) nearest_.offer(j_, far_side_, around_);
-  }
-
- private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-
-  const Columns& columns_;
-  const LatticeRay& ray_;
-  Crossing begin_;
-  std::size_t j_;
-  ClosestHits& nearest_;
-  double far_side_ = infinity;  ///< far side of the cube around the ray's start [m]
-  std::uint32_t around_ = 0;    ///< number of that cube
-};
-
-/// Normal of the face at which a ray meets a cube; that of the far side if the ray begins inside.
-[[nodiscard]] inline Vec3 face_normal(const LatticeRay& ray, const LatticeRay::Passage& cube, double near) noexcept {
-  const bool from_inside = cube.in.before({near, Crossing::begin});
-  const int axis = from_inside ? cube.out.axis : cube.in.axis;
-  Vec3 normal{};
-  normal[axis] = ray.sense(axis) > 0 ? -1 : 1;
-  return normal;
-}
-
-}  // namespace detail
 
 /// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a voxel meets its far side, as with any
 /// closed surface.
@@ -147,7 +71,10 @@ struct OpaqueVoxels {
       const LatticeCell cell = index.cell(number);
       const LatticeRay ray = index.ray(rays, j);
       std::array<double, 3> low, high;
-      for (std::size_t k = 0; k < 3; ++k) low[k] = cell[k], high[k] = cell[k] + 1;
+      for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = cell[k];
+        high[k] = cell[k] + 1;
+      }
       return detail::face_normal(ray, ray.through(low, high), rays.near);
     }
 
@@ -189,7 +116,8 @@ struct ScaledVoxels {
       std::array<double, 3> low, high;
       for (std::size_t k = 0; k < 3; ++k) {
         const double centre = 0.5 + shift[static_cast<int>(k)];
-        low[k] = cell[k] + std::max(centre - half, 0.0), high[k] = cell[k] + std::min(centre + half, 1.0);
+        low[k] = cell[k] + std::max(centre - half, 0.0);
+        high[k] = cell[k] + std::min(centre + half, 1.0);
       }
       return ray.through(low, high);
     }
@@ -346,7 +274,9 @@ class VoxelGrid {
 
   template <class Archive>
   void archive(Archive& a) {
-    index_.archive(a), filling_.archive(a), columns_.archive(a);
+    index_.archive(a);
+    filling_.archive(a);
+    columns_.archive(a);
     a(materials_, material_count_);
   }
 

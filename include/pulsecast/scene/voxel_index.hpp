@@ -8,18 +8,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
+#include <pulsecast/scene/detail/lattice_walker.hpp>
+#include <pulsecast/scene/detail/voxel_keys.hpp>
 #include <pulsecast/scene/lattice_ray.hpp>
-#include <pulsecast/scene/voxel_data.hpp>
 
 namespace pulsecast {
+
+struct VoxelData;
+namespace detail {
+class VoxelIndexBuilder;
+}
 
 /// Sparse index of the occupied cells of a lattice, and their numbers. Cells are bits of bricks of 4 x 4 x 4; bricks are bits of blocks of
 /// as many, where that saves memory. A hash table finds bricks or blocks. A bit pyramid over the whole lattice lets rays leap over empty
@@ -29,64 +32,13 @@ namespace pulsecast {
 class VoxelIndex {
  public:
   /// Greatest extent along an axis [cells].
-  static constexpr std::uint32_t longest = 1U << 21;
+  static constexpr std::uint32_t longest = detail::max_lattice_extent;
 
   explicit VoxelIndex(DeserializeTag) {}
 
-  /// Sets `order` to the data's cell index of each number. @throws SettingError for a duplicate cell, or an extent above `longest`
-  VoxelIndex(const VoxelData& data, std::vector<std::uint32_t>& order) {
-    std::array<std::uint32_t, 3> least = data.cells.front(), most = least;
-    for (const auto& cell : data.cells)
-      for (std::size_t k = 0; k < 3; ++k) least[k] = std::min(least[k], cell[k]), most[k] = std::max(most[k], cell[k]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (most[k] - least[k] >= longest)
-        throw SettingError("VoxelData::cells", most[k], "", "within 2097152 cells of each other along each axis");
-      extent_[k] = static_cast<std::int32_t>(most[k] - least[k] + 1);
-    }
-    edge_ = data.edge;
-    corner_ = data.corner + data.edge * Vec3(least[0], least[1], least[2]);
-    bounds_ = {corner_, corner_ + edge_ * Vec3(extent_[0], extent_[1], extent_[2])};
-
-    struct Keyed {
-      std::uint64_t key;
-      std::uint32_t number;
-    };
-    std::vector<Keyed> sorted(data.cells.size());
-    for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = {sort_key(minus(data.cells[i], least)), static_cast<std::uint32_t>(i)};
-    std::sort(sorted.begin(), sorted.end(),
-              [](const Keyed& a, const Keyed& b) { return a.key < b.key || (a.key == b.key && a.number < b.number); });
-    order.clear(), order.reserve(sorted.size());
-    std::size_t bricks = 0, blocks = 0;
-    std::uint64_t last = ~std::uint64_t{0};
-    for (const Keyed& cell : sorted) {
-      if (cell.key == last)
-        throw SettingError("VoxelData::cells", cell.number, "",
-                           "each in its own place; this entry repeats entry " + std::to_string(order.back()));
-      bricks += cell.key >> 6 != last >> 6, blocks += cell.key >> 12 != last >> 12;
-      last = cell.key, order.push_back(cell.number);
-    }
-
-    const std::size_t budget = 26 * sorted.size(), flat = 25 * bricks, deep = 12 * bricks + 28 * blocks;
-    height_ = deep < flat ? 2 : 1;
-    const std::size_t roots = height_ == 2 ? blocks : bricks;
-    Nodes brick(bricks), block(height_ == 2 ? blocks : 0);
-    std::vector<std::uint64_t> keys;
-    keys.reserve(roots);
-    last = ~std::uint64_t{0};
-    for (std::size_t i = 0; i < sorted.size(); last = sorted[i++].key) {
-      const std::uint64_t key = sorted[i].key;
-      const bool new_brick = key >> 6 != last >> 6, new_root = key >> 6 * height_ != last >> 6 * height_;
-      if (new_root) keys.push_back(root_key(minus(data.cells[sorted[i].number], least)));
-      if (new_brick && height_ == 2) block.put(static_cast<unsigned>(key >> 6) & 63, brick.first.size(), key >> 12 != last >> 12);
-      brick.put(static_cast<unsigned>(key) & 63, i, new_brick);
-    }
-    hash(keys, roots * (height_ == 2 ? 8 : 5) / 4 + 1);
-    make_pyramid(keys, budget > std::min(flat, deep) ? budget - std::min(flat, deep) : 0);
-    size_ = static_cast<std::uint32_t>(sorted.size());
-    keys_ = SharedArray<std::uint64_t>(std::move(keys));
-    brick_masks_ = SharedArray<std::uint64_t>(std::move(brick.mask)), brick_first_ = SharedArray<std::uint32_t>(std::move(brick.first));
-    block_masks_ = SharedArray<std::uint64_t>(std::move(block.mask)), block_first_ = SharedArray<std::uint32_t>(std::move(block.first));
-  }
+  /// Sets `order` to the data's cell index of each number. `scene/voxel_grid.hpp` defines this; it takes no part in tracing.
+  /// @throws SettingError for a duplicate cell, or an extent above `longest`
+  VoxelIndex(const VoxelData& data, std::vector<std::uint32_t>& order);
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
@@ -100,10 +52,10 @@ class VoxelIndex {
   [[nodiscard]] LatticeCell cell(std::uint32_t number) const noexcept {
     const std::size_t brick = holder(brick_first_, number);
     const unsigned bit = nth_bit(brick_masks_[brick], number - brick_first_[brick]);
-    if (height_ == 1) return inside(unpacked(keys_[brick]), bit);
+    if (height_ == 1) return detail::child_cell(detail::unpacked_cell(keys_[brick]), bit);
     const std::size_t block = holder(block_first_, static_cast<std::uint32_t>(brick));
     const unsigned place = nth_bit(block_masks_[block], static_cast<std::uint32_t>(brick) - block_first_[block]);
-    return inside(inside(unpacked(keys_[block]), place), bit);
+    return detail::child_cell(detail::child_cell(detail::unpacked_cell(keys_[block]), place), bit);
   }
 
   /// Ray j in the lattice, relative to the lower corner of the bounds.
@@ -113,7 +65,7 @@ class VoxelIndex {
   /// beyond the limit. `in` is the crossing into the cell; `near` if the ray begins there.
   template <class Visit>
   void walk(const LatticeRay& ray, double near, double limit, Visit visit) const noexcept {
-    Walker at(ray, near, extent_);
+    detail::LatticeWalker at(ray, near, extent_);
     if (!at.inside) return;
     Place place;
     limit = std::min(limit, std::numeric_limits<double>::max());  // planes never crossed are beyond
@@ -125,8 +77,8 @@ class VoxelIndex {
       }
       const std::uint64_t mask = brick_masks_[place.brick];
       for (;;) {
-        const unsigned bit = digit(at.cell, 0);
-        const int axis = Walker::first_of(at.next);
+        const unsigned bit = detail::cell_bit(at.cell, 0);
+        const int axis = detail::LatticeWalker::first_of(at.next);
         if (mask >> bit & 1) {
           const auto number = brick_first_[place.brick] + static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
           const Crossing out{at.next[static_cast<std::size_t>(axis)], axis};
@@ -145,27 +97,7 @@ class VoxelIndex {
   }
 
  private:
-  /// Cubes of one size, a bit each, in words of 4 x 4 x 4. A level too large for direct indexing shares its words by a hash; an unset bit
-  /// still proves its cube empty.
-  struct Level {
-    std::uint64_t first = 0;                ///< first word
-    std::uint64_t words = 0;                ///< words of a hashed level; 0 if indexed directly
-    std::array<std::uint32_t, 2> extent{};  ///< words along x and y
-    std::int32_t shift = 0;                 ///< log2 of the edge of a bit's cube [cells]
-    std::int32_t unused = 0;                ///< makes all bytes of an archive definite
-  };
-
-  /// Child masks, and the number of the first child of each node.
-  struct Nodes {
-    std::vector<std::uint64_t> mask;
-    std::vector<std::uint32_t> first;
-
-    explicit Nodes(std::size_t n) { mask.reserve(n), first.reserve(n); }
-    void put(unsigned bit, std::size_t child, bool begins) {
-      if (begins) mask.push_back(0), first.push_back(static_cast<std::uint32_t>(child));
-      mask.back() |= std::uint64_t{1} << bit;
-    }
-  };
+  friend class detail::VoxelIndexBuilder;
 
   /// Position of a walk in the tree.
   struct Place {
@@ -174,135 +106,6 @@ class VoxelIndex {
   };
 
   static constexpr std::uint32_t nothing = ~std::uint32_t{0};
-
-  /// State of a ray's traversal.
-  struct Walker {
-    const LatticeRay& ray;
-    LatticeCell cell{};
-    Crossing in;                 ///< crossing into the cell
-    std::array<double, 3> next;  ///< range of the exit plane along each axis
-    bool inside = false;
-
-    Walker(const LatticeRay& r, double near, const LatticeCell& extent) noexcept : ray(r), in{near, Crossing::begin} {
-      if (!ray.valid()) return;
-      for (int k = 0; k < 3; ++k) {
-        if (ray.sense(k) == 0) continue;
-        const Crossing wall = ray.crossing(k, ray.sense(k) > 0 ? 0 : extent[static_cast<std::size_t>(k)]);
-        if (wall.range > in.range || (wall.range == in.range && in.axis != Crossing::begin)) in = wall;
-      }
-      if (!(in.range < std::numeric_limits<double>::infinity())) return;
-      for (int k = 0; k < 3; ++k)
-        if (!find(k, 0, extent[static_cast<std::size_t>(k)] - 1)) return;
-      inside = true;
-    }
-
-    /// Sets the cell along an axis to that of the ray at `in`; false if it is not between `low` and `high`.
-    bool find(int k, std::int32_t low, std::int32_t high) noexcept {
-      const auto axis = static_cast<std::size_t>(k);
-      const int sense = ray.sense(k);
-      const double guess = ray.position(k, in.range);  // `low` is not negative, so truncation gives the cell
-      std::int32_t c = guess > low ? guess < high ? static_cast<std::int32_t>(guess) : high : low;
-      if (sense == 0) {
-        while (c < high && ray.above(k, c + 1)) ++c;
-        while (c > low && !ray.above(k, c)) --c;
-        cell[axis] = c, next[axis] = std::numeric_limits<double>::infinity();
-        return ray.above(k, c) && !ray.above(k, c + 1);
-      }
-      const std::int32_t first = sense > 0 ? low : high, last = sense > 0 ? high : low, front = sense > 0 ? 1 : 0, back = 1 - front;
-      while (c != last && !in.before(ray.crossing(k, c + front))) c += sense;
-      while (c != first && in.before(ray.crossing(k, c + back))) c -= sense;
-      cell[axis] = c, next[axis] = ray.crossing(k, c + front).range;
-      return in.before({next[axis], k});
-    }
-
-    /// Axis of the first crossing.
-    static int first_of(const std::array<double, 3>& ranges) noexcept {
-      const int xy = ranges[0] <= ranges[1] ? 0 : 1;
-      return ranges[static_cast<std::size_t>(xy)] <= ranges[2] ? xy : 2;
-    }
-
-    /// True if two coordinates along an axis are in the same group of four.
-    static bool neighbours(std::int32_t a, std::int32_t b) noexcept { return a >> 2 == b >> 2; }
-
-    /// Steps to the next cell; false if it is in another brick.
-    bool step(int k) noexcept {
-      const auto axis = static_cast<std::size_t>(k);
-      const int sense = ray.sense(k);
-      in = {next[axis], k};
-      const std::int32_t from = cell[axis];
-      cell[axis] = from + sense;
-      next[axis] = ray.crossing(k, cell[axis] + (sense > 0 ? 1 : 0)).range;
-      return neighbours(from, cell[axis]);
-    }
-
-    /// Leaps over empty cubes of edge 2^shift cells, from the one around the cell. Stops at a cube that is occupied by the mask `occupied`,
-    /// or outside of its 4 x 4 x 4. False if the ray never leaves.
-    bool leap(int shift, std::uint64_t occupied) noexcept {
-      LatticeCell at;
-      std::array<double, 3> exit;
-      for (int k = 0; k < 3; ++k) {
-        const auto axis = static_cast<std::size_t>(k);
-        at[axis] = cell[axis] >> shift;
-        exit[axis] = ray.sense(k) == 0 ? std::numeric_limits<double>::infinity()
-                                       : ray.crossing(k, (at[axis] + (ray.sense(k) > 0 ? 1 : 0)) << shift).range;
-      }
-      for (;;) {
-        const int k = first_of(exit);
-        const auto axis = static_cast<std::size_t>(k);
-        if (!(exit[axis] < std::numeric_limits<double>::infinity())) return false;
-        in = {exit[axis], k};
-        const std::int32_t from = at[axis];
-        at[axis] += ray.sense(k);
-        if (!neighbours(from, at[axis]) || (occupied >> digit(at, 0) & 1)) break;
-        exit[axis] = ray.crossing(k, (at[axis] + (ray.sense(k) > 0 ? 1 : 0)) << shift).range;
-      }
-      for (int k = 0; k < 3; ++k) {
-        const auto axis = static_cast<std::size_t>(k);
-        const std::int32_t low = at[axis] << shift, high = low | ((1 << shift) - 1);
-        if (k == in.axis) {
-          cell[axis] = ray.sense(k) > 0 ? low : high;
-          next[axis] = ray.crossing(k, cell[axis] + (ray.sense(k) > 0 ? 1 : 0)).range;
-        } else if (ray.sense(k) != 0) {
-          find(k, low, high);
-        }
-      }
-      return true;
-    }
-  };
-
-  static LatticeCell minus(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) noexcept {
-    return {static_cast<std::int32_t>(a[0] - b[0]), static_cast<std::int32_t>(a[1] - b[1]), static_cast<std::int32_t>(a[2] - b[2])};
-  }
-
-  /// Position of a cell, after `shift` bits of its coordinates, among the 4 x 4 x 4 around it.
-  static unsigned digit(const LatticeCell& c, int shift) noexcept {
-    return static_cast<unsigned>((c[0] >> shift & 3) | (c[1] >> shift & 3) << 2 | (c[2] >> shift & 3) << 4);
-  }
-
-  /// Child at such a position, of a fourth of the edge.
-  static LatticeCell inside(const LatticeCell& c, unsigned place) noexcept {
-    const auto p = static_cast<std::int32_t>(place);
-    return {c[0] << 2 | (p & 3), c[1] << 2 | (p >> 2 & 3), c[2] << 2 | p >> 4};
-  }
-
-  static std::uint64_t packed(const LatticeCell& c, int shift) noexcept {
-    return static_cast<std::uint64_t>(c[0] >> shift) | static_cast<std::uint64_t>(c[1] >> shift) << 21 |
-           static_cast<std::uint64_t>(c[2] >> shift) << 42;
-  }
-
-  /// Sort order in which the cells of a brick, and the bricks of a block, are contiguous.
-  static std::uint64_t sort_key(const LatticeCell& c) noexcept {
-    const std::uint64_t block =
-        static_cast<std::uint64_t>(c[0] >> 4) | static_cast<std::uint64_t>(c[1] >> 4) << 17 | static_cast<std::uint64_t>(c[2] >> 4) << 34;
-    return block << 12 | std::uint64_t{digit(c, 2)} << 6 | digit(c, 0);
-  }
-
-  std::uint64_t root_key(const LatticeCell& c) const noexcept { return packed(c, 2 * height_); }
-
-  static LatticeCell unpacked(std::uint64_t key) noexcept {
-    return {static_cast<std::int32_t>(key & (longest - 1)), static_cast<std::int32_t>(key >> 21 & (longest - 1)),
-            static_cast<std::int32_t>(key >> 42)};
-  }
 
   /// Last node whose first child is not after `child`.
   static std::size_t holder(const SharedArray<std::uint32_t>& first, std::uint32_t child) noexcept {
@@ -314,75 +117,10 @@ class VoxelIndex {
     return static_cast<unsigned>(std::countr_zero(mask));
   }
 
-  static std::size_t slot(std::uint64_t key, std::size_t slots) noexcept {
-    const std::uint64_t mixed = (key * 0x9E3779B97F4A7C15) >> 32;  // Source: multiplicative hashing by the golden ratio, Knuth 1973
-    return static_cast<std::size_t>(mixed * slots >> 32);
-  }
-
-  void hash(const std::vector<std::uint64_t>& keys, std::size_t size) {
-    std::vector<std::uint32_t> slots(size, nothing);
-    for (std::size_t root = 0; root < keys.size(); ++root) {
-      std::size_t s = slot(keys[root], size);
-      while (slots[s] != nothing) s = s + 1 == size ? 0 : s + 1;
-      slots[s] = static_cast<std::uint32_t>(root);
-    }
-    slots_ = SharedArray<std::uint32_t>(std::move(slots));
-  }
-
   std::uint32_t root(std::uint64_t key) const noexcept {
-    for (std::size_t s = slot(key, slots_.size()); slots_[s] != nothing; s = s + 1 == slots_.size() ? 0 : s + 1)
+    for (std::size_t s = detail::hash_slot(key, slots_.size()); slots_[s] != nothing; s = s + 1 == slots_.size() ? 0 : s + 1)
       if (keys_[slots_[s]] == key) return slots_[s];
     return nothing;
-  }
-
-  /// Builds levels from the cubes of the roots on, each of four times the edge of the one before. A fourth of the budget bounds each level
-  /// indexed directly; hashed levels share the rest.
-  void make_pyramid(const std::vector<std::uint64_t>& keys, std::size_t budget) {
-    const std::size_t affordable = budget / sizeof(std::uint64_t);
-    std::vector<Level> levels;
-    std::vector<std::size_t> whole;  // words
-    for (std::int32_t shift = 2 * height_; levels.empty() || whole.back() > 1; shift += 2) {
-      std::array<std::size_t, 3> n;
-      for (std::size_t k = 0; k < 3; ++k) n[k] = (static_cast<std::size_t>(extent_[k] - 1) >> (shift + 2)) + 1;
-      levels.push_back({.extent = {static_cast<std::uint32_t>(n[0]), static_cast<std::uint32_t>(n[1])}, .shift = shift});
-      whole.push_back(n[0] * n[1] * n[2]);
-    }
-    const auto hashed =
-        static_cast<std::size_t>(std::count_if(whole.begin(), whole.end(), [&](std::size_t words) { return words > affordable / 4; }));
-    std::vector<std::uint64_t> pyramid;
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      Level& level = levels[i];
-      if (whole[i] > affordable / 4) level.words = affordable * 3 / 4 / hashed;
-      const std::size_t words = level.words > 0 ? static_cast<std::size_t>(level.words) : whole[i];
-      if (pyramid.size() + words > affordable) continue;
-      level.first = pyramid.size();
-      pyramid.resize(pyramid.size() + words);
-      for (const std::uint64_t key : keys) {
-        const LatticeCell c = root_corner(key);
-        pyramid[word(level, c)] |= std::uint64_t{1} << digit(c, level.shift);
-      }
-      std::size_t set = 0;
-      for (std::size_t w = level.first; w < pyramid.size(); ++w) set += static_cast<std::size_t>(std::popcount(pyramid[w]));
-      if (level.words > 0 && set > words * 60)
-        pyramid.resize(pyramid.size() - words);  // almost full
-      else
-        levels_[level_count_++] = level;
-    }
-    pyramid_ = SharedArray<std::uint64_t>(std::move(pyramid));
-  }
-
-  /// Lower corner cell of a root.
-  LatticeCell root_corner(std::uint64_t key) const noexcept {
-    const LatticeCell c = unpacked(key);
-    return {c[0] << 2 * height_, c[1] << 2 * height_, c[2] << 2 * height_};
-  }
-
-  static std::size_t word(const Level& level, const LatticeCell& c) noexcept {
-    const int shift = level.shift + 2;
-    if (level.words > 0) return static_cast<std::size_t>(level.first) + slot(packed(c, shift), static_cast<std::size_t>(level.words));
-    const auto x = static_cast<std::size_t>(c[0] >> shift), y = static_cast<std::size_t>(c[1] >> shift),
-               z = static_cast<std::size_t>(c[2] >> shift);
-    return static_cast<std::size_t>(level.first) + (z * level.extent[1] + y) * level.extent[0] + x;
   }
 
   bool outside(const LatticeCell& c) const noexcept {
@@ -401,21 +139,24 @@ class VoxelIndex {
   Empty around(const LatticeCell& c, Place& place) const noexcept {
     Empty empty;
     for (std::size_t i = 0; i < level_count_; ++i) {
-      const Level& level = levels_[i];
-      const std::uint64_t siblings = pyramid_[word(level, c)];
-      if (!(siblings >> digit(c, level.shift) & 1))
+      const detail::VoxelLevel& level = levels_[i];
+      const std::uint64_t siblings = pyramid_[level.word(c)];
+      if (!(siblings >> detail::cell_bit(c, level.shift) & 1))
         empty = {level.shift, siblings};
       else if (level.words == 0)
         break;
     }
     if (empty.shift > 0) return empty;
-    const std::uint64_t key = root_key(c);
-    if (key != place.key) place.key = key, place.root = root(key);
+    const std::uint64_t key = detail::packed_cell(c, 2 * height_);
+    if (key != place.key) {
+      place.key = key;
+      place.root = root(key);
+    }
     if (place.root == nothing) return {2 * height_, ~std::uint64_t{0}};  // unknown roots around it count as occupied
     place.brick = place.root;
     if (height_ == 1) return {};
     const std::uint64_t mask = block_masks_[place.root];
-    const unsigned bit = digit(c, 2);
+    const unsigned bit = detail::cell_bit(c, 2);
     if (!(mask >> bit & 1)) return {2, mask};
     place.brick = block_first_[place.root] + static_cast<std::uint32_t>(std::popcount(mask & ((std::uint64_t{1} << bit) - 1)));
     return {};
@@ -427,7 +168,7 @@ class VoxelIndex {
   LatticeCell extent_{};  ///< extent [cells]
   std::uint32_t size_ = 0;
   std::int32_t height_ = 1;  ///< 1 for bricks as roots, 2 for blocks
-  std::array<Level, 10> levels_{};
+  std::array<detail::VoxelLevel, 10> levels_{};
   std::size_t level_count_ = 0;
   SharedArray<std::uint64_t> keys_;   ///< positions of the roots
   SharedArray<std::uint32_t> slots_;  ///< hash table of root numbers

@@ -130,8 +130,7 @@ function drawMarks() {
   if (!view.origin) return
   c.font = `${12 * ratio}px system-ui, sans-serif`
   c.lineJoin = 'round'
-  const { ink, paper, accent } = theme
-  const on = place => camera.project(view.relative(place))
+  const { ink, paper } = theme
   const label = (text, x, y) => {
     c.lineWidth = 3 * ratio
     c.strokeStyle = paper
@@ -139,49 +138,62 @@ function drawMarks() {
     c.fillStyle = ink
     c.fillText(text, x, y)
   }
-  const until = view.start + view.now
+  drawSetUps(c, label)
+  if (view.now < Infinity) drawInstrument(c)
+  if (state.selected >= 0) drawSelected(c)
+  drawScaleBar(c, label, ink)
+}
+
+/// Position in the picture and depth of a place in the world.
+const inPicture = place => view.camera.project(view.relative(place))
+
+/// The set-ups until now.
+function drawSetUps(c, label) {
+  const { camera, ratio } = view, until = view.start + view.now
   const setUps = view.ways.filter(way => way.places.length === 1)
   for (const way of setUps) {
     if (way.times[0] > until) continue
-    const [x, y, depth] = on(way.places[0])
+    const [x, y, depth] = inPicture(way.places[0])
     if (depth < camera.near) continue
     const s = 6 * ratio
     c.beginPath()
     c.moveTo(x, y - s), c.lineTo(x + s, y), c.lineTo(x, y + s), c.lineTo(x - s, y), c.closePath()
-    c.fillStyle = accent
+    c.fillStyle = theme.accent
     c.fill()
     c.lineWidth = 1.5 * ratio
-    c.strokeStyle = paper
+    c.strokeStyle = theme.paper
     c.stroke()
     if (setUps.length <= 60) label(way.name, x + 9 * ratio, y + 4 * ratio)
   }
-  if (view.now < Infinity) {  // the instrument at this moment
-    const way = view.ways.findLast(w => w.times[0] <= until)
-    if (way && way.places.length > 1) {
-      const [x, y, depth] = on(placeAt(way, until))
-      if (depth > camera.near) {
-        c.beginPath(), c.arc(x, y, 6 * ratio, 0, 7), c.fillStyle = accent, c.fill()
-        c.lineWidth = 2 * ratio, c.strokeStyle = paper, c.stroke()
-      }
-    }
+}
+
+/// The instrument at this moment.
+function drawInstrument(c) {
+  const { camera, ratio } = view, until = view.start + view.now
+  const way = view.ways.findLast(w => w.times[0] <= until)
+  if (!way || way.places.length < 2) return
+  const [x, y, depth] = inPicture(placeAt(way, until))
+  if (depth <= camera.near) return
+  c.beginPath(), c.arc(x, y, 6 * ratio, 0, 7), c.fillStyle = theme.accent, c.fill()
+  c.lineWidth = 2 * ratio, c.strokeStyle = theme.paper, c.stroke()
+}
+
+/// The selected point and its beam.
+function drawSelected(c) {
+  const { camera, ratio } = view
+  const { x, y, z, to_x, to_y, to_z } = points.arrays, i = state.selected
+  const [px, py, depth] = inPicture([x[i], y[i], z[i]]), [ix, iy, away] = inPicture([x[i] + to_x[i], y[i] + to_y[i], z[i] + to_z[i]])
+  if (depth <= camera.near) return
+  c.strokeStyle = theme.accent
+  if (away > camera.near) {
+    c.lineWidth = 1.5 * ratio, c.globalAlpha = 0.7
+    c.beginPath(), c.moveTo(ix, iy), c.lineTo(px, py), c.stroke()
+    c.globalAlpha = 1
   }
-  if (state.selected >= 0) {
-    const { x, y, z, to_x, to_y, to_z } = points.arrays, i = state.selected
-    const [px, py, depth] = on([x[i], y[i], z[i]]), [ix, iy, away] = on([x[i] + to_x[i], y[i] + to_y[i], z[i] + to_z[i]])
-    if (depth > camera.near) {
-      c.strokeStyle = accent
-      if (away > camera.near) {
-        c.lineWidth = 1.5 * ratio, c.globalAlpha = 0.7
-        c.beginPath(), c.moveTo(ix, iy), c.lineTo(px, py), c.stroke()
-        c.globalAlpha = 1
-      }
-      for (const [colour, width] of [[paper, 5], [accent, 2.5]]) {
-        c.lineWidth = width * ratio, c.strokeStyle = colour
-        c.beginPath(), c.arc(px, py, 9 * ratio, 0, 7), c.stroke()
-      }
-    }
+  for (const [colour, width] of [[theme.paper, 5], [theme.accent, 2.5]]) {
+    c.lineWidth = width * ratio, c.strokeStyle = colour
+    c.beginPath(), c.arc(px, py, 9 * ratio, 0, 7), c.stroke()
   }
-  drawScaleBar(c, label, ink)
 }
 
 /// A length at the target, and where north is.
@@ -256,10 +268,15 @@ function showDensity() {
 
 // ------------------------------------------------------------------------------------------------------ hands and keys
 
-function takeHands() {
+/// The user's own view: it stays when points arrive.
+function touch() {
+  state.touched = true
+  view.redraw(true)
+}
+
+function takePointers() {
   const canvas = view.canvas, held = new Map()
   let moved = 0
-  const touch = () => { state.touched = true, view.redraw(true) }
   canvas.onpointerdown = event => {
     canvas.setPointerCapture(event.pointerId)
     held.set(event.pointerId, event)
@@ -304,7 +321,11 @@ function takeHands() {
     view.camera.zoom(Math.exp(-Math.max(-200, Math.min(200, lines)) * 0.0016), event.offsetX * view.ratio, event.offsetY * view.ratio)
     touch()
   }, { passive: false })
+}
 
+const seenFromAbove = () => Object.assign(view.camera, { azimuth: 0, elevation: Math.PI / 2 })
+
+function takeKeys() {
   const acts = {
     ArrowLeft: e => e.shiftKey ? view.camera.pan(40, 0) : view.camera.turn(0.06, 0),
     ArrowRight: e => e.shiftKey ? view.camera.pan(-40, 0) : view.camera.turn(-0.06, 0),
@@ -312,7 +333,7 @@ function takeHands() {
     ArrowDown: e => e.shiftKey ? view.camera.pan(0, 40) : view.camera.turn(0, -0.06),
     '+': () => view.camera.zoom(1.15), '=': () => view.camera.zoom(1.15), '-': () => view.camera.zoom(1 / 1.15),
     Home: () => view.fit(), f: () => view.fit(),
-    t: () => Object.assign(view.camera, { azimuth: 0, elevation: Math.PI / 2 }),
+    t: seenFromAbove,
   }
   const others = {
     ' ': () => play(),
@@ -331,7 +352,9 @@ function takeHands() {
     act(event)
     if (acts[event.key]) touch()
   }
+}
 
+function takeHistogram() {
   const histogram = byId('histogram')
   const valueAt = event => {
     const [low, high] = colouring.ends
@@ -347,6 +370,9 @@ function takeHands() {
     recolour()
   }
   histogram.onpointerup = () => { from = null }
+}
+
+function takeButtons() {
   byId('all').onclick = () => { colouring.shown = null, recolour() }
   byId('close').onclick = () => select(-1)
   byId('play').onclick = () => play()
@@ -357,7 +383,7 @@ function takeHands() {
   byId('size').oninput = event => { view.pointSize = Number(event.target.value), view.redraw() }
   byId('shading').onchange = event => { view.shading = event.target.checked, view.redraw() }
   byId('fit').onclick = () => { view.fit() }
-  byId('top').onclick = () => { acts.t(), view.redraw() }
+  byId('top').onclick = () => { seenFromAbove(), view.redraw() }
 }
 
 // ------------------------------------------------------------------------------------------------------- what happens
@@ -444,7 +470,10 @@ async function begin() {
   view.hides = i => colouring.hides(points.arrays[colouring.name][i])
   view.afterFrame = drawMarks
   takeWays()
-  takeHands()
+  takePointers()
+  takeKeys()
+  takeHistogram()
+  takeButtons()
   matchMedia('(prefers-color-scheme: dark)').onchange = takeTheme
   window.onresize = () => { showHistogram(), points.count > 0 && showDensity() }
   const text = byId('points').textContent

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include <tiffio.h>
+
+#include <pulsecast/io/detail/geotiff/tiff_file.hpp>
+#include <pulsecast/scene/raster.hpp>
+
+namespace pulsecast::io::detail {
+
+/// Layout of the samples of a raster: in strips as wide as the raster, or in tiles.
+struct RasterLayout {
+  std::uint32_t columns = 0, rows = 0;              ///< size of the raster
+  std::uint32_t chunk_columns = 0, chunk_rows = 0;  ///< size of a strip or tile
+  std::uint64_t chunk_bytes = 0;                    ///< size of a strip or tile, decoded [byte]
+  std::uint16_t samples = 1, bits = 1;              ///< samples of a pixel, and bits of a sample
+  std::uint16_t format = SAMPLEFORMAT_UINT, planes = PLANARCONFIG_CONTIG;
+  bool tiled = false;
+
+  /// Reads and checks the layout of a file with heights in `band`, from 1. Throws a `FileError` if it cannot be read.
+  RasterLayout(const TiffFile& file, std::uint16_t band) {
+    columns = file.tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0);
+    rows = file.tag<std::uint32_t>(TIFFTAG_IMAGELENGTH, 0);
+    samples = file.tag<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL, 1);
+    bits = file.tag<std::uint16_t>(TIFFTAG_BITSPERSAMPLE, 1);
+    format = file.tag<std::uint16_t>(TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
+    planes = file.tag<std::uint16_t>(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+    const std::string size = std::to_string(columns) + " x " + std::to_string(rows) + " pixels";
+    if (columns < 2 || rows < 2) file.fail("is of " + size + ": expected 2 x 2 or more");
+    if (band > samples)
+      file.fail("has " + std::to_string(samples) + " bands: expected " + std::to_string(band) + ", or another setting of the band");
+    check_samples(file);
+
+    tiled = TIFFIsTiled(file.handle()) != 0;
+    if (tiled) {
+      chunk_columns = file.tag<std::uint32_t>(TIFFTAG_TILEWIDTH, 0);
+      chunk_rows = file.tag<std::uint32_t>(TIFFTAG_TILELENGTH, 0);
+      chunk_bytes = TIFFTileSize64(file.handle());
+    } else {
+      chunk_columns = columns;
+      chunk_rows = std::min(file.tag<std::uint32_t>(TIFFTAG_ROWSPERSTRIP, rows), rows);
+      chunk_bytes = TIFFStripSize64(file.handle());
+    }
+    const std::uint64_t pixels = std::uint64_t{columns} * rows;
+    const std::uint64_t needed = std::uint64_t{chunk_columns} * chunk_rows;  // pixels of a strip or tile
+    if (needed == 0 || chunk_bytes / (bits / 8U) / stride() != needed || chunk_bytes % (bits / 8U) != 0)
+      file.fail(std::string("has a ") + chunk() + "of no or too large a size" + file.complaint());
+    const std::uint64_t chunks = tiled ? TIFFNumberOfTiles(file.handle()) : TIFFNumberOfStrips(file.handle());
+    if (pixels > file.max_bytes() / sizeof(float) || chunk_bytes > file.max_bytes() || chunks > file.size())
+      file.fail("claims " + size + ", more than its " + std::to_string(file.size()) + " bytes can hold");
+    constexpr std::uint32_t most = pulsecast::detail::max_pixels;
+    if (columns > most || rows > most || !((columns - 1.0) * (rows - 1.0) <= 2147483647))
+      file.fail("is of " + size + ": expected at most 2^27 in a row or column, and 2^31 cells between them");
+  }
+
+  /// Distance between samples of one band [samples].
+  [[nodiscard]] std::size_t stride() const noexcept { return planes == PLANARCONFIG_CONTIG ? samples : 1; }
+  /// Name of a strip or tile, in front of its number.
+  [[nodiscard]] const char* chunk() const noexcept { return tiled ? "tile " : "strip "; }
+
+ private:
+  void check_samples(const TiffFile& file) const {
+    const bool real = format == SAMPLEFORMAT_IEEEFP;
+    const bool known = real || format == SAMPLEFORMAT_INT || format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID;
+    if (!known || !(bits == 8 || bits == 16 || bits == 32 || bits == 64) || (real && bits == 8))
+      file.fail("has samples of " + std::to_string(bits) + " bits, format " + std::to_string(format) +
+                ": expected whole numbers of 8, 16, 32 or 64 bits, or floating-point numbers of 16, 32 or 64");
+    const auto compression = file.tag<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE);
+    if (TIFFIsCODECConfigured(compression) == 0)
+      file.fail("is compressed by scheme " + std::to_string(compression) + ": expected one that this libtiff can read");
+    const auto meaning = file.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    if (meaning == PHOTOMETRIC_YCBCR || meaning == PHOTOMETRIC_LOGL || meaning == PHOTOMETRIC_LOGLUV)
+      file.fail("holds a picture (photometric interpretation " + std::to_string(meaning) + "): expected heights");
+  }
+};
+
+}  // namespace pulsecast::io::detail

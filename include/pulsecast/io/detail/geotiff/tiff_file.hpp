@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdarg>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <tiffio.h>
+
+#include <pulsecast/io/input_file.hpp>
+
+namespace pulsecast::io::detail {
+
+/// First image of a TIFF file, opened by libtiff, with the file's errors and warnings.
+class TiffFile {
+ public:
+  explicit TiffFile(const std::filesystem::path& path) : file_(path, "a GeoTIFF"), tiff_(open()) {}
+  TiffFile(const TiffFile&) = delete;
+  TiffFile& operator=(const TiffFile&) = delete;
+
+  [[nodiscard]] TIFF* handle() const noexcept { return tiff_.get(); }
+  [[nodiscard]] std::uint64_t size() const noexcept { return file_.size(); }  ///< size of the file [byte]
+
+  [[noreturn]] void fail(const std::string& problem) const { file_.fail(problem); }
+  [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const { file_.fail_at_byte(byte, problem); }
+  void warn(const std::string& oddity) { warnings_.push_back(file_.path() + ": " + oddity); }
+  [[nodiscard]] std::vector<std::string> take_warnings() noexcept { return std::exchange(warnings_, {}); }
+
+  /// Error of libtiff, to end a sentence.
+  [[nodiscard]] std::string complaint() const { return complaint_[0] == '\0' ? "" : std::string(" (libtiff: ") + complaint_.data() + ')'; }
+
+  /// Upper limit of the decoded size of any strip or tile: deflate reaches 1,032 to 1, LZW and others somewhat more. A tile of 256 by 256
+  /// that is left out or uniform is 16,384 times its entry in the lists of tiles.
+  [[nodiscard]] std::uint64_t max_bytes() const noexcept { return (std::uint64_t{1} << 26) + 4096 * file_.size(); }
+
+  template <class Number>
+  [[nodiscard]] Number tag(ttag_t number, Number otherwise) const {
+    Number value{};
+    return TIFFGetFieldDefaulted(tiff_.get(), number, &value) == 1 ? value : otherwise;
+  }
+
+  /// Values of an array tag; empty if missing or of another type. libtiff does not know these tags, and defines them as it reads them; if
+  /// GDAL or libgeotiff defined them, their counts may have another form.
+  template <class Number>
+  [[nodiscard]] std::span<const Number> tags(ttag_t number) const {
+    constexpr TIFFDataType type = std::is_same_v<Number, double> ? TIFF_DOUBLE : std::is_same_v<Number, char> ? TIFF_ASCII : TIFF_SHORT;
+    const TIFFField* field = TIFFFindField(tiff_.get(), number, TIFF_ANY);
+    const Number* values = nullptr;
+    std::uint32_t count = 0;
+    if (field == nullptr || TIFFFieldDataType(field) != type) return {};
+    if (TIFFFieldPassCount(field) == 0) {
+      if (type != TIFF_ASCII || TIFFGetField(tiff_.get(), number, &values) != 1 || values == nullptr) return {};
+      while (values[count] != Number{}) ++count;
+    } else if (TIFFFieldReadCount(field) == TIFF_VARIABLE2) {
+      if (TIFFGetField(tiff_.get(), number, &count, &values) != 1) return {};
+    } else {
+      std::uint16_t few = 0;
+      if (TIFFGetField(tiff_.get(), number, &few, &values) != 1) return {};
+      count = few;
+    }
+    return {values, values == nullptr ? 0 : count};
+  }
+
+ private:
+  struct Close {
+    void operator()(TIFF* tiff) const noexcept { TIFFClose(tiff); }
+  };
+  using Handle = std::unique_ptr<TIFF, Close>;
+
+  /// Keeps the first error; warnings concern irrelevant tags. Nothing is printed.
+  static int keep_error(TIFF*, void* self, const char*, const char* format, std::va_list arguments) noexcept {
+    auto& complaint = static_cast<TiffFile*>(self)->complaint_;
+    if (complaint[0] == '\0') (std::vsnprintf)(complaint.data(), complaint.size(), format, arguments);
+    return 1;
+  }
+  static int drop_warning(TIFF*, void*, const char*, const char*, std::va_list) noexcept { return 1; }
+
+  [[nodiscard]] Handle open() {
+    const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
+    if (!options) throw std::bad_alloc();
+    TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, this);
+    TIFFOpenOptionsSetWarningHandlerExtR(options.get(), drop_warning, this);
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), static_cast<tmsize_t>(max_bytes()));
+    Handle tiff(TIFFOpenExt(file_.path().c_str(), "rm", options.get()));  // not memory-mapped, as the file may be truncated meanwhile
+    if (!tiff) fail("is not a TIFF file that can be read" + complaint() + ": expected a GeoTIFF");
+    return tiff;
+  }
+
+  std::array<char, 256> complaint_{};  ///< first error of libtiff
+  std::vector<std::string> warnings_;
+  InputFile file_;
+  Handle tiff_;
+};
+
+}  // namespace pulsecast::io::detail

@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <ios>
+#include <istream>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <tiny_obj_loader.h>
+
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/io/detail/obj/polygon.hpp>
+#include <pulsecast/io/mtl.hpp>
+
+namespace pulsecast::io::detail {
+
+/// Statements of part of an OBJ file, evaluated as far as they do not depend on earlier parts.
+class ObjPiece : private StatementBuffer {
+ public:
+  /// Name of a material, line of its `usemtl`, and number once a triangle needs it.
+  struct Use {
+    std::string name = "default";
+    std::size_t line = 0;
+    std::optional<std::uint32_t> number;
+  };
+
+  /// An `mtllib` statement.
+  struct Libraries {
+    std::size_t line;
+    std::string quoted, rest;
+    std::vector<std::string> names;
+  };
+
+  /// First error and its line.
+  struct Failure {
+    std::size_t line = std::numeric_limits<std::size_t>::max();
+    std::exception_ptr error;
+  };
+
+  /// Text about a line.
+  struct Note {
+    std::size_t line;
+    std::string text;
+  };
+
+  ObjPiece(const std::string& path, std::string text, std::size_t lines_before) : StatementBuffer(path, std::move(text), lines_before) {}
+
+  /// Reads up to the first error.
+  void read() {
+    tinyobj::callback_t callbacks;
+    callbacks.vertex_cb = [](void* self, double x, double y, double z, double) { static_cast<ObjPiece*>(self)->vertex({x, y, z}); };
+    callbacks.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
+      static_cast<ObjPiece*>(self)->face({corners, static_cast<std::size_t>(count)});
+    };
+    callbacks.usemtl_cb = [](void* self, const char* name, int) {
+      ObjPiece& piece = *static_cast<ObjPiece*>(self);
+      piece.uses.push_back({name, piece.line(), std::nullopt});
+    };
+    try {
+      std::istream stream(this);
+      stream.exceptions(std::ios::badbit);  // lets exceptions pass that are thrown while reading
+      tinyobj::LoadObjWithCallback(stream, callbacks, this);
+    } catch (...) {
+      failure = {line(), std::current_exception()};
+    }
+  }
+
+  /// Triangulates the faces up to the first error. `all` has the vertices of this piece, z up, and the `before` vertices of earlier ones.
+  void triangulate(std::span<const Vec3> all, std::size_t before) {
+    triangles.reserve(faces_.size());
+    triangle_uses.reserve(faces_.size());
+    std::span<const int> rest = corners_;
+    for (const Face& face : faces_) {
+      const auto given = rest.first(face.corners);
+      rest = rest.subspan(face.corners);
+      numbers_.clear();
+      positions_.clear();
+      const auto count = static_cast<std::int64_t>(before + face.above);
+      for (const int corner : given) {
+        const std::int64_t index = corner < 0 ? count + corner : std::int64_t{corner} - 1;
+        if (index < 0 || index >= count) return reject(face.line, corner, count);
+        numbers_.push_back(static_cast<std::uint32_t>(index));
+        positions_.push_back(all[numbers_.back()]);
+      }
+      cut(face);
+    }
+  }
+
+  std::vector<Vec3> vertices;                   ///< as in the file
+  std::vector<Use> uses = std::vector<Use>(1);  ///< the first is in force from earlier pieces
+  std::vector<Libraries> libraries;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> triangle_uses;  ///< index into `uses` for each triangle
+  std::vector<Note> crossings;               ///< polygons whose outline crosses itself
+  std::optional<Note> first_unknown, first_flat;
+  std::size_t unknown = 0, flat = 0;
+  std::size_t open_line = 0;  ///< line of a last statement without end; 0 if there is none
+  Failure failure;
+
+ private:
+  /// Polygon of a face.
+  struct Face {
+    std::size_t line;
+    std::uint32_t corners, above, use;  ///< number of corners; vertices of this piece above it; index into `uses`
+  };
+
+  /// Statements of the OBJ specification (Wavefront 1995) that do not concern surfaces.
+  static constexpr std::array<std::string_view, 15> ignored{"vn", "vt", "vp",     "vw",     "o",   "g",          "s",        "l",
+                                                            "p",  "mg", "usemap", "maplib", "lod", "shadow_obj", "trace_obj"};
+
+  void check(std::string& ready) override {
+    const std::vector<std::string_view>& given = words();
+    if (keyword() == "v") {
+      require(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
+              "three finite numbers, none beyond 1e12");
+    } else if (keyword() == "f" && given.size() < 3 && !line_is_open()) {
+      add_flat(line());
+      return;
+    } else if (keyword() == "f") {
+      require(std::all_of(given.begin(), given.end(), is_corner), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
+      require(given.size() >= 3 && given.size() <= max_polygon_corners, "a face of 3 to 4096 corners");
+    } else if (keyword() == "usemtl" && given.empty()) {
+      uses.push_back({"default", line(), std::nullopt});
+      return;
+    } else if (keyword() != "usemtl") {
+      if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader would read only the first of several
+        libraries.push_back({line(), quoted(), std::string(rest()), {given.begin(), given.end()}});
+      } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
+        if (unknown++ == 0) first_unknown = {line(), quoted()};
+      }
+      return;
+    }
+    if (line_is_open() && keyword() != "usemtl") open_line = line();
+    ready = statement();
+  }
+
+  /// Counts a face without area.
+  void add_flat(std::size_t line) {
+    ++flat;
+    if (!first_flat || line < first_flat->line) first_flat = {line, {}};
+  }
+
+  static bool is_corner(std::string_view word) {
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t slash = word.find('/');
+      const std::string_view part = word.substr(0, slash);
+      if (!number_in<int>(part) && !(k == 1 && part.empty() && slash != word.npos)) return false;
+      if (slash == word.npos) return true;
+      word.remove_prefix(slash + 1);
+    }
+    return false;
+  }
+
+  void vertex(const Vec3& p) {
+    require(max_norm(p) <= max_number, "three finite numbers, none beyond 1e12");
+    vertices.push_back(p);
+  }
+
+  void face(std::span<const tinyobj::index_t> given) {
+    for (const tinyobj::index_t& corner : given) corners_.push_back(corner.vertex_index);
+    faces_.push_back({line(), static_cast<std::uint32_t>(given.size()), static_cast<std::uint32_t>(vertices.size()),
+                      static_cast<std::uint32_t>(uses.size() - 1)});
+  }
+
+  /// Records that a face refers to a missing vertex.
+  void reject(std::size_t face_line, int corner, std::int64_t count) {
+    try {
+      rewind();
+      while (next_statement() && line() < face_line) continue;
+      fail_here(quoted() + " names vertex " + std::to_string(corner) + ": expected from 1 to the " + std::to_string(count) +
+                " vertices above, or from -1 backwards");
+    } catch (...) {
+      failure = {face_line, std::current_exception()};
+    }
+  }
+
+  /// Triangulates the current polygon.
+  void cut(const Face& face) {
+    if (numbers_.size() == 3) return triangle(face, 0, 1, 2);
+    const auto pieces = triangulated(positions_);
+    for (const auto& [a, b, c] : pieces) triangle(face, a, b, c);
+    if (!pieces.empty()) return;
+    crossings.push_back({face.line, "the outline of the polygon crosses itself: it becomes a fan about its first corner"});
+    for (std::size_t k = 2; k < numbers_.size(); ++k) triangle(face, 0, k - 1, k);
+  }
+
+  void triangle(const Face& face, std::size_t a, std::size_t b, std::size_t c) {
+    const Vec3 area = cross(positions_[b] - positions_[a], positions_[c] - positions_[a]);
+    if (area == Vec3{0, 0, 0}) {
+      add_flat(face.line);
+      return;
+    }
+    triangles.push_back({numbers_[a], numbers_[b], numbers_[c]});
+    triangle_uses.push_back(face.use);
+  }
+
+  std::vector<Face> faces_;
+  std::vector<int> corners_;            ///< of all faces, as numbered in the file
+  std::vector<std::uint32_t> numbers_;  ///< vertices of the current face
+  std::vector<Vec3> positions_;         ///< positions of those
+};
+
+}  // namespace pulsecast::io::detail

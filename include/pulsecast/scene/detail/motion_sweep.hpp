@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <pulsecast/base/tick.hpp>
+#include <pulsecast/base/unit_rotation.hpp>
+#include <pulsecast/geometry/box.hpp>
+#include <pulsecast/scene/detail/motion_timeline.hpp>
+#include <pulsecast/scene/part.hpp>
+#include <pulsecast/scene/screw.hpp>
+
+/// Boxes around all that a body passes on its timeline.
+namespace pulsecast::detail {
+
+[[nodiscard]] inline Box grown(const Box& b, double by) noexcept { return {b.min - Vec3(by), b.max + Vec3(by)}; }
+
+/// Greatest deviation of a point from uniform straight motion, while it turns by an angle [rad] at this distance from an axis in uniform
+/// straight motion; in the unit of the distance.
+/// Source: the error of linear interpolation, |f''| h^2 / 8 (Davis 1975, Interpolation and Approximation, ch. 3).
+[[nodiscard]] inline double bulge(double distance, double angle) noexcept { return distance * angle * angle / 8; }
+
+/// Angle beyond which the bound of a turning point is its whole sphere [rad]; affects only the size of boxes.
+inline constexpr double wide_turn = 2;
+
+[[nodiscard]] inline Box moved(const Box& box, const Screw& by) noexcept {
+  Box out;
+  for (const Vec3& p : corners(box)) out.extend(by.point(p));
+  return out;
+}
+
+/// Box around a box after `first` to `last` repetitions of a rigid motion.
+[[nodiscard]] inline Box repeated_box(const Box& box, const Screw& once, std::int64_t first, std::int64_t last) noexcept {
+  Box out = moved(box, repeated(once, first));
+  out.extend(moved(box, repeated(once, last)));
+  const RotationParts turn(once.turn);
+  if (turn.angle == 0 || first == last) return out;
+  // about the axis of the screw, see `steady_motion`
+  const Vec3 along = dot(once.shift, turn.axis) * turn.axis, across = once.shift - along;
+  const Vec3 centre = 0.5 * (across + cross(turn.axis, across) / std::tan(turn.angle / 2));
+  double radius = 0;
+  for (const Vec3& p : corners(box)) radius = std::max(radius, length(p - centre));
+  const double angle = turn.angle * static_cast<double>(last - first);
+  if (angle <= wide_turn) return grown(out, bulge(radius, angle));
+  Box axis;
+  axis.extend(centre + static_cast<double>(first) * along);
+  axis.extend(centre + static_cast<double>(last) * along);
+  return grown(axis, radius);
+}
+
+/// Extends a box by the paths of the points, from a place in a piece to its time `end`, `span` seconds later.
+inline void extend_by_piece(Box& box, std::span<const Vec3> points, const Vec3& centre, const Vec3& start, const MotionPlace& place,
+                            const Tick& end, double span) noexcept {
+  const BodyState a = state_at(place, start), b = state_at({place.before, place.piece, end}, start);
+  const MotionPiece& piece = *place.piece;
+  const Vec3 middle = piece.about_itself ? a.centre : piece.centre + piece.velocity * place.time.seconds();
+  const double angle = std::fabs(piece.spins ? piece.orbit.rate : piece.attitude.rate) * span;
+  double radius = 0, own_radius = 0;  // radius about the middle; and about the body's own centre
+  Box ends;
+  const auto extend_ends = [&](const Vec3& first, const Vec3& last) {
+    radius = std::max(radius, length(first - middle));
+    ends.extend(first);
+    ends.extend(last);
+  };
+  if (piece.spins) extend_ends(a.centre, b.centre);
+  for (const Vec3& p : points)
+    if (piece.spins)
+      own_radius = std::max(own_radius, length(p - centre));
+    else
+      extend_ends(a.centre + a.attitude * (p - centre), b.centre + b.attitude * (p - centre));
+  if (angle > wide_turn) {
+    ends = Box{};
+    ends.extend(middle);
+    ends.extend(middle + piece.velocity * span);
+  }
+  box.extend(grown(ends, own_radius + (angle > wide_turn ? radius : bulge(radius, angle))));
+}
+
+/// Extends a box by passes `first` to `last` of a run, for a body whose own centre is in `own` at the start or at that of a cycle.
+inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own, const MotionRun& run, std::int64_t first,
+                          std::int64_t last, double end) noexcept {
+  const Box before = repeated_box(moved(own, run.before.path), run.pass.path, first, last);
+  for (std::size_t k = run.first; k < run.end; ++k) {
+    const MotionPiece& piece = motion.pieces[k];
+    const Box at_start = moved(before, piece.before.path);
+    const double span = std::min(piece.duration, std::max(0.0, end));
+    const Vec3 way = piece.velocity * span;
+    Box ends = at_start;
+    ends.extend(Box{at_start.min + way, at_start.max + way});
+    if (piece.about_itself) {
+      box.extend(ends);
+      continue;
+    }
+    double radius = 0;
+    for (const Vec3& p : corners(at_start)) radius = std::max(radius, length(p - piece.centre));
+    Box axis;
+    axis.extend(piece.centre);
+    axis.extend(piece.centre + way);
+    box.extend(piece.orbit.rate == 0 ? ends : grown(axis, radius));
+  }
+}
+
+/// Box of all positions of the body's own centre between two times, from whole runs and cycles.
+[[nodiscard]] inline Box rough_path_box(const MotionTimeline& motion, const Vec3& start, const Tick& from, const Tick& to) noexcept {
+  Box box, own;
+  own.extend(start);
+  const double end = to.seconds();
+  const bool cycles = motion.cycle_first < motion.runs.size();
+  if (!cycles || from < motion.cycle_start)
+    for (std::size_t i = 0; i < motion.cycle_first; ++i) {
+      if (to < motion.runs[i].start || (i + 1 < motion.cycle_first && motion.runs[i + 1].start < from)) continue;
+      const std::int64_t whole =
+          motion.runs[i].times > 1 ? Periods(since(motion.runs[i].start, to), motion.runs[i].pass_duration).whole : 0;
+      const Tick early = motion.runs[i].start < from ? since(motion.runs[i].start, from) : Tick{};
+      const std::int64_t first = motion.runs[i].times > 1 ? Periods(early, motion.runs[i].pass_duration).whole : 0;
+      extend_by_run(box, motion, own, motion.runs[i], std::min(first, motion.runs[i].times - 1), std::min(whole, motion.runs[i].times - 1),
+                    end);
+    }
+  if (cycles && !(to < motion.cycle_start)) {
+    const Tick early = motion.cycle_start < from ? since(motion.cycle_start, from) : Tick{};
+    const std::int64_t first = Periods(early, motion.cycle_duration).whole;
+    const std::int64_t last = Periods(since(motion.cycle_start, to), motion.cycle_duration).whole;
+    const Box before = repeated_box(moved(own, motion.cycle_before.path), motion.cycle.path, first, last);
+    for (std::size_t i = motion.cycle_first; i < motion.runs.size(); ++i)
+      extend_by_run(box, motion, before, motion.runs[i], 0, motion.runs[i].times - 1, end);
+  }
+  return box;
+}
+
+/// Box that holds all points, relative to the reference [m], passed by the hull of points between two times. The body is about `centre` as
+/// placed, `start` relative to the reference; the points are as placed, within `radius` of it.
+[[nodiscard]] inline Box swept_box(const MotionTimeline& motion, std::span<const Vec3> points, const Vec3& centre, const Vec3& start,
+                                   const Tick& from, const Tick& to, double radius) noexcept {
+  constexpr int max_pieces = 32;  // pieces bounded one by one; affects only the size of the box
+  Box box;
+  Tick tick = std::max(from, Tick{});
+  int pieces = 0;
+  for (; pieces < max_pieces; ++pieces) {
+    const MotionPlace place = motion.place_of(tick);
+    const double rest = std::max(0.0, since(tick, to).seconds());
+    const double span = std::min(rest, std::max(0.0, place.piece->duration - place.time.seconds()));
+    const Tick end = place.time + Tick::of_seconds(span);
+    extend_by_piece(box, points, centre, start, place, end, span);
+    if (!(span < rest)) break;
+    tick = tick + Tick::of_seconds(std::max(span, 1e-12));
+  }
+  if (pieces == max_pieces) box.extend(grown(rough_path_box(motion, start, tick, to), radius));
+  return box;
+}
+
+}  // namespace pulsecast::detail

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/geometry/triangle.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
+
+namespace pulsecast {
+
+namespace detail {
+
+inline constexpr std::uint32_t max_pixels = std::uint32_t{1} << 27;  ///< per row or column
+
+/// Placement of a raster's pixels: row 0 is the northernmost, column 0 the westernmost.
+struct RasterGrid {
+  std::uint32_t columns = 0, rows = 0;
+  Vec2 first{}, pixel{1, 1};
+
+  [[nodiscard]] Vec3 vertex(std::uint32_t column, std::uint32_t row, float height) const noexcept {
+    return {first.x + column * pixel.x, first.y - row * pixel.y, static_cast<double>(height)};
+  }
+
+  [[nodiscard]] std::size_t index(std::uint32_t column, std::uint32_t row) const noexcept { return std::size_t{row} * columns + column; }
+};
+
+/// Corners of a cell: north-west, south-west, south-east, north-east. Its triangles are (0, 1, 3) and (1, 2, 3).
+struct RasterCell {
+  std::uint32_t column, row;
+  float heights[4];
+
+  RasterCell(const RasterGrid& grid, const float* all, std::uint32_t c, std::uint32_t r) noexcept : column(c), row(r) {
+    const float *north = all + grid.index(c, r), *south = north + grid.columns;
+    heights[0] = north[0];
+    heights[1] = south[0];
+    heights[2] = south[1];
+    heights[3] = north[1];
+  }
+
+  /// True if no corner of a triangle is missing, that is NaN.
+  [[nodiscard]] bool has(int triangle) const noexcept {
+    const float own = heights[2 * triangle];
+    return own == own && heights[1] == heights[1] && heights[3] == heights[3];
+  }
+
+  [[nodiscard]] Vec3 corner(const RasterGrid& grid, int k) const noexcept {
+    return grid.vertex(column + (k >= 2 ? 1 : 0), row + (k == 1 || k == 2 ? 1 : 0), heights[k]);
+  }
+
+  [[nodiscard]] Triangle triangle(const RasterGrid& grid, int which) const noexcept {
+    return {corner(grid, which), corner(grid, which + 1), corner(grid, 3)};
+  }
+};
+
+}  // namespace detail
+
+/// Heights at pixel centres, as in a terrain file. Between the centres of four pixels there are two triangles that meet along the
+/// south-west to north-east diagonal; a triangle with a missing corner is left out.
+struct Raster {
+  std::uint32_t columns = 0, rows = 0;  ///< pixels, from 2 to 2^27 each
+  Vec2 first{};                         ///< centre of the first pixel, in the north-west [m east, m north]
+  Vec2 pixel{1, 1};                     ///< spacing of the centres, to the next column in the east and the next row in the south [m]
+  std::vector<float> heights{};         ///< heights, row by row from the north [m]; NaN if missing
+
+  void validate() const {
+    require_within("Raster::columns", columns, 2, detail::max_pixels, "");
+    require_within("Raster::rows", rows, 2, detail::max_pixels, "");
+    // two primitives per cell, none of which is `ClosestHits::none`
+    require_within("Raster::columns and rows, cells between them", (columns - 1.0) * (rows - 1.0), 1, 2147483647, "");
+    require_within("Raster::first.x", first.x, -1e15, 1e15, "m");
+    require_within("Raster::first.y", first.y, -1e15, 1e15, "m");
+    // far from the origin, coordinates round by at most an eighth of the least pixel, so no two centres coincide
+    constexpr double least = 4 * std::numeric_limits<double>::epsilon();
+    require_within("Raster::pixel.x", pixel.x, std::max(1e-9, least * std::fabs(first.x)), 1e6, "m");
+    require_within("Raster::pixel.y", pixel.y, std::max(1e-9, least * std::fabs(first.y)), 1e6, "m");
+    if (heights.size() != std::size_t{columns} * rows)
+      throw SettingError("Raster::heights", static_cast<double>(heights.size()), "",
+                         "as many as pixels, " + std::to_string(std::size_t{columns} * rows));
+    for (std::size_t i = 0; i < heights.size(); ++i)
+      if (std::fabs(heights[i]) > 1e15F)
+        throw SettingError("Raster::heights", static_cast<double>(heights[i]), "m",
+                           "within 1e15 m, or NaN; see pixel " + std::to_string(i));
+  }
+
+  [[nodiscard]] detail::RasterGrid grid() const noexcept { return {columns, rows, first, pixel}; }
+
+  /// The same ground as a mesh, with the same hits and some 13 times the memory. @throws SettingError as `validate`
+  [[nodiscard]] MeshData mesh() const {
+    validate();
+    constexpr std::uint32_t missing = std::numeric_limits<std::uint32_t>::max();
+    const detail::RasterGrid grid = this->grid();
+    MeshData mesh;
+    std::vector<std::uint32_t> number(heights.size(), missing);
+    for (std::uint32_t row = 0; row + 1 < rows; ++row)
+      for (std::uint32_t column = 0; column + 1 < columns; ++column) {
+        const detail::RasterCell cell(grid, heights.data(), column, row);
+        const std::size_t north = grid.index(column, row), south = grid.index(column, row + 1);
+        const std::size_t corners[4] = {north, south, south + 1, north + 1};
+        for (const int which : {0, 1}) {
+          if (!cell.has(which)) continue;
+          std::array<std::uint32_t, 3> triangle{};
+          for (std::size_t i = 0; i < 3; ++i) {
+            const int k = i == 2 ? 3 : which + static_cast<int>(i);
+            std::uint32_t& vertex = number[corners[k]];
+            if (vertex == missing) {
+              vertex = static_cast<std::uint32_t>(mesh.vertices.size());
+              mesh.vertices.push_back(cell.corner(grid, k));
+            }
+            triangle[i] = vertex;
+          }
+          mesh.triangles.push_back(triangle);
+        }
+      }
+    return mesh;
+  }
+};
+
+}  // namespace pulsecast

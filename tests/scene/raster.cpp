@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/scene/raster.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace pulsecast;
+
+namespace {
+
+constexpr float missing = std::numeric_limits<float>::quiet_NaN();
+
+/// Two cells from west to east; the pixels are 2 m by 4 m, the north-western one at (100, 200).
+Raster two_cells() { return {.columns = 3, .rows = 2, .first = {100, 200}, .pixel = {2, 4}, .heights = {1, 2, 3, 4, 5, 6}}; }
+
+std::string refusal(const Raster& raster) {
+  try {
+    raster.validate();
+    return {};
+  } catch (const SettingError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a raster's mesh has its pixels as vertices, and two triangles a cell along its south-west to north-east diagonal") {
+  const MeshData mesh = two_cells().mesh();
+  REQUIRE(mesh.vertices.size() == 6);
+  REQUIRE(mesh.triangles.size() == 4);
+  const auto corners = [&](std::size_t triangle) {
+    std::vector<Vec3> all;
+    for (const std::uint32_t vertex : mesh.triangles[triangle]) all.push_back(mesh.vertices[vertex]);
+    return all;
+  };
+  CHECK(corners(0) == std::vector<Vec3>{{100, 200, 1}, {100, 196, 4}, {102, 200, 2}});
+  CHECK(corners(1) == std::vector<Vec3>{{100, 196, 4}, {102, 196, 5}, {102, 200, 2}});
+  CHECK(corners(2) == std::vector<Vec3>{{102, 200, 2}, {102, 196, 5}, {104, 200, 3}});
+  CHECK(corners(3) == std::vector<Vec3>{{102, 196, 5}, {104, 196, 6}, {104, 200, 3}});
+}
+
+TEST_CASE("a raster's mesh leaves out triangles with a missing corner, and pixels that no triangle needs") {
+  Raster raster = two_cells();
+  raster.heights[0] = missing;
+  CHECK(raster.mesh().triangles.size() == 3);
+  CHECK(raster.mesh().vertices.size() == 5);
+  raster.heights[4] = missing;
+  const MeshData mesh = raster.mesh();
+  CHECK(mesh.triangles.empty());
+  CHECK(mesh.vertices.empty());
+}
+
+TEST_CASE("a raster that cannot be is refused, and the refusal says what is wrong") {
+  const auto with = [](auto change) {
+    Raster raster = two_cells();
+    change(raster);
+    return refusal(raster);
+  };
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  CHECK(refusal(two_cells()) == "");
+  CHECK(with([](Raster& r) { r.columns = 1; }) == "Raster::columns is 1, but must be from 2 to 134217728");
+  CHECK(with([](Raster& r) { r.rows = 0; }) == "Raster::rows is 0, but must be from 2 to 134217728");
+  CHECK(with([](Raster& r) { r.columns = r.rows = 60000; }).find("cells between them is 3599880001") != std::string::npos);
+  CHECK(with([](Raster& r) { r.heights.pop_back(); }) == "Raster::heights is 5, but must be as many as pixels, 6");
+  CHECK(with([](Raster& r) { r.heights[4] = std::numeric_limits<float>::infinity(); }) ==
+        "Raster::heights is inf m, but must be within 1e15 m, or NaN; see pixel 4");
+  CHECK(with([](Raster& r) { r.pixel.y = -1; }).find("Raster::pixel.y is -1 m") == 0);
+  CHECK(with([&](Raster& r) { r.pixel.x = none; }).find("Raster::pixel.x is nan m") == 0);
+  CHECK(with([](Raster& r) { r.first.x = 1e16; }).find("Raster::first.x is ") == 0);
+  CHECK(with([&](Raster& r) { r.first.y = none; }).find("Raster::first.y is nan m") == 0);
+}
