@@ -3,7 +3,7 @@
 
 // What each setting costs and what it buys: time, memory, and errors against a reference of 2,001 subrays, double precision and the
 // analytic detector, on the same pulses of six scenarios. One knob at a time from the default, and subrays by bins. Rows are named
-// scenario/knob/value. Errors have intervals of 95 %, by bootstrap over runs of pulses. `bench/tradeoff.sh` runs it, draws
+// scenario/knob/value. Errors have intervals of 95 %, by bootstrap over runs of pulses. `bench/study/tradeoff.sh` runs it, draws
 // docs/pictures/tradeoff_*.svg, and puts its tables into docs/tradeoff.md. Files on the command line: where a CSV file of all settings, and
 // one of footprints on edges and wires, are left.
 
@@ -20,13 +20,13 @@
 
 #include <pulsecast/pulsecast.hpp>
 
-#include "report.hpp"
-#include "tradeoff/errors.hpp"
-#include "tradeoff/precision.hpp"
-#include "tradeoff/pulses.hpp"
-#include "tradeoff/quadrature.hpp"
-#include "tradeoff/scenarios.hpp"
-#include "tradeoff/settings.hpp"
+#include "../report.hpp"
+#include "errors.hpp"
+#include "precision.hpp"
+#include "pulses.hpp"
+#include "quadrature.hpp"
+#include "scenarios.hpp"
+#include "settings.hpp"
 
 using namespace tradeoff;
 
