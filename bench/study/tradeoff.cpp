@@ -75,15 +75,17 @@ std::vector<Point> measure(const bench::Report& report, const Scenario& scenario
   for (const Setting& setting : settings_for(scenario)) {
     Point point{.setting = setting, .memory = static_cast<double>(memory_of(setting.map)) / mebibyte};
     const Results found = results_of(scenario, setting);
-    if (setting.stride == 1)
-      point.errors = compare(setting.width == Width::fit ? with_fit : with_moments, found, scenario.gate),
+    if (setting.stride == 1) {
+      point.errors = compare(setting.width == Width::fit ? with_fit : with_moments, found, scenario.gate);
       point.intervals = bootstrap.of(point.errors.blocks);
-    else
+    } else {
       point.errors.echoes = forecast_error(found, setting.stride);
+    }
     compare(true_canopy, canopy_of(found, setting.stride), point.errors);
     if (setting.stride == 1) {
       Work work = work_of(scenario, setting);
-      works.push_back(std::move(work.go)), pulses.push_back(work.pulses);
+      works.push_back(std::move(work.go));
+      pulses.push_back(work.pulses);
     }
     points.push_back(std::move(point));
   }
@@ -175,7 +177,10 @@ void rank(bench::Report& report, const Scenario& scenario, const std::vector<Poi
 
 std::FILE* opened(const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "w");
-  if (file == nullptr) std::fprintf(stderr, "tradeoff: cannot write %s\n", path.c_str()), std::exit(1);
+  if (file == nullptr) {
+    std::fprintf(stderr, "tradeoff: cannot write %s\n", path.c_str());
+    std::exit(1);
+  }
   return file;
 }
 
