@@ -132,5 +132,4 @@ int main(int count, char** words) {
     measure_large(report);
   else
     measure_small(report);
-  return report.finish();
 }

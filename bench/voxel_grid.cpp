@@ -126,5 +126,4 @@ int main(int count, char** words) {
   compare<OpaqueVoxels>(report, "block, opaque", block, 22, 215);
   compare<TransmissiveVoxels>(report, "haze, transmissive", haze, 100, 1000);
   compare<TransmissiveVoxels>(report, "block, transmissive", block, 22, 215);
-  return report.finish();
 }
