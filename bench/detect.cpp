@@ -99,5 +99,4 @@ int main(int count, char** words) {
               return leaf < 0.2 ? dice.between(0, 0.2) : leaf < 0.8 ? dice.between(2, 3.5) : dice.between(9, 9.1);
             }));
   }
-  return report.finish();
 }

@@ -1,20 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What the measure of echo widths costs in the run of a whole survey: a tripod and an airplane scan a wood with 19 subrays a pulse, by the
-// sampling and by the analytic detector, on one thread. Prints the processor time a pulse, and its ratio to that without widths: medians of
-// rounds in which all take turns.
+// Cost of measuring echo widths in a whole survey: a tripod and an airplane scan a wood with 19 subrays a pulse, by the sampling and by the
+// analytic detector, on one thread. `--benchmark-samples 11` takes some minutes.
 
+#define CATCH_CONFIG_ENABLE_BENCHMARKING
 #define CATCH_CONFIG_MAIN
 #include <catch2/catch.hpp>
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <ctime>
-#include <vector>
+#include <string>
 
 #include <pulsecast/detector/analytic_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
@@ -47,46 +42,31 @@ auto airplane() {
                   Deflector{OscillatingMirror{.cycles_per_second = 50, .half_angle = 3_deg}, scanner}};
 }
 
-/// Processor time of a run of a survey [s]; `echoes` is set.
+/// Times a survey with a detector. Widths change no echo: there are as many as without.
 template <class Source, class D>
-double seconds(const Source& source, const wood::Scene& scene, const D& detector, std::uint64_t& echoes) {
+void measure(const std::string& name, const Source& source, const wood::Scene& scene, const D& detector, std::uint64_t echoes) {
   const Survey survey{source, RingFootprint{3}, scene, Receiver{}, detector, seed};
-  const std::clock_t start = std::clock();
-  echoes = run(survey, {.threads = 1}, [](const EchoBatch&) {}).echoes;
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  const auto go = [&] { return run(survey, {.threads = 1}, [](const EchoBatch&) {}).echoes; };
+  REQUIRE(go() == echoes);
+  BENCHMARK(std::string(name)) { return go(); };
+}
+
+template <template <EchoWidth> class Detector, class Source>
+void compare(const std::string& name, const Source& source, const wood::Scene& scene) {
+  const std::uint64_t echoes = run(Survey{source, RingFootprint{3}, scene, Receiver{}, Detector<NoWidth>{}, seed}, {}).echoes;
+  measure(name, source, scene, Detector<NoWidth>{}, echoes);
+  measure(name + "<MomentWidth>", source, scene, Detector<MomentWidth>{}, echoes);
+  measure(name + "<GaussianFit>", source, scene, Detector<GaussianFit>{}, echoes);
 }
 
 template <class Source>
-void compare(const char* name, const Source& source, const wood::Scene& scene) {
-  constexpr std::size_t rounds = 11;
-  const std::array<const char*, 6> names{"FullWaveform",     "  MomentWidth", "  GaussianFit",
-                                         "AnalyticWaveform", "  MomentWidth", "  GaussianFit"};
-  std::array<std::vector<double>, 6> times;
-  std::array<std::uint64_t, 6> echoes{};
-  for (std::size_t round = 0; round < rounds; ++round) {
-    times[0].push_back(seconds(source, scene, FullWaveform{}, echoes[0]));
-    times[1].push_back(seconds(source, scene, FullWaveform<MomentWidth>{}, echoes[1]));
-    times[2].push_back(seconds(source, scene, FullWaveform<GaussianFit>{}, echoes[2]));
-    times[3].push_back(seconds(source, scene, AnalyticWaveform{}, echoes[3]));
-    times[4].push_back(seconds(source, scene, AnalyticWaveform<MomentWidth>{}, echoes[4]));
-    times[5].push_back(seconds(source, scene, AnalyticWaveform<GaussianFit>{}, echoes[5]));
-  }
-  std::printf("%s: %.0f pulses, %.0f echoes\n", name, static_cast<double>(source.size()), static_cast<double>(echoes[0]));
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    REQUIRE(echoes[k] == echoes[k / 3 * 3]);
-    std::array<double, rounds> ratios{};
-    for (std::size_t round = 0; round < rounds; ++round) ratios[round] = times[k][round] / times[k / 3 * 3][round];
-    std::sort(times[k].begin(), times[k].end());
-    std::sort(ratios.begin(), ratios.end());
-    std::printf("  %-18s %7.2f us a pulse, ratio %.2f\n", names[k], times[k][rounds / 2] / static_cast<double>(source.size()) * 1e6,
-                ratios[rounds / 2]);
-  }
+void compare(const Source& source) {
+  const wood::Scene scene = wood::scene(seed);
+  compare<FullWaveform>("FullWaveform", source, scene);
+  compare<AnalyticWaveform>("AnalyticWaveform", source, scene);
 }
 
 }  // namespace
 
-TEST_CASE("echo widths") {
-  const wood::Scene scene = wood::scene(seed);
-  compare("tripod", tripod(), scene);
-  compare("airplane", airplane(), scene);
-}
+TEST_CASE("64,800 pulses from a tripod") { compare(tripod()); }
+TEST_CASE("20,000 pulses from an airplane") { compare(airplane()); }

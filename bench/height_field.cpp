@@ -1,21 +1,27 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What a raster costs as a height field, against the same raster as a mesh in a `Bvh`: memory, and rays a second from the air and from a
-// tripod, by medians of turns about. Both must give the same ranges. With `large` as its argument: a raster of 20,000 x 20,000 alone.
+// Cost of a raster as a height field, against the same raster as a mesh in a `Bvh`: memory, and rays a second from the air and from a
+// tripod, by turns. Both must give the same ranges. Rows are named pulses/subrays/shape. With `large` on the command line: a raster of
+// 20,000 x 20,000 alone.
 
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <string_view>
+#include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
 #include <pulsecast/scene/height_field.hpp>
+
+#include "report.hpp"
+#include "scenes.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -35,8 +41,6 @@ Raster hills(std::uint32_t columns, std::uint32_t rows) {
   return raster;
 }
 
-using Pulses = std::vector<RayBundle>;
-
 RayBundle pulse(const Vec3& place, const Rotation& aim, std::size_t subrays) {
   const SunflowerFootprint footprint(subrays);
   RayBundle rays;
@@ -48,98 +52,84 @@ RayBundle pulse(const Vec3& place, const Rotation& aim, std::size_t subrays) {
 }
 
 /// Lines across the raster from 800 m above it, 30 degrees to both sides.
-Pulses from_the_air(const Box& ground, std::size_t subrays, std::size_t count) {
-  Pulses all;
+bench::Bundles from_the_air(const Box& ground, std::size_t subrays, std::size_t count) {
+  bench::Bundles all;
   const Vec3 size = ground.size();
   for (std::size_t i = 0; i < count; ++i) {
     const double along = static_cast<double>(i) / static_cast<double>(count), line = 200 * along - std::floor(200 * along);
     const Vec3 place{ground.min.x + 0.5 * size.x, ground.min.y + along * size.y, ground.max.z + 800};
-    all.push_back(pulse(place, rotation_about(axis::forward, (2 * line - 1) * 30_deg) * rotation_about(axis::right, -90_deg), subrays));
+    all.add(pulse(place, rotation_about(axis::forward, (2 * line - 1) * 30_deg) * rotation_about(axis::right, -90_deg), subrays));
   }
   return all;
 }
 
 /// All around a tripod on the ground in the middle, from 30 degrees below the horizon to 5 above.
-Pulses from_a_tripod(const HeightField& ground, std::size_t subrays, std::size_t count) {
+bench::Bundles from_a_tripod(const HeightField& ground, std::size_t subrays, std::size_t count) {
   const Vec3 middle = ground.bounds().centre();
   const RayBundle down = bundle_of({.origin = {middle.x, middle.y, ground.bounds().max.z + 1}, .direction = -axis::up});
   ClosestHits nearest(down);
   ground.closest(down, nearest);
   const Vec3 place{middle.x, middle.y, down.origin.z - nearest.range[0] + 1.8};
-  Pulses all;
+  bench::Bundles all;
   for (std::size_t i = 0; i < count; ++i) {
     const double turn = static_cast<double>(i) / static_cast<double>(count), line = 100 * turn - std::floor(100 * turn);
-    all.push_back(pulse(place, rotation_about(axis::up, 2 * pi * turn) * rotation_about(axis::right, -30_deg + line * 35_deg), subrays));
+    all.add(pulse(place, rotation_about(axis::up, 2 * pi * turn) * rotation_about(axis::right, -30_deg + line * 35_deg), subrays));
   }
   return all;
 }
 
-double sum_of_ranges(const auto& ground, const Pulses& all) {
-  double sum = 0;
-  for (const RayBundle& rays : all) {
-    ClosestHits nearest(rays);
-    ground.closest(rays, nearest);
-    for (std::size_t j = 0; j < rays.size; ++j) sum += nearest.met(j) ? nearest.range[j] : 0;
+void measure(bench::Report& report, const std::string& name, const HeightField& field, const TriangleMesh<>* mesh,
+             const bench::Bundles& all) {
+  std::vector<std::function<void()>> works{[&] { bench::keep(bench::sum_of_ranges(field, all)); }};
+  if (mesh) {
+    works.emplace_back([&] { bench::keep(bench::sum_of_ranges(*mesh, all)); });
+    if (bench::sum_of_ranges(field, all) != bench::sum_of_ranges(*mesh, all)) {
+      std::printf("%s DIFFERS from the mesh\n", name.c_str());
+      std::exit(1);
+    }
   }
-  return sum;
+  const std::vector<bench::Times> times = report.by_turns(works);
+  const double rays = static_cast<double>(all.size() * all[0].size);
+  for (std::size_t k = 0; k < works.size(); ++k)
+    report.row(name + (k == 0 ? "/field" : "/mesh"),
+               {{"Mrays/s", rays / bench::median(times[k]) / 1e6}, {"times as fast as the field", bench::speed_ratio(times[k], times[0])}});
 }
 
-/// Of this program alone [s]; adds the sum of ranges.
-double time_of(const auto& ground, const Pulses& all, double& sum) {
-  const std::clock_t start = std::clock();
-  sum += sum_of_ranges(ground, all);
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
-void measure(const char* what, const HeightField& field, const TriangleMesh<>* mesh, const Pulses& all) {
-  std::vector<double> of_field, of_mesh, ratios;
-  double sum = 0, expected = 0;
-  for (int turn = 0; turn < (mesh ? 21 : 3); ++turn) {
-    of_field.push_back(time_of(field, all, sum));
-    if (!mesh) continue;
-    of_mesh.push_back(time_of(*mesh, all, expected));
-    ratios.push_back(of_mesh.back() / of_field.back());
-  }
-  const double rays = static_cast<double>(all.size() * all[0].size) / 1e6;
-  std::printf("%-14s bundles of %2zu: %7.3f million rays/s", what, all[0].size, rays / median(of_field));
-  if (mesh) std::printf(", mesh %7.3f, mesh's time over the field's %5.2f", rays / median(of_mesh), median(ratios));
-  std::printf("\n");
-  if (mesh && sum != expected) {
-    std::printf("the two DIFFER: %.17g, mesh %.17g\n", sum, expected);
-    std::exit(1);
-  }
-}
-
-void measure_all(const HeightField& field, const TriangleMesh<>* mesh) {
+void measure_all(bench::Report& report, const HeightField& field, const TriangleMesh<>* mesh) {
   for (const std::size_t subrays : {std::size_t{1}, std::size_t{19}}) {
-    measure("from the air", field, mesh, from_the_air(field.bounds(), subrays, 100'000 / subrays));
-    measure("from a tripod", field, mesh, from_a_tripod(field, subrays, 100'000 / subrays));
+    const std::string number = std::to_string(subrays);
+    measure(report, "air/" + number, field, mesh, from_the_air(field.bounds(), subrays, 100'000 / subrays));
+    measure(report, "tripod/" + number, field, mesh, from_a_tripod(field, subrays, 100'000 / subrays));
   }
+}
+
+void measure_large(bench::Report& report) {
+  const HeightField field(hills(20'000, 20'000));
+  report.heading("20,000 x 20,000 pixels");
+  measure_all(report, field, nullptr);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  report.row("memory", {{"bytes/cell", static_cast<double>(field.memory()) / (19999.0 * 19999.0)},
+                        {"GB at most in all", static_cast<double>(usage.ru_maxrss) * 1024e-9}});
+}
+
+void measure_small(bench::Report& report) {
+  Raster raster = hills(1041, 713);
+  const TriangleMesh<> mesh(raster.mesh());
+  const HeightField field(std::move(raster));
+  report.heading("1,041 x 713 pixels");
+  measure_all(report, field, &mesh);
+  constexpr double cells = 1040.0 * 712.0;
+  report.row("memory, field", {{"bytes/cell", static_cast<double>(field.memory()) / cells}});
+  report.row("memory, mesh", {{"bytes/cell", static_cast<double>(mesh.memory()) / cells}});
 }
 
 }  // namespace
 
-int main(int count, const char** words) {
-  const bool large = count > 1 && std::string_view(words[1]) == "large";
-  Raster raster = large ? hills(20'000, 20'000) : hills(1041, 713);
-  if (large) {
-    const HeightField field(std::move(raster));
-    measure_all(field, nullptr);
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    std::printf("20,000 x 20,000 pixels: %.3f bytes a cell, at most %.3f GB in all\n",
-                static_cast<double>(field.memory()) / (19999.0 * 19999.0), static_cast<double>(usage.ru_maxrss) * 1024e-9);
-    return 0;
-  }
-  const TriangleMesh<> mesh(raster.mesh());
-  const HeightField field(std::move(raster));
-  std::printf("1,041 x 713 pixels: %.3f MB, %.2f bytes a cell; mesh %.1f MB, %.1f times as much\n",
-              static_cast<double>(field.memory()) / 1e6, static_cast<double>(field.memory()) / (1040.0 * 712.0),
-              static_cast<double>(mesh.memory()) / 1e6, static_cast<double>(mesh.memory()) / static_cast<double>(field.memory()));
-  measure_all(field, &mesh);
+int main(int count, char** words) {
+  bench::Report report("height_field", count, words);
+  if (!report.files().empty() && report.files()[0] == "large")
+    measure_large(report);
+  else
+    measure_small(report);
 }

@@ -1,19 +1,17 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What moving parts cost: cars drive around on a plain of 2 km by 2 km while a scanner on a mast turns. Prints the time a pulse with 2 and
-// with 2,000 of them, and the ratio. A figure counts only once every hit has been where its part was at that time.
+// Cost of moving parts: cars drive around on a plain of 2 km by 2 km while a scanner on a mast turns. Time a pulse with 2 and with 2,000 of
+// them, by turns. Rows are named duration/cars, and printed only once every hit of a sample is on its part's place at that time.
 
-#define CATCH_CONFIG_MAIN
-#include <catch2/catch.hpp>
-
-#include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
+#include <functional>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +20,7 @@
 #include <pulsecast/scene/moving_scene.hpp>
 
 #include "../examples/tree.hpp"
+#include "report.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -77,25 +76,18 @@ std::vector<RayBundle> pulses(std::size_t count, double seconds) {
   return all;
 }
 
-/// The best of some runs [ns].
-double time_a_pulse(const Cars& scene, const std::vector<RayBundle>& all) {
+double sum_of_ranges(const Cars& scene, const std::vector<RayBundle>& all) {
   std::array<Hit, 1> hits;
-  double best = 1e9, sum = 0;
-  for (int run = 0; run < 7; ++run) {
-    const auto start = std::chrono::steady_clock::now();
-    for (const RayBundle& ray : all) {
-      scene.closest(ray, hits);
-      if (hits[0].met()) sum += hits[0].range;
-    }
-    const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
-    best = std::min(best, taken.count() / static_cast<double>(all.size()));
+  double sum = 0;
+  for (const RayBundle& ray : all) {
+    scene.closest(ray, hits);
+    if (hits[0].met()) sum += hits[0].range;
   }
-  REQUIRE(sum > 0);
-  return best;
+  return sum;
 }
 
-/// Hits of a scene, against one in which everything stands where it is at that time.
-std::size_t checked(const Cars& scene, const std::vector<RayBundle>& all) {
+/// Checks a sample of hits against a scene in which every part rests where it is at that time. Returns the number of hits on cars.
+std::size_t check(const Cars& scene, const std::vector<RayBundle>& all) {
   std::size_t met = 0;
   for (std::size_t i = 0; i < all.size(); i += all.size() / 200) {
     std::vector<Cars::Part> still(scene.parts().begin(), scene.parts().end());
@@ -106,29 +98,42 @@ std::size_t checked(const Cars& scene, const std::vector<RayBundle>& all) {
     std::array<Hit, 1> hit, expected;
     scene.closest(all[i], hit);
     Scene<Mesh>(std::move(still)).closest(all[i], expected);
-    REQUIRE(hit[0].range == expected[0].range);
-    REQUIRE(hit[0].object == expected[0].object);
+    if (hit[0].range != expected[0].range || hit[0].object != expected[0].object) {
+      std::printf("pulse %zu DIFFERS from parts at rest\n", i);
+      std::exit(1);
+    }
     met += hit[0].object > 0 ? 1 : 0;
   }
   return met;
 }
 
+void measure(bench::Report& report, double seconds) {
+  const auto all = pulses(100'000, seconds);
+  const std::array<std::size_t, 2> cars{2, 2000};
+  std::vector<Cars> scenes;
+  std::vector<double> built;
+  std::vector<std::function<void()>> works;
+  for (const std::size_t number : cars) {
+    const double start = bench::process_seconds();
+    scenes.push_back(plain(number, seconds));
+    built.push_back(bench::process_seconds() - start);
+  }
+  for (const Cars& scene : scenes) works.emplace_back([&] { bench::keep(sum_of_ranges(scene, all)); });
+  const std::vector<bench::Times> times = report.by_turns(works);
+  report.heading("a survey of " + std::to_string(std::lround(seconds)) + " s");
+  for (std::size_t k = 0; k < cars.size(); ++k)
+    report.row(std::to_string(std::lround(seconds)) + "/" + std::to_string(cars[k]),
+               {{"ns/pulse", 1e9 * bench::median(times[k]) / static_cast<double>(all.size())},
+                {"times as fast as the first", bench::speed_ratio(times[k], times[0])},
+                {"s to build", built[k]},
+                {"MB", static_cast<double>(scenes[k].memory()) / 1e6},
+                {"of 200 pulses on cars", static_cast<double>(check(scenes[k], all))}});
+}
+
 }  // namespace
 
-TEST_CASE("moving parts") {
-  for (const double seconds : {60.0, 3600.0}) {
-    const auto all = pulses(100'000, seconds);
-    std::array<double, 2> times{};
-    for (const std::size_t k : {0U, 1U}) {
-      const std::size_t cars = k == 0 ? 2 : 2000;
-      const auto start = std::chrono::steady_clock::now();
-      const Cars scene = plain(cars, seconds);
-      const std::chrono::duration<double> built = std::chrono::steady_clock::now() - start;
-      const std::size_t met = checked(scene, all);
-      times[k] = time_a_pulse(scene, all);
-      std::printf("%4zu moving parts, a survey of %4.0f s: %6.0f ns a pulse, built in %.2f s, %.1f MB, %zu of 200 pulses on cars\n", cars,
-                  seconds, times[k], built.count(), static_cast<double>(scene.memory()) / 1e6, met);
-    }
-    std::printf("2,000 moving parts cost %.2f times 2 moving parts\n", times[1] / times[0]);
-  }
+int main(int count, char** words) {
+  bench::Report report("moving_parts", count, words);
+  measure(report, 60);
+  measure(report, 3600);
 }

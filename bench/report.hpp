@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-/// What the benchmarks share: clocks, rounds by turns, and a report with the machine, the compiler and its flags, on request as JSON.
+/// What the benchmarks share: clocks, rounds by turns, and a report with the machine, the compiler and its flags.
 namespace bench {
 
 namespace detail {
@@ -63,8 +63,8 @@ using Times = std::vector<double>;
 using Figures = std::vector<std::pair<std::string, double>>;
 
 /// The command line, what is to be measured, and what was.
-/// Options: `--only PATTERN` (of the shell's kind, over the names of the rows; may be given again), `--rounds N`, `--seconds S`, `--json
-/// FILE`.
+/// Options: `--only PATTERN` (of the shell's kind, over the names of the rows; may be given again), `--rounds N`, `--seconds S`,
+/// `--markdown`.
 class Report {
  public:
   Report(std::string program, int count, char** words) : program_(std::move(program)) {
@@ -75,9 +75,7 @@ class Report {
     };
     for (int i = 1; i < count; ++i) {
       const std::string_view word = words[i];
-      if (word == "--json") {
-        json_ = value(i);
-      } else if (word == "--markdown") {
+      if (word == "--markdown") {
         markdown_ = true;
       } else if (word == "--only") {
         only_.push_back(value(i));
@@ -86,8 +84,7 @@ class Report {
       } else if (word == "--seconds") {
         seconds_ = std::atof(value(i).c_str());
       } else if (word.starts_with("-")) {
-        std::fprintf(stderr, "usage: %s [--only PATTERN]... [--rounds N] [--seconds S] [--json FILE] [--markdown] [FILE]...\n",
-                     program_.c_str());
+        std::fprintf(stderr, "usage: %s [--only PATTERN]... [--rounds N] [--seconds S] [--markdown] [FILE]...\n", program_.c_str());
         std::exit(word == "--help" ? 0 : 2);
       } else {
         files_.emplace_back(word);
@@ -152,31 +149,7 @@ class Report {
     std::printf(markdown_ ? "| `%s` |" : "  %-44s", name.c_str());
     for (const auto& [what, figure] : figures)
       markdown_ ? std::printf(" %s |", rounded(figure).c_str()) : std::printf(" %10.4g %s", figure, what.c_str());
-    std::printf("\n");
-    std::fflush(stdout);
-    rows_.emplace_back(name, figures);
-  }
-
-  /// Writes the JSON file, if one was asked for. Gives what `main` returns.
-  [[nodiscard]] int finish() const {
-    if (json_.empty()) return 0;
-    std::ofstream out(json_);
-    out.precision(8);
-    out << "{\"program\": " << quoted(program_) << ",\n \"machine\": " << quoted(machine()) << ",\n \"compiler\": " << quoted(compiler())
-        << ",\n \"flags\": " << quoted(flags()) << ",\n \"rounds\": " << rounds_ << ",\n \"results\": [";
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      out << (i == 0 ? "\n" : ",\n") << "  {\"name\": " << quoted(rows_[i].first);
-      for (const auto& [what, figure] : rows_[i].second) {
-        out << ", " << quoted(what) << ": ";
-        (figure - figure == 0) ? out << figure : out << "null";
-      }
-      out << "}";
-    }
-    out << "\n]}\n";
-    out.close();
-    if (out) return 0;
-    std::fprintf(stderr, "%s: cannot write %s\n", program_.c_str(), json_.c_str());
-    return 1;
+    std::printf("\n"), std::fflush(stdout);
   }
 
   [[nodiscard]] static std::string machine() {
@@ -227,22 +200,12 @@ class Report {
     return text;
   }
 
-  static std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-      if (c == '"' || c == '\\') out += '\\';
-      if (static_cast<unsigned char>(c) >= 0x20) out += c;
-    }
-    return out + '"';
-  }
-
-  std::string program_, json_;
+  std::string program_;
   std::vector<std::string> only_, files_;
   int rounds_ = 7;
   double seconds_ = 0.15;
   bool markdown_ = false;
   std::string columns_;  ///< of the table that is being printed
-  std::vector<std::pair<std::string, Figures>> rows_;
 };
 
 }  // namespace bench

@@ -226,5 +226,4 @@ int main(int count, char** words) {
   beside("tree", tree());
   for (const std::string& file : report.files()) beside(std::filesystem::path(file).stem().string() + ".obj", io::read_obj(file).mesh);
   race({"street", flattened(street::scene(1)), from_a_car(), 0.3_mrad});
-  return report.finish();
 }

@@ -1,25 +1,24 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// What it costs to scan a grid of voxels, by how many there are: 10^4 and 10^7 cells of the same kind of scene, single rays and bundles.
-// Says the ratio of the rates, the memory a voxel and the time to build.
+// Cost of scanning a grid of voxels by their number: 10^4 and 10^7 cells of the same kind of scene, single rays and bundles, by turns. Rows
+// are named scene/cells/subrays.
 
-#define CATCH_CONFIG_MAIN
-#include <catch2/catch.hpp>
-
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iostream>
+#include <functional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
 #include <pulsecast/scene/voxel_data.hpp>
 #include <pulsecast/scene/voxel_grid.hpp>
+
+#include "report.hpp"
+#include "scenes.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -27,10 +26,6 @@ using namespace pulsecast::literals;
 namespace {
 
 double draw(std::uint64_t i) { return uniform({1, i, 0, Purpose::scene}); }
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// One cell in a hundred of a cube.
 VoxelData haze(std::uint32_t size) {
@@ -66,11 +61,11 @@ VoxelData block(std::uint32_t size) {
 
 /// The pulses of a line scanner above the middle of the grid, all over it.
 template <class Filling>
-std::vector<RayBundle> pulses(const VoxelGrid<Filling>& grid, std::size_t subrays, std::size_t count) {
+bench::Bundles pulses(const VoxelGrid<Filling>& grid, std::size_t subrays, std::size_t count) {
   const SunflowerFootprint footprint(subrays);
   const Box box = grid.bounds();
   const Vec3 size = box.size(), place{box.centre().x, box.centre().y, box.max.z + 0.3 * size.x};
-  std::vector<RayBundle> all;
+  bench::Bundles all;
   for (std::size_t i = 0; i < count; ++i) {
     const double along = static_cast<double>(i) / static_cast<double>(count), across = 300 * along - std::floor(300 * along);
     const Vec3 towards = normalize(box.min + size * Vec3{across, along, 0.5} - place);
@@ -81,55 +76,54 @@ std::vector<RayBundle> pulses(const VoxelGrid<Filling>& grid, std::size_t subray
     rays.pulse = i;
     for (std::size_t j = 0; j < subrays; ++j) rays.set_direction(j, aim * subray_direction(footprint.offset(j), 0.3_mrad));
     rays.pad();
-    all.push_back(rays);
+    all.add(rays);
   }
   return all;
 }
 
-/// Rays a second, the best of five.
 template <class Filling>
-double rate(const VoxelGrid<Filling>& grid, std::size_t subrays) {
-  const auto all = pulses(grid, subrays, 200'000 / subrays);
-  double best = 0;
-  for (int round = 0; round < 5; ++round) {
-    std::size_t met = 0;
-    const auto start = std::chrono::steady_clock::now();
-    for (const RayBundle& rays : all) {
-      ClosestHits nearest(rays);
-      grid.closest(rays, nearest);
-      for (std::size_t j = 0; j < subrays; ++j) met += nearest.met(j) ? 1 : 0;
-    }
-    REQUIRE(met > 0);
-    best = std::max(best, static_cast<double>(all.size() * subrays) / seconds_since(start));
-  }
-  return best;
-}
+struct Built {
+  VoxelGrid<Filling> grid;
+  double seconds;  ///< to build
+};
 
 template <class Filling>
-VoxelGrid<Filling> built(VoxelData data) {
+Built<Filling> build(VoxelData data) {
   if constexpr (!std::is_same_v<Filling, OpaqueVoxels>) data.densities.assign(data.cells.size(), static_cast<float>(5 / data.edge));
-  const auto start = std::chrono::steady_clock::now();
+  const double start = bench::process_seconds();
   VoxelGrid<Filling> grid(data);
-  std::cout << "  " << grid.size() << " cells: built in " << seconds_since(start) << " s, "
-            << static_cast<double>(grid.memory()) / static_cast<double>(grid.size()) << " bytes a voxel\n";
-  return grid;
+  return {std::move(grid), bench::process_seconds() - start};
 }
 
 template <class Filling>
-void compare(const std::string& scene, const VoxelData& few, const VoxelData& many) {
-  std::cout << scene << '\n';
-  const auto small = built<Filling>(few), large = built<Filling>(many);
+void compare(bench::Report& report, const std::string& scene, VoxelData (*make)(std::uint32_t), std::uint32_t small, std::uint32_t large) {
+  if (!report.wanted(scene)) return;
+  report.heading(scene);
+  const std::vector<Built<Filling>> built{build<Filling>(make(small)), build<Filling>(make(large))};
   for (const std::size_t subrays : {std::size_t{1}, std::size_t{19}}) {
-    const double a = rate(small, subrays), b = rate(large, subrays);
-    std::cout << "  bundles of " << subrays << ": " << a / 1e6 << " and " << b / 1e6 << " million rays a second, ratio " << b / a << '\n';
-    CHECK(b / a >= 0.2);
+    std::vector<std::function<void()>> works;
+    for (const auto& [grid, seconds] : built)
+      works.emplace_back([&grid = grid, all = pulses(grid, subrays, 200'000 / subrays)] { bench::keep(bench::sum_of_ranges(grid, all)); });
+    const std::vector<bench::Times> times = report.by_turns(works);
+    const double rays = static_cast<double>(200'000 / subrays * subrays);
+    for (std::size_t k = 0; k < built.size(); ++k) {
+      const double cells = static_cast<double>(built[k].grid.size());
+      report.row(scene + "/" + std::to_string(built[k].grid.size()) + "/" + std::to_string(subrays),
+                 {{"Mrays/s", rays / bench::median(times[k]) / 1e6},
+                  {"times as fast as the first", bench::speed_ratio(times[k], times[0])},
+                  {"s to build", built[k].seconds},
+                  {"bytes/voxel", static_cast<double>(built[k].grid.memory()) / cells}});
+    }
   }
 }
 
 }  // namespace
 
-TEST_CASE("a haze of single cells") { compare<OpaqueVoxels>("haze, opaque", haze(100), haze(1000)); }
-TEST_CASE("hills") { compare<OpaqueVoxels>("hills, opaque", hills(100), hills(3162)); }
-TEST_CASE("a block") { compare<OpaqueVoxels>("block, opaque", block(22), block(215)); }
-TEST_CASE("leaves in a haze") { compare<TransmissiveVoxels>("haze, transmissive", haze(100), haze(1000)); }
-TEST_CASE("leaves in a block") { compare<TransmissiveVoxels>("block, transmissive", block(22), block(215)); }
+int main(int count, char** words) {
+  bench::Report report("voxel_grid", count, words);
+  compare<OpaqueVoxels>(report, "haze, opaque", haze, 100, 1000);
+  compare<OpaqueVoxels>(report, "hills, opaque", hills, 100, 3162);
+  compare<OpaqueVoxels>(report, "block, opaque", block, 22, 215);
+  compare<TransmissiveVoxels>(report, "haze, transmissive", haze, 100, 1000);
+  compare<TransmissiveVoxels>(report, "block, transmissive", block, 22, 215);
+}

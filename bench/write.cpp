@@ -69,5 +69,4 @@ int main(int count, char** words) {
                {{"Mpoints/s", points / median(times[i]) / 1e6}, {"MB/s", bytes / median(times[i]) / 1e6}, {"bytes/point", bytes / points}});
   }
   std::filesystem::remove_all(folder);
-  return report.finish();
 }

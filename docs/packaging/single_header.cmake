@@ -37,6 +37,5 @@ file(WRITE ${OUT} "// SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// The whole core in one file, for those who copy rather than install. It needs GLM, C++20 and threads.
-// Headers of other rooms need an installation: no other header of the library goes with this one.
+// Headers of pulsecast in one file, for those who copy rather than install. It needs GLM, C++20 and threads.
 ${text}")

@@ -3,7 +3,7 @@
 
 // What each setting costs and what it buys: time, memory, and errors against a reference of 2,001 subrays, double precision and the
 // analytic detector, on the same pulses of six scenarios. One knob at a time from the default, and subrays by bins. Rows are named
-// scenario/knob/value. Errors have intervals of 95 %, by bootstrap over runs of pulses. `bench/tradeoff.sh` runs it, draws
+// scenario/knob/value. Errors have intervals of 95 %, by bootstrap over runs of pulses. `bench/study/tradeoff.sh` runs it, draws
 // docs/pictures/tradeoff_*.svg, and puts its tables into docs/tradeoff.md. Files on the command line: where a CSV file of all settings, and
 // one of footprints on edges and wires, are left.
 
@@ -20,13 +20,13 @@
 
 #include <pulsecast/pulsecast.hpp>
 
-#include "report.hpp"
-#include "tradeoff/errors.hpp"
-#include "tradeoff/precision.hpp"
-#include "tradeoff/pulses.hpp"
-#include "tradeoff/quadrature.hpp"
-#include "tradeoff/scenarios.hpp"
-#include "tradeoff/settings.hpp"
+#include "../report.hpp"
+#include "errors.hpp"
+#include "precision.hpp"
+#include "pulses.hpp"
+#include "quadrature.hpp"
+#include "scenarios.hpp"
+#include "settings.hpp"
 
 using namespace tradeoff;
 
@@ -75,15 +75,17 @@ std::vector<Point> measure(const bench::Report& report, const Scenario& scenario
   for (const Setting& setting : settings_for(scenario)) {
     Point point{.setting = setting, .memory = static_cast<double>(memory_of(setting.map)) / mebibyte};
     const Results found = results_of(scenario, setting);
-    if (setting.stride == 1)
-      point.errors = compare(setting.width == Width::fit ? with_fit : with_moments, found, scenario.gate),
+    if (setting.stride == 1) {
+      point.errors = compare(setting.width == Width::fit ? with_fit : with_moments, found, scenario.gate);
       point.intervals = bootstrap.of(point.errors.blocks);
-    else
+    } else {
       point.errors.echoes = forecast_error(found, setting.stride);
+    }
     compare(true_canopy, canopy_of(found, setting.stride), point.errors);
     if (setting.stride == 1) {
       Work work = work_of(scenario, setting);
-      works.push_back(std::move(work.go)), pulses.push_back(work.pulses);
+      works.push_back(std::move(work.go));
+      pulses.push_back(work.pulses);
     }
     points.push_back(std::move(point));
   }
@@ -175,7 +177,10 @@ void rank(bench::Report& report, const Scenario& scenario, const std::vector<Poi
 
 std::FILE* opened(const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "w");
-  if (file == nullptr) std::fprintf(stderr, "tradeoff: cannot write %s\n", path.c_str()), std::exit(1);
+  if (file == nullptr) {
+    std::fprintf(stderr, "tradeoff: cannot write %s\n", path.c_str());
+    std::exit(1);
+  }
   return file;
 }
 
@@ -219,5 +224,4 @@ int main(int count, char** words) {
   measure_precision(report);
   std::fprintf(stderr, "%4.0f s: done\n", bench::wall_seconds() - start);
   std::fclose(csv);
-  return report.finish();
 }

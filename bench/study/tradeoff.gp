@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Draws what bench_tradeoff found: gnuplot -e "csv='...'; edges='...'; pictures='...'" bench/tradeoff.gp
+# Draws what bench_tradeoff found: gnuplot -e "csv='...'; edges='...'; pictures='...'" bench/study/tradeoff.gp
 # Each scenario is a picture of three errors against time; the last one is of footprints alone. Add terminal='pngcairo' to look at them as PNG.
 if (!exists("terminal")) terminal = "svg"
 ending = terminal eq "svg" ? "svg" : "png"

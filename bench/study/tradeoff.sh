@@ -7,9 +7,9 @@
 # intervals do not depend on the machine; `--rounds 1 --seconds 0` takes them without times worth looking at.
 # Usage: tradeoff.sh [BUILD [OPTION]...]; build/release if not told. Options go to bench_tradeoff, as `--only facade`, to try something out: then
 # the pictures are left in BUILD and the tables printed, and the page stays as it is.
-# Leaves BUILD/tradeoff.csv, BUILD/tradeoff.json and BUILD/tradeoff_edges.csv.
+# Leaves BUILD/tradeoff.csv and BUILD/tradeoff_edges.csv.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 build=${1:-build/release}
 page=docs/tradeoff.md pictures=docs/pictures
 [ $# -le 1 ] || page="" pictures=$build
@@ -19,9 +19,9 @@ csv=$build/tradeoff.csv edges=$build/tradeoff_edges.csv
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$build/bench/bench_tradeoff" --markdown --rounds 7 --seconds 0.04 --json "$build/tradeoff.json" "${@:2}" "$csv" "$edges" > "$work/rows"
+"$build/bench/bench_tradeoff" --markdown --rounds 7 --seconds 0.04 "${@:2}" "$csv" "$edges" > "$work/rows"
 echo "drawing" >&2
-gnuplot -e "csv='$csv'; edges='$edges'; pictures='$pictures'" bench/tradeoff.gp 2> "$work/warnings" || { cat "$work/warnings" >&2; exit 1; }
+gnuplot -e "csv='$csv'; edges='$edges'; pictures='$pictures'" bench/study/tradeoff.gp 2> "$work/warnings" || { cat "$work/warnings" >&2; exit 1; }
 
 has() { grep -q "^$1," "$csv"; }
 

@@ -27,9 +27,12 @@ struct Sums {
   double intensity_sizes = 0, intensities = 0;  ///< over pairs of echoes: size of the difference, and reflectance of the reference
 
   void add(const Sums& other, double times) noexcept {
-    range_squares += times * other.range_squares, matched += times * other.matched;
-    wrong += times * other.wrong, echoes += times * other.echoes;
-    intensity_sizes += times * other.intensity_sizes, intensities += times * other.intensities;
+    range_squares += times * other.range_squares;
+    matched += times * other.matched;
+    wrong += times * other.wrong;
+    echoes += times * other.echoes;
+    intensity_sizes += times * other.intensity_sizes;
+    intensities += times * other.intensities;
   }
   [[nodiscard]] DrawnErrors errors() const noexcept {
     return {std::sqrt(range_squares / matched), 100 * wrong / echoes, 100 * intensity_sizes / intensities};

@@ -36,7 +36,8 @@ struct Quadrature {
       past += across < at ? pattern.share(j) : 0;
       on += std::fabs(across - at) < half ? pattern.share(j) : 0;
     }
-    edge.add(100 * (past - inside(at))), wire.add(100 * (on - (inside(at + half) - inside(at - half))));
+    edge.add(100 * (past - inside(at)));
+    wire.add(100 * (on - (inside(at + half) - inside(at - half))));
   }
   return {edge.rms(), wire.rms()};
 }

@@ -60,7 +60,8 @@ template <class AnyScene>
   return
       [&scene, footprint = SunflowerFootprint(37), hits = std::vector<Hit>(RayBundle::capacity)](const Pulse<frame::World>& pulse) mutable {
         RayBundle rays;
-        rays.origin = pulse.origin(), rays.size = footprint.size();
+        rays.origin = pulse.origin();
+        rays.size = footprint.size();
         for (std::size_t j = 0; j < rays.size; ++j)
           rays.set_direction(j, pulse.pose.rotation * subray_direction(0.8 * footprint.offset(j), pulse.laser.divergence));
         rays.pad();
@@ -97,7 +98,8 @@ template <class AnyScene>
     return Scene<HeightField>({{.geometry = std::make_shared<const HeightField>(rough_ground(every)), .materials = soil}});
   };
   const Scene<Mesh> whole = mesh(1);
-  s.exact = shared(in_double(whole)), s.map = shared(whole);
+  s.exact = shared(in_double(whole));
+  s.map = shared(whole);
   s.forms.push_back({"height field", shared(field(1))});
   for (const std::uint32_t every : {2U, 4U, 10U}) {
     const std::string pixels = " of " + std::to_string(every / 2) + " m";
@@ -152,7 +154,9 @@ template <class AnyScene, class Plant>
       const std::size_t kind = dice.between(0, 1) < 0.5 ? 0 : 1;
       const Similarity placement{rotation_about(axis::up, dice.between(0, 360_deg)), dice.between(0.8, 1.1), terrain.on(at)};
       for (auto part : plant(kind)) {
-        part.materials = material_table(wood::materials()), part.placement = placement, part.object = static_cast<ObjectId>(parts.size());
+        part.materials = material_table(wood::materials());
+        part.placement = placement;
+        part.object = static_cast<ObjectId>(parts.size());
         parts.push_back(std::move(part));
       }
     }
@@ -166,7 +170,8 @@ template <class AnyScene, class Plant>
       wood::broadleaf({.height = 21, .girth = 0.24, .crown_base = 0.42, .spread = 3.8, .steepness = 0.75}, wood::Dice(1, 2))};
   const std::array meshes{std::make_shared<const Mesh>(kinds[0]), std::make_shared<const Mesh>(kinds[1])};
   const auto whole = grove<Scene<Mesh>>([&](std::size_t kind) { return std::vector<Scene<Mesh>::Part>{{.geometry = meshes[kind]}}; });
-  s.exact = shared(in_double(whole)), s.map = shared(whole);
+  s.exact = shared(in_double(whole));
+  s.map = shared(whole);
   for (const std::size_t one_in : {2U, 4U, 8U})
     s.forms.push_back({"one leaf in " + std::to_string(one_in), shared(with_fewer_leaves(whole, one_in))});
   const auto not_leaf = [](std::uint32_t material) { return !is_leaf(material); };
@@ -201,7 +206,8 @@ template <class AnyScene, class Plant>
 [[nodiscard]] inline Scenario street_from_a_car(std::size_t pulses) {
   Scenario s{.name = "street", .title = "A street from a car", .threshold = 5000_nW, .gate = 0.375};
   const street::Scene whole = street::scene(1);
-  s.exact = shared(in_double(whole)), s.map = shared(whole);
+  s.exact = shared(in_double(whole));
+  s.map = shared(whole);
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 5_ns, .divergence = 0.5_mrad};
   const Platform car{StraightLine{.from = street::on({2, -70}), .to = street::on({2, 70}), .speed = 10},
                      Mount{.lever_arm = {0, 0, 2.1}, .boresight = rotation_about(axis::up, 45_deg)},
@@ -257,7 +263,8 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
                         Deflector{RotatingHead{.rate = -50_deg / scanner.duration().seconds(), .start = 25_deg},
                                   Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 14_deg, .angle_min = -3_deg}, scanner}}};
   s.pulses = sampled(tripod, pulses, meets_an_edge(whole));
-  s.exact = shared(in_double(whole)), s.map = shared(whole);
+  s.exact = shared(in_double(whole));
+  s.map = shared(whole);
   return s;
 }
 
@@ -285,7 +292,8 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
                           Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 2.5_deg},
                                     Scanner{.pulse_rate = 500_kHz, .pulses = 800'000, .laser = laser}}};
   s.pulses = sampled(airplane, pulses, meets_an_edge(whole));
-  s.exact = shared(in_double(whole)), s.map = shared(whole);
+  s.exact = shared(in_double(whole));
+  s.map = shared(whole);
   return s;
 }
 

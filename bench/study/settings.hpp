@@ -53,7 +53,9 @@ struct Setting {
   all[0].value = all[0].footprint.kind() + " " + std::to_string(all[0].footprint.size()) + " (" + bin_name(all[0].bin) + ")";
   const auto add = [&](const std::string& knob, const std::string& value, auto change) {
     Setting setting = all[0];
-    setting.knob = knob, setting.value = value, setting.is_default = false;
+    setting.knob = knob;
+    setting.value = value;
+    setting.is_default = false;
     change(setting);
     all.push_back(std::move(setting));
   };
@@ -67,22 +69,36 @@ struct Setting {
   if (scenario.turned)
     for (const Pattern& pattern :
          {rings(2), rings(3), rings(4), sunflower(9), sunflower(13), sunflower(19), lattice(9), lattice(13), lattice(19)})
-      add("turned", pattern.kind() + " " + std::to_string(pattern.size()),
-          [&](Setting& s) { s.footprint = pattern.turned(30_deg), s.comparable = false; });
+      add("turned", pattern.kind() + " " + std::to_string(pattern.size()), [&](Setting& s) {
+        s.footprint = pattern.turned(30_deg);
+        s.comparable = false;
+      });
 
   add("precision", "double", [&](Setting& s) { s.map = scenario.exact; });
   for (const double bin : {0.05e-9, 0.1e-9, 0.5e-9, 1e-9, 2e-9, 0.0}) add("bins", bin_name(bin), [&](Setting& s) { s.bin = bin; });
   for (const std::size_t subrays : {1U, 4U, 7U, 37U, 62U})
     for (const double bin : {0.1e-9, 0.5e-9, 1e-9, 0.0})
-      add("both", "lattice " + std::to_string(subrays) + " (" + bin_name(bin) + ")",
-          [&](Setting& s) { s.footprint = lattice(subrays), s.bin = bin; });
+      add("both", "lattice " + std::to_string(subrays) + " (" + bin_name(bin) + ")", [&](Setting& s) {
+        s.footprint = lattice(subrays);
+        s.bin = bin;
+      });
   for (const double bin : {0.25e-9, 0.0})
     for (const Width width : {Width::moments, Width::fit})
-      add("width", std::string(width == Width::fit ? "fit" : "moments") + " (" + bin_name(bin) + ")",
-          [&](Setting& s) { s.width = width, s.bin = bin, s.comparable = false; });
-  for (const Form& form : scenario.forms) add("form", form.name, [&](Setting& s) { s.map = form.map, s.comparable = false; });
+      add("width", std::string(width == Width::fit ? "fit" : "moments") + " (" + bin_name(bin) + ")", [&](Setting& s) {
+        s.width = width;
+        s.bin = bin;
+        s.comparable = false;
+      });
+  for (const Form& form : scenario.forms)
+    add("form", form.name, [&](Setting& s) {
+      s.map = form.map;
+      s.comparable = false;
+    });
   for (const std::size_t stride : {2U, 4U, 8U, 16U})
-    add("preview", "every " + std::to_string(stride), [&](Setting& s) { s.stride = stride, s.comparable = false; });
+    add("preview", "every " + std::to_string(stride), [&](Setting& s) {
+      s.stride = stride;
+      s.comparable = false;
+    });
   return all;
 }
 

@@ -62,7 +62,10 @@ class Pattern {
  public:
   template <Footprint F>
   Pattern(std::string kind, const F& footprint) : kind_(std::move(kind)) {
-    for (std::size_t j = 0; j < footprint.size(); ++j) offsets_.push_back(footprint.offset(j)), shares_.push_back(footprint.share(j));
+    for (std::size_t j = 0; j < footprint.size(); ++j) {
+      offsets_.push_back(footprint.offset(j));
+      shares_.push_back(footprint.share(j));
+    }
   }
 
   [[nodiscard]] const std::string& kind() const noexcept { return kind_; }

@@ -44,7 +44,8 @@ namespace tradeoff {
     const Rotation rotation =
         rotation_about(axis::up, std::atan2(-towards.x, towards.y)) * rotation_about(axis::right, std::asin(towards.z));
     RayBundle rays;
-    rays.origin = place, rays.size = footprint.size();
+    rays.origin = place;
+    rays.size = footprint.size();
     for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, rotation * subray_direction(footprint.offset(j), 0.3e-3));
     rays.pad();
     all.add(rays);

@@ -69,7 +69,8 @@ template <class IsLeaf>
     const Triangle t = data.triangle(i);
     const auto first = static_cast<std::uint32_t>(fewer.vertices.size());
     for (const Vec3& corner : {t.a, t.b, t.c}) fewer.vertices.push_back(middle + scale * (corner - middle));
-    fewer.triangles.push_back({first, first + 1, first + 2}), fewer.materials.push_back(data.materials[i]);
+    fewer.triangles.push_back({first, first + 1, first + 2});
+    fewer.materials.push_back(data.materials[i]);
   };
   for (std::size_t i = 0; i < data.triangles.size(); ++i) {
     if (!is_leaf(data.materials[i])) {
@@ -109,12 +110,19 @@ template <class IsLeaf>
     for (int u = 0; u < steps; ++u)
       for (int v = 0; v < steps; ++v) {  // a parallelogram of points, the far half of it folded back
         double p = (u + 0.5) / steps, q = (v + 0.5) / steps;
-        if (p + q > 1) p = 1 - p, q = 1 - q;
+        if (p + q > 1) {
+          p = 1 - p;
+          q = 1 - q;
+        }
         const Vec3 at = (t.a + p * ab + q * ac - box.min) / edge;
         Cell& cell = cells[{static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y), static_cast<std::uint32_t>(at.z)}];
         const Vec3 normal = each * normalize(across);
-        cell.normal += dot(cell.normal, normal) < 0 ? -normal : normal, cell.area += each;
-        if (area > cell.largest) cell.largest = area, cell.material = data.materials.empty() ? 0 : data.materials[i];
+        cell.normal += dot(cell.normal, normal) < 0 ? -normal : normal;
+        cell.area += each;
+        if (area > cell.largest) {
+          cell.largest = area;
+          cell.material = data.materials.empty() ? 0 : data.materials[i];
+        }
       }
   }
   VoxelData voxels{.corner = box.min, .edge = edge};
@@ -138,7 +146,8 @@ template <class Wanted>
     const Triangle t = data.triangle(i);
     const auto first = static_cast<std::uint32_t>(some.vertices.size());
     some.vertices.insert(some.vertices.end(), {t.a, t.b, t.c});
-    some.triangles.push_back({first, first + 1, first + 2}), some.materials.push_back(data.materials[i]);
+    some.triangles.push_back({first, first + 1, first + 2});
+    some.materials.push_back(data.materials[i]);
   }
   return some;
 }

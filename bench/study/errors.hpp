@@ -101,7 +101,12 @@ struct Mean {
   double sum = 0, squares = 0, sizes = 0;
   std::size_t count = 0;
 
-  void add(double x) noexcept { sum += x, squares += x * x, sizes += std::fabs(x), ++count; }
+  void add(double x) noexcept {
+    sum += x;
+    squares += x * x;
+    sizes += std::fabs(x);
+    ++count;
+  }
   [[nodiscard]] double mean() const noexcept { return count == 0 ? unknown : sum / static_cast<double>(count); }
   [[nodiscard]] double rms() const noexcept { return count == 0 ? unknown : std::sqrt(squares / static_cast<double>(count)); }
   [[nodiscard]] double size() const noexcept { return count == 0 ? unknown : sizes / static_cast<double>(count); }
@@ -121,7 +126,8 @@ struct Canopy {
   double gaps = 0;
   std::size_t asked = 0;
   for (std::size_t i = 0; i < results.pulses(); i += stride) {
-    ++asked, gaps += results.gaps[i];
+    ++asked;
+    gaps += results.gaps[i];
     const auto pulse = *pulses.pulse(i);
     for (const Echo& echo : results.of(i)) {
       if (!is_plant(echo.classification)) continue;
@@ -136,7 +142,9 @@ struct Canopy {
 inline void compare(const Canopy& reference, const Canopy& found, Errors& errors) {
   errors.gap_fraction = found.gap_fraction - reference.gap_fraction;
   const auto difference = [&](double share) { return percentile(found.heights, share) - percentile(reference.heights, share); };
-  errors.height_50 = difference(0.5), errors.height_95 = difference(0.95), errors.height_99 = difference(0.99);
+  errors.height_50 = difference(0.5);
+  errors.height_95 = difference(0.95);
+  errors.height_99 = difference(0.99);
 }
 
 /// What a preview forecasts: the echoes of every so many pulses, times as many, less those that there are [%].
@@ -161,10 +169,14 @@ inline void compare(const Canopy& reference, const Canopy& found, Errors& errors
     block.wrong += static_cast<double>(reference.of(i).size() + found.of(i).size() - 2 * pairs.size());
     for (const auto& [r, e] : pairs) {
       const Echo &true_one = reference.of(i)[r], &echo = found.of(i)[e];
-      block.range_squares += (echo.range - true_one.range) * (echo.range - true_one.range), block.matched += 1;
-      block.intensity_sizes += std::fabs(echo.reflectance - true_one.reflectance), block.intensities += true_one.reflectance;
-      range.add(echo.range - true_one.range), sizes.push_back(std::fabs(echo.range - true_one.range));
-      intensity.add(echo.reflectance - true_one.reflectance), level.add(true_one.reflectance);
+      block.range_squares += (echo.range - true_one.range) * (echo.range - true_one.range);
+      block.matched += 1;
+      block.intensity_sizes += std::fabs(echo.reflectance - true_one.reflectance);
+      block.intensities += true_one.reflectance;
+      range.add(echo.range - true_one.range);
+      sizes.push_back(std::fabs(echo.range - true_one.range));
+      intensity.add(echo.reflectance - true_one.reflectance);
+      level.add(true_one.reflectance);
       if (std::isfinite(echo.width - true_one.width)) width.add(echo.width - true_one.width);
     }
   }
@@ -172,10 +184,14 @@ inline void compare(const Canopy& reference, const Canopy& found, Errors& errors
   errors.echoes = 100 * (static_cast<double>(found.echoes.size()) / all - 1);
   errors.missed = 100 * (all - matched) / all;
   errors.invented = 100 * (static_cast<double>(found.echoes.size()) - matched) / all;
-  errors.range_bias = range.mean(), errors.range_spread = range.deviation(), errors.range_rms = range.rms();
+  errors.range_bias = range.mean();
+  errors.range_spread = range.deviation();
+  errors.range_rms = range.rms();
   errors.range_95 = percentile(sizes, 0.95);
-  errors.intensity_bias = 100 * intensity.mean() / level.mean(), errors.intensity = 100 * intensity.size() / level.mean();
-  errors.width_bias = width.mean(), errors.width = width.rms();
+  errors.intensity_bias = 100 * intensity.mean() / level.mean();
+  errors.intensity = 100 * intensity.size() / level.mean();
+  errors.width_bias = width.mean();
+  errors.width = width.rms();
   return errors;
 }
 
