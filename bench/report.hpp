@@ -20,6 +20,8 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/page/detail/json.hpp>
+
 /// What the benchmarks share: clocks, rounds by turns, and a report with the machine, the compiler and its flags, on request as JSON.
 namespace bench {
 
@@ -151,19 +153,17 @@ class Report {
   /// Writes the JSON file, if one was asked for. Gives what `main` returns.
   [[nodiscard]] int finish() const {
     if (json_.empty()) return 0;
-    std::ofstream out(json_);
-    out.precision(8);
-    out << "{\"program\": " << quoted(program_) << ",\n \"machine\": " << quoted(machine()) << ",\n \"compiler\": " << quoted(compiler())
-        << ",\n \"flags\": " << quoted(flags()) << ",\n \"rounds\": " << rounds_ << ",\n \"results\": [";
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      out << (i == 0 ? "\n" : ",\n") << "  {\"name\": " << quoted(rows_[i].first);
-      for (const auto& [what, figure] : rows_[i].second) {
-        out << ", " << quoted(what) << ": ";
-        (figure - figure == 0) ? out << figure : out << "null";
-      }
-      out << "}";
+    pulsecast::page::detail::JsonWriter json;
+    json.begin_object().member("program", program_).member("machine", machine()).member("compiler", compiler());
+    json.member("flags", flags()).member("rounds", rounds_).key("results").begin_array();
+    for (const auto& [name, figures] : rows_) {
+      json.begin_object().member("name", name);
+      for (const auto& [what, figure] : figures) json.member(what, figure);
+      json.end_object();
     }
-    out << "\n]}\n";
+    json.end_array().end_object();
+    std::ofstream out(json_);
+    out << json.text() << '\n';
     out.close();
     if (out) return 0;
     std::fprintf(stderr, "%s: cannot write %s\n", program_.c_str(), json_.c_str());
@@ -213,15 +213,6 @@ class Report {
     const int decimals = size >= 100 || size == 0 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3;
     std::snprintf(text, sizeof text, "%.*f", decimals, figure);
     return text;
-  }
-
-  static std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-      if (c == '"' || c == '\\') out += '\\';
-      if (static_cast<unsigned char>(c) >= 0x20) out += c;
-    }
-    return out + '"';
   }
 
   std::string program_, json_;
