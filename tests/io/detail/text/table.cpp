@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/io/detail/text/table.hpp>
 
-#include <clocale>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -81,30 +80,6 @@ TEST_CASE("lines end as on any system, and blank ones do not count") {
   CHECK(whole.next());
   CHECK_FALSE(whole.next());
   CHECK_FALSE(whole.line_is_open());
-}
-
-TEST_CASE("a number is all of its cell, finite, and has a point in every locale") {
-  std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed, numbers have commas
-  struct Case {
-    const char* cell;
-    double value;
-  };
-  for (const Case& c : {Case{"1.5", 1.5}, {"+2", 2}, {"-1e3", -1000}, {".5", 0.5}, {"5.", 5}, {"-0", 0}}) {
-    CAPTURE(c.cell);
-    REQUIRE(TextTable::number_in(c.cell));
-    CHECK(*TextTable::number_in(c.cell) == c.value);
-  }
-  for (const char* cell : {"", "nan", "inf", "-inf", "1,5", "1.5x", "0x10", "1e", "1e999", "--1", "+-1", "++1", " 1", "1 ", "e5", "."}) {
-    CAPTURE(cell);
-    CHECK_FALSE(TextTable::number_in(cell));
-  }
-  std::setlocale(LC_ALL, "C");
-}
-
-TEST_CASE("of a long cell, an error shows the beginning") {
-  CHECK(TextTable::quoted("") == "''");
-  CHECK(TextTable::quoted(std::string(64, 'x')) == "'" + std::string(64, 'x') + "'");
-  CHECK(TextTable::quoted(std::string(65, 'x')) == "'" + std::string(64, 'x') + "...'");
 }
 
 TEST_CASE("what is no text file is refused, and says what was expected") {
