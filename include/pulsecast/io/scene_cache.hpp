@@ -22,7 +22,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/archive.hpp>
-#include <pulsecast/io/digest.hpp>
+#include <pulsecast/io/detail/digest.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/scene/material.hpp>
