@@ -113,6 +113,12 @@ void add_sources(const Source& source, std::span<const std::string> names, Stage
   });
 }
 
+void write_las(const Recording& recording, const std::filesystem::path& path) {
+  io::LasWriter las(path);
+  las(recording.batch());
+  las.close();
+}
+
 template <class Source>
 void measure(Report& report, const std::string& name, const Source& source, const Scene<Mesh>& scene,
              const std::vector<std::string>& sources, std::size_t subrays) {
@@ -155,11 +161,7 @@ void measure(Report& report, const std::string& name, const Source& source, cons
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "pulsecast_bench_pipeline";
   std::filesystem::create_directory(folder);
   auto works = stages.works;
-  works.emplace_back([&] {
-    io::LasWriter las(folder / "points.las");
-    las(recording.batch());
-    las.close();
-  });
+  works.emplace_back([&] { write_las(recording, folder / "points.las"); });
   const std::vector<Times> times = report.by_turns(works, process_seconds);
   std::filesystem::remove_all(folder);
 

@@ -14,8 +14,7 @@
 #include <pulsecast/io/gzip.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/laz.hpp>
-#include <pulsecast/io/waveform_text.hpp>
-#include <pulsecast/io/xyz.hpp>
+#include <pulsecast/io/text_files.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "report.hpp"

@@ -19,7 +19,7 @@
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/io/point_cloud.hpp>
-#include <pulsecast/io/xyz.hpp>
+#include <pulsecast/io/text_files.hpp>
 #include <pulsecast/platform/block_flight.hpp>
 #include <pulsecast/pulsecast.hpp>
 #include <pulsecast/scene/height_field.hpp>

@@ -16,8 +16,8 @@
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/io/png.hpp>
+#include <pulsecast/io/text_files.hpp>
 #include <pulsecast/io/trajectory.hpp>
-#include <pulsecast/io/xyz.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "command_line.hpp"

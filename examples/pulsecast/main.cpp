@@ -24,8 +24,9 @@
 #include <utility>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/helios/simulation.hpp>
-#include <pulsecast/io/digest.hpp>
+#include <pulsecast/io/scene_cache.hpp>
 #include <pulsecast/version.hpp>
 
 #include "../summary.hpp"
@@ -76,7 +77,7 @@ std::int64_t unix_time_of(const std::string& text) {
   if (text.empty()) return std::time(nullptr);
   std::tm t{};
   std::istringstream in(text);
-  if (text.find_first_not_of("0123456789") == std::string::npos && text.size() < 16) return std::stoll(text);
+  if (text.find_first_not_of("0123456789") == std::string::npos && text.size() < 16) return *pulsecast::text::number_in<std::int64_t>(text);
   in >> std::get_time(&t, "%Y-%m-%d %H:%M:%S");
   const std::tm given = t;
   const std::int64_t moment = timegm(&t);  // it turns the 30th of February into the 2nd of March

@@ -4,8 +4,6 @@
 #include "options.hpp"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cstdlib>
 #include <iostream>
 #include <iterator>
@@ -16,7 +14,8 @@
 
 #include <CLI/CLI.hpp>
 #include <pulsecast/base/parallel.hpp>
-#include <pulsecast/helios/detail/xml/document.hpp>
+#include <pulsecast/base/suggestion.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/version.hpp>
 
 #include "quantity.hpp"
@@ -24,6 +23,7 @@
 namespace {
 
 namespace fs = std::filesystem;
+namespace text = pulsecast::text;
 
 constexpr const char* all_commands[] = {"run", "check", "info", "preview", "forecast", "catalogue"};
 
@@ -33,7 +33,7 @@ std::string nearest_option(const CLI::App& app, const std::string& given) {
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   const std::string name = given.substr(0, given.find('='));
-  const std::string text = pulsecast::helios::suggestion(name, known);
+  const std::string text = text::suggestion(name, known);
   return text.starts_with("; did") ? text : "";
 }
 
@@ -65,25 +65,17 @@ fs::path scene_folder() {
 std::string both(const std::string& name) {
   std::string kebab;
   for (const char c : name) {
-    if (std::isupper(static_cast<unsigned char>(c)) != 0) kebab += '-';
-    kebab += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (text::lower(c) != c) kebab += '-';
+    kebab += text::lower(c);
   }
   return kebab == name ? "--" + name : "--" + name + ",--" + kebab;
-}
-
-template <class Number>
-std::optional<Number> number_in(const std::string& text) {
-  Number value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 /// Number in a text, or a problem for CLI11; `holds(number)` is the condition.
 template <class Number, class Holds>
 auto number_check(const Holds& holds, const std::string& problem) {
   return [holds, problem](const std::string& text) {
-    const std::optional<Number> number = number_in<Number>(text);
+    const std::optional<Number> number = text::number_in<Number>(text);
     return number && holds(*number) ? std::string() : "'" + text + "' is no " + problem;
   };
 }
@@ -159,7 +151,7 @@ class CommandLine {
     app_.add_option("--seed", seed_, "Of all that is random; the survey's own, or another one each time")
         ->type_name("N")
         ->check([](const std::string& text) {
-          return text == "AUTO" || number_in<std::uint64_t>(text) ? std::string() : "'" + text + "' is no whole number from 0";
+          return text == "AUTO" || text::number_in<std::uint64_t>(text) ? std::string() : "'" + text + "' is no whole number from 0";
         });
     app_.add_option("-j,--threads,--nthreads,--njobs", o_.threads, "How many compute; 0 for as many as the machine runs at once")
         ->type_name("N")
@@ -253,7 +245,7 @@ class CommandLine {
     const std::vector<std::string> commands(std::begin(all_commands), std::end(all_commands));
     const bool is_catalogue = o_.command == "catalogue";
     if (!extras.empty() && o_.survey.extension() != ".xml")
-      return "there is no command '" + o_.survey.string() + "'" + pulsecast::helios::suggestion(o_.survey.string(), commands);
+      return "there is no command '" + o_.survey.string() + "'" + text::suggestion(o_.survey.string(), commands);
     if (is_catalogue && !o_.survey.empty()) return "'" + o_.survey.string() + "' is too much: catalogue takes no document";
     if (!extras.empty()) return "'" + extras.front() + "' is too much: one document at a time";
     if (!is_catalogue && o_.survey.empty()) return "no document is given: expected SURVEY.xml";
@@ -288,8 +280,8 @@ class CommandLine {
       o_.notes.push_back("--format " + o_.format + " counts, not " + (las_ ? "--lasOutput" : "--zipOutput"));
     if (o_.las_1_0 && o_.format == "laz") return "--las10 and --format laz: only LAS 1.4 is compressed";
     if (o_.las_1_0 && zip_ && o_.format == "las") o_.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
-    if (!epsg_.empty()) o_.epsg = number_in<std::uint16_t>(epsg_);
-    if (!seed_.empty() && seed_ != "AUTO") o_.seed = number_in<std::uint64_t>(seed_);
+    if (!epsg_.empty()) o_.epsg = text::number_in<std::uint16_t>(epsg_);
+    if (!seed_.empty() && seed_ != "AUTO") o_.seed = text::number_in<std::uint64_t>(seed_);
     o_.platform_noise = !no_platform_noise_;
     o_.leg_noise = !no_leg_noise_;
     o_.store = {scene_folder(), !rebuild_scene_, !no_scene_writing_};

@@ -12,10 +12,8 @@
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/laz.hpp>
 #include <pulsecast/io/png.hpp>
-#include <pulsecast/io/pulse_text.hpp>
+#include <pulsecast/io/text_files.hpp>
 #include <pulsecast/io/trajectory.hpp>
-#include <pulsecast/io/waveform_text.hpp>
-#include <pulsecast/io/xyz.hpp>
 
 namespace fs = std::filesystem;
 using namespace pulsecast;

@@ -9,7 +9,7 @@
 
 #include <pulsecast/echo.hpp>
 #include <pulsecast/helios/survey.hpp>
-#include <pulsecast/io/las_settings.hpp>
+#include <pulsecast/io/las.hpp>
 
 #include "options.hpp"
 

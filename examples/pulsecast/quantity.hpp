@@ -3,14 +3,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <span>
 #include <string>
-#include <system_error>
+#include <string_view>
+
+#include <pulsecast/base/text.hpp>
 
 /// Kind of quantity on the command line.
 struct QuantityKind {
@@ -34,15 +33,11 @@ inline constexpr QuantityKind a_size{size_units, "a size, as in 500MB or 4GB"};
 
 /// Parses a positive quantity to SI. The unit ignores case; a blank may precede it.
 inline std::optional<double> quantity(const std::string& text, const QuantityKind& kind) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || !std::isfinite(value) || !(value > 0)) return std::nullopt;
-  std::string unit(end, text.data() + text.size());
-  unit.erase(0, unit.find_first_not_of(' '));
-  const auto same = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-  };
+  std::string_view unit = text;
+  const auto value = pulsecast::text::take_number<double>(unit);
+  if (!value || !std::isfinite(*value) || !(*value > 0)) return std::nullopt;
+  unit.remove_prefix(std::min(unit.find_first_not_of(' '), unit.size()));
   for (const QuantityKind::Unit& u : kind.units)
-    if (const std::string name = u.name; std::equal(unit.begin(), unit.end(), name.begin(), name.end(), same)) return value * u.size;
+    if (pulsecast::text::is_same_word(unit, u.name)) return *value * u.size;
   return std::nullopt;
 }

@@ -16,10 +16,8 @@
 #include <sstream>
 
 #include <pulsecast/io/gzip.hpp>
-#include <pulsecast/io/pulse_text.hpp>
+#include <pulsecast/io/text_files.hpp>
 #include <pulsecast/io/trajectory.hpp>
-#include <pulsecast/io/waveform_text.hpp>
-#include <pulsecast/io/xyz.hpp>
 #include <pulsecast/mpi/run.hpp>
 
 #include "outputs.hpp"

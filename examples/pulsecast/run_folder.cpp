@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -24,6 +23,7 @@
 #include <utility>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/output_file.hpp>
 
@@ -108,9 +108,11 @@ class LogLine {
 
   [[nodiscard]] bool is_end() const { return line_ == "end"; }
 
-  void read(std::string_view digits, auto& to) const {
-    const auto [rest, error] = std::from_chars(digits.data(), digits.data() + digits.size(), to);
-    expect(error == std::errc{} && rest == digits.data() + digits.size());
+  template <class Number>
+  void read(std::string_view digits, Number& to) const {
+    const std::optional<Number> number = text::number_in<Number>(digits);
+    expect(number.has_value());
+    to = *number;
   }
 
   /// Splits a value into a number or fingerprint, and a name.
@@ -197,9 +199,7 @@ std::string RunLog::text_in(const fs::path& folder) {
   constexpr std::uint64_t longest = std::uint64_t{1} << 28;  // a million legs [byte]
   io::InputFile file(folder / name, "the log of a run");
   if (file.size() > longest) file.fail("is longer than " + std::to_string(longest) + " bytes: it is not what a run left");
-  std::string text;
-  for (std::string_view bytes = file.take(file.block_size); !bytes.empty(); bytes = file.take(file.block_size)) text += bytes;
-  return text;
+  return file.take_rest();
 }
 
 void RunLog::add_files(const fs::path& folder, const std::vector<fs::path>& whole) {

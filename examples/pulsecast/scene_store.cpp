@@ -7,14 +7,14 @@
 #include <cctype>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <random>
-#include <sstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
-#include <pulsecast/io/digest.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/io/scene_cache.hpp>
 
@@ -53,15 +53,21 @@ std::string place_of(const SceneInputs& inputs) {
   return name + '-' + hex(digest.value().low);
 }
 
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) lines.emplace_back(text::take_line(text));
+  return lines;
+}
+
 /// Reads the warnings of a scene from their own file, headed by the key of the scene.
 std::optional<std::vector<std::string>> read_warnings(const fs::path& path, const Fingerprint& key) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) return std::nullopt;
-  std::ifstream in(path);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) lines.push_back(std::move(line));
-  if (lines.size() < 2 || lines.front() != hex(key) || lines.back() != "end") return std::nullopt;
-  return std::vector(lines.begin() + 1, lines.end() - 1);
+  try {
+    const std::vector<std::string> lines = lines_of(io::InputFile(path, "the warnings of a scene").take_rest());
+    if (lines.size() < 2 || lines.front() != hex(key) || lines.back() != "end") return std::nullopt;
+    return std::vector(lines.begin() + 1, lines.end() - 1);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
 }
 
 /// Replaces a file atomically: `write` makes it under a unique name, so that programs that start at the same time do no harm.
@@ -178,13 +184,6 @@ void keep_for_now(KeptParts& kept) {
       return;
     } catch (const FileError&) {  // there may be room elsewhere
     }
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) lines.push_back(std::move(line));
-  return lines;
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <pulsecast/helios/make_simulation.hpp>
-#include <pulsecast/io/digest.hpp>
+#include <pulsecast/io/scene_cache.hpp>
 
 #include "options.hpp"
 #include "scene_sharing.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <pulsecast/helios/settings.hpp>
-#include <pulsecast/io/digest.hpp>
+#include <pulsecast/io/scene_cache.hpp>
 
 /// Input files of a survey besides its documents: scene, spectra and trajectories.
 class SurveyInputs {

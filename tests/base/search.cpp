@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 using pulsecast::detail::first_not;
+using pulsecast::detail::interpolated;
+using pulsecast::detail::neighbours;
 
 TEST_CASE("a search finds what std::lower_bound and std::upper_bound find") {
   for (std::size_t count = 0; count < 40; ++count) {
@@ -22,4 +25,33 @@ TEST_CASE("a search finds what std::lower_bound and std::upper_bound find") {
       CHECK(first_not(count, [&](std::size_t i) { return table[i] <= wanted; }) == static_cast<std::size_t>(upper - table.begin()));
     }
   }
+}
+
+TEST_CASE("a place has a neighbour on both sides, and beyond the table the outermost element twice") {
+  const std::vector<double> table{1, 2, 4};
+  const auto around = [&](double x) {
+    const auto [before, behind] = neighbours(table.size(), [&](std::size_t i) { return !(x < table[i]); });
+    return std::pair(before, behind);
+  };
+  CHECK(around(0.5) == std::pair<std::size_t, std::size_t>(0, 0));
+  CHECK(around(1) == std::pair<std::size_t, std::size_t>(0, 1));
+  CHECK(around(3) == std::pair<std::size_t, std::size_t>(1, 2));
+  CHECK(around(4) == std::pair<std::size_t, std::size_t>(2, 2));
+  CHECK(neighbours(1, [](std::size_t) { return true; }).behind == 0);
+}
+
+TEST_CASE("a table is interpolated between its entries and constant beyond them") {
+  struct Entry {
+    double x, y;
+  };
+  const std::vector<Entry> table{{1, 10}, {2, 20}, {4, -20}};
+  const auto at = [&](double x) { return interpolated(table, x, &Entry::x, &Entry::y); };
+  CHECK(at(-5) == 10);
+  CHECK(at(1) == 10);
+  CHECK(at(1.5) == 15);
+  CHECK(at(2) == 20);
+  CHECK(at(3) == 0);
+  CHECK(at(4) == -20);
+  CHECK(at(9) == -20);
+  CHECK(interpolated(std::vector<Entry>{{1, 10}}, 1, &Entry::x, &Entry::y) == 10);
 }

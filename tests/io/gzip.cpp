@@ -9,10 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/io/pulse_text.hpp>
-#include <pulsecast/io/subray_text.hpp>
-#include <pulsecast/io/waveform_text.hpp>
-#include <pulsecast/io/xyz.hpp>
+#include <pulsecast/io/text_files.hpp>
 
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"

@@ -3,12 +3,14 @@
 #include <pulsecast/io/input_file.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
@@ -53,6 +55,8 @@ TEST_CASE("an input file knows where it is") {
   CHECK(file.take_line() == "gh");
   CHECK(file.line_is_open());
   CHECK_FALSE(file.take_line());
+  CHECK(file.line() == 3);
+  CHECK(file.line_is_open());
   CHECK(file.take(5).empty());
   file.seek(5);
   CHECK(file.take(100) == "ef\ngh");
@@ -84,6 +88,16 @@ TEST_CASE("blocks do not show, wherever their borders fall") {
   CHECK(joined == text);
 }
 
+TEST_CASE("the rest of a file comes whole, without a byte order mark at its beginning") {
+  const TemporaryFolder folder;
+  const std::string mark = "\xEF\xBB\xBF", text(2 * InputFile::block_size + 5, 'a');
+  CHECK(InputFile(put(folder, mark + mark + text), "text").take_rest() == mark + text);
+  InputFile file(put(folder, text + mark), "text");
+  (void)file.take(3);
+  CHECK(file.take_rest() == text.substr(3) + mark);
+  CHECK(file.take_rest().empty());
+}
+
 TEST_CASE("a line that is longer than a block is refused") {
   const std::string longest(InputFile::block_size - 1, 'a');
   CHECK(lines(longest + "\n" + longest) == std::vector<std::string>{longest, longest});
@@ -95,6 +109,7 @@ TEST_CASE("what is no file is refused, and says what was expected") {
   CHECK_THROWS_WITH_AS(InputFile(folder / "none", "a cloud"), doctest::Contains("none: is not there: expected a cloud"), FileError);
   CHECK_THROWS_WITH_AS(InputFile(folder.path(), "a cloud"), doctest::Contains("is a directory or device: expected a cloud"), FileError);
   CHECK_THROWS_WITH_AS(InputFile("/dev/zero", "a cloud"), doctest::Contains("is a directory or device"), FileError);
+  CHECK_THROWS_WITH_AS(InputFile("/proc/self/mem", "a cloud"), doctest::Contains("cannot be read"), FileError);
   CHECK_THROWS_WITH_AS(InputFile(put(folder, ""), "a cloud"), doctest::Contains("is empty: expected a cloud"), FileError);
 }
 
@@ -104,7 +119,47 @@ TEST_CASE("errors name the line or the byte") {
   (void)file.take_line();
   (void)file.take_line();
   CHECK_THROWS_WITH_AS(file.fail_at_line("is odd"), doctest::Contains("a, line 2: is odd"), FileError);
+  CHECK_THROWS_WITH_AS(file.fail_at_column(3, "is odd"), doctest::Contains("a, line 2, column 4: is odd"), FileError);
   CHECK_THROWS_WITH_AS(file.fail_at_byte(7, "is odd"), doctest::Contains("a, byte 7: is odd"), FileError);
+}
+
+void write(const std::filesystem::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+std::string text_of(const MappedFile& file) { return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()}; }
+
+TEST_CASE("a file stands in memory as it is, at the beginning of a page") {
+  const TemporaryFolder folder;
+  for (const std::size_t size : {1U, 4095U, 4096U, 4097U, 100'000U}) {
+    std::string text;
+    for (std::size_t i = 0; i < size; ++i) text += static_cast<char>(i * 31 % 251);
+    write(folder / "file", text);
+    const MappedFile file(folder / "file");
+    CHECK(text_of(file) == text);
+    CHECK(reinterpret_cast<std::uintptr_t>(file.bytes().data()) % 4096 == 0);
+  }
+}
+
+TEST_CASE("a file that was replaced or removed is still there for who had it") {
+  const TemporaryFolder folder;
+  write(folder / "file", "old");
+  const MappedFile file(folder / "file");
+  write(folder / "new", "new");
+  std::filesystem::rename(folder / "new", folder / "file");
+  CHECK(text_of(file) == "old");
+  CHECK(text_of(MappedFile(folder / "file")) == "new");
+  std::filesystem::remove(folder / "file");
+  CHECK(text_of(file) == "old");
+}
+
+TEST_CASE("what cannot be mapped is an error that says why") {
+  const TemporaryFolder folder;
+  write(folder / "empty", "");
+  CHECK_THROWS_WITH_AS((void)MappedFile(folder / "none"), doctest::Contains("is not there"), FileError);
+  CHECK_THROWS_WITH_AS((void)MappedFile(folder / "empty"), doctest::Contains("is empty"), FileError);
+  CHECK_THROWS_WITH_AS((void)MappedFile(folder.path()), doctest::Contains("is a directory"), FileError);
+  CHECK_THROWS_WITH_AS((void)MappedFile("/dev/null"), doctest::Contains("is a directory or device"), FileError);
+  REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);  // is not waited for
+  CHECK_THROWS_WITH_AS((void)MappedFile(folder / "pipe"), doctest::Contains("is a directory or device"), FileError);
 }
 
 }  // namespace

@@ -6,9 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/io/pulse_text.hpp>
-#include <pulsecast/io/waveform_text.hpp>
-#include <pulsecast/io/xyz.hpp>
+#include <pulsecast/io/text_files.hpp>
 
 #include "support/mpi_showers.hpp"
 

@@ -61,6 +61,7 @@ found 'files are for the rooms beside the core' '#include <(fstream|filesystem|c
 found 'degrees and nanoseconds are for the rooms beside the core' '[a-z]_(deg|ns)\>[^(]*[;=]' '(io|helios|mpi|page|python)/[^:]*|base/units\.hpp'
 found 'the library never prints and never exits' '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('
 found 'random numbers come from base/random.hpp only' '#include <random>|\<s?rand *\('
+found 'lines and numbers are read from text by base/text.hpp only' 'from_chars|\<(sto(d|f|i|u?ll?)|strto[a-z]+|ato[fil]|getline) *\(|xEF.xBB' 'base/text\.hpp'
 found 'concepts, never enable_if' 'enable_if'
 found 'a header begins with #pragma once' '#(ifndef|define) [A-Z_]*_(H|HPP)_?$'
 

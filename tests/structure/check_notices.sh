@@ -43,14 +43,17 @@ notices "$below" "$add #include <pulsecast/io/las.hpp>\" include/pulsecast/run.h
 notices "$below" "$add #include <pulsecast/page/page.hpp>\" include/pulsecast/mpi/run.hpp"
 notices "no room includes another's detail/" "$add #include <pulsecast/io/detail/las/layout.hpp>\" include/pulsecast/mpi/las.hpp"
 notices "the README's table lists the public headers" 'cp include/pulsecast/io/las.hpp include/pulsecast/io/other.hpp'
-notices "the README's table lists the public headers" 'rm include/pulsecast/io/xyz.hpp'
+notices "the README's table lists the public headers" 'rm include/pulsecast/io/text_files.hpp'
 notices "$below" "mkdir include/pulsecast/utils && cp include/pulsecast/pulse.hpp include/pulsecast/utils"
 notices 'GLM is named in base/vector.hpp only' "echo 'inline glm::dvec3 v;' >> include/pulsecast/pulse.hpp"
 notices 'threads live in run.hpp and base/parallel.hpp only' "$add #include <mutex>\" include/pulsecast/survey.hpp"
 notices 'files are for the rooms beside the core' "$add #include <fstream>\" include/pulsecast/survey.hpp"
 notices 'degrees and nanoseconds are for the rooms beside the core' "echo 'inline double angle_deg = 1;' >> include/pulsecast/pulse.hpp"
 notices 'the library never prints and never exits' "echo 'inline void f() { std::exit(1); }' >> include/pulsecast/pulse.hpp"
-notices 'random numbers come from base/random.hpp only' "$add #include <random>\" include/pulsecast/io/xyz.hpp"
+notices 'random numbers come from base/random.hpp only' "$add #include <random>\" include/pulsecast/io/text_files.hpp"
+text_rule='lines and numbers are read from text by base/text.hpp only'
+notices "$text_rule" "echo 'inline double f() { return std::stod(\"1\"); }' >> include/pulsecast/io/las.hpp"
+notices "$text_rule" "echo 'inline const char* mark = \"\\xEF\\xBB\\xBF\";' >> include/pulsecast/io/las.hpp"
 notices 'concepts, never enable_if' "echo 'template <class T, class = std::enable_if_t<true>> struct A;' >> include/pulsecast/echo.hpp"
 notices 'a header begins with #pragma once' 'sed -i "/^#pragma once/d" include/pulsecast/echo.hpp'
 notices 'a header has at most 350 lines' 'seq 351 | sed "s|^|// |" >> include/pulsecast/echo.hpp'

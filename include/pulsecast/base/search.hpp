@@ -23,4 +23,24 @@ template <class Before>
   return first;
 }
 
+/// Indices of the elements of a table before and behind a place; twice the outermost one where the place is beyond it.
+struct Neighbours {
+  std::size_t before, behind;
+};
+
+/// Neighbours of a place in a table of `count` elements, at least one. `before(i)` is true for all elements before the place.
+template <class Before>
+[[nodiscard]] constexpr Neighbours neighbours(std::size_t count, const Before& before) noexcept {
+  const std::size_t i = first_not(count, before);
+  return {i == 0 ? 0 : i - 1, i == count ? count - 1 : i};
+}
+
+/// Value at `x` in a table of at least one entry, ascending in the member `key`: linear between entries, constant beyond the ends.
+template <class Table, class Entry>
+[[nodiscard]] constexpr double interpolated(const Table& table, double x, double Entry::*key, double Entry::*value) noexcept {
+  const auto [i, k] = neighbours(table.size(), [&](std::size_t n) noexcept { return !(x < table[n].*key); });
+  const Entry &a = table[i], &b = table[k];
+  return i == k ? a.*value : a.*value + (b.*value - a.*value) * (x - a.*key) / (b.*key - a.*key);
+}
+
 }  // namespace pulsecast::detail

@@ -55,12 +55,7 @@ struct RangeErrors {
   /// Standard deviation of the noise at a range, at normal incidence [m].
   [[nodiscard]] double deviation_at(double range) const noexcept {
     if (deviations.size() == 0) return deviation + deviation_per_metre * range;
-    const std::size_t i = detail::first_not(deviations.size(), [&](std::size_t n) noexcept { return !(range < deviations[n].range); });
-    if (i == 0) return deviations[0].deviation;
-    const DeviationAtRange& from = deviations[i - 1];
-    if (i == deviations.size()) return from.deviation;
-    const DeviationAtRange& to = deviations[i];
-    return from.deviation + (to.deviation - from.deviation) * (range - from.range) / (to.range - from.range);
+    return detail::interpolated(deviations, range, &DeviationAtRange::range, &DeviationAtRange::deviation);
   }
 
   /// Reported minus true range [m] of an echo at a range [m], for a draw from the standard normal distribution.

@@ -28,7 +28,7 @@
 #include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/simulation.hpp>
-#include <pulsecast/io/las_packets.hpp>
+#include <pulsecast/io/las.hpp>
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/run.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +11,6 @@
 #include <memory>
 #include <set>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -268,11 +266,9 @@ class SceneBuilder {
     for (const RotationList& turns : transform.rotations) placement.rotation = turns.rotation() * placement.rotation;
     placement.rotation = normalize(placement.rotation);
     naming("part '" + part.id + "'", [&] { placement.validate(); });
-    ObjectId object = 0;
-    const auto [end, error] = std::from_chars(part.id.data(), part.id.data() + part.id.size(), object);
-    const bool is_number = error == std::errc{} && end == part.id.data() + part.id.size();
-    if (!is_number) object = static_cast<ObjectId>(place);
-    if (!is_number && !part.id.empty())
+    const auto number = text::number_in<ObjectId>(part.id);
+    ObjectId object = number.value_or(static_cast<ObjectId>(place));
+    if (!number && !part.id.empty())
       warn({"part '" + part.id + "': its id is not a number; its points are marked with its place in the scene, " + std::to_string(place)});
     for (const Loaded& loaded : load(source)) {
       all.push_back({loaded.geometry, loaded.materials, placement, object++, part.id, {}});

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -93,10 +94,8 @@ class GeoTiffReader {
     std::string_view word(text.data(), text.size());
     word = word.substr(0, word.find('\0'));
     while (!word.empty() && (word.front() == ' ' || word.front() == '+')) word.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error == std::errc()) return value;
-    if (!word.empty()) file_.warn("its value for missing heights is no number, and does not count");
+    if (const auto value = text::take_number<double>(word)) return value;
+    if (!word.empty()) warn("its value for missing heights is no number, and does not count");
     return std::nullopt;
   }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -10,12 +11,19 @@
 #include <fstream>
 #include <ios>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
 
 namespace pulsecast::io {
 
@@ -32,7 +40,9 @@ class InputFile {
     file_.open(path, std::ios::binary);
     if (!file_) fail("cannot be read");
     file_.seekg(0, std::ios::end);
-    size_ = static_cast<std::uint64_t>(std::max<std::streamoff>(file_.tellg(), 0));
+    const std::streamoff end = file_.tellg();
+    if (end < 0) fail("cannot be read");
+    size_ = static_cast<std::uint64_t>(end);
     if (size_ == 0) fail("is empty: expected " + std::string(expected));
     block_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size_, block_size)));
     seek(0);
@@ -61,37 +71,41 @@ class InputFile {
   /// Next line without its end (LF or CR LF); empty at the end of the file. Valid until more is taken. Throws a `FileError` for a line
   /// longer than `block_size`.
   [[nodiscard]] std::optional<std::string_view> take_line() {
-    std::optional<std::size_t> end = line_end();
-    if (!end) {
+    std::string_view rest = unread(), line = text::take_line(rest);
+    if (rest.empty() && !unread().ends_with('\n')) {
       refill();
-      end = line_end();
+      rest = unread();
+      line = text::take_line(rest);
     }
+    const std::string_view taken = advance(unread().size() - rest.size());
+    if (taken.empty()) return std::nullopt;
     ++line_;
-    line_is_open_ = !end;
-    if (!end) {
-      if (end_ - begin_ == block_size) fail_at_line("is longer than " + std::to_string(block_size) + " bytes");
-      if (begin_ == end_) return std::nullopt;
-    }
-    std::string_view text = advance(end ? *end + 1 : end_ - begin_);
-    if (end) text.remove_suffix(1);
-    if (text.ends_with('\r')) text.remove_suffix(1);
-    if (line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark of UTF-8
-    return text;
+    line_is_open_ = taken.back() != '\n';
+    if (line_is_open_ && taken.size() == block_size) fail_at_line("is longer than " + std::to_string(block_size) + " bytes");
+    return line_ == 1 ? text::without_byte_order_mark(line) : line;
+  }
+
+  /// Rest of the file, without the byte order mark at its beginning.
+  [[nodiscard]] std::string take_rest() {
+    std::string rest;
+    for (std::string_view bytes = take(block_size); !bytes.empty(); bytes = take(block_size))
+      rest += position_ == bytes.size() ? text::without_byte_order_mark(bytes) : bytes;
+    return rest;
   }
 
   [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
   [[noreturn]] void fail_at_line(const std::string& problem) const { throw FileError(path_, "line " + std::to_string(line_), problem); }
+  /// `column` is counted from 0 here, from 1 in the message.
+  [[noreturn]] void fail_at_column(std::size_t column, const std::string& problem) const {
+    throw FileError(path_, "line " + std::to_string(line_) + ", column " + std::to_string(column + 1), problem);
+  }
   [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const {
     throw FileError(path_, "byte " + std::to_string(byte), problem);
   }
 
  private:
-  /// Length of the next line in the block; empty without a line end.
-  [[nodiscard]] std::optional<std::size_t> line_end() const noexcept {
-    const void* found = begin_ == end_ ? nullptr : std::memchr(block_.data() + begin_, '\n', end_ - begin_);
-    if (found == nullptr) return std::nullopt;
-    return static_cast<std::size_t>(static_cast<const char*>(found) - block_.data()) - begin_;
-  }
+  /// Part of the block that was not taken.
+  [[nodiscard]] std::string_view unread() const noexcept { return {block_.data() + begin_, end_ - begin_}; }
 
   [[nodiscard]] std::string_view advance(std::size_t bytes) noexcept {
     const std::string_view taken(block_.data() + begin_, bytes);
@@ -117,6 +131,40 @@ class InputFile {
   std::size_t begin_ = 0, end_ = 0;  // unread part of the block
   std::size_t line_ = 0;
   bool line_is_open_ = false;
+};
+
+/// Memory-mapped file, read-only, aligned to a page. Its name may be reused for another file meanwhile; the file itself must not be written
+/// to. Throws a `FileError` if it cannot be mapped, or is a pipe (without waiting for it).
+class MappedFile {
+ public:
+  explicit MappedFile(const std::filesystem::path& path) {
+    const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
+    const auto system_error = [] { return std::generic_category().message(errno); };
+    const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    if (file.number < 0) fail(errno == ENOENT ? "is not there" : "cannot be read: " + system_error());
+    struct stat status {};
+    if (::fstat(file.number, &status) != 0 || !S_ISREG(status.st_mode)) fail("is a directory or device");
+    const auto size = static_cast<std::size_t>(status.st_size);
+    if (size == 0) fail("is empty");
+    void* const memory = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number, 0);
+    if (memory == MAP_FAILED) fail("cannot be mapped into memory: " + system_error());
+    bytes_ = {static_cast<const std::byte*>(memory), size};
+  }
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+  ~MappedFile() { ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size()); }
+
+  [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }
+
+ private:
+  struct Descriptor {
+    int number;
+    ~Descriptor() {
+      if (number >= 0) ::close(number);
+    }
+  };
+
+  std::span<const std::byte> bytes_;
 };
 
 }  // namespace pulsecast::io

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/las/writer.hpp>
-#include <pulsecast/io/las_settings.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace pulsecast::io {

@@ -17,11 +17,11 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/detail/las/layout.hpp>
+#include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/las/writer.hpp>
+#include <pulsecast/io/detail/laz/chunk.hpp>
 #include <pulsecast/io/detail/laz/coder.hpp>
 #include <pulsecast/io/detail/laz/integers.hpp>
-#include <pulsecast/io/las_settings.hpp>
-#include <pulsecast/io/detail/laz/chunk.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace pulsecast::io {

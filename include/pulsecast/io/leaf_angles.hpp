@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
@@ -40,11 +41,11 @@ struct LeafRow {
   if (cells.size() != 4) table.fail_here("has " + std::to_string(cells.size()) + " columns: expected x, y, z and G");
   std::array<double, 4> values{};
   for (std::size_t column = 0; column < 4; ++column) {
-    const std::optional<double> value = TextTable::number_in(cells[column]);
+    const std::optional<double> value = text::finite_number_in(cells[column]);
     const bool is_g = column == 3;
     if (!value || !(*value >= (is_g ? 0 : -1.001) && *value <= (is_g ? 1 : 1.001)))
-      table.fail_here(column, TextTable::quoted(cells[column]) + (is_g ? ": expected G, the mean projection of unit leaf area, from 0 to 1"
-                                                                       : ": expected a part of a unit direction, from -1 to 1"));
+      table.fail_here(column, text::quoted(cells[column]) + (is_g ? ": expected G, the mean projection of unit leaf area, from 0 to 1"
+                                                                  : ": expected a part of a unit direction, from -1 to 1"));
     values[column] = *value;
   }
   const Vec3 direction{values[0], values[1], values[2]};

@@ -3,13 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <istream>
 #include <map>
@@ -17,13 +15,14 @@
 #include <streambuf>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <tiny_obj_loader.h>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/scene/material.hpp>
 
@@ -52,62 +51,43 @@ static_assert(std::same_as<tinyobj::real_t, double>, "define TINYOBJLOADER_USE_D
 
 inline constexpr double max_number = 1e12;  ///< upper limit in a file, so that products of a few numbers cannot overflow
 
-[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
-  const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
-  return text.substr(first, text.find_last_not_of(' ') + 1 - first);
-}
-
 /// Number in a word, if tinyobjloader would read the same. It takes other words for zero or the number that they begin with, and
 /// fails at very long ones.
 template <class Number>
 [[nodiscard]] std::optional<Number> number_in(std::string_view word) {
-  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-  Number value{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  const bool is_all = error == std::errc{} && end == word.data() + word.size() && word.size() <= 100;
-  return is_all && std::isfinite(static_cast<double>(value)) ? std::optional(value) : std::nullopt;
+  const std::optional<Number> value = word.size() <= 100 ? text::number_in<Number>(word) : std::nullopt;
+  return value && std::isfinite(static_cast<double>(*value)) ? value : std::nullopt;
 }
 
 /// Text of an OBJ or MTL file, read in pieces.
 class StatementFile {
  public:
-  explicit StatementFile(const std::filesystem::path& path) : path_(path.string()) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) fail("is not there: expected an OBJ or MTL file");
-    if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected an OBJ or MTL file");
-    file_.open(path, std::ios::binary);
-    if (!file_) fail("cannot be read");
-    if (file_.peek() == std::ifstream::traits_type::eof()) fail("is empty: expected an OBJ or MTL file");
-  }
+  explicit StatementFile(const std::filesystem::path& path) : file_(path, "an OBJ or MTL file") {}
 
   /// Next whole statements, about `bytes` long; empty at the end of the file.
   [[nodiscard]] std::string next(std::size_t bytes) {
     std::string text = std::exchange(rest_, {});
-    while (file_) {
-      const std::size_t had = text.size();
-      text.resize(had + bytes);
-      file_.read(text.data() + had, static_cast<std::streamsize>(bytes));
-      text.resize(had + static_cast<std::size_t>(file_.gcount()));
-      if (file_.bad()) fail("cannot be read");
-      const std::size_t end = file_ ? end_of_statements(text) : 0;
-      if (end == 0) continue;
+    std::size_t end = 0;
+    while (end == 0) {
+      const std::string_view more = file_.take(bytes);
+      if (more.empty()) break;
+      text += more;
+      end = end_of_statements(text);
+    }
+    if (end > 0) {
       rest_.assign(text, end);
       text.resize(end);
-      break;
     }
-    return text;
+    const bool is_first = !std::exchange(begun_, true);
+    return is_first ? std::string(text::without_byte_order_mark(text)) : text;
   }
 
-  [[nodiscard]] std::string all() {
-    std::string text;
-    for (std::string more = next(piece_bytes); !more.empty(); more = next(piece_bytes)) text += more;
-    return text;
-  }
+  [[nodiscard]] std::string all() { return file_.take_rest(); }
 
   static constexpr std::size_t piece_bytes = std::size_t{1} << 18;  ///< default size of a piece [byte]
 
-  [[nodiscard]] const std::string& path() const { return path_; }
-  [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
+  [[nodiscard]] const std::string& path() const { return file_.path(); }
+  [[noreturn]] void fail(const std::string& problem) const { file_.fail(problem); }
 
  private:
   /// End of the last line that is not continued in the next; 0 if there is none.
@@ -121,8 +101,9 @@ class StatementFile {
     return 0;
   }
 
-  std::string path_, rest_;
-  std::ifstream file_;
+  InputFile file_;
+  std::string rest_;
+  bool begun_ = false;
 };
 
 /// Stream buffer that feeds tinyobjloader statement by statement, so that every check and error knows its line.
@@ -141,17 +122,16 @@ class StatementBuffer : public std::streambuf {
   [[nodiscard]] bool line_is_open() const { return open_; }                  ///< true for a last line without end
   [[nodiscard]] const std::string& statement() const { return statement_; }  ///< current statement, with one blank after the keyword
   [[nodiscard]] std::string_view keyword() const { return std::string_view(statement_).substr(0, statement_.find(' ')); }
-  [[nodiscard]] std::string_view rest() const { return trimmed(std::string_view(statement_).substr(keyword().size())); }
+  [[nodiscard]] std::string_view rest() const { return text::trimmed(std::string_view(statement_).substr(keyword().size())); }
 
   /// Words after the keyword.
   [[nodiscard]] const std::vector<std::string_view>& words() {
     words_.clear();
-    for (std::string_view left = rest(); !left.empty(); left = trimmed(left.substr(words_.back().size())))
-      words_.push_back(left.substr(0, left.find(' ')));
+    for (std::string_view left = rest(); !left.empty();) words_.push_back(text::take_word(left));
     return words_;
   }
 
-  [[nodiscard]] std::string quoted() const { return std::string("'").append(statement_, 0, 64) + (statement_.size() > 64 ? "...'" : "'"); }
+  [[nodiscard]] std::string quoted() const { return text::quoted(statement_); }
   [[noreturn]] void fail_here(const std::string& problem) const { throw FileError(path_, "line " + std::to_string(line_), problem); }
   void require(bool fulfilled, const char* expected) const {
     if (!fulfilled) fail_here(quoted() + ": expected " + expected);
@@ -201,24 +181,23 @@ class StatementBuffer : public std::streambuf {
       }
       joined_.append(text.substr(0, text.size() - (goes_on ? 1 : 0))) += ' ';
     }
-    statement_ = trimmed(joined_);
+    statement_ = text::trimmed(joined_);
     return !joined_.empty();
   }
 
   std::string_view take_line() {
-    std::size_t begin = at_;
-    const std::size_t end = text_.find('\n', begin);
+    const std::size_t begin = at_, end = text_.find('\n', begin);
     open_ = end == text_.npos;
     at_ = open_ ? text_.size() : end + 1;
     const std::size_t after = open_ ? text_.size() : end;
-    if (++lines_ == 1 && text_.starts_with("\xEF\xBB\xBF")) begin += 3;  // byte order mark of UTF-8
+    ++lines_;
     for (std::size_t i = begin; i < after; ++i) {
       char& c = text_[i];
       if (static_cast<unsigned char>(c) >= ' ') continue;
       if (c < '\t' || c > '\r') fail_here("holds binary data: expected the text of an OBJ or MTL file");
       c = ' ';
     }
-    return trimmed(std::string_view(text_).substr(begin, after - begin));
+    return text::trimmed(std::string_view(text_).substr(begin, after - begin));
   }
 
   std::string path_, text_;
@@ -294,7 +273,7 @@ class MtlReader : private StatementBuffer {
       made.scattering = Scattering::lambert;
     }
     made.specular_exponent = m.shininess;
-    const std::string reflectance = extra("helios_reflectance"), spectrum(trimmed(extra("helios_spectra")));
+    const std::string reflectance = extra("helios_reflectance"), spectrum(text::trimmed(extra("helios_spectra")));
     if (!reflectance.empty()) {
       made.reflectance = *number_in<double>(reflectance);
       if (made.reflectance > 1) {
@@ -312,8 +291,7 @@ class MtlReader : private StatementBuffer {
       warn("helios_spectra", "names the spectrum '" + spectrum + "', which no library holds: its reflectance is taken to be 0.5");
     }
     made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
-    std::string ground = extra("helios_isGround");
-    std::transform(ground.begin(), ground.end(), ground.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    const std::string ground = text::lower(extra("helios_isGround"));
     made.ground = ground == "true" || ground == "1";
     if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
       warn("helios_isGround", "has helios_isGround '" + ground + "', which is neither true nor false: it is taken to be no ground");

@@ -22,8 +22,8 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/archive.hpp>
-#include <pulsecast/io/digest.hpp>
-#include <pulsecast/io/mapped_file.hpp>
+#include <pulsecast/io/detail/digest.hpp>
+#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/motion.hpp>

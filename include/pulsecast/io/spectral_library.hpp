@@ -18,6 +18,7 @@
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
@@ -58,12 +59,6 @@ namespace detail {
 
 /// Unit of the first column.
 enum class WavelengthUnit : std::uint8_t { metre, micrometre, nanometre, wavenumber };
-
-[[nodiscard]] inline std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return out;
-}
 
 /// True if a text contains a word that is not part of a longer one.
 [[nodiscard]] inline bool has_word(std::string_view text, std::string_view word) {
@@ -120,42 +115,36 @@ class SpectrumReader {
   };
 
   static Cell cell(std::string_view word) {
-    const std::optional<double> number = TextTable::number_in(word);
+    const std::optional<double> number = text::finite_number_in(word);
     if (number && *number > -1e30) return {number, true};
-    const std::string text = lower(word);
-    return {std::nullopt, number || text == "nan" || text == "na"};
+    return {std::nullopt, number || text::is_same_word(word, "nan") || text::is_same_word(word, "na")};
   }
 
   void row() {
     static constexpr std::string_view separators = " \t,;";
     const std::string_view text = table_.text();
-    const std::size_t end = std::min(text.find_first_of(separators), text.size());
-    const std::size_t begin = std::min(text.find_first_not_of(separators, end), text.size());
-    const std::string_view second = text.substr(begin, std::min(text.find_first_of(separators, begin), text.size()) - begin);
-    const std::optional<double> wavelength = TextTable::number_in(text.substr(0, end));
-    const Cell reflectance = cell(second);
+    std::string_view rest = text;
+    const std::optional<double> wavelength = text::finite_number_in(text::take_word(rest, separators));
+    const Cell reflectance = cell(text::take_word(rest, separators));
     if (!wavelength || !reflectance.is_cell) {
       if (begun_ && !text.starts_with('#') && !text.starts_with("//"))
-        table_.fail_here(TextTable::quoted(text) + ": expected wavelength and reflectance, two numbers");
+        table_.fail_here(text::quoted(text) + ": expected wavelength and reflectance, two numbers");
       if (!begun_) header(text);
       return;
     }
     begun_ = true;
-    if (!(*wavelength >= 1e-12 && *wavelength <= 1e12))
-      table_.fail_here(TextTable::quoted(text) + ": expected a wavelength greater than 0");
+    if (!(*wavelength >= 1e-12 && *wavelength <= 1e12)) table_.fail_here(text::quoted(text) + ": expected a wavelength greater than 0");
     if (reflectance.number) samples_.push_back({{*wavelength, *reflectance.number}, table_.line()});
   }
 
   void header(std::string_view text) {
-    const std::string line = lower(text);
-    titles_ = line;
-    titles_line_ = table_.line();
+    const std::string line = text::lower(text);
+    titles_ = line, titles_line_ = table_.line();
     const auto is_key = [&](std::string_view key) { return line.starts_with(key); };
     if (is_key("x units:")) unit_ = wavelength_unit_in(line);
     if (!is_key("y units:")) return;
-    scale_ = reflectance_scale_in(line);
-    scale_line_ = table_.line();
-    if (line.find("reflect") == line.npos) table_.fail_here(TextTable::quoted(text) + ": expected a spectrum of reflectance");
+    scale_ = reflectance_scale_in(line), scale_line_ = table_.line();
+    if (line.find("reflect") == line.npos) table_.fail_here(text::quoted(text) + ": expected a spectrum of reflectance");
   }
 
   /// Takes units from the line above the numbers if no key named them.
@@ -198,29 +187,31 @@ class SpectrumReader {
     const bool percent = scale == ReflectanceScale::percent;
     if (scale_ && !told) warn(scale_line_, "its header says fraction, but " + reach + ": they are taken as percent");
     if (percent && largest <= 1) warn(scale_line_, "its header says percent, but " + reach + " only");
-    std::size_t clipped = 0, first = 0;
+    Oddity clipped;
     for (Row& sample : samples_) {
       const double fraction = percent ? sample.reflectance / 100 : sample.reflectance;
       sample.reflectance = std::clamp(fraction, 0.0, 1.0);
-      if (sample.reflectance != fraction && clipped++ == 0) first = sample.line;
+      if (sample.reflectance != fraction) clipped.at(sample.line);
     }
-    if (clipped > 0) warn(first, "a reflectance below 0 or above 1 is clipped, the first of " + std::to_string(clipped));
+    if (clipped.count > 0)
+      warn(clipped.first, "a reflectance below 0 or above 1 is clipped, the first of " + std::to_string(clipped.count));
     return std::string("reflectance in ") + (percent ? "percent" : "fractions") + (told ? ", as its header says" : ", as " + reach);
   }
 
   /// Samples with those of equal wavelength averaged.
   [[nodiscard]] std::vector<SpectralSample> united() {
     std::vector<SpectralSample> all;
-    std::size_t repeated = 0, first = 0;
+    Oddity repeated;
     for (std::size_t i = 0; i < samples_.size();) {
       std::size_t end = i;
       double sum = 0;
       for (; end < samples_.size() && samples_[end].wavelength == samples_[i].wavelength; ++end) sum += samples_[end].reflectance;
       all.push_back({samples_[i].wavelength, std::min(sum / static_cast<double>(end - i), 1.0)});
-      if (end - i > 1 && repeated++ == 0) first = samples_[i + 1].line;
+      if (end - i > 1) repeated.at(samples_[i + 1].line);
       i = end;
     }
-    if (repeated > 0) warn(first, "a wavelength comes again, the first of " + std::to_string(repeated) + ": the mean is taken");
+    if (repeated.count > 0)
+      warn(repeated.first, "a wavelength comes again, the first of " + std::to_string(repeated.count) + ": the mean is taken");
     return all;
   }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,12 +12,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
@@ -74,7 +73,7 @@ class VoxelFileReader {
 
   [[nodiscard]] VoxelFile read() && {
     if (!table_.next() || table_.text() != "VOXEL SPACE")
-      table_.fail_here(TextTable::quoted(table_.text()) + ": expected a voxel file, which begins with 'VOXEL SPACE'");
+      table_.fail_here(text::quoted(table_.text()) + ": expected a voxel file, which begins with 'VOXEL SPACE'");
     for (;;) {
       if (!table_.next()) table_.fail("has no row of column names: expected 'i j k PadBVTotal ...'");
       if (!table_.text().starts_with('#')) break;
@@ -93,21 +92,7 @@ class VoxelFileReader {
   }
 
  private:
-  /// Rows with the same defect.
-  struct Oddity {
-    void at(std::size_t line) noexcept {
-      if (count++ == 0) first = line;
-    }
-    std::size_t count = 0, first = 0;
-  };
-
   static constexpr double max_number = 1e12;  ///< upper limit of numbers in a file
-
-  [[nodiscard]] static std::string lower(std::string_view text) {
-    std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return result;
-  }
 
   /// Reads a line of `#key: value #key: value ...`.
   void keys() {
@@ -117,7 +102,7 @@ class VoxelFileReader {
       left.remove_prefix(entry.size());
       const std::size_t colon = entry.find_first_of(":=");
       if (colon == entry.npos) continue;
-      std::string key = lower(entry.substr(0, colon));
+      std::string key = text::lower(entry.substr(0, colon));
       key.erase(std::remove(key.begin(), key.end(), ' '), key.end());
       const std::string_view value = entry.substr(colon + 1);
       if (key == "min_corner") {
@@ -128,13 +113,12 @@ class VoxelFileReader {
         split_ = vector(key, value);
         for (int axis = 0; axis < 3; ++axis)
           if (!((*split_)[axis] >= 1 && (*split_)[axis] <= 0x1p32 && std::floor((*split_)[axis]) == (*split_)[axis]))
-            table_.fail_here("'split' is " + TextTable::quoted(value) + ": expected three whole numbers from 1 to 2^32");
+            table_.fail_here("'split' is " + text::quoted(value) + ": expected three whole numbers from 1 to 2^32");
       } else if (key == "res") {
         resolution(value);
       } else if (key == "max_pad") {
         const std::vector<double> given = numbers(value);
-        if (given.size() != 1 || !(given[0] > 0))
-          table_.fail_here("'max_pad' is " + TextTable::quoted(value) + ": expected a number above 0");
+        if (given.size() != 1 || !(given[0] > 0)) table_.fail_here("'max_pad' is " + text::quoted(value) + ": expected a number above 0");
         max_pad_ = given[0];
       }
     }
@@ -143,16 +127,15 @@ class VoxelFileReader {
   void resolution(std::string_view value) {
     const std::vector<double> given = numbers(value);
     if ((given.size() != 1 && given.size() != 3) || !(*std::min_element(given.begin(), given.end()) > 0))
-      table_.fail_here("'res' is " + TextTable::quoted(value) + ": expected the edge of a voxel [m], above 0");
+      table_.fail_here("'res' is " + text::quoted(value) + ": expected the edge of a voxel [m], above 0");
     if (given.size() == 3 && (given[1] != given[0] || given[2] != given[0]))
-      table_.fail_here("'res' is " + TextTable::quoted(value) + ": expected voxels that are cubes");
-    edge_ = given[0];
-    edge_line_ = table_.line();
+      table_.fail_here("'res' is " + text::quoted(value) + ": expected voxels that are cubes");
+    edge_ = given[0], edge_line_ = table_.line();
   }
 
   [[nodiscard]] Vec3 vector(const std::string& key, std::string_view value) const {
     const std::vector<double> given = numbers(value);
-    if (given.size() != 3) table_.fail_here("'" + key + "' is " + TextTable::quoted(value) + ": expected three numbers within 1e12");
+    if (given.size() != 3) table_.fail_here("'" + key + "' is " + text::quoted(value) + ": expected three numbers within 1e12");
     return {given[0], given[1], given[2]};
   }
 
@@ -160,15 +143,13 @@ class VoxelFileReader {
   [[nodiscard]] static std::vector<double> numbers(std::string_view value) {
     constexpr std::string_view between = " \t,()[]";
     std::vector<double> result;
-    for (;;) {
-      value.remove_prefix(std::min(value.find_first_not_of(between), value.size()));
-      if (value.empty()) return result;
-      const std::string_view word = value.substr(0, value.find_first_of(between));
-      const std::optional<double> number = TextTable::number_in(word);
+    value.remove_prefix(std::min(value.find_first_not_of(between), value.size()));
+    while (!value.empty()) {
+      const std::optional<double> number = text::finite_number_in(text::take_word(value, between));
       if (!number || std::fabs(*number) > max_number) return {};
       result.push_back(*number);
-      value.remove_prefix(word.size());
     }
+    return result;
   }
 
   void name_columns() {
@@ -212,7 +193,7 @@ class VoxelFileReader {
         table_.fail_here("the voxel " + to_text(cell) + " stands beyond 1e12 m: expected one within");
     const double density = number(density_), transmittance = transmittance_ ? number(*transmittance_) : 0;
     if (density < 0 || density > max_number)
-      table_.fail_here(density_, TextTable::quoted(cells[density_]) + ": expected a density from 0 to 1e12");
+      table_.fail_here(density_, text::quoted(cells[density_]) + ": expected a density from 0 to 1e12");
     if (table_.line_is_open()) file_.warnings.push_back(table_.path() + ": the last line has no end: the file may have been cut short");
     if (cells_.size() == CellNumbers::max_size) table_.fail_here("expected fewer than 2^32 - 1 voxels");
     const std::size_t before = cells_.size();
@@ -228,21 +209,19 @@ class VoxelFileReader {
   [[nodiscard]] std::uint32_t index(int axis) {
     const std::size_t column = index_[static_cast<std::size_t>(axis)];
     const std::string_view text = table_.cells()[column];
-    std::uint32_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || text.empty())
-      table_.fail_here(column, TextTable::quoted(text) + ": expected a whole number from 0 to 2^32 - 1");
-    if (split_ && !(value < (*split_)[axis]))
-      table_.fail_here(column, TextTable::quoted(text) + ": expected less than the " + pulsecast::detail::to_text((*split_)[axis]) +
+    const auto value = text::number_in<std::uint32_t>(text);
+    if (!value) table_.fail_here(column, text::quoted(text) + ": expected a whole number from 0 to 2^32 - 1");
+    if (split_ && !(*value < (*split_)[axis]))
+      table_.fail_here(column, text::quoted(text) + ": expected less than the " + pulsecast::detail::to_text((*split_)[axis]) +
                                    " voxels that 'split' gives");
-    return value;
+    return *value;
   }
 
   [[nodiscard]] double number(std::size_t column) {
     const std::string_view text = table_.cells()[column];
-    if (lower(text) == "nan" || lower(text) == "-nan") return std::numeric_limits<double>::quiet_NaN();
-    const std::optional<double> value = TextTable::number_in(text);
-    if (!value) table_.fail_here(column, TextTable::quoted(text) + ": expected a number, with a decimal point, or NaN");
+    if (text::is_same_word(text, "nan") || text::is_same_word(text, "-nan")) return std::numeric_limits<double>::quiet_NaN();
+    const std::optional<double> value = text::finite_number_in(text);
+    if (!value) table_.fail_here(column, text::quoted(text) + ": expected a number, with a decimal point, or NaN");
     return *value;
   }
 

@@ -15,9 +15,6 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/io/las.hpp>
-#include <pulsecast/io/las_encoder.hpp>
-#include <pulsecast/io/las_packets.hpp>
-#include <pulsecast/io/las_settings.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>

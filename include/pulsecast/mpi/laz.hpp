@@ -15,7 +15,7 @@
 #include <vector>
 
 #include <pulsecast/base/parallel.hpp>
-#include <pulsecast/io/las_settings.hpp>
+#include <pulsecast/io/las.hpp>
 #include <pulsecast/io/laz.hpp>
 #include <pulsecast/mpi/detail/file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>

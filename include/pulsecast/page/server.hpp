@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +23,7 @@
 
 #include <httplib.h>
 
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/local_server.hpp>
 #include <pulsecast/page/page.hpp>
@@ -55,7 +55,8 @@ class PageServer {
     server_.Get('/' + token_ + '/',
                 [this](const httplib::Request&, httplib::Response& response) { response.set_content(page(), "text/html; charset=utf-8"); });
     server_.Get('/' + token_ + "/points", [this](const httplib::Request& request, httplib::Response& response) {
-      response.set_content(news(number_in(request.get_param_value("run")), number_in(request.get_param_value("after"))),
+      response.set_content(news(text::number_in<std::uint64_t>(request.get_param_value("run")),
+                                text::number_in<std::uint64_t>(request.get_param_value("after"))),
                            "application/octet-stream");
     });
     server_.Post('/' + token_ + "/stop", [this](const httplib::Request&, httplib::Response& response) {
@@ -128,13 +129,6 @@ class PageServer {
       out += "0123456789abcdef"[byte % 16];
     }
     return out;
-  }
-
-  [[nodiscard]] static std::optional<std::uint64_t> number_in(const std::string& text) {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return value;
   }
 
   /// True if a request has the right host name and, if a page sent it, comes from this page. Other names may resolve to this machine ("DNS

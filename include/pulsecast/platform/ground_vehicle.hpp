@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/curved_path.hpp>
 #include <pulsecast/platform/heading.hpp>
@@ -73,9 +74,8 @@ class GroundVehicleDrive {
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const double driven = driven_.at(t).position;
-    const auto after =
-        std::upper_bound(sections_.begin() + 1, sections_.end(), driven, [](double d, const Section& s) { return d < s.start; });
-    const Section& section = *(after - 1);
+    const auto starts_before = [&](std::size_t i) noexcept { return !(driven < sections_[i].start); };
+    const Section& section = sections_[detail::neighbours(sections_.size(), starts_before).before];
     const double along = std::clamp(driven - section.start, 0.0, section.path.length);
     const Stance stance = section.path.after(along);
     const std::size_t steps = section.footings.size() - 1;

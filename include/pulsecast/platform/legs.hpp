@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace pulsecast {
@@ -70,8 +70,7 @@ class Legs {
 
   /// Index of the leg of slot i.
   [[nodiscard]] std::size_t leg_of(PulseIndex i) const noexcept {
-    const auto after = std::upper_bound(starts_.begin(), starts_.end(), i, [](PulseIndex n, const Start& s) { return n < s.pulse; });
-    return static_cast<std::size_t>(after - starts_.begin()) - 1;
+    return detail::first_not(starts_.size(), [&](std::size_t k) noexcept { return starts_[k].pulse <= i; }) - 1;
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/base/tick.hpp>
 
 namespace pulsecast {
@@ -41,8 +42,7 @@ class PiecewiseCubic {
 
   /// State at a time; its duration is the rest of the piece.
   [[nodiscard]] CubicPiece<V> at(Tick t) const noexcept {
-    const auto after = std::upper_bound(pieces_.begin(), pieces_.end(), t, [](Tick a, const Timed& b) { return a < b.start; });
-    const Timed& now = after == pieces_.begin() ? *after : *(after - 1);
+    const Timed& now = pieces_[detail::neighbours(pieces_.size(), [&](std::size_t i) noexcept { return !(t < pieces_[i].start); }).before];
     const double elapsed = static_cast<double>(t.second - now.start.second) + (t.fraction - now.start.fraction);
     return now.piece.after(std::clamp(elapsed, 0.0, now.piece.duration));
   }

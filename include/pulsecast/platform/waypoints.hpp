@@ -12,6 +12,7 @@
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
@@ -55,19 +56,17 @@ class Waypoints {
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick tick) const noexcept {
     const double t = tick.seconds();
-    const auto after = std::upper_bound(points_.begin(), points_.end(), t, [](double time, const TimedPose& p) { return time < p.time; });
-    if (after == points_.begin()) return {points_.front().rotation, points_.front().position};
-    if (after == points_.end()) return {points_.back().rotation, points_.back().position};
-    const TimedPose &a = *(after - 1), &b = *after;
+    const auto [i, k] = detail::neighbours(points_.size(), [&](std::size_t n) noexcept { return !(t < points_[n].time); });
+    const TimedPose &a = points_[i], &b = points_[k];
+    if (i == k) return {a.rotation, a.position};
     // relative to the waypoint the time keeps the exactness of its fraction of a second
     const double since = (static_cast<double>(tick.second) - a.time) + tick.fraction;
     const double interval = b.time - a.time, s = since / interval;
     const Vec3 path = b.position - a.position;
     const Rotation rotation = normalize(slerp(a.rotation, b.rotation, s));
     if (velocities_.empty()) return {rotation, a.position + s * path};
-    const auto i = static_cast<std::size_t>(after - points_.begin());
     // source: cubic Hermite polynomial in powers of s
-    const Vec3 leaving = interval * velocities_[i - 1], arriving = interval * velocities_[i];
+    const Vec3 leaving = interval * velocities_[i], arriving = interval * velocities_[k];
     return {rotation, a.position + s * (leaving + s * (3.0 * path - 2.0 * leaving - arriving + s * (leaving + arriving - 2.0 * path)))};
   }
 

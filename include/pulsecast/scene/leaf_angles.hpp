@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>
 
@@ -84,12 +85,7 @@ class LeafAngles {
   [[nodiscard]] double projection(const Vec3& direction) const noexcept {
     const double level = std::hypot(direction.x, direction.y), steep = std::fabs(direction.z);
     if (table_.empty()) return std::hypot(chi_ * steep, level) / (std::hypot(steep, level) * half_surface_);
-    const double zenith = std::atan2(level, steep);
-    const auto above = std::upper_bound(table_.begin(), table_.end(), zenith, [](double z, const auto& entry) { return z < entry.zenith; });
-    if (above == table_.begin()) return above->g;
-    const auto below = above - 1;
-    if (above == table_.end()) return below->g;
-    return below->g + (above->g - below->g) * (zenith - below->zenith) / (above->zenith - below->zenith);
+    return detail::interpolated(table_, std::atan2(level, steep), &LeafProjection::zenith, &LeafProjection::g);
   }
 
   /// Memory held [byte].

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/scene/motion.hpp>
 #include <pulsecast/scene/moving_index.hpp>
 #include <pulsecast/scene/scene.hpp>
@@ -55,8 +55,7 @@ class MovingScene {
   [[nodiscard]] Similarity placement(std::size_t part, const Tick& tick) const noexcept {
     const Part& moving = parts()[part];
     if (!moving.motion) return moving.placement;
-    const auto before = [](const Mover& m, std::size_t p) { return m.part < p; };
-    return moved(*std::lower_bound(movers_.begin(), movers_.end(), part, before), tick);
+    return moved(movers_[detail::first_not(movers_.size(), [&](std::size_t i) noexcept { return movers_[i].part < part; })], tick);
   }
 
   /// Nearest hit of each ray of the bundle at its tick. Ties between parts go to the first in the list, moving or not.

@@ -53,10 +53,9 @@ class Spectrum {
 
   /// Reflectance at a wavelength [m], a fraction.
   [[nodiscard]] double reflectance(double wavelength) const noexcept {
-    const std::size_t i = detail::first_not(samples_.size(), [&](std::size_t n) noexcept { return samples_[n].wavelength < wavelength; });
-    if (i == samples_.size()) return samples_[i - 1].reflectance;
-    if (i == 0) return samples_[0].reflectance;
-    const SpectralSample &below = samples_[i - 1], &above = samples_[i];
+    const auto [i, k] = detail::neighbours(samples_.size(), [&](std::size_t n) noexcept { return samples_[n].wavelength < wavelength; });
+    if (i == k) return samples_[i].reflectance;
+    const SpectralSample &below = samples_[i], &above = samples_[k];
     const double share = (wavelength - below.wavelength) / (above.wavelength - below.wavelength);
     return below.reflectance + share * (above.reflectance - below.reflectance);
   }

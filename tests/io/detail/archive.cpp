@@ -13,7 +13,7 @@
 
 #include <doctest/doctest.h>
 
-#include <pulsecast/io/mapped_file.hpp>
+#include <pulsecast/io/input_file.hpp>
 
 #include "support/temporary_folder.hpp"
 

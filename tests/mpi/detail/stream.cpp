@@ -10,7 +10,7 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/io/gzip.hpp>
-#include <pulsecast/io/xyz.hpp>
+#include <pulsecast/io/text_files.hpp>
 
 #include "support/mpi_showers.hpp"
 

@@ -11,8 +11,9 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
+
+#include <pulsecast/base/text.hpp>
 
 namespace pulsecast::helios {
 
@@ -139,14 +140,13 @@ class Formula {
       if (!take(')')) fail("lacks a closing parenthesis");
       return;
     }
-    double number = 0;
-    const char* const begin = text_.data() + at_;
     const auto is_digit = [&](std::size_t i) { return i < text_.size() && text_[i] >= '0' && text_[i] <= '9'; };
     if (is_digit(at_) || (at_ < text_.size() && text_[at_] == '.' && is_digit(at_ + 1))) {
-      const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), number, std::chars_format::fixed);
-      if (error != std::errc{}) fail("has a number that cannot be");
-      at_ += static_cast<std::size_t>(end - begin);
-      return push({Kind::number, number});
+      std::string_view rest = text_.substr(at_);
+      const auto number = text::take_number<double>(rest, std::chars_format::fixed);
+      if (!number) fail("has a number that cannot be");
+      at_ = text_.size() - rest.size();
+      return push({Kind::number, *number});
     }
     std::size_t end = at_;
     while (end < text_.size() &&

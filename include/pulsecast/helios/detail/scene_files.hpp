@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -16,7 +14,8 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/helios/settings.hpp>
-#include <pulsecast/io/mapped_file.hpp>
+#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/mtl.hpp>
 
 namespace pulsecast::helios {
 
@@ -24,7 +23,7 @@ namespace pulsecast::helios {
 /// builder of the scene reports them.
 [[nodiscard]] std::vector<std::filesystem::path> scene_files(const SceneSettings& scene);
 
-/// True if an MTL file declares a ground material, in any run. A scene without one has no height for `onGround`.
+/// True if an MTL file declares a ground material, in any run, or cannot be read. A scene without one has no height for `onGround`.
 [[nodiscard]] bool has_ground(const SceneSettings& scene);
 
 /// Folders of spectra: `spectra` in each folder of assets that has it.
@@ -106,14 +105,14 @@ inline SceneFiles files_of(const SceneSettings& scene) {
   return files;
 }
 
-/// True if a line of an MTL file is `helios_isGround true` or `1`.
-inline bool says_ground(const std::string& line) {
-  std::istringstream words(line);
-  std::string key, value;
-  if (!(words >> key >> value) || key != "helios_isGround") return false;
-  std::transform(value.begin(), value.end(), value.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return value == "true" || value == "1";
+/// True if an MTL file has a ground material, or cannot be read.
+inline bool declares_ground(const std::filesystem::path& file) {
+  try {
+    const auto materials = io::read_mtl(file).materials;
+    return std::any_of(materials.begin(), materials.end(), [](const auto& named) { return named.second.ground; });
+  } catch (const FileError&) {
+    return true;
+  }
 }
 
 }  // namespace detail
@@ -131,12 +130,7 @@ inline std::vector<std::filesystem::path> spectra_folders(const std::vector<std:
 
 inline bool has_ground(const SceneSettings& scene) {
   const detail::SceneFiles files = detail::files_of(scene);
-  for (const std::filesystem::path& file : files.materials()) {
-    std::ifstream in(file);
-    for (std::string line; std::getline(in, line);)
-      if (detail::says_ground(line)) return true;
-  }
-  return false;
+  return std::any_of(files.materials().begin(), files.materials().end(), detail::declares_ground);
 }
 
 }  // namespace pulsecast::helios

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/io/digest.hpp>
+#include <pulsecast/io/detail/digest.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 /// Serialization of objects as bytes whose arrays are used in place. For one program on one machine: arrays keep their memory layout.

@@ -18,6 +18,7 @@
 
 #include <zlib.h>
 
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/sample.hpp>
@@ -101,7 +102,8 @@ PageCodes listed_codes(std::string name, std::span<const PagePoint> points, cons
   values.erase(std::unique(values.begin(), values.end()), values.end());
   PageCodes out{.name = std::move(name), .kind = "listed", .differences = false};
   for (const PagePoint& p : points)
-    out.codes.push_back(1 + static_cast<std::uint64_t>(std::lower_bound(values.begin(), values.end(), value(p)) - values.begin()));
+    out.codes.push_back(1 +
+                        std::uint64_t{pulsecast::detail::first_not(values.size(), [&](std::size_t i) { return values[i] < value(p); })});
   out.values = std::move(values);
   return out;
 }

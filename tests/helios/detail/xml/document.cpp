@@ -105,27 +105,6 @@ TEST_CASE("what is no XML, or no honest one, is refused with its place") {
   CHECK(fault("<!DOCTYPE a SYSTEM \"a.dtd\"><a x=\"&unknown; &lt;\">&amp;</a>").empty());
 }
 
-TEST_CASE("letters put in, left out, changed and swapped are counted") {
-  CHECK(edit_distance("", "") == 0);
-  CHECK(edit_distance("", "abc") == 3);
-  CHECK(edit_distance("pulseFreq_Hz", "pulseFreq_hz") == 0);
-  CHECK(edit_distance("kitten", "sitting") == 3);  // Levenshtein's textbook pair
-  CHECK(edit_distance("abcd", "acbd") == 1);
-  CHECK(edit_distance("ca", "abc") == 3);  // of the restricted distance: no part is edited twice
-  for (const auto& [a, b] : {std::pair("trajectory_seperator", "trajectory_separator"), std::pair("axis", "aixs")}) {
-    CHECK(edit_distance(a, b) == 1);
-    CHECK(edit_distance(b, a) == 1);
-  }
-}
-
-TEST_CASE("the nearest name is suggested, or all if none is near") {
-  const std::vector<std::string> known{"scanFreq_hz", "pulseFreq_hz", "scanAngle_deg"};
-  CHECK(suggestion("scanFreqHz", known) == "; did you mean 'scanFreq_hz'?");
-  CHECK(suggestion("scanAngle", known) == "; did you mean 'scanAngle_deg'?");
-  CHECK(suggestion("q", known) == "; there are: scanFreq_hz, pulseFreq_hz, scanAngle_deg");
-  CHECK(suggestion("q", {}).empty());
-}
-
 TEST_CASE("all faults are told, each once, and no more than can be read") {
   XmlReport report;
   CHECK(report.is_clean());

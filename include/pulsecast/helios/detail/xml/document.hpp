@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <numeric>
-#include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +13,8 @@
 #include <pugixml.hpp>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/search.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace pulsecast::helios {
@@ -116,52 +115,6 @@ class XmlReport {
   bool lenient_ = false;
 };
 
-/// Text in quotation marks, cut after 80 bytes.
-[[nodiscard]] inline std::string xml_quoted(std::string_view text) {
-  constexpr std::size_t longest = 80;
-  std::string quoted = "'";
-  for (const char c : text.substr(0, longest)) quoted += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  return quoted + (text.size() > longest ? "...'" : "'");
-}
-
-/// Number of insertions, deletions, changes and swaps of neighbours that turn one word into the other; case is ignored. Source: optimal
-/// string alignment distance, Damerau 1964.
-[[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
-  const auto is_same = [](char x, char y) {
-    const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-    return small(x) == small(y);
-  };
-  std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
-  std::iota(last.begin(), last.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (is_same(a[i - 1], b[j - 1]) ? 0 : 1)});
-      if (i > 1 && j > 1 && is_same(a[i - 1], b[j - 2]) && is_same(a[i - 2], b[j - 1])) row[j] = std::min(row[j], before_last[j - 2] + 1);
-    }
-    std::swap(before_last, last);
-    std::swap(last, row);
-  }
-  return last[b.size()];
-}
-
-/// "; did you mean 'pulseFreq_hz'?", with the nearest of the known names; all of them if none is near.
-[[nodiscard]] inline std::string suggestion(std::string_view unknown, std::span<const std::string> known) {
-  if (known.empty()) return "";
-  const std::string_view word = unknown.substr(0, 100);
-  const std::string* nearest = nullptr;
-  std::size_t least = std::max<std::size_t>(word.size() / 2, 2);
-  for (const std::string& name : known)
-    if (const std::size_t distance = edit_distance(word, name.substr(0, 100)); distance < least || (distance == least && !nearest)) {
-      nearest = &name;
-      least = distance;
-    }
-  if (nearest) return "; did you mean '" + *nearest + "'?";
-  std::string list;
-  for (std::size_t i = 0; i < std::min<std::size_t>(known.size(), 40); ++i) list += (list.empty() ? "" : ", ") + known[i];
-  return "; there are: " + list + (known.size() > 40 ? ", ..." : "");
-}
-
 /// XML file in memory, with the position of every element and attribute. External and declared entities are not supported: a document that
 /// declares any is refused.
 class XmlDocument {
@@ -174,12 +127,7 @@ class XmlDocument {
   explicit XmlDocument(const std::filesystem::path& path) : path_(path.string()) {
     io::InputFile file(path, "an XML document");
     if (file.size() > max_file_size) file.fail("is longer than " + std::to_string(max_file_size) + " bytes: expected an XML document");
-    while (file.position() < file.size()) {
-      const std::string_view bytes = file.take(io::InputFile::block_size);
-      if (bytes.empty()) break;
-      text_ += bytes;
-    }
-    if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);  // byte order mark of UTF-8
+    text_ = file.take_rest();
     for (std::size_t i = 0; i < text_.size(); ++i)
       if (text_[i] == '\n') line_ends_.push_back(i);
     if (const std::size_t zero = text_.find('\0'); zero != std::string::npos) fail_at(zero, "holds binary data: expected an XML document");
@@ -234,9 +182,9 @@ class XmlDocument {
   }
 
   [[nodiscard]] XmlPlace place_of(std::size_t byte) const {
-    const auto end = std::lower_bound(line_ends_.begin(), line_ends_.end(), byte);
-    const std::size_t begin = end == line_ends_.begin() ? 0 : *(end - 1) + 1;
-    return {.path = path_, .line = static_cast<std::size_t>(end - line_ends_.begin()) + 1, .column = byte - begin + 1};
+    const std::size_t line = pulsecast::detail::first_not(line_ends_.size(), [&](std::size_t i) { return line_ends_[i] < byte; });
+    const std::size_t begin = line == 0 ? 0 : line_ends_[line - 1] + 1;
+    return {.path = path_, .line = line + 1, .column = byte - begin + 1};
   }
 
   [[noreturn]] void fail_at(std::size_t byte, std::string problem) const {
@@ -270,9 +218,9 @@ class XmlDocument {
       std::vector<std::string_view> names;
       each_attribute(offset(node), [&](std::size_t at, std::string_view name, std::string_view value) {
         if (name.size() + value.size() > max_attribute_size)
-          fail_at(at, "an attribute is longer than " + std::to_string(max_attribute_size) + " bytes: " + xml_quoted(name));
+          fail_at(at, "an attribute is longer than " + std::to_string(max_attribute_size) + " bytes: " + text::quoted(name));
         if (std::find(names.begin(), names.end(), name) != names.end() || names.size() == max_attributes)
-          fail_at(at, "attribute " + xml_quoted(name) + (names.size() == max_attributes ? " is one of too many" : " is given twice"));
+          fail_at(at, "attribute " + text::quoted(name) + (names.size() == max_attributes ? " is one of too many" : " is given twice"));
         names.push_back(name);
         return true;
       });

@@ -19,6 +19,8 @@
 
 #include <pugixml.hpp>
 
+#include <pulsecast/base/suggestion.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/asset_search.hpp>
 #include <pulsecast/helios/detail/xml/document.hpp>
@@ -68,7 +70,7 @@ class XmlInput {
     for (const char* name : names) {
       required_.emplace_back(name);
       if (!has(name))
-        report_.fault(place(), "<" + std::string(node_.name()) + "> has no " + (params_ ? "param " : "attribute ") + xml_quoted(name));
+        report_.fault(place(), "<" + std::string(node_.name()) + "> has no " + (params_ ? "param " : "attribute ") + text::quoted(name));
     }
   }
 
@@ -118,7 +120,7 @@ class XmlInput {
   void flag(const char* name, bool& flag) {
     static constexpr std::array<std::pair<std::string_view, bool>, 4> others{{{"yes", true}, {"no", false}, {"on", true}, {"off", false}}};
     const std::string text = given(name).value_or("");
-    const auto other = std::find_if(others.begin(), others.end(), [&](const auto& word) { return is_same_word(word.first, text); });
+    const auto other = std::find_if(others.begin(), others.end(), [&](const auto& word) { return text::is_same_word(word.first, text); });
     if (other == others.end()) return choice(name, flag, {{"true", true}, {"false", false}, {"1", true}, {"0", false}});
     flag = other->second;
     warn(name, said(name, text) + " is taken as " + (flag ? "true" : "false") + ": expected true or false");
@@ -138,13 +140,13 @@ class XmlInput {
     if (!text) return;
     std::vector<std::string> known;
     for (const auto& [word, meaning] : words) {
-      if (is_same_word(word, *text)) {
+      if (text::is_same_word(word, *text)) {
         chosen = meaning;
         return;
       }
       known.emplace_back(word);
     }
-    fault(name, said(name, *text) + " is not known" + suggestion(*text, known));
+    fault(name, said(name, *text) + " is not known" + text::suggestion(*text, known));
   }
 
   /// Reads three numbers separated by semicolons.
@@ -209,7 +211,7 @@ class XmlInput {
   /// Warns of attributes that are allowed, but have no effect.
   void without_effect(std::initializer_list<const char*> names, const char* why = "has no effect") {
     for (const char* name : names)
-      if (given(name)) warn(name, (params_ ? "param " : "attribute ") + xml_quoted(name) + " " + why);
+      if (given(name)) warn(name, (params_ ? "param " : "attribute ") + text::quoted(name) + " " + why);
   }
 
   /// Adds known names that are not requested.
@@ -227,17 +229,17 @@ class XmlInput {
     for (const pugi::xml_attribute attribute : node_.attributes()) {
       const std::string_view name = attribute.name();
       if (name.starts_with("xmlns") || name.starts_with("xsi:") || name.starts_with("xml:") || is_among(known_, name)) continue;
-      warn(name, "attribute " + xml_quoted(name) + " of <" + node_.name() + "> is not known" + suggestion(name, known_));
+      warn(name, "attribute " + text::quoted(name) + " of <" + node_.name() + "> is not known" + text::suggestion(name, known_));
     }
     for (const pugi::xml_node child : node_.children()) {
       if (report_.is_full_of_warnings()) return;
       const bool is_element = child.type() == pugi::node_element;
       if (is_element && !is_among(known_children_, child.name()))
         report_.warn(document_.place(child), "element <" + std::string(child.name()).substr(0, 80) + "> in <" + node_.name() +
-                                                 "> is not known" + suggestion(child.name(), known_children_));
+                                                 "> is not known" + text::suggestion(child.name(), known_children_));
       if (child.type() == pugi::node_pcdata && !takes_text_)
         report_.warn(place(),
-                     "<" + std::string(node_.name()) + "> holds the text " + xml_quoted(child.value()) + ": expected elements only");
+                     "<" + std::string(node_.name()) + "> holds the text " + text::quoted(child.value()) + ": expected elements only");
     }
   }
 
@@ -246,7 +248,7 @@ class XmlInput {
     for (const pugi::xml_attribute attribute : node_.attributes())
       if (std::string_view(attribute.name()) != "type")
         report_.warn(document_.place(node_, attribute.name()),
-                     "attribute " + xml_quoted(attribute.name()) + " of <filter> is not known; did you mean 'type'?");
+                     "attribute " + text::quoted(attribute.name()) + " of <filter> is not known; did you mean 'type'?");
   }
 
   /// `name="text"`, for messages.
@@ -278,11 +280,6 @@ class XmlInput {
  private:
   static constexpr std::size_t max_params = 100;
 
-  /// True if two words are equal, without regard to case.
-  [[nodiscard]] static bool is_same_word(std::string_view a, std::string_view b) {
-    return a.size() == b.size() && edit_distance(a, b) == 0;
-  }
-
   [[nodiscard]] static bool is_among(const std::vector<std::string>& known, std::string_view name) {
     return std::find(known.begin(), known.end(), name) != known.end();
   }
@@ -303,16 +300,16 @@ class XmlInput {
       if (std::find(keys.begin(), keys.end(), key) != keys.end()) {
         const bool is_same = std::string_view(param(key).attribute("value").value()) == child.attribute("value").value();
         if (is_same)
-          report_.warn(document_.place(child, "key"), "param " + xml_quoted(key) + " is given twice");
+          report_.warn(document_.place(child, "key"), "param " + text::quoted(key) + " is given twice");
         else
-          report_.fault(document_.place(child, "key"), "param " + xml_quoted(key) + " is given twice, with another value");
+          report_.fault(document_.place(child, "key"), "param " + text::quoted(key) + " is given twice, with another value");
       }
       keys.push_back(key);
       if (keys.size() == max_params) report_.fault(document_.place(child), "one of too many <param> in a filter");
       if (!is_among(known_, key) || key == "type")
-        report_.warn(document_.place(child, "key"), "param " + xml_quoted(key) + " of filter " +
-                                                        xml_quoted(node_.attribute("type").value()) + " is not known" +
-                                                        suggestion(key, std::span(known_).subspan(1)));
+        report_.warn(document_.place(child, "key"), "param " + text::quoted(key) + " of filter " +
+                                                        text::quoted(node_.attribute("type").value()) + " is not known" +
+                                                        text::suggestion(key, std::span(known_).subspan(1)));
     }
   }
 
@@ -321,11 +318,12 @@ class XmlInput {
     static const std::vector<std::string> types{"string", "boolean", "bool", "double", "integer", "int", "vec3", "rotation", ""};
     for (const pugi::xml_attribute attribute : child.attributes())
       if (!is_among(names, attribute.name()))
-        report_.warn(document_.place(child, attribute.name()),
-                     "attribute " + xml_quoted(attribute.name()) + " of <param> is not known" + suggestion(attribute.name(), names));
+        report_.warn(document_.place(child, attribute.name()), "attribute " + text::quoted(attribute.name()) + " of <param> is not known" +
+                                                                   text::suggestion(attribute.name(), names));
     const std::string_view type = child.attribute("type").value();
     if (!is_among(types, type))
-      report_.warn(document_.place(child, "type"), said("type", type) + " is not known" + suggestion(type, std::span(types).first(8)));
+      report_.warn(document_.place(child, "type"),
+                   said("type", type) + " is not known" + text::suggestion(type, std::span(types).first(8)));
     if (type == "rotation") return;
     if (!child.attribute("value")) report_.warn(document_.place(child), "<param> has no attribute 'value'");
     for (const pugi::xml_node inner : child.children())

@@ -147,7 +147,7 @@ class LegReader {
         }
         const auto seconds = number_of(content);
         if (!seconds || !(*seconds >= -1 && *seconds <= 1e9))
-          report_.fault(text.place(), "<maxDuration_s> holds " + xml_quoted(content) + ": expected a number of seconds");
+          report_.fault(text.place(), "<maxDuration_s> holds " + text::quoted(content) + ": expected a number of seconds");
         scanner.duration_max = seconds;
       });
       inner.number("verticalResolution_deg", scanner.vertical_resolution, units::degree, 0, 180);

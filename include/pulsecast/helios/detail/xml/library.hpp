@@ -39,7 +39,7 @@ class XmlLibraryDocument {
       const auto [other, is_new] = by_id_.emplace(key(node.name(), node.attribute("id").value()), node);
       if (!is_new)
         report.warn(document_.place(node), "a second <" + std::string(node.name()) + "> with the id " +
-                                               xml_quoted(node.attribute("id").value()) + ": the first one counts");
+                                               text::quoted(node.attribute("id").value()) + ": the first one counts");
     }
   }
 
@@ -107,8 +107,9 @@ class XmlLibrary {
     if (document == nullptr) return {};
     if (const pugi::xml_node node = document->find(element, id); node && !id.empty()) return {document, node};
     const bool is_path = sign == std::string::npos && id.ends_with(".xml");
-    io.fault(attribute, XmlInput::said(attribute, text) + ": there is no <" + element + "> with the id " + xml_quoted(id) + " in " +
-                            document->document().path() + (is_path ? "; expected file.xml#id" : suggestion(id, document->ids(element))));
+    io.fault(attribute, XmlInput::said(attribute, text) + ": there is no <" + element + "> with the id " + text::quoted(id) + " in " +
+                            document->document().path() +
+                            (is_path ? "; expected file.xml#id" : text::suggestion(id, document->ids(element))));
     return {};
   }
 

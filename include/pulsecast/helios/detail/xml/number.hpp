@@ -12,9 +12,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
 
 /// Numbers and units in documents.
@@ -35,8 +35,7 @@ struct XmlUnit {
     for (const int digits : {15, 16, 17}) {
       std::array<char, 40> text;
       const char* const end = std::to_chars(text.data(), text.data() + text.size(), about, std::chars_format::general, digits).ptr;
-      double rounded = 0;
-      std::from_chars(text.data(), end, rounded);
+      const double rounded = text::number_in<double>({text.data(), end}).value_or(about);
       if (si(rounded) == value) return rounded;
     }
     double below = about, above = about;
@@ -67,13 +66,7 @@ inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 
 
 /// Parses a whole text as a number, except for blanks around it.
 [[nodiscard]] inline std::optional<double> number_of(std::string_view text) noexcept {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || std::isnan(value)) return std::nullopt;
-  return value;
+  return text::number_in<double>(text::trimmed(text));
 }
 
 /// Parses three numbers with a separator between them, and any number of blanks.

@@ -58,13 +58,13 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
   bool is_scaled = false, is_translated = false;
   const auto once = [&](pugi::xml_node node, bool& before) {
     if (std::exchange(before, true))
-      io.report().warn(io.document().place(node), "a second filter " + xml_quoted(node.attribute("type").value()) +
+      io.report().warn(io.document().place(node), "a second filter " + text::quoted(node.attribute("type").value()) +
                                                       ": it replaces the one before, and does not add to it");
   };
   for (pugi::xml_node node = io.node().child("filter"); node; node = node.next_sibling("filter")) {
     XmlInput filter(io.document(), node, io.report(), io.search(), true);
     const std::string_view type = node.attribute("type").value();
-    const auto is = [&](std::string_view name) { return type.size() == name.size() && edit_distance(type, name) == 0; };
+    const auto is = [&](std::string_view name) { return text::is_same_word(type, name); };
     const auto load = [&](auto kind) {
       if (source) io.report().fault(io.document().place(node), "a second filter that loads: expected one in each part");
       fields(filter, source.emplace(std::move(kind)).template emplace<decltype(kind)>());
@@ -103,7 +103,7 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       filter.whole("onGround", transform.on_ground, -1'000'000, 1'000'000);
     } else {
       io.report().fault(io.document().place(node, "type"),
-                        XmlInput::said("type", type) + " of a filter is not known" + suggestion(type, types));
+                        XmlInput::said("type", type) + " of a filter is not known" + text::suggestion(type, types));
       filter.check_filter();
       continue;
     }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <system_error>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -110,23 +109,21 @@ class SurveyReader {
   void seed(XmlInput& io) {
     const auto text = io.value("seed");
     if (!text || *text == "AUTO" || *text == "auto") return;
-    const char* const end = text->data() + text->size();
-    std::uint64_t value = 0;
-    if (const auto [rest, error] = std::from_chars(text->data(), end, value); error == std::errc{} && rest == end) {
-      survey_.seed = value;
+    if (const auto whole = text::number_in<std::uint64_t>(*text)) {
+      survey_.seed = *whole;
       return;
     }
     // YYYY-MM-DD hh:mm:ss
     static constexpr std::array<std::uint64_t, 6> seconds{31'104'000, 2'592'000, 86'400, 3600, 60, 1};
     static constexpr std::array<std::uint64_t, 6> first{1970, 0, 0, 0, 0, 0};
-    const char* at = text->data();
+    std::string_view rest = *text;
     std::uint64_t time = 0;
     bool is_time = text->size() < 40;
     for (std::size_t i = 0; is_time && i < 6; ++i) {
-      const auto [rest, error] = std::from_chars(at, end, value);
-      is_time = error == std::errc{} && value >= first[i] && value < 10000 && (rest == end) == (i == 5);
-      time += is_time ? (value - first[i]) * seconds[i] : 0;
-      at = rest == end ? end : rest + 1;
+      const auto value = text::take_number<std::uint64_t>(rest);
+      is_time = value && *value >= first[i] && *value < 10000 && rest.empty() == (i == 5);
+      time += is_time ? (*value - first[i]) * seconds[i] : 0;
+      rest.remove_prefix(rest.empty() ? 0 : 1);
     }
     const auto number = number_of(*text);
     if (is_time) {
@@ -162,7 +159,7 @@ class SurveyReader {
                       "the id of a channel becomes part of the names of files: expected no slashes and no control characters in it");
       if (is_new) continue;
       const std::string problem =
-          "channel " + std::to_string(k) + " has the id of channel " + std::to_string(other->second) + ", " + xml_quoted(id);
+          "channel " + std::to_string(k) + " has the id of channel " + std::to_string(other->second) + ", " + text::quoted(id);
       if (channel_files_)
         report_.fault(document.place(node, "id"), problem + ": expected another one, as each is to have a file of its own");
       else

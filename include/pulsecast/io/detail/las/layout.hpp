@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include <pulsecast/io/las_settings.hpp>
+#include <pulsecast/io/detail/las/settings.hpp>
 
 namespace pulsecast::io::detail {
 

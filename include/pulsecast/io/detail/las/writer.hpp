@@ -18,11 +18,11 @@
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
+#include <pulsecast/io/detail/las/encoder.hpp>
 #include <pulsecast/io/detail/las/layout.hpp>
-#include <pulsecast/io/las_packets.hpp>
+#include <pulsecast/io/detail/las/packets.hpp>
 #include <pulsecast/io/detail/las/reference.hpp>
-#include <pulsecast/io/las_encoder.hpp>
-#include <pulsecast/io/las_settings.hpp>
+#include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/version.hpp>
 

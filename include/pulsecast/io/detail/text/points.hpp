@@ -13,8 +13,9 @@
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
-#include <pulsecast/io/detail/text/table.hpp>
+#include <pulsecast/io/detail/text/cells.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace pulsecast::io {
@@ -51,15 +52,13 @@ class TextPoints {
   /// Advances to the next point; false at the end.
   [[nodiscard]] bool next() {
     while (const std::optional<std::string_view> line = file_.take_line()) {
-      std::string_view text = *line;
-      while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-      while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+      const std::string_view text = text::trimmed(*line);
       if (text.empty() || text.front() == '#' || text.starts_with("//")) continue;
       if (!begun_) {
         begin(text);
       } else {
-        split(text);
-        if (cells_.size() < needed_) too_few();
+        cells_.split(text, needed_);
+        if (cells().size() < needed_) too_few();
       }
       cut_ = file_.line_is_open();
       return true;
@@ -86,67 +85,46 @@ class TextPoints {
  private:
   using Columns = PointColumns::Columns;
 
-  [[nodiscard]] static bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
-  [[nodiscard]] bool separates(char c) const noexcept { return separates_[static_cast<unsigned char>(c)]; }
+  [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept { return cells_.cells(); }  ///< of the current row
 
   /// Detects the separators and columns from the first row.
   void begin(std::string_view text) {
     std::string separators = columns_.separators;
     if (separators.empty()) {
       const auto has = [&](char c) { return text.find(c) != text.npos; };
-      separators = has(';') ? ";" : has(',') ? "," : " \t";
+      separators = has(';') ? ";" : has(',') ? "," : text::blanks;
     }
-    for (const char c : separators) separates_[static_cast<unsigned char>(c)] = true;
+    cells_ = RowCells(separators, true);
     const auto last = [](const Columns& columns) { return *std::max_element(columns.begin(), columns.end()) + 1; };
-    needed_ = PointColumns::max_column + 1;
-    split(text);
+    cells_.split(text, PointColumns::max_column + 1);
     needed_ = last(columns_.position);
-    if (cells_.size() < needed_) too_few();
+    if (cells().size() < needed_) too_few();
     for (std::optional<Columns>* columns : {&columns_.normal, &columns_.colour}) {
-      if (*columns && cells_.size() < last(**columns)) columns->reset();
+      if (*columns && cells().size() < last(**columns)) columns->reset();
       if (*columns) needed_ = std::max(needed_, last(**columns));
     }
     begun_ = true;
   }
 
-  /// Splits a trimmed row into as many cells as needed.
-  void split(std::string_view text) {
-    cells_.clear();
-    for (std::size_t begin = 0; cells_.size() < needed_;) {
-      std::size_t end = begin;
-      while (end < text.size() && !separates(text[end])) ++end;
-      std::size_t cell_end = end;
-      while (cell_end > begin && is_blank(text[cell_end - 1])) --cell_end;
-      cells_.push_back(text.substr(begin, cell_end - begin));
-      while (end < text.size() && is_blank(text[end])) ++end;
-      if (end == text.size()) break;
-      begin = end;
-      if (separates(text[begin])) ++begin;  // not after separating blanks
-      while (begin < text.size() && is_blank(text[begin])) ++begin;
-    }
-  }
-
   [[nodiscard]] Vec3 vector(const Columns& columns) const { return {number(columns[0]), number(columns[1]), number(columns[2])}; }
 
   [[nodiscard]] double number(std::size_t column) const {
-    const std::optional<double> value = TextTable::number_in(cells_[column]);
+    const std::optional<double> value = text::number_in<double>(cells()[column]);
     if (value && std::fabs(*value) <= 1e12) return *value;
-    if (std::any_of(cells_[column].begin(), cells_[column].end(), [](unsigned char c) { return c < ' '; }))
+    if (std::any_of(cells()[column].begin(), cells()[column].end(), [](unsigned char c) { return c < ' '; }))
       fail_here("holds binary data: expected the text of a point cloud");
-    throw FileError(file_.path(), TextTable::place(file_.line()) + ", column " + std::to_string(column + 1),
-                    TextTable::quoted(cells_[column]) + ": expected a finite number, with a decimal point, within 1e12");
+    file_.fail_at_column(column, text::quoted(cells()[column]) + ": expected a finite number, with a decimal point, within 1e12");
   }
 
   [[noreturn]] void too_few() const {
-    fail_here("has " + std::to_string(cells_.size()) + " columns: expected at least " + std::to_string(needed_));
+    fail_here("has " + std::to_string(cells().size()) + " columns: expected at least " + std::to_string(needed_));
   }
 
   InputFile file_;
   PointColumns columns_;
-  std::array<bool, 256> separates_{};
+  RowCells cells_;
   std::size_t needed_ = 0;  // columns in use
   bool begun_ = false, cut_ = false;
-  std::vector<std::string_view> cells_;  // of the current row
 };
 
 }  // namespace pulsecast::io

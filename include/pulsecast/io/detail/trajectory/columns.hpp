@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/suggestion.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
 
 /// Columns of trajectory files: names and units.
@@ -82,8 +83,7 @@ inline constexpr auto units = std::to_array<Unit>({
 /// Normal form of a name: small letters, and one underscore for each run of other characters: "Roll [deg]" becomes "roll_deg".
 [[nodiscard]] inline std::string plain(std::string_view name) {
   std::string result;
-  for (char c : name) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  for (const char c : text::lower(name)) {
     const bool counts = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
     if (counts)
       result += c;
@@ -92,21 +92,6 @@ inline constexpr auto units = std::to_array<Unit>({
   }
   if (result.ends_with('_')) result.pop_back();
   return result;
-}
-
-/// Edit distance: number of letters to insert, delete or change. Source: Wagner & Fischer 1974.
-[[nodiscard]] inline std::size_t edits_between(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace detail
@@ -132,21 +117,13 @@ inline constexpr auto units = std::to_array<Unit>({
 /// Known column name nearest to an unknown one.
 [[nodiscard]] inline std::string nearest_trajectory_column(std::string_view name) {
   const std::string whole = detail::plain(name.substr(0, 64));
-  std::string nearest;
-  std::size_t fewest = 1000;
-  const auto consider = [&](const std::string& known) {
-    const std::size_t edits = detail::edits_between(whole, known);
-    if (edits < fewest) {
-      fewest = edits;
-      nearest = known;
-    }
-  };
+  std::vector<std::string> names;
   for (const auto& [known, quantity] : detail::quantity_names) {
-    consider(std::string(known));
+    names.emplace_back(known);
     for (const detail::Unit& unit : detail::units)
-      if (unit.dimension == detail::dimension_of(quantity)) consider(std::string(known) + '_' + std::string(unit.name));
+      if (unit.dimension == detail::dimension_of(quantity)) names.push_back(std::string(known) + '_' + std::string(unit.name));
   }
-  return nearest;
+  return std::string(text::nearest_name(whole, names).name);
 }
 
 /// Assignment of quantities to columns.

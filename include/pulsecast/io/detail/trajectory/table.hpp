@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/detail/trajectory/columns.hpp>
@@ -90,12 +91,6 @@ class TrajectoryReader {
     std::size_t line = 0;
   };
 
-  /// First line with an oddity, and number of such lines.
-  struct Oddity {
-    std::size_t first = 0, count = 0;
-    void at(std::size_t line) { first = count++ == 0 ? line : first; }
-  };
-
   /// Reads `#HEADER: "t", "roll"`, the column names, and `#TIME_COLUMN: 0`, the column of the time.
   void comment(std::string_view text) {
     if (text.starts_with("#HEADER:")) {
@@ -108,11 +103,10 @@ class TrajectoryReader {
         text.remove_prefix(std::min(end + 1, text.size()));
       }
     } else if (text.starts_with("#TIME_COLUMN:")) {
-      text.remove_prefix(13);
-      text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
-      const std::optional<double> number = TextTable::number_in(text);
+      text = text::trimmed(text.substr(13));
+      const std::optional<double> number = text::finite_number_in(text);
       if (!number || *number < 0 || *number > 1000 || *number != std::floor(*number))
-        table_.fail_here(TextTable::quoted(text) + " is no place of a column: expected a whole number from 0");
+        table_.fail_here(text::quoted(text) + " is no place of a column: expected a whole number from 0");
       time_place_ = static_cast<std::size_t>(*number);
     }
   }
@@ -121,13 +115,13 @@ class TrajectoryReader {
   [[nodiscard]] bool has_names_only() {
     const std::vector<std::string_view>& cells = table_.cells();
     return std::none_of(cells.begin(), cells.end(), [](std::string_view cell) {
-      return cell.empty() || cell.find_first_of("0123456789+-.") == 0 || TextTable::number_in(cell);
+      return cell.empty() || cell.find_first_of("0123456789+-.") == 0 || text::finite_number_in(cell);
     });
   }
 
   void take_names() {
     const std::vector<std::string_view>& cells = table_.cells();
-    if (TextTable::number_in(cells.front()))
+    if (text::finite_number_in(cells.front()))
       table_.fail_here("has numbers: expected the names of the columns, as in time_s,x_m,y_m,z_m,roll_deg,pitch_deg,heading_deg");
     names_.assign(cells.begin(), cells.end());
     understand();
@@ -153,7 +147,7 @@ class TrajectoryReader {
     columns_.emplace(names_, format_.left_out, format_.angle_unit);
     if (columns_->problem().empty()) return;
     if (!columns_->culprit()) table_.fail_here(columns_->problem());
-    table_.fail_here(*columns_->culprit(), TextTable::quoted(names_[*columns_->culprit()]) + " " + columns_->problem());
+    table_.fail_here(*columns_->culprit(), text::quoted(names_[*columns_->culprit()]) + " " + columns_->problem());
   }
 
   /// True if extra columns are allowed: the file or the format tells which ones those are.
@@ -167,7 +161,7 @@ class TrajectoryReader {
     for (const std::string& name : names_) {
       if (trajectory_column(name, format_.angle_unit) || is_left_out(name)) continue;
       format_.left_out.push_back(name);
-      unknown += (unknown.empty() ? "" : ", ") + TextTable::quoted(name);
+      unknown += (unknown.empty() ? "" : ", ") + text::quoted(name);
     }
     if (!unknown.empty())
       result_.warnings.push_back(table_.path() + ": columns of names that are not known are left out: " + unknown.substr(0, 1000));
@@ -181,9 +175,9 @@ class TrajectoryReader {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const std::optional<TrajectoryColumn>& column = columns_->all()[i];
       if (!column) continue;
-      const std::optional<double> number = TextTable::number_in(cells[i]);
+      const std::optional<double> number = text::finite_number_in(cells[i]);
       if (!number || std::fabs(*number / column->per_si) > max_in_trajectory)
-        table_.fail_here(i, TextTable::quoted(cells[i]) + " is no " + names_[i] +
+        table_.fail_here(i, text::quoted(cells[i]) + " is no " + names_[i] +
                                 ": expected a finite number, with a decimal point, within 1e12 s, m or rad");
       values[column->quantity] = *number / column->per_si;
     }

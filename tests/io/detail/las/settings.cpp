@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/io/las_settings.hpp>
+#include <pulsecast/io/detail/las/settings.hpp>
 
 #include <doctest/doctest.h>
 

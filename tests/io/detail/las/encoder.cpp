@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/io/las_encoder.hpp>
+#include <pulsecast/io/detail/las/encoder.hpp>
 
 #include <cmath>
 #include <cstring>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/io/las_packets.hpp>
+#include <pulsecast/io/detail/las/packets.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -19,8 +19,8 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/detail/las/layout.hpp>
-#include <pulsecast/io/las_packets.hpp>
-#include <pulsecast/io/las_settings.hpp>
+#include <pulsecast/io/detail/las/packets.hpp>
+#include <pulsecast/io/detail/las/settings.hpp>
 
 namespace pulsecast::io {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/io/digest.hpp>
+#include <pulsecast/io/detail/digest.hpp>
 
 #include <filesystem>
 #include <fstream>
