@@ -33,7 +33,11 @@ std::string points_of(const TemporaryFolder& folder, const std::vector<Shot>& sh
 TEST_CASE("a point is a line of eleven columns") {
   const TemporaryFolder folder;
   Shot shot;
-  shot.index = 41, shot.tick = {7, 0.25}, shot.origin = {100, 200, 50}, shot.direction = {0, 0, -1}, shot.echoes = 2;
+  shot.index = 41;
+  shot.tick = {7, 0.25};
+  shot.origin = {100, 200, 50};
+  shot.direction = {0, 0, -1};
+  shot.echoes = 2;
   const Echo first{
       .range = 10.00016, .amplitude = 2.5e-9, .reflectance = 0.5, .width = 1.25e-9, .object = 12, .classification = 5, .number = 1};
   const Echo second{.range = 50, .amplitude = 1e-10, .width = 0, .object = 3, .classification = 2, .number = 2};
@@ -56,7 +60,10 @@ TEST_CASE("whatever is written reads back to the last decimal, in every locale")
   std::vector<Echo> echoes;
   for (std::uint64_t i = 0; i < 500; ++i) {
     Shot shot;
-    shot.index = i * 1'000'000'007, shot.tick = Tick::of(i, 3e5), shot.origin = random.point(6e6), shot.direction = random.unit();
+    shot.index = i * 1'000'000'007;
+    shot.tick = Tick::of(i, 3e5);
+    shot.origin = random.point(6e6);
+    shot.direction = random.unit();
     shot.first_echo = static_cast<std::uint32_t>(echoes.size());
     shot.echoes = static_cast<std::uint32_t>(random.whole(5));
     for (std::uint8_t n = 1; n <= shot.echoes; ++n) {
@@ -95,7 +102,8 @@ TEST_CASE("whatever is written reads back to the last decimal, in every locale")
 TEST_CASE("a point without a place is an error, and no file is left") {
   const TemporaryFolder folder;
   Shot shot;
-  shot.direction = {0, 0, 1}, shot.echoes = 1;
+  shot.direction = {0, 0, 1};
+  shot.echoes = 1;
   for (const double range : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     const std::vector<Echo> echoes{{.range = range}};
     const std::vector<Shot> shots{shot};
@@ -122,7 +130,11 @@ std::string pulses_of(const std::vector<Shot>& shots, PulseTextSettings settings
 
 TEST_CASE("a pulse is a line of ten columns, nine of which are HELIOS++'s") {
   Shot shot;
-  shot.index = 41, shot.tick = {7, 0.25}, shot.origin = {100, 200.00004, -50}, shot.direction = {0.6, 0, -0.8}, shot.channel = 3;
+  shot.index = 41;
+  shot.tick = {7, 0.25};
+  shot.origin = {100, 200.00004, -50};
+  shot.direction = {0.6, 0, -0.8};
+  shot.channel = 3;
   shot.fate = Fate::returned;
   CHECK(pulses_of({shot}) == "100.0000 200.0000 -50.0000 0.600000000 0.000000000 -0.800000000 7250000000.0000 41 3 0\n");
   CHECK(pulses_of({shot}, {.start_time = 4e8}) ==
@@ -132,7 +144,10 @@ TEST_CASE("a pulse is a line of ten columns, nine of which are HELIOS++'s") {
 TEST_CASE("pulses are written whatever became of them, and their fates have the numbers that are documented") {
   const std::vector<Fate> fates{Fate::returned, Fate::missed, Fate::out_of_range, Fate::below_threshold, Fate::absorbed};
   std::vector<Shot> shots(fates.size());
-  for (std::size_t i = 0; i < fates.size(); ++i) shots[i].index = i, shots[i].fate = fates[i];
+  for (std::size_t i = 0; i < fates.size(); ++i) {
+    shots[i].index = i;
+    shots[i].fate = fates[i];
+  }
   std::string expected, zeros = "0.0000 0.0000 0.0000 0.000000000 0.000000000 0.000000000 0.0000 ";
   for (const char* end : {"0 0 0\n", "1 0 2\n", "2 0 3\n", "3 0 4\n", "4 0 5\n"}) expected += zeros + end;
   CHECK(pulses_of(shots) == expected);
@@ -154,15 +169,21 @@ TEST_CASE("no pulses make an empty file; one without a place or a direction is a
 
 SubrayHit hit(double range, double power, const Vec3& point) {
   SubrayHit hit;
-  hit.range = range, hit.power = power, hit.point = point;
-  hit.cos_incidence = 0.5, hit.backscatter = 0.25, hit.object = 12, hit.classification = 5;
+  hit.range = range;
+  hit.power = power;
+  hit.point = point;
+  hit.cos_incidence = 0.5;
+  hit.backscatter = 0.25;
+  hit.object = 12;
+  hit.classification = 5;
   return hit;
 }
 
 TEST_CASE("a hit is a line of eleven columns; subrays that met nothing have none, and keep their numbers") {
   const TemporaryFolder folder;
   std::vector<Shot> shots(2);
-  shots[0].index = 40, shots[1].index = 41;
+  shots[0].index = 40;
+  shots[1].index = 41;
   const std::vector<SubrayHit> subrays{hit(10, 2.5e-9, {1, 2, 3}), SubrayHit{}, SubrayHit{}, hit(20.00016, 0, {-1, 0, 5e6})};
   SubrayTextWriter writer(folder / "subrays.txt");
   writer(EchoBatch{shots, {}, {}, 0, subrays});
@@ -196,8 +217,13 @@ std::string waveforms_of(const EchoBatch& batch, WaveformTextSettings settings =
 
 TEST_CASE("a waveform is a line of ten columns and its samples; times are one-way, in nanoseconds") {  // samples have a float's 7 digits
   Shot shot;
-  shot.index = 41, shot.tick = {7, 0.25}, shot.origin = {100, 200, 50}, shot.direction = {0, 0, -1};
-  shot.waveform_start = 200e-9, shot.first_sample = 1, shot.samples = 3;
+  shot.index = 41;
+  shot.tick = {7, 0.25};
+  shot.origin = {100, 200, 50};
+  shot.direction = {0, 0, -1};
+  shot.waveform_start = 200e-9;
+  shot.first_sample = 1;
+  shot.samples = 3;
   const std::vector<Shot> shots{Shot{}, shot};
   const std::vector<float> samples{99, 0.5e-9F, 0, -0.25e-9F, 99};
   CHECK(waveforms_of({shots, {}, samples, 2e-9}, {.start_time = 1000}) ==
@@ -212,8 +238,12 @@ TEST_CASE("each sample is found at the range that its column says, and keeps its
   std::vector<float> samples;
   for (PulseIndex i = 0; i < 100; ++i) {
     Shot shot;
-    shot.index = i, shot.origin = random.point(1e6), shot.direction = random.unit(), shot.waveform_start = random.uniform(1e-9, 1e-4);
-    shot.first_sample = samples.size(), shot.samples = static_cast<std::uint32_t>(2 + random.whole(200));
+    shot.index = i;
+    shot.origin = random.point(1e6);
+    shot.direction = random.unit();
+    shot.waveform_start = random.uniform(1e-9, 1e-4);
+    shot.first_sample = samples.size();
+    shot.samples = static_cast<std::uint32_t>(2 + random.whole(200));
     for (std::uint32_t k = 0; k < shot.samples; ++k) samples.push_back(static_cast<float>(random.log_uniform(1e-12, 1e-3)));
     shots.push_back(shot);
   }

@@ -139,11 +139,13 @@ class SpectrumReader {
 
   void header(std::string_view text) {
     const std::string line = text::lower(text);
-    titles_ = line, titles_line_ = table_.line();
+    titles_ = line;
+    titles_line_ = table_.line();
     const auto is_key = [&](std::string_view key) { return line.starts_with(key); };
     if (is_key("x units:")) unit_ = wavelength_unit_in(line);
     if (!is_key("y units:")) return;
-    scale_ = reflectance_scale_in(line), scale_line_ = table_.line();
+    scale_ = reflectance_scale_in(line);
+    scale_line_ = table_.line();
     if (line.find("reflect") == line.npos) table_.fail_here(text::quoted(text) + ": expected a spectrum of reflectance");
   }
 

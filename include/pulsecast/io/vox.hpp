@@ -130,7 +130,8 @@ class VoxelFileReader {
       table_.fail_here("'res' is " + text::quoted(value) + ": expected the edge of a voxel [m], above 0");
     if (given.size() == 3 && (given[1] != given[0] || given[2] != given[0]))
       table_.fail_here("'res' is " + text::quoted(value) + ": expected voxels that are cubes");
-    edge_ = given[0], edge_line_ = table_.line();
+    edge_ = given[0];
+    edge_line_ = table_.line();
   }
 
   [[nodiscard]] Vec3 vector(const std::string& key, std::string_view value) const {
