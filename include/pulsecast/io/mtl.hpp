@@ -78,8 +78,8 @@ class StatementFile {
       rest_.assign(text, end);
       text.resize(end);
     }
-    const bool is_first = !std::exchange(begun_, true);
-    return is_first ? std::string(text::without_byte_order_mark(text)) : text;
+    if (!std::exchange(begun_, true)) text.erase(0, text.size() - text::without_byte_order_mark(text).size());
+    return text;
   }
 
   [[nodiscard]] std::string all() { return file_.take_rest(); }
