@@ -62,6 +62,7 @@ class SampledSum {
   [[nodiscard]] double sample() const noexcept { return sample_; }            ///< number of the next sample
   [[nodiscard]] double time() const noexcept { return sample_ * interval_; }  ///< time of the next sample [s]
   [[nodiscard]] std::size_t next() const noexcept { return next_; }           ///< index of the first reflection still to arrive
+  /// True if the edges of all reflections have passed.
   [[nodiscard]] bool all_in() const noexcept { return next_ == reflections_.size(); }
   [[nodiscard]] double last_peak() const noexcept {
     return arrival(reflections_[next_ - 1]);

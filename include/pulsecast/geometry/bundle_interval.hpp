@@ -45,8 +45,9 @@ template <std::floating_point Real>
 /// Box of type Real, relative to the centre of an accelerator; rounded outwards, so never smaller than the original.
 template <std::floating_point Real>
 struct BoundingBox {
-  Real min[3], max[3];  ///< [m]
+  Real min[3], max[3];  ///< lower and upper walls by axis [m]
 
+  /// Box around `box` [m], relative to `centre` [m].
   static BoundingBox around(const Box& box, const Vec3& centre) noexcept {
     constexpr double growing = 1 + 2 * std::numeric_limits<double>::epsilon(), shrinking = 2 - growing;
     BoundingBox b;
@@ -63,7 +64,7 @@ struct BoundingBox {
 /// Eight boxes as structure of arrays. A free slot holds an inverted box, which nothing is inside of.
 template <std::floating_point Real>
 struct Box8 {
-  alignas(8 * sizeof(Real)) Real min[3][8], max[3][8];  ///< [m]
+  alignas(8 * sizeof(Real)) Real min[3][8], max[3][8];  ///< lower and upper walls by axis [m]
 
   Box8() noexcept {
     constexpr Real most = std::numeric_limits<Real>::max();
@@ -71,6 +72,7 @@ struct Box8 {
       for (std::size_t place = 0; place < 8; ++place) min[k][place] = most, max[k][place] = -most;
   }
 
+  /// Sets the box in a slot.
   void put(std::size_t place, const BoundingBox<Real>& box) noexcept {
     for (std::size_t k = 0; k < 3; ++k) min[k][place] = box.min[k], max[k][place] = box.max[k];
   }
@@ -99,6 +101,7 @@ struct QuantizedBox8 {
     count = 0;
   }
 
+  /// Appends a box, in the slot `count`.
   void add(const BoundingBox<Real>& box) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       const double start = static_cast<double>(origin[k]), per_step = 1 / static_cast<double>(step(k));
@@ -129,9 +132,10 @@ struct QuantizedBox8 {
 template <std::floating_point Real>
 class BundleInterval {
  public:
+  /// Interval of range.
   struct Span {
-    Real entry, exit;
-    [[nodiscard]] bool empty() const noexcept { return !(entry <= exit); }
+    Real entry, exit;                                                       ///< ends of the interval [m]
+    [[nodiscard]] bool empty() const noexcept { return !(entry <= exit); }  ///< true if no range is inside
   };
 
   /// `bounds` of the accelerator; its boxes are relative to `centre`.
@@ -180,6 +184,7 @@ class BundleInterval {
               (simd::load<simd::Packet<Real>>(boxes.max[k][first]) - axis.origin_low) * axis.per_max};
     });
   }
+  /// Bit mask and entry ranges, as above.
   [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
     // two roundings of a wall's distance from the origin, as the steps of its grid are powers of two
     Real to_low[3], to_high[3], steps[3];

@@ -19,7 +19,7 @@ namespace pulsecast {
 
 /// Triangle with corners a, b, c [m]; both sides count.
 struct Triangle {
-  Vec3 a{}, b{}, c{};
+  Vec3 a{}, b{}, c{};  ///< corners [m]
 
   [[nodiscard]] Box bounds() const noexcept {
     Box box;
@@ -33,12 +33,13 @@ struct Triangle {
 
 /// Triangles tested together, one a lane; idle lanes repeat the last one.
 struct TrianglePacket {
+  /// One corner of each triangle.
   struct Corner {
-    simd::Doubles x, y, z;  ///< [m]
+    simd::Doubles x, y, z;  ///< coordinates [m]
   };
-  Corner a, b, c;
-  std::array<PrimitiveIndex, simd::lane_count> primitives;
-  std::size_t size;  ///< lanes in use, at least one
+  Corner a, b, c;                                           ///< corners of the triangles
+  std::array<PrimitiveIndex, simd::lane_count> primitives;  ///< number of the triangle in each lane
+  std::size_t size;                                         ///< lanes in use, at least one
 
   /// `triangle_of(n)` returns the triangle of the n-th of these primitives.
   template <class TriangleOf>

@@ -62,9 +62,9 @@ class GroundVehicleDrive {
  public:
   /// Piece of the path with the footings at equal distances along it, both ends included.
   struct Section {
-    PathPiece path{};
-    double start = 0;  ///< length driven before [m]
-    std::vector<Footing> footings{};
+    PathPiece path{};                 ///< piece of the path, on the map
+    double start = 0;                 ///< length driven before [m]
+    std::vector<Footing> footings{};  ///< footings from its start to its end
   };
 
   /// `driven` is the length driven over time [m]: see `plan_ground_vehicle`.
@@ -88,6 +88,7 @@ class GroundVehicleDrive {
   }
 
   [[nodiscard]] Tick duration() const noexcept { return duration_; }
+  /// Sections in order of time.
   [[nodiscard]] const std::vector<Section>& sections() const noexcept { return sections_; }
   [[nodiscard]] const PiecewiseCubic<double>& driven() const noexcept { return driven_; }  ///< length driven, forwards plus backwards [m]
 

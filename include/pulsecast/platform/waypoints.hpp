@@ -51,6 +51,7 @@ class Waypoints {
   /// Time from the start of the leg to the last waypoint.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(std::max(0.0, points_.back().time)); }
 
+  /// Waypoints, as given, with unit rotations.
   [[nodiscard]] const std::vector<TimedPose>& points() const noexcept { return points_; }
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick tick) const noexcept {

@@ -47,6 +47,7 @@ class Channels {
     return p;
   }
 
+  /// Channels in the order of firing.
   [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }
 
  private:

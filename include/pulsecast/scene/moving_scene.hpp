@@ -24,6 +24,7 @@ namespace pulsecast {
 template <Geometry... Shapes>
 class MovingScene {
  public:
+  /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
   /// `time` should span the survey and little more: a longer time has longer windows. Hits at other times are the same, but all moving
@@ -38,6 +39,7 @@ class MovingScene {
 
   /// Bounds of all parts over the time [m].
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+  /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return scene_.parts(); }
 
   /// Memory held; shared data counts once [byte].

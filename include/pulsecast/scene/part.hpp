@@ -37,8 +37,8 @@ namespace detail {
 /// Placement of a part in the world: rotation, uniform scale and translation, in this order.
 struct Similarity {
   Rotation rotation = no_rotation;  ///< unit quaternion, within a thousandth
-  double scale = 1;
-  Vec3 translation{};  ///< [m]
+  double scale = 1;                 ///< scale factor, from 1e-30 to 1e30
+  Vec3 translation{};               ///< origin of the part's frame, in the world [m]
 
   void validate() const {
     require_rotation("Similarity::rotation", rotation);
@@ -47,8 +47,10 @@ struct Similarity {
   }
   void normalize() noexcept { rotation = unit(rotation); }
 
+  /// Maps a point of the part's frame [m] to the world [m].
   [[nodiscard]] Vec3 point(const Vec3& p) const noexcept { return rotation * (scale * p) + translation; }
 
+  /// True if nothing is rotated, scaled or shifted.
   [[nodiscard]] bool identity() const noexcept { return rotation == no_rotation && scale == 1 && translation == Vec3{}; }
 
   /// Box around a placed box [m].
@@ -94,12 +96,12 @@ using MaterialTable = std::shared_ptr<const std::vector<Material>>;
 /// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
-  std::variant<std::shared_ptr<const Shapes>...> geometry;
-  MaterialTable materials = material_table();
-  Similarity placement{};
-  ObjectId object = 0;                         ///< object id of its points
-  std::string name{};                          ///< user's name for it
-  std::shared_ptr<const PartMotion> motion{};  ///< motion on top of its placement; empty if static; for a `MovingScene`
+  std::variant<std::shared_ptr<const Shapes>...> geometry;  ///< shape; must not be null
+  MaterialTable materials = material_table();               ///< materials by the shape's material index
+  Similarity placement{};                                   ///< placement in the world
+  ObjectId object = 0;                                      ///< object id of its points
+  std::string name{};                                       ///< user's name for it
+  std::shared_ptr<const PartMotion> motion{};               ///< motion on top of its placement; empty if static; for a `MovingScene`
 };
 
 }  // namespace pulsecast

@@ -33,12 +33,14 @@ inline constexpr bool flat = requires {
 template <Geometry... Shapes>
 class Scene {
  public:
+  /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
   /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a placement out of range
   explicit Scene(std::vector<Part> parts) : Scene(std::move(parts), Motions::refused) {}
 
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
+  /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
 
   /// Memory held; shared data counts once [byte].

@@ -16,8 +16,8 @@ namespace pulsecast {
 
 /// Reflectance at one wavelength.
 struct SpectralSample {
-  double wavelength = 0;   ///< [m]
-  double reflectance = 0;  ///< a fraction, in [0, 1]
+  double wavelength = 0;   ///< wavelength [m]
+  double reflectance = 0;  ///< reflectance, in [0, 1]
 };
 
 /// Reflectance over wavelength: linear between the samples, constant beyond the first and last. Copies share the samples.
@@ -46,10 +46,11 @@ class Spectrum {
   }
   [[nodiscard]] bool is_consistent() const noexcept { return !samples_.empty(); }
 
+  /// Samples in ascending order of wavelength.
   [[nodiscard]] std::span<const SpectralSample> samples() const noexcept { return {samples_.data(), samples_.size()}; }
   [[nodiscard]] double shortest() const noexcept { return samples_[0].wavelength; }                   ///< [m]
   [[nodiscard]] double longest() const noexcept { return samples_[samples_.size() - 1].wavelength; }  ///< [m]
-  [[nodiscard]] std::size_t memory() const noexcept { return samples_.memory(); }                     ///< [byte]
+  [[nodiscard]] std::size_t memory() const noexcept { return samples_.memory(); }                     ///< memory of the samples [byte]
 
   /// Reflectance at a wavelength [m], a fraction.
   [[nodiscard]] double reflectance(double wavelength) const noexcept {

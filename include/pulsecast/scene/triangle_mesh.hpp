@@ -25,7 +25,7 @@ namespace pulsecast {
 
 /// Vertices and triangles of a mesh.
 struct MeshData {
-  std::vector<Vec3> vertices{};                           ///< [m]
+  std::vector<Vec3> vertices{};                           ///< positions [m]
   std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertex indices of the corners
   std::vector<std::uint32_t> materials{};                 ///< one per triangle: index into the part's table; empty if all are 0
 
@@ -74,7 +74,7 @@ struct MeshData {
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
-  static constexpr bool flat = true;
+  static constexpr bool flat = true;  ///< as the concept Geometry describes
 
   /// `threads` of the build; 0 for the hardware's. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
   explicit TriangleMesh(MeshData data, unsigned threads = 0) : index_(built(data, threads)) {
@@ -111,6 +111,7 @@ class TriangleMesh {
   [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
   /// Triangle i [m].
   [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept { return triangle_at(places_[i]); }
+  /// Accelerator of the triangles.
   [[nodiscard]] const Index& index() const noexcept { return index_; }
   [[nodiscard]] std::size_t material_count() const noexcept { return material_count_; }
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
