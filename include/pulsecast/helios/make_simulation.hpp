@@ -38,8 +38,8 @@ namespace pulsecast::helios {
 
 /// Parts of a scene and the warnings from building it.
 struct BuiltParts {
-  std::vector<SurveyPart> parts{};
-  std::vector<std::string> warnings{};
+  std::vector<SurveyPart> parts{};      ///< parts of the scene
+  std::vector<std::string> warnings{};  ///< warnings of the construction
 };
 
 /// Gives the parts of the scene in a repetition: the result of `build`, or an equal earlier one.

@@ -57,6 +57,7 @@ struct SceneBuildOptions {
 /// little.
 class SceneBuilder {
  public:
+  /// Keeps the settings; `parts` reads the files. @throws SettingError for settings out of range
   SceneBuilder(SceneSettings settings, SceneBuildOptions options)
       : settings_(validated(std::move(settings))), options_(validated(std::move(options))) {}
 
@@ -97,6 +98,7 @@ class SceneBuilder {
     return all;
   }
 
+  /// Warnings so far, each once.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:

@@ -24,19 +24,20 @@ namespace pulsecast::helios {
 
 /// Runnable survey, with data of its legs.
 struct CompiledSurvey {
+  /// Leg of the survey.
   struct Leg {
-    std::size_t number = 0;  ///< index in the document, from 0
-    bool active = true;
-    std::optional<std::string> strip{};
-    PulseIndex first = 0, end = 0;  ///< range of its slots in the survey
-    Tick start{}, duration{};
-    double trajectory_interval = 0;  ///< interval of trajectory records; 0: none [s]
-    double pulse_rate = 0;           ///< [Hz]
+    std::size_t number = 0;              ///< index in the document, from 0
+    bool active = true;                  ///< true if pulses are emitted
+    std::optional<std::string> strip{};  ///< name of its strip, if any
+    PulseIndex first = 0, end = 0;       ///< range of its slots in the survey
+    Tick start{}, duration{};            ///< start since the survey's start; duration
+    double trajectory_interval = 0;      ///< interval of trajectory records; 0: none [s]
+    double pulse_rate = 0;               ///< pulse rate [Hz]
   };
-  Legs<SurveyLeg> source;
-  std::vector<Leg> legs;
+  Legs<SurveyLeg> source;               ///< source of all pulses
+  std::vector<Leg> legs;                ///< legs, in order of time
   std::optional<double> clock_start{};  ///< start time of the survey, if a trajectory gives it [s]
-  std::vector<std::string> warnings{};
+  std::vector<std::string> warnings{};  ///< warnings of the compilation
 };
 
 namespace detail {

@@ -34,7 +34,9 @@ class Digest {
 
   /// Adds bytes; two adjoining runs count as one.
   void add(std::span<const std::byte> bytes) { XXH3_128bits_update(state_.get(), bytes.data(), bytes.size()); }
+  /// Adds a number, as its eight bytes.
   void add(std::uint64_t number) { add(std::as_bytes(std::span(&number, 1))); }
+  /// Adds a fingerprint.
   void add(const Fingerprint& other) { add(other.low), add(other.high); }
   /// Adds a text with its length, so that the boundary between texts matters.
   void add(std::string_view text) { add(std::uint64_t{text.size()}), add(std::as_bytes(std::span(text))); }

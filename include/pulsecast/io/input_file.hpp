@@ -38,6 +38,7 @@ class InputFile {
     seek(0);
   }
 
+  /// Path, for messages.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }          ///< size of the file [byte]
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }  ///< offset of the next byte
@@ -79,8 +80,11 @@ class InputFile {
     return text;
   }
 
+  /// Throws a `FileError` about the whole file.
   [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
+  /// Throws a `FileError` about the line taken last.
   [[noreturn]] void fail_at_line(const std::string& problem) const { throw FileError(path_, "line " + std::to_string(line_), problem); }
+  /// Throws a `FileError` about a byte, from 0.
   [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const {
     throw FileError(path_, "byte " + std::to_string(byte), problem);
   }

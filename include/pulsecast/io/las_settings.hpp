@@ -33,6 +33,7 @@ enum class GpsTime : std::uint16_t {
 
 /// Settings of a LAS or LAZ file.
 struct LasSettings {
+  /// Date of creation.
   using Date = std::chrono::year_month_day;
 
   LasFormat format = LasFormat::las_1_4;               ///< version and point format

@@ -157,6 +157,8 @@ class LazRecords {
 /// then, points wait in `NAME.points.part`.
 class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
  public:
+  /// @throws SettingError for settings out of range, or that LAZ cannot meet
+  /// @throws FileError if the file cannot be made
   explicit LazWriter(std::filesystem::path path, LasSettings settings = {}, unsigned threads = 0)
       : LasFileWriter(std::move(path), compressible(std::move(settings)), detail::LazRecords(threads)) {}
 

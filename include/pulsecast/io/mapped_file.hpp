@@ -22,6 +22,7 @@ namespace pulsecast::io {
 /// to. Throws a `FileError` if it cannot be mapped, or is a pipe (without waiting for it).
 class MappedFile {
  public:
+  /// Maps a file.
   explicit MappedFile(const std::filesystem::path& path) {
     const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
     const auto system_error = [] { return std::generic_category().message(errno); };
@@ -39,6 +40,7 @@ class MappedFile {
   MappedFile& operator=(const MappedFile&) = delete;
   ~MappedFile() { ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size()); }
 
+  /// Content of the file.
   [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }
 
  private:

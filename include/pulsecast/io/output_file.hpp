@@ -63,6 +63,7 @@ class OutputEncoder {
 /// Limits: a power cut may lose the name until the folder itself is written to the disk.
 class OutputFile {
  public:
+  /// Opens and locks the temporary file of `path`; with an `encoder`, bytes pass through it.
   explicit OutputFile(std::filesystem::path path, std::unique_ptr<OutputEncoder> encoder = nullptr)
       : path_(std::move(path)), encoder_(std::move(encoder)) {
     std::error_code ignored;
@@ -84,6 +85,7 @@ class OutputFile {
   /// Piece of a file that others assemble: bytes are appended to `piece`, and `commit()` ends it. Its name is only for messages.
   OutputFile(std::filesystem::path path, std::vector<std::byte>& piece) : path_(std::move(path)), piece_(&piece) {}
 
+  /// Appends bytes.
   void write(std::span<const std::byte> bytes) {
     if (piece_ != nullptr) {
       position_ += bytes.size();
@@ -99,16 +101,17 @@ class OutputFile {
     position_ += bytes.size();
   }
 
+  /// Appends text.
   void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
 
-  /// Replaces bytes written before; writing then continues at the end.
+  /// Replaces bytes written before, from `position` [byte] on; writing then continues at the end.
   void overwrite(std::uint64_t position, std::span<const std::byte> bytes) {
     go_back(position, bytes.size());
     put(bytes);
     seek(0, SEEK_END);
   }
 
-  /// Reads bytes written before; writing then continues at the end.
+  /// Reads bytes written before, from `position` [byte] on; writing then continues at the end.
   void read(std::uint64_t position, std::span<std::byte> bytes) {
     go_back(position, bytes.size());
     errno = 0;

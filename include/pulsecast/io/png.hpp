@@ -275,6 +275,7 @@ class Canvas {
 /// echoes and the settings only. Points that are not finite are skipped; without points it is empty.
 class ImageWriter {
  public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit ImageWriter(std::filesystem::path path, const ImageSettings& settings = {})
       : settings_(validated(settings)), file_(std::move(path)) {}
 

@@ -31,8 +31,10 @@ struct PulseTextSettings {
 /// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class PulseTextWriter {
  public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit PulseTextWriter(std::filesystem::path path, const PulseTextSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
+  /// Writes to an open file.
   explicit PulseTextWriter(OutputFile file, const PulseTextSettings& settings = {})
       : settings_(validated(settings)), text_(std::move(file)) {}
 

@@ -102,12 +102,13 @@ template <CacheableScene S, class Build, class... Further>
 [[nodiscard]] CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build,
                                           const Further&... further);
 
-/// Lists the members of materials and parts; a new member in either is a compile error.
+/// Lists the members of a material. A new member of a material or part is a compile error here.
 template <class Archive>
 void list_members(Archive& a, Material& m) {
   auto& [name, reflectance, scattering, specular_share, specular_exponent, classification, ground, spectrum] = m;
   a(name, reflectance, scattering, specular_share, specular_exponent, classification, ground, spectrum);
 }
+/// Lists the members of a part.
 template <class Archive, class... Shapes>
 void list_members(Archive& a, Part<Shapes...>& part) {
   auto& [geometry, materials, placement, object, name, motion] = part;

@@ -21,7 +21,9 @@ namespace pulsecast::io {
 /// Subrays without a hit have no line. There is no header line. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class SubrayTextWriter {
  public:
+  /// Opens the file. @throws FileError
   explicit SubrayTextWriter(std::filesystem::path path) : text_(OutputFile(std::move(path))) {}
+  /// Writes to an open file.
   explicit SubrayTextWriter(OutputFile file) : text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {

@@ -30,8 +30,10 @@ struct WaveformTextSettings {
 /// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class WaveformTextWriter {
  public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit WaveformTextWriter(std::filesystem::path path, const WaveformTextSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
+  /// Writes to an open file.
   explicit WaveformTextWriter(OutputFile file, const WaveformTextSettings& settings = {})
       : settings_(validated(settings)), text_(std::move(file)) {}
 

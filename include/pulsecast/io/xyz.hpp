@@ -28,8 +28,10 @@ struct XyzSettings {
 /// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class XyzWriter {
  public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit XyzWriter(std::filesystem::path path, const XyzSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
+  /// Writes to an open file.
   explicit XyzWriter(OutputFile file, const XyzSettings& settings = {}) : settings_(validated(settings)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {

@@ -88,6 +88,7 @@ class PageServer {
     sample_(batch);
   }
 
+  /// Sets the progress shown.
   void tell(const Progress& progress) {
     const std::lock_guard lock(mutex_);
     progress_ = progress;
