@@ -75,8 +75,8 @@ class EdgeAgeMoments {
 /// Peak detector on the sum of the pulse shapes of all reflections, without sampling: times and heights are exact. Between two leading
 /// edges the sum is a quadratic polynomial times one exponential, so its extrema are roots of a quadratic. One pass over the reflections
 /// finds them all. A `SinglePeakGroup` is evaluated without sorting.
-/// On the front of docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. `FullWaveform` models the digitiser's
-/// bins and the receiver's noise.
+/// Pareto-optimal in docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. `FullWaveform` models the
+/// digitiser's bins and the receiver's noise.
 ///
 /// `WaveformSettings::sample_interval` is that of the record, and of the grid on which a fitted width samples the sum; moments are exact.
 template <EchoWidth Width = NoWidth>

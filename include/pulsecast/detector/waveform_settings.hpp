@@ -20,13 +20,16 @@ enum class EchoTiming : std::uint8_t {
 
 /// Settings of the waveform detectors. All times are two-way.
 ///
-/// A peak of the waveform is an echo if it passes these tests in order: it reaches the threshold; it is at least `separation` from the peak
-/// before it, else the two merge; it is the highest within the window; it is later than the dead time of the echo before it; it is among
-/// the first `returns_max`.
+/// A peak of the waveform is an echo if it passes these tests, in this order:
+/// - it reaches the threshold;
+/// - it is at least `separation` from the peak before it, else the two merge;
+/// - it is the highest within the window;
+/// - it is later than the dead time of the echo before it;
+/// - it is among the first `returns_max`.
 ///
-/// The default bin is on the front of docs/tradeoff.md to within a few percent. At 1/16 of a pulse, bins cost hardly more than wider ones,
-/// which lose close echoes; narrower bins gain little. Widths cost more than any other setting, except for moments of `AnalyticWaveform`,
-/// so there are none by default.
+/// The default bin is Pareto-optimal in docs/tradeoff.md to within a few percent. At 1/16 of a pulse, bins cost hardly more than wider
+/// ones, which lose close echoes; narrower bins gain little. Widths cost more than any other setting, except for moments of
+/// `AnalyticWaveform`, so there are none by default.
 struct WaveformSettings {
   double sample_interval = 0.25e-9;        ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
   double threshold = 1e-12;                ///< least power of an echo's peak [W]
@@ -60,8 +63,8 @@ struct WaveformSettings {
                        "from " + detail::to_text(pulse_length / most) + " to " + detail::to_text(pulse_length) + " for such a pulse");
   }
 
-  /// Least separation of two echoes [s]: the greater of `separation` and the shorter of window and pulse length, since a lower peak cannot
-  /// be told from the flank of a higher one. Closer peaks become one echo between their outer valleys.
+  /// Least separation of two echoes [s]: the greater of `separation` and the shorter of window and pulse length. A lower peak closer than
+  /// that is indistinguishable from the flank of a higher one. Closer peaks become one echo between their outer valleys.
   [[nodiscard]] double min_separation(double pulse_length) const noexcept { return std::fmax(separation, std::fmin(window, pulse_length)); }
 
   /// Greatest number of samples of a record.

@@ -126,8 +126,8 @@ struct QuantizedBox8 {
   static constexpr int min_exponent = -126;
 };
 
-/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic: where any ray meets a primitive in double
-/// precision, no box around that primitive is missed, and the range lies inside its span.
+/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic. If any ray meets a primitive in double precision,
+/// the bundle meets every box around that primitive, and the range is inside the box's span.
 /// NaN rays are left out; if none is left, every span is empty.
 template <std::floating_point Real>
 class BundleInterval {
@@ -313,8 +313,8 @@ class RayInterval {
     for (std::size_t k = 0; k < 3; ++k) steps[k] = boxes.step(k);
     unsigned met = 0;
     for (std::size_t first = 0; first < 8; first += simd::packet_size<Real>) {
-      // the range to a wall is a line over its number; where it lies errs by two roundings of how far the origin is, and four and a half of
-      // half the bounds
+      // The range to a wall is linear in its number. The wall's position errs by two roundings of the distance to the origin, plus four and
+      // a half of half the bounds.
       const auto ranges = [&](std::size_t k, std::size_t side) noexcept -> simd::Packet<Real> {
         const Real per = per_[side][k], start = boxes.origin[k] * per + start_[side][k];
         return simd::packet_from<Real>(boxes.walls[k][upper_[k] ^ side][first]) * (steps[k] * per) + start;

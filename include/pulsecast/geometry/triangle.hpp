@@ -82,8 +82,8 @@ struct TrianglePacket {
   };
   const Corner a = from_origin(triangles.a), b = from_origin(triangles.b), c = from_origin(triangles.c);
 
-  // planes through the origin and an edge, and the bound within which their side is in doubt: |e||s| in the 1-norm bounds each sum of
-  // products, which is at most seven roundings from the true one
+  // Planes through the origin and an edge, and the bound below which a side is in doubt. |e||s| in the 1-norm bounds each sum of products,
+  // which is at most seven roundings from the true one.
   struct Planes {
     simd::Doubles x, y, z, doubt;
   };
@@ -126,7 +126,7 @@ struct TrianglePacket {
   const Corner from_a = minus(triangles.b, triangles.a), to_a = minus(triangles.a, triangles.c);  // unaffected by the distance
   const Corner normals = cross_of(from_a, to_a);
   const simd::Doubles offsets = normals.x * a.x + normals.y * a.y + normals.z * a.z, area = square(normals);
-  const simd::Mask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // an angle of none but roundings
+  const simd::Mask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // zero angle up to rounding
   const simd::Doubles grazing = flat ? simd::Doubles{} + std::numeric_limits<double>::infinity()
                                      : 1e-12 * 1e-12 * rays.direction_length * rays.direction_length * area;
   const Corner lowest{simd::min(a.x, simd::min(b.x, c.x)), simd::min(a.y, simd::min(b.y, c.y)), simd::min(a.z, simd::min(b.z, c.z))};

@@ -231,7 +231,7 @@ class MtlReader : private StatementBuffer {
 
   [[nodiscard]] MaterialLibrary read() {
     std::istream stream(this);
-    stream.exceptions(std::ios::badbit);  // lets exceptions pass that are thrown while reading
+    stream.exceptions(std::ios::badbit);  // passes on exceptions thrown while reading
     std::map<std::string, int> ignored_numbers;
     std::vector<tinyobj::material_t> found;
     tinyobj::LoadMtl(&ignored_numbers, &found, &stream, nullptr, nullptr);
@@ -268,7 +268,7 @@ class MtlReader : private StatementBuffer {
     if (is_first) ready = "newmtl default" + exponent;
     // with textures, tinyobjloader would change the colour, depending on the order
     if (is_colour || keyword() == "Ns" || keyword().starts_with("helios_")) ready += statement();
-    // a single number stands for red, green and blue. Source: MTL specification, Wavefront 1995.
+    // a single number is the value of red, green and blue. Source: MTL specification, Wavefront 1995.
     if (is_colour && is_one) ready.append(" ").append(given[0]).append(" ").append(given[0]);
   }
 

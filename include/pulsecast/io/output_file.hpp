@@ -45,7 +45,7 @@ namespace pulsecast::io {
   return (::fstat(file, &status) == 0 && status.st_size == 0) || ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
 }
 
-/// Encoder of the bytes of a file on their way to it, as a compressor.
+/// Encoder of the bytes of a file before they are written, as a compressor.
 class OutputEncoder {
  public:
   virtual ~OutputEncoder() = default;
@@ -57,8 +57,8 @@ class OutputEncoder {
 /// program is killed, the final name keeps its former content. Destruction without `commit()` leaves nothing behind.
 /// Throws a `FileError` that names the final path at every failure; afterwards, nothing can be written or committed.
 /// With an encoder, bytes pass through it, a megabyte at a time, and cannot be read again or overwritten.
-/// The temporary file is locked: a second `OutputFile` of the same name, in any program, is refused. Where the file system has no locks,
-/// the second takes the name, and the first fails at its commit.
+/// The temporary file is locked: a second `OutputFile` of the same name, in any program, is refused. On a file system without
+/// locks, the second takes the name, and the first fails at its commit.
 /// The content is on the disk before the renaming, so that a power cut leaves no incomplete file under the final name.
 /// Limits: a power cut may lose the name until the folder itself is written to the disk.
 class OutputFile {

@@ -54,9 +54,9 @@ struct VoxelFile {
   std::vector<std::string> warnings;  ///< oddities that could still be read
 };
 
-/// Reads a voxel file of AMAPVox: text that begins with `VOXEL SPACE`, lines of `#key: value` in any order, a row of column names, and a
-/// row for each voxel. Required are the keys `min_corner` and `res` (one edge length, as voxels are cubes), and the columns i, j, k and
-/// PadBVTotal; for opaque and scaled voxels also transmittance. Left out of the grid are
+/// Reads a voxel file of AMAPVox: text that begins with `VOXEL SPACE`. Lines of `#key: value` follow in any order, then a row of column
+/// names, and a row for each voxel. Required keys are `min_corner` and `res` (one edge length, as voxels are cubes). Required columns are
+/// i, j, k and PadBVTotal; for opaque and scaled voxels also transmittance. Left out of the grid are
 /// - transmissive voxels of density 0, or, with a warning, NaN;
 /// - opaque and scaled voxels of transmittance 1 (fully transparent) or NaN (never observed);
 /// - scaled voxels of density 0, and so of size 0, or, with a warning, NaN.

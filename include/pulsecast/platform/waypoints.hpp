@@ -24,8 +24,8 @@ enum class Interpolation : std::uint8_t {
   cubic,   ///< cubic polynomials through the waypoints, with continuous velocity
 };
 
-/// Motion through timed poses. Attitudes turn at a constant rate about one axis, the shorter way, so headings may cross north. Before the
-/// first waypoint and after the last one the body rests. Planners and trajectory files end in this.
+/// Motion through timed poses. Attitudes turn at a constant rate about one axis, by the smaller angle, so headings may cross north. Before
+/// the first waypoint and after the last one the body rests. Planners and trajectory files end in this.
 ///
 /// A time that occurs more than once is a jump: before it, the body arrives at the first of these waypoints; from it on, the last counts.
 /// Cubic positions are interpolated on either side of a jump alone.
@@ -108,11 +108,11 @@ class Waypoints {
 static_assert(Trajectory<Waypoints>);
 
 /// Copies poses with level attitudes along the path: at a bend halfway between the directions in and out; at a reversal the direction in.
-/// At rest or in vertical motion the last heading is kept, or else the next one taken; without horizontal motion, north. Where a time
-/// occurs twice the body jumps: neither side looks along the jump.
+/// At rest or in vertical motion the last heading is kept, or else the next one taken; without horizontal motion, north. A repeated
+/// time is a jump: neither side looks along it.
 [[nodiscard]] inline std::vector<TimedPose> with_headings(std::vector<TimedPose> points) {
   const std::size_t n = points.size();
-  std::vector<Vec3> ahead(n, Vec3{});  // horizontal direction of the next way out of each waypoint; zero if there is none
+  std::vector<Vec3> ahead(n, Vec3{});  // next horizontal direction of motion from each waypoint; zero without one
   const auto jump_to = [&](std::size_t i) { return points[i].time == points[i - 1].time; };
   const auto way_to = [&](std::size_t i) {
     const Vec3 &from = points[i - 1].position, &to = points[i].position;

@@ -11,9 +11,9 @@
 
 namespace pulsecast {
 
-/// Pulse source of one of several types, where a single type is required: emitters of one device behind different optics,
-/// `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`, or platforms of different
-/// kinds in `Legs`.
+/// Pulse source of one of several types, for uses that require a single type. One is platforms of different kinds in `Legs`. Another is
+/// emitters of one device behind different optics:
+/// `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`.
 template <class First, class... Others>
 class AnySource {
  public:

@@ -106,7 +106,7 @@ class MovingScene {
     return {now.rotation * part.placement.rotation, part.placement.scale, now.point(part.placement.translation)};
   }
 
-  Scene<Shapes...> scene_;     ///< all parts; its index holds those that stand
+  Scene<Shapes...> scene_;     ///< all parts; its index holds the static ones
   std::vector<Mover> movers_;  ///< sorted by index of their part
   MovingIndex index_;
   Box bounds_;

@@ -197,7 +197,7 @@ class Scene {
 
   std::vector<Part> parts_;
   Bvh<float> index_;
-  bool alone_ = false;  ///< true if the only part stands
+  bool alone_ = false;  ///< true for a single part, static
 };
 
 }  // namespace pulsecast

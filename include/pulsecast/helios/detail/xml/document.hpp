@@ -20,7 +20,7 @@
 
 namespace pulsecast::helios {
 
-/// Position in an XML file; line 0 stands for the whole file.
+/// Position in an XML file; line 0 means the whole file.
 struct XmlPlace {
   std::string path{};
   std::size_t line = 0, column = 0;  ///< from 1; columns count bytes

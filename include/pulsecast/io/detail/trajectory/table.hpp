@@ -43,9 +43,12 @@ struct TrajectoryTable {
 
 /// Reads a trajectory. Throws a `FileError` with path, line and column at the first error.
 ///
-/// Warnings: poses out of order, which are sorted; repeated poses, which are left out; different poses at one time within the window, which
-/// are a jump from the first in the file to the last; angles without a column, which are 0; quaternions that are visibly not unit, which
-/// are normalized. Errors: quaternions whose norm is off by more than 1/1000, and numbers beyond 1e12 s, m or rad.
+/// Warnings:
+/// - poses out of order, which are sorted; repeated poses, which are left out;
+/// - different poses at one time within the window, which are a jump from the first in the file to the last;
+/// - angles without a column, which are 0; quaternions that are visibly not unit, which are normalized.
+///
+/// Errors: quaternions whose norm is off by more than 1/1000, and numbers beyond 1e12 s, m or rad.
 [[nodiscard]] TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format = csv_format(),
                                               const TimeWindow& window = {});
 
@@ -153,7 +156,7 @@ class TrajectoryReader {
     table_.fail_here(*columns_->culprit(), TextTable::quoted(names_[*columns_->culprit()]) + " " + columns_->problem());
   }
 
-  /// True if extra columns are allowed: the file or the format tells which ones those are.
+  /// True if extra columns are allowed: the file or the format names the others.
   [[nodiscard]] bool may_have_more() const noexcept { return format_.more_columns && (named_ || format_.names != ColumnNames::comments); }
 
   void leave_out_unknown() {
