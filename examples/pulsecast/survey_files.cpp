@@ -103,7 +103,7 @@ void require_same_survey(const Options& options, const SurveyFile& file, const W
   wanted.name = written.name;  // default name: that of the file
   for (helios::ChannelSettings& channel : wanted.scanner.channels)
     channel.waveform.rings = change.rings, channel.waveform.bin_size = change.bin_size;
-  if (written != wanted) throw FileError(path.string(), "", "would not be the same survey; nothing is written");
+  if (written != wanted) throw FileError(path.string(), "", "would be another survey; nothing is written");
 }
 
 }  // namespace
@@ -133,7 +133,7 @@ void write_survey_file(const Options& options, const SurveyFile& file, const Wav
     fs::permissions(io::OutputFile::temporary_name(target), before.permissions(), error);
   else
     error.clear();
-  if (error) throw FileError(path.string(), "", "cannot be given the rights that it had: " + error.message());
+  if (error) throw FileError(path.string(), "", "cannot be given its former permissions: " + error.message());
   out.commit();
 }
 

@@ -475,7 +475,7 @@ TEST_CASE("a file that is cut anywhere is refused") {
   keep(file.path, "x y z\n1 2 3\n");
   CHECK(contains(file.refusal_of(), "is not a TIFF file"));
   std::filesystem::remove(file.path);
-  CHECK(contains(file.refusal_of(), "is not there"));
+  CHECK(contains(file.refusal_of(), "does not exist"));
   std::filesystem::create_directory(file.path);
   CHECK(contains(file.refusal_of(), "is a directory"));
 }

@@ -102,7 +102,7 @@ class WaveformLimits {
     if (s.record_length <= longest) return;
     s.record_length = longest;
     warnings.push_back(name_ + ": waveforms are cut after " + xml_number(std::round(longest * 1e12) / 1e3) + " ns, " + xml_number(most) +
-                       " samples, which is all that " + (las_ ? "LAS takes" : "is kept") + "; longer bins reach farther");
+                       " samples, the maximum " + (las_ ? "of LAS" : "kept") + "; longer bins reach farther");
   }
 
  private:

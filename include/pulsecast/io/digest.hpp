@@ -51,7 +51,7 @@ class Digest {
     } else if (std::filesystem::is_regular_file(status)) {
       add_file(path);
     } else {
-      throw FileError(path.string(), "", std::filesystem::exists(status) ? "is neither a file nor a folder" : "is not there");
+      throw FileError(path.string(), "", std::filesystem::exists(status) ? "is neither a file nor a folder" : "does not exist");
     }
   }
 

@@ -27,7 +27,7 @@ class InputFile {
   /// `expected` content for error messages, as in "a point cloud". Throws a `FileError` if there is no such file, or it is empty.
   InputFile(const std::filesystem::path& path, std::string_view expected) : path_(path.string()) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) fail("is not there: expected " + std::string(expected));
+    if (!std::filesystem::exists(path, ignored)) fail("does not exist: expected " + std::string(expected));
     if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected " + std::string(expected));
     file_.open(path, std::ios::binary);
     if (!file_) fail("cannot be read");

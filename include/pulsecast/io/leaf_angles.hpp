@@ -44,7 +44,7 @@ struct LeafRow {
     const bool is_g = column == 3;
     if (!value || !(*value >= (is_g ? 0 : -1.001) && *value <= (is_g ? 1 : 1.001)))
       table.fail_here(column, TextTable::quoted(cells[column]) + (is_g ? ": expected G, the mean projection of unit leaf area, from 0 to 1"
-                                                                       : ": expected a part of a unit direction, from -1 to 1"));
+                                                                       : ": expected a component of a unit direction, from -1 to 1"));
     values[column] = *value;
   }
   const Vec3 direction{values[0], values[1], values[2]};
@@ -79,8 +79,8 @@ inline LeafAngles read_leaf_angles(const std::filesystem::path& path) {
                  " degrees from the vertical: expected one every 10 degrees at least");
     if (step <= same && std::fabs(projection.g - last.g) > 1e-3)
       throw FileError(table.path(), TextTable::place(std::max(row, line)),
-                      "has another G than line " + std::to_string(std::min(row, line)) +
-                          ", for a direction as steep: expected one that depends on the zenith angle alone");
+                      "differs in G from line " + std::to_string(std::min(row, line)) +
+                          ", at the same zenith angle: expected one G for each zenith angle");
     if (step <= same && !result.empty()) continue;
     // a midpoint by interpolation: rounded rows 10 degrees apart may exceed the gap that `LeafAngles` bridges
     if (step > widest / 2) result.push_back({last.zenith + step / 2, (last.g + projection.g) / 2});

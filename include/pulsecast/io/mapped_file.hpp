@@ -27,7 +27,7 @@ class MappedFile {
     const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
     const auto system_error = [] { return std::generic_category().message(errno); };
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-    if (file.number < 0) fail(errno == ENOENT ? "is not there" : "cannot be read: " + system_error());
+    if (file.number < 0) fail(errno == ENOENT ? "does not exist" : "cannot be read: " + system_error());
     struct stat status {};
     if (::fstat(file.number, &status) != 0 || !S_ISREG(status.st_mode)) fail("is a directory or device");
     const auto size = static_cast<std::size_t>(status.st_size);

@@ -73,7 +73,7 @@ class StatementFile {
  public:
   explicit StatementFile(const std::filesystem::path& path) : path_(path.string()) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) fail("is not there: expected an OBJ or MTL file");
+    if (!std::filesystem::exists(path, ignored)) fail("does not exist: expected an OBJ or MTL file");
     if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected an OBJ or MTL file");
     file_.open(path, std::ios::binary);
     if (!file_) fail("cannot be read");
@@ -303,16 +303,16 @@ class MtlReader : private StatementBuffer {
       for (const double wavelength : spectra_.wavelengths)
         if (!(wavelength >= shortest && wavelength <= longest))
           warn("helios_spectra", "has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " + nanometres(longest) +
-                                     " nm: for the laser of " + nanometres(wavelength) + " nm the nearer end is taken");
+                                     " nm: for the laser of " + nanometres(wavelength) + " nm the nearest sample is used");
     } else if (!spectrum.empty()) {
-      warn("helios_spectra", "names the spectrum '" + spectrum + "', which no library holds: its reflectance is taken to be 0.5");
+      warn("helios_spectra", "refers to the spectrum '" + spectrum + "', which is in no library: a reflectance of 0.5 is assumed");
     }
     made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
     std::string ground = extra("helios_isGround");
     std::transform(ground.begin(), ground.end(), ground.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
     made.ground = ground == "true" || ground == "1";
     if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
-      warn("helios_isGround", "has helios_isGround '" + ground + "', which is neither true nor false: it is taken to be no ground");
+      warn("helios_isGround", "has helios_isGround '" + ground + "', expected true or false: false is assumed");
     return made;
   }
 

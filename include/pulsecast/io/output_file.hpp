@@ -146,7 +146,7 @@ class OutputFile {
     const int number = ::fileno(file_.get());
     if (!stands_at(number, temporary)) {
       discard();
-      throw FileError(path_.string(), "", "was taken from " + temporary.string() + " by another program, and cannot be completed");
+      throw FileError(path_.string(), "", "cannot be completed: another program has replaced " + temporary.string());
     }
     errno = 0;
     std::error_code error;
@@ -155,8 +155,7 @@ class OutputFile {
     } else {
       std::filesystem::rename(temporary, path_, error);
     }
-    if (error)
-      fail("cannot be completed", error.value(), "room for " + std::to_string(position_) + " bytes and a name that may be replaced");
+    if (error) fail("cannot be completed", error.value(), "room for " + std::to_string(position_) + " bytes and a replaceable name");
     std::fclose(file_.release());  // the lock ends after the renaming; closing reports no error that syncing has not
   }
 
@@ -188,7 +187,7 @@ class OutputFile {
         file = ::open(temporary.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
         if (file < 0 && errno == ENOENT) continue;
       }
-      if (file < 0) fail("cannot be created", errno, "an existing folder that may be written to");
+      if (file < 0) fail("cannot be created", errno, "an existing, writable folder");
       const bool is_alone = lock_alone(file);
       struct stat status {};
       if (is_alone && stands_at(file, temporary) && ::fstat(file, &status) == 0) {
@@ -196,9 +195,9 @@ class OutputFile {
         if (S_ISREG(status.st_mode)) ::unlink(temporary.c_str());
       }
       ::close(file);
-      if (!is_alone) throw FileError(path_.string(), "", "is being written already: " + temporary.string() + " is locked");
+      if (!is_alone) throw FileError(path_.string(), "", "is already being written: " + temporary.string() + " is locked");
     }
-    fail("cannot be created", EEXIST, "to make " + temporary.string());
+    fail("cannot be created", EEXIST, "no other file " + temporary.string());
   }
 
   [[noreturn]] void fail(std::string_view what, int error, std::string_view expected) {
@@ -207,7 +206,7 @@ class OutputFile {
   }
 
   void require_open() const {
-    if (!file_) throw FileError(path_.string(), "", "cannot be written any more: it was committed or given up");
+    if (!file_) throw FileError(path_.string(), "", "cannot be written: it is already committed or discarded");
   }
 
   void put(std::span<const std::byte> bytes) {
@@ -237,7 +236,7 @@ class OutputFile {
 
   void seek(long offset, int origin) {
     errno = 0;
-    if (std::fseek(file_.get(), offset, origin) != 0) fail("cannot be written", errno, "a file in which one can go back");
+    if (std::fseek(file_.get(), offset, origin) != 0) fail("cannot be written", errno, "a seekable file");
   }
 
   std::filesystem::path path_;

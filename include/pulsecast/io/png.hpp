@@ -302,7 +302,7 @@ class ImageWriter {
       static_cast<std::vector<std::byte>*>(to)->insert(static_cast<std::vector<std::byte>*>(to)->end(), bytes, bytes + size);
     };
     if (stbi_write_png_to_func(append, &png, settings_.width, settings_.height, 3, pixels.data(), 3 * settings_.width) == 0)
-      throw FileError(file_.path().string(), "", "the picture cannot be packed: expected enough memory");
+      throw FileError(file_.path().string(), "", "the picture cannot be compressed: expected enough memory");
     file_.write(png);
     file_.commit();
   }

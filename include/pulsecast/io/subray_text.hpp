@@ -41,7 +41,7 @@ class SubrayTextWriter {
  private:
   void write(const Shot& shot, std::size_t subray, const SubrayHit& hit) {
     constexpr double nano = 1e9;  // per unit
-    text_.wholes(shot.index, subray).vector("the place of a hit", hit.point, 4).reals(4, hit.range).reals(9, hit.power * nano);
+    text_.wholes(shot.index, subray).vector("the position of a hit", hit.point, 4).reals(4, hit.range).reals(9, hit.power * nano);
     text_.reals(6, hit.cos_incidence, hit.backscatter).wholes(hit.object, hit.classification).end_row();
   }
 

@@ -45,7 +45,7 @@ class XyzWriter {
  private:
   void write(const Shot& shot, const Echo& echo) {
     constexpr double nano = 1e9;  // per unit
-    text_.vector("the place of an echo", point_of(shot, echo), 4).reals(4, echo.amplitude * nano, echo.width * nano);
+    text_.vector("the position of an echo", point_of(shot, echo), 4).reals(4, echo.amplitude * nano, echo.width * nano);
     text_.wholes(echo.number, shot.echoes, shot.index, echo.object, echo.classification);
     text_.reals(9, settings_.start_time + shot.tick.seconds()).end_row();
   }

@@ -127,8 +127,8 @@ namespace detail {
                                         const Ground auto& ground) {
   const auto height = [&](const Vec2& place) {
     const std::optional<double> h = ground(place);
-    const std::string name = "plan_ground_vehicle: the way to waypoints[" + std::to_string(waypoint) + "], ";
-    if (!h) throw SettingError(name + "x", place.x, "m", "on the ground (with y " + to_text(place.y) + " m there is none)");
+    const std::string name = "plan_ground_vehicle: path to waypoints[" + std::to_string(waypoint) + "], ";
+    if (!h) throw SettingError(name + "x", place.x, "m", "over ground; there is none at y = " + to_text(place.y) + " m");
     require_within(name + "height", *h, -1e9, 1e9, "m");
     return *h;
   };
@@ -179,7 +179,7 @@ namespace detail {
 
   double whole = 0;
   for (const PathPiece& piece : path) whole += piece.length;
-  require_within("plan_ground_vehicle: the way (length)", whole, 0, 1e7 * settings.ground_step, "m");  // footings take some 240 MB
+  require_within("plan_ground_vehicle: path (length)", whole, 0, 1e7 * settings.ground_step, "m");  // footings take some 240 MB
 
   std::vector<GroundVehicleDrive::Section> sections;
   std::vector<PathSection> path_sections;

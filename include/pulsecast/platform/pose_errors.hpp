@@ -118,7 +118,7 @@ class WithPoseErrors {
     if (errors_.position_drift == 0 && errors_.attitude_drift == 0) return;
     const double kept = std::exp(-1.0 / nodes_per_drift_time), added = std::sqrt(1 - kept * kept);
     const double nodes = std::ceil(truth_.duration().seconds() / errors_.drift_time * nodes_per_drift_time) + 2;
-    require_within("PoseErrors::drift_time (the survey's length by it)", nodes / nodes_per_drift_time, 0, 1e6, "");
+    require_within("PoseErrors::drift_time (survey duration divided by it)", nodes / nodes_per_drift_time, 0, 1e6, "");
     drift_.clear();
     for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(nodes); ++n) {
       const Vec3 position = errors_.position_drift * normals(n, Purpose::position_drift);

@@ -39,8 +39,7 @@ class Waypoints {
       TimedPose& p = points_[i];
       require_within(field + ".time", p.time, -1e15, 1e15, "s");  // limit of a `Tick`
       if (i > 0 && p.time < points_[i - 1].time)
-        throw SettingError(field + ".time", p.time, "s",
-                           "no earlier than that of the waypoint before, " + detail::to_text(points_[i - 1].time));
+        throw SettingError(field + ".time", p.time, "s", "at least that of the previous waypoint, " + detail::to_text(points_[i - 1].time));
       require_finite(field + ".position (length)", length(p.position), "m");
       require_rotation(field + ".rotation", p.rotation);
       p.rotation = normalize(p.rotation);
@@ -89,7 +88,7 @@ class Waypoints {
     const auto interval = [&](std::size_t i) { return points_[i + 1].time - points_[i].time; };
     const auto mean = [&](std::size_t i) { return (points_[i + 1].position - points_[i].position) / interval(i); };  // velocity
     for (std::size_t i = first; i < last; ++i)
-      require_finite("Waypoints::points[" + std::to_string(i + 1) + "] (velocity from the one before)", length(mean(i)), "m/s");
+      require_finite("Waypoints::points[" + std::to_string(i + 1) + "] (velocity from the previous one)", length(mean(i)), "m/s");
     velocities_[first] = velocities_[last] = mean(first);
     for (std::size_t i = first + 1; i < last; ++i) {
       const double share = interval(i) / (interval(i - 1) + interval(i));

@@ -26,7 +26,7 @@ class Formula {
     if (text.size() > 10'000) fail("is longer than 10000 characters");
     sum(0);
     skip();
-    if (at_ != text_.size()) fail("cannot go on like this");
+    if (at_ != text_.size()) fail("has unexpected text");
     text_ = {}, variable_ = {};
   }
 
@@ -71,7 +71,7 @@ class Formula {
 
   void push(Step step) {
     if (step.kind == Kind::number || step.kind == Kind::variable) {
-      if (++height_ > depth) fail("is too deep");
+      if (++height_ > depth) fail("is nested too deeply");
     } else if (step.kind != Kind::negative && step.kind != Kind::function) {
       --height_;
     }
@@ -90,7 +90,7 @@ class Formula {
   }
 
   void sum(int deep) {
-    if (deep > 100) fail("is too deep");
+    if (deep > 100) fail("is nested too deeply");
     product(deep);
     for (;;) {
       if (take('+'))
@@ -139,7 +139,7 @@ class Formula {
     const auto is_digit = [&](std::size_t i) { return i < text_.size() && text_[i] >= '0' && text_[i] <= '9'; };
     if (is_digit(at_) || (at_ < text_.size() && text_[at_] == '.' && is_digit(at_ + 1))) {
       const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), number, std::chars_format::fixed);
-      if (error != std::errc{}) fail("has a number that cannot be");
+      if (error != std::errc{}) fail("has a number out of range");
       at_ += static_cast<std::size_t>(end - begin);
       return push({Kind::number, number});
     }
@@ -173,7 +173,7 @@ class Formula {
       if (f.name == name) function = f.function;
     if (!two && function == nullptr) fail("has the unknown word '" + std::string(name) + "'");
     at_ = end;
-    if (!take('(')) fail("lacks what the function is of");
+    if (!take('(')) fail("lacks the argument of the function");
     sum(deep + 1);
     if (two) {
       if (!take(',')) fail("lacks the second argument of atan2");

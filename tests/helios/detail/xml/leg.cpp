@@ -51,13 +51,13 @@ TEST_CASE("any index of a column means that all are agreed") {
 }
 
 TEST_CASE("of a trajectory, what cannot be is told") {
-  CHECK(contains(told(R"(<p trajectory="none.trj"/>)"), "is not there"));
+  CHECK(contains(told(R"(<p trajectory="none.trj"/>)"), "does not exist"));
   CHECK(contains(told(R"(<p trajectory="mesh.obj" tStart="2" tEnd="2"/>)"), "tEnd is not after tStart"));
   for (const char* separator : {";;", "|", ""}) {
     LegPlatformSettings settings;
     const std::string odd = told("<p trajectory=\"mesh.obj\" trajectory_separator=\"" + std::string(separator) + "\"/>", settings);
     CHECK(odd.starts_with("\nwarning "));
-    CHECK(contains(odd, "has no effect: expected a comma, a semicolon, a tab or a blank; it is found"));
+    CHECK(contains(odd, "has no effect: expected a comma, a semicolon, a tab or a blank; it is detected"));
     CHECK_FALSE(settings.trajectory->separator);
   }
   CHECK(contains(told(R"(<p trajectory="mesh.obj" tIndex="1000"/>)"), "from 0 to 999"));

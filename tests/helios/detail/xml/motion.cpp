@@ -46,12 +46,12 @@ TEST_CASE("every type of motion is read") {
 
 TEST_CASE("of a motion, what cannot be is told") {
   CHECK(contains(told(R"(<motion type="translation"/>)"), "has no attribute 'vec'"));
-  CHECK(contains(told(R"(<motion type="rotation" axis="0;0;0" angle="1"/>)"), "too short to have a direction"));
+  CHECK(contains(told(R"(<motion type="rotation" axis="0;0;0" angle="1"/>)"), "too short for a direction"));
   for (const char* turn :
        {R"(<motion type="rotation" axis="0;0;0" angle="0"/>)", R"(<motion type="helical" axis="0;0;0" angle="0" glide="3"/>)"}) {
     MotionSettings still;
     CHECK(contains(told(turn, still), "warning"));
-    CHECK(contains(told(turn, still), "a.xml:1:25: axis is too short to have a direction, and angle is 0: the motion does nothing") ==
+    CHECK(contains(told(turn, still), "a.xml:1:25: axis is too short for a direction, and angle is 0: the motion does nothing") ==
           contains(turn, "rotation"));
     CHECK(still == MotionSettings{});
   }
@@ -71,8 +71,8 @@ TEST_CASE("a sequence that nothing can do is told, with its place") {
                     own = R"(<motion type="rotsym" axis="0;0;1" angle="9" selfMode="1"/>)";
   const std::string turn = R"(<motion type="rotation" axis="0;0;1" angle="9"/>)",
                     own_turn = R"(<motion type="rotation" axis="0;0;1" angle="9" selfMode="1"/>)";
-  CHECK(contains(sequence(mirror), "a.xml:1:2: <dmotion id='m'> cannot be done: expected reflections even in number"));
-  CHECK(contains(sequence(mirror + own), "even in number"));
+  CHECK(contains(sequence(mirror), "a.xml:1:2: <dmotion id='m'> is not supported: expected an even number of reflections"));
+  CHECK(contains(sequence(mirror + own), "an even number"));
   CHECK(sequence(mirror + mirror).empty());
   CHECK(sequence(own + own).empty());
   CHECK(contains(sequence(turn + own_turn), "not both in one sequence"));

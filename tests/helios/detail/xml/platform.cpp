@@ -47,7 +47,7 @@ TEST_CASE("of a platform, what cannot be is told") {
                              "pitch_speed_deg", "roll_speed_deg", "roll_offset_deg"}) {
       const std::string begin = "<platform id=\"p\" type=\"" + std::string(type) + "\" " + name + "=\"";
       CHECK(contains(told(begin + "1\"/>"), "warning"));
-      CHECK(contains(told(begin + "1\"/>"), "'" + std::string(name) + "' has no effect: ways are planned"));
+      CHECK(contains(told(begin + "1\"/>"), "'" + std::string(name) + "' has no effect: paths are planned"));
       CHECK(told(begin + "much\"/>") == told(begin + "1\"/>"));
     }
   CHECK(contains(told(R"(<platform id="p" type="static"><attitudeYNoise type="UNIFORM" min="2"/></platform>)"), "max is below min"));

@@ -56,7 +56,7 @@ TEST_CASE("of a scanner, what cannot be is told") {
   CHECK(contains(fault("optics=\"line\"", "<rangeError expr=\"\"/>"), "warning"));
   for (const char* never : {"1/0", "0/0", "ln(-1)", "sqrt(-1-THETA^2)", "1/(THETA-THETA)"}) {
     const std::string told = fault("optics=\"line\"", "\n<rangeError expr=\"" + std::string(never) + "\"/>");
-    CHECK(contains(told, "a.xml:2:13: expr=\"" + std::string(never) + "\" is no finite number for any THETA: expected a formula"));
+    CHECK(contains(told, "a.xml:2:13: expr=\"" + std::string(never) + "\" is not finite for any THETA: expected a formula"));
   }
   CHECK(fault("optics=\"line\"", "<rangeError expr=\"1/THETA+ln(THETA)\"/>").empty());  // of some angles
   CHECK(contains(fault("optics=\"line\" distanceMeasurementError=\"1/0\""), "for any t: expected a formula"));
@@ -69,7 +69,7 @@ TEST_CASE("of a scanner, what cannot be is told") {
   CHECK(fault("optics=\"line\"", "<rangeError expr=\"2*(THETA)\"/>").empty());
   CHECK(contains(fault("optics=\"line\" distanceMeasurementError=\"2*THETA\""), "a.xml:1:"));
   CHECK(fault("optics=\"line\" distanceMeasurementError=\"2*t^2\"").empty());
-  CHECK(contains(fault("optics=\"rotating\" scanAngleEffectiveMax_deg=\"0\""), "no pulse could leave"));
+  CHECK(contains(fault("optics=\"rotating\" scanAngleEffectiveMax_deg=\"0\""), "no pulse is emitted"));
   CHECK(contains(fault("optics=\"line\"", "<channels/>"), "warning"));
   CHECK(contains(fault("optics=\"line\" scanProduct=\"5\""), "warning "));
   const auto rates = [](const char* text) { return "<scanner id=\"s\" optics=\"line\" pulseFreqs_Hz=\"" + std::string(text) + "\"/>"; };

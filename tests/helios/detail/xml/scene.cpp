@@ -58,10 +58,10 @@ TEST_CASE("of a scene, what cannot be is told") {
   const auto fault = [](const std::string& inside) { return told("<scene id=\"s\"><part>" + inside + "</part></scene>"); };
   const std::string loads = mesh;
   CHECK(fault(loads).empty());
-  CHECK(contains(fault(loads + loads), "a second filter that loads"));
+  CHECK(contains(fault(loads + loads), "a second loading filter"));
   CHECK(contains(fault("<filter type=\"objlaoder\"/>"), "did you mean 'objloader'?"));
   CHECK(contains(fault("<filter type=\"objloader\"/>"), "has no param 'filepath'"));
-  CHECK(contains(fault(""), "holds no <part> with a filter that loads"));
+  CHECK(contains(fault(""), "holds no <part> with a loading filter"));
   CHECK(contains(fault(loads + "<filter type=\"scale\"/>"), "has no param 'scale'"));
   CHECK(contains(fault(loads + R"(<filter type="scale"><param key="scale" value="-2"/></filter>)"), "scale=\"-2\""));
   CHECK(contains(fault(loads + R"(<filter type="scale"><param key="scale" value="1e-31"/></filter>)"), "the scale is less than 1e-30"));

@@ -40,7 +40,7 @@ TEST_CASE("a cloud that says little has the defaults of the format") {
   const std::string odd =
       R"(<param key="filepath" value="mesh.obj"/><param key="voxelSize" value="0"/><param key="defaultNormal" value="0;0;0"/>)";
   CHECK(filter_told(odd, other).starts_with("\nwarning "));
-  CHECK(contains(filter_told(odd, other), "a.xml:1:84: voxelSize of 0 stands for 1 m"));
+  CHECK(contains(filter_told(odd, other), "a.xml:1:84: voxelSize of 0 means 1 m"));
   CHECK(contains(filter_told(odd, other), "defaultNormal is zero: it has no direction, and no effect"));
   CHECK(other.voxel_size == 1);
   CHECK_FALSE(other.default_normal);
@@ -62,7 +62,7 @@ TEST_CASE("files may be one, those of a pattern, or a list") {
   CHECK(filter_told(R"(<param key="filepaths" value="mesh.obj|a.xml"/>)", list).empty());
   CHECK(one == pattern);
   CHECK(list.files.size() == 2);
-  CHECK(contains(filter_told(R"(<param key="filepaths" value="mesh.obj|b.xml"/>)", none), "filepaths=\"b.xml\" is not there"));
+  CHECK(contains(filter_told(R"(<param key="filepaths" value="mesh.obj|b.xml"/>)", none), "filepaths=\"b.xml\" does not exist"));
   CHECK(contains(filter_told("", none), "has no param 'filepath'"));
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="up" value="x"/>)", none), "up=\"x\" is not known"));
 }
@@ -78,7 +78,7 @@ TEST_CASE("voxels have a mode, a table and a material") {
   CHECK(voxels.leaf_angles.filename() == "mesh.obj");
   CHECK(voxels.material.name == "leaf");
   CHECK(voxels.material.random == 3);
-  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="ladlut" value="no.txt"/>)", voxels), "is not there"));
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="ladlut" value="no.txt"/>)", voxels), "does not exist"));
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="intersectionArgument" value="-1"/>)", voxels),
                  "from 0 to 100"));
 }

@@ -112,7 +112,7 @@ TEST_CASE("what is no text file is refused, and says what was expected") {
   CHECK(error(std::string("a b\n1\0 2\n", 9)).place() == "line 2");
   CHECK(error("a b\n\x01\n").problem() == "holds binary data: expected the text of a table");
   const TemporaryFolder folder;
-  CHECK_THROWS_WITH_AS(TextTable(folder / "none", "a table"), doctest::Contains("is not there: expected a table"), FileError);
+  CHECK_THROWS_WITH_AS(TextTable(folder / "none", "a table"), doctest::Contains("does not exist: expected a table"), FileError);
   CHECK_THROWS_WITH_AS(TextTable(folder.path(), "a table"), doctest::Contains("is a directory"), FileError);
   CHECK_THROWS_WITH_AS(TextTable("/proc/self/mem", "a table"), doctest::Contains("cannot be read"), FileError);
   TextTable table(put(folder, "a b\n"), "a table");

@@ -71,10 +71,10 @@ TEST_CASE("columns may come in any order, and some be left out") {
 }
 
 TEST_CASE("columns that do not make one pose are told apart") {
-  CHECK(columns({"t", "x", "y", "z", "rol"}).problem() == "is no known column: expected perhaps 'roll', or that it is to be left out");
+  CHECK(columns({"t", "x", "y", "z", "rol"}).problem() == "is not a known column: did you mean 'roll'? Others must be set as left out");
   CHECK(columns({"t", "x", "y", "z", "rol"}).culprit() == 4);
   CHECK(columns({"t", "x", "y", "z", "heading", "yaw"}).culprit() == 5);
-  CHECK(columns({"t", "x", "y", "z", "time_s"}).problem().find("the same as column 1") != std::string::npos);
+  CHECK(columns({"t", "x", "y", "z", "time_s"}).problem().find("duplicates column 1") != std::string::npos);
   for (const std::vector<std::string>& names :
        std::vector<std::vector<std::string>>{{},
                                              {"x", "y", "z"},

@@ -84,7 +84,7 @@ class XmlReport {
     if (is_full_of_warnings()) return;
     std::string text = place.text() + ": " + problem;
     if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
-    if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(max_told) + " are not told";
+    if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(max_told) + " are not listed";
   }
 
   /// Calls `read()` and turns its faults into warnings, for elements without use.
@@ -157,7 +157,7 @@ class XmlReport {
   if (nearest) return "; did you mean '" + *nearest + "'?";
   std::string list;
   for (std::size_t i = 0; i < std::min<std::size_t>(known.size(), 40); ++i) list += (list.empty() ? "" : ", ") + known[i];
-  return "; there are: " + list + (known.size() > 40 ? ", ..." : "");
+  return "; known names: " + list + (known.size() > 40 ? ", ..." : "");
 }
 
 /// XML file in memory, with the position of every element and attribute. External and declared entities are not supported: a document that
@@ -217,9 +217,9 @@ class XmlDocument {
   [[nodiscard]] static const char* hint(pugi::xml_parse_status status) {
     switch (status) {
       case pugi::status_end_element_mismatch:
-        return " (this end tag is not of the element that was begun last)";
+        return " (this end tag does not match the last start tag)";
       case pugi::status_no_document_element:
-        return " (there is no element)";
+        return " (no element)";
       default:
         return "";
     }
@@ -270,7 +270,8 @@ class XmlDocument {
         if (name.size() + value.size() > max_attribute_size)
           fail_at(at, "an attribute is longer than " + std::to_string(max_attribute_size) + " bytes: " + xml_quoted(name));
         if (std::find(names.begin(), names.end(), name) != names.end() || names.size() == max_attributes)
-          fail_at(at, "attribute " + xml_quoted(name) + (names.size() == max_attributes ? " is one of too many" : " is given twice"));
+          fail_at(at, "attribute " + xml_quoted(name) +
+                          (names.size() == max_attributes ? " exceeds the maximum number of attributes" : " is given twice"));
         names.push_back(name);
         return true;
       });

@@ -39,7 +39,7 @@ class XmlLibraryDocument {
       const auto [other, is_new] = by_id_.emplace(key(node.name(), node.attribute("id").value()), node);
       if (!is_new)
         report.warn(document_.place(node), "a second <" + std::string(node.name()) + "> with the id " +
-                                               xml_quoted(node.attribute("id").value()) + ": the first one counts");
+                                               xml_quoted(node.attribute("id").value()) + ": the first one is used");
     }
   }
 
@@ -124,7 +124,7 @@ class XmlLibrary {
       return known->second.get();
     }
     if (documents_.size() == max_documents) {
-      io.fault(attribute, XmlInput::said(attribute, text) + " is one of more than " + std::to_string(max_documents) + " documents");
+      io.fault(attribute, XmlInput::said(attribute, text) + " exceeds the maximum of " + std::to_string(max_documents) + " documents");
       return nullptr;
     }
     try {

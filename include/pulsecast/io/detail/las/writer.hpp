@@ -139,7 +139,7 @@ class LasFileWriter {
   [[nodiscard]] std::filesystem::path packets_path() const {
     std::filesystem::path path = file_.path();
     if (path.replace_extension(".wdp") != file_.path()) return path;
-    throw FileError(path.string(), "", "is where its waveforms go; expected a name that ends otherwise, as in .las");
+    throw FileError(path.string(), "", "is the name of its waveform file; expected another extension, as .las");
   }
 
   [[noreturn]] void misfit(const Vec3& point) {

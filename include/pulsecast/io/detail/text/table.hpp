@@ -27,7 +27,7 @@ class TextTable {
   TextTable(const std::filesystem::path& path, std::string_view expected, std::optional<char> separator = {})
       : path_(path.string()), expected_(expected), separator_(separator) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) fail("is not there: expected " + expected_);
+    if (!std::filesystem::exists(path, ignored)) fail("does not exist: expected " + expected_);
     if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected " + expected_);
     file_.open(path, std::ios::binary);
     const bool has_some = file_ && file_.peek() != std::ifstream::traits_type::eof();

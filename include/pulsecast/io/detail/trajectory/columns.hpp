@@ -157,7 +157,7 @@ class TrajectoryColumns {
       if (columns_.back())
         put(i);
       else if (std::none_of(left_out.begin(), left_out.end(), same))
-        problem_ = "is no known column: expected perhaps '" + nearest_trajectory_column(names[i]) + "', or that it is to be left out",
+        problem_ = "is not a known column: did you mean '" + nearest_trajectory_column(names[i]) + "'? Others must be set as left out",
         culprit_ = i;
     }
     if (problem_.empty()) require_whole();
@@ -178,8 +178,7 @@ class TrajectoryColumns {
   void put(std::size_t i) {
     std::optional<std::size_t>& place = places_[static_cast<std::size_t>(columns_[i]->quantity)];
     if (place)
-      problem_ = "says the same as column " + std::to_string(*place + 1) + ": expected one of them, or that one is to be left out",
-      culprit_ = i;
+      problem_ = "duplicates column " + std::to_string(*place + 1) + ": expected one of them, the other set as left out", culprit_ = i;
     place = i;
   }
 
@@ -189,11 +188,11 @@ class TrajectoryColumns {
     const int xyz = count({x, y, z}), directions = count({east, north}), vertical = count({up, down}), angles = count({roll, pitch, yaw}),
               quaternion = count({qx, qy, qz, qw});
     if (!has(time))
-      problem_ = "no column holds the time: expected one called 'time_s'";
+      problem_ = "no column is the time: expected one named 'time_s'";
     else if (!(xyz == 3 && directions + vertical == 0) && !(xyz == 0 && directions == 2 && vertical == 1))
-      problem_ = "the columns do not make one position: expected either x, y, z or east, north and up or down";
+      problem_ = "the columns do not define one position: expected either x, y, z or east, north and up or down";
     else if (quaternion > 0 && (quaternion < 4 || angles > 0))
-      problem_ = "the columns do not make one attitude: expected either angles or qx, qy, qz and qw, and others to be left out";
+      problem_ = "the columns do not define one attitude: expected either angles or qx, qy, qz and qw, the others set as left out";
   }
 
   [[nodiscard]] int count(std::initializer_list<Quantity> quantities) const {

@@ -77,7 +77,7 @@ class TrajectoryReader {
       }
     }
     if (rows_.empty()) table_.fail("holds no pose: expected at least one line of numbers");
-    if (table_.line_is_open()) warn(table_.line(), "has no line end: the file may have been cut short");
+    if (table_.line_is_open()) warn(table_.line(), "has no line end: the file may be truncated");
     sort();
     remarks();
     cut(validated(window));
@@ -112,7 +112,7 @@ class TrajectoryReader {
       text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
       const std::optional<double> number = TextTable::number_in(text);
       if (!number || *number < 0 || *number > 1000 || *number != std::floor(*number))
-        table_.fail_here(TextTable::quoted(text) + " is no place of a column: expected a whole number from 0");
+        table_.fail_here(TextTable::quoted(text) + " is not a column index: expected a whole number from 0 to 1000");
       time_place_ = static_cast<std::size_t>(*number);
     }
   }
@@ -141,8 +141,8 @@ class TrajectoryReader {
     };
     if (time_place_ && !named_) std::erase_if(names_, is_time);
     if (time_place_ && *time_place_ >= names_.size() + (named_ ? 0 : 1))
-      table_.fail_here("the time is to be column " + std::to_string(*time_place_) + ", from 0, of " + std::to_string(names_.size()) +
-                       ": expected #TIME_COLUMN to be one of them");
+      table_.fail_here("#TIME_COLUMN is " + std::to_string(*time_place_) + ": expected the index, from 0, of one of " +
+                       std::to_string(names_.size()) + " columns");
     if (time_place_ && named_ && !is_time(names_[*time_place_])) names_[*time_place_] = "t";
     if (time_place_ && !named_) names_.insert(names_.begin() + static_cast<std::ptrdiff_t>(*time_place_), "t");
     understand();
@@ -169,8 +169,7 @@ class TrajectoryReader {
       format_.left_out.push_back(name);
       unknown += (unknown.empty() ? "" : ", ") + TextTable::quoted(name);
     }
-    if (!unknown.empty())
-      result_.warnings.push_back(table_.path() + ": columns of names that are not known are left out: " + unknown.substr(0, 1000));
+    if (!unknown.empty()) result_.warnings.push_back(table_.path() + ": unknown columns are left out: " + unknown.substr(0, 1000));
   }
 
   void row() {
@@ -183,7 +182,7 @@ class TrajectoryReader {
       if (!column) continue;
       const std::optional<double> number = TextTable::number_in(cells[i]);
       if (!number || std::fabs(*number / column->per_si) > max_in_trajectory)
-        table_.fail_here(i, TextTable::quoted(cells[i]) + " is no " + names_[i] +
+        table_.fail_here(i, TextTable::quoted(cells[i]) + " in column " + names_[i] +
                                 ": expected a finite number, with a decimal point, within 1e12 s, m or rad");
       values[column->quantity] = *number / column->per_si;
     }
@@ -202,7 +201,7 @@ class TrajectoryReader {
     const Rotation given(values[qw], values[qx], values[qy], values[qz]);
     const double error = std::fabs(length(given) - 1);
     if (!(error <= 1e-3))
-      table_.fail_here("the quaternion has the length " + pulsecast::detail::to_text(length(given)) + ": expected 1, within 1e-3");
+      table_.fail_here("the quaternion has the norm " + pulsecast::detail::to_text(length(given)) + ": expected 1, within 1e-3");
     if (error > 2e-6) not_unit_.at(table_.line());  // more than six decimals explain
     return format_.axes.from_file(normalize(given));
   }
@@ -223,12 +222,12 @@ class TrajectoryReader {
 
   void remarks() {
     const auto of = [](const Oddity& oddity) { return ", the first of " + std::to_string(oddity.count); };
-    if (unsorted_.count > 0) warn(unsorted_.first, "is earlier than the one before it" + of(unsorted_) + ": the poses were sorted by time");
-    if (repeated_.count > 0) warn(repeated_.first, "is a pose that stands twice" + of(repeated_) + ": it is left out");
-    if (not_unit_.count > 0) warn(not_unit_.first, "has a quaternion whose length is not 1" + of(not_unit_) + ": it was made 1");
+    if (unsorted_.count > 0) warn(unsorted_.first, "is earlier than the previous pose" + of(unsorted_) + ": the poses were sorted by time");
+    if (repeated_.count > 0) warn(repeated_.first, "repeats a pose" + of(repeated_) + ": it is left out");
+    if (not_unit_.count > 0) warn(not_unit_.first, "has a quaternion that is not unit" + of(not_unit_) + ": it is normalized");
     if (columns_->has(Quantity::qw)) return;
     for (const auto& [quantity, name] : {std::pair{Quantity::roll, "roll"}, {Quantity::pitch, "pitch"}, {Quantity::yaw, "yaw"}})
-      if (!columns_->has(quantity)) result_.warnings.push_back(table_.path() + ": no column holds the " + name + ": it is taken to be 0");
+      if (!columns_->has(quantity)) result_.warnings.push_back(table_.path() + ": no column for the " + name + ": 0 is assumed");
   }
 
   /// Cuts the poses to the window and starts its clock.
@@ -239,9 +238,9 @@ class TrajectoryReader {
       table_.fail("has poses from " + seconds(first) + " to " + seconds(last) + ": expected some from " +
                   seconds(window.start.value_or(first)) + " to " + seconds(window.end.value_or(last)));
     if (window.start && *window.start < first)
-      result_.warnings.push_back(table_.path() + ": the window begins before the first pose, which stands at " + seconds(first));
+      result_.warnings.push_back(table_.path() + ": the window begins before the first pose, at " + seconds(first));
     if (window.end && *window.end > last)
-      result_.warnings.push_back(table_.path() + ": the window ends after the last pose, which stands at " + seconds(last));
+      result_.warnings.push_back(table_.path() + ": the window ends after the last pose, at " + seconds(last));
     result_.start_time = start;
     const auto within = std::upper_bound(rows_.begin(), rows_.end(), start, [](double t, const Row& row) { return t < row.pose.time; });
     const auto behind = std::lower_bound(within, rows_.end(), end, [](const Row& row, double t) { return row.pose.time < t; });
@@ -254,8 +253,8 @@ class TrajectoryReader {
     if (end > start) result_.poses.push_back(behind->pose.time == end ? behind->pose : between(behind, end));
     for (TimedPose& pose : result_.poses) pose.time -= start;
     if (jumps.count > 0)
-      warn(jumps.first, "has the time of the pose before it, but another pose, the first of " + std::to_string(jumps.count) +
-                            ": the platform jumps there");
+      warn(jumps.first, "repeats the time of the previous pose at another pose, the first of " + std::to_string(jumps.count) +
+                            ": a jump of the platform");
   }
 
   /// Pose at a time between a row and the one before.
