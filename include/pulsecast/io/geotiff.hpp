@@ -210,7 +210,7 @@ class GeoTiffReader {
     const std::uint64_t pixels = std::uint64_t{l.columns} * l.rows;
     const std::uint64_t needed = std::uint64_t{l.chunk_columns} * l.chunk_rows;  // pixels of a strip or tile
     if (needed == 0 || l.chunk_bytes / (l.bits / 8U) / l.stride() != needed || l.chunk_bytes % (l.bits / 8U) != 0)
-      fail(std::string("has a ") + l.chunk() + "of no or too large a size" + complaint());
+      fail(std::string("has a ") + l.chunk() + "with a size of zero or too large" + complaint());
     const std::uint64_t chunks = l.tiled ? TIFFNumberOfTiles(tiff_.get()) : TIFFNumberOfStrips(tiff_.get());
     if (pixels > max_bytes() / sizeof(float) || l.chunk_bytes > max_bytes() || chunks > file_.size())
       fail("claims " + size + ", more than its " + std::to_string(file_.size()) + " bytes can hold");
@@ -249,7 +249,7 @@ class GeoTiffReader {
     if (model == 2) fail("is in degrees (a geographic reference system): expected a projected one, in metres");
     if (model == 3) fail("is in a geocentric reference system: expected a projected one, in metres");
     if (unit == foot || unit == us_foot) fail("has coordinates in feet: expected metres");
-    if (unit != metre) warn("the unit of its coordinates has the code " + std::to_string(unit) + "; it is taken for a metre");
+    if (unit != metre) warn("the unit of its coordinates has the code " + std::to_string(unit) + "; metres are assumed");
     if (projected != 0 && projected != geotiff::user_defined) result_.epsg = projected;
     const std::uint16_t vertical = key(geotiff::vertical_unit, metre);
     if (settings_.vertical_scale) {
@@ -258,7 +258,7 @@ class GeoTiffReader {
       scale_ = vertical == foot ? 0.3048 : 1200.0 / 3937.0;  // source: EPSG registry, units 9002 and 9003
       warn("heights in feet become metres");
     } else if (vertical != metre && vertical != geotiff::user_defined) {
-      warn("the unit of its heights has the code " + std::to_string(vertical) + "; it is taken for a metre");
+      warn("the unit of its heights has the code " + std::to_string(vertical) + "; metres are assumed");
     }
   }
 
@@ -272,15 +272,15 @@ class GeoTiffReader {
       step_x = matrix[0], step_y = matrix[5], x = matrix[3], y = matrix[7];
       const double turn = std::max(std::fabs(matrix[1]) * layout_.rows, std::fabs(matrix[4]) * layout_.columns);
       if (!(turn <= 1e-3 * std::min(std::fabs(step_x), std::fabs(step_y))))  // in pixels, over the whole raster
-        fail("is turned or sheared: expected rows that go east (a resampling to north up makes them so)");
+        fail("is rotated or sheared: expected rows to the east; resampling to north up makes them so");
     } else if (scale.size() >= 2 && ties.size() >= 6) {
       step_x = scale[0], step_y = -std::fabs(scale[1]), x = ties[3] - ties[0] * step_x, y = ties[4] - ties[1] * step_y;
       if (scale[1] < 0) warn("ModelPixelScale has a negative height of the pixel; its magnitude is taken, as GDAL does");
       if (scale[0] < 0) fail("has pixels of a negative width: expected a positive one");
       if (scale.size() >= 3 && scale[2] != 0 && scale[2] != 1)
-        warn("the vertical scale of ModelPixelScale does not count; there is a setting for one");
+        warn("the vertical scale of ModelPixelScale is ignored; vertical_scale is a setting");
     } else if (ties.size() > 6) {
-      fail("is placed by control points: expected a raster with rows that go east (ModelPixelScale and ModelTiepoint)");
+      fail("is placed by control points: expected rows to the east (ModelPixelScale and ModelTiepoint)");
     } else {
       fail("has no georeference: expected ModelPixelScale and ModelTiepoint, or ModelTransformation");
     }
@@ -303,7 +303,7 @@ class GeoTiffReader {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error == std::errc()) return value;
-    if (!word.empty()) warn("its value for missing heights is no number, and does not count");
+    if (!word.empty()) warn("its value for missing heights is not a number, and is ignored");
     return std::nullopt;
   }
 
@@ -328,8 +328,8 @@ class GeoTiffReader {
     const auto row = [&](std::uint32_t r) { return heights.begin() + static_cast<std::ptrdiff_t>(std::size_t{r} * layout_.columns); };
     for (std::uint32_t r = 0; northward_ && r < layout_.rows / 2; ++r) std::swap_ranges(row(r), row(r + 1), row(layout_.rows - 1 - r));
     for (std::uint32_t r = 0; westward_ && r < layout_.rows; ++r) std::reverse(row(r), row(r + 1));
-    if (there_ == 0) fail("has no height: expected some pixel that is not missing");
-    if (strange_ > 0) warn(std::to_string(strange_) + " values beyond 1e15 m, or infinite, are taken for missing");
+    if (there_ == 0) fail("has no height: expected at least one pixel with a height");
+    if (strange_ > 0) warn(std::to_string(strange_) + " values beyond 1e15 m, or infinite, count as missing");
     return std::move(result_);
   }
 
@@ -374,10 +374,10 @@ class GeoTiffReader {
     const std::string what = layout_.chunk() + std::to_string(chunk);
     if (begin > file_.size() || length > file_.size() - begin)
       file_.fail_at_byte(begin, what + " should end at byte " + std::to_string(begin + length) + ", but the file has " +
-                                    std::to_string(file_.size()) + ": expected a whole one");
+                                    std::to_string(file_.size()) + ": expected a complete file");
     const auto size = static_cast<tmsize_t>(bytes);
     const tmsize_t read = layout_.tiled ? TIFFReadEncodedTile(tiff, chunk, to, size) : TIFFReadEncodedStrip(tiff, chunk, to, size);
-    if (read != size) file_.fail_at_byte(begin, what + " cannot be read" + complaint() + ": expected a whole one");
+    if (read != size) file_.fail_at_byte(begin, what + " cannot be read" + complaint() + ": expected a complete file");
     return true;
   }
 

@@ -97,6 +97,7 @@ struct Raster {
                            "within 1e15 m, or NaN; see pixel " + std::to_string(i));
   }
 
+  /// Placement of the pixels.
   [[nodiscard]] detail::RasterGrid grid() const noexcept { return {columns, rows, first, pixel}; }
 
   /// The same ground as a mesh, with the same hits and some 13 times the memory. @throws SettingError as `validate`
@@ -134,7 +135,7 @@ struct Raster {
 /// Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic).
 class HeightField {
  public:
-  static constexpr bool flat = true;
+  static constexpr bool flat = true;  ///< as the concept Geometry describes
 
   /// `threads`: build threads, as in `thread_count`. @throws SettingError as `Raster::validate`
   explicit HeightField(Raster raster, unsigned threads = 0) {
@@ -160,7 +161,9 @@ class HeightField {
            levels_ == other.levels_;
   }
 
+  /// Pixels from west to east.
   [[nodiscard]] std::uint32_t columns() const noexcept { return grid_.columns; }
+  /// Pixels from north to south.
   [[nodiscard]] std::uint32_t rows() const noexcept { return grid_.rows; }
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return heights_.memory() + pyramid_.memory(); }

@@ -60,8 +60,7 @@ class VoxelIndex {
     std::uint64_t last = ~std::uint64_t{0};
     for (const Keyed& cell : sorted) {
       if (cell.key == last)
-        throw SettingError("VoxelData::cells", cell.number, "",
-                           "each in its own place; this entry repeats entry " + std::to_string(order.back()));
+        throw SettingError("VoxelData::cells", cell.number, "", "unique; this entry repeats entry " + std::to_string(order.back()));
       bricks += cell.key >> 6 != last >> 6, blocks += cell.key >> 12 != last >> 12;
       last = cell.key, order.push_back(cell.number);
     }
@@ -90,6 +89,7 @@ class VoxelIndex {
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+  /// Edge of a cell [m].
   [[nodiscard]] double edge() const noexcept { return edge_; }
   [[nodiscard]] std::size_t memory() const noexcept {
     return keys_.memory() + slots_.memory() + block_masks_.memory() + block_first_.memory() + brick_masks_.memory() +
