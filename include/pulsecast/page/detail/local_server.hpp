@@ -82,7 +82,8 @@ class LocalServer final : public httplib::Server {
   int bind(int port) {
     const int bound = port > 0 ? (bind_to_port("127.0.0.1", port) ? port : -1) : bind_to_any_port("127.0.0.1");
     if (bound <= 0)
-      throw std::runtime_error((port > 0 ? "port " + std::to_string(port) : std::string("no port")) + " is available at 127.0.0.1");
+      throw std::runtime_error((port > 0 ? "port " + std::to_string(port) + " is not free" : std::string("no port is free")) +
+                               " at 127.0.0.1");
     ::listen(svr_sock_, SOMAXCONN);
     return bound;
   }
