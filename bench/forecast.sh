@@ -43,7 +43,7 @@ for survey in "${surveys[@]}"; do
       if (/^  points/) points = $2
       if (/^  files/) files = in_si($2, $3) / 1e6
       if (/ s to load$/) loading = $(NF - 3)
-      if (/^planned in/) took = $3
+      if (/^forecast in/) took = $3
     }
     FILENAME ~ /run$/ && $1 == "echoes" { echoes = $2 }
     FILENAME ~ /run$/ && $1 == "peak" { peak = $3 * 1.048576 }

@@ -3,6 +3,7 @@
 
 # Prepares a header or the README for Doxygen: `awk -f docs/reference_filter.awk HEADER`. Lines keep their numbers.
 # - Functions that a concept or convention explains once for all of its models are given that explanation.
+# - A unit literal is named by its unit.
 # - Links of the README to other files, which the reference does not have, become their text.
 # - A comment after several variables of one declaration is given to each of them.
 BEGIN {
@@ -16,7 +17,23 @@ BEGIN {
   of["workspace"] = of["detect"] = "Detector"; of["width"] = "EchoWidth"
   for (name in of) says[name] = "As the concept " of[name] " requires."
   says["size"] = "Number of elements."
+  says["data"] = says["begin"] = "Pointer to the first element."
+  says["end"] = "Pointer past the last element."
+  says["empty"] = "True without elements."
+  says["operator[]"] = "Element `i`, from 0."
+  says["operator()"] = "Takes a batch of pulses, as the concept EchoSink requires. Errors: `FileError` if a file cannot be written."
+  says["close"] = "Completes the files under their final names. Errors: `FileError`."
+  says["normalize"] = "Makes the rotation unit, after `validate` has accepted its norm."
+  says["is_consistent"] = "True if the members that `archive` has filled fit together."
   says["sample_interval"] = "Time between two samples of a waveform [s]."
+  says["passage"] = "Passage of a ray through the solid of a voxel."
+  says["meeting"] = "Visitor of the voxels along ray j, for `VoxelIndex::walk`."
+  says["normal"] = "Unit normal at the hit of ray j; zero for a surface without direction."
+  tag = "Empty object, to be filled by `archive`."
+  overrides = "Overrides the function of the base class."
+  variable_type = "^ +(alignas\\(.*\\) |static |constexpr |const )*[A-Za-z_][A-Za-z0-9_:]*(<[^ ]*(, [0-9]+)?>)? "
+  variables = "^[a-z_]+(\\[[0-9]\\])*({}| = [^,()]*)?(, [a-z_]+(\\[[0-9]\\])*({}| = [^,()]*)?)*$"
+  function_of_a_class = "^ +(\\[\\[[a-z:]+\\]\\] |static |constexpr |friend |inline )*[A-Za-z_][A-Za-z0-9_:<>, ]*[&* ]+([a-z_]+(==)?|operator\\[\\]|operator\\(\\))\\("
 }
 FILENAME ~ /\.md$/ {
   while (match($0, /\]\((docs\/[A-Za-z\/_-]*(\.md|\.ipynb)|examples\/[a-z_.]*|[A-Z]*\.md)\)/)) {
@@ -28,27 +45,55 @@ FILENAME ~ /\.md$/ {
   print
   next
 }
+function with(text, line) {
+  match(line, /^ */)
+  return substr(line, 1, RLENGTH) "/** " text " */ " substr(line, RLENGTH + 1)
+}
+# Explanation of the function declared in a line without a docstring; empty if there is none.
+function explanation(line,   name) {
+  if (line ~ /^ +explicit [A-Za-z]+\(DeserializeTag/) return tag
+  if (match(line, /^consteval double operator""_[A-Za-z]+/)) {
+    name = substr(line, RSTART, RLENGTH)
+    sub(/.*_/, "", name)
+    return "Number with the unit `" name "`, in SI units and radians."
+  }
+  if (line ~ /^ +.*\(.* override( |;|$)/) return overrides
+  if (line ~ /^ *(return|else|throw|if|for) / || !match(line, function_of_a_class)) return ""
+  name = substr(line, RSTART, RLENGTH - 1)
+  sub(/.*[&* ]/, "", name)
+  return name in says ? says[name] : ""
+}
+# A docstring goes before the template.
+/^ *template <.*>$/ && before !~ /^ *\/\/\// {
+  held = $0
+  next
+}
+/^ *requires / && held != "" {
+  held = held "\n" $0
+  next
+}
 {
   line = $0
-  documented = before ~ /^ *\/\/\// || before ~ /^ *template <.*>$/ || line ~ /\/\/\/</
-  if (!documented && match(line, /^ +(\[\[[a-z:]+\]\] |static |constexpr |friend |inline )*[A-Za-z_][A-Za-z0-9_:<>, ]*[&* ]+[a-z_]+(==)?\(/)) {
-    name = substr(line, RSTART, RLENGTH - 1)
-    sub(/.*[&* ]/, "", name)
-    if (name in says && line !~ /^ *(return|else|throw|if|for) /) {
-      match(line, /^ +/)
-      line = substr(line, 1, RLENGTH) "/** " says[name] " */ " substr(line, RLENGTH + 1)
-    }
-  } else if (match(line, /; *\/\/\/< /) && line ~ /^ +[A-Za-z_][A-Za-z0-9_:<>]* [a-z_]+[^(;]*, [a-z_]/ ) {
+  text = before ~ /^ *\/\/\// || line ~ /\/\/\/</ ? "" : explanation(line)
+  if (held != "") {
+    print text == "" ? held : with(text, held)
+    held = text = ""
+  }
+  if (text != "") {
+    line = with(text, line)
+  } else if (match(line, /; *\/\/\/< /)) {
     text = substr(line, RSTART + RLENGTH)
     list = substr(line, 1, RSTART - 1)
-    match(list, /^ +[A-Za-z_][A-Za-z0-9_:<>]* /)
-    type = substr(list, 1, RLENGTH)
-    if (list !~ /[{(]/ && type !~ /</) {
-      n = split(substr(list, RLENGTH + 1), one, /, /)
-      line = ""
-      for (i = 1; i <= n; ++i) line = line type one[i] "; /**< " text " */ "
+    if (match(list, variable_type)) {
+      type = substr(list, 1, RLENGTH)
+      list = substr(list, RLENGTH + 1)
+      if (list ~ /, / && list ~ variables) {
+        n = split(list, one, /, /)
+        line = ""
+        for (i = 1; i <= n; ++i) line = line type one[i] "; /**< " text " */ "
+      }
     }
   }
   print line
-  before = $0
+  if (line !~ /^ *(template <.*>$|requires )/) before = $0
 }

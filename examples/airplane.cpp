@@ -33,11 +33,11 @@ auto airplane(const StraightLine& pass, double pulse_rate) {
 }
 
 int main(int argc, char** argv) {
-  CommandLine line("Scans hills made by code from an airplane.");
+  CommandLine line("Scans generated hills from an airplane.");
   double height = 450, overlap_percent = 30, pulse_rate_kHz = 50;
-  line.app.add_option("--height", height, "Of the flight above the hills")->type_name("M")->check(CLI::Range(100.0, 5000.0));
-  line.app.add_option("--overlap", overlap_percent, "Of neighbouring strips")->type_name("%")->check(CLI::Range(0.0, 90.0));
-  line.app.add_option("--pulse-rate", pulse_rate_kHz, "Of the laser")->type_name("kHz")->check(CLI::Range(1.0, 2000.0));
+  line.app.add_option("--height", height, "Flying height above the hills")->type_name("M")->check(CLI::Range(100.0, 5000.0));
+  line.app.add_option("--overlap", overlap_percent, "Overlap of neighbouring strips")->type_name("%")->check(CLI::Range(0.0, 90.0));
+  line.app.add_option("--pulse-rate", pulse_rate_kHz, "Pulse rate of the laser")->type_name("kHz")->check(CLI::Range(1.0, 2000.0));
 
   return line.run(argc, argv, [&] {
     const auto scene = hills::scene(line.seed);

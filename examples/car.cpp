@@ -32,10 +32,12 @@ auto scanner(const GroundVehicleDrive& drive, double angle, double pulse_rate) {
 }
 
 int main(int argc, char** argv) {
-  CommandLine line("Scans the streets of a small town made by code from a car.");
+  CommandLine line("Scans the streets of a generated small town from a car.");
   double speed_kmh = 30, pulse_rate_kHz = 40;
-  line.app.add_option("--speed", speed_kmh, "Of the car, where the way is straight")->type_name("KM/H")->check(CLI::Range(1.0, 100.0));
-  line.app.add_option("--pulse-rate", pulse_rate_kHz, "Of each of the two scanners")->type_name("kHz")->check(CLI::Range(1.0, 1000.0));
+  line.app.add_option("--speed", speed_kmh, "Speed of the car on straight roads")->type_name("KM/H")->check(CLI::Range(1.0, 100.0));
+  line.app.add_option("--pulse-rate", pulse_rate_kHz, "Pulse rate of each of the two scanners")
+      ->type_name("kHz")
+      ->check(CLI::Range(1.0, 1000.0));
 
   return line.run(argc, argv, [&] {
     const auto scene = street::scene(line.seed);

@@ -27,9 +27,9 @@ struct CommandLine {
   explicit CommandLine(const std::string& what) : app(what) {
     app.get_formatter()->column_width(34);
     app.option_defaults()->always_capture_default();
-    app.add_option("-o,--output", output, "Folder for the results; made if it is not there")->type_name("DIR");
-    app.add_option("-t,--threads", threads, "How many threads compute")->type_name("N")->check(CLI::Range(1U, 1024U));
-    app.add_option("-s,--seed", seed, "Of all that is random; the same seed gives the same files")
+    app.add_option("-o,--output", output, "Folder for the results, created if missing")->type_name("DIR");
+    app.add_option("-t,--threads", threads, "Number of threads")->type_name("N")->check(CLI::Range(1U, 1024U));
+    app.add_option("-s,--seed", seed, "Seed of all random numbers; the same seed gives the same files")
         ->type_name("N")
         ->check(CLI::NonNegativeNumber);
   }
@@ -62,7 +62,7 @@ struct CommandLine {
     try {
       std::error_code problem;
       std::filesystem::create_directories(output, problem);
-      if (problem) throw pulsecast::FileError(output.string(), "", "the output folder cannot be made (" + problem.message() + ")");
+      if (problem) throw pulsecast::FileError(output.string(), "", "the output folder cannot be created (" + problem.message() + ")");
       work();
     } catch (const std::exception& error) {
       std::cerr << "\nerror: " << error.what() << '\n';

@@ -28,7 +28,7 @@ struct Rosette {
 static_assert(Optic<Rosette>);
 
 int main(int argc, char** argv) {
-  CommandLine line("Scans a wood from a captive balloon, through an optic of its own.");
+  CommandLine line("Scans a wood from a captive balloon through a user-defined optic.");
   return line.run(argc, argv, [&] {
     const auto scene = wood::scene(line.seed);
     const Scanner scanner{.pulse_rate = 200_kHz, .pulses = 400'000};

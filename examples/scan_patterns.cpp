@@ -137,7 +137,7 @@ void draw_heads(const CommandLine& line) {
 }
 
 int main(int argc, char** argv) {
-  CommandLine line("Shows what each optic draws on a floor.");
+  CommandLine line("Draws the scan pattern of each optic on a floor.");
   return line.run(argc, argv, [&] {
     draw_lines(line);
     draw_curves(line);

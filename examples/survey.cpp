@@ -22,8 +22,8 @@ int main(int argc, char** argv) {
   CommandLine line("Runs the survey of an XML document.");
   std::filesystem::path path = "survey.xml";
   std::vector<std::filesystem::path> assets;
-  line.app.add_option("survey", path, "The document")->type_name("SURVEY.xml");
-  line.app.add_option("--assets", assets, "Folder of what the document names; may be given again")
+  line.app.add_option("survey", path, "Survey document")->type_name("SURVEY.xml");
+  line.app.add_option("--assets", assets, "Search folder for files of the document; repeatable")
       ->type_name("DIR")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -72,18 +72,18 @@ io::ImageSettings view_of_hut(std::uint64_t seed) {
 }
 
 int main(int argc, char** argv) {
-  CommandLine line("Scans the given OBJ files, or a wood made by code, with a scanner on a tripod.");
+  CommandLine line("Scans the given OBJ files, or a generated wood, with a scanner on a tripod.");
   std::vector<std::string> files;
   std::vector<Vec3> positions;
   double step_deg = 0.25;
   bool xyz = false, y_up = false;
-  line.app.add_option("scene", files, "OBJ files [m] that together make the scene; a wood if there are none")->type_name("OBJ");
-  line.add_places("-p,--position", positions, "Where the tripod stands [m]; may be given again for further set-ups");
-  line.app.add_option("-r,--resolution", step_deg, "Angle from pulse to pulse and from line to line")
+  line.app.add_option("scene", files, "OBJ files of the scene [m]; without any, a generated wood")->type_name("OBJ");
+  line.add_places("-p,--position", positions, "Position of the tripod [m]; repeatable for further set-ups");
+  line.app.add_option("-r,--resolution", step_deg, "Angular step between pulses and between lines")
       ->type_name("DEG")
       ->check(CLI::Range(0.005, 10.0));
-  line.app.add_flag("--y-up", y_up, "In the OBJ files y points up, not z");
-  line.app.add_flag("--xyz", xyz, "Leave the points as text, too");
+  line.app.add_flag("--y-up", y_up, "Vertical axis of the OBJ files is y, not z");
+  line.app.add_flag("--xyz", xyz, "Write the points as text, too");
 
   return line.run(argc, argv, [&] {
     const auto scene = files.empty() ? wood::scene(line.seed) : read_scene(files, y_up ? io::UpAxis::y : io::UpAxis::z);

@@ -115,7 +115,7 @@ class SettingsChooser {
     std::cout << "survey   " << survey_.name << ": " << found_.slots << " pulses, " << pulsecast::thread_count(options_.threads)
               << " threads, points as " << options_.format << "\nsample   " << found_.sampled << " pulses; the scene took "
               << digits(found_.loading) << " s to load\n\n";
-    print("as it is: ", as_is);
+    print("current settings: ", as_is);
     std::cout
         << "\n"
            "  beamSampleQuality  subrays  binSize_ns    time [s]      points  range error [mm]  intensity error [%]  lost [%]  false [%]\n";
@@ -133,7 +133,7 @@ class SettingsChooser {
       column(11, digits(f->invented * 1e2));
       std::cout << '\n';
     }
-    std::cout << "  * as it is\n";
+    std::cout << "  * current settings\n";
   }
 
   void print(const char* title, const Forecast& f) const {
@@ -193,14 +193,14 @@ bool forecast(const Options& options, const SurveyFile& file, const Loading& how
   notes.odd(simulation->warnings());
   notes.require_none();
   if (simulation->compiled().source.size() == 0) {
-    std::cerr << "error: no leg is active: there is nothing to plan\n";
+    std::cerr << "error: no leg is active: a forecast needs a leg with pulses\n";
     return false;
   }
   const Forecasts found = forecasts_of(*simulation, file.survey, options, how.settings.seed, loading);
   const SettingsChooser chooser(options, file.survey, found);
   chooser.print();
   if (options.verbose)
-    std::cout << "planned in " << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading)
+    std::cout << "forecast in " << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading)
               << " s\n";
   if (!options.forecast.asks()) return true;
 
@@ -208,10 +208,10 @@ bool forecast(const Options& options, const SurveyFile& file, const Loading& how
   const Forecast* const chosen = chooser.choose();
   if (chosen == nullptr) {
     chooser.print("nearest: ", chooser.nearest());
-    std::cerr << "error: no settings meet what was asked, " << chooser.demands() << '\n';
+    std::cerr << "error: no settings meet the limits: " << chooser.demands() << '\n';
     return false;
   }
-  chooser.print("best for what was asked: ", *chosen);
+  chooser.print("best within the limits: ", *chosen);
   if (options.forecast.apply) {
     const std::filesystem::path& to = options.forecast.apply_to.empty() ? options.survey : options.forecast.apply_to;
     write_survey_file(options, file, {chooser.rings(*chosen), chooser.bin_size(*chosen)}, to);

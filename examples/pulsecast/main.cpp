@@ -121,7 +121,7 @@ class Session {
         pages_(options, file.survey),
         log_{.seed = seed},
         notes_(notes) {
-    if (options_.page && options_.resume) notes_.say("--page shows the legs that are simulated now, not those that are kept");
+    if (options_.page && options_.resume) notes_.say("--page shows only the legs simulated now, not those of the earlier run");
   }
 
   int run() {
@@ -165,9 +165,9 @@ class Session {
     if (!unfinished.empty()) return {.folder = unfinished};
     const fs::path newest = ranks_.from_first(found.newest.value_or(fs::path()).string());
     if (newest.empty())
-      notes_.say("there is nothing to resume in " + parent.string() + ": this is a new run");
+      notes_.say("no run to resume in " + parent.string() + ": a new run is started");
     else
-      notes_.say("there is nothing to resume: the newest run, " + newest.string() + ", is complete");
+      notes_.say("no run to resume: the newest one, " + newest.string() + ", is complete");
     return {.is_complete = !newest.empty()};
   }
 
@@ -183,7 +183,7 @@ class Session {
   void require_run(const fs::path& folder, int runs) const {
     if (log_.run >= runs)
       throw FileError((folder / RunLog::name).string(), "line 3",
-                      "'run " + std::to_string(log_.run) + "': there are " + std::to_string(runs) + ", from 0");
+                      "'run " + std::to_string(log_.run) + "': expected less than the number of repetitions, " + std::to_string(runs));
   }
 
   /// Start time: that of a trajectory takes precedence over the option; a resumed run keeps its own.
@@ -257,10 +257,10 @@ class Session {
     const Simulation::Scene scene = simulation.scene();
     const CompiledSurvey& compiled = simulation.compiled();
     const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(), [](const CompiledSurvey::Leg& l) { return l.end > l.first; });
-    if (scene.empty || leg == compiled.legs.end()) return notes_.odd("there is no point, as there is nothing to scan");
+    if (scene.empty || leg == compiled.legs.end()) return notes_.odd("no points: the scene is empty, or no leg has pulses");
     std::ostringstream text;
     const auto put = [&](const char* words, const Vec3& v) { text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')'; };
-    text << std::fixed << std::setprecision(1) << "there is no point: leg " << leg->number;
+    text << std::fixed << std::setprecision(1) << "no points: leg " << leg->number;
     put(" begins at ", compiled.source.legs()[leg->number].path().at({}).position);
     put(" m, and the scene is from ", scene.least);
     put(" to ", scene.most);
@@ -281,7 +281,7 @@ class Session {
 
   static void require_same(const fs::path& folder, const std::string& then, const std::string& now) {
     if (then != now)
-      throw std::invalid_argument(folder.string() + ": was begun with another survey or other options, '" + then + "'; now they are '" +
+      throw std::invalid_argument(folder.string() + ": was started with another survey or other options, '" + then + "'; now they are '" +
                                   now + "'");
   }
 
@@ -303,7 +303,7 @@ class Session {
     }
     for (const auto& [path, fingerprint] : then.inputs)
       if (!log_.inputs.contains(path)) tell(path, " is gone");
-    if (!changed.empty()) throw FileError(folder.string(), "", "cannot be resumed: since it was begun, " + changed);
+    if (!changed.empty()) throw FileError(folder.string(), "", "cannot be resumed: since its start, " + changed);
   }
 
   void go_on_from(const fs::path& folder) {
@@ -318,7 +318,8 @@ class Session {
   /// True if results are complete; otherwise they are removed from the log.
   bool are_whole(const std::vector<fs::path>& results) {
     const std::vector<fs::path> damaged = log_.damaged(results);
-    for (const fs::path& path : damaged) notes_.say(path.string() + " is not as long as when it was whole: its legs are simulated again");
+    for (const fs::path& path : damaged)
+      notes_.say(path.string() + " is not as long as when it was completed: its legs are simulated again");
     if (damaged.empty() && log_.names(results)) return true;
     for (const fs::path& path : results) log_.files.erase(path.filename().string());
     return false;
@@ -430,7 +431,7 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
   notes.require_none();
   std::error_code error;
   fs::create_directories(options.output, error);
-  if (error) throw FileError(options.output.string(), "", "the output folder cannot be made (" + error.message() + ")");
+  if (error) throw FileError(options.output.string(), "", "the output folder cannot be created (" + error.message() + ")");
   const fs::path path = options.output / (file.survey.name + "_preview.png");
   constexpr PulseIndex enough = 400'000;
   const PulseIndex slots = simulation.compiled().source.size();
@@ -476,7 +477,7 @@ int work(const Options& options, Ranks& ranks) {
     if (!options.epsg && options.format.starts_with("la")) settled.epsg = reference_system_of(file.survey.scene);
     if (ranks.count() > 1 && (options.page || options.live)) {
       settled.page = settled.live = false;
-      if (ranks.first()) notes.say("--page and --live have no effect under mpirun: one process sees all points");
+      if (ranks.first()) notes.say("--page and --live have no effect under mpirun: they need all points in one process");
     }
     return Session(settled, file, *seed, ranks, notes).run();
   }

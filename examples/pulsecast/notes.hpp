@@ -38,7 +38,7 @@ class Notes {
 
   /// Throws if a note is an error.
   void require_none() const {
-    if (errors_ > 0) throw std::invalid_argument("--strict takes notes as errors: there are " + std::to_string(errors_));
+    if (errors_ > 0) throw std::invalid_argument("--strict treats notes as errors: " + std::to_string(errors_) + " of them");
   }
 
  private:

@@ -138,69 +138,69 @@ class CommandLine {
 
  private:
   void add_inputs() {
-    app_.add_option("survey", o_.survey, "The document")->type_name("SURVEY.xml");
-    app_.add_option("--assets", o_.assets, "Folder of what the document names; may be given again")
+    app_.add_option("survey", o_.survey, "Survey document")->type_name("SURVEY.xml");
+    app_.add_option("--assets", o_.assets, "Search folder for files of the document; repeatable")
         ->type_name("DIR")
         ->check(CLI::ExistingDirectory)
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app_.add_option("-o,--output", o_.output, "Folder for the results")->type_name("DIR")->capture_default_str();
-    app_.add_option("--format", o_.format, "Of the points: las, laz, xyz or xyz.gz; xyz if not given")
+    app_.add_option("--format", o_.format, "Format of the points: las, laz, xyz or xyz.gz; default: xyz")
         ->type_name("FORMAT")
         ->transform(CLI::IsMember({"las", "laz", "xyz", "xyz.gz"}, CLI::ignore_case));
-    app_.add_option("--seed", seed_, "Of all that is random; the survey's own, or another one each time")
+    app_.add_option("--seed", seed_, "Seed of all random numbers; default: the survey's own, or a new one each time")
         ->type_name("N")
         ->check([](const std::string& text) {
           return text == "AUTO" || text::number_in<std::uint64_t>(text) ? std::string() : "'" + text + "' is no whole number from 0";
         });
-    app_.add_option("-j,--threads,--nthreads,--njobs", o_.threads, "How many compute; 0 for as many as the machine runs at once")
+    app_.add_option("-j,--threads,--nthreads,--njobs", o_.threads, "Number of threads; 0: all of the machine")
         ->type_name("N")
         ->check(number_check<unsigned>([](unsigned threads) { return threads <= pulsecast::max_threads; },
                                        "whole number from 0 to " + std::to_string(pulsecast::max_threads)));
-    app_.add_option(both("gpsStartTime"), o_.gps_start_time, "When the survey begins: UTC, or seconds since 1970")
+    app_.add_option(both("gpsStartTime"), o_.gps_start_time, "Start of the survey: UTC, or seconds since 1970")
         ->type_name("'YYYY-MM-DD hh:mm:ss'");
   }
 
   void add_las() {
     app_.add_flag(both("lasOutput"), las_, "Points as LAS 1.4: --format las");
-    app_.add_flag("--las10", o_.las_1_0, "Points as LAS 1.0, for readers of long ago");
+    app_.add_flag("--las10", o_.las_1_0, "Points as LAS 1.0, for old readers");
     app_.add_option(both("lasScale"), o_.las_scale, "Step of the coordinates in LAS [m]")
         ->type_name("M")
         ->check(number_check<double>([](double step) { return step >= 1e-9 && step <= 1e3; }, "length from 1e-9 to 1000 m"));
-    app_.add_option("--epsg", epsg_, "Reference system of the coordinates in LAS, 0 for none; that of the scene's GeoTIFF if not given")
+    app_.add_option("--epsg", epsg_, "EPSG code of the coordinates in LAS, 0 for none; default: that of the scene's GeoTIFF")
         ->type_name("CODE")
         ->check(number_check<std::uint16_t>([](std::uint16_t code) { return code == 0 || (code >= 1024 && code <= 32766); },
-                                            "code of EPSG from 1024 to 32766, nor 0"));
+                                            "code from 1024 to 32766, or 0"));
     app_.add_flag(both("zipOutput"), zip_, "Points compressed: --format xyz.gz; with --lasOutput, --format laz");
   }
 
   void add_results() {
-    app_.add_flag(both("writeWaveform"), o_.write_waveform, "Leave waveforms, too");
-    app_.add_flag(both("writePulse"), o_.write_pulse, "Leave a table of all pulses, too");
+    app_.add_flag(both("writeWaveform"), o_.write_waveform, "Write waveforms, too");
+    app_.add_flag(both("writePulse"), o_.write_pulse, "Write a table of all pulses, too");
     app_.add_flag(both("calcEchowidth"), o_.echo_width, "Measure the width of echoes");
-    app_.add_flag(both("fullwaveNoise"), o_.waveform_noise, "Noise in the receiver");
-    app_.add_flag(both("fixedIncidenceAngle"), o_.fixed_incidence, "Surfaces reflect as if they were met squarely");
-    app_.add_flag(both("splitByChannel"), o_.split_by_channel, "A file of points for each channel");
-    app_.add_flag(both("disablePlatformNoise"), no_platform_noise_, "The platform knows where it is");
-    app_.add_flag(both("disableLegNoise"), no_leg_noise_, "Legs begin where they should");
+    app_.add_flag(both("fullwaveNoise"), o_.waveform_noise, "Add receiver noise");
+    app_.add_flag(both("fixedIncidenceAngle"), o_.fixed_incidence, "Scatter as at normal incidence");
+    app_.add_flag(both("splitByChannel"), o_.split_by_channel, "Write a file of points for each channel");
+    app_.add_flag(both("disablePlatformNoise"), no_platform_noise_, "No platform noise");
+    app_.add_flag(both("disableLegNoise"), no_leg_noise_, "No random offset of the start of legs");
   }
 
   void add_page() {
-    app_.add_flag("--page", o_.page, "Leave a page to look at the points in a browser, too: page.html");
-    app_.add_flag("--live", o_.live, "Show the points in a browser while they come; says where");
-    app_.add_option(both("pagePoints"), o_.page_points, "Most points of a page; more are thinned")
+    app_.add_flag("--page", o_.page, "Write page.html, too: the points for a browser");
+    app_.add_flag("--live", o_.live, "Show the growing cloud in a browser, at the address printed");
+    app_.add_option(both("pagePoints"), o_.page_points, "Maximum number of points of a page; larger clouds are thinned")
         ->type_name("N")
         ->check(CLI::Range(2, 134'217'728))
         ->capture_default_str();
   }
 
   void add_habits() {
-    app_.add_flag(both("rebuildScene"), rebuild_scene_, "Build the scene anew, even if it was kept from an earlier run");
-    app_.add_flag(both("noSceneWriting"), no_scene_writing_, "Do not keep the scene for later runs");
-    app_.add_flag("--resume", o_.resume, "Go on with the newest run of this survey that was not finished");
-    app_.add_flag("--strict", o_.strict, "Take notes about the survey and its files as errors");
-    app_.add_flag("-q,--quiet,--silent", o_.quiet, "Say nothing but errors");
-    app_.add_flag("-v,--verbose", o_.verbose, "Say more");
+    app_.add_flag(both("rebuildScene"), rebuild_scene_, "Build the scene anew instead of reading it from the cache");
+    app_.add_flag(both("noSceneWriting"), no_scene_writing_, "Do not cache the scene for later runs");
+    app_.add_flag("--resume", o_.resume, "Resume the newest unfinished run of this survey");
+    app_.add_flag("--strict", o_.strict, "Treat notes on the survey and its files as errors");
+    app_.add_flag("-q,--quiet,--silent", o_.quiet, "Print errors only");
+    app_.add_flag("-v,--verbose", o_.verbose, "Print more");
   }
 
   void add_forecast() {
@@ -209,12 +209,13 @@ class CommandLine {
         return quantity(given, kind) ? std::string() : "'" + given + "': expected " + kind.expected;
       }));
     };
-    demand("--range-error", range_error_, a_length, "forecast: largest error of ranges, as in 5mm", "LENGTH");
-    demand("--intensity-error", intensity_error_, a_share, "forecast: largest error of intensities, as in 2%", "SHARE");
-    demand("--time", time_, a_duration, "forecast: longest run, as in 10min", "DURATION");
-    demand("--memory", memory_, a_size, "forecast: most memory, as in 4GB", "SIZE");
-    of_forecast_.push_back(
-        app_.add_option("--apply", apply_to_, "forecast: changes the survey, or writes it to FILE")->type_name("[FILE]")->expected(0, 1));
+    demand("--range-error", range_error_, a_length, "forecast: maximum range error, as in 5mm", "LENGTH");
+    demand("--intensity-error", intensity_error_, a_share, "forecast: maximum intensity error, as in 2%", "SHARE");
+    demand("--time", time_, a_duration, "forecast: maximum run time, as in 10min", "DURATION");
+    demand("--memory", memory_, a_size, "forecast: maximum memory, as in 4GB", "SIZE");
+    of_forecast_.push_back(app_.add_option("--apply", apply_to_, "forecast: write the best settings to the survey, or a copy to FILE")
+                               ->type_name("[FILE]")
+                               ->expected(0, 1));
   }
 
   void add_unused() {
@@ -241,7 +242,7 @@ class CommandLine {
   [[nodiscard]] std::string problem_of_words() const {
     const std::vector<std::string> extras = app_.remaining();
     for (const std::string& extra : extras)
-      if (extra.starts_with('-')) return "there is no option " + extra + nearest_option(app_, extra);
+      if (extra.starts_with('-')) return "unknown option " + extra + nearest_option(app_, extra);
     const std::vector<std::string> commands(std::begin(all_commands), std::end(all_commands));
     const bool is_catalogue = o_.command == "catalogue";
     if (!extras.empty() && o_.survey.extension() != ".xml")
@@ -264,7 +265,7 @@ class CommandLine {
                    .apply = of_forecast_.back()->count() > 0,
                    .apply_to = apply_to_};
     const bool knows_why = !o_.forecast.apply || o_.forecast.asks();
-    return knows_why ? "" : "--apply must know what for: expected --range-error, --intensity-error, --time or --memory";
+    return knows_why ? "" : "--apply needs a limit: expected --range-error, --intensity-error, --time or --memory";
   }
 
   /// Checks and completes all other options, with notes on those without effect. Returns a problem; empty if there is none.
@@ -277,7 +278,7 @@ class CommandLine {
     if (o_.format.empty())
       o_.format = asked_by_flags;
     else if ((las_ || zip_) && o_.format != asked_by_flags)
-      o_.notes.push_back("--format " + o_.format + " counts, not " + (las_ ? "--lasOutput" : "--zipOutput"));
+      o_.notes.push_back("--format " + o_.format + " has precedence over " + (las_ ? "--lasOutput" : "--zipOutput"));
     if (o_.las_1_0 && o_.format == "laz") return "--las10 and --format laz: only LAS 1.4 is compressed";
     if (o_.las_1_0 && zip_ && o_.format == "las") o_.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
     if (!epsg_.empty()) o_.epsg = text::number_in<std::uint16_t>(epsg_);
@@ -294,11 +295,11 @@ class CommandLine {
   CLI::App app_{
       "Simulates the survey of an XML document.\n\n"
       "  pulsecast SURVEY.xml            simulates it\n"
-      "  pulsecast check SURVEY.xml      says what is wrong with it\n"
-      "  pulsecast info SURVEY.xml       says what would be simulated\n"
-      "  pulsecast preview SURVEY.xml    draws a quick look of its points\n"
-      "  pulsecast forecast SURVEY.xml   says what a run takes, and which settings are the cheapest that meet what is asked\n"
-      "  pulsecast catalogue             lists the scanners and platforms that surveys may name\n",
+      "  pulsecast check SURVEY.xml      checks it and lists all errors\n"
+      "  pulsecast info SURVEY.xml       describes its legs and its scene\n"
+      "  pulsecast preview SURVEY.xml    draws a preview of its points\n"
+      "  pulsecast forecast SURVEY.xml   predicts time, memory and errors, and finds the cheapest settings within limits\n"
+      "  pulsecast catalogue             lists the scanners and platforms of the catalogue\n",
       "pulsecast"};
   Options o_;
   std::string seed_, epsg_, range_error_, intensity_error_, time_, memory_, apply_to_, swallowed_;

@@ -69,9 +69,8 @@ std::unique_ptr<Ranks> join_ranks(char** argv) {
     std::error_code error;
     const fs::path other = fs::read_symlink("/proc/self/exe", error).parent_path() / "pulsecast-mpi";
     execv(other.c_str(), argv);
-    throw std::runtime_error(
-        "started by mpirun, but " + other.string() +
-        " is not there: build where there is MPI (Debian package: libopenmpi-dev), or start one process without mpirun");
+    throw std::runtime_error("started by mpirun, but " + other.string() +
+                             " does not exist: build with MPI (Debian package: libopenmpi-dev), or start one process without mpirun");
   }
   return std::make_unique<OneRank>();
 }

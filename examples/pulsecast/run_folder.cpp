@@ -103,7 +103,7 @@ class LogLine {
   void expect(bool holds) const {
     if (holds) return;
     const std::string shown = written_name(std::string(line_.substr(0, 80))) + (line_.size() > 80 ? "..." : "");
-    throw FileError(path_, "line " + std::to_string(number_), "'" + shown + "': it is not what a run left; this one cannot be resumed");
+    throw FileError(path_, "line " + std::to_string(number_), "'" + shown + "': expected a line of a run's log: the run cannot be resumed");
   }
 
   [[nodiscard]] bool is_end() const { return line_ == "end"; }
@@ -185,7 +185,7 @@ RunLog RunLog::parse(std::string_view text, const std::string& path) {
       read_value(line, key, log);
     }
   }
-  if (!complete) throw FileError(path, "", "is cut short: the run cannot be resumed");
+  if (!complete) throw FileError(path, "", "is truncated: the run cannot be resumed");
   return log;
 }
 
@@ -214,7 +214,7 @@ void RunLog::add_files(const fs::path& folder, const std::vector<fs::path>& whol
   const bool is_written = file >= 0 && ::write(file, lines.data(), lines.size()) == static_cast<ssize_t>(lines.size());
   const int error = errno;
   if (file >= 0) ::close(file);
-  if (!is_written) throw FileError(path.string(), "", "cannot be added to: " + reason_of(error));
+  if (!is_written) throw FileError(path.string(), "", "cannot be extended: " + reason_of(error));
 }
 
 std::vector<fs::path> RunLog::damaged(const std::vector<fs::path>& results) const {
@@ -286,7 +286,7 @@ struct Holder {
 RunLock::RunLock(const fs::path& folder) : path_(folder / name) {
   const auto fail = [&](int error) {
     if (file_ >= 0) ::close(file_);
-    throw FileError(folder.string(), "", "cannot be locked: " + reason_of(error) + "; expected a folder that may be written to");
+    throw FileError(folder.string(), "", "cannot be locked: " + reason_of(error) + "; expected a writable folder");
   };
   for (;;) {
     file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
@@ -339,11 +339,11 @@ std::pair<fs::path, RunLock> new_run_folder(const fs::path& parent, const RunLog
   const std::string stamp = local_time();
   std::error_code error;
   fs::create_directories(parent, error);
-  if (error) throw FileError(parent.string(), "", "the output folder cannot be made (" + error.message() + ")");
+  if (error) throw FileError(parent.string(), "", "the output folder cannot be created (" + error.message() + ")");
   fs::path making;
   do making = parent / ('.' + stamp + '_' + std::to_string(std::random_device{}()));
   while (!fs::create_directory(making, error) && !error);
-  if (error) throw FileError(making.string(), "", "the output folder cannot be made (" + error.message() + ")");
+  if (error) throw FileError(making.string(), "", "the output folder cannot be created (" + error.message() + ")");
   try {
     RunLock lock(making);
     log.write(making);
@@ -355,7 +355,7 @@ std::pair<fs::path, RunLock> new_run_folder(const fs::path& parent, const RunLog
       lock.renamed(folder);
       return {std::move(folder), std::move(lock)};
     }
-    throw FileError((parent / stamp).string(), "", "the output folder cannot be made");
+    throw FileError((parent / stamp).string(), "", "the output folder cannot be created");
   } catch (...) {
     fs::remove_all(making, error);
     throw;

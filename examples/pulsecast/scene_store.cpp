@@ -134,7 +134,7 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
     if (opened.scene) {
       std::error_code ignored;
       for (const fs::path& used : {path, warnings_path}) fs::last_write_time(used, fs::file_time_type::clock::now(), ignored);
-      notes.push_back("the scene was built before, and comes from " + path.string());
+      notes.push_back("the scene is read from its cache, " + path.string());
       return {{{opened.scene->parts().begin(), opened.scene->parts().end()}, *std::move(warnings)}, path, key};
     }
   }
@@ -143,11 +143,11 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
   try {
     std::error_code error;
     fs::create_directories(store.folder, error);
-    if (error) throw FileError(store.folder.string(), "", "the folder cannot be made: " + error.message());
+    if (error) throw FileError(store.folder.string(), "", "the folder cannot be created: " + error.message());
     const SurveyScene scene(made.built.parts, MovingIndexSettings{.to = 1});
     const std::uintmax_t room = fs::space(store.folder, error).available;
     if (scene.memory() > (error ? max_kept : std::min(max_kept, room)) / 2)
-      throw FileError(store.folder.string(), "", "it is too large for there");
+      throw FileError(store.folder.string(), "", "the scene is too large for this folder");
     replace(warnings_path, [&](const fs::path& own) {
       io::OutputFile file(own);
       file.write(hex(key) + '\n');
@@ -157,11 +157,11 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
     });
     replace(path, [&](const fs::path& own) { io::save_scene(own, scene, key); });
     tidy(store.folder, path);
-    notes.push_back("the scene is kept for the next run, in " + path.string());
+    notes.push_back("the scene is cached for the next run in " + path.string());
     made.file = path;
     made.key = key;
   } catch (const FileError& error) {
-    notes.push_back(std::string("the scene is not kept for the next run: ") + error.what());
+    notes.push_back(std::string("the scene is not cached: ") + error.what());
   }
   return made;
 }
@@ -205,7 +205,7 @@ KeptParts shared_parts(SceneSharing& sharing, const SceneStore& store, const Sce
   warnings = sharing.from_builder(std::move(warnings));
 
   std::memcpy(&kept.key, key.data(), sizeof kept.key);
-  std::string reason = "there is no room for it in a file";
+  std::string reason = "too little free space for a file of it";
   if (!path.empty()) {  // the builder drops its own copy for this one
     auto opened = io::open_scene<SurveyScene>(path, kept.key, MovingIndexSettings{.to = 1});
     reason = opened.reason;

@@ -135,7 +135,7 @@ void write_survey_file(const Options& options, const SurveyFile& file, const Wav
     fs::permissions(io::OutputFile::temporary_name(target), before.permissions(), error);
   else
     error.clear();
-  if (error) throw FileError(path.string(), "", "cannot be given the rights that it had: " + error.message());
+  if (error) throw FileError(path.string(), "", "cannot be given its former permissions: " + error.message());
   out.commit();
 }
 

@@ -151,13 +151,13 @@ void bind_documents(py::module_& m) {
         return to_python(document.survey);
       },
       "path"_a, "assets"_a = Paths{},
-      "Reads the XML document of a survey and all that it refers to, and returns its SurveySettings. Files are looked for in the folders "
-      "`assets` first, then beside the document. Raises FileError with all that is wrong; what is odd becomes a warning.");
+      "Reads the XML document of a survey, with all documents that it refers to, and returns its SurveySettings. Search folders: `assets`, "
+      "then that of the document. Raises FileError with all errors; other defects are warnings.");
   m.def(
       "write_survey", [](const std::filesystem::path& path, py::handle survey) { helios::write_survey(path, survey_of(survey)); }, "path"_a,
       "survey"_a, "Writes SurveySettings as one XML document, which `read_survey` and the survey program read.");
   m.def(
-      "xml_text", [](py::handle survey) { return helios::xml_text(survey_of(survey)); }, "survey"_a, "What `write_survey` would write.");
+      "xml_text", [](py::handle survey) { return helios::xml_text(survey_of(survey)); }, "survey"_a, "Text that `write_survey` writes.");
   m.def(
       "read_assets",
       [](const std::filesystem::path& path, const Paths& assets) {
@@ -172,10 +172,10 @@ void bind_mesh(py::module_& m) {
   py::class_<Simulation::Mesh>(m, "Mesh", "Triangles that stand in the scene beside the parts that the survey names.")
       .def(py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
            "ground"_a = false,
-           "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), numbers of vertices from 0; object: what its points are marked "
-           "with; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: whether platforms may stand on it.")
+           "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), vertex indices from 0; object: object id of its "
+           "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry platforms.")
       .def_property_readonly(
-          "size", [](const Simulation::Mesh& mesh) { return mesh.data.triangles.size(); }, "Triangles.")
+          "size", [](const Simulation::Mesh& mesh) { return mesh.data.triangles.size(); }, "Number of triangles.")
       .def("__repr__", [](const Simulation::Mesh& mesh) {
         return "<Mesh of " + std::to_string(mesh.data.triangles.size()) + " triangles, object " + std::to_string(mesh.object) + '>';
       });
@@ -189,26 +189,25 @@ void bind_simulation(py::module_& m) {
       .def(py::init(&simulation_of), "survey"_a, py::kw_only(), "assets"_a = Paths{}, "meshes"_a = std::vector<Simulation::Mesh>{},
            "seed"_a = py::none(), "echo_width"_a = false, "waveforms"_a = false, "waveform_noise"_a = false, "fixed_incidence"_a = false,
            "platform_noise"_a = true, "leg_noise"_a = true, "threads"_a = 0, "repetition"_a = 0,
-           "survey: SurveySettings. assets: folders where files are looked for. meshes: what stands in the scene besides. seed: the "
-           "survey's own, or "
-           "0, unless given. echo_width: fit widths. waveforms: keep the samples. The rest switch what they say. threads: that build the "
-           "scene, 0 "
-           "for all. repetition: which scene, where parts are swapped from run to run. Raises SettingError or FileError.")
+           "survey: SurveySettings. assets: search folders. meshes: triangles in addition to the survey's parts. seed: by default the "
+           "survey's own, or 0. echo_width: fit echo widths. waveforms: keep the waveforms. waveform_noise: add receiver noise. "
+           "fixed_incidence: scatter as at normal incidence. platform_noise, leg_noise: False removes those of the survey. threads: for "
+           "building the scene; 0: all. repetition: index of the scene, of a survey with swapped parts. Raises SettingError or FileError.")
       .def(
-          "__len__", [](const Simulation& s) { return s.compiled().source.size(); }, "Pulse slots.")
+          "__len__", [](const Simulation& s) { return s.compiled().source.size(); }, "Number of pulse slots.")
       .def("__repr__",
            [](const Simulation& s) {
              return "<Simulation of " + std::to_string(s.compiled().legs.size()) + " legs, " + std::to_string(s.compiled().source.size()) +
                     " pulse slots, " + std::to_string(s.scene().triangles) + " triangles>";
            })
       .def("trajectory", &trajectory_of, "interval"_a,
-           "Where the platform is, every `interval` seconds (from 1e-6) of each leg and at its end: a structured array of time [s], "
+           "Poses of the platform every `interval` seconds (from 1e-6) of each leg and at its end: a structured array of time [s], "
            "x, y, z [m, world], roll, pitch, yaw [rad; yaw clockwise from north] and leg.")
       .def_property_readonly(
           "legs", &legs_of,
-          "Structured array: number, active, start [s], duration [s], pulse_rate [Hz], first, end: its slots, which tell legs "
-          "of one strip apart: their points and pulses all have the number of its first leg.")
-      .def_property_readonly("repetitions", &Simulation::runs, "How many scenes there are, where parts are swapped from run to run.")
+          "Structured array: number, active, start [s], duration [s], pulse_rate [Hz]; first, end: its slots. Points and pulses of a "
+          "strip have the number of its first leg; their slots distinguish the legs.")
+      .def_property_readonly("repetitions", &Simulation::runs, "Number of repetitions, each with its own scene.")
       .def_property_readonly(
           "bounds",
           [](const Simulation& s) -> py::object {
@@ -217,11 +216,11 @@ void bind_simulation(py::module_& m) {
             return py::make_tuple(py::make_tuple(scene.least.x, scene.least.y, scene.least.z),
                                   py::make_tuple(scene.most.x, scene.most.y, scene.most.z));
           },
-          "Two corners of the scene's box [m, world]; None if there is nothing.")
+          "Two corners of the scene's bounding box [m, world]; None for an empty scene.")
       .def_property_readonly(
-          "triangles", [](const Simulation& s) { return s.scene().triangles; }, "In the scene.")
+          "triangles", [](const Simulation& s) { return s.scene().triangles; }, "Number of triangles in the scene.")
       .def_property_readonly(
-          "memory", [](const Simulation& s) { return s.scene().memory; }, "Of the scene [byte].");
+          "memory", [](const Simulation& s) { return s.scene().memory; }, "Memory of the scene [byte].");
   python::bind_run(simulation, [](const Simulation& s) {
     return [&s](const RunOptions& options, const auto& sink) { return s.run(options, [&](const EchoBatch& batch) { sink(batch); }); };
   });

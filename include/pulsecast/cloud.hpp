@@ -11,11 +11,12 @@ namespace pulsecast {
 
 /// Point cloud in memory: a sink that keeps every echo, column by column.
 struct Cloud {
-  std::vector<Vec3> points;  ///< points in the world [m]
-  std::vector<Echo> echoes;
+  std::vector<Vec3> points;        ///< points in the world [m]
+  std::vector<Echo> echoes;        ///< echo of each point
   std::vector<PulseIndex> pulses;  ///< pulse index of each point
   std::vector<Tick> ticks;         ///< emission time of that pulse, since the survey's start
 
+  /// Appends the echoes of a batch. Errors: std::bad_alloc.
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
       for (const Echo& echo : batch.echoes_of(shot)) {

@@ -146,7 +146,7 @@ concept Target = BundleTarget<T> || RayTarget<T>;
 
 /// Sampling of a beam's cross section by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along the beam.
 /// Law: the shares are not negative and sum to one; a survey refuses others.
-/// Optional: `static constexpr bool recorded = true` passes all subrays on to the sinks, as `WithSubrayRecord` does.
+/// Optional: `static constexpr bool recorded = true` passes all subrays to the sinks, as `WithSubrayRecord` does.
 template <class F>
 concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
   { f.size() } noexcept -> std::same_as<std::size_t>;
@@ -156,11 +156,11 @@ concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
 
 /// Return of one subray: the input of a detector.
 struct Reflection {
-  double range = 0;  ///< [m]
-  double power = 0;  ///< received, for a pulse of zero length; greater than 0 [W]
-  ObjectId object = 0;
-  std::uint16_t classification = 0;
-  double cos_incidence = 1;  ///< as in `Hit`
+  double range = 0;                  ///< distance from the pulse's origin [m]
+  double power = 0;                  ///< received power for a pulse of zero length; greater than 0 [W]
+  ObjectId object = 0;               ///< as in `Hit`
+  std::uint16_t classification = 0;  ///< as in `Hit`
+  double cos_incidence = 1;          ///< as in `Hit`
 };
 
 /// Result of a detector for one pulse; the spans stay valid until the workspace is used again.

@@ -17,18 +17,19 @@ using ObjectId = std::uint32_t;
 
 /// Hit of one subray: numbers only, so that any map can provide it.
 struct Hit {
-  double range = std::numeric_limits<double>::infinity();  ///< from the pulse's origin; infinite for a miss [m]
+  double range = std::numeric_limits<double>::infinity();  ///< distance from the pulse's origin; infinite for a miss [m]
   double cos_incidence = 1;                                ///< cosine of the angle between beam and surface normal, in [0, 1]
   double backscatter = 1;  ///< reflectance times the angular law, cosine included: 1 for a white Lambertian surface at normal incidence
-  ObjectId object = 0;
-  std::uint16_t classification = 0;
+  ObjectId object = 0;     ///< number of the object hit
+  std::uint16_t classification = 0;  ///< class of the material hit
 
+  /// True for a hit.
   [[nodiscard]] bool met() const noexcept { return range < std::numeric_limits<double>::infinity(); }
 };
 
 /// One return of a pulse, as the instrument reports it.
 struct Echo {
-  double range = 0;                  ///< along the pulse's axis [m]
+  double range = 0;                  ///< distance along the pulse's axis [m]
   double amplitude = 0;              ///< received power at the echo's peak [W]
   double reflectance = 0;            ///< amplitude relative to a white Lambertian surface at normal incidence and this range
   double width = 0;                  ///< standard deviation in time; 0 if not measured, NaN if not found [s]
@@ -47,18 +48,18 @@ enum class Fate : std::uint8_t {
   below_threshold,  ///< light from inside the range gate, but nothing that the detector takes for an echo
   absorbed,         ///< hits inside the range gate, but no light: black, edge-on, or too far in the haze
 };
-inline constexpr std::size_t fate_count = 6;
+inline constexpr std::size_t fate_count = 6;  ///< number of fates
 
 /// Pulse as reported by the instrument.
 struct Shot {
-  PulseIndex index = 0;
-  Tick tick{};               ///< emission time, since the survey's start
-  Vec3 origin{};             ///< exit in the world [m]
-  Vec3 direction{};          ///< unit, in the world
-  double scan_angle = 0;     ///< as in `Pulse` [rad]
-  std::uint16_t leg = 0;     ///< number of the leg, from 0
-  std::uint8_t channel = 0;  ///< number of the emitter, from 0
-  Fate fate = Fate::missed;
+  PulseIndex index = 0;            ///< number of the slot
+  Tick tick{};                     ///< emission time, since the survey's start
+  Vec3 origin{};                   ///< exit of the beam, in the world [m]
+  Vec3 direction{};                ///< unit vector, in the world
+  double scan_angle = 0;           ///< as in `Pulse` [rad]
+  std::uint16_t leg = 0;           ///< number of the leg, from 0
+  std::uint8_t channel = 0;        ///< number of the emitter, from 0
+  Fate fate = Fate::missed;        ///< fate of the slot
   std::uint32_t first_echo = 0;    ///< index of its first echo in the batch
   std::uint32_t echoes = 0;        ///< number of its echoes
   std::uint64_t first_sample = 0;  ///< index of its first waveform sample in the batch
@@ -68,19 +69,21 @@ struct Shot {
 
 /// Return of one subray of a pulse, for studies of footprints. Infinite range for a miss.
 struct SubrayHit : Hit {
-  double power = 0;  ///< received, for a pulse of zero length; 0 outside the range gate [W]
+  double power = 0;  ///< received power for a pulse of zero length; 0 outside the range gate [W]
   Vec3 point{};      ///< hit in the world, by the pose as known to the instrument [m]
 };
 
 /// Consecutive pulses and their returns, in pulse order. The spans are valid during the call of the sink.
 struct EchoBatch {
-  std::span<const Shot> shots;
+  std::span<const Shot> shots;           ///< pulses emitted, in ascending order of slots
   std::span<const Echo> echoes;          ///< contiguous per shot, sorted by reported range
   std::span<const float> samples;        ///< waveforms: received power [W]
   double sample_interval = 0;            ///< sample spacing of the waveforms [s]
   std::span<const SubrayHit> subrays{};  ///< all of each shot, in the order of the footprint; empty unless it is `WithSubrayRecord`
 
+  /// Echoes of a shot of this batch.
   [[nodiscard]] std::span<const Echo> echoes_of(const Shot& s) const noexcept { return {echoes.data() + s.first_echo, s.echoes}; }
+  /// Waveform of a shot of this batch [W]; empty if not kept.
   [[nodiscard]] std::span<const float> waveform_of(const Shot& s) const noexcept { return {samples.data() + s.first_sample, s.samples}; }
 
   /// Subrays of the shot at this index in `shots`.

@@ -15,7 +15,9 @@ struct Divergence {
   double across;  ///< full angle along the beam's x [rad]
   double up;      ///< full angle along the beam's z [rad]
 
+  /// Round beam.
   constexpr Divergence(double both) noexcept : across(both), up(both) {}
+  /// Elliptical beam.
   constexpr Divergence(double across_, double up_) noexcept : across(across_), up(up_) {}
 
   /// Ratio of up to across: 1 for a round beam.
@@ -34,6 +36,7 @@ struct Laser {
   double waist_diameter = 0;       ///< waist at 1/e^2, across; up in proportion to the divergences [m]
   double waist_range = 0;          ///< distance of the waist from the exit; a focus if positive [m]
 
+  /// True if the beam diverges from the exit point.
   [[nodiscard]] bool from_a_point() const noexcept { return waist_diameter == 0 && waist_range == 0; }
 
   friend bool operator==(const Laser&, const Laser&) = default;
@@ -46,7 +49,7 @@ struct Pulse {
   Tick tick{};                                         ///< emission time, since the survey's start
   Pose<frame::Beam, Frame> pose{};                     ///< pose at the exit
   std::optional<Pose<frame::Beam, Frame>> reported{};  ///< pose as known to the instrument; empty if exact
-  Laser laser{};
+  Laser laser{};                                       ///< laser that emitted the pulse
   double scan_angle = 0;     ///< angle about the body's forward axis: 0 down, positive to the right, in [-pi, pi] [rad]; set by a platform
   std::uint16_t leg = 0;     ///< number of its leg or strip, from 0
   std::uint8_t channel = 0;  ///< number of the emitter in a multi-emitter device, from 0
@@ -64,7 +67,9 @@ struct Pulse {
         leg(p.leg),
         channel(p.channel) {}
 
+  /// Exit of the beam [m].
   [[nodiscard]] const Vec3& origin() const noexcept { return pose.position; }
+  /// Unit vector along the beam.
   [[nodiscard]] Vec3 direction() const noexcept { return pose.rotation * axis::forward; }
 };
 

@@ -24,22 +24,23 @@ namespace pulsecast {
 
 /// Progress of a run.
 struct Progress {
-  PulseIndex done = 0;   ///< pulse slots delivered to the sinks
-  PulseIndex total = 0;  ///< pulse slots in the run
-  std::uint64_t echoes = 0;
-  double seconds = 0;  ///< time since the start of the run [s]
+  PulseIndex done = 0;       ///< pulse slots delivered to the sinks
+  PulseIndex total = 0;      ///< pulse slots in the run
+  std::uint64_t echoes = 0;  ///< echoes delivered to the sinks
+  double seconds = 0;        ///< time since the start of the run [s]
 };
 
 /// Slots of a survey in a run.
 struct RunSlots {
-  PulseIndex first, stride, count;
+  PulseIndex first, stride, count;  ///< first slot, step between slots, number of slots
 
+  /// Slot number `n` of the run.
   [[nodiscard]] PulseIndex operator[](PulseIndex n) const noexcept { return first + n * stride; }
 };
 
 /// Options of a run.
 struct RunOptions {
-  unsigned threads = 0;                                     ///< at most `max_threads`; 0 for the hardware's
+  unsigned threads = 0;                                     ///< number of threads, at most `max_threads`; 0 for the hardware concurrency
   PulseIndex first = 0;                                     ///< first slot
   PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< one past the last slot, at most the survey's size
   PulseIndex stride = 1;                                    ///< step between slots, greater than 1 for a preview
@@ -63,12 +64,12 @@ struct RunOptions {
 struct RunSummary {
   PulseIndex slots = 0;                             ///< pulse slots done
   std::array<std::uint64_t, fate_count> fates{};    ///< slots by `Fate`
-  double energy = 0;                                ///< sent, as in `Outcome` [J]
-  std::array<double, fate_count> energy_by_fate{};  ///< that energy by the fate of the subrays that carried it; sums to all of it [J]
-  std::uint64_t echoes = 0;
-  std::uint64_t rays = 0;  ///< subrays traced
-  double seconds = 0;      ///< duration [s]
-  bool complete = true;    ///< false if stopped
+  double energy = 0;                                ///< energy sent, as in `Outcome` [J]
+  std::array<double, fate_count> energy_by_fate{};  ///< that energy by the fate of its subrays [J]
+  std::uint64_t echoes = 0;                         ///< echoes found
+  std::uint64_t rays = 0;                           ///< subrays traced
+  double seconds = 0;                               ///< duration [s]
+  bool complete = true;                             ///< false if stopped
 
   /// Adds the totals of another run, or of another part of the same run.
   void add(const RunSummary& other) noexcept {
@@ -84,6 +85,7 @@ struct RunSummary {
     complete = complete && other.complete;
   }
 
+  /// Slots of a fate.
   [[nodiscard]] std::uint64_t count(Fate fate) const noexcept { return fates[static_cast<std::size_t>(fate)]; }
   [[nodiscard]] double share(Fate fate) const noexcept { return energy > 0 ? energy_by_fate[static_cast<std::size_t>(fate)] / energy : 0; }
   [[nodiscard]] PulseIndex pulses() const noexcept { return slots - count(Fate::blocked); }  ///< pulses sent
@@ -91,11 +93,11 @@ struct RunSummary {
 
 /// Results of successive slots, for single requests to a survey.
 struct ResultBuffer {
-  std::vector<Shot> shots{};
-  std::vector<Echo> echoes{};
-  std::vector<float> samples{};
-  std::vector<SubrayHit> subrays{};
-  RunSummary counts{};  ///< without rays and seconds
+  std::vector<Shot> shots{};         ///< as in `EchoBatch`
+  std::vector<Echo> echoes{};        ///< as in `EchoBatch`
+  std::vector<float> samples{};      ///< as in `EchoBatch`
+  std::vector<SubrayHit> subrays{};  ///< as in `EchoBatch`
+  RunSummary counts{};               ///< without rays and seconds
 
   void clear() noexcept {
     shots.clear();
@@ -105,6 +107,7 @@ struct ResultBuffer {
     counts = {};
   }
 
+  /// Appends the result of a slot.
   void append(const Outcome& outcome) {
     ++counts.slots;
     ++counts.fates[static_cast<std::size_t>(outcome.shot.fate)];

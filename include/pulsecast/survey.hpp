@@ -21,11 +21,11 @@ namespace pulsecast {
 
 /// Result of one pulse slot. The spans stay valid until the workspace is used again; the shot's indices into a batch are not set.
 struct Outcome {
-  Shot shot;
-  std::span<const Echo> echoes;
-  std::span<const float> waveform;
-  std::size_t hits = 0;  ///< subrays with a hit
-  double energy = 0;     ///< energy sent: peak power times pulse length; the pulse shape makes some percent of difference [J]
+  Shot shot;                        ///< pulse as reported
+  std::span<const Echo> echoes;     ///< echoes, sorted by reported range
+  std::span<const float> waveform;  ///< received power [W]; empty if not kept
+  std::size_t hits = 0;             ///< subrays with a hit
+  double energy = 0;                ///< energy sent: peak power times pulse length; the pulse shape makes some percent of difference [J]
   std::array<double, fate_count> shares{};  ///< shares of that energy by `Fate`; they sum to one, or to zero if nothing was sent
   std::span<const SubrayHit> subrays{};     ///< all subrays, if the footprint is `WithSubrayRecord`
 
@@ -53,9 +53,9 @@ class Survey {
 
   /// Directions, shares and exits of the subrays in the beam's frame, by number, padded to whole SIMD vectors.
   struct SubrayDirections {
-    std::vector<double> x, y, z;  ///< unit directions
-    std::vector<double> shares;
-    std::vector<Vec3> exits;  ///< exit points; not set for a beam from a point [m]
+    std::vector<double> x, y, z;  ///< components of the unit directions
+    std::vector<double> shares;   ///< shares of the energy
+    std::vector<Vec3> exits;      ///< exit points; not set for a beam from a point [m]
   };
 
   /// Scratch memory of one worker, with values cached between pulses.
@@ -70,7 +70,7 @@ class Survey {
     struct {
       double range = -1;  ///< last range requested [m]
       double power = 0;   ///< power received from a white target there [W]
-    } white_target{};
+    } white_target{};     ///< last result of `white_target_power`
   };
 
   /// Scratch memory for one worker.
@@ -91,9 +91,12 @@ class Survey {
   }
 
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
+  /// Subrays of a pulse.
   [[nodiscard]] std::size_t subrays() const noexcept { return footprint_.size(); }
   [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }  ///< subrays passed on with each pulse
+  /// Source of the pulses.
   [[nodiscard]] const Source& source() const noexcept { return source_; }
+  /// Detector.
   [[nodiscard]] const Instrument& detector() const noexcept { return detector_; }
 
   /// Sample spacing of a waveform; 0 if the detector has none [s].

@@ -78,7 +78,7 @@ until killed $((RANDOM % duration + 1)) broken las && state=$(find broken -name 
 cp "$state" state
 sed '/^end$/,$d' state > "$state"
 run broken las --resume 2> message && fail "a state that lacks its end was taken"
-grep -q 'unfinished.txt.*cut short' message || fail "of a state that lacks its end it was said: $(cat message)"
+grep -q 'unfinished.txt.*truncated' message || fail "of a state that lacks its end it was said: $(cat message)"
 sed 's/^seed .*/seed 6/' state > "$state"
 run broken las --resume || fail "a run of another seed could not be resumed"
 [ "$(sums broken)" != "${expected[las]}" ] || fail "a run that was resumed with another seed has the same bytes"

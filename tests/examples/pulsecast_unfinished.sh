@@ -30,7 +30,7 @@ expected=$(sums whole)
 (ulimit -f 1200 && run limited "${start[@]}" --quiet) 2> messages
 [ $? = 1 ] && grep -q 'strip00a_points.las: cannot be written: File too large' messages || fail "beyond the limit it said: $(cat messages)"
 log=$(cd limited && find . -name unfinished.txt)
-[ -n "$log" ] || fail "there is nothing to resume"
+[ -n "$log" ] || fail "no run to resume"
 results=$(dirname "$log")
 grep -q "^file 872495 leg000_points.las$" "limited/$log" || fail "the log does not know what is whole: $(cat "limited/$log")"
 [ -z "$(find limited -name '*.part' -o -name .lock)" ] || fail "it left $(find limited -name '*.part' -o -name .lock)"
@@ -58,7 +58,7 @@ resumes "as it was left" "pulses" "${start[@]}"
 for result in leg000_points.las leg002_points.las leg000_trajectory.txt; do
   again
   truncate -s -100 "again/$results/$result"
-  resumes "$result is short" "note: .*$result is not as long as when it was whole"
+  resumes "$result is short" "note: .*$result is not as long as when it was completed"
 done
 again
 rm "again/$results/leg002_points.las"
@@ -88,16 +88,16 @@ mkdir kept
 cp own/plane.obj own/plane.mtl kept
 touch own/plane.obj
 echo "# a remark" >> own/plane.mtl
-refuses "another MTL" "cannot be resumed: since it was begun, .*plane.mtl has changed$"
+refuses "another MTL" "cannot be resumed: since its start, .*plane.mtl has changed$"
 echo "v 1 2 3" >> own/plane.obj
-refuses "another OBJ, too" "cannot be resumed: since it was begun, .*plane.mtl has changed, .*plane.obj has changed$"
+refuses "another OBJ, too" "cannot be resumed: since its start, .*plane.mtl has changed, .*plane.obj has changed$"
 cp kept/plane.obj kept/plane.mtl own
 mkdir spectra
 printf '0.5 0.1\n2.0 0.2\n' > spectra/grass.txt
-refuses "a new spectrum" "since it was begun, .*spectra/grass.txt is new$"
+refuses "a new spectrum" "since its start, .*spectra/grass.txt is new$"
 rm -r spectra
 rm own/plane.mtl
-refuses "no MTL" "since it was begun, .*plane.mtl is gone$"
+refuses "no MTL" "since its start, .*plane.mtl is gone$"
 cp kept/plane.mtl own
 resumes "the same inputs" "pulses"
 
@@ -118,7 +118,7 @@ fly() { timeout 100 "$program" own/flown.xml --threads 2 --format las --output f
 [ -n "$(find flown -name unfinished.txt)" ] || fail "nothing of a flight can be resumed: $(cat messages)"
 sed -i 's/,8,/,9,/' own/way.csv
 fly --resume && fail "another trajectory was taken"
-grep -q 'since it was begun, .*way.csv has changed$' messages || fail "of another trajectory it said: $(cat messages)"
+grep -q 'since its start, .*way.csv has changed$' messages || fail "of another trajectory it said: $(cat messages)"
 sed -i 's/,9,/,8,/' own/way.csv
 fly "${start[@]}" --resume || fail "a flight by the clock of its trajectory cannot be resumed: $(cat messages)"
 

@@ -88,19 +88,19 @@ grep -q '^note:' said && fail "has a note"
 untidy "an MTL file that is not there" yard.obj 's/yard.mtl/gone.mtl/' "yard.obj, line 1: 'mtllib gone.mtl': expected an MTL file at "
 untidy "vertical angles wider apart than the scanner's" survey.xml 's/scanFreq_hz/verticalAngleMin_deg="-90" verticalAngleMax_deg="90" &/' \
   'survey.xml:20:24: verticalAngleMin_deg and verticalAngleMax_deg are further apart'
-untidy "voxels without a size" survey.xml 's/value="0.5"/value="0"/' 'survey.xml:12:46: voxelSize of 0 stands for 1 m'
+untidy "voxels without a size" survey.xml 's/value="0.5"/value="0"/' 'survey.xml:12:46: voxelSize of 0 means 1 m'
 untidy "a spectrum beyond all light" spectra/turf.txt 's/0.4/500/' "spectra/turf.txt, line 2: "
 untidy "an attribute of another program" survey.xml 's/<leg /&colour="red" /' "survey.xml:18:10: attribute 'colour' of <leg> is not known"
 untidy "bins longer than a pulse" survey.xml 's|<leg .*|<FWFSettings binSize_ns="9"/>&|' 'survey.xml:18:6: binSize_ns is 9 ns'
 untidy "a path out of all folders" survey.xml 's|platform="#stand"|platform="../outside/more.xml#far"|' \
-  'survey.xml:17:48: platform="../outside/more.xml#far" leads out of the assets folders'
+  'survey.xml:17:48: platform="../outside/more.xml#far" is outside the assets folders'
 untidy "a template that nobody names" survey.xml 's|<survey|<scannerSettings id="t" scanFreq_hz="much"/>&|' \
   'survey.xml:17:27: scanFreq_hz="much": expected a number'
 untidy "a face of two corners" yard.obj 's/^usemtl.*/&\nf 1 2/' "yard.obj, line 7: a face without area is left out"
 untidy "a name with slashes" survey.xml 's|name="untidy"|name="untidy/1"|' 'survey.xml:17:11: name="untidy/1" is taken as '
 untidy "a trajectory that jumps" survey.xml \
   's|platform="#stand"|platform="interpolated"|; s|<platformSettings .*|<platformSettings trajectory="jump.trj"/>|' \
-  "jump.trj, line 3: has the time of the pose before it, but another pose, the first of 1: the platform jumps there"
+  "jump.trj, line 3: repeats the time of the previous pose at another pose, the first of 1: a jump of the platform"
 
 # Waveforms that LAS cannot take as they are: as_las NAME BINS NOTE.
 as_las() {
@@ -113,7 +113,7 @@ as_las() {
   find output -name '*_points.wdp' -size +10000c 2> /dev/null | grep -q . || fail "leaves no waveforms"
   grep -qF "note: case/survey.xml:17:4: $3" said || fail "does not say: $3"
 }
-as_las "waveforms too long for LAS" 0.001 "waveforms are cut after 32.768 ns, 32768 samples, which is all that LAS takes"
+as_las "waveforms too long for LAS" 0.001 "waveforms are cut after 32.768 ns, 32768 samples, the maximum of LAS"
 as_las "bins between picoseconds" 0.3333 "binSize_ns is 0.3333, and samples in LAS are whole picoseconds apart: it is taken as 0.333"
 
 # Surveys without a pulse: silent NAME SED NOTE.
@@ -128,7 +128,7 @@ silent() {
   grep -qE '(nan|inf)( |$)' said && fail "tells what is no number"
 }
 silent "a leg that ends at once" 's/ maxDuration_s="0.2"//; s/headRotateStop_deg="10"/headRotateStop_deg="0"/' \
-  "survey.xml:20:67: the head begins where it stops: the leg ends at once"
+  "survey.xml:20:67: headRotateStop_deg equals headRotateStart_deg: the leg ends at once"
 silent "no active leg" 's/scanFreq_hz/active="false" &/' "survey.xml:17:4: no leg is active: there will be no pulses"
 
 # Notes and errors are told together, and --strict does not hide what is wrong.
@@ -147,7 +147,7 @@ for command in run check info preview forecast; do
   run $command --strict
   [ "$status" = 1 ] || fail "ends with $status"
   grep -qF "error: case/survey.xml:18:10: attribute 'colour'" said || fail "does not tell what is odd"
-  grep -qF "error: --strict takes notes as errors: there are 1" said || fail "does not say why"
+  grep -qF "error: --strict treats notes as errors: 1 of them" said || fail "does not say why"
 done
 
 [ "$failures" = 0 ] || exit 1

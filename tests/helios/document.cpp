@@ -305,7 +305,7 @@ TEST_CASE("a leg has the scanner's first rate, and resolutions give rates") {
   CHECK(survey.legs[0].scanner.scan_frequency == support::relative(20000 * 0.24 / 240, 1e-12));
   CHECK(survey.legs[0].scanner.head_speed == support::relative(radians(10), 1e-12));
   CHECK(contains(faults_of(survey_text("", leg(R"(pulseFreq_hz="1e8" verticalResolution_deg="180" horizontalResolution_deg="1")"))),
-                 "no scanner is as fast"));
+                 "these resolutions need a scan frequency"));
 }
 
 TEST_CASE("bins that pulses fall between, or that are too many, are limited") {
@@ -471,9 +471,9 @@ TEST_CASE("what has no effect, or is unlike what it seems, is told and does not 
   warns(survey_text(R"(numRuns="1")", leg("")), "'numRuns' has no effect");
   warns(survey_text(R"(simSpeed="1")", leg("")), "'simSpeed' has no effect");
   warns(survey_text("", R"(<FWFSettings apertureDiameter_m="0.1"/>)" + leg("")), "'apertureDiameter_m' has no effect");
-  warns(survey_text("", leg(R"(pulseFreq_hz="0")")), "stands for the usual one");
-  warns(survey_text("", leg(R"(pulseFreq_hz="3000")")), "none that the scanner is made for");
-  warns(survey_text("", leg(R"(scanAngle_deg="0")")), "stands for the largest one");
+  warns(survey_text("", leg(R"(pulseFreq_hz="0")")), "means the scanner's default");
+  warns(survey_text("", leg(R"(pulseFreq_hz="3000")")), "not one of the scanner's pulse rates");
+  warns(survey_text("", leg(R"(scanAngle_deg="0")")), "means the scanner's maximum");
   warns(survey_text("", leg(R"(scanAngle_deg="130")")), "limited to 120");
   warns(survey_text(
             "", R"(<leg><platformSettings/><scannerSettings scanFreq_hz="20" headRotatePerSec_deg="720" headRotateStop_deg="9"/></leg>)"),
@@ -506,7 +506,7 @@ TEST_CASE("several faults are reported together, each with its place and what to
     CHECK(faults.path() == path);
     CHECK(contains(all, path + ":3:20: scene=\"surveys/scenes.xml#yart\": there is no <scene> with the id 'yart'"));
     CHECK(contains(all, "did you mean 'yard'?"));
-    CHECK(contains(all, path + ":4:11: scanner=\"surveys/nothing.xml#rotating\" is not there"));
+    CHECK(contains(all, path + ":4:11: scanner=\"surveys/nothing.xml#rotating\" does not exist"));
     CHECK(contains(all, path + ":6:25: z=\"1O\": expected a number from -1000000000 to 1000000000 m"));
     CHECK(faults.warnings()[0] == path + ":7:24: attribute 'pulseFreq_Hz' of <scannerSettings> is not known; did you mean 'pulseFreq_hz'?");
     CHECK(contains(all, path + ":7:41: scanFreq_hz=\"1,5\": expected a number"));
@@ -539,8 +539,8 @@ TEST_CASE("channels of one id are told with their place, and refused where each 
   CHECK(contains(faults(document(R"( id="a")", R"( id="a")")), "channels.xml:5:16: channel 1 has the id of channel 0, 'a'"));
   CHECK(contains(faults(document(R"( id="1")", "")), "channels.xml:5:8: channel 1 has the id of channel 0, '1'"));
   CHECK(contains(faults(document(R"( id="1")", R"( id="")")), "channels.xml:5:16: channel 1 has the id of channel 0, '1'"));
-  CHECK(contains(faults(document(R"( id="a")", R"( id="../b")")), "channels.xml:5:16: the id of a channel becomes part of the names"));
-  CHECK(contains(faults(document(R"( id="a&#10;")", "")), "channels.xml:4:16: the id of a channel becomes part of the names"));
+  CHECK(contains(faults(document(R"( id="a")", R"( id="../b")")), "channels.xml:5:16: the id of a channel is part of file names"));
+  CHECK(contains(faults(document(R"( id="a&#10;")", "")), "channels.xml:4:16: the id of a channel is part of file names"));
 
   CHECK(read_survey(document(R"( id="a")", R"( id="../b")"), options).warnings.empty());
   const SurveyDocument read = read_survey(document(R"( id="1")", ""), options);
@@ -624,11 +624,11 @@ TEST_CASE("hostile documents are refused at once") {
   } catch (const XmlFaults& faults) {
     CHECK(contains(faults.what(), "there is no <survey>"));
     CHECK(faults.warnings().size() == XmlReport::max_told);
-    CHECK(contains(faults.warnings().back(), "; more than 1000 are not told"));
+    CHECK(contains(faults.warnings().back(), "; more than 1000 are not listed"));
   }
   refuses("<document><scene id=\"s\"><part><filter type=\"objloader\">" + params + "</filter></part></scene>" +
               "<survey scene=\"s\" scanner=\"s\" platform=\"s\"/></document>",
-          "one of too many <param> in a filter");
+          "too many <param> in a filter");
   refuses("<documents/>", "expected <document>");
   CHECK_THROWS_AS((void)read_text(""), FileError);
   CHECK_THROWS_AS((void)read_survey(folder / "missing.xml"), FileError);

@@ -121,7 +121,7 @@ TEST_CASE("waveforms are sampled and cut as LAS can hold them, with a warning fo
   const std::vector<std::string> cut = odd({.waveforms = true, .las_waveforms = true, .meshes = {plane()}, .place = "a.xml:9:3"});
   REQUIRE(cut.size() == 1);
   CHECK(cut[0].starts_with("a.xml:9:3: waveforms are cut after "));
-  CHECK(cut[0].find("which is all that LAS takes") != std::string::npos);
+  CHECK(cut[0].find("the maximum of LAS") != std::string::npos);
 }
 
 TEST_CASE("channels of different bins are sampled by the smallest") {

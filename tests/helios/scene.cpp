@@ -87,7 +87,7 @@ TEST_CASE("parts that points do not tell apart are told of") {
   SceneBuilder alike(scene_of({files.part("plane.obj", "3"), files.part("cube.obj", "3")}), {});
   CHECK(alike.parts().size() == 2);
   REQUIRE(alike.warnings().size() == 1);
-  CHECK(alike.warnings()[0].find("'3' and '3' carry the same number, 3") != std::string::npos);
+  CHECK(alike.warnings()[0].find("'3' and '3' have the same object id, 3") != std::string::npos);
   SceneBuilder unlike(scene_of({files.part("plane.obj", "3"), files.part("cube.obj", "4")}), {});
   CHECK(unlike.parts().size() == 2);
   CHECK(unlike.warnings().empty());
@@ -218,7 +218,7 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   CHECK(bare.parts().size() == 1);
   const std::vector<std::string>& told = bare.warnings();
   CHECK(std::any_of(told.begin(), told.end(), [](const std::string& text) {
-    return text.find("few.xyz: has no voxel of three points or more, as estimateNormals needs, and is left out") != std::string::npos;
+    return text.find("few.xyz: has no voxel of three points or more, as required by estimateNormals, and is left out") != std::string::npos;
   }));
   std::ofstream(files.folder / "none.mtl") << "# nothing\n";
   PartSettings plain = cloud;
@@ -226,7 +226,7 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   SceneBuilder undescribed(scene_of({plain}), {.spectra = {.warnings = {"spectra/a.txt, line 3: odd"}}});
   CHECK(undescribed.parts().at(0).materials->at(0).reflectance == 0.5);
   CHECK(std::any_of(undescribed.warnings().begin(), undescribed.warnings().end(), [](const std::string& text) {
-    return text.find("none.mtl: holds no material: its reflectance is taken to be 0.5") != std::string::npos;
+    return text.find("none.mtl: holds no material: a reflectance of 0.5 is assumed") != std::string::npos;
   }));
   CHECK(undescribed.warnings().back() == "spectra/a.txt, line 3: odd");
   std::get<XyzSource>(cloud.source).material.name = "brick";

@@ -51,7 +51,7 @@ TEST_CASE("what can be checked without a scene is") {
     s.legs.push_back(s.legs[0]);
     s.legs[1].platform.position = {7, 0, 0};
     REQUIRE(check_without_scene(s).size() == 1);
-    CHECK(check_without_scene(s)[0].starts_with("leg 0: the platform is there after 0.1 s"));
+    CHECK(check_without_scene(s)[0].starts_with("leg 0: the platform arrives after 0.1 s"));
   }
 }
 

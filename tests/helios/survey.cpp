@@ -123,7 +123,7 @@ TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with 
     const CompiledSurvey waits = compile_survey(s, flat);
     CHECK(waits.legs[0].duration.seconds() == 10);
     REQUIRE(waits.warnings.size() == 1);
-    CHECK(waits.warnings[0].find("leg 0: the platform is there after 5 s, and stays until the head has turned, 5 s more") == 0);
+    CHECK(waits.warnings[0].find("leg 0: the platform arrives after 5 s, and stays for 5 s until the head has turned") == 0);
     s.legs[0].scanner.head_stop = 0;  // turns all the way
     CHECK(compile_survey(s, flat).legs[0].duration.seconds() == 5);
     CHECK(compile_survey(s, flat).warnings.empty());
@@ -364,8 +364,8 @@ TEST_CASE("legs end before a jump of their file, begin after it, or jump, with a
       return std::count_if(compiled.warnings.begin(), compiled.warnings.end(),
                            [&](const std::string& w) { return w.find(what) != std::string::npos; });
     };
-    CHECK(notes("way.trj, line 3: has the time of the pose before it, but another pose, the first of 1: the platform jumps there") == 1);
-    CHECK(notes("jumps") == 1);
+    CHECK(notes("way.trj, line 3: repeats the time of the previous pose at another pose, the first of 1: a jump of the platform") == 1);
+    CHECK(notes("a jump of the platform") == 1);
     if (!position_only) continue;
     CHECK(length(at(0, 2).direction(axis::forward) - axis::right) < 1e-12);  // it looks where it goes, and not where it jumps
     CHECK(length(at(1, 0).direction(axis::forward) - axis::forward) < 1e-12);

@@ -308,9 +308,9 @@ TEST_CASE("a transformation places the raster; rows and columns that go the othe
     CHECK(raster.first == Vec2{1001, 2000 + 22.5 * 3});
     CHECK(wrong(raster, north) == 0);
   }
-  CHECK(contains(file.refusal({}, matrix(2, -3, 0.1)), "is turned or sheared"));
-  CHECK(contains(file.refusal({}, matrix(0, 0, 2)), "is turned or sheared"));
-  CHECK(contains(file.refusal({}, matrix(none, -3)), "is turned or sheared"));
+  CHECK(contains(file.refusal({}, matrix(2, -3, 0.1)), "is rotated or sheared"));
+  CHECK(contains(file.refusal({}, matrix(0, 0, 2)), "is rotated or sheared"));
+  CHECK(contains(file.refusal({}, matrix(none, -3)), "is rotated or sheared"));
   CHECK(contains(file.refusal({}, matrix(2, -1e9)), "out of bounds"));
   CHECK(file.refusal({}, matrix(2, -3, 1e-9)).empty());
 }
@@ -398,7 +398,7 @@ TEST_CASE("what is missing is NaN: by GDAL_NODATA, by the setting, by being none
   const GeoTiff strange = file.read({}, {}, with(-infinite));
   CHECK(wrong(strange.raster, with(none)) == 0);
   REQUIRE(strange.warnings.size() == 1);
-  CHECK(contains(strange.warnings[0], "values beyond 1e15 m, or infinite, are taken for missing"));
+  CHECK(contains(strange.warnings[0], "values beyond 1e15 m, or infinite, count as missing"));
   CHECK(file.read({}, {.nodata = "nothing"}).warnings.size() == 1);
 
   write(file.path, {}, {.nodata = "1"}, [](std::uint32_t, std::uint32_t, std::uint16_t) { return 1.0; });
@@ -493,7 +493,7 @@ TEST_CASE("a file that is cut anywhere is refused, and libtiff prints nothing") 
   keep(file.path, "x y z\n1 2 3\n");
   CHECK(contains(file.refusal_of(), "is not a TIFF file"));
   std::filesystem::remove(file.path);
-  CHECK(contains(file.refusal_of(), "is not there"));
+  CHECK(contains(file.refusal_of(), "does not exist"));
   std::filesystem::create_directory(file.path);
   CHECK(contains(file.refusal_of(), "is a directory"));
 }

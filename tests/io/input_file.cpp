@@ -106,7 +106,7 @@ TEST_CASE("a line that is longer than a block is refused") {
 
 TEST_CASE("what is no file is refused, and says what was expected") {
   const TemporaryFolder folder;
-  CHECK_THROWS_WITH_AS(InputFile(folder / "none", "a cloud"), doctest::Contains("none: is not there: expected a cloud"), FileError);
+  CHECK_THROWS_WITH_AS(InputFile(folder / "none", "a cloud"), doctest::Contains("none: does not exist: expected a cloud"), FileError);
   CHECK_THROWS_WITH_AS(InputFile(folder.path(), "a cloud"), doctest::Contains("is a directory or device: expected a cloud"), FileError);
   CHECK_THROWS_WITH_AS(InputFile("/dev/zero", "a cloud"), doctest::Contains("is a directory or device"), FileError);
   CHECK_THROWS_WITH_AS(InputFile("/proc/self/mem", "a cloud"), doctest::Contains("cannot be read"), FileError);

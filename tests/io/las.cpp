@@ -610,7 +610,8 @@ TEST_CASE("the bytes of packets do not depend on batches; without close, or with
     CHECK_THROWS_AS(writer(bad.batch()), FileError);
     CHECK_THROWS_AS(writer.close(), FileError);
   }
-  CHECK_THROWS_WITH_AS(LasWriter(other / "points.wdp", {.waveforms = true}), doctest::Contains("is where its waveforms go"), FileError);
+  CHECK_THROWS_WITH_AS(LasWriter(other / "points.wdp", {.waveforms = true}), doctest::Contains("is the name of its waveform file"),
+                       FileError);
   CHECK(other.empty());
 }
 

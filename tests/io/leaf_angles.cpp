@@ -81,7 +81,7 @@ TEST_CASE("directions of all azimuths and of both hemispheres make one table") {
 TEST_CASE("a table that depends on more than the zenith angle is refused, with both lines") {
   const FileError azimuth = error(rows(0, 90, 5) + row(45, 0.9, 2));
   CHECK(azimuth.place() == "line 20");
-  CHECK(azimuth.problem() == "has another G than line 10, for a direction as steep: expected one that depends on the zenith angle alone");
+  CHECK(azimuth.problem() == "differs in G from line 10, at the same zenith angle: expected one G for each zenith angle");
   CHECK(error(row(135, 0.1) + rows(0, 90, 5)).place() == "line 11");
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("rows that cannot be right are refused, with line and column") {
   CHECK(error(good + "0,0,1,nan\n").place() == "line 20, column 4");
   CHECK(error(good + "0,0,1,-0.1\n").problem() == "'-0.1': expected G, the mean projection of unit leaf area, from 0 to 1");
   CHECK(error(good + "0,0,1,3.1416\n").place() == "line 20, column 4");
-  CHECK(error(good + "2,0,0,0.5\n").problem() == "'2': expected a part of a unit direction, from -1 to 1");
+  CHECK(error(good + "2,0,0,0.5\n").problem() == "'2': expected a component of a unit direction, from -1 to 1");
   CHECK(error(good + "0,0,0.5,0.5\n").problem() == "the direction has the length 0.5: expected 1, within 1e-3");
   CHECK(error(good + "0,0,0,0.5\n").place() == "line 20");
   CHECK(error(good + "x,y,z,G\n").place() == "line 20, column 1");

@@ -50,7 +50,7 @@ TEST_CASE("what is neither true nor false is no ground, with a warning") {
   const MaterialLibrary library = mtl("newmtl a\nhelios_isGround yes\nnewmtl b\nhelios_isGround 0\nnewmtl c\nhelios_isGround False\n");
   for (const char* name : {"a", "b", "c"}) CHECK_FALSE(library.materials.at(name).ground);
   REQUIRE(library.warnings.size() == 1);
-  CHECK(contains(library.warnings[0], ", line 2: material 'a' has helios_isGround 'yes', which is neither true nor false"));
+  CHECK(contains(library.warnings[0], ", line 2: material 'a' has helios_isGround 'yes', expected true or false"));
 }
 
 TEST_CASE("the colours decide the angular law, material by material") {
@@ -104,7 +104,7 @@ TEST_CASE("a spectrum comes from the library, unless a reflectance is given; one
   CHECK(library.materials.at("c").spectrum == nullptr);
   CHECK(library.materials.at("c").reflectance == 0.5);
   REQUIRE(library.warnings.size() == 1);
-  CHECK(contains(library.warnings[0], ", line 8: material 'c' names the spectrum 'elm', which no library holds"));
+  CHECK(contains(library.warnings[0], ", line 8: material 'c' refers to the spectrum 'elm', which is in no library"));
   CHECK(mtl(text).warnings.size() == 2);
 
   spectra.wavelengths = {0.532e-6, 1.55e-6, 0.4e-6};

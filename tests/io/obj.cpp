@@ -391,7 +391,7 @@ TEST_CASE("a face of more corners than the limit is refused") {
 
 TEST_CASE("a file that is not there, or is a folder, is an error that names it") {
   const Folder folder;
-  CHECK_THROWS_WITH_AS((void)read_obj(folder.path() / "no.obj"), doctest::Contains("no.obj: is not there"), FileError);
+  CHECK_THROWS_WITH_AS((void)read_obj(folder.path() / "no.obj"), doctest::Contains("no.obj: does not exist"), FileError);
   CHECK_THROWS_WITH_AS((void)read_obj(folder.path()), doctest::Contains("directory"), FileError);
 }
 

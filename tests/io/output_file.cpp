@@ -200,7 +200,7 @@ TEST_CASE("a file that cannot be made is an error that names it and says what wa
   fs::path path = folder / "missing" / "a.las";
   std::string problem = problem_of(path, [&] { OutputFile{path}; });
   CHECK(says(problem, "No such file or directory"));
-  CHECK(says(problem, "expected an existing folder"));
+  CHECK(says(problem, "expected an existing, writable folder"));
 
   std::ofstream(folder / "plain") << "no folder";
   path = folder / "plain" / "a.las";
@@ -234,8 +234,8 @@ TEST_CASE("a full disk is an error, when little is written at the end and when m
     CHECK(says(problem, "No space left on device"));
     CHECK(says(problem, "expected room for " + std::to_string(size) + " more bytes"));
     CHECK(folder.empty());
-    CHECK(says(problem_of(path, [&] { file.write("x"); }), "cannot be written any more"));
-    CHECK(says(problem_of(path, [&] { file.commit(); }), "cannot be written any more"));
+    CHECK(says(problem_of(path, [&] { file.write("x"); }), "cannot be written: it is already"));
+    CHECK(says(problem_of(path, [&] { file.commit(); }), "cannot be written: it is already"));
     CHECK(folder.empty());
   }
 }
@@ -263,7 +263,7 @@ TEST_CASE("a name that cannot be taken in the end is an error and leaves nothing
   OutputFile file(path);
   file.write("x");
   fs::create_directories(path / "inside");
-  CHECK(says(problem_of(path, [&] { file.commit(); }), "a name that may be replaced"));
+  CHECK(says(problem_of(path, [&] { file.commit(); }), "a replaceable name"));
   CHECK_FALSE(fs::exists(folder / "a.las.part"));
 }
 
@@ -290,7 +290,7 @@ TEST_CASE("a second writer of a file is refused, in this program and in another,
   const fs::path path = folder / "a.las";
   OutputFile first(path);
   first.write(std::string(3'000'000, 'x'));
-  const auto is_refused = [&] { return says(problem_of(path, [&] { OutputFile{path}; }), "is being written already"); };
+  const auto is_refused = [&] { return says(problem_of(path, [&] { OutputFile{path}; }), "is already being written"); };
   CHECK(is_refused());
   const pid_t child = fork();
   REQUIRE(child >= 0);
@@ -339,7 +339,7 @@ TEST_CASE("on a file system without locks a file is written all the same, and wh
     first.write("first");
     OutputFile second(path);
     second.write("second");
-    CHECK(says(problem_of(path, [&] { first.commit(); }), "by another program"));
+    CHECK(says(problem_of(path, [&] { first.commit(); }), "another program has replaced"));
     CHECK_FALSE(fs::exists(path));
     second.commit();
     CHECK(content(path) == "second");

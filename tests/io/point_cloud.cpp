@@ -192,7 +192,7 @@ TEST_CASE("normals of the file are averaged as directions") {
   CHECK(cloud.voxels.normals[1] == std::array<float, 3>{0, 0, 0});  // they oppose each other
   CHECK(same(cloud.voxels.normals[2], {0, -1, 0}));                 // a zero does not count
   REQUIRE(cloud.warnings.size() == 1);
-  CHECK(cloud.warnings[0] == "1 of 3 voxels have no normal: those of their points are zero, or oppose each other");
+  CHECK(cloud.warnings[0] == "1 of 3 voxels have no normal: the normals of their points are zero, or cancel");
 }
 
 TEST_CASE("the normal may be that of the point nearest to the centre, of those that have one") {
@@ -242,7 +242,7 @@ TEST_CASE("a LAS file is recognised as it begins, and gives the same voxels as i
   for (auto& point : las.points)
     for (auto& channel : point.colour) channel = static_cast<std::uint16_t>(channel / 257);
   CHECK(read(las.bytes(), {.colours = true}).warnings ==
-        std::vector<std::string>{"no colour in the LAS files is above 255, of 65535: if they are bytes, the largest colour should be 255"});
+        std::vector<std::string>{"no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255"});
   const PointCloud bytes = read(las.bytes(), {.colours = true, .colour_max = 255});
   CHECK(bytes.colours == cloud.colours);
   CHECK(bytes.warnings.empty());
@@ -263,7 +263,7 @@ TEST_CASE("several files make one cloud") {
   CHECK(mixed.voxels.cells == std::vector<Cell>{{0, 0, 0}, {9, 0, 0}});
   CHECK_THROWS_AS((void)read_point_cloud(std::vector<std::filesystem::path>{}), SettingError);
   CHECK_THROWS_WITH_AS((void)read_point_cloud(std::vector{a, folder / "none"}),
-                       doctest::Contains("none: is not there: expected a point cloud"), FileError);
+                       doctest::Contains("none: does not exist: expected a point cloud"), FileError);
 }
 
 /// The same from a cloud that is held: points by cell.

@@ -258,7 +258,7 @@ TEST_CASE("a scene that moves is made from its parts and its time") {
     const Tick later = Tick::of_seconds(3);
     CHECK(second.scene.placement(0, later).translation == first.scene.placement(0, later).translation);
   } else {
-    CHECK(contains(first.warning, "motions are not kept"));
+    CHECK(contains(first.warning, "motions of parts are not supported"));
     CHECK_FALSE(second.from_cache);
   }
 }
@@ -324,9 +324,9 @@ TEST_CASE("wherever a cache is cut short, and when it has grown, it is noticed")
   for (std::size_t length = 0; length < bytes.size(); ++length) taken += refusal(bytes.substr(0, length)).empty() ? 1 : 0;
   CHECK(taken == 0);
   CHECK(contains(refusal(""), "is empty"));
-  CHECK(contains(refusal(bytes.substr(0, bytes.size() - 1)), "cut short"));
+  CHECK(contains(refusal(bytes.substr(0, bytes.size() - 1)), "truncated"));
   CHECK(contains(refusal(bytes + '\0'), "grown"));
-  CHECK(contains(refusal(std::string(1000, 'x')), "is no scene cache"));
+  CHECK(contains(refusal(std::string(1000, 'x')), "is not a scene cache"));
 }
 
 TEST_CASE("a cache of another version, other shapes or other sources is not taken") {
@@ -348,7 +348,7 @@ TEST_CASE("a cache of another version, other shapes or other sources is not take
   CHECK(contains(refusal<Scene<TriangleMesh<KdTree<>>>>(bytes), "other shapes"));
   CHECK(contains(refusal<Scene<TriangleMesh<Linear<>>, TriangleMesh<KdTree<>>>>(bytes), "other shapes"));
   CHECK(contains(refusal(bytes, {1, 3}), "has changed"));
-  CHECK(contains(open_scene<Small>(folder / "none", key).reason, "is not there"));
+  CHECK(contains(open_scene<Small>(folder / "none", key).reason, "does not exist"));
   CHECK(contains(open_scene<Small>(folder.path(), key).reason, "is a directory"));
 }
 
@@ -381,7 +381,7 @@ TEST_CASE("a cache that was forged is refused, or can be traced: no number in it
   std::string other_type = bytes;
   other_type[sizeof(io::detail::CacheHeader)] = static_cast<char>(other_type[sizeof(io::detail::CacheHeader)] + 1);
   seal(other_type);
-  CHECK(contains(refusal(other_type), "does not fit together"));
+  CHECK(contains(refusal(other_type), "its members are inconsistent"));
 }
 
 TEST_CASE("a material or a mesh that cannot be is refused, whatever the checksum") {
@@ -399,7 +399,7 @@ TEST_CASE("a material or a mesh that cannot be is refused, whatever the checksum
   CHECK(contains(with(0.7, 1.6), "is damaged: Material::reflectance is 1.6"));
   const std::array<std::uint32_t, 3> corners = some_mesh(1).triangles[1];
   CHECK(with(corners, some_mesh(1).triangles[2]) == "");
-  CHECK(contains(with(corners, std::array<std::uint32_t, 3>{0, 1, 4000}), "does not fit together"));
+  CHECK(contains(with(corners, std::array<std::uint32_t, 3>{0, 1, 4000}), "its members are inconsistent"));
 }
 
 TEST_CASE("the key is that of the contents: it changes with every byte, the order and the settings, but not with the place") {
@@ -422,7 +422,7 @@ TEST_CASE("the key is that of the contents: it changes with every byte, the orde
   write(folder / "c", "onet");
   write(folder / "b", "wo");  // the same bytes in all
   CHECK(of({folder / "c", folder / "b"}) != before);
-  CHECK_THROWS_WITH_AS((void)of({folder / "a"}), doctest::Contains("is not there"), FileError);
+  CHECK_THROWS_WITH_AS((void)of({folder / "a"}), doctest::Contains("does not exist"), FileError);
   const SceneSources sources{.files = {folder / "a", folder / "c"}};  // of which the caller knows the contents
   CHECK(scene_key(sources, [](const auto&) {
           return Fingerprint{1, 2};
@@ -449,7 +449,7 @@ TEST_CASE("a scene is built once, and again when a source changes, the cache is 
   };
   const CachedScene<Small> first = scene();
   CHECK_FALSE(first.from_cache);
-  CHECK(contains(first.reason, "is not there"));
+  CHECK(contains(first.reason, "does not exist"));
   CHECK(first.warning == "");
   const CachedScene<Small> second = scene();
   CHECK(second.from_cache);
@@ -474,7 +474,7 @@ TEST_CASE("a scene is built once, and again when a source changes, the cache is 
   std::filesystem::remove(source);
   const CachedScene<Small> without = scene("up = y");
   CHECK_FALSE(without.from_cache);
-  CHECK(contains(without.reason, "is not there"));
+  CHECK(contains(without.reason, "does not exist"));
   CHECK(contains(without.warning, "not saved"));
   CHECK(without.scene.parts().size() == 1);
   CHECK(builds == 5);

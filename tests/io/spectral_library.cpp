@@ -47,14 +47,14 @@ TEST_CASE("a file with the header of the ECOSTRESS and ASTER libraries is read i
       spectrum(header + "X Units: Wavelength (micrometers)\nY Units: Reflectance (percent)\n" + end + "1.5\t60\r\n0.5\t20\r\n");
   check(percent, 0.5e-6, 1.5e-6, 0.4);
   CHECK(percent.scale == ReflectanceScale::percent);
-  CHECK(percent.report == path.string() + ": wavelengths in micrometres, as its header says; reflectance in percent, as its header says");
+  CHECK(percent.report == path.string() + ": wavelengths in micrometres, by the header; reflectance in percent, by the header");
   CHECK(percent.warnings.empty());
 
   const SpectrumFile fraction =
       spectrum(header + "X Units: Wavelength (nanometers)\nY Units: Reflectance (fraction)\n" + end + "1500 0.6\n500 0.2\n");
   check(fraction, 0.5e-6, 1.5e-6, 0.4);
   CHECK(fraction.scale == ReflectanceScale::fraction);
-  CHECK(contains(fraction.report, "nanometres, as its header says; reflectance in fractions, as its header says"));
+  CHECK(contains(fraction.report, "nanometres, by the header; reflectance in fractions, by the header"));
 
   const SpectrumFile waves = spectrum("X Units: Wavenumber (cm-1)\nY Units: Reflectance (percentage)\n5000 10\n10000 40\n");
   check(waves, 1e-6, 2e-6, 0.4);
@@ -64,12 +64,12 @@ TEST_CASE("without a header the values tell the units, and both are always repor
   const SpectrumFile percent = spectrum("500 20\n1500 60\n");
   check(percent, 0.5e-6, 1.5e-6, 0.4);
   CHECK(percent.scale == ReflectanceScale::percent);
-  CHECK(contains(percent.report, "nanometres, as they are 500 to 1500; reflectance in percent, as its values reach 60"));
+  CHECK(contains(percent.report, "nanometres, by the values 500 to 1500; reflectance in percent, as its values reach 60"));
 
   const SpectrumFile fraction = spectrum("0.5,0.2\n1.5,0.6");
   check(fraction, 0.5e-6, 1.5e-6, 0.4);
   CHECK(fraction.scale == ReflectanceScale::fraction);
-  CHECK(contains(fraction.report, "micrometres, as they are 0.5 to 1.5; reflectance in fractions, as its values reach 0.6"));
+  CHECK(contains(fraction.report, "micrometres, by the values 0.5 to 1.5; reflectance in fractions, as its values reach 0.6"));
 
   check(spectrum("5e-7;0.2;9\n1.5e-6;0.6;9\n"), 0.5e-6, 1.5e-6, 0.4);
 }
@@ -102,13 +102,13 @@ TEST_CASE("what is missing is left out, what is beyond is clipped, and what come
   check(twice, 0.5e-6, 1.5e-6, 0.4);
   CHECK(twice.spectrum->reflectance(1.5e-6) == relative(0.7, 1e-12));
   REQUIRE(twice.warnings.size() == 1);
-  CHECK(contains(twice.warnings[0], ", line 3: a wavelength comes again, the first of 2: the mean is taken"));
+  CHECK(contains(twice.warnings[0], ", line 3: a wavelength is repeated, the first of 2: the mean is used"));
   const SpectrumFile denied = spectrum("Y Units: Reflectance (fraction)\n500 20\n1500 60\n");
   check(denied, 0.5e-6, 1.5e-6, 0.4);
   REQUIRE(denied.warnings.size() == 1);
   CHECK(contains(denied.warnings[0], ", line 1: its header says fraction, but its values reach 60"));
   CHECK(contains(spectrum("X Units: Wavelength (micrometers)\n500 0.2\n1500 0.6\n").warnings.at(0),
-                 ", line 3: its wavelengths, 500 to 1500 micrometres, are not all those of light"));
+                 ", line 3: its wavelengths, 500 to 1500 micrometres, are not all between 100 nm and 1 mm"));
   CHECK(spectrum("0.5 0.2\n# end of the visible\n1.5 0.6\n").spectrum->samples().size() == 2);
 }
 

@@ -91,7 +91,7 @@ TEST_CASE("the greatest density is the file's own where nobody names one") {
   const VoxelFile file = read(plain + "0 0 0 1 0\n0 0 1 4 1\n0 0 2 NaN 0\n", scaled);  // 4, though it is not opaque
   CHECK(file.density_max == 4);
   CHECK(file.voxels.scales == std::vector<float>{0.5f});
-  CHECK(error(plain + "0 0 0 0 0\n", scaled).problem() == "has no voxel that light can meet: expected at least one");
+  CHECK(error(plain + "0 0 0 0 0\n", scaled).problem() == "has no occupied voxel: expected at least one");
 }
 
 TEST_CASE("shifted cubes stay inside their cells, evenly, and depend on the seed and their cell alone") {
@@ -147,7 +147,7 @@ TEST_CASE("keys come in any order and spelling, with brackets or without, one or
   CHECK(read(head + "0 0 0 1 0\n").warnings.empty());
   const VoxelFile odd = read("VOXEL SPACE\n#min_corner: 1 2 3\n#max_corner: 3 4 9\n#split: 4 4 4\n#res: 0.5\ni j k PadBVTotal\n0 1 2 3\n");
   REQUIRE(odd.warnings.size() == 1);
-  CHECK(odd.warnings[0].ends_with("a.vox: 'max_corner' is not where 'min_corner', 'split' and 'res' say: it is not used"));
+  CHECK(odd.warnings[0].ends_with("a.vox: 'max_corner' contradicts 'min_corner', 'split' and 'res': it is ignored"));
 }
 
 TEST_CASE("columns are found by their names, and rows may have more than there are names") {
@@ -177,7 +177,7 @@ TEST_CASE("a last row without an end is read, with a warning") {
   const VoxelFile file = read(head + "0 0 0 0.5 0\n0 0 1 0.5 0");
   CHECK(file.voxels.cells.size() == 2);
   REQUIRE(file.warnings.size() == 1);
-  CHECK(file.warnings[0].ends_with("the last line has no end: the file may have been cut short"));
+  CHECK(file.warnings[0].ends_with("the last line has no line end: the file may be truncated"));
 }
 
 TEST_CASE("headers that cannot be right are refused, with the line") {
@@ -229,7 +229,7 @@ TEST_CASE("rows that cannot be right are refused, with line and column") {
                         {"0 0 1 inf 0\n", "line 10, column 4", "'inf': expected a number, with a decimal point, or NaN"},
                         {"0 0 1 2e12 0\n", "line 10, column 4", "'2e12': expected a density from 0 to 1e12"},
                         {"0 0 1 1 x\n", "line 10, column 5", "'x': expected a number, with a decimal point, or NaN"},
-                        {"0 0 0 1 0\n", "line 10", "the voxel 0 0 0 stands twice: expected each once"}}) {
+                        {"0 0 0 1 0\n", "line 10", "the voxel 0 0 0 is repeated: expected each voxel once"}}) {
     CAPTURE(c.row);
     const FileError e = error(head + "# a remark\n0 0 0 1 0\n\n" + c.row);
     CHECK(e.place() == c.place);
@@ -237,12 +237,12 @@ TEST_CASE("rows that cannot be right are refused, with line and column") {
   }
   const FileError far = error("VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1e6\ni j k PadBVTotal\n0 1000000 0 1\n0 1000001 0 1\n");
   CHECK(far.place() == "line 6");
-  CHECK(far.problem() == "the voxel 0 1000001 0 stands beyond 1e12 m: expected one within");
+  CHECK(far.problem() == "the voxel 0 1000001 0 is beyond 1e12 m: expected coordinates up to 1e12 m");
   const FileError fine = error("VOXEL SPACE\n#res: 1e-9\n#min_corner: 0 0 -1e12\ni j k PadBVTotal\n0 0 0 1\n");
   CHECK(fine.place() == "line 2");
   CHECK_MESSAGE(fine.problem().starts_with("'res' is 1e-09: expected at least 0.00088"), fine.problem());
-  CHECK(error(head + "0 0 0 0 1\n").problem() == "has no voxel that light can meet: expected at least one");
-  CHECK(error(head + "0 0 0 1 1\n", opaque).problem() == "has no voxel that light can meet: expected at least one");
+  CHECK(error(head + "0 0 0 0 1\n").problem() == "has no occupied voxel: expected at least one");
+  CHECK(error(head + "0 0 0 1 1\n", opaque).problem() == "has no occupied voxel: expected at least one");
 }
 
 TEST_CASE("settings that cannot be are refused") {

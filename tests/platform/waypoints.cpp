@@ -206,7 +206,7 @@ TEST_CASE("waypoints refuse times that do not ascend and poses that cannot be, a
   CHECK(refused({{.time = 1, .rotation = Rotation{1.0011, 0, 0, 0}}}) == "Waypoints::points[0].rotation (norm)");
   CHECK(refused({{.time = 1}, {.time = 2}}) == "");
   CHECK_THROWS_WITH_AS(Waypoints({{0, {}}, {5e-324, axis::right}, {1, axis::up}}, Interpolation::cubic),
-                       "Waypoints::points[1] (velocity from the one before) is inf m/s, but must be finite", SettingError);
+                       "Waypoints::points[1] (velocity from the previous one) is inf m/s, but must be finite", SettingError);
 }
 
 TEST_CASE("bodies without a heading look along their path") {

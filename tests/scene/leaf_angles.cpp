@@ -169,7 +169,7 @@ TEST_CASE("a table with a hole, a repeated angle or an impossible number is refu
   CHECK(with([](auto& e) { e.erase(e.begin() + 4); }).find(hole) != std::string::npos);
   CHECK(with([](auto& e) { e = std::vector<LeafProjection>(e.begin() + 2, e.end()); }).find("zenith is 0 " + hole) != std::string::npos);
   CHECK(with([](auto& e) { e.resize(8); }).find(hole) != std::string::npos);
-  CHECK(with([](auto& e) { e.push_back(e[4]); }).find("given once") != std::string::npos);
+  CHECK(with([](auto& e) { e.push_back(e[4]); }).find("unique") != std::string::npos);
   CHECK(with([](auto& e) { e[3].zenith = -0.1; }).find("LeafProjection::zenith is -0.1 rad") != std::string::npos);
   CHECK(with([](auto& e) { e[3].zenith = 1.6; }).find("LeafProjection::zenith is 1.6 rad") != std::string::npos);
   CHECK(with([](auto& e) { e[3].g = 1.01; }) == "LeafProjection::g is 1.01, but must be from 0 to 1");

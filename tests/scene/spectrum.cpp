@@ -70,7 +70,7 @@ TEST_CASE("a spectrum that cannot be is refused, and the refusal says where") {
   CHECK(refusal({{1e-6, 0}, {2e-6, 1}}) == "");
   CHECK(refusal({}) == "Spectrum::samples (number) is 0, but must be at least 1");
   CHECK(refusal({{1e-6, 0.1}, {1e-6, 0.2}}) ==
-        "Spectrum::samples[1].wavelength is 1e-06 m, but must be longer than that of the sample before, 1e-06");
+        "Spectrum::samples[1].wavelength is 1e-06 m, but must be greater than that of the previous sample, 1e-06");
   CHECK(refusal({{2e-6, 0.1}, {1e-6, 0.2}}).find("samples[1].wavelength") != std::string::npos);
   CHECK(refusal({{0, 0.1}}).find("samples[0].wavelength") != std::string::npos);
   CHECK(refusal({{nan, 0.1}}).find("samples[0].wavelength") != std::string::npos);

@@ -51,7 +51,7 @@ TEST_CASE("voxels that cannot be are refused, and the refusal says what is wrong
   for (const double edge : {0.0, -1.0, nan, infinity})
     CHECK(refusal([&](VoxelData& d) { d.edge = edge; }).find("VoxelData::edge is ") == 0);
   CHECK(refusal([](VoxelData& d) { d.edge = 1e12; }) ==
-        "VoxelData::cells is 4294967295, but must be where coordinates are within 1e18 m; see entry 1");
+        "VoxelData::cells is 4294967295, but must be a cell within 1e18 m of the origin; see entry 1");
   CHECK(refusal([](VoxelData& d) { d.cells.clear(); }) == "VoxelData::cells is 0, but must be at least one in number");
   CHECK(refusal([](VoxelData& d) { d.normals[1][2] = 0.5F; }).find("VoxelData::normals (length) is 0.5") == 0);
   CHECK(refusal([](VoxelData& d) { d.normals[0][0] = std::nanf(""); }).find("VoxelData::normals (length) is nan") == 0);
@@ -59,7 +59,7 @@ TEST_CASE("voxels that cannot be are refused, and the refusal says what is wrong
   CHECK(refusal([](VoxelData& d) { d.densities[1] = std::numeric_limits<float>::infinity(); }).find("VoxelData::densities is inf") == 0);
   for (const float scale : {0.0F, -0.5F, 1.01F, std::nanf("")})
     CHECK(refusal([&](VoxelData& d) { d.scales[0] = scale; }).find("VoxelData::scales is ") == 0);
-  CHECK(refusal([](VoxelData& d) { d.shifts[1][1] = 0.26F; }).find("so that the cube stays inside its cell; see entry 1") !=
+  CHECK(refusal([](VoxelData& d) { d.shifts[1][1] = 0.26F; }).find("small enough that the cube is inside its cell; see entry 1") !=
         std::string::npos);
   CHECK(refusal([](VoxelData& d) { d.scales.clear(); }).find("VoxelData::shifts is 0.25, but") == 0);
   CHECK(refusal([](VoxelData& d) { d.shifts[0][0] = std::nanf(""); }).find("VoxelData::shifts is nan") == 0);

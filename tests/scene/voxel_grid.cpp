@@ -413,7 +413,7 @@ TEST_CASE("cells that are the same, or too far apart, are refused") {
     }
   };
   VoxelData data{.cells = {{0, 0, 0}, {7, 0, 0}, {0, 0, 0}}};
-  CHECK(refusal(data) == "VoxelData::cells is 2, but must be each in its own place; this entry repeats entry 0");
+  CHECK(refusal(data) == "VoxelData::cells is 2, but must be unique; this entry repeats entry 0");
   data.cells[2] = {2097152, 0, 0};
   CHECK(refusal(data).find("within 2097152 cells of each other") != std::string::npos);
   data.cells[2] = {2097151, 0, 0};

@@ -21,7 +21,7 @@ __all__ = [name for name in vars(_core) if not name.startswith("_")] + ["__versi
 
 
 def asset_folders() -> list[Path]:
-    """The folders of the catalogue of scanners and platforms, and of the spectra of materials, that belong to this package."""
+    """Folder of this package with the catalogue of scanners and platforms and the spectra of materials; empty if not installed."""
     here = Path(__file__).resolve()
     places = [here.parents[2] / "catalogue"] + [parent / "share" / "pulsecast" for parent in here.parents]
     return [place for place in places if (place / "data").is_dir()][:1]

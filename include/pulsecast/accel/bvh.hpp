@@ -24,7 +24,7 @@ namespace pulsecast {
 /// BVH with up to eight children per node, whose boxes are tested against a bundle together. The build splits a binary SAH tree down to
 /// single primitives. It then collapses the tree at least SAH cost into nodes and leaves of up to `leaf_size` primitives. Every primitive
 /// is in exactly one leaf. A bundle traverses the tree as a whole, front to back. The build halves a range where an SAH split would exceed
-/// 64 levels of the binary tree. The tree is the same for any number of build threads; 0 for the hardware's.
+/// 64 levels of the binary tree. The tree is the same for any number of build threads; 0 as in `thread_count`.
 /// Source: Wald 2007 (binned build); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic); Wald, Benthin & Boulos 2008
 /// (collapsing).
 template <std::floating_point Real = float>

@@ -18,8 +18,8 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 
-/// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray that meets it; a ray that meets a box
-/// meets a part of it with a probability proportional to the part's surface area.
+/// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray that meets it. The probability that a
+/// ray through a box meets a box inside is the ratio of their surface areas.
 /// Source: Goldsmith & Salmon 1987; MacDonald & Booth 1990. Binned: Wald 2007; Shevtsov, Soupikov & Kapustin 2007.
 namespace pulsecast::detail {
 

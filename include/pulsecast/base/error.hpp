@@ -49,7 +49,7 @@ class SettingError : public std::invalid_argument {
   double value_;
 };
 
-/// Calls a function. A setting that it refuses is told as one of `name`, unless it is already.
+/// Calls a function. Prefixes `name` to the field of its `SettingError`, unless it is there already.
 template <class Function>
 decltype(auto) naming(const std::string& name, const Function& function) {
   try {

@@ -26,11 +26,11 @@ enum class Purpose : std::uint32_t {
 
 /// Key of a random number: the same key gives the same number on any thread, in any order.
 struct RandomKey {
-  std::uint64_t seed = 0;    ///< seed of the user's choice
-  PulseIndex pulse = 0;      ///< number of the pulse, or of another draw
-  std::uint32_t subray = 0;  ///< number of the subray, or of another draw
-  Purpose purpose = Purpose::scene;
-  std::uint32_t part = 0;  ///< part of the scene, each with draws of its own; parts 2^24 apart draw the same
+  std::uint64_t seed = 0;            ///< seed of the user's choice
+  PulseIndex pulse = 0;              ///< number of the pulse, or of another draw
+  std::uint32_t subray = 0;          ///< number of the subray, or of another draw
+  Purpose purpose = Purpose::scene;  ///< purpose of the draw
+  std::uint32_t part = 0;            ///< part of the scene, each with draws of its own; parts 2^24 apart draw the same
 };
 
 /// Philox4x32-10 generator: four random words from a counter and a key. Source: Salmon, Moraes, Dror & Shaw 2011.

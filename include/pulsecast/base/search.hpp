@@ -6,8 +6,8 @@
 
 namespace pulsecast::detail {
 
-/// Number of the first of `count` elements for which `before(i)` is false, where it is true for all below that one: binary search.
-/// Compiled in a fraction of the time that std::lower_bound takes, for every table that is looked up.
+/// Index of the first of `count` elements for which `before(i)` is false, by binary search. Requires a partition: true, then false.
+/// Compiles in a fraction of the time of std::lower_bound.
 template <class Before>
 [[nodiscard]] constexpr std::size_t first_not(std::size_t count, const Before& before) noexcept {
   std::size_t first = 0;

@@ -20,8 +20,8 @@ namespace pulsecast {
 
 namespace detail {
 
-/// Requests 2 MiB pages, where the system has them, for memory not yet written to. Rays access memory at random, and with small pages the
-/// address translation takes longer than the read.
+/// Requests 2 MiB pages, where the system has them, for memory not yet written to. Rays access memory at random, and with small pages
+/// the address translation takes longer than the read.
 inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t size) noexcept {
 #if defined(__linux__)
   constexpr std::size_t small = 4096, large = std::size_t{1} << 21;
@@ -30,7 +30,7 @@ inline void advise_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] st
 #endif
 }
 
-/// Allocates uninitialized memory [byte]. Not a template, as those cost compile time for every type.
+/// Allocates uninitialized memory [byte]. No template, as each instance would cost compile time.
 [[nodiscard]] inline std::shared_ptr<void> allocate_shared(std::size_t size, std::align_val_t alignment) {
   std::shared_ptr<void> memory(::operator new(size, alignment), [=](void* bytes) { ::operator delete(bytes, alignment); });
   advise_huge_pages(memory.get(), size);
@@ -45,6 +45,7 @@ requires std::is_trivially_copyable_v<T>
 class SharedBuffer {
  public:
   SharedBuffer() = default;
+  /// Allocates memory for `size` elements. Errors: std::bad_alloc.
   explicit SharedBuffer(std::size_t size)
       : memory_(detail::allocate_shared(size * sizeof(T), std::align_val_t{alignof(T)})),
         elements_(static_cast<T*>(memory_.get())),
@@ -56,6 +57,7 @@ class SharedBuffer {
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   [[nodiscard]] T* begin() const noexcept { return elements_; }
   [[nodiscard]] T* end() const noexcept { return elements_ + size_; }
+  /// Owner of the memory.
   [[nodiscard]] const std::shared_ptr<void>& memory() const noexcept { return memory_; }
 
  private:
@@ -69,6 +71,7 @@ template <class T>
 requires std::is_trivially_copyable_v<T>
 class SharedArray {
  public:
+  /// Type of an element.
   using value_type = T;
 
   SharedArray() = default;
@@ -86,10 +89,11 @@ class SharedArray {
       owner_ = copy.memory();
     }
   }
+  /// Shares the memory of a finished buffer.
   SharedArray(const SharedBuffer<T>& made)  // NOLINT(google-explicit-constructor): a buffer, too
       : elements_(made.data()), size_(made.size()), owner_(made.memory()) {}
 
-  /// Elements that live as long as `owner`.
+  /// Shares elements that live as long as `owner`.
   SharedArray(std::span<const T> elements, std::shared_ptr<const void> owner)
       : elements_(elements.data()), size_(elements.size()), owner_(std::move(owner)) {}
 

@@ -9,11 +9,12 @@
 
 #include <pulsecast/base/arithmetic.hpp>
 
-/// SIMD: several numbers that go through the same arithmetic at once. The compilers' vector types give the operators; comparisons give a
-/// `Mask` that is all ones where they hold, and `mask ? a : b` chooses by lane.
+/// SIMD registers as vector types of the compiler, with their operators. A comparison gives a `Mask` with all bits set in the lanes where
+/// it holds; `mask ? a : b` selects by lane.
 namespace pulsecast::simd {
 
-#if defined(__AVX__)  // and not more with AVX-512: a single ray would fill one lane of eight, and pay for all
+/// Size of a SIMD register [byte].
+#if defined(__AVX__)  // 32 with AVX-512, too: of eight lanes, a single ray would use one
 inline constexpr std::size_t register_bytes = 32;
 #else
 inline constexpr std::size_t register_bytes = 16;
@@ -26,26 +27,29 @@ struct Vector {
 };
 }  // namespace detail
 
-/// N numbers of type T in one vector of the compiler; N is a power of two.
+/// Vector of N numbers of type T; N is a power of two.
 template <class T, std::size_t N>
 using Vec = typename detail::Vector<T, N>::type;
 
 /// Number of lanes of double precision in a register.
 inline constexpr std::size_t lane_count = register_bytes / sizeof(double);
 
+/// Register of double-precision numbers.
 using Doubles = Vec<double, lane_count>;
+/// Register of 64-bit identifiers, as many as `Doubles`.
 using Ids = Vec<std::uint64_t, lane_count>;
+/// Result of a comparison of `Doubles`: -1 where it holds, else 0.
 using Mask = Vec<std::int64_t, lane_count>;
 
-/// Number of lanes in a `Packet`: as many as a register holds, but at most the eight children of a tree's node.
+/// Lanes of a `Packet`: those of a register, but at most eight, the children of a tree node.
 template <class Real>
 inline constexpr std::size_t packet_size = register_bytes < 8 * sizeof(Real) ? register_bytes / sizeof(Real) : 8;
 
-/// Numbers of either precision.
+/// Register of numbers of single or double precision.
 template <class Real>
 using Packet = Vec<Real, packet_size<Real>>;
 
-/// As many whole numbers of 16 bits in memory, from this one on, as a `Packet` has lanes.
+/// Packet of consecutive 16-bit integers in memory, beginning with `first`.
 template <class Real>
 [[nodiscard]] inline Packet<Real> packet_from(const std::uint16_t& first) noexcept {
   using Halves = Vec<std::uint16_t, 8>;
@@ -53,7 +57,7 @@ template <class Real>
   if constexpr (packet_size<Real> == 8) {
     Halves halves;
     std::memcpy(&halves, &first, sizeof halves);
-#if defined(__AVX2__) && !defined(__clang__)  // g++ 12 would take them by halves
+#if defined(__AVX2__) && !defined(__clang__)  // g++ 12 would convert half a register at a time
     return __builtin_convertvector(Words(__builtin_ia32_pmovzxwd256(Vec<short, 8>(halves))), Packet<Real>);
 #else
     return __builtin_convertvector(__builtin_convertvector(halves, Words), Packet<Real>);
@@ -64,7 +68,7 @@ template <class Real>
     const Halves halves = Halves(Vec<std::uint64_t, 2>{four, 0});
 #if defined(__clang__)
     const Halves interleaved = __builtin_shufflevector(halves, Halves{}, 0, 8, 1, 9, 2, 10, 3, 11);
-#else  // g++ 11 has no other
+#else  // g++ 11 lacks __builtin_shufflevector
     const Halves interleaved = __builtin_shuffle(halves, Halves{}, Halves{0, 8, 1, 9, 2, 10, 3, 11});
 #endif
     return __builtin_convertvector(Words(interleaved), Packet<Real>);
@@ -75,66 +79,74 @@ template <class Real>
   }
 }
 
-/// The lanes that `number(lane)` gives.
+/// Register whose lanes are `number(lane)`.
 template <class Number>
 [[nodiscard]] inline Doubles generate(const Number& number) noexcept {
   return [&]<std::size_t... lane>(std::index_sequence<lane...>) { return Doubles{number(lane)...}; }
   (std::make_index_sequence<lane_count>());
 }
 
-/// The smaller and the greater of two, lane by lane; b where they cannot be compared.
+/// Lane-wise minimum; `b` in lanes with a NaN.
 template <class V>
 [[nodiscard]] inline V min(const V& a, const V& b) noexcept {
   return a < b ? a : b;
 }
+/// Lane-wise maximum; `b` in lanes with a NaN.
 template <class V>
 [[nodiscard]] inline V max(const V& a, const V& b) noexcept {
   return a > b ? a : b;
 }
 
-/// The sum of all lanes, from the first on.
+/// Sum of all lanes, added in order.
 [[nodiscard]] inline double sum(const Doubles& v) noexcept {
   double all = 0;
   for (std::size_t lane = 0; lane < lane_count; ++lane) all += v[lane];
   return all;
 }
 
-/// The least and the greatest of all lanes; a lane without a number counts only if it is the first.
+/// Minimum of all lanes. A NaN is ignored, except in the first lane.
 [[nodiscard]] inline double min(const Doubles& v) noexcept {
   double least = v[0];
   for (std::size_t lane = 1; lane < lane_count; ++lane) least = v[lane] < least ? v[lane] : least;
   return least;
 }
+/// Maximum of all lanes. A NaN is ignored, except in the first lane.
 [[nodiscard]] inline double max(const Doubles& v) noexcept {
   double most = v[0];
   for (std::size_t lane = 1; lane < lane_count; ++lane) most = v[lane] > most ? v[lane] : most;
   return most;
 }
 
-/// Four numbers, in as many registers as they need: coordinates, and one lane to spare.
+/// Four numbers in one or more registers: three coordinates and a spare lane.
 template <class Real>
 struct Vec4 {
+  /// Number of registers.
   static constexpr std::size_t count = 4 * sizeof(Real) > register_bytes ? 4 * sizeof(Real) / register_bytes : 1;
+  /// One register.
   using Part = Vec<Real, 4 / count>;
+  /// Registers, in order of the lanes.
   Part parts[count];
 
   Vec4() = default;
+  /// Sets all lanes to one number.
   explicit Vec4(Real all) noexcept {
     each([&](std::size_t i) { parts[i] = Part{} + all; });
   }
-  Vec4(Real x, Real y, Real z) noexcept {  // a place, and 1
+  /// Sets the lanes to x, y, z and 1.
+  Vec4(Real x, Real y, Real z) noexcept {
     const Vec<Real, 4> whole{x, y, z, 1};
     std::memcpy(parts, &whole, sizeof parts);
   }
-  /// The four numbers in memory from this one on.
+  /// Loads four consecutive numbers, beginning with `first`.
   [[nodiscard]] static Vec4 from(const Real& first) noexcept {
     Vec4 four;
     std::memcpy(four.parts, &first, sizeof four.parts);
     return four;
   }
+  /// Lane `i`.
   [[nodiscard]] Real operator[](std::size_t i) const noexcept { return parts[i * count / 4][i % (4 / count)]; }
 
-  /// In another precision.
+  /// Converts to another precision.
   template <class Other>
   [[nodiscard]] Vec4<Other> as() const noexcept {
     Vec<Real, 4> whole;
@@ -145,7 +157,7 @@ struct Vec4 {
     return four;
   }
 
-  /// The four whose parts `make(i)` gives.
+  /// Vector whose registers are `make(i)`.
   template <class Make>
   [[nodiscard]] static Vec4 made(const Make& make) noexcept {
     Vec4 four;
@@ -168,7 +180,7 @@ struct Vec4 {
   friend Vec4 magnitude(const Vec4& a) noexcept {
     return made([&](std::size_t i) { return a.parts[i] < 0 ? -a.parts[i] : a.parts[i]; });
   }
-  /// -1 for what is negative, else 1.
+  /// Lane-wise sign: -1 if negative, else 1.
   friend Vec4 sense(const Vec4& a) noexcept {
     return made([&](std::size_t i) { return a.parts[i] < 0 ? Part{} - 1 : Part{} + 1; });
   }
@@ -180,22 +192,24 @@ struct Vec4 {
   }
 };
 
+/// Lane-wise minimum; `b` in lanes with a NaN.
 template <class Real>
 [[nodiscard]] inline Vec4<Real> min(const Vec4<Real>& a, const Vec4<Real>& b) noexcept {
   return Vec4<Real>::made([&](std::size_t i) { return a.parts[i] < b.parts[i] ? a.parts[i] : b.parts[i]; });
 }
+/// Lane-wise maximum; `b` in lanes with a NaN.
 template <class Real>
 [[nodiscard]] inline Vec4<Real> max(const Vec4<Real>& a, const Vec4<Real>& b) noexcept {
   return Vec4<Real>::made([&](std::size_t i) { return a.parts[i] > b.parts[i] ? a.parts[i] : b.parts[i]; });
 }
 
-/// Fills a vector from memory, from this number on.
+/// Loads consecutive numbers into `v`, beginning with `first`.
 template <class V, class Number>
 inline void fill(V& v, const Number& first) noexcept {
   std::memcpy(&v, &first, sizeof v);
 }
 
-/// A vector filled from memory, from this number on.
+/// Vector of consecutive numbers in memory, beginning with `first`.
 template <class V, class Number>
 [[nodiscard]] inline V load(const Number& first) noexcept {
   V v;
@@ -203,13 +217,13 @@ template <class V, class Number>
   return v;
 }
 
-/// A vector put into memory, from this number on.
+/// Stores a vector to consecutive numbers, beginning with `first`.
 template <class V, class Number>
 inline void store(const V& v, Number& first) noexcept {
   std::memcpy(&first, &v, sizeof v);
 }
 
-/// The lanes where a mask holds, a bit each.
+/// Bit mask of the lanes where a mask is set.
 template <class M>
 [[nodiscard]] inline unsigned bits(const M& mask) noexcept {
   constexpr std::size_t lanes = sizeof mask / sizeof mask[0];
@@ -231,7 +245,7 @@ template <class M>
 
 namespace pulsecast {
 
-/// Says that an object will be read soon, so that it be on its way from memory.
+/// Prefetches an object into the cache.
 template <class T>
 inline void prefetch(const T* object) noexcept {
   for (std::size_t byte = 0; byte < sizeof(T); byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + byte);

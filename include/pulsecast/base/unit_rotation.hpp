@@ -9,10 +9,10 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 
-/// Rotations in settings: written in single precision, or with few decimals, they are unit up to rounding.
+/// Rotations in settings. In single precision, or with few decimals, they are unit up to rounding only.
 namespace pulsecast {
 
-/// Throws a `SettingError` unless the norm is within 1e-3 of 1.
+/// Throws a `SettingError` unless the norm of a rotation is within 1e-3 of 1.
 inline void require_rotation(std::string_view field, const Rotation& rotation) {
   const double norm = length(rotation);
   if (!(norm >= 0.999 && norm <= 1.001)) throw_setting_error(std::string(field) + " (norm)", norm, "", "from 0.999 to 1.001");

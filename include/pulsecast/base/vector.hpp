@@ -19,9 +19,9 @@
 /// Vectors and rotations. GLM is named in this header only.
 namespace pulsecast {
 
-// packed, and constexpr only where GLM is: a program may make GLM align its own vectors and use intrinsics
-using Vec2 = glm::vec<2, double, glm::packed_highp>;  ///< in two dimensions
-using Vec3 = glm::vec<3, double, glm::packed_highp>;  ///< in three dimensions
+// Packed, whatever alignment a program selects for GLM; constexpr only where GLM is.
+using Vec2 = glm::vec<2, double, glm::packed_highp>;  ///< vector in two dimensions
+using Vec3 = glm::vec<3, double, glm::packed_highp>;  ///< vector in three dimensions
 
 /// Rotation as a unit quaternion; `rotation * vector` rotates the vector.
 using Rotation = glm::qua<double, glm::packed_highp>;
@@ -39,14 +39,15 @@ inline GLM_CONSTEXPR const Vec3 forward{0, 1, 0};  ///< +y: north in the world, 
 inline GLM_CONSTEXPR const Vec3 up{0, 0, 1};       ///< +z
 }  // namespace axis
 
-inline const Rotation no_rotation{1, 0, 0, 0};  ///< the identity
+inline const Rotation no_rotation{1, 0, 0, 0};  ///< identity rotation
 
 /// Right-handed rotation about an axis of any length but zero, by an angle [rad].
 [[nodiscard]] inline Rotation rotation_about(const Vec3& axis, double angle) noexcept { return glm::angleAxis(angle, normalize(axis)); }
 
 /// Rotation matrix: its columns are the rotated x, y and z. Cheaper than the quaternion for more than one vector.
 using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
-[[nodiscard]] inline Matrix3 matrix_of(const Rotation& rotation) noexcept { return glm::mat3_cast(rotation); }  ///< of a unit quaternion
+/// Matrix of a unit quaternion.
+[[nodiscard]] inline Matrix3 matrix_of(const Rotation& rotation) noexcept { return glm::mat3_cast(rotation); }
 
 /// True if no component is infinite or NaN.
 [[nodiscard]] inline bool finite(const Vec3& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }

@@ -36,7 +36,9 @@ class Deflector {
     return std::optional<Pulse<frame::Instrument>>(std::in_place, pose, *inner);
   }
 
+  /// Optic or head.
   [[nodiscard]] const Moving& moving() const noexcept { return moving_; }
+  /// Deflected source.
   [[nodiscard]] const Source& source() const noexcept { return source_; }
 
  private:

@@ -11,8 +11,8 @@
 
 namespace pulsecast {
 
-/// Nutating mirror: the beam describes a cone about forward once a turn, from up over right. A second half angle makes the cone elliptical:
-/// the deviation from forward is the first half angle times the cosine upwards, the second times the sine to the right.
+/// Nutating mirror: the beam describes a cone about forward once a turn, from up over right. A second half angle makes the cone elliptical.
+/// The deviation from forward is the first half angle times the cosine upwards, and the second times the sine to the right.
 struct PalmerMirror {
   double turns_per_second = 50;               ///< rate of turns around the cone, at most 1e12 [Hz]
   double half_angle = pi / 9;                 ///< half angle of the cone, upwards and downwards [rad]

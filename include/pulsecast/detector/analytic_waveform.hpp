@@ -46,10 +46,12 @@ class EdgeAgeMoments {
     mean_ += x;
   }
 
+  /// True if the slope of the sum has zeros, passed or to come.
   [[nodiscard]] bool can_turn() const noexcept { return variance_ < 1; }
   [[nodiscard]] double until_valley() const noexcept { return 1 - std::sqrt(1 - variance_) - mean_; }  ///< negative if passed [tau]
   [[nodiscard]] double until_peak() const noexcept { return 1 + std::sqrt(1 - variance_) - mean_; }    ///< negative if passed [tau]
 
+  /// Sum of pulses now [W].
   [[nodiscard]] double power() const noexcept { return weight_ * (mean_ * mean_ + variance_) * PulseShape::to_unit_peak; }
 
   /// Moments of the sum over a time x from now on, about now [tau].
@@ -73,8 +75,8 @@ class EdgeAgeMoments {
 /// Peak detector on the sum of the pulse shapes of all reflections, without sampling: times and heights are exact. Between two leading
 /// edges the sum is a quadratic polynomial times one exponential, so its extrema are roots of a quadratic. One pass over the reflections
 /// finds them all. A `SinglePeakGroup` is evaluated without sorting.
-/// On the front of docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. `FullWaveform` models the digitiser's
-/// bins and the receiver's noise.
+/// Pareto-optimal in docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. `FullWaveform` models the
+/// digitiser's bins and the receiver's noise.
 ///
 /// `WaveformSettings::sample_interval` is that of the record, and of the grid on which a fitted width samples the sum; moments are exact.
 template <EchoWidth Width = NoWidth>
@@ -84,6 +86,7 @@ class AnalyticWaveform {
   explicit AnalyticWaveform(WaveformSettings settings = {}, Width width = {})
       : s_(validated(settings)), width_(validated(std::move(width))) {}
 
+  /// Settings, as validated.
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
@@ -108,12 +111,13 @@ class AnalyticWaveform {
     }
   }
 
+  /// Scratch memory of one worker.
   struct Workspace {
-    std::vector<Peak> peaks;
-    std::vector<double> samples;  ///< samples of one echo, for a fitted width [W]
-    std::vector<Echo> echoes;
-    std::vector<float> record;
-    SinglePeakGroup::Workspace group;
+    std::vector<Peak> peaks;           ///< peaks of the current pulse
+    std::vector<double> samples;       ///< samples of one echo, for a fitted width [W]
+    std::vector<Echo> echoes;          ///< echoes of the current pulse
+    std::vector<float> record;         ///< samples of the kept waveform [W]
+    SinglePeakGroup::Workspace group;  ///< ages and weights
   };
 
   /// Scratch memory for pulses of up to `subrays` subrays.
@@ -172,9 +176,9 @@ class AnalyticWaveform {
     const double per_metre = 2 / (speed_of_light * shape.tau);
     EdgeAgeMoments ages;
     Peak peak;             // current peak
-    WaveformMoments m;     // moments of its stretch so far
+    WaveformMoments m;     // moments since its valley
     WaveformMoments last;  // moments of the last peak entered
-    double since = 0;      // time from the start of its stretch to the current edge [tau]
+    double since = 0;      // time from its valley to the current edge [tau]
     bool rising = false, met = false;
     const auto finish = [&](double end) {
       peak.end = end;

@@ -14,11 +14,11 @@
 
 namespace pulsecast {
 
-/// Integrals of a stretch of waveform over time, about a reference time: of the power, and of the power times the time and its square.
+/// Moments of a section of waveform about a reference time: integrals of power, of power times time, and of power times time squared.
 struct WaveformMoments {
-  double energy = 0, first = 0, second = 0;
+  double energy = 0, first = 0, second = 0;  ///< moments of order 0, 1 and 2
 
-  /// Adds a stretch whose reference time is `later` by a time.
+  /// Adds a section whose reference time is later by `later`.
   void add(const WaveformMoments& m, double later) noexcept {
     energy += m.energy;
     first += m.first + later * m.energy;

@@ -15,8 +15,9 @@ struct FirstHit {
 
   void validate() const { require_not_negative("FirstHit::threshold", threshold, "W"); }
 
+  /// Scratch memory of one worker.
   struct Workspace {
-    Echo echo;
+    Echo echo;  ///< echo of the current pulse
   };
 
   [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }

@@ -44,6 +44,7 @@ class FullWaveform {
   explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, ReceiverNoise noise = {})
       : s_(validated(settings)), width_(validated(std::move(width))), noise_(validated(noise)) {}
 
+  /// Settings, as validated.
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
   [[nodiscard]] double sample_interval() const noexcept { return s_.sample_interval; }
 
@@ -56,12 +57,13 @@ class FullWaveform {
     return pulsecast::pulse_width(width_, PulseShape(laser.pulse_length, s_.shape_divisor), s_.sample_interval);
   }
 
+  /// Scratch memory of one worker.
   struct Workspace {
-    std::vector<double> samples;  ///< current window [W]
-    std::vector<Peak> peaks;
-    std::vector<Echo> echoes;
-    std::vector<float> record;
-    SinglePeakGroup::Workspace group;
+    std::vector<double> samples;       ///< current window [W]
+    std::vector<Peak> peaks;           ///< peaks of the current pulse
+    std::vector<Echo> echoes;          ///< echoes of the current pulse
+    std::vector<float> record;         ///< samples of the kept waveform [W]
+    SinglePeakGroup::Workspace group;  ///< ages and weights
   };
 
   /// Scratch memory for pulses of up to `subrays` subrays.

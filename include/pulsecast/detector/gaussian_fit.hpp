@@ -29,18 +29,20 @@ struct Gaussian {
 /// positions of samples on a steep edge change the width of a pulse by less than 0.5 %.
 /// Source: Levenberg 1944, Marquardt 1963, with Marquardt's damping: scaled diagonal of the normal equations.
 struct GaussianFit {
-  int iterations_max = 50;
-  double share = 0.03;  ///< share of the highest sample, in [0, 1): lower samples end the fit on either side
+  int iterations_max = 50;  ///< iteration limit, from 1 to 1000
+  double share = 0.03;      ///< share of the highest sample, in [0, 1): lower samples end the fit on either side
 
   void validate() const {
     require_within("GaussianFit::iterations_max", iterations_max, 1, 1000, "");
     if (!(share >= 0 && share < 1)) throw SettingError("GaussianFit::share", share, "", "at least 0 and less than 1");
   }
 
+  /// As the concept EchoWidth describes.
   [[nodiscard]] double min_share() const noexcept { return share; }
 
+  /// Fitted Gaussian, with its convergence.
   struct Result {
-    Gaussian gaussian{};
+    Gaussian gaussian{};     ///< last iterate
     int iterations = 0;      ///< iterations done
     bool converged = false;  ///< true for a Gaussian no wider than the samples' extent, centred among them or within its width of them
   };
@@ -50,6 +52,7 @@ struct GaussianFit {
     return r.converged ? r.gaussian.width * interval : std::numeric_limits<double>::quiet_NaN();
   }
 
+  /// Fits a Gaussian to samples of power, at unit distance.
   [[nodiscard]] Result fit(std::span<const double> all) const noexcept {
     if (all.empty()) return {};
     const auto top = static_cast<std::size_t>(std::max_element(all.begin(), all.end()) - all.begin());

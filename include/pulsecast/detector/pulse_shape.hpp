@@ -12,13 +12,13 @@ namespace pulsecast {
 /// Laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge at t = 0, scaled to a peak of 1 at 2 tau.
 /// Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5, with tau = full width at half maximum / 3.5.
 struct PulseShape {
-  double tau;  ///< [s]
+  double tau;  ///< time constant [s]
 
   /// `divisor`: full width at half maximum by tau. The exact value is 3.395; the literature says 3.5.
   explicit PulseShape(double pulse_length, double divisor = 3.5) noexcept : tau(pulse_length / divisor) {}
 
-  static constexpr double peak = 2;  ///< time of the peak since the leading edge [tau]
-  static constexpr double to_unit_peak = std::numbers::e * std::numbers::e / 4;
+  static constexpr double peak = 2;                                              ///< time of the peak since the leading edge [tau]
+  static constexpr double to_unit_peak = std::numbers::e * std::numbers::e / 4;  ///< factor that scales the peak to 1
 
   /// Standard deviation in time [s]: the shape is a gamma distribution of order 3.
   [[nodiscard]] double deviation() const noexcept { return std::numbers::sqrt3 * tau; }

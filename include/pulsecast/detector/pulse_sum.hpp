@@ -35,8 +35,8 @@ namespace pulsecast {
 
 /// Sum of the pulse shapes of reflections, sorted by range, sample by sample.
 ///
-/// The shape is a polynomial times an exponential. Three moments about the leading edges carry the sum of any number of shapes from sample
-/// to sample: the sums of P e^-u, P u e^-u and P u^2 e^-u. This is exact, and costs samples plus reflections instead of their product.
+/// The shape is a polynomial times an exponential. Three moments about the leading edges advance the sum of any number of shapes by one
+/// sample: the sums of P e^-u, P u e^-u and P u^2 e^-u. This is exact, and costs samples plus reflections instead of their product.
 class SampledSum {
  public:
   static constexpr double negligible = 20;  ///< time since its peak at which 1e-6 of a pulse is left [tau]
@@ -62,6 +62,7 @@ class SampledSum {
   [[nodiscard]] double sample() const noexcept { return sample_; }            ///< number of the next sample
   [[nodiscard]] double time() const noexcept { return sample_ * interval_; }  ///< time of the next sample [s]
   [[nodiscard]] std::size_t next() const noexcept { return next_; }           ///< index of the first reflection still to arrive
+  /// True if the edges of all reflections have passed.
   [[nodiscard]] bool all_in() const noexcept { return next_ == reflections_.size(); }
   [[nodiscard]] double last_peak() const noexcept {
     return arrival(reflections_[next_ - 1]);

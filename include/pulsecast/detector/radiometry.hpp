@@ -26,7 +26,7 @@ namespace pulsecast {
 
 /// Row of a table of range noise.
 struct DeviationAtRange {
-  double range = 0;      ///< [m]
+  double range = 0;      ///< true range [m]
   double deviation = 0;  ///< standard deviation of the noise at that range [m]
 };
 
@@ -50,6 +50,7 @@ struct RangeErrors {
     }
   }
 
+  /// True without errors.
   [[nodiscard]] bool none() const noexcept { return bias == 0 && deviation == 0 && deviation_per_metre == 0 && deviations.size() == 0; }
 
   /// Standard deviation of the noise at a range, at normal incidence [m].
@@ -73,7 +74,7 @@ struct Receiver {
   double visibility = 23e3;                                    ///< meteorological visibility, at least 1 m; infinite for no atmosphere [m]
   double range_min = 0;                                        ///< range gate's start [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< range gate's end [m]
-  RangeErrors range_errors{};
+  RangeErrors range_errors{};                                  ///< errors of reported ranges
 
   void validate() const {
     require_within("Receiver::diameter", diameter, 1e-4, 1e3, "m");  // its square is a factor of every received power
@@ -84,6 +85,7 @@ struct Receiver {
     require_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
   }
 
+  /// True if a range [m] is within the gate.
   [[nodiscard]] bool in_gate(double range) const noexcept { return range >= range_min && range <= range_max; }
 };
 
@@ -92,6 +94,7 @@ struct Receiver {
 /// on the axis collects sin^2 of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 + D^2) in place of D^2 / (4 R^2).
 class LinkBudget {
  public:
+  /// Takes valid settings.
   LinkBudget(const Receiver& receiver, const Laser& laser) noexcept
       : gain_(laser.peak_power * receiver.diameter * receiver.diameter * receiver.efficiency / 4),
         near_(receiver.diameter * receiver.diameter / 4),

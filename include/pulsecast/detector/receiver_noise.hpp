@@ -25,6 +25,7 @@ struct ReceiverNoise {
     require_within("ReceiverNoise::quantum_efficiency", quantum_efficiency, 0, 1, "");
   }
 
+  /// True without noise.
   [[nodiscard]] bool none() const noexcept { return deviation == 0 && background == 0; }
 
   /// Standard deviation of a sample [W]: electronic noise, and shot noise of the background. The photon count is Poisson-distributed, with

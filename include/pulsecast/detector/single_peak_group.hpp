@@ -29,7 +29,8 @@ class SinglePeakGroup {
  public:
   /// Ages and weights, one per reflection, padded to whole SIMD vectors.
   struct Workspace {
-    std::vector<double> ages, weights;
+    std::vector<double> ages, weights;  ///< one per reflection: age [tau], weight [W]
+    /// Allocates memory for `reflections` reflections.
     explicit Workspace(std::size_t reflections) : ages(reflections + simd::lane_count), weights(reflections + simd::lane_count) {}
   };
 
@@ -77,6 +78,7 @@ class SinglePeakGroup {
     mean_range_ = farthest - simd::sum(before) / simd::sum(power);
   }
 
+  /// True if the reflections form such a group.
   [[nodiscard]] bool one() const noexcept { return one_; }
   [[nodiscard]] double last_edge() const noexcept { return last_edge_; }    ///< two-way travel time, origin of the times below [s]
   [[nodiscard]] double mean_range() const noexcept { return mean_range_; }  ///< power-weighted mean of the reflections [m]

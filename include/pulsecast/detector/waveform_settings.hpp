@@ -20,23 +20,26 @@ enum class EchoTiming : std::uint8_t {
 
 /// Settings of the waveform detectors. All times are two-way.
 ///
-/// A peak of the waveform is an echo if it passes these tests in order: it reaches the threshold; it is at least `separation` from the peak
-/// before it, else the two merge; it is the highest within the window; it is later than the dead time of the echo before it; it is among
-/// the first `returns_max`.
+/// A peak of the waveform is an echo if it passes these tests, in this order:
+/// - it reaches the threshold;
+/// - it is at least `separation` from the peak before it, else the two merge;
+/// - it is the highest within the window;
+/// - it is later than the dead time of the echo before it;
+/// - it is among the first `returns_max`.
 ///
-/// The default bin is on the front of docs/tradeoff.md to within a few percent. At 1/16 of a pulse, bins cost hardly more than wider ones,
-/// which lose close echoes; narrower bins gain little. Widths cost more than any other setting, except for moments of `AnalyticWaveform`,
-/// so there are none by default.
+/// The default bin is Pareto-optimal in docs/tradeoff.md to within a few percent. At 1/16 of a pulse, bins cost hardly more than wider
+/// ones, which lose close echoes; narrower bins gain little. Widths cost more than any other setting, except for moments of
+/// `AnalyticWaveform`, so there are none by default.
 struct WaveformSettings {
-  double sample_interval = 0.25e-9;  ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
-  double threshold = 1e-12;          ///< least power of an echo's peak [W]
-  double separation = 0;             ///< closer peaks merge, with the greater height [s]
-  double window = 1e-9;              ///< an echo is the highest peak within this time before and after it [s]
-  double dead_time = 0;              ///< no other echo within this time after an echo's peak [s]
-  std::size_t returns_max = 15;      ///< first echoes kept, in order of range; from 1 to 255
-  EchoTiming timing = EchoTiming::energy;
-  double record_length = 0;    ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
-  double shape_divisor = 3.5;  ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
+  double sample_interval = 0.25e-9;        ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
+  double threshold = 1e-12;                ///< least power of an echo's peak [W]
+  double separation = 0;                   ///< closer peaks merge, with the greater height [s]
+  double window = 1e-9;                    ///< an echo is the highest peak within this time before and after it [s]
+  double dead_time = 0;                    ///< no other echo within this time after an echo's peak [s]
+  std::size_t returns_max = 15;            ///< first echoes kept, in order of range; from 1 to 255
+  EchoTiming timing = EchoTiming::energy;  ///< definition of an echo's range
+  double record_length = 0;                ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
+  double shape_divisor = 3.5;              ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
 
   void validate() const {
     require_within("WaveformSettings::sample_interval", sample_interval, 1e-16, 1, "s");
@@ -57,11 +60,11 @@ struct WaveformSettings {
   void require_sampled(double pulse_length, double most) const {
     if (sample_interval <= pulse_length && pulse_length <= most * sample_interval) return;
     throw SettingError("WaveformSettings::sample_interval", sample_interval, "s",
-                       "from " + detail::to_text(pulse_length / most) + " to " + detail::to_text(pulse_length) + " for such a pulse");
+                       "from " + detail::to_text(pulse_length / most) + " to " + detail::to_text(pulse_length) + " for this pulse length");
   }
 
-  /// Least separation of two echoes [s]: the greater of `separation` and the shorter of window and pulse length, since a lower peak cannot
-  /// be told from the flank of a higher one. Closer peaks become one echo over the whole stretch between their outer valleys.
+  /// Least separation of two echoes [s]: the greater of `separation` and the shorter of window and pulse length. A lower peak closer than
+  /// that is indistinguishable from the flank of a higher one. Closer peaks become one echo between their outer valleys.
   [[nodiscard]] double min_separation(double pulse_length) const noexcept { return std::fmax(separation, std::fmin(window, pulse_length)); }
 
   /// Greatest number of samples of a record.

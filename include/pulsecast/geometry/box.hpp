@@ -10,10 +10,14 @@ namespace pulsecast {
 
 /// Axis-aligned box between two corners [m]; empty by default, so that the first extension sets it.
 struct Box {
+  /// Lower corner [m].
   Vec3 min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  /// Upper corner [m].
   Vec3 max = -min;
 
+  /// True if a lower coordinate exceeds its upper one.
   [[nodiscard]] bool empty() const noexcept { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
+  /// Centre [m].
   [[nodiscard]] Vec3 centre() const noexcept { return min * 0.5 + max * 0.5; }
   [[nodiscard]] Vec3 size() const noexcept { return max - min; }
 

@@ -20,7 +20,7 @@ using PrimitiveIndex = std::uint32_t;
 
 /// Properties shared by the rays of a bundle.
 struct BundleOrigin {
-  Vec3 origin{};                                         ///< [m]
+  Vec3 origin{};                                         ///< common origin of the rays [m]
   double direction_length = 1;                           ///< 1 in the world, 1/scale in an instance
   double near = 0;                                       ///< nothing is met at this range or before it, at least 0 [m]
   double far = std::numeric_limits<double>::infinity();  ///< nothing is met beyond this range [m]
@@ -37,25 +37,31 @@ struct BundleOrigin {
 /// Structure of arrays, padded with idle lanes to a multiple of `lanes` for SIMD loops.
 /// All directions have the same length: 1 in the world, 1/scale inside an instance, so that ranges are metres of the world everywhere.
 struct RayBundle : BundleOrigin {
-  static constexpr std::size_t capacity = 64;
-  static constexpr std::size_t lanes = simd::lane_count;
+  static constexpr std::size_t capacity = 64;             ///< greatest number of rays
+  static constexpr std::size_t lanes = simd::lane_count;  ///< divisor of `padded_size()`
 
-  using Column = std::array<double, capacity>;
+  using Column = std::array<double, capacity>;  ///< one number per ray
 
-  alignas(64) Column x, y, z;  ///< directions; only the first `padded_size()` are set
+  alignas(64) Column x, y, z;  ///< components of the directions; only the first `padded_size()` are set
   Vec3 least, most;            ///< minimum and maximum of each component of the directions, NaN left out; infinite if nothing is left
 
   RayBundle() noexcept {}  // leaves the directions unset
+  /// Takes the common properties, and leaves the directions unset.
   explicit RayBundle(const BundleOrigin& o) noexcept : BundleOrigin(o) {}
+  /// Copies the directions in use only.
   RayBundle(const RayBundle& other) noexcept : RayBundle(static_cast<const BundleOrigin&>(other)) { copy_directions(other); }
+  /// Copies the directions in use only.
   RayBundle& operator=(const RayBundle& other) noexcept {
     static_cast<BundleOrigin&>(*this) = other;
     copy_directions(other);
     return *this;
   }
 
+  /// Rays with the idle lanes: `size`, rounded up to a multiple of `lanes`.
   [[nodiscard]] std::size_t padded_size() const noexcept { return (size + lanes - 1) / lanes * lanes; }
+  /// Direction of ray j.
   [[nodiscard]] Vec3 direction(std::size_t j) const noexcept { return {x[j], y[j], z[j]}; }
+  /// Ray j.
   [[nodiscard]] Ray ray(std::size_t j) const noexcept { return {origin, direction(j), near, far}; }
 
   void set_direction(std::size_t j, const Vec3& d) noexcept {
@@ -115,13 +121,14 @@ struct RayBundle : BundleOrigin {
 
 /// Closest hit so far of each ray of a bundle. At exactly equal range the smallest id wins.
 struct ClosestHits {
-  static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
+  static constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();  ///< id of no hit
 
   alignas(64) std::array<double, RayBundle::capacity> range;  ///< range of the hit [m]; `far` without a hit
   alignas(
       64) std::array<std::uint64_t, RayBundle::capacity> id;  ///< part in the upper half, primitive in the lower; `none` if nothing was met
   std::uint64_t part = 0;                                     ///< part under test, in the upper half
 
+  /// No hits so far of a bundle's rays.
   explicit ClosestHits(const RayBundle& rays) noexcept {
     for (std::size_t j = 0; j < rays.padded_size(); ++j) {
       range[j] = j < rays.size ? rays.far : -std::numeric_limits<double>::infinity();  // an idle lane meets nothing
@@ -129,8 +136,11 @@ struct ClosestHits {
     }
   }
 
+  /// True if ray j has a hit.
   [[nodiscard]] bool met(std::size_t j) const noexcept { return id[j] != none; }
+  /// Part that ray j hits.
   [[nodiscard]] std::uint32_t part_of(std::size_t j) const noexcept { return static_cast<std::uint32_t>(id[j] >> 32); }
+  /// Primitive of that part that ray j hits.
   [[nodiscard]] PrimitiveIndex primitive_of(std::size_t j) const noexcept { return static_cast<PrimitiveIndex>(id[j]); }
 
   /// Records a hit of ray j with a primitive of the current part, if it is closer than the one before.

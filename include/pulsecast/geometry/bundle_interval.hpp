@@ -45,8 +45,9 @@ template <std::floating_point Real>
 /// Box of type Real, relative to the centre of an accelerator; rounded outwards, so never smaller than the original.
 template <std::floating_point Real>
 struct BoundingBox {
-  Real min[3], max[3];  ///< [m]
+  Real min[3], max[3];  ///< lower and upper walls by axis [m]
 
+  /// Box around `box` [m], relative to `centre` [m].
   static BoundingBox around(const Box& box, const Vec3& centre) noexcept {
     constexpr double growing = 1 + 2 * std::numeric_limits<double>::epsilon(), shrinking = 2 - growing;
     BoundingBox b;
@@ -63,7 +64,7 @@ struct BoundingBox {
 /// Eight boxes as structure of arrays. A free slot holds an inverted box, which nothing is inside of.
 template <std::floating_point Real>
 struct Box8 {
-  alignas(8 * sizeof(Real)) Real min[3][8], max[3][8];  ///< [m]
+  alignas(8 * sizeof(Real)) Real min[3][8], max[3][8];  ///< lower and upper walls by axis [m]
 
   Box8() noexcept {
     constexpr Real most = std::numeric_limits<Real>::max();
@@ -71,6 +72,7 @@ struct Box8 {
     for (auto& side : max) std::fill(std::begin(side), std::end(side), -most);
   }
 
+  /// Sets the box in a slot.
   void put(std::size_t place, const BoundingBox<Real>& box) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       min[k][place] = box.min[k];
@@ -103,6 +105,7 @@ struct QuantizedBox8 {
     count = 0;
   }
 
+  /// Appends a box, in the slot `count`.
   void add(const BoundingBox<Real>& box) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
       const double start = static_cast<double>(origin[k]), per_step = 1 / static_cast<double>(step(k));
@@ -127,15 +130,16 @@ struct QuantizedBox8 {
   static constexpr int min_exponent = -126;
 };
 
-/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic: where any ray meets a primitive in double
-/// precision, no box around that primitive is missed, and the range lies inside its span.
+/// Conservative test of a whole bundle against boxes and planes, by interval arithmetic. If any ray meets a primitive in double precision,
+/// the bundle meets every box around that primitive, and the range is inside the box's span.
 /// NaN rays are left out; if none is left, every span is empty.
 template <std::floating_point Real>
 class BundleInterval {
  public:
+  /// Interval of range.
   struct Span {
-    Real entry, exit;
-    [[nodiscard]] bool empty() const noexcept { return !(entry <= exit); }
+    Real entry, exit;                                                       ///< ends of the interval [m]
+    [[nodiscard]] bool empty() const noexcept { return !(entry <= exit); }  ///< true if no range is inside
   };
 
   /// `bounds` of the accelerator; its boxes are relative to `centre`.
@@ -183,6 +187,7 @@ class BundleInterval {
               (simd::load<simd::Packet<Real>>(boxes.max[k][first]) - axis.origin_low) * axis.per_max};
     });
   }
+  /// Bit mask and entry ranges, as above.
   [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, std::array<Real, 8>& entries) const noexcept {
     // two roundings of a wall's distance from the origin, as the steps of its grid are powers of two
     Real to_low[3], to_high[3], steps[3];
@@ -313,8 +318,8 @@ class RayInterval {
     for (std::size_t k = 0; k < 3; ++k) steps[k] = boxes.step(k);
     unsigned met = 0;
     for (std::size_t first = 0; first < 8; first += simd::packet_size<Real>) {
-      // the range to a wall is a line over its number; where it lies errs by two roundings of how far the origin is, and four and a half of
-      // half the bounds
+      // The range to a wall is linear in its number. The wall's position errs by two roundings of the distance to the origin, plus four and
+      // a half of half the bounds.
       const auto ranges = [&](std::size_t k, std::size_t side) noexcept -> simd::Packet<Real> {
         const Real per = per_[side][k], start = boxes.origin[k] * per + start_[side][k];
         return simd::packet_from<Real>(boxes.walls[k][upper_[k] ^ side][first]) * (steps[k] * per) + start;

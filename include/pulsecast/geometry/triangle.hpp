@@ -19,7 +19,7 @@ namespace pulsecast {
 
 /// Triangle with corners a, b, c [m]; both sides count.
 struct Triangle {
-  Vec3 a{}, b{}, c{};
+  Vec3 a{}, b{}, c{};  ///< corners [m]
 
   [[nodiscard]] Box bounds() const noexcept {
     Box box;
@@ -35,12 +35,13 @@ struct Triangle {
 
 /// Triangles tested together, one a lane; idle lanes repeat the last one.
 struct TrianglePacket {
+  /// One corner of each triangle.
   struct Corner {
-    simd::Doubles x, y, z;  ///< [m]
+    simd::Doubles x, y, z;  ///< coordinates [m]
   };
-  Corner a, b, c;
-  std::array<PrimitiveIndex, simd::lane_count> primitives;
-  std::size_t size;  ///< lanes in use, at least one
+  Corner a, b, c;                                           ///< corners of the triangles
+  std::array<PrimitiveIndex, simd::lane_count> primitives;  ///< number of the triangle in each lane
+  std::size_t size;                                         ///< lanes in use, at least one
 
   /// `triangle_of(n)` returns the triangle of the n-th of these primitives.
   template <class TriangleOf>
@@ -85,8 +86,8 @@ struct TrianglePacket {
   };
   const Corner a = from_origin(triangles.a), b = from_origin(triangles.b), c = from_origin(triangles.c);
 
-  // planes through the origin and an edge, and the bound within which their side is in doubt: |e||s| in the 1-norm bounds each sum of
-  // products, which is at most seven roundings from the true one
+  // Planes through the origin and an edge, and the bound below which a side is in doubt. |e||s| in the 1-norm bounds each sum of products,
+  // which is at most seven roundings from the true one.
   struct Planes {
     simd::Doubles x, y, z, doubt;
   };
@@ -129,7 +130,7 @@ struct TrianglePacket {
   const Corner from_a = minus(triangles.b, triangles.a), to_a = minus(triangles.a, triangles.c);  // unaffected by the distance
   const Corner normals = cross_of(from_a, to_a);
   const simd::Doubles offsets = normals.x * a.x + normals.y * a.y + normals.z * a.z, area = square(normals);
-  const simd::Mask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // an angle of none but roundings
+  const simd::Mask flat = area <= 8 * unit * square(from_a) * (8 * unit * square(to_a));  // zero angle up to rounding
   const simd::Doubles grazing = flat ? simd::Doubles{} + std::numeric_limits<double>::infinity()
                                      : 1e-12 * 1e-12 * rays.direction_length * rays.direction_length * area;
   const Corner lowest{simd::min(a.x, simd::min(b.x, c.x)), simd::min(a.y, simd::min(b.y, c.y)), simd::min(a.z, simd::min(b.z, c.z))};

@@ -20,18 +20,18 @@ struct XmlOptions {
 
 /// Content of a survey document.
 struct SurveyDocument {
-  SurveySettings survey{};
-  std::vector<std::string> warnings{};    ///< readable, but unusual, as in `survey.xml:3:10: attribute 'numRuns' has no effect`
+  SurveySettings survey{};                ///< settings of the survey
+  std::vector<std::string> warnings{};    ///< warnings, as in `survey.xml:3:10: attribute 'numRuns' has no effect`
   std::vector<std::string> leg_places{};  ///< position of each leg, as in `survey.xml:12:5`, for `SurveyBuildOptions`
   std::string place{};                    ///< position of the survey
 };
 
 /// Content of a document of assets, in document order.
 struct AssetDocument {
-  std::vector<ScannerSettings> scanners{};
-  std::vector<PlatformSettings> platforms{};
-  std::vector<SceneSettings> scenes{};
-  std::vector<std::string> warnings{};
+  std::vector<ScannerSettings> scanners{};    ///< `<scanner>` elements
+  std::vector<PlatformSettings> platforms{};  ///< `<platform>` elements
+  std::vector<SceneSettings> scenes{};        ///< `<scene>` elements
+  std::vector<std::string> warnings{};        ///< as in `SurveyDocument`
 };
 
 /// Reads a survey and its references, in the format of HELIOS++, and checks all but the scene's files. The settings are resolved: overrides
@@ -42,14 +42,14 @@ struct AssetDocument {
 /// Writes a survey with its scanner, platform and scene as one document. Reading it gives equal settings. Exception: values from a program
 /// may differ in the last digit where the document's unit is not SI.
 void write_survey(const std::filesystem::path& path, const SurveySettings& survey);
-[[nodiscard]] std::string xml_text(const SurveySettings& survey);  ///< the text of that document
+[[nodiscard]] std::string xml_text(const SurveySettings& survey);  ///< text of that document
 
 /// Reads the scanners, platforms and scenes of a document. Throws as `read_survey`.
 [[nodiscard]] AssetDocument read_assets(const std::filesystem::path& path, const XmlOptions& options = {});
 
 /// Writes scanners, platforms and scenes as one document.
 void write_assets(const std::filesystem::path& path, const AssetDocument& assets);
-[[nodiscard]] std::string xml_text(const AssetDocument& assets);  ///< the text of that document
+[[nodiscard]] std::string xml_text(const AssetDocument& assets);  ///< text of that document
 
 namespace detail {
 

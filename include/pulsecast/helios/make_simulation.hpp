@@ -38,8 +38,8 @@ namespace pulsecast::helios {
 
 /// Parts of a scene and the warnings from building it.
 struct BuiltParts {
-  std::vector<SurveyPart> parts{};
-  std::vector<std::string> warnings{};
+  std::vector<SurveyPart> parts{};      ///< parts of the scene
+  std::vector<std::string> warnings{};  ///< warnings of the construction
 };
 
 /// Gives the parts of the scene in a repetition: the result of `build`, or an equal earlier one.
@@ -102,7 +102,7 @@ class WaveformLimits {
     if (s.record_length <= longest) return;
     s.record_length = longest;
     warnings.push_back(name_ + ": waveforms are cut after " + xml_number(std::round(longest * 1e12) / 1e3) + " ns, " + xml_number(most) +
-                       " samples, which is all that " + (las_ ? "LAS takes" : "is kept") + "; longer bins reach farther");
+                       " samples, the maximum " + (las_ ? "of LAS" : "kept") + "; longer bins reach farther");
   }
 
  private:

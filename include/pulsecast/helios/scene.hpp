@@ -55,6 +55,7 @@ struct SceneBuildOptions {
 /// little.
 class SceneBuilder {
  public:
+  /// Keeps the settings; `parts` reads the files. @throws SettingError for settings out of range
   SceneBuilder(SceneSettings settings, SceneBuildOptions options)
       : settings_(validated(std::move(settings))), options_(validated(std::move(options))) {}
 
@@ -97,6 +98,7 @@ class SceneBuilder {
     return all;
   }
 
+  /// Warnings so far, each once.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
@@ -170,7 +172,7 @@ class SceneBuilder {
       else
         warn(cloud.warnings);
       if (cloud.voxels.cells.empty()) {
-        warn({file.string() + ": has no voxel of three points or more, as estimateNormals needs, and is left out"});
+        warn({file.string() + ": has no voxel of three points or more, as required by estimateNormals, and is left out"});
         return;
       }
       MaterialTable materials = assign_materials(source.material, cloud.voxels);
@@ -210,7 +212,7 @@ class SceneBuilder {
       io::VoxelFile voxels = io::read_voxel_file(file, s);
       warn(voxels.warnings);
       if (voxels.voxels.cells.empty()) {
-        warn({file.string() + ": holds no voxel that light could meet, and is left out"});
+        warn({file.string() + ": holds no occupied voxel, and is left out"});
         return;
       }
       MaterialTable materials = assign_materials(source.material, voxels.voxels);
@@ -230,7 +232,7 @@ class SceneBuilder {
     const io::MaterialLibrary library = io::read_mtl(source.file, options_.spectra);
     warn(library.warnings);
     if (library.materials.empty() && !source.name) {
-      warn({source.file.string() + ": holds no material: its reflectance is taken to be 0.5"});
+      warn({source.file.string() + ": holds no material: a reflectance of 0.5 is assumed"});
       return io::undescribed("default");
     }
     if (!source.name) return library.materials.begin()->second;
@@ -286,8 +288,8 @@ class SceneBuilder {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto [at, is_new] = first.try_emplace(all[i].object, settings_of_[i]);
       if (is_new) continue;
-      warn({"points of the parts '" + at->second->id + "' and '" + settings_of_[i]->id + "' carry the same number, " +
-            std::to_string(all[i].object) + ": they cannot be told apart"});
+      warn({"the parts '" + at->second->id + "' and '" + settings_of_[i]->id + "' have the same object id, " +
+            std::to_string(all[i].object) + ": their points cannot be distinguished"});
       return;
     }
   }
@@ -309,7 +311,7 @@ class SceneBuilder {
       if (stood)
         all[i] = std::move(*stood);
       else
-        warn({"part '" + all[i].name + "': there is no ground under it, so it stays where it is"});
+        warn({"part '" + all[i].name + "': there is no ground under it: it is not moved"});
     }
   }
 

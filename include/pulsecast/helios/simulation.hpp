@@ -34,21 +34,22 @@ struct Receiving {
 
 /// Consecutive slots of a sample. Slots before `from` are simulated to warm the caches, but do not count.
 struct SampleBlock {
-  PulseIndex first = 0, from = 0, end = 0;
+  PulseIndex first = 0, from = 0, end = 0;  ///< first slot, first that counts, one past the last
 };
 
 /// Results of the counted slots of a block.
 struct Sample : ResultBuffer {
   double seconds = 0;          ///< processor time [s]
-  double sample_interval = 0;  ///< [s]
+  double sample_interval = 0;  ///< sample spacing of the waveforms [s]
 
+  /// Results as a batch, valid until they change.
   [[nodiscard]] EchoBatch batch() const { return ResultBuffer::batch(sample_interval); }
 };
 
 /// Result of a single slot.
 struct SlotCount {
-  Fate fate = Fate::blocked;
-  std::uint8_t echoes = 0;
+  Fate fate = Fate::blocked;  ///< fate of the slot
+  std::uint8_t echoes = 0;    ///< number of its echoes
 };
 
 /// Survey with its scene loaded and its legs planned. `run`, `sample` and `count` may be called by several threads at once.
@@ -56,8 +57,8 @@ class Simulation {
  public:
   /// Triangles of one material, in addition to the survey's own parts.
   struct Mesh {
-    MeshData data{};
-    Material material{};
+    MeshData data{};      ///< triangles, in the world [m]
+    Material material{};  ///< material of all triangles
     ObjectId object = 0;  ///< object number of its points
   };
 
@@ -72,18 +73,18 @@ class Simulation {
     bool platform_noise = true;                   ///< true: as in the survey; false: none
     bool leg_noise = true;                        ///< true: random leg offsets as in the survey; false: none
     std::vector<std::filesystem::path> assets{};  ///< folders; a folder `spectra` in one describes materials
-    std::vector<Mesh> meshes{};
-    std::vector<std::string> leg_places{};  ///< places of the legs in their document, for messages; may be empty
-    std::string place{};                    ///< place of the survey in its document, for messages; may be empty
-    unsigned threads = 0;                   ///< threads that build the scene; 0: all
+    std::vector<Mesh> meshes{};                   ///< meshes in addition to the survey's own parts
+    std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages; may be empty
+    std::string place{};                          ///< place of the survey in its document, for messages; may be empty
+    unsigned threads = 0;                         ///< threads that build the scene; 0: all
   };
 
   /// Size of a loaded scene.
   struct Scene {
-    Vec3 least{}, most{};  ///< corners of the bounding box, in the world [m]
-    std::size_t parts = 0, moving = 0, triangles = 0;
-    std::size_t memory = 0;  ///< [byte]
-    bool empty = true;       ///< true: no bounding box
+    Vec3 least{}, most{};                              ///< corners of the bounding box, in the world [m]
+    std::size_t parts = 0, moving = 0, triangles = 0;  ///< number of parts, of moving ones among them, of triangles
+    std::size_t memory = 0;                            ///< memory held; shared data counts once [byte]
+    bool empty = true;                                 ///< true: no bounding box
   };
 
   Simulation() = default;
@@ -96,9 +97,11 @@ class Simulation {
   /// Loads the scene of a repetition, from 0, and plans its legs. Throws as `make_simulation`.
   virtual void begin(int run) = 0;
 
+  /// Legs of the current repetition, and their pulses.
   [[nodiscard]] virtual const CompiledSurvey& compiled() const = 0;
+  /// Size of the current scene.
   [[nodiscard]] virtual Scene scene() const = 0;
-  [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;  ///< from scene, legs and receivers, each once
+  [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;  ///< warnings of scene, legs and receivers, each once
 
   /// Simulates the pulses as `pulsecast::run` does. The sink gets the echoes in the order of their pulses.
   virtual RunSummary run(const RunOptions& options, const std::function<void(const EchoBatch&)>& sink) const = 0;

@@ -24,19 +24,20 @@ namespace pulsecast::helios {
 
 /// Runnable survey, with data of its legs.
 struct CompiledSurvey {
+  /// Leg of the survey.
   struct Leg {
-    std::size_t number = 0;  ///< index in the document, from 0
-    bool active = true;
-    std::optional<std::string> strip{};
-    PulseIndex first = 0, end = 0;  ///< range of its slots in the survey
-    Tick start{}, duration{};
-    double trajectory_interval = 0;  ///< interval of trajectory records; 0: none [s]
-    double pulse_rate = 0;           ///< [Hz]
+    std::size_t number = 0;              ///< index in the document, from 0
+    bool active = true;                  ///< true if pulses are emitted
+    std::optional<std::string> strip{};  ///< name of its strip, if any
+    PulseIndex first = 0, end = 0;       ///< range of its slots in the survey
+    Tick start{}, duration{};            ///< start since the survey's start; duration
+    double trajectory_interval = 0;      ///< interval of trajectory records; 0: none [s]
+    double pulse_rate = 0;               ///< pulse rate [Hz]
   };
-  Legs<SurveyLeg> source;
-  std::vector<Leg> legs;
+  Legs<SurveyLeg> source;               ///< source of all pulses
+  std::vector<Leg> legs;                ///< legs, in order of time
   std::optional<double> clock_start{};  ///< start time of the survey, if a trajectory gives it [s]
-  std::vector<std::string> warnings{};
+  std::vector<std::string> warnings{};  ///< warnings of the compilation
 };
 
 namespace detail {
@@ -64,9 +65,8 @@ class SurveyCompiler {
       const double rate = paths_.of_leg(k, [&] { return rate_of(leg); });
       const double duration = duration_of(k), way = paths_[k].duration;
       if (way > 0 && duration > 1.1 * way && leg.scanner.active)
-        warnings.push_back(paths_.leg_name(k) + ": the platform is there after " + brief(way) +
-                           " s, and stays until the head has turned, " + brief(duration - way) +
-                           " s more; without headRotateStop_deg, the head turns for as long as the way lasts");
+        warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + brief(way) + " s, and stays for " +
+                           brief(duration - way) + " s until the head has turned; without headRotateStop_deg, the leg ends at its arrival");
       require_within(paths_.leg_name(k) + " (duration)", duration, 0, 1e15, "s");
       require_within(paths_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");
       const double interval = leg.scanner.active ? leg.scanner.trajectory_interval : 0;
@@ -138,10 +138,10 @@ class SurveyCompiler {
       duration = std::max(duration, turn / speed - s.warm_up);
     else if (turns_away(s))
       throw SettingError(paths_.leg_name(k) + ": headRotateStop_deg", degrees(s.head_stop), "deg",
-                         "on the side of headRotateStart_deg to which the head turns");
+                         "ahead of headRotateStart_deg in the head's direction of rotation");
     else if (head_never_stops(survey_.scanner.channels.front(), leg) && s.active)
       throw SettingError(paths_.leg_name(k) + ": headRotatePerSec_deg", degrees(s.head_speed), "deg/s",
-                         "other than 0, for a scanner whose headRotatePerSecMax_deg is, or the leg would never end");
+                         "other than 0, like headRotatePerSecMax_deg, as the leg would never end otherwise");
     if (leg.duration_max) {
       const double most = *leg.duration_max;
       return stands && duration == 0 ? most : std::min(duration, most);
@@ -149,7 +149,7 @@ class SurveyCompiler {
     if (paths_.is_stationary(k) && k + 1 < survey_.legs.size()) return duration;
     if (stands && duration == 0 && speed == 0 && s.active)
       throw SettingError(paths_.leg_name(k) + ": maxDuration_s", 0, "s",
-                         "given where neither platform nor head moves, or the leg would never end");
+                         "given if neither platform nor head moves, as the leg would never end otherwise");
     return std::max(0.0, duration);
   }
 

@@ -166,7 +166,7 @@ class GeoTiffReader {
     const std::string what = layout_.chunk() + std::to_string(chunk);
     if (begin > file_.size() || length > file_.size() - begin)
       file_.fail_at_byte(begin, what + " should end at byte " + std::to_string(begin + length) + ", but the file has " +
-                                    std::to_string(file_.size()) + ": expected a whole one");
+                                    std::to_string(file_.size()) + ": expected a complete file");
     const auto size = static_cast<tmsize_t>(bytes);
     const tmsize_t read = layout_.tiled ? TIFFReadEncodedTile(tiff, chunk, to, size) : TIFFReadEncodedStrip(tiff, chunk, to, size);
     if (read != size) file_.fail_at_byte(begin, what + " cannot be read" + file_.complaint() + ": expected a whole one");

@@ -35,7 +35,7 @@ class InputFile {
   /// `expected` content for error messages, as in "a point cloud". Throws a `FileError` if there is no such file, or it is empty.
   InputFile(const std::filesystem::path& path, std::string_view expected) : path_(path.string()) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) fail("is not there: expected " + std::string(expected));
+    if (!std::filesystem::exists(path, ignored)) fail("does not exist: expected " + std::string(expected));
     if (!std::filesystem::is_regular_file(path, ignored)) fail("is a directory or device: expected " + std::string(expected));
     file_.open(path, std::ios::binary);
     if (!file_) fail("cannot be read");
@@ -48,6 +48,7 @@ class InputFile {
     seek(0);
   }
 
+  /// Path, for messages.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }          ///< size of the file [byte]
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }  ///< offset of the next byte
@@ -93,7 +94,9 @@ class InputFile {
     return rest;
   }
 
+  /// Throws a `FileError` about the whole file.
   [[noreturn]] void fail(const std::string& problem) const { throw FileError(path_, "", problem); }
+  /// Throws a `FileError` about the line taken last.
   [[noreturn]] void fail_at_line(const std::string& problem) const { throw FileError(path_, "line " + std::to_string(line_), problem); }
   /// `column` is counted from 0 here, from 1 in the message.
   [[noreturn]] void fail_at_column(std::size_t column, const std::string& problem) const {

@@ -54,6 +54,8 @@ class LasRecords {
 /// Writes points as LAS with extra bytes, in pulse order, as `detail::LasFileWriter`. Memory is independent of the number of points.
 class LasWriter : public detail::LasFileWriter<detail::LasRecords> {
  public:
+  /// @throws SettingError for settings out of range
+  /// @throws FileError if the file cannot be made
   explicit LasWriter(std::filesystem::path path, LasSettings settings = {}) : LasFileWriter(std::move(path), std::move(settings), {}) {}
 };
 static_assert(EchoSink<LasWriter>);

@@ -157,14 +157,16 @@ class LazRecords {
 /// then, points wait in `NAME.points.part`.
 class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
  public:
+  /// @throws SettingError for settings out of range, or that LAZ cannot meet
+  /// @throws FileError if the file cannot be made
   explicit LazWriter(std::filesystem::path path, LasSettings settings = {}, unsigned threads = 0)
       : LasFileWriter(std::move(path), compressible(std::move(settings)), detail::LazRecords(threads)) {}
 
   /// Settings, if LAZ can meet them. Throws a `SettingError` for another format, or for waveforms.
   [[nodiscard]] static LasSettings compressible(LasSettings settings) {
     if (settings.format != LasFormat::las_1_4)
-      throw SettingError("LasSettings::format", static_cast<double>(settings.format), "", "0, LAS 1.4 with point format 6, for LAZ");
-    if (settings.waveforms) throw SettingError("LasSettings::waveforms", 1, "", "false for LAZ, which is written without");
+      throw SettingError("LasSettings::format", static_cast<double>(settings.format), "", "0 for LAZ: LAS 1.4 with point format 6");
+    if (settings.waveforms) throw SettingError("LasSettings::waveforms", 1, "", "false for LAZ, which is written without waveforms");
     return settings;
   }
 

@@ -80,8 +80,8 @@ inline LeafAngles read_leaf_angles(const std::filesystem::path& path) {
                  " degrees from the vertical: expected one every 10 degrees at least");
     if (step <= same && std::fabs(projection.g - last.g) > 1e-3)
       throw FileError(table.path(), TextTable::place(std::max(row, line)),
-                      "has another G than line " + std::to_string(std::min(row, line)) +
-                          ", for a direction as steep: expected one that depends on the zenith angle alone");
+                      "differs in G from line " + std::to_string(std::min(row, line)) +
+                          ", at the same zenith angle: expected one G for each zenith angle");
     if (step <= same && !result.empty()) continue;
     // a midpoint by interpolation: rounded rows 10 degrees apart may exceed the gap that `LeafAngles` bridges
     if (step > widest / 2) result.push_back({last.zenith + step / 2, (last.g + projection.g) / 2});

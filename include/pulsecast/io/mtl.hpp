@@ -213,7 +213,7 @@ class MtlReader : private StatementBuffer {
 
   [[nodiscard]] MaterialLibrary read() {
     std::istream stream(this);
-    stream.exceptions(std::ios::badbit);  // lets exceptions pass that are thrown while reading
+    stream.exceptions(std::ios::badbit);  // passes on exceptions thrown while reading
     std::map<std::string, int> ignored_numbers;
     std::vector<tinyobj::material_t> found;
     tinyobj::LoadMtl(&ignored_numbers, &found, &stream, nullptr, nullptr);
@@ -250,7 +250,7 @@ class MtlReader : private StatementBuffer {
     if (is_first) ready = "newmtl default" + exponent;
     // with textures, tinyobjloader would change the colour, depending on the order
     if (is_colour || keyword() == "Ns" || keyword().starts_with("helios_")) ready += statement();
-    // a single number stands for red, green and blue. Source: MTL specification, Wavefront 1995.
+    // a single number is the value of red, green and blue. Source: MTL specification, Wavefront 1995.
     if (is_colour && is_one) ready.append(" ").append(given[0]).append(" ").append(given[0]);
   }
 
@@ -286,15 +286,15 @@ class MtlReader : private StatementBuffer {
       for (const double wavelength : spectra_.wavelengths)
         if (!(wavelength >= shortest && wavelength <= longest))
           warn("helios_spectra", "has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " + nanometres(longest) +
-                                     " nm: for the laser of " + nanometres(wavelength) + " nm the nearer end is taken");
+                                     " nm: for the laser of " + nanometres(wavelength) + " nm the nearest sample is used");
     } else if (!spectrum.empty()) {
-      warn("helios_spectra", "names the spectrum '" + spectrum + "', which no library holds: its reflectance is taken to be 0.5");
+      warn("helios_spectra", "refers to the spectrum '" + spectrum + "', which is in no library: a reflectance of 0.5 is assumed");
     }
     made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
     const std::string ground = text::lower(extra("helios_isGround"));
     made.ground = ground == "true" || ground == "1";
     if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
-      warn("helios_isGround", "has helios_isGround '" + ground + "', which is neither true nor false: it is taken to be no ground");
+      warn("helios_isGround", "has helios_isGround '" + ground + "', expected true or false: false is assumed");
     return made;
   }
 

@@ -67,7 +67,7 @@ class ObjReader {
   [[nodiscard]] ObjModel read() {
     while (read_window()) continue;
     MeshData& mesh = model_.mesh;
-    if (open_line_ > 0) warn(open_line_, "the last line has no end: the file may have been cut short");
+    if (open_line_ > 0) warn(open_line_, "the last line has no line end: the file may be truncated");
     if (unknown_ > 0)
       warn(first_unknown_->line, first_unknown_->text + " is not known and left out, the first of " + std::to_string(unknown_));
     if (flat_ > 0) warn(first_flat_->line, "a face without area is left out, the first of " + std::to_string(flat_));
@@ -171,7 +171,7 @@ class ObjReader {
     for (const Use& use : uses_) {
       const auto found = library_.find(use.name);
       if (found == library_.end() && use.line > 0)
-        warn(use.line, "no MTL file describes the material '" + use.name + "': its reflectance is taken to be 0.5");
+        warn(use.line, "no MTL file describes the material '" + use.name + "': a reflectance of 0.5 is assumed");
       model_.materials.push_back(found == library_.end() ? undescribed(use.name) : found->second);
     }
   }

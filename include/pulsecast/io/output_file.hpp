@@ -45,7 +45,7 @@ namespace pulsecast::io {
   return (::fstat(file, &status) == 0 && status.st_size == 0) || ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
 }
 
-/// Encoder of the bytes of a file on their way to it, as a compressor.
+/// Encoder of the bytes of a file before they are written, as a compressor.
 class OutputEncoder {
  public:
   virtual ~OutputEncoder() = default;
@@ -57,12 +57,13 @@ class OutputEncoder {
 /// program is killed, the final name keeps its former content. Destruction without `commit()` leaves nothing behind.
 /// Throws a `FileError` that names the final path at every failure; afterwards, nothing can be written or committed.
 /// With an encoder, bytes pass through it, a megabyte at a time, and cannot be read again or overwritten.
-/// The temporary file is locked: a second `OutputFile` of the same name, in any program, is refused. Where the file system has no locks,
-/// the second takes the name, and the first fails at its commit.
+/// The temporary file is locked: a second `OutputFile` of the same name, in any program, is refused. On a file system without
+/// locks, the second takes the name, and the first fails at its commit.
 /// The content is on the disk before the renaming, so that a power cut leaves no incomplete file under the final name.
 /// Limits: a power cut may lose the name until the folder itself is written to the disk.
 class OutputFile {
  public:
+  /// Opens and locks the temporary file of `path`; with an `encoder`, bytes pass through it.
   explicit OutputFile(std::filesystem::path path, std::unique_ptr<OutputEncoder> encoder = nullptr)
       : path_(std::move(path)), encoder_(std::move(encoder)) {
     std::error_code ignored;
@@ -84,6 +85,7 @@ class OutputFile {
   /// Piece of a file that others assemble: bytes are appended to `piece`, and `commit()` ends it. Its name is only for messages.
   OutputFile(std::filesystem::path path, std::vector<std::byte>& piece) : path_(std::move(path)), piece_(&piece) {}
 
+  /// Appends bytes.
   void write(std::span<const std::byte> bytes) {
     if (piece_ != nullptr) {
       position_ += bytes.size();
@@ -99,16 +101,17 @@ class OutputFile {
     position_ += bytes.size();
   }
 
+  /// Appends text.
   void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
 
-  /// Replaces bytes written before; writing then continues at the end.
+  /// Replaces bytes written before, from `position` [byte] on; writing then continues at the end.
   void overwrite(std::uint64_t position, std::span<const std::byte> bytes) {
     go_back(position, bytes.size());
     put(bytes);
     seek(0, SEEK_END);
   }
 
-  /// Reads bytes written before; writing then continues at the end.
+  /// Reads bytes written before, from `position` [byte] on; writing then continues at the end.
   void read(std::uint64_t position, std::span<std::byte> bytes) {
     go_back(position, bytes.size());
     errno = 0;
@@ -143,7 +146,7 @@ class OutputFile {
     const int number = ::fileno(file_.get());
     if (!stands_at(number, temporary)) {
       discard();
-      throw FileError(path_.string(), "", "was taken from " + temporary.string() + " by another program, and cannot be completed");
+      throw FileError(path_.string(), "", "cannot be completed: another program has replaced " + temporary.string());
     }
     errno = 0;
     std::error_code error;
@@ -152,8 +155,7 @@ class OutputFile {
     } else {
       std::filesystem::rename(temporary, path_, error);
     }
-    if (error)
-      fail("cannot be completed", error.value(), "room for " + std::to_string(position_) + " bytes and a name that may be replaced");
+    if (error) fail("cannot be completed", error.value(), "room for " + std::to_string(position_) + " bytes and a replaceable name");
     std::fclose(file_.release());  // the lock ends after the renaming; closing reports no error that syncing has not
   }
 
@@ -185,7 +187,7 @@ class OutputFile {
         file = ::open(temporary.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
         if (file < 0 && errno == ENOENT) continue;
       }
-      if (file < 0) fail("cannot be created", errno, "an existing folder that may be written to");
+      if (file < 0) fail("cannot be created", errno, "an existing, writable folder");
       const bool is_alone = lock_alone(file);
       struct stat status {};
       if (is_alone && stands_at(file, temporary) && ::fstat(file, &status) == 0) {
@@ -193,9 +195,9 @@ class OutputFile {
         if (S_ISREG(status.st_mode)) ::unlink(temporary.c_str());
       }
       ::close(file);
-      if (!is_alone) throw FileError(path_.string(), "", "is being written already: " + temporary.string() + " is locked");
+      if (!is_alone) throw FileError(path_.string(), "", "is already being written: " + temporary.string() + " is locked");
     }
-    fail("cannot be created", EEXIST, "to make " + temporary.string());
+    fail("cannot be created", EEXIST, "no other file " + temporary.string());
   }
 
   [[noreturn]] void fail(std::string_view what, int error, std::string_view expected) {
@@ -204,7 +206,7 @@ class OutputFile {
   }
 
   void require_open() const {
-    if (!file_) throw FileError(path_.string(), "", "cannot be written any more: it was committed or given up");
+    if (!file_) throw FileError(path_.string(), "", "cannot be written: it is already committed or discarded");
   }
 
   void put(std::span<const std::byte> bytes) {
@@ -234,7 +236,7 @@ class OutputFile {
 
   void seek(long offset, int origin) {
     errno = 0;
-    if (std::fseek(file_.get(), offset, origin) != 0) fail("cannot be written", errno, "a file in which one can go back");
+    if (std::fseek(file_.get(), offset, origin) != 0) fail("cannot be written", errno, "a seekable file");
   }
 
   std::filesystem::path path_;

@@ -34,8 +34,8 @@ struct ImageSettings {
   int height = 900;                ///< height of the picture [px]
   double azimuth = radians(30);    ///< viewing direction, clockwise from north [rad]
   double elevation = radians(30);  ///< viewing direction below the horizon; a quarter turn with azimuth 0 gives a map with north up [rad]
-  double field_of_view = radians(30);     ///< angle across the scene, approximate; 0 for a parallel projection [rad]
-  std::optional<Vec3> eye{};              ///< position of the camera, field of view across the width; if empty, such that all is seen [m]
+  double field_of_view = radians(30);  ///< angle across the scene, approximate; 0 for a parallel projection [rad]
+  std::optional<Vec3> eye{};           ///< position of the camera, field of view across the width; if empty, chosen to frame all points [m]
   ColourBy colour_by = ColourBy::height;  ///< meaning of the colours
   double point_size = 0;                  ///< diameter in the middle of the scene; 0 to close the gaps [px]
   Srgb background{13, 17, 23};            ///< colour of the background
@@ -279,6 +279,7 @@ class Canvas {
 /// echoes and the settings only. Points that are not finite are skipped; without points it is empty.
 class ImageWriter {
  public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit ImageWriter(std::filesystem::path path, const ImageSettings& settings = {})
       : settings_(validated(settings)), file_(std::move(path)) {}
 
@@ -305,7 +306,7 @@ class ImageWriter {
       static_cast<std::vector<std::byte>*>(to)->insert(static_cast<std::vector<std::byte>*>(to)->end(), bytes, bytes + size);
     };
     if (stbi_write_png_to_func(append, &png, settings_.width, settings_.height, 3, pixels.data(), 3 * settings_.width) == 0)
-      throw FileError(file_.path().string(), "", "the picture cannot be packed: expected enough memory");
+      throw FileError(file_.path().string(), "", "the picture cannot be compressed: expected enough memory");
     file_.write(png);
     file_.commit();
   }

@@ -194,7 +194,7 @@ class PointCloudReader {
     if (edge >= least) return;
     throw FileError(path.string(), "",
                     "the cloud begins " + pulsecast::detail::to_text(max_norm(corner())) + " m from the origin, where voxels of " +
-                        pulsecast::detail::to_text(edge) + " m cannot be told apart: expected at least " +
+                        pulsecast::detail::to_text(edge) + " m are below the resolution of coordinates: expected at least " +
                         pulsecast::detail::to_text(least) + " m");
   }
 
@@ -210,7 +210,7 @@ class PointCloudReader {
       cell[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(place);
       centre[axis] = origin_[axis] + (first_[axis] + place + 0.5) * settings_.voxel_size;
     }
-    if (cells_.size() == CellNumbers::max_size) points.fail_here("needs one voxel more than the 2^32 - 2 that there can be");
+    if (cells_.size() == CellNumbers::max_size) points.fail_here("exceeds the maximum of 2^32 - 2 voxels");
     const std::size_t voxel = cells_.number(cell);
     if (voxel == counts_.size()) append();
     ++counts_[voxel];
@@ -287,13 +287,13 @@ class PointCloudReader {
     if (without > 0)
       cloud_.warnings.push_back(std::to_string(without) + " of " + std::to_string(counts_.size()) + " voxels have no normal: " +
                                 (settings_.normals == VoxelNormals::fitted ? "their points are fewer than three, or on one line"
-                                                                           : "those of their points are zero, or oppose each other"));
+                                                                           : "the normals of their points are zero, or cancel"));
   }
 
   void finish_colours() {
     if (!colours_) return;
     if (brightest_ > 0 && brightest_ <= 255)
-      cloud_.warnings.push_back("no colour in the LAS files is above 255, of 65535: if they are bytes, the largest colour should be 255");
+      cloud_.warnings.push_back("no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255");
     cloud_.colours.reserve(counts_.size());
     for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
       const auto channel = [&](int k) { return static_cast<float>(std::sqrt(squares_[voxel][k] / static_cast<double>(counts_[voxel]))); };

@@ -80,7 +80,7 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
 template <class S>
 struct OpenedScene {
   std::optional<S> scene;  ///< empty if the cache is unusable
-  std::string reason;      ///< reason without a scene, as in "is cut short"; else empty
+  std::string reason;      ///< reason without a scene, as in "is truncated"; else empty
 };
 
 /// Opens a cache. Every defect gives a reason in place of a scene. The scene is made from its parts and `further`.
@@ -102,12 +102,13 @@ template <CacheableScene S, class Build, class... Further>
 [[nodiscard]] CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSources& sources, Build&& build,
                                           const Further&... further);
 
-/// Lists the members of materials and parts; a new member in either is a compile error.
+/// Lists the members of a material. A new member of a material or part is a compile error here.
 template <class Archive>
 void list_members(Archive& a, Material& m) {
   auto& [name, reflectance, scattering, specular_share, specular_exponent, classification, ground, spectrum] = m;
   a(name, reflectance, scattering, specular_share, specular_exponent, classification, ground, spectrum);
 }
+/// Lists the members of a part.
 template <class Archive, class... Shapes>
 void list_members(Archive& a, Part<Shapes...>& part) {
   auto& [geometry, materials, placement, object, name, motion] = part;
@@ -165,13 +166,13 @@ struct Unusable {
 /// Throws `Unusable` unless the bytes are a complete cache of this program from these sources.
 inline void require_cache(std::span<const std::byte> bytes, const Fingerprint& program, const Fingerprint& key) {
   CacheHeader header;
-  if (bytes.size() < sizeof header) throw Unusable{"is cut short"};
+  if (bytes.size() < sizeof header) throw Unusable{"is truncated"};
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.mark != CacheHeader::own_mark) throw Unusable{"is no scene cache"};
+  if (header.mark != CacheHeader::own_mark) throw Unusable{"is not a scene cache"};
   if (header.order != CacheHeader::own_order || header.format != CacheHeader::own_format || header.program != program)
     throw Unusable{"was written by another version of the program, or for other shapes"};
-  if (header.size != bytes.size()) throw Unusable{"is cut short, or has grown"};
-  if (header.key != key) throw Unusable{"was made from something else: a source or a setting has changed"};
+  if (header.size != bytes.size()) throw Unusable{"is truncated, or has grown"};
+  if (header.key != key) throw Unusable{"is out of date: a source or a setting has changed"};
   if (header.checksum != checksum_of(header, bytes.subspan(sizeof header))) throw Unusable{"is damaged: its checksum is wrong"};
 }
 
@@ -204,7 +205,8 @@ void save_scene(const std::filesystem::path& path, const S& scene, const Fingerp
   ArchiveWriter writer(file);
   writer(std::uint64_t{parts.size()});
   for (const typename S::Part& part : parts) {
-    if (part.motion && !detail::Restorable<PartMotion>) throw FileError(path.string(), "", "cannot be written: motions are not kept");
+    if (part.motion && !detail::Restorable<PartMotion>)
+      throw FileError(path.string(), "", "cannot be written: motions of parts are not supported");
     writer(part);
   }
   header.program = detail::program_of<typename S::Part>();
@@ -246,7 +248,7 @@ CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSource
   }
   CachedScene<S> made{S(std::forward<Build>(build)(), further...), false, reason, {}};
   if (!key) {
-    made.warning = "The scene is not saved, as it cannot be said what it was made from: " + reason;
+    made.warning = "The scene is not saved, as its sources cannot be read: " + reason;
     return made;
   }
   try {

@@ -174,8 +174,8 @@ class SpectrumReader {
       if (odd_ == 0 && (w < 1e-7 || w > 1e-3)) odd_ = sample.line;
     }
     const std::string name = names[static_cast<std::size_t>(*unit_)];
-    if (odd_ > 0) warn(odd_, "its wavelengths, " + range + " " + name + ", are not all those of light");
-    return "wavelengths in " + name + (told ? ", as its header says" : ", as they are " + range);
+    if (odd_ > 0) warn(odd_, "its wavelengths, " + range + " " + name + ", are not all between 100 nm and 1 mm");
+    return "wavelengths in " + name + (told ? ", by the header" : ", by the values " + range);
   }
 
   std::string take_reflectances(ReflectanceScale& scale) {
@@ -254,7 +254,7 @@ inline SpectralLibrary read_spectral_library(const std::filesystem::path& path) 
     try {
       SpectrumFile read = read_spectrum(file);
       if (!library.spectra.try_emplace(file.stem().string(), read.spectrum).second) {
-        library.warnings.push_back(file.string() + ": there is another spectrum of this name, which is taken");
+        library.warnings.push_back(file.string() + ": is left out; another file has a spectrum of this name");
         continue;
       }
       library.reports.push_back(std::move(read.report));

@@ -48,6 +48,7 @@ void for_each_record(const Tick& duration, double interval, const Record& record
 /// These are the columns of HELIOS++ trajectory files, read by `helios_output_format`. Only `close()` completes the file: see `OutputFile`.
 class TrajectoryWriter {
  public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit TrajectoryWriter(std::filesystem::path path, const TrajectoryFileSettings& settings = {})
       : settings_(validated(settings)), file_(std::move(path)) {}
 

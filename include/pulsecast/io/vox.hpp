@@ -53,9 +53,9 @@ struct VoxelFile {
   std::vector<std::string> warnings;  ///< oddities that could still be read
 };
 
-/// Reads a voxel file of AMAPVox: text that begins with `VOXEL SPACE`, lines of `#key: value` in any order, a row of column names, and a
-/// row for each voxel. Required are the keys `min_corner` and `res` (one edge length, as voxels are cubes), and the columns i, j, k and
-/// PadBVTotal; for opaque and scaled voxels also transmittance. Left out of the grid are
+/// Reads a voxel file of AMAPVox: text that begins with `VOXEL SPACE`. Lines of `#key: value` follow in any order, then a row of column
+/// names, and a row for each voxel. Required keys are `min_corner` and `res` (one edge length, as voxels are cubes). Required columns are
+/// i, j, k and PadBVTotal; for opaque and scaled voxels also transmittance. Left out of the grid are
 /// - transmissive voxels of density 0, or, with a warning, NaN;
 /// - opaque and scaled voxels of transmittance 1 (fully transparent) or NaN (never observed);
 /// - scaled voxels of density 0, and so of size 0, or, with a warning, NaN.
@@ -178,11 +178,11 @@ class VoxelFileReader {
     if (const double least = VoxelData::min_edge(*min_corner_); !(*edge_ >= least))
       throw FileError(table_.path(), TextTable::place(edge_line_),
                       "'res' is " + pulsecast::detail::to_text(*edge_) + ": expected at least " + pulsecast::detail::to_text(least) +
-                          " so far from the origin as 'min_corner' is");
+                          " at the distance of 'min_corner' from the origin");
     if (!max_corner_ || !split_) return;
     const Vec3 should = *min_corner_ + *split_ * *edge_;
     if (max_norm(should - *max_corner_) > *edge_ / 2)
-      file_.warnings.push_back(table_.path() + ": 'max_corner' is not where 'min_corner', 'split' and 'res' say: it is not used");
+      file_.warnings.push_back(table_.path() + ": 'max_corner' contradicts 'min_corner', 'split' and 'res': it is ignored");
   }
 
   void row() {
@@ -191,14 +191,14 @@ class VoxelFileReader {
     const CellNumbers::Cell cell{index(0), index(1), index(2)};
     for (int axis = 0; axis < 3; ++axis)
       if (!(std::fabs((*min_corner_)[axis] + cell[static_cast<std::size_t>(axis)] * *edge_) <= max_number))
-        table_.fail_here("the voxel " + to_text(cell) + " stands beyond 1e12 m: expected one within");
+        table_.fail_here("the voxel " + to_text(cell) + " is beyond 1e12 m: expected coordinates up to 1e12 m");
     const double density = number(density_), transmittance = transmittance_ ? number(*transmittance_) : 0;
     if (density < 0 || density > max_number)
       table_.fail_here(density_, text::quoted(cells[density_]) + ": expected a density from 0 to 1e12");
     if (table_.line_is_open()) file_.warnings.push_back(table_.path() + ": the last line has no end: the file may have been cut short");
     if (cells_.size() == CellNumbers::max_size) table_.fail_here("expected fewer than 2^32 - 1 voxels");
     const std::size_t before = cells_.size();
-    if (cells_.number(cell) != before) table_.fail_here("the voxel " + to_text(cell) + " stands twice: expected each once");
+    if (cells_.number(cell) != before) table_.fail_here("the voxel " + to_text(cell) + " is repeated: expected each voxel once");
     density_max_ = std::fmax(density_max_, density);
     if (settings_.use == VoxelUse::transmissive ? density == 0 : !(transmittance != 1) || std::isnan(transmittance)) return;
     if (std::isnan(density) && settings_.use != VoxelUse::opaque) return no_density_.at(table_.line());
@@ -234,8 +234,7 @@ class VoxelFileReader {
     warn(no_density_, "has no density (NaN)", "they are left out");
     warn(too_dense_, "is denser than the maximum, " + pulsecast::detail::to_text(file_.density_max) + " m^2/m^3", "they fill their cells");
     if (file_.voxels.cells.empty())
-      table_.fail(cells_.size() == 0 ? "has no rows: expected at least one voxel"
-                                     : "has no voxel that light can meet: expected at least one");
+      table_.fail(cells_.size() == 0 ? "has no rows: expected at least one voxel" : "has no occupied voxel: expected at least one");
   }
 
   /// Sets the size of each cube, and its shift if requested; removes those of size 0.

@@ -113,6 +113,7 @@ struct MpiLasShare {
 /// scaled to the greatest amplitude.
 class MpiLas final : public MpiOutput {
  public:
+  /// Collective. @throws SettingError for intensities scaled to the greatest amplitude @throws FileError
   MpiLas(MpiGroup& group, const std::filesystem::path& path, io::LasSettings settings)
       : MpiOutput(group),
         settings_(detail::mpi_las_settings(std::move(settings))),

@@ -32,7 +32,7 @@ namespace pulsecast::page {
 
 /// Path of the instrument in a leg. A path of one place is a set-up.
 struct PageLeg {
-  std::string name{};
+  std::string name{};           ///< name shown for the leg
   std::vector<double> times{};  ///< ascending, since the survey's start [s]
   std::vector<Vec3> places{};   ///< one for each time, in the world [m]
 };
@@ -57,8 +57,8 @@ struct PageLeg {
 
 /// Description of a survey on a page. Texts may contain any characters.
 struct PageSurvey {
-  std::string name{}, scanner{}, platform{};
-  std::vector<PageLeg> legs{};                ///< by number
+  std::string name{}, scanner{}, platform{};  ///< names shown for survey, scanner and platform
+  std::vector<PageLeg> legs{};                ///< legs by number
   std::map<ObjectId, std::string> objects{};  ///< names of objects, if any
 };
 
@@ -72,6 +72,7 @@ struct PageSettings {
     require_within("PageSettings::points_max", static_cast<double>(points_max), 2, 134'217'728, "");
     columns().validate();
   }
+  /// Settings of the encoding of points.
   [[nodiscard]] PageColumnSettings columns() const { return {.position_step = position_step, .effort = effort}; }
 };
 
@@ -139,6 +140,7 @@ inline std::string json_of(const PageSurvey& survey, std::uint64_t echoes, bool 
 /// states the accuracy of attributes. Only `close()` makes the file: see `OutputFile`.
 class PageWriter {
  public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit PageWriter(std::filesystem::path path, PageSurvey survey = {}, const PageSettings& settings = {})
       : settings_(validated(settings)), survey_(std::move(survey)), file_(std::move(path)), sample_(settings.points_max) {}
 

@@ -35,7 +35,7 @@ namespace pulsecast::page {
 ///
 /// It is a `LocalServer` at 127.0.0.1: no client takes memory, descriptors or time from the run. Every address contains a random secret of
 /// this object. Requests must use the name of this machine and come from no other site's page, so that other sites in the same browser
-/// learn and stop nothing. Anyone who can read this user's screen has access. The functions may be called from any thread.
+/// learn and stop nothing. Any reader of this user's screen has access. The functions may be called from any thread.
 class PageServer {
  public:
   /// Throws a `std::runtime_error` if nothing can be served. `port` is 0 for any free one.
@@ -89,6 +89,7 @@ class PageServer {
     sample_(batch);
   }
 
+  /// Sets the progress shown.
   void tell(const Progress& progress) {
     const std::lock_guard lock(mutex_);
     progress_ = progress;

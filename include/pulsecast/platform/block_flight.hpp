@@ -25,7 +25,7 @@ struct BlockFlight {
   double run_in = 0;      ///< extension of each line before and behind the area [m]
 
   void validate() const {
-    if (area.empty()) throw SettingError("BlockFlight::area (width)", area.size().x, "m", "not negative, nor the length");
+    if (area.empty()) throw SettingError("BlockFlight::area (width)", area.size().x, "m", "at least 0, as must be the length");
     require_finite("BlockFlight::area (size)", std::hypot(area.size().x, area.size().y), "m");
     require_finite("BlockFlight::altitude", altitude, "m");
     require_positive("BlockFlight::swath", swath, "m");

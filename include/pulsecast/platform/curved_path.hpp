@@ -45,7 +45,7 @@ struct PathPiece {
 }
 
 /// Path through waypoints: straight legs joined by tangent arcs of one radius (the circles and lines of Dubins 1957). A curve is too tight
-/// if its arc would take more than half of a leg; then the path reaches the waypoint and turns there by a three-point turn. Consecutive
+/// if its arc would take more than half of a leg. The path then reaches the waypoint and turns there by a three-point turn. Consecutive
 /// waypoints must differ; a single one gives an empty path. Headings are continuous.
 [[nodiscard]] inline std::vector<PathPiece> path_through(std::span<const Vec2> waypoints, double radius) {
   std::vector<PathPiece> path;

@@ -63,9 +63,9 @@ class GroundVehicleDrive {
  public:
   /// Piece of the path with the footings at equal distances along it, both ends included.
   struct Section {
-    PathPiece path{};
-    double start = 0;  ///< length driven before [m]
-    std::vector<Footing> footings{};
+    PathPiece path{};                 ///< piece of the path, on the map
+    double start = 0;                 ///< length driven before [m]
+    std::vector<Footing> footings{};  ///< footings from its start to its end
   };
 
   /// `driven` is the length driven over time [m]: see `plan_ground_vehicle`.
@@ -88,6 +88,7 @@ class GroundVehicleDrive {
   }
 
   [[nodiscard]] Tick duration() const noexcept { return duration_; }
+  /// Sections in order of time.
   [[nodiscard]] const std::vector<Section>& sections() const noexcept { return sections_; }
   [[nodiscard]] const PiecewiseCubic<double>& driven() const noexcept { return driven_; }  ///< length driven, forwards plus backwards [m]
 
@@ -132,8 +133,8 @@ namespace detail {
                                         const Ground auto& ground) {
   const auto height = [&](const Vec2& place) {
     const std::optional<double> h = ground(place);
-    const std::string name = "plan_ground_vehicle: the way to waypoints[" + std::to_string(waypoint) + "], ";
-    if (!h) throw SettingError(name + "x", place.x, "m", "on the ground (with y " + to_text(place.y) + " m there is none)");
+    const std::string name = "plan_ground_vehicle: path to waypoints[" + std::to_string(waypoint) + "], ";
+    if (!h) throw SettingError(name + "x", place.x, "m", "over ground; there is none at y = " + to_text(place.y) + " m");
     require_within(name + "height", *h, -1e9, 1e9, "m");
     return *h;
   };
@@ -184,7 +185,7 @@ namespace detail {
 
   double whole = 0;
   for (const PathPiece& piece : path) whole += piece.length;
-  require_within("plan_ground_vehicle: the way (length)", whole, 0, 1e7 * settings.ground_step, "m");  // footings take some 240 MB
+  require_within("plan_ground_vehicle: path (length)", whole, 0, 1e7 * settings.ground_step, "m");  // footings take some 240 MB
 
   std::vector<GroundVehicleDrive::Section> sections;
   std::vector<PathSection> path_sections;

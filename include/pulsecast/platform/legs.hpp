@@ -63,6 +63,7 @@ class Legs {
     return p;
   }
 
+  /// Platforms of the legs, in order.
   [[nodiscard]] const std::vector<P>& legs() const noexcept { return legs_; }
 
   /// Begin of leg k since the survey's start.

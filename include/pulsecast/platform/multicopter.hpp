@@ -58,8 +58,8 @@ struct MulticopterSettings {
   }
 };
 
-/// Flight of a multicopter, in pieces of constant jerk. Thrust alone moves it, so its up axis follows the sum of acceleration and lift; in
-/// a level turn tan(bank) = v^2 / (g r), the coordinated turn. Position, velocity and attitude are continuous.
+/// Flight of a multicopter, in pieces of constant jerk. Thrust alone moves it, so its up axis follows the sum of acceleration and lift. In
+/// a level turn tan(bank) = v^2 / (g r): a coordinated turn. Position, velocity and attitude are continuous.
 class MulticopterFlight {
  public:
   /// `motion` [m]; `heading` clockwise from north [rad]; `passes` by waypoint: see `plan_multicopter`.
@@ -69,7 +69,7 @@ class MulticopterFlight {
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const CubicPiece<Vec3> state = motion_.at(t);
     const Vec3 thrust = normalize(state.acceleration + standard_gravity * axis::up);
-    const Rotation lean = normalize(Rotation{1 + thrust.z, -thrust.y, thrust.x, 0});  // rotates up to the thrust by the shortest way
+    const Rotation lean = normalize(Rotation{1 + thrust.z, -thrust.y, thrust.x, 0});  // shortest rotation from up to the thrust
     return {lean * level(heading_.at(t).position), state.position};
   }
 
@@ -138,7 +138,7 @@ class FlightPlan {
     now_ = now_ + Tick::of_seconds(std::fmax(time, turn_to(heading, 0)));
   }
 
-  /// Turns to a heading the shorter way, within a time if the yaw rate allows it. Returns the duration [s].
+  /// Turns to a heading by the smaller angle, within a time if the yaw rate allows it. Returns the duration [s].
   double turn_to(double heading, double time) {
     const double yaw = heading_.at(now_).position, angle = std::remainder(heading - yaw, 2 * pi);
     const double needed = std::fmax(time, std::fabs(angle) / yaw_rate_);

@@ -14,11 +14,11 @@ namespace pulsecast {
 /// Time interval of constant jerk. `V` is a number or a vector, here in metres.
 template <class V>
 struct CubicPiece {
-  double duration = 0;  ///< [s]
-  V position{};         ///< at the start, as are the following [m]
-  V velocity{};         ///< [m/s]
-  V acceleration{};     ///< [m/s^2]
-  V jerk{};             ///< [m/s^3]
+  double duration = 0;  ///< length of the interval [s]
+  V position{};         ///< position at the start of the interval [m]
+  V velocity{};         ///< velocity at the start [m/s]
+  V acceleration{};     ///< acceleration at the start [m/s^2]
+  V jerk{};             ///< constant jerk [m/s^3]
 
   /// State after a time [s]; `duration` is the rest.
   [[nodiscard]] CubicPiece after(double t) const noexcept {
@@ -32,6 +32,7 @@ struct CubicPiece {
 template <class V>
 class PiecewiseCubic {
  public:
+  /// Rests at a position [m].
   explicit PiecewiseCubic(const V& position) { add({}, {.position = position}); }
 
   /// Appends a piece that replaces the motion from `start` on. Starts must not decrease.
@@ -52,6 +53,7 @@ class PiecewiseCubic {
     Tick start;           ///< start of the piece
     CubicPiece<V> piece;  ///< motion from its start on
   };
+  /// Pieces in order of time.
   [[nodiscard]] const std::vector<Timed>& pieces() const noexcept { return pieces_; }
 
  private:

@@ -23,6 +23,7 @@ struct Mount {
   }
   void normalize() noexcept { boresight = unit(boresight); }
 
+  /// Pose of the instrument in the body frame.
   [[nodiscard]] Pose<frame::Instrument, frame::Body> pose() const noexcept { return {boresight, lever_arm}; }
 };
 
@@ -30,6 +31,7 @@ struct Mount {
 template <Trajectory Path, InstrumentSource Source>
 class Platform {
  public:
+  /// @throws SettingError for settings out of range
   Platform(Path path, Mount mount, Source source)
       : path_(validated(std::move(path))), mount_(validated(mount)), source_(validated(std::move(source))) {}
 
@@ -52,8 +54,11 @@ class Platform {
     return out;
   }
 
+  /// Trajectory of the body.
   [[nodiscard]] const Path& trajectory() const noexcept { return path_; }
+  /// Mounting of the instrument.
   [[nodiscard]] const Mount& mount() const noexcept { return mount_; }
+  /// Source of the instrument's pulses.
   [[nodiscard]] const Source& source() const noexcept { return source_; }
 
  private:

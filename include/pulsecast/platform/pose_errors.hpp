@@ -20,15 +20,15 @@ namespace pulsecast {
 
 /// Errors of reported position and attitude, zero by default: standard deviations along or about each axis of the body.
 struct PoseErrors {
-  double position_noise = 0;  ///< white noise [m]
-  double attitude_noise = 0;  ///< white noise [rad]
-  double position_drift = 0;  ///< Gauss-Markov process: slow drift with this deviation [m]
-  double attitude_drift = 0;  ///< Gauss-Markov process [rad]
+  double position_noise = 0;  ///< white noise of the position [m]
+  double attitude_noise = 0;  ///< white noise of the attitude [rad]
+  double position_drift = 0;  ///< slow drift of the position: Gauss-Markov process of this deviation [m]
+  double attitude_drift = 0;  ///< slow drift of the attitude, of the same kind [rad]
   double drift_time = 60;     ///< correlation time of the drifts (decay to 1/e), 2.4 kB each; at least 1e-6 of the survey's length [s]
   double angular_jitter = 0;  ///< unreported white deviation of each beam from the optic's direction, to the right and up [rad]
-  Vec3 lever_arm_error{};     ///< reported minus true [m]
+  Vec3 lever_arm_error{};     ///< reported minus true lever arm [m]
   Rotation boresight_error = no_rotation;  ///< rotation from the instrument's true frame to the reported one
-  std::uint64_t seed = 0;                  ///< of all random draws; each of several `Legs` draws its own
+  std::uint64_t seed = 0;                  ///< seed of all random draws; each of several `Legs` draws its own
 
   void validate() const {
     require_not_negative("PoseErrors::position_noise", position_noise, "m");
@@ -47,6 +47,7 @@ struct PoseErrors {
 template <Trajectory Path, InstrumentSource Source>
 class WithPoseErrors {
  public:
+  /// Plans the drifts. @throws SettingError for settings out of range
   WithPoseErrors(Platform<Path, Source> truth, PoseErrors errors) : truth_(std::move(truth)), errors_(validated(errors)) { plan_drift(); }
 
   /// Draws independent errors of the same kind for each leg.
@@ -57,6 +58,7 @@ class WithPoseErrors {
 
   [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
+  /// Platform without errors.
   [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }
 
   /// Reported pose of the body.
@@ -116,7 +118,7 @@ class WithPoseErrors {
     if (errors_.position_drift == 0 && errors_.attitude_drift == 0) return;
     const double kept = std::exp(-1.0 / nodes_per_drift_time), added = std::sqrt(1 - kept * kept);
     const double nodes = std::ceil(truth_.duration().seconds() / errors_.drift_time * nodes_per_drift_time) + 2;
-    require_within("PoseErrors::drift_time (the survey's length by it)", nodes / nodes_per_drift_time, 0, 1e6, "");
+    require_within("PoseErrors::drift_time (survey duration divided by it)", nodes / nodes_per_drift_time, 0, 1e6, "");
     drift_.clear();
     for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(nodes); ++n) {
       const Vec3 position = errors_.position_drift * normals(n, Purpose::position_drift);

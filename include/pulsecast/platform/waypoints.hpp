@@ -25,8 +25,8 @@ enum class Interpolation : std::uint8_t {
   cubic,   ///< cubic polynomials through the waypoints, with continuous velocity
 };
 
-/// Motion through timed poses. Attitudes turn at a constant rate about one axis, the shorter way, so headings may cross north. Before the
-/// first waypoint and after the last one the body rests. Planners and trajectory files end in this.
+/// Motion through timed poses. Attitudes turn at a constant rate about one axis, by the smaller angle, so headings may cross north. Before
+/// the first waypoint and after the last one the body rests. Planners and trajectory files end in this.
 ///
 /// A time that occurs more than once is a jump: before it, the body arrives at the first of these waypoints; from it on, the last counts.
 /// Cubic positions are interpolated on either side of a jump alone.
@@ -40,8 +40,7 @@ class Waypoints {
       TimedPose& p = points_[i];
       require_within(field + ".time", p.time, -1e15, 1e15, "s");  // limit of a `Tick`
       if (i > 0 && p.time < points_[i - 1].time)
-        throw SettingError(field + ".time", p.time, "s",
-                           "no earlier than that of the waypoint before, " + detail::to_text(points_[i - 1].time));
+        throw SettingError(field + ".time", p.time, "s", "at least that of the previous waypoint, " + detail::to_text(points_[i - 1].time));
       require_finite(field + ".position (length)", length(p.position), "m");
       require_rotation(field + ".rotation", p.rotation);
       p.rotation = normalize(p.rotation);
@@ -52,6 +51,7 @@ class Waypoints {
   /// Time from the start of the leg to the last waypoint.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(std::max(0.0, points_.back().time)); }
 
+  /// Waypoints, as given, with unit rotations.
   [[nodiscard]] const std::vector<TimedPose>& points() const noexcept { return points_; }
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick tick) const noexcept {
@@ -87,7 +87,7 @@ class Waypoints {
     const auto interval = [&](std::size_t i) { return points_[i + 1].time - points_[i].time; };
     const auto mean = [&](std::size_t i) { return (points_[i + 1].position - points_[i].position) / interval(i); };  // velocity
     for (std::size_t i = first; i < last; ++i)
-      require_finite("Waypoints::points[" + std::to_string(i + 1) + "] (velocity from the one before)", length(mean(i)), "m/s");
+      require_finite("Waypoints::points[" + std::to_string(i + 1) + "] (velocity from the previous one)", length(mean(i)), "m/s");
     velocities_[first] = velocities_[last] = mean(first);
     for (std::size_t i = first + 1; i < last; ++i) {
       const double share = interval(i) / (interval(i - 1) + interval(i));
@@ -106,11 +106,11 @@ class Waypoints {
 static_assert(Trajectory<Waypoints>);
 
 /// Copies poses with level attitudes along the path: at a bend halfway between the directions in and out; at a reversal the direction in.
-/// At rest or in vertical motion the last heading is kept, or else the next one taken; without horizontal motion, north. Where a time
-/// occurs twice the body jumps: neither side looks along the jump.
+/// At rest or in vertical motion the last heading is kept, or else the next one taken; without horizontal motion, north. A repeated
+/// time is a jump: neither side looks along it.
 [[nodiscard]] inline std::vector<TimedPose> with_headings(std::vector<TimedPose> points) {
   const std::size_t n = points.size();
-  std::vector<Vec3> ahead(n, Vec3{});  // horizontal direction of the next way out of each waypoint; zero if there is none
+  std::vector<Vec3> ahead(n, Vec3{});  // next horizontal direction of motion from each waypoint; zero without one
   const auto jump_to = [&](std::size_t i) { return points[i].time == points[i - 1].time; };
   const auto way_to = [&](std::size_t i) {
     const Vec3 &from = points[i - 1].position, &to = points[i].position;

@@ -89,6 +89,7 @@ struct Batch {
 /// Sink that keeps echoes and pulses as rows, or echoes alone.
 class RowSink {
  public:
+  /// `keeps_pulses`: true to keep pulses and waveforms.
   explicit RowSink(bool keeps_pulses) : keeps_pulses_(keeps_pulses) {}
 
   void operator()(const EchoBatch& batch) {
@@ -114,6 +115,7 @@ class RowSink {
   }
 
   [[nodiscard]] std::size_t pulses() const noexcept { return pulse_count_; }  ///< pulses sent since the last `take`
+  /// Rows so far, as NumPy arrays; leaves this empty. Requires the GIL.
   [[nodiscard]] Batch take() {
     pulse_count_ = 0;
     return {points_.take(), pulses_.take(), samples_.take(), sample_interval_};
@@ -130,14 +132,15 @@ class RowSink {
 
 /// Arguments of a survey's `run`, as in Python.
 struct RunRequest {
-  unsigned threads = 0;
-  PulseIndex first = 0;
-  std::optional<PulseIndex> end{};
-  PulseIndex stride = 1;
-  pybind11::object callback = pybind11::none(), progress = pybind11::none();
-  PulseIndex every_pulses = 0;
-  double every_seconds = 0;
-  bool pulses = true;  ///< true to keep pulses and waveforms
+  unsigned threads = 0;                          ///< as in `RunOptions`
+  PulseIndex first = 0;                          ///< first slot
+  std::optional<PulseIndex> end{};               ///< one past the last slot; all if empty
+  PulseIndex stride = 1;                         ///< step between slots
+  pybind11::object callback = pybind11::none();  ///< called with each batch; None to return one
+  pybind11::object progress = pybind11::none();  ///< called with done, total, echoes and seconds; may be None
+  PulseIndex every_pulses = 0;                   ///< pulses per batch of the callback; 0: no limit
+  double every_seconds = 0;                      ///< time per batch of the callback; 0: no limit [s]
+  bool pulses = true;                            ///< true to keep pulses and waveforms
 
   void validate() const {
     require_not_negative("run every_seconds", every_seconds, "s");
@@ -235,28 +238,27 @@ inline void bind_batch(pybind11::module_& m) {
     for (std::size_t f = 0; f < fate_count; ++f) all[fate_names[f]] = of(static_cast<Fate>(f));
     return all;
   };
-  py::class_<Batch>(m, "Batch", py::module_local(), "What a run brought back, or, in a callback, what came since the last.")
+  py::class_<Batch>(m, "Batch", py::module_local(), "Results of a run, or, in a callback, those since the last call.")
       .def_readonly(
           "points", &Batch::points,
-          "Structured array, one row an echo: x, y, z [m, world]; time [s]; range [m]; intensity [W]; reflectance; echo_width [s]; "
+          "Structured array, one row per echo: x, y, z [m, world]; time [s]; range [m]; intensity [W]; reflectance; echo_width [s]; "
           "cos_incidence; pulse; object; classification; leg; return_number; number_of_returns; channel.")
       .def_readonly("pulses", &Batch::pulses,
-                    "Structured array, one row a pulse that was sent: pulse; time [s]; x, y, z [m, world]; direction_x, direction_y, "
+                    "Structured array, one row per pulse sent: pulse; time [s]; x, y, z [m, world]; direction_x, direction_y, "
                     "direction_z; scan_angle [rad]; waveform_start [s]; first_sample, samples; first_point, points; leg; channel; fate, "
-                    "which is a place in FATES.")
-      .def_readonly("waveforms", &Batch::waveforms, "The samples of all pulses, one after another, shape (n,) [W].")
-      .def_readonly("sample_interval", &Batch::sample_interval, "Between two samples of a waveform [s]; 0 if there are none.")
+                    "an index into FATES.")
+      .def_readonly("waveforms", &Batch::waveforms, "Samples of all pulses, concatenated, shape (n,) [W].")
+      .def_readonly("sample_interval", &Batch::sample_interval, "Sample spacing of the waveforms [s]; 0 without waveforms.")
       .def_property_readonly(
           "slots", [](const Batch& b) { return b.summary.slots; }, "Pulse slots done.")
       .def_property_readonly(
           "rays", [](const Batch& b) { return b.summary.rays; }, "Subrays traced.")
       .def_property_readonly(
-          "seconds", [](const Batch& b) { return b.summary.seconds; }, "The run took, by the clock on the wall [s].")
+          "seconds", [](const Batch& b) { return b.summary.seconds; }, "Elapsed time of the run [s].")
       .def_property_readonly(
           "complete", [](const Batch& b) { return b.summary.complete; }, "False if the run was stopped.")
       .def_property_readonly(
-          "fates", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.count(f); }); },
-          "Pulse slots by what became of them.")
+          "fates", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.count(f); }); }, "Pulse slots by fate.")
       .def_property_readonly(
           "energy", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.energy_by_fate[static_cast<std::size_t>(f)]; }); },
           "Energy sent, by what became of the subrays that carried it [J].")
@@ -297,11 +299,12 @@ void bind_run(Class& bound, const Runner& runner) {
       },
       py::arg("threads") = 0, py::arg("first") = 0, py::arg("end") = py::none(), py::arg("stride") = 1, py::arg("callback") = py::none(),
       py::arg("every_pulses") = 0, py::arg("every_seconds") = 0.0, py::arg("progress") = py::none(), py::arg("pulses") = true,
-      "Simulates the pulse slots first, first + stride, ... before end, on so many threads (0: all, at most 1024), and returns a Batch. "
+      "Simulates the pulse slots first, first + stride, ... before end, on `threads` threads (0: all, at most 1024), and returns a Batch. "
       "With a callback, "
-      "batches go to callback(batch) every so many pulses or seconds, and at the end, and are not kept. progress(done, total, echoes, "
-      "seconds) is called some ten times a second. Without pulses, there are points alone, which saves their rows and waveforms. Raises "
-      "Interrupted on Ctrl-C; its `result` is whole up to there.");
+      "batches go to callback(batch) every `every_pulses` pulses or `every_seconds` seconds, and at the end, and are not kept. "
+      "progress(done, total, echoes, "
+      "seconds) is called some ten times a second. pulses=False keeps points only, without rows of pulses and waveforms. Raises "
+      "Interrupted on Ctrl-C; its `result` is complete up to there.");
 }
 
 }  // namespace gnu::visibility("hidden")]]python
@@ -315,8 +318,8 @@ template <class Survey>
 pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name) {
   python::bind_common(m);
   pybind11::class_<Survey, std::shared_ptr<Survey>> bound(m, name, "A survey: a pure function from the number of a pulse to its echoes.");
-  bound.def("__len__", &Survey::size, "Pulse slots.");
-  bound.def_property_readonly("subrays", &Survey::subrays, "Of a pulse.");
+  bound.def("__len__", &Survey::size, "Number of pulse slots.");
+  bound.def_property_readonly("subrays", &Survey::subrays, "Number of subrays of a pulse.");
   python::bind_run(bound, [](const Survey& survey) {
     return [&survey](const RunOptions& options, const auto& sink) { return pulsecast::run(survey, options, sink); };
   });

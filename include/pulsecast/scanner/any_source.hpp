@@ -11,12 +11,13 @@
 
 namespace pulsecast {
 
-/// Pulse source of one of several types, where a single type is required: emitters of one device behind different optics,
-/// `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`, or platforms of different
-/// kinds in `Legs`.
+/// Pulse source of one of several types, for uses that require a single type. One is platforms of different kinds in `Legs`. Another is
+/// emitters of one device behind different optics:
+/// `Channels{std::vector<AnySource<Deflector<PolygonMirror, Scanner>, Deflector<FixedBeam, Scanner>>>{...}}`.
 template <class First, class... Others>
 class AnySource {
  public:
+  /// Takes a source of one of the types.
   template <class Source>
   requires std::constructible_from<std::variant<First, Others...>, Source> AnySource(Source source)
       : source_(validated(std::move(source))) {}  // NOLINT(google-explicit-constructor): implicit by purpose
@@ -30,6 +31,7 @@ class AnySource {
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const First&>().pulse(i)) {
     return std::visit([i](const auto& s) noexcept { return s.pulse(i); }, source_);
   }
+  /// As the concept DrawsByLeg requires.
   void draw_for_leg(std::uint32_t leg) requires DrawsByLeg<First> ||(DrawsByLeg<Others> || ...) {
     const auto tell = [leg]<class Source>(Source& s) {
       if constexpr (DrawsByLeg<Source>) s.draw_for_leg(leg);

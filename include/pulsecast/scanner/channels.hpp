@@ -50,6 +50,7 @@ class Channels {
     return p;
   }
 
+  /// Channels in the order of firing.
   [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }
 
  private:
@@ -63,7 +64,7 @@ class Channels {
         const auto p = pulse(i);
         if (p && last && p->tick < *last)
           throw SettingError("Channels::channels (pulse of channel " + std::to_string(i % n) + ")", p->tick.seconds(), "s",
-                             "not before that of the channel in front of it, at " + detail::to_text(last->seconds()) + " s");
+                             "at least that of the previous channel, " + detail::to_text(last->seconds()) + " s");
         if (p) last = p->tick;
       }
     }

@@ -98,12 +98,13 @@ class SunflowerFootprint {
 
 /// Subrays of equal energy on a lattice with one column and one row for each, at the quantiles of a Gaussian beam. Rows follow the order of
 /// the multiples of the golden ratio, so that neighbours across are far apart up.
-/// On the front of docs/tradeoff.md: edges and wires upright or level in the beam, as on buildings, are met as exactly as by twice as many
-/// subrays in rings; oblique ones as exactly as by as many on a sunflower.
+/// Pareto-optimal in docs/tradeoff.md. Edges and wires that are upright or level in the beam, as on buildings, are sampled as exactly as by
+/// twice as many subrays in rings. Oblique ones are sampled as exactly as by as many on a sunflower.
 /// Source: Niederreiter 1992, ch. 3, for the order; columns and rows from inverting the normal distribution.
 class LatticeFootprint {
  public:
-  /// `subrays` from 1 to 100,000; 19 are on the front of docs/tradeoff.md, more exact on a facade than any rings. Throws a `SettingError`.
+  /// `subrays` from 1 to 100,000; 19 are Pareto-optimal in docs/tradeoff.md, more exact on a facade than any rings. Throws a
+  /// `SettingError`.
   explicit LatticeFootprint(std::size_t subrays = 19) : offsets_(rows(subrays)) {
     for (std::size_t j = 0; j < subrays; ++j) offsets_[j].x = quantile(j, subrays);
   }
@@ -131,7 +132,7 @@ class LatticeFootprint {
       const double m = (static_cast<double>(j) + 0.5) * 0.5 * (std::sqrt(5.0) - 1);
       columns[j] = {m - std::floor(m), j};
     }
-    // no two multiples are equal; std::sort would be compiled anew by whoever includes this
+    // no two multiples are equal; std::sort would be compiled in every translation unit
     std::qsort(columns.data(), subrays, sizeof(Column), [](const void* a, const void* b) {
       const double first = static_cast<const Column*>(a)->multiple, second = static_cast<const Column*>(b)->multiple;
       return first < second ? -1 : first > second ? 1 : 0;
@@ -150,7 +151,8 @@ static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<Sunf
 /// `WithSubrayRecord{RingFootprint{5}}`.
 template <Footprint Pattern>
 struct WithSubrayRecord : Pattern {
-  static constexpr bool recorded = true;
+  static constexpr bool recorded = true;  ///< as the concept Footprint describes
+  /// Takes a valid footprint.
   explicit WithSubrayRecord(Pattern pattern) : Pattern(std::move(pattern)) {}
 };
 
@@ -168,7 +170,7 @@ static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 }
 
 /// Origin of a subray in the frame of its beam, in the plane of the exit [m]; zero for a beam from a point. Otherwise each subray passes
-/// the waist a quarter turn ahead of its far-field azimuth, so that the straight lines rule the hyperboloid of the beam: at every range,
+/// the waist a quarter turn ahead of its far-field azimuth, so that the subrays are rulings of the beam's hyperboloid. At every range,
 /// their distances from the axis are those of the footprint times `beam_radius`.
 [[nodiscard]] inline Vec3 subray_exit(const Vec2& offset, const Laser& laser) noexcept {
   const Vec3 direction = subray_direction(offset, laser.divergence);

@@ -15,7 +15,7 @@ struct Scanner {
   double pulse_rate = 100e3;      ///< pulse repetition rate, at most 1e12 [Hz]
   PulseIndex pulses = 1'000'000;  ///< number of slots, at most 2^52, and no longer than 1e15 s
   double delay = 0;               ///< delay of every pulse after the begin of its slot; less than one slot [s]
-  Laser laser{};                  ///< of every pulse
+  Laser laser{};                  ///< laser of every pulse
 
   void validate() const {
     using namespace literals;

@@ -30,7 +30,7 @@ namespace pulsecast {
 /// Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic).
 class HeightField {
  public:
-  static constexpr bool flat = true;
+  static constexpr bool flat = true;  ///< as the concept Geometry describes
 
   /// `threads`: build threads, as in `thread_count`. @throws SettingError as `Raster::validate`
   explicit HeightField(Raster raster, unsigned threads = 0) {
@@ -63,7 +63,9 @@ class HeightField {
            levels_ == layout.levels;
   }
 
+  /// Pixels from west to east.
   [[nodiscard]] std::uint32_t columns() const noexcept { return grid_.columns; }
+  /// Pixels from north to south.
   [[nodiscard]] std::uint32_t rows() const noexcept { return grid_.rows; }
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   [[nodiscard]] std::size_t memory() const noexcept { return heights_.memory() + pyramid_.memory(); }

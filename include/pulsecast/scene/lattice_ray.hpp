@@ -20,9 +20,10 @@ using LatticeCell = std::array<std::int32_t, 3>;
 struct Crossing {
   static constexpr int begin = 3;  ///< in place of an axis: start of the ray, after all crossings at that range
 
-  double range = 0;  ///< [m]
+  double range = 0;  ///< range of the crossing [m]
   int axis = begin;  ///< normal axis of the plane
 
+  /// True if this crossing comes first.
   [[nodiscard]] bool before(const Crossing& other) const noexcept {
     return range < other.range || (range == other.range && axis < other.axis);
   }
@@ -68,8 +69,10 @@ class LatticeRay {
 
   /// Entry into and exit from a box [edges]. The ray misses the box unless `in` is before `out`.
   struct Passage {
-    Crossing in{-std::numeric_limits<double>::infinity(), 0}, out{std::numeric_limits<double>::infinity(), 0};
+    Crossing in{-std::numeric_limits<double>::infinity(), 0};  ///< entry
+    Crossing out{std::numeric_limits<double>::infinity(), 0};  ///< exit
   };
+  /// Passage through the box between two corners [edges].
   [[nodiscard]] Passage through(const std::array<double, 3>& low, const std::array<double, 3>& high) const noexcept {
     Passage p;
     for (int k = 0; k < 3; ++k) {

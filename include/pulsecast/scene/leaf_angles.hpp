@@ -72,7 +72,7 @@ class LeafAngles {
     std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.zenith < b.zenith; });
     double reached = 0;
     for (std::size_t i = 0; i < entries.size(); reached = entries[i++].zenith) {
-      if (i > 0 && entries[i].zenith == reached) throw SettingError("LeafProjection::zenith", reached, "rad", "given once");
+      if (i > 0 && entries[i].zenith == reached) throw SettingError("LeafProjection::zenith", reached, "rad", "unique");
       require_no_hole(reached, entries[i].zenith, widest);
     }
     require_no_hole(reached, pi / 2, widest);

@@ -37,14 +37,14 @@ struct Backscatter {
 
 /// Surface material.
 struct Material {
-  std::string name = "default";
-  double reflectance = 0.5;  ///< at the laser's wavelength, a fraction in [0, 1]; ignored with a spectrum
-  Scattering scattering = Scattering::lambert;
-  double specular_share = 0;                   ///< share of the reflectance in the lobe of Phong's law, in [0, 1]
-  double specular_exponent = 10;               ///< exponent of that lobe, at least 0
-  std::uint16_t classification = 0;            ///< ASPRS class of its points
-  bool ground = false;                         ///< true if it may carry set-ups and vehicles
-  std::shared_ptr<const Spectrum> spectrum{};  ///< reflectance by wavelength, shareable; empty for a constant reflectance
+  std::string name = "default";                 ///< name in its file or program
+  double reflectance = 0.5;                     ///< reflectance at the laser's wavelength, in [0, 1]; ignored with a spectrum
+  Scattering scattering = Scattering::lambert;  ///< angular law
+  double specular_share = 0;                    ///< share of the reflectance in the lobe of Phong's law, in [0, 1]
+  double specular_exponent = 10;                ///< exponent of that lobe, at least 0
+  std::uint16_t classification = 0;             ///< ASPRS class of its points
+  bool ground = false;                          ///< true if it may carry set-ups and vehicles
+  std::shared_ptr<const Spectrum> spectrum{};   ///< reflectance by wavelength, shareable; empty for a constant reflectance
 
   /// @throws SettingError for values out of range
   void validate() const {

@@ -46,8 +46,8 @@ struct SteadyMotion {
 
 /// Motions in succession, all of them repeated `times` times. Each begins at the end of the one before.
 struct MotionSequence {
-  std::vector<SteadyMotion> motions{};
-  std::uint64_t times = 1;
+  std::vector<SteadyMotion> motions{};  ///< motions in succession; at least one
+  std::uint64_t times = 1;              ///< number of repetitions, from 1 to 1e15
 };
 
 /// Behaviour of a body after the last of its timed poses.
@@ -63,6 +63,7 @@ struct Displacement {
   Vec3 about{};                     ///< [m]
   Vec3 shift{};                     ///< [m]
 
+  /// Displaced point [m].
   [[nodiscard]] Vec3 point(const Vec3& p) const noexcept { return about + shift + rotation * (p - about); }
 };
 
@@ -117,7 +118,7 @@ class PartMotion {
       require_within(field + ".time", poses[i].time, 0, 1e15, "s");
       if (i > 0 && !(poses[i].time > poses[i - 1].time))
         throw SettingError(field + ".time", poses[i].time, "s",
-                           "later than that of the pose before, " + detail::to_text(poses[i - 1].time));
+                           "greater than that of the previous pose, " + detail::to_text(poses[i - 1].time));
       require_finite(field + ".position (length)", length(poses[i].position), "m");
       require_rotation(field + ".rotation", poses[i].rotation);
     }

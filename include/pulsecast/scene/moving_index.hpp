@@ -17,7 +17,7 @@
 
 namespace pulsecast {
 
-/// Time span and size limit of an index of moving things.
+/// Time span and size limit of an index of moving bodies.
 struct MovingIndexSettings {
   double from = 0, to = 3600;                    ///< times since the start of the survey [s]
   std::size_t boxes_max = std::size_t{1} << 20;  ///< greatest number of boxes, of about 70 bytes each
@@ -29,13 +29,13 @@ struct MovingIndexSettings {
   }
 };
 
-/// Index of moving things: the time is divided into windows, each with a tree over the boxes swept in it. Faster bodies get shorter
-/// windows, halved per level until a body moves at most about its own size per window. Where that takes too many boxes, the shortest
-/// windows are lengthened. Outside of the time all things are tested: slow but correct.
+/// Index of moving bodies: the time span is divided into windows, each with a tree over the boxes swept in it. Faster bodies get shorter
+/// windows, halved per level until a body moves at most about its own size per window. If that takes too many boxes, the shortest windows
+/// are lengthened. Outside of the time span all bodies are tested: slow but correct.
 class MovingIndex {
  public:
-  /// `swept(i, from, to)` returns the box [m] that thing i sweeps between two ticks, for i < `things`. @throws SettingError for a bad
-  /// `time`
+  /// `swept(i, from, to)` returns the box [m] that body i sweeps between two ticks, for i < `things`.
+  /// @throws SettingError for a time span out of range
   template <class Swept>
   MovingIndex(std::size_t things, const MovingIndexSettings& time, const Swept& swept)
       : time_(validated(time)), span_(time.to - time.from) {
@@ -74,7 +74,7 @@ class MovingIndex {
     return bytes;
   }
 
-  /// Calls `test(i)` for each thing that the bundle may meet at its tick before its nearest hits.
+  /// Calls `test(i)` for each body that the bundle may meet at its tick before its nearest hits.
   template <class Test>
   void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
     const double share = (rays.tick.seconds() - time_.from) / span_;
@@ -95,7 +95,7 @@ class MovingIndex {
  private:
   static constexpr std::size_t max_level = 20;
 
-  /// Things of about equal speed, and equal windows over all of the time.
+  /// Bodies of about equal speed, and equal windows over the time span.
   struct Level {
     std::vector<PrimitiveIndex> things;
     std::vector<Bvh<float>> windows;
@@ -117,11 +117,11 @@ class MovingIndex {
     return swept(i, Tick::of_seconds(start - overlap), Tick::of_seconds(start + width + overlap));
   }
 
-  /// First level in whose windows a thing moves at most about its own size, judged by samples. Affects speed only.
+  /// First level in whose windows a body moves at most about its own size, judged by samples. Affects speed only.
   template <class Swept>
   std::size_t level_of(std::size_t i, const Swept& swept) const {
     constexpr std::size_t max_samples = 8;
-    constexpr double small = 0.5;  // a smaller thing gains nothing from a tight box [m]
+    constexpr double small = 0.5;  // a smaller body gains nothing from a tight box [m]
     const auto thing = static_cast<PrimitiveIndex>(i);
     for (std::size_t level = 0; level < max_level; ++level) {
       const std::size_t windows = std::size_t{1} << level, samples = std::min(windows, max_samples);

@@ -24,6 +24,7 @@ namespace pulsecast {
 template <Geometry... Shapes>
 class MovingScene {
  public:
+  /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
   /// `time` should span the survey and little more: a longer time has longer windows. Hits at other times are the same, but all moving
@@ -38,6 +39,7 @@ class MovingScene {
 
   /// Bounds of all parts over the time [m].
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+  /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return scene_.parts(); }
 
   /// Memory held; shared data counts once [byte].
@@ -103,7 +105,7 @@ class MovingScene {
     return {now.rotation * part.placement.rotation, part.placement.scale, now.point(part.placement.translation)};
   }
 
-  Scene<Shapes...> scene_;     ///< all parts; its index holds those that stand
+  Scene<Shapes...> scene_;     ///< all parts; its index holds the static ones
   std::vector<Mover> movers_;  ///< sorted by index of their part
   MovingIndex index_;
   Box bounds_;

@@ -18,9 +18,9 @@ namespace pulsecast {
 
 /// Point of a part placed at the height of the ground. Points of a part are the corners of its triangles, or of its box if it has none.
 enum class GroundPlacement : std::uint8_t {
-  origin,        ///< its own origin, wherever its shape is: for models made to stand on it
-  lowest_point,  ///< its lowest point, or the middle of several, whatever the ground around it: for a tree
-  touching,      ///< the first point to touch when lowered, so that none is below the ground: for a car or a crate
+  origin,        ///< its own origin: for models whose origin is their foot
+  lowest_point,  ///< its lowest point, or the middle of several: for a tree
+  touching,      ///< its first point to meet the ground when lowered, so that none is below it: for a car or a crate
   sunk,          ///< all bottom corners of its box are in or on the ground, so that none hovers: for a house on a slope
 };
 
@@ -44,13 +44,13 @@ void visit_points(const Shape& shape, const Similarity& placement, const Visit& 
 
 }  // namespace detail
 
-/// Lift that places a shape on the ground, negative if lowered [m]; empty if no point asked for has ground above or below. Calls
-/// `ground(place)` once per point; suitable: `Scene::ground_height` of a scene of the carrying parts.
+/// Lift that places a shape on the ground, negative if lowered [m]; empty if none of its points in question has ground above or below.
+/// Calls `ground(place)` once per point; suitable: `Scene::ground_height` of a scene of the carrying parts.
 template <Geometry Shape>
 [[nodiscard]] std::optional<double> lift_onto_ground(const Shape& shape, const Similarity& placement, const Ground auto& ground,
                                                      GroundPlacement ground_placement = GroundPlacement::lowest_point) {
   std::optional<double> lift;
-  // least or greatest lift of the points asked for
+  // least or greatest lift of the points in question
   const auto ask = [&](const Vec3& p, bool most) {
     const std::optional<double> height = ground(Vec2{p.x, p.y});
     if (!height) return;

@@ -37,8 +37,8 @@ namespace detail {
 /// Placement of a part in the world: rotation, uniform scale and translation, in this order.
 struct Similarity {
   Rotation rotation = no_rotation;  ///< unit quaternion, within a thousandth
-  double scale = 1;
-  Vec3 translation{};  ///< [m]
+  double scale = 1;                 ///< scale factor, from 1e-30 to 1e30
+  Vec3 translation{};               ///< origin of the part's frame, in the world [m]
 
   void validate() const {
     require_rotation("Similarity::rotation", rotation);
@@ -47,8 +47,10 @@ struct Similarity {
   }
   void normalize() noexcept { rotation = unit(rotation); }
 
+  /// Maps a point of the part's frame [m] to the world [m].
   [[nodiscard]] Vec3 point(const Vec3& p) const noexcept { return rotation * (scale * p) + translation; }
 
+  /// True if nothing is rotated, scaled or shifted.
   [[nodiscard]] bool identity() const noexcept { return rotation == no_rotation && scale == 1 && translation == Vec3{}; }
 
   /// Box around a placed box [m].

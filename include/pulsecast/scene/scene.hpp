@@ -33,12 +33,14 @@ inline constexpr bool flat = requires {
 template <Geometry... Shapes>
 class Scene {
  public:
+  /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
   /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a placement out of range
   explicit Scene(std::vector<Part> parts) : Scene(std::move(parts), Motions::refused) {}
 
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
+  /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
 
   /// Memory held; shared data counts once [byte].
@@ -193,7 +195,7 @@ class Scene {
 
   std::vector<Part> parts_;
   Bvh<float> index_;
-  bool alone_ = false;  ///< true if the only part stands
+  bool alone_ = false;  ///< true for a single part, static
 };
 
 }  // namespace pulsecast

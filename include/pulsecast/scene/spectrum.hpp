@@ -16,8 +16,8 @@ namespace pulsecast {
 
 /// Reflectance at one wavelength.
 struct SpectralSample {
-  double wavelength = 0;   ///< [m]
-  double reflectance = 0;  ///< a fraction, in [0, 1]
+  double wavelength = 0;   ///< wavelength [m]
+  double reflectance = 0;  ///< reflectance, in [0, 1]
 };
 
 /// Reflectance over wavelength: linear between the samples, constant beyond the first and last. Copies share the samples.
@@ -32,7 +32,7 @@ class Spectrum {
       require_within(field + ".reflectance", samples[i].reflectance, 0, 1, "");
       if (i > 0 && !(samples[i].wavelength > samples[i - 1].wavelength))
         throw SettingError(field + ".wavelength", samples[i].wavelength, "m",
-                           "longer than that of the sample before, " + detail::to_text(samples[i - 1].wavelength));
+                           "greater than that of the previous sample, " + detail::to_text(samples[i - 1].wavelength));
     }
     const SharedBuffer<SpectralSample> copy(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) copy[i] = samples[i];
@@ -46,10 +46,11 @@ class Spectrum {
   }
   [[nodiscard]] bool is_consistent() const noexcept { return !samples_.empty(); }
 
+  /// Samples in ascending order of wavelength.
   [[nodiscard]] std::span<const SpectralSample> samples() const noexcept { return {samples_.data(), samples_.size()}; }
   [[nodiscard]] double shortest() const noexcept { return samples_[0].wavelength; }                   ///< [m]
   [[nodiscard]] double longest() const noexcept { return samples_[samples_.size() - 1].wavelength; }  ///< [m]
-  [[nodiscard]] std::size_t memory() const noexcept { return samples_.memory(); }                     ///< [byte]
+  [[nodiscard]] std::size_t memory() const noexcept { return samples_.memory(); }                     ///< memory of the samples [byte]
 
   /// Reflectance at a wavelength [m], a fraction.
   [[nodiscard]] double reflectance(double wavelength) const noexcept {

@@ -25,7 +25,7 @@ namespace pulsecast {
 
 /// Vertices and triangles of a mesh.
 struct MeshData {
-  std::vector<Vec3> vertices{};                           ///< [m]
+  std::vector<Vec3> vertices{};                           ///< positions [m]
   std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertex indices of the corners
   std::vector<std::uint32_t> materials{};                 ///< one per triangle: index into the part's table; empty if all are 0
 
@@ -69,14 +69,14 @@ struct MeshData {
 /// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are never hit. Triangles
 /// keep their numbers but are stored in the index's order, in blocks with vertices of their own for 16-bit indices. A triangle takes 10
 /// bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials.
-/// `Bvh<float>` is on the front of docs/tradeoff.md: it finds the hits of `Bvh<double>` in less time and memory, since triangles are tested
-/// in double.
+/// `Bvh<float>` is Pareto-optimal in docs/tradeoff.md: it finds the hits of `Bvh<double>` in less time and memory, since triangles are
+/// tested in double.
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
-  static constexpr bool flat = true;
+  static constexpr bool flat = true;  ///< as the concept Geometry describes
 
-  /// `threads` of the build; 0 for the hardware's. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
+  /// `threads` of the build; 0 as in `thread_count`. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
   explicit TriangleMesh(MeshData data, unsigned threads = 0) : index_(built(data, threads)) {
     arrange(data, threads);
     for (const std::uint32_t m : data.materials) material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
@@ -111,6 +111,7 @@ class TriangleMesh {
   [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
   /// Triangle i [m].
   [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept { return triangle_at(places_[i]); }
+  /// Accelerator of the triangles.
   [[nodiscard]] const Index& index() const noexcept { return index_; }
   [[nodiscard]] std::size_t material_count() const noexcept { return material_count_; }
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }

@@ -38,17 +38,18 @@ struct VoxelData {
       if (!(std::fabs(corner[k]) <= max_coordinate)) throw SettingError("VoxelData::corner", corner[k], "m", "within 1e18 m of the origin");
     require_positive("VoxelData::edge", edge, "m");
     if (!(edge >= min_edge(corner)))
-      throw SettingError("VoxelData::edge", edge, "m", "at least " + detail::to_text(min_edge(corner)) + " so far from the origin");
+      throw SettingError("VoxelData::edge", edge, "m",
+                         "at least " + detail::to_text(min_edge(corner)) + " at this distance from the origin");
     if (cells.empty()) throw SettingError("VoxelData::cells", 0, "", "at least one in number");
     if (cells.size() > 4294967294) throw SettingError("VoxelData::cells", count(cells), "", "at most 4294967294 in number");
     for (std::size_t i = 0; i < cells.size(); ++i)
       for (int k = 0; k < 3; ++k)
         if (!(std::fabs(corner[k] + edge * (cells[i][static_cast<std::size_t>(k)] + 1.0)) <= max_coordinate))
-          reject("cells", cells[i][static_cast<std::size_t>(k)], "where coordinates are within 1e18 m", i);
+          reject("cells", cells[i][static_cast<std::size_t>(k)], "a cell within 1e18 m of the origin", i);
     require_entries("normals", normals);
     for (std::size_t i = 0; i < normals.size(); ++i) {
       const double norm = std::hypot(normals[i][0], normals[i][1], normals[i][2]);
-      if (!(norm == 0 || std::fabs(norm - 1) <= 1e-3)) reject("normals (length)", norm, "1, or 0 where there is none", i);
+      if (!(norm == 0 || std::fabs(norm - 1) <= 1e-3)) reject("normals (length)", norm, "1, or 0 for no normal", i);
     }
     require_entries("densities", densities);
     for (std::size_t i = 0; i < densities.size(); ++i)
@@ -60,7 +61,7 @@ struct VoxelData {
     for (std::size_t i = 0; i < shifts.size(); ++i) {
       const double room = (1 - (scales.empty() ? 1.0 : static_cast<double>(scales[i]))) / 2;
       for (const float shift : shifts[i])
-        if (!(std::fabs(shift) <= room + 1e-6)) reject("shifts", shift, "so that the cube stays inside its cell", i);
+        if (!(std::fabs(shift) <= room + 1e-6)) reject("shifts", shift, "small enough that the cube is inside its cell", i);
     }
     require_entries("materials", materials);
   }

@@ -36,16 +36,18 @@ enum class Incidence : std::uint8_t {
 /// Opaque cubes as large as their cells: the voxels of a point cloud. A ray that begins inside a voxel meets its far side, as with any
 /// closed surface.
 struct OpaqueVoxels {
-  Incidence incidence = Incidence::normal;
+  Incidence incidence = Incidence::normal;  ///< surface direction of all voxels
 
   template <class Archive>
   void archive(Archive& a) {
     a(incidence);
   }
 
+  /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}
+    /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
     Columns(const VoxelData& data, std::span<const std::uint32_t> order)
         : normals_(detail::reordered<detail::PackedVector>(data.normals, order)) {}
 
@@ -91,16 +93,18 @@ struct OpaqueVoxels {
 /// Opaque cubes inside their cells, each with its own size and shift: a plant model from known density. Source: Weiser et al. 2021.
 /// Requires scales; normals are not kept, so `Incidence::normal` means the face.
 struct ScaledVoxels {
-  Incidence incidence = Incidence::face;
+  Incidence incidence = Incidence::face;  ///< surface direction of all voxels
 
   template <class Archive>
   void archive(Archive& a) {
     a(incidence);
   }
 
+  /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}
+    /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
     Columns(const VoxelData& data, std::span<const std::uint32_t> order)
         : scales_(detail::reordered<float>(data.scales, order)), shifts_(detail::reordered<detail::PackedVector>(data.shifts, order)) {
       if (scales_.empty())
@@ -153,16 +157,18 @@ struct ScaledVoxels {
 /// transmittance. G is taken in that frame too, z being the vertical. Leaves have no single direction, so incidence is perpendicular.
 /// Source: North 1996; Ross 1981.
 struct TransmissiveVoxels {
-  LeafAngles leaf_angles{};
+  LeafAngles leaf_angles{};  ///< leaf inclinations of all voxels
 
   template <class Archive>
   void archive(Archive& a) {
     leaf_angles.archive(a);
   }
 
+  /// Data of the voxels that this filling needs, by number of the voxel.
   class Columns {
    public:
     explicit Columns(DeserializeTag) {}
+    /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
     Columns(const VoxelData& data, std::span<const std::uint32_t> order) : densities_(detail::reordered<float>(data.densities, order)) {
       if (densities_.empty())
         throw SettingError("VoxelData::densities", 0, "",
@@ -171,11 +177,14 @@ struct TransmissiveVoxels {
 
     [[nodiscard]] std::size_t memory() const noexcept { return densities_.memory(); }
 
+    /// Visitor of the voxels along a ray, which consumes its optical depth.
     class Meeting {
      public:
+      /// Ray j of a bundle; `nearest` gets its hit.
       Meeting(const Columns& columns, const LeafAngles& leaf_angles, const RayBundle& rays, std::size_t j, ClosestHits& nearest) noexcept
           : columns_(columns), leaf_angles_(leaf_angles), rays_(rays), j_(j), nearest_(nearest) {}
 
+      /// Passes a voxel; returns the range limit of the walk [m].
       double operator()(std::uint32_t number, const LatticeCell&, const Crossing& in, const Crossing& out) noexcept {
         if (per_density_ == 0) draw();
         const double extinction = static_cast<double>(columns_.densities_[number]) * per_density_;
@@ -190,6 +199,7 @@ struct TransmissiveVoxels {
         return -infinity;
       }
 
+      /// Ends the walk.
       void finish() noexcept {}
 
      private:

@@ -42,6 +42,7 @@ class VoxelIndex {
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+  /// Edge of a cell [m].
   [[nodiscard]] double edge() const noexcept { return edge_; }
   [[nodiscard]] std::size_t memory() const noexcept {
     return keys_.memory() + slots_.memory() + block_masks_.memory() + block_first_.memory() + brick_masks_.memory() +

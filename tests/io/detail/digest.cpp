@@ -75,7 +75,7 @@ TEST_CASE("a file counts by what it holds, wherever it is and however long it is
   text.back() = 'y';
   write(folder / "long", text);
   CHECK(of_content(folder / "long") != before);
-  CHECK_THROWS_WITH_AS((void)of_content(folder / "none"), doctest::Contains("is not there"), FileError);
+  CHECK_THROWS_WITH_AS((void)of_content(folder / "none"), doctest::Contains("does not exist"), FileError);
   CHECK_THROWS_WITH_AS((void)of_content("/dev/null"), doctest::Contains("neither a file nor a folder"), FileError);
 }
 

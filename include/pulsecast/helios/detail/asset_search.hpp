@@ -40,7 +40,7 @@ class AssetSearch {
     std::error_code ignored;
     for (const std::filesystem::path& place : places)
       if (std::filesystem::is_regular_file(place, ignored)) return {.files = {place}, .warning = warning(name, place)};
-    return {.problem = problem(name, places, "is not there")};
+    return {.problem = problem(name, places, "does not exist")};
   }
 
   /// Finds the files whose names match a regular expression as a whole: the last component of `pattern` (ECMAScript, without
@@ -49,7 +49,7 @@ class AssetSearch {
     const std::size_t slash = pattern.rfind('/');
     const std::string folder = slash == std::string::npos ? "." : pattern.substr(0, slash + 1), name = pattern.substr(slash + 1);
     if (!is_simple(name))
-      return {.problem = "is no regular expression that can be matched quickly: expected at most " + std::to_string(max_pattern_size) +
+      return {.problem = "is not a supported regular expression: expected at most " + std::to_string(max_pattern_size) +
                          " letters, no back-reference, and four counts in braces, none of them after a group"};
     AssetMatch match;
     const std::vector<std::filesystem::path> places = candidates(folder);
@@ -67,7 +67,7 @@ class AssetSearch {
         }
       }
     } catch (const std::regex_error&) {
-      return {.problem = "ends with no regular expression"};
+      return {.problem = "does not end with a regular expression"};
     }
     std::sort(match.files.begin(), match.files.end());
     match.files.erase(std::unique(match.files.begin(), match.files.end()), match.files.end());
@@ -125,7 +125,7 @@ class AssetSearch {
   /// Warning if the file of a name lies outside the folders; empty otherwise.
   [[nodiscard]] std::string warning(const std::string& name, const std::filesystem::path& place) const {
     if (std::filesystem::path(name).is_absolute() || is_inside(place)) return "";
-    return "leads out of the assets folders, to " + place.string();
+    return "is outside the assets folders: " + place.string();
   }
 
   [[nodiscard]] static bool holds(const std::filesystem::path& folder, const std::filesystem::path& place) {

@@ -73,7 +73,7 @@ class Formula {
 
   void push(Step step) {
     if (step.kind == Kind::number || step.kind == Kind::variable) {
-      if (++height_ > depth) fail("is too deep");
+      if (++height_ > depth) fail("is nested too deeply");
     } else if (step.kind != Kind::negative && step.kind != Kind::function) {
       --height_;
     }
@@ -92,7 +92,7 @@ class Formula {
   }
 
   void sum(int deep) {
-    if (deep > 100) fail("is too deep");
+    if (deep > 100) fail("is nested too deeply");
     product(deep);
     for (;;) {
       if (take('+')) {
@@ -187,7 +187,7 @@ class Formula {
       if (f.name == name) function = f.function;
     if (!two && function == nullptr) fail("has the unknown word '" + std::string(name) + "'");
     at_ = end;
-    if (!take('(')) fail("lacks what the function is of");
+    if (!take('(')) fail("lacks the argument of the function");
     sum(deep + 1);
     if (two) {
       if (!take(',')) fail("lacks the second argument of atan2");

@@ -85,7 +85,7 @@ class LegPaths {
         const std::optional<double> height = ground(Vec2{at.x, at.y});
         if (!height)
           throw SettingError(leg_name(k) + ": onGround at x = " + pulsecast::detail::to_text(at.x) + ", y", at.y, "m",
-                             "where the scene has ground: a material with helios_isGround");
+                             "over ground of the scene: a material with helios_isGround");
         at.z = *height;
       }
       require_finite(leg_name(k) + ": position (length)", length(at), "m");
@@ -123,7 +123,8 @@ class LegPaths {
 
   [[nodiscard]] double speed_of(std::size_t k) const {
     const double speed = survey_.legs[k].platform.speed;
-    if (!(speed > 0)) throw SettingError(leg_name(k) + ": movePerSec_m", speed, "m/s", "greater than 0, or the leg would never end");
+    if (!(speed > 0))
+      throw SettingError(leg_name(k) + ": movePerSec_m", speed, "m/s", "greater than 0, as the leg would never end otherwise");
     if (survey_.platform.kind != PlatformKind::linear_path) require_within(leg_name(k) + ": movePerSec_m", speed, 1e-3, 1e3, "m/s");
     return speed;
   }

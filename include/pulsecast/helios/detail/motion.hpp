@@ -77,11 +77,10 @@ struct MotionSteps {
 [[nodiscard]] inline std::string motion_problem(const MotionSequenceSettings& sequence) {
   const MotionSteps steps = motion_steps(sequence, {});
   for (const auto& s : {steps.all, steps.own})
-    if (s && s->sign < 0)
-      return "reflections even in number: nothing moves into its own mirror image, but two reflections are a turn or a way";
+    if (s && s->sign < 0) return "an even number of reflections, since an odd number is no rigid motion";
   const Rotation turn = steps.all.value_or(MotionStep{}).settled().rotation;
   if (steps.own && turn != no_rotation && std::isfinite(length(turn)))  // a bad axis is reported elsewhere
-    return "turns about a place or about itself, and not both in one sequence";
+    return "rotations about a point or about its own centre, not both in one sequence";
   return "";
 }
 

@@ -154,7 +154,7 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
   const double f = leg.scan_frequency, most = channel.scan_frequency_max;
   if (scans_too_slowly(channel, leg) || scans_too_fast(channel, leg))
     throw SettingError("scanFreq_hz", f, "Hz",
-                       "within what the device can: " + pulsecast::detail::to_text(channel.scan_frequency_min) + " to " +
+                       "within the limits of the device, " + pulsecast::detail::to_text(channel.scan_frequency_min) + " to " +
                            (most > 0 ? pulsecast::detail::to_text(most) : "any") + " Hz");
 }
 

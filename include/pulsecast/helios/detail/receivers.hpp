@@ -59,7 +59,7 @@ class SurveyByChannel {
       all_.emplace_back(source, std::move(r.footprint), map, r.receiver, std::move(r.detector), seed);
     for (const OfOne& one : all_)
       if (one.sample_interval() != all_.front().sample_interval())
-        throw SettingError("SurveyByChannel::receivers (sample interval)", one.sample_interval(), "s", "the same of all");
+        throw SettingError("SurveyByChannel::receivers (sample interval)", one.sample_interval(), "s", "equal for all");
   }
 
   using Workspace = std::vector<typename OfOne::Workspace>;

@@ -184,7 +184,7 @@ class ArchiveReader {
 
  private:
   static void require(bool fulfilled) {
-    if (!fulfilled) throw ArchiveError("what it holds does not fit together");
+    if (!fulfilled) throw ArchiveError("its members are inconsistent");
   }
 
   template <class Item, class Element>

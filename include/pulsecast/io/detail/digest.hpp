@@ -34,6 +34,7 @@ class Digest {
 
   /// Adds bytes; two adjoining runs count as one.
   void add(std::span<const std::byte> bytes) { XXH3_128bits_update(state_.get(), bytes.data(), bytes.size()); }
+  /// Adds a number, as its eight bytes.
   void add(std::uint64_t number) { add(std::as_bytes(std::span(&number, 1))); }
   void add(const Fingerprint& other) {
     add(other.low);
@@ -55,7 +56,7 @@ class Digest {
     } else if (std::filesystem::is_regular_file(status)) {
       add_file(path);
     } else {
-      throw FileError(path.string(), "", std::filesystem::exists(status) ? "is neither a file nor a folder" : "is not there");
+      throw FileError(path.string(), "", std::filesystem::exists(status) ? "is neither a file nor a folder" : "does not exist");
     }
   }
 

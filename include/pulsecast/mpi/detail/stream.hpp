@@ -60,8 +60,8 @@ void for_each_batch(MpiMessage bytes, Sink&& sink) {
   }
 }
 
-/// Output whose pieces, made by `Writer`, go to the first process in order, a bounded number at a time: for results that one process must
-/// make, as a compressed stream, while all simulate and format text.
+/// Output whose pieces, made by `Writer`, go to the first process in order, a bounded number at a time. For a compressed stream: one
+/// process must make it, while all simulate and format text.
 template <class Writer>
 class MpiStream final : public MpiOutput {
  public:

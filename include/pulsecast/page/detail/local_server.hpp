@@ -87,7 +87,9 @@ class LocalServer final : public httplib::Server {
   /// Binds to a port, 0 for any free one, and returns it. Throws a `std::runtime_error` if the port is not available.
   int bind(int port) {
     const int bound = port > 0 ? (bind_to_port("127.0.0.1", port) ? port : -1) : bind_to_any_port("127.0.0.1");
-    if (bound <= 0) throw std::runtime_error("127.0.0.1 has no port " + (port > 0 ? std::to_string(port) : "to give"));
+    if (bound <= 0)
+      throw std::runtime_error((port > 0 ? "port " + std::to_string(port) + " is not free" : std::string("no port is free")) +
+                               " at 127.0.0.1");
     ::listen(svr_sock_, SOMAXCONN);
     return bound;
   }

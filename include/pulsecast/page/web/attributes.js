@@ -10,12 +10,12 @@ const classNames = { 0: 'Never classified', 1: 'Unassigned', 2: 'Ground', 3: 'Lo
                      6: 'Building', 7: 'Low noise', 9: 'Water', 10: 'Rail', 11: 'Road surface', 13: 'Wire, guard', 14: 'Wire, conductor',
                      15: 'Transmission tower', 17: 'Bridge deck', 18: 'High noise' }  // source: ASPRS LAS 1.4 R15, table 17
 
-/// What a point has, in the order in which it is told; those with a `list` are kinds, not amounts.
+/// Attributes of a point, in display order. Those with a `list` are categorical, the others numeric.
 const attributes = {
   z: { label: 'Height', unit: 'm', main: true },
   amplitude: { label: 'Intensity', unit: 'W', logarithmic: true, main: true, scale: 'greys' },
   object: { label: 'Object', list: true, main: true, name: v => survey.objects[v] ?? String(v),
-            colour: v => survey.colours.hues[Math.round(256 * ((0.3 + v * 0.6180339887) % 1)) % 256] },  // golden, as in pictures
+            colour: v => survey.colours.hues[Math.round(256 * ((0.3 + v * 0.6180339887) % 1)) % 256] },  // golden ratio, as in pictures
   class: { label: 'Class', list: true, main: true, colour: v => survey.colours.classes[v < 64 ? v : 64 + (v - 64) % 6],
            name: v => v in classNames ? `${v} ${classNames[v]}` : String(v) },
   return_number: { label: 'Return', list: true, main: true },
@@ -36,13 +36,13 @@ for (const attribute of Object.values(attributes)) {
 
 const whole = n => Math.round(n).toLocaleString('en-US').replaceAll(',', '\u202f')
 
-/// A power, right to three digits.
+/// Power with unit, to three significant digits.
 function power(value) {
   const [size, unit] = [[1, 'W'], [1e-3, 'mW'], [1e-6, 'µW'], [1e-9, 'nW']].find(([size]) => value >= 0.9995 * size) ?? [1e-12, 'pW']
   return `${Number((value / size).toPrecision(3))} ${unit}`
 }
 
-/// A value in its attribute's unit, with as many decimals as its step has.
+/// Value in its attribute's unit, with the decimals of its step.
 function written(name, value) {
   const attribute = attributes[name] ?? {}
   if (!Number.isFinite(value)) return '–'
@@ -52,14 +52,14 @@ function written(name, value) {
   return `${value.toFixed(decimals)}${attribute.unit === '°' ? '' : attribute.unit ? ' ' : ''}${attribute.unit ?? ''}`
 }
 
-/// Shorter, for the ends of a scale.
+/// Shorter text, for the ends of a scale.
 function brief(name, value) {
   const { unit } = attributes[name]
   if (unit === 'W') return power(value)
   return `${Math.abs(value) >= 1e6 ? value.toPrecision(2) : Number(value.toPrecision(4))}${unit === '°' ? '' : ' '}${unit}`
 }
 
-/// All that is known of a point, as [label, text].
+/// All attributes of a point, as [label, text].
 function description(i) {
   const value = name => points.arrays[name]?.[i]
   const rows = [['East', written('x', value('x')) + ' m'], ['North', written('y', value('y')) + ' m'], ['Height', written('z', value('z'))]]
@@ -74,12 +74,12 @@ function description(i) {
 
 // ----------------------------------------------------------------------------------------- colours and the histogram
 
-/// What points are coloured by, how often its values are, and which are shown.
+/// Attribute that colours the points, its histogram, and the values shown.
 class Colouring {
   constructor() {
     this.name = 'z'
-    this.hidden = new Set()  // kinds
-    this.shown = null        // [least, most] of an amount, as it is plotted
+    this.hidden = new Set()  // categories
+    this.shown = null        // [least, greatest] of a numeric attribute, as plotted
     this.take('z')
   }
 
@@ -121,7 +121,7 @@ class Colouring {
     return !(v >= this.shown[0] && v <= this.shown[1])
   }
 
-  /// Bytes of the colours of points of a chunk; those that are hidden are clear.
+  /// Bytes of the colours of a chunk's points; hidden points are transparent.
   fill(chunk, order, out) {
     const values = points.arrays[this.name]
     if (this.attribute.list) {
@@ -146,7 +146,7 @@ class Colouring {
     }
   }
 
-  /// Draws the bars of an amount.
+  /// Draws the histogram of a numeric attribute.
   draw(canvas, ink) {
     const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight
     canvas.width = width * ratio, canvas.height = height * ratio
@@ -160,7 +160,7 @@ class Colouring {
       c.fillStyle = `rgb(${scale[Math.max(0, Math.min(255, Math.round(255 * t)))]})`
       const tall = n > 0 ? Math.max(1, (height - 8) * n / most) : 0
       c.fillRect(i * each, height - 6 - tall, each - 0.5, tall)
-      c.fillRect(i * each, height - 4, each + 0.5, 4)  // the scale itself
+      c.fillRect(i * each, height - 4, each + 0.5, 4)  // colour scale
     })
     c.globalAlpha = 1
     if (!this.shown) return

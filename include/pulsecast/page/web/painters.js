@@ -11,14 +11,14 @@ const lineVertex = `@line.vert.glsl@`
 
 const screenVertex = `@screen.vert.glsl@`
 
-// Darker where it lies behind what is around. Source: Boucheny 2009, eye-dome lighting; amounts by eye.
+// Pixels behind their surroundings are darker. Source: Boucheny 2009, eye-dome lighting; amounts by eye.
 const screenFragment = `@screen.frag.glsl@`
 
-/// Draws by WebGL 2.
+/// Painter with WebGL 2.
 class GlPainter {
-  /// None where there is no WebGL 2, or no graphics card behind it.
+  /// Null without WebGL 2, or without a graphics card.
   static on(canvas) {
-    const wanted = new URLSearchParams(location.search).get('painter')  // gl or plain, to compare them
+    const wanted = new URLSearchParams(location.search).get('painter')  // gl or plain, for comparisons
     if (wanted === 'plain') return null
     const probe = document.createElement('canvas').getContext('webgl2')
     const name = probe?.getExtension('WEBGL_debug_renderer_info') && probe.getParameter(0x9246)
@@ -55,7 +55,7 @@ class GlPainter {
     return { program, places }
   }
 
-  /// Whether the frame before is still being drawn.
+  /// True while the previous frame is being drawn.
   busy() {
     if (!this.sync || this.gl.getSyncParameter(this.sync, this.gl.SYNC_STATUS) !== this.gl.SIGNALED) return !!this.sync
     this.gl.deleteSync(this.sync)
@@ -90,7 +90,7 @@ class GlPainter {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT)
   }
 
-  /// An array of vertices: four floats each.
+  /// Vertex array: four floats per vertex.
   vertices(target) {
     const { gl } = this
     target.array = gl.createVertexArray()
@@ -176,7 +176,7 @@ class GlPainter {
   }
 }
 
-/// Draws by hand: a depth and a colour for each pixel.
+/// Painter without WebGL: a depth and a colour per pixel.
 class PlainPainter {
   constructor(canvas) {
     this.canvas = canvas
@@ -257,7 +257,7 @@ class PlainPainter {
     }
   }
 
-  /// As the other painter's `screenFragment`.
+  /// Same shading as `screenFragment` of the WebGL painter.
   show({ shading, sky }) {
     const { width, height, depths, colours, pixels, shades } = this
     for (let y = 0, at = 0; y < height; ++y) {
@@ -291,7 +291,7 @@ class PlainPainter {
   }
 }
 
-/// Red, green and blue, from 0 to 1, as one word of an image; source: HTML Standard, ImageData, on machines that are little-endian.
+/// Red, green and blue, from 0 to 1, as one word of an image. Source: HTML Standard, ImageData, on little-endian machines.
 const packed = ([r, g, b]) => (0xff000000 | Math.round(255 * b) << 16 | Math.round(255 * g) << 8 | Math.round(255 * r)) >>> 0
 
 const mixed = (tint, [r, g, b], share) => {

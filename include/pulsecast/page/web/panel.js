@@ -16,7 +16,7 @@ const state = { view: null, selected: -1, playing: false, live: survey.live, tou
 const colouring = new Colouring()
 let view
 
-/// The colours of the style sheet, light or dark.
+/// Colours of the style sheet, light or dark.
 function takeTheme() {
   const style = getComputedStyle(document.documentElement)
   for (const name of ['paper', 'ink', 'quiet', 'accent', 'sky', 'ground', 'way', 'fresh'])
@@ -48,7 +48,7 @@ function recolour() {
   showHistogram()
 }
 
-/// Buttons for what differs from point to point.
+/// Buttons of the attributes that differ among points.
 function showAttributes() {
   const old = new Set([...byId('attributes').children].map(b => b.dataset.name))
   for (const [name, { label, main }] of Object.entries(attributes)) {
@@ -110,7 +110,7 @@ function select(i) {
 
 // ----------------------------------------------------------------------------------------------- the marks in the view
 
-/// Where a leg's instrument is at a time.
+/// Position of a leg's instrument at a time.
 function placeAt(way, time) {
   const { times, places } = way
   let k = 0
@@ -122,7 +122,7 @@ function placeAt(way, time) {
 
 function drawMarks() {
   const { camera, ratio } = view, marks = byId('marks')
-  const c = view.painter.context ?? marks.getContext('2d')  // upon what was drawn by hand, else on a sheet of its own
+  const c = view.painter.context ?? marks.getContext('2d')  // canvas of the painter without WebGL, else a canvas on top
   if (c.canvas === marks) {
     if (marks.width !== camera.width || marks.height !== camera.height) marks.width = camera.width, marks.height = camera.height
     c.clearRect(0, 0, marks.width, marks.height)
@@ -196,7 +196,7 @@ function drawSelected(c) {
   }
 }
 
-/// A length at the target, and where north is.
+/// Scale bar for the target's depth, and north arrow.
 function drawScaleBar(c, label, ink) {
   const { camera, ratio } = view, metre = camera.scale / camera.distance, room = 140 * ratio / metre
   const power = 10 ** Math.floor(Math.log10(room)), length = [5, 2, 1].find(n => n * power <= room) * power
@@ -228,7 +228,7 @@ function showTime() {
   byId('play').dataset.playing = String(state.playing)
 }
 
-/// Shows what was there at a moment since the start; all of it at the end.
+/// Shows the points up to a time since the start; all of them at the end.
 function goTo(seconds) {
   const length = state.end - view.start
   view.now = seconds >= length ? Infinity : Math.max(0, seconds)
@@ -242,7 +242,7 @@ function play(on = !state.playing) {
   goTo(on && view.now === Infinity ? 0 : view.now)
   let before = performance.now()
   const step = state.step = time => {
-    if (!state.playing || state.step !== step) return  // another began since
+    if (!state.playing || state.step !== step) return  // superseded by a later call
     const speed = byId('speed').value, length = state.end - view.start
     goTo(view.now + Math.max(0, time - before) / 1000 * (speed === 'real' ? 1 : length / Number(speed)))
     before = time
@@ -253,7 +253,7 @@ function play(on = !state.playing) {
   showTime()
 }
 
-/// How many points there are when, behind the slider.
+/// Histogram of points over time, behind the slider.
 function showDensity() {
   const canvas = byId('density'), ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight
   canvas.width = width * ratio, canvas.height = height * ratio
@@ -345,7 +345,7 @@ function takeKeys() {
   for (let k = 0; k < 9; ++k) others[k + 1] = () => byId('attributes').children[k]?.click()
   window.onkeydown = event => {
     if (event.target.matches('input, select, button, summary') && event.key !== 'Escape') return
-    if (event.altKey || event.metaKey || event.ctrlKey || !view.origin) return  // those are the browser's
+    if (event.altKey || event.metaKey || event.ctrlKey || !view.origin) return  // keys of the browser
     const act = acts[event.key] ?? others[event.key]
     if (!act) return
     event.preventDefault()
@@ -388,7 +388,7 @@ function takeButtons() {
 
 // ------------------------------------------------------------------------------------------------------- what happens
 
-/// Takes note of further points.
+/// Updates the panel for further points.
 function grown(first) {
   const { time } = points.arrays
   if (points.count > 0) {
@@ -408,7 +408,7 @@ function takeWays() {
   view.setWays(survey.legs.map(leg => ({ name: leg.name, times: leg.times, places: leg.places })))
 }
 
-/// Asks for what is new, again and again, until the run is over.
+/// Polls the server for new points until the end of the run.
 async function follow() {
   const live = byId('live'), pause = milliseconds => new Promise(resolve => setTimeout(resolve, milliseconds))
   live.hidden = false
@@ -425,7 +425,7 @@ async function follow() {
       bytes = new Uint8Array(await answer.arrayBuffer())
       failures = 0
     } catch {
-      if (++failures < 5) {  // crowded out by other clients, perhaps
+      if (++failures < 5) {  // the server may be busy with other clients
         await pause(200)
         continue
       }

@@ -18,7 +18,7 @@ async function inflated(bytes) {
   return new Uint8Array(await new Response(stream).arrayBuffer())
 }
 
-/// The values of every column of a block, as arrays by name; NaN where there is none.
+/// Values of every column of a block, as arrays by name; NaN for a missing value.
 async function readBlock(bytes) {
   const size = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true)
   const head = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + size)))
@@ -45,11 +45,11 @@ async function readBlock(bytes) {
   return block
 }
 
-/// All points, in pulse order, an array for each attribute. They are drawn in chunks, each in an order like a shuffled pack of cards, so
-/// that the first part of each chunk is a fair sample of all.
+/// All points, in pulse order, an array for each attribute. They are drawn in chunks, each in random order, so that the first part of each
+/// chunk is a uniform sample.
 class Points {
   static chunkSize = 65536
-  static exact = ['x', 'y', 'z', 'time', 'pulse']  // what float does not hold
+  static exact = ['x', 'y', 'z', 'time', 'pulse']  // beyond single precision
 
   constructor() {
     this.count = 0
@@ -93,7 +93,7 @@ class Points {
     this.touch(first)
   }
 
-  /// Keeps those with a key of at most `largest`. Returns where point `of` is then; -1 if it is gone.
+  /// Keeps the points with a key of at most `largest`. Returns the new index of point `of`; -1 if it is removed.
   thin(largest, of = -1) {
     const { key } = this.arrays
     if (!key) return of
@@ -113,7 +113,7 @@ class Points {
     this.touch(0)
   }
 
-  /// Has the chunks from a point on made anew.
+  /// Makes the chunks from a point on anew.
   touch(first) {
     const size = Points.chunkSize, chunks = Math.ceil(this.count / size)
     for (const chunk of this.chunks.splice(chunks)) chunk.free?.()
@@ -134,12 +134,12 @@ class Points {
     }
   }
 
-  /// The points of a chunk, numbered within it, in the order in which they are drawn.
+  /// Points of a chunk, numbered within it, in drawing order.
   order(chunk) {
     return chunk.count === Points.chunkSize ? this.pack : this.pack.filter(i => i < chunk.count)
   }
 
-  /// The least and the most of what all but a share of a half percent at either end are.
+  /// Range of an attribute without a share of the points at either end, estimated from a sample.
   usual(name, share = 0.005) {
     const values = this.arrays[name], sample = []
     const stride = Math.max(1, Math.floor(this.count / 50000))

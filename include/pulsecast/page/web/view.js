@@ -5,13 +5,13 @@
 
 const vectorDot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
-/// Looks at a target from a distance. Azimuth 0 looks north, elevation 0 along the ground. [m, rad]
+/// Camera at a distance from its target. Azimuth 0 looks north, elevation 0 along the ground. [m, rad]
 class Camera {
   constructor() {
     Object.assign(this, { target: [0, 0, 0], azimuth: 0.5, elevation: 0.6, distance: 100, extent: 100, field: 0.7, width: 1, height: 1 })
   }
 
-  /// Right, up and forward of the view.
+  /// Axes of the view: right, up and forward.
   axes() {
     const [s, c] = [Math.sin(this.azimuth), Math.cos(this.azimuth)], [e, f] = [Math.sin(this.elevation), Math.cos(this.elevation)]
     return [[c, -s, 0], [s * e, c * e, f], [s * f, c * f, -e]]
@@ -25,10 +25,10 @@ class Camera {
   get near() { return Math.max(this.distance / 200, this.extent * 1e-5) }
   get far() { return this.distance + 4 * this.extent }
 
-  /// Pixels that a metre at a depth of a metre takes.
+  /// Size of one metre at a depth of one metre [px].
   get scale() { return this.height / 2 / Math.tan(this.field / 2) }
 
-  /// From places to clip space, by columns.
+  /// Matrix from positions to clip space, by columns.
   matrix() {
     const [r, u, f] = this.axes(), eye = this.eye(), { near, far } = this
     const y = 1 / Math.tan(this.field / 2), x = y * this.height / this.width
@@ -38,7 +38,7 @@ class Camera {
                              x * r[2], y * u[2], a * f[2], f[2], x * er, y * eu, a * ef + b, ef])
   }
 
-  /// Where a place is on the screen [px], and how far along the view [m].
+  /// Position of a point on the screen [px], and its depth along the view [m].
   project(p) {
     const [r, u, f] = this.axes(), eye = this.eye(), d = [p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]]
     const depth = vectorDot(f, d), s = this.scale / depth
@@ -50,13 +50,13 @@ class Camera {
     this.elevation = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.elevation + up))
   }
 
-  /// Moves along the screen, by pixels at the target's depth.
+  /// Moves the target parallel to the screen, by pixels at its depth.
   pan(right, up) {
     const [r, u] = this.axes(), metre = this.distance / this.scale
     this.target = this.target.map((t, k) => t - (right * r[k] + up * u[k]) * metre)
   }
 
-  /// Comes nearer by a factor, to what is at a pixel.
+  /// Zooms by a factor, towards the point at a pixel.
   zoom(factor, x = this.width / 2, y = this.height / 2) {
     const before = this.distance
     this.distance = Math.min(20 * this.extent, Math.max(this.extent * 1e-4, before / factor))
@@ -72,8 +72,8 @@ class Camera {
   }
 }
 
-/// Draws the points and the ways. While the view moves, it draws as many points as keep `rate` frames a second; when it rests, it goes on
-/// with the others until all are there.
+/// Draws the points and the trajectories. While the view moves, the number of points is limited so that `rate` frames a second are drawn.
+/// At rest, the others follow until all are drawn.
 class View {
   constructor(canvas, points) {
     this.points = points
@@ -81,15 +81,15 @@ class View {
     this.now = Infinity
     this.trail = 0
     this.pointSize = 1
-    this.spacing = 0.1  // of points [m]
+    this.spacing = 0.1  // distance between points [m]
     this.shading = true
     this.adaptive = true
     this.rate = 30
-    this.budget = 500000  // points a frame
-    this.done = 0         // share of the points that is drawn
-    this.drawn = 0        // points
-    this.start = 0        // [s]
-    this.origin = null    // of what is drawn [m]
+    this.budget = 500000  // points per frame
+    this.done = 0         // share of the points drawn
+    this.drawn = 0        // number of points drawn
+    this.start = 0        // start of the survey's time [s]
+    this.origin = null    // origin of the drawn coordinates, in the world [m]
     this.ways = []
     this.afterFrame = () => {}
     this.colourOf = (chunk, order, out) => out.fill(255)
@@ -113,7 +113,7 @@ class View {
     this.redraw()
   }
 
-  /// Frames all usual points, and what stands near; the first time, they also become what places are relative to.
+  /// Frames all points but outliers, with trajectories near them. The first call sets the origin to their centre.
   fit() {
     const { points, camera } = this
     if (points.count === 0) return
@@ -132,7 +132,7 @@ class View {
 
   relative(place) { return place.map((v, k) => v - this.origin[k]) }
 
-  /// The ways of the legs: [{ name, places, times }].
+  /// Sets the trajectories of the legs: [{ name, places, times }].
   setWays(ways) {
     this.ways = ways
     this.painter.waysAreOld = true
@@ -143,7 +143,7 @@ class View {
     this.redraw()
   }
 
-  /// Something is seen otherwise; `moves` if it goes on, so that frames are wanted rather than points.
+  /// Redraws the view. With `moves`, it is in motion: the frame rate is kept and fewer points are drawn.
   redraw(moves = false) {
     this.done = 0
     if (moves) this.movedAt = performance.now()
@@ -170,7 +170,7 @@ class View {
     return !outside.includes(8)
   }
 
-  /// Places and colours of a chunk as painters take them.
+  /// Updates the vertex arrays of a chunk's positions and colours.
   prepare(chunk) {
     const { points, painter } = this
     if (!chunk.placesAreOld && !chunk.coloursAreOld) return
@@ -192,7 +192,7 @@ class View {
     }
   }
 
-  /// Fewer points or more, so that the next frame takes as long as it should.
+  /// Adapts the number of points per frame to the frame rate, from the last frame's duration [ms].
   keepPace(interval) {
     const wanted = 1000 / this.rate
     if (interval > 1.15 * wanted) this.budget = Math.max(20000, this.budget * Math.max(0.5, wanted / interval))
@@ -239,7 +239,7 @@ class View {
     if (moving || (this.done < 1 && points.count > 0 && this.origin)) this.wake()
   }
 
-  /// The point that is drawn nearest to a pixel, the foremost of those within a few pixels; -1 if there is none.
+  /// Index of the point drawn at a pixel, of several within a few pixels the foremost; -1 without one.
   pick(x, y, reach = 7 * this.ratio) {
     if (!this.origin) return -1
     const { camera, points } = this, [r, u, f] = camera.axes(), eye = camera.eye().map((v, k) => v + this.origin[k])
@@ -253,12 +253,12 @@ class View {
         const dx = px[i] - eye[0], dy = py[i] - eye[1], dz = pz[i] - eye[2]
         const depth = f[0] * dx + f[1] * dy + f[2] * dz
         if (!(depth > near)) continue
-        const sx = (r[0] * dx + r[1] * dy) * scale / depth - right  // the view's right is level
+        const sx = (r[0] * dx + r[1] * dy) * scale / depth - right  // the right axis of the view is level
         if (sx > reach || sx < -reach) continue
         const sy = (u[0] * dx + u[1] * dy + u[2] * dz) * scale / depth - up
         const away = Math.hypot(sx, sy)
         if (away > reach || time[i] > until || this.hides?.(i)) continue
-        const c = depth * (1 + 0.004 * (away / this.ratio) ** 2)  // what is in front, unless it is further off
+        const c = depth * (1 + 0.004 * (away / this.ratio) ** 2)  // front to back, with a penalty for distance from the pixel
         if (c < cost) cost = c, best = i
       }
     }

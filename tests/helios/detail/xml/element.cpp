@@ -189,12 +189,12 @@ TEST_CASE("what is wrong with a field is told, and the field stays") {
   refuses("angle_deg=\"1e9\"", "expected a number from -360 to 360 deg");
   refuses("count=\"1.5\"", "expected a whole number from -5 to 5");
   refuses("count=\"6\"", "expected a whole number from -5 to 5");
-  refuses("on=\"yse\"", "on=\"yse\" is not known; there are: true, false, 1, 0");
+  refuses("on=\"yse\"", "on=\"yse\" is not known; known names: true, false, 1, 0");
   refuses("colour=\"gren\"", "did you mean 'green'?");
   refuses("place=\"1;2\"", "expected three numbers 'x;y;z'");
   refuses("place=\"1;2;3;4\"", "expected three numbers 'x;y;z'");
   refuses("normal=\"0;0;2\"", "of at most 1");
-  refuses("file=\"none\"", "is not there");
+  refuses("file=\"none\"", "does not exist");
   refuses("count=\"" + std::string(1000, '9') + "\"", "999...\": expected a whole number");
 }
 
@@ -217,7 +217,7 @@ TEST_CASE("what is odd about a field, but leaves no doubt, is told and read") {
   takes("on=\"Yes\"", "on=\"Yes\" is taken as true: expected true or false", {.is_on = true});
   takes("on=\"off\"", "is taken as false", {});
   for (const char* name : {"length_ns", "angle_deg", "count", "colour", "place", "normal", "file"})
-    takes(name + std::string("=\" \""), "=\" \" is empty: it counts as not given", {});
+    takes(name + std::string("=\" \""), "=\" \" is empty: it is ignored", {});
   takes("place=\"1,-2, 3\"", "expected semicolons between the numbers", {.place = Vec3(1, -2, 3)});
   takes("place=\"1  -2 3\"", "expected semicolons between the numbers", {.place = Vec3(1, -2, 3)});
   takes("cuont=\"1\"", "'cuont' of", {});
@@ -237,7 +237,7 @@ TEST_CASE("children are read in order, once where there may be one, and unknown 
   CHECK(reading.io.child("c", [](XmlInput&) {}));
   CHECK_FALSE(reading.io.child("e", [](XmlInput&) { FAIL("is not there"); }));
   const std::string warnings = reading.warnings();
-  CHECK(contains(warnings, "a second <c> in <a>: the first one counts"));
+  CHECK(contains(warnings, "a second <c> in <a>: the first one is used"));
   CHECK(contains(warnings, "element <d> in <a> is not known"));
   CHECK(contains(Reading("<a>text</a>").warnings(), "holds the text 'text'"));
   Reading lacks("<a b=\"\"/>");

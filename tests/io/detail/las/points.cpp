@@ -187,7 +187,7 @@ TEST_CASE("points out of all reach are refused, with the byte") {
   LasBuilder las{.minor = 2, .format = 0, .scale = {1e4, 1, 1}, .points = {{}, {.stored = {2000000000, 0, 0}}}};
   const FileError e = error(las.bytes());
   CHECK(e.place() == "byte 247");
-  CHECK(e.problem() == "holds a point beyond 1e12 m: expected coordinates within");
+  CHECK(e.problem() == "has a point beyond 1e12 m: expected coordinates up to 1e12 m");
 }
 
 TEST_CASE("what begins otherwise is no LAS") {

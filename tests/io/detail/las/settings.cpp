@@ -9,7 +9,7 @@ namespace {
 
 TEST_CASE("version 1.0 has no waveforms, any other has") {
   CHECK_THROWS_WITH_AS((LasSettings{.format = LasFormat::las_1_0, .waveforms = true}.validate()),
-                       doctest::Contains("must be false with version 1.0"), SettingError);
+                       doctest::Contains("must be false for version 1.0"), SettingError);
   CHECK_NOTHROW((LasSettings{.format = LasFormat::las_1_0}.validate()));
   CHECK_NOTHROW((LasSettings{.format = LasFormat::las_1_4_legacy, .waveforms = true}.validate()));
   CHECK_NOTHROW((LasSettings{.waveforms = true}.validate()));

@@ -119,7 +119,7 @@ TEST_CASE("a last line without an end is read, with a warning") {
   const Read found = read("1 2 3\n-4.5 5e3 .25");
   CHECK(found.positions == two);
   REQUIRE(found.warnings.size() == 1);
-  CHECK(found.warnings[0].ends_with("a.xyz: the last line has no end: the file may have been cut short"));
+  CHECK(found.warnings[0].ends_with("a.xyz: the last line has no line end: the file may be truncated"));
   CHECK(read("1 2 3\n").warnings.empty());
   CHECK(read("1 2 3\n# end").warnings.empty());
 }

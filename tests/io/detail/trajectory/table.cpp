@@ -129,7 +129,7 @@ TEST_CASE("comments that say less leave the usual order, and those that contradi
     CHECK(table.poses[0].position == Vec3{4, 5, 6});
     CHECK(same(table.poses[0].rotation, expected.poses[0].rotation));
   }
-  CHECK(contains(error("#TIME_COLUMN: 7\n1,2,3,4,5,6,7\n", helios_format()).problem(), "expected #TIME_COLUMN to be one of them"));
+  CHECK(contains(error("#TIME_COLUMN: 7\n1,2,3,4,5,6,7\n", helios_format()).problem(), "expected the index, from 0, of one of"));
   CHECK(error("#TIME_COLUMN: two\n1,2,3,4,5,6,7\n", helios_format()).place() == "line 1");
   CHECK(error("0,1,2,3,4,5\n", helios_format()).problem() == "has 6 columns: expected 7");
   CHECK(error("#HEADER: \"t\",\"x\",\"y\",\"z\",\"roll\",\"yaw_m\",\"roll\"\n0,1,2,3,4,5,6\n", helios_format()).place() ==
@@ -149,7 +149,7 @@ TEST_CASE("a first line of names counts without its #, and is no row where colum
   TrajectoryFormat agreed = helios_format();
   agreed.names = ColumnNames::nowhere;
   CHECK(read("when,r,p,y,e,n,h\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n", agreed).poses.size() == 2);
-  CHECK(contains(error("when,x,y,z\n0,1,2,3\n", helios_format()).problem(), "no column holds the time"));
+  CHECK(contains(error("when,x,y,z\n0,1,2,3\n", helios_format()).problem(), "no column is the time"));
   CHECK(error("0,1,2,3,4,5,6\nt,roll,pitch,yaw,x,y,z\n", helios_format()).place() == "line 2, column 1");
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("a quaternion is made a unit, silently if six decimals explain it, wit
   CHECK(read("0 0 0 0 0 0 0.707107 0.707107\n", tum_format()).warnings.empty());
   const TrajectoryTable table = read("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1.0009\n2 0 0 0 0 0 0 0.9995\n", tum_format());
   REQUIRE(table.warnings.size() == 1);
-  CHECK(contains(table.warnings[0], "line 2: has a quaternion whose length is not 1, the first of 2"));
+  CHECK(contains(table.warnings[0], "line 2: has a quaternion that is not unit, the first of 2"));
   CHECK(length(table.poses[1].rotation) == doctest::Approx(1).epsilon(1e-15));
   for (const char* q : {"0 0 0 1.0011", "0 0 0 0", "0 0 0 0.99", "1e11 0 0 0"}) {
     CAPTURE(q);
@@ -184,8 +184,8 @@ TEST_CASE("poses out of order are sorted, and those that stand twice count once"
   CHECK(table.start_time == 1);
   for (std::size_t i = 0; i < 3; ++i) CHECK(table.poses[i].position.x == 1 + table.poses[i].time);
   REQUIRE(table.warnings.size() == 2);
-  CHECK(contains(table.warnings[0], "line 3: is earlier than the one before it, the first of 1"));
-  CHECK(contains(table.warnings[1], "line 5: is a pose that stands twice"));
+  CHECK(contains(table.warnings[0], "line 3: is earlier than the previous pose, the first of 1"));
+  CHECK(contains(table.warnings[1], "line 5: repeats a pose"));
 }
 
 TEST_CASE("poses at one time are a jump: a window that ends there ends before it, and one that begins there begins after it") {
@@ -194,7 +194,7 @@ TEST_CASE("poses at one time are a jump: a window that ends there ends before it
   REQUIRE(whole.poses.size() == 5);
   REQUIRE(whole.warnings.size() == 1);
   CHECK(contains(whole.warnings[0],
-                 "t.csv, line 4: has the time of the pose before it, but another pose, the first of 2: the platform jumps"));
+                 "t.csv, line 4: repeats the time of the previous pose at another pose, the first of 2: a jump of the platform"));
   const Waypoints path(whole.poses);
   CHECK(path.at(Tick::of_seconds(1.999)).position.x == doctest::Approx(19.99));
   CHECK(path.at({2, 0}).position.x == 50);
@@ -257,7 +257,7 @@ TEST_CASE("one pose is a trajectory, and angles that no column gives are 0, with
   CHECK(same(table.poses[0].rotation, rotation_about(-axis::up, radians(90))));
   REQUIRE(table.warnings.size() == 3);
   CHECK(contains(table.warnings[0], "line 2: has no line end"));
-  CHECK(contains(table.warnings[1], "no column holds the roll"));
+  CHECK(contains(table.warnings[1], "no column for the roll"));
 }
 
 TEST_CASE("what cannot be right is told with its place, and what was expected") {
@@ -287,7 +287,7 @@ TEST_CASE("what cannot be right is told with its place, and what was expected") 
     CHECK(e.place() == c.place);
     CHECK_MESSAGE(contains(e.problem(), c.problem), e.problem());
   }
-  CHECK_THROWS_WITH_AS((void)read_trajectory("no/such.csv"), doctest::Contains("no/such.csv: is not there"), FileError);
+  CHECK_THROWS_WITH_AS((void)read_trajectory("no/such.csv"), doctest::Contains("no/such.csv: does not exist"), FileError);
   CHECK(error("0 0 0 0 0 0 1\n", tum_format()).problem() == "has 7 columns: expected 8");
 }
 
@@ -358,7 +358,7 @@ TEST_CASE("further columns do not count where the file or the format says which 
   REQUIRE(table.poses.size() == 1);
   CHECK(table.poses[0].position == Vec3{4, 5, 6});
   REQUIRE(table.warnings.size() == 1);
-  CHECK(contains(table.warnings[0], "not known are left out: 'quality'"));
+  CHECK(contains(table.warnings[0], "unknown columns are left out: 'quality'"));
   CHECK(contains(error(named + "7,good,1,2,3,4,5\n", helios_format()).problem(), "has 7 columns: expected 8"));
   CHECK(contains(error("0,1,2,3,4,5,6,7\n", helios_format()).problem(), "has 8 columns: expected 7"));  // which ones?
   TrajectoryFormat format = helios_format();
@@ -373,7 +373,7 @@ TEST_CASE("further columns do not count where the file or the format says which 
                          return strict;
                        }())
                      .problem(),
-                 "'quality' is no known column"));
+                 "'quality' is not a known column"));
 }
 
 TEST_CASE("a separator is found, unless it is fixed") {

@@ -19,7 +19,7 @@
 
 namespace pulsecast::helios {
 
-/// Position in an XML file; line 0 stands for the whole file.
+/// Position in an XML file; line 0 means the whole file.
 struct XmlPlace {
   std::string path{};
   std::size_t line = 0, column = 0;  ///< from 1; columns count bytes
@@ -83,7 +83,7 @@ class XmlReport {
     if (is_full_of_warnings()) return;
     std::string text = place.text() + ": " + problem;
     if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
-    if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(max_told) + " are not told";
+    if (is_full_of_warnings()) warnings_.back() += "; more than " + std::to_string(max_told) + " are not listed";
   }
 
   /// Calls `read()` and turns its faults into warnings, for elements without use.
@@ -167,9 +167,9 @@ class XmlDocument {
   [[nodiscard]] static const char* hint(pugi::xml_parse_status status) {
     switch (status) {
       case pugi::status_end_element_mismatch:
-        return " (this end tag is not of the element that was begun last)";
+        return " (this end tag does not match the last start tag)";
       case pugi::status_no_document_element:
-        return " (there is no element)";
+        return " (no element)";
       default:
         return "";
     }

@@ -92,7 +92,7 @@ class XmlInput {
     if (is_among(required_, name))
       fault(name, said(name, *text) + " is empty: expected a value");
     else
-      warn(name, said(name, *text) + " is empty: it counts as not given");
+      warn(name, said(name, *text) + " is empty: it is ignored");
     return std::nullopt;
   }
 
@@ -190,7 +190,7 @@ class XmlInput {
     const pugi::xml_node found = node_.child(name);
     if (!found) return false;
     if (const pugi::xml_node second = found.next_sibling(name))
-      report_.warn(document_.place(second), "a second <" + std::string(name) + "> in <" + node_.name() + ">: the first one counts");
+      report_.warn(document_.place(second), "a second <" + std::string(name) + "> in <" + node_.name() + ">: the first one is used");
     XmlInput inner(document_, found, report_, search_);
     read(inner);
     inner.finish();
@@ -305,7 +305,7 @@ class XmlInput {
           report_.fault(document_.place(child, "key"), "param " + text::quoted(key) + " is given twice, with another value");
       }
       keys.push_back(key);
-      if (keys.size() == max_params) report_.fault(document_.place(child), "one of too many <param> in a filter");
+      if (keys.size() == max_params) report_.fault(document_.place(child), "too many <param> in a filter");
       if (!is_among(known_, key) || key == "type")
         report_.warn(document_.place(child, "key"), "param " + text::quoted(key) + " of filter " +
                                                         text::quoted(node_.attribute("type").value()) + " is not known" +

@@ -24,7 +24,7 @@ void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
       const bool is_one = text && text->size() == 1 && std::string_view(",;\t ").find(text->front()) != std::string_view::npos;
       if (is_one) trajectory.separator = text->front();
       if (text && !is_one)
-        io.warn(name, XmlInput::said(name, *text) + " has no effect: expected a comma, a semicolon, a tab or a blank; it is found");
+        io.warn(name, XmlInput::said(name, *text) + " has no effect: expected a comma, a semicolon, a tab or a blank; it is detected");
     }
     for (const char* name : names)
       if (io.has(name) && !trajectory.columns) trajectory.columns.emplace();

@@ -62,19 +62,18 @@ class LegChecks {
     const bool turns = settings.scanner.head_stop != settings.scanner.head_start;
     if (legs == 1 && !settings.duration_max && !turns)
       io.report().fault(io.place(),
-                        "a single leg of a platform that moves: expected another <leg> that says where it goes, or maxDuration_s "
-                        "for which it stays here");
+                        "the only leg of a moving platform: expected another <leg> as its destination, or maxDuration_s "
+                        "of its stay here");
     if (only_ends(survey_, i) && settings.duration_max && settings.scanner.active)
       io.report().warn(io.place(),
-                       "the last leg of a platform that moves says where the way ends, and has no pulses: to stay there for "
-                       "maxDuration_s, expected another <leg> at the same place");
+                       "the last leg of a moving platform is the end of its path, and has no pulses: to stay there for "
+                       "maxDuration_s, expected another <leg> at the same position");
     if (i + 1 == legs) return;
     if (stays_in_place(survey_.legs, i)) {
       if (!settings.duration_max && !turns)
-        io.warn("x",
-                "the leg begins where the next one does, and ends at once: expected maxDuration_s for which it stays here, if it should");
+        io.warn("x", "the next leg begins at the same position, so this one ends at once: maxDuration_s would be the duration of a stay");
     } else if (platform.speed == 0) {
-      io.fault("movePerSec_m", "the leg could never end: movePerSec_m is 0; expected a speed");
+      io.fault("movePerSec_m", "the leg never ends: movePerSec_m is 0; expected a speed");
     }
   }
 
@@ -113,10 +112,10 @@ class LegChecks {
       io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected less than pulseFreq_hz, " + hertz(s.pulse_rate));
     const std::vector<double>& rates = survey_.scanner.pulse_rates;
     if (std::find(rates.begin(), rates.end(), s.pulse_rate) == rates.end())
-      io.warn("pulseFreq_hz", "pulseFreq_hz of " + hertz(s.pulse_rate) + " is none that the scanner is made for");
+      io.warn("pulseFreq_hz", "pulseFreq_hz of " + hertz(s.pulse_rate) + " is not one of the scanner's pulse rates");
     if (s.scan_angle && detail::scan_angle_of(device, s) < *s.scan_angle)
       io.warn("scanAngle_deg",
-              "scanAngle_deg is more than the scanner can: it is limited to " + xml_number(units::degree.number(device.scan_angle_max)));
+              "scanAngle_deg exceeds the scanner's maximum: it is limited to " + xml_number(units::degree.number(device.scan_angle_max)));
     check_gate(io, device, s);
   }
 
@@ -130,7 +129,7 @@ class LegChecks {
     const auto [low, high, is_limited] = detail::mirror_gate(device, *rotating, s);
     const auto in_degrees = [](double angle) { return brief(degrees(angle)); };
     if (s.scan_frequency > 0 && !(low < high))
-      io.fault("verticalAngleMin_deg", "no pulse could leave between " + xml_number(units::degree.number(low)) + " and " +
+      io.fault("verticalAngleMin_deg", "no pulse is emitted between " + xml_number(units::degree.number(low)) + " and " +
                                            xml_number(units::degree.number(high)) +
                                            " deg: expected verticalAngleMin_deg below verticalAngleMax_deg");
     if (is_limited)
@@ -145,23 +144,23 @@ class LegChecks {
     if (s.head_speed != speed)
       io.warn("headRotatePerSec_deg", device.head_speed_max == 0
                                           ? "headRotatePerSec_deg has no effect: the scanner's headRotatePerSecMax_deg is 0"
-                                          : "headRotatePerSec_deg is more than the scanner can: it is limited to " +
+                                          : "headRotatePerSec_deg exceeds the scanner's maximum: it is limited to " +
                                                 xml_number(units::degree.number(device.head_speed_max)));
     if (turns_away(s))
       io.fault("headRotateStop_deg", "the head turns away from headRotateStop_deg: expected headRotatePerSec_deg of the other sign");
     if (settings.duration_max) return;
     if (head_never_stops(device, settings))
-      io.fault("headRotateStop_deg", "the leg could never end: the head does not turn" +
+      io.fault("headRotateStop_deg", "the leg never ends: the head does not turn" +
                                          std::string(device.head_speed_max == 0 ? ", as the scanner's headRotatePerSecMax_deg is 0" : "") +
                                          "; expected headRotatePerSec_deg, headRotateStop_deg the same as headRotateStart_deg, or "
                                          "maxDuration_s");
     if (!stays(i) || s.head_stop != s.head_start) return;
     if (speed == 0 && legs_connect(survey_.platform.kind)) return;  // reported already
     if (speed == 0)
-      io.report().fault(io.place(), "the leg could never end: neither platform nor head moves; expected maxDuration_s" +
+      io.report().fault(io.place(), "the leg never ends: neither platform nor head moves; expected maxDuration_s" +
                                         std::string(i == 0 ? "" : " for each leg"));
     else
-      io.warn("headRotateStop_deg", "the head begins where it stops: the leg ends at once");
+      io.warn("headRotateStop_deg", "headRotateStop_deg equals headRotateStart_deg: the leg ends at once");
   }
 
   const XmlLibraryDocument& document_;

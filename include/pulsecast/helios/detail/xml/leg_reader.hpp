@@ -116,7 +116,7 @@ class LegReader {
       if (found && std::find(before.begin(), before.end(), found.node) != before.end()) {
         io.fault("template", XmlInput::said("template", *text) + " is a template of itself");
       } else if (found && before.size() > 16) {
-        io.fault("template", XmlInput::said("template", *text) + " is the last of too many templates");
+        io.fault("template", XmlInput::said("template", *text) + " exceeds the maximum depth of templates");
       } else if (found) {
         XmlInput inner(found.document->document(), found.node, report_, found.document->search());
         inner.know({"id", "name"});
@@ -142,7 +142,7 @@ class LegReader {
       inner.child("maxDuration_s", [&](XmlInput& text) {
         const std::string content = text.content();
         if (content.find_first_not_of(" \t\r\n") == std::string::npos) {
-          report_.warn(text.place(), "<maxDuration_s> is empty: it counts as not given");
+          report_.warn(text.place(), "<maxDuration_s> is empty: it is ignored");
           return;
         }
         const auto seconds = number_of(content);
@@ -156,13 +156,13 @@ class LegReader {
     LegScannerSettings& s = scanner.settings;
     if (s.pulse_rate == 0 && usual_rate > 0) {
       s.pulse_rate = usual_rate;
-      io.warn("pulseFreq_hz", "pulseFreq_hz of 0 stands for the usual one of the scanner, " + xml_number(usual_rate) + " Hz");
+      io.warn("pulseFreq_hz", "pulseFreq_hz of 0 means the scanner's default, " + xml_number(usual_rate) + " Hz");
     }
     const ChannelSettings* const device = survey_.scanner.channels.empty() ? nullptr : &survey_.scanner.channels.front();
     if (s.scan_angle == 0.0 && device && device->scan_angle_max > 0) {
       s.scan_angle.reset();
-      io.warn("scanAngle_deg", "scanAngle_deg of 0 stands for the largest one of the scanner, " +
-                                   xml_number(units::degree.number(device->scan_angle_max)) + " deg");
+      io.warn("scanAngle_deg",
+              "scanAngle_deg of 0 means the scanner's maximum, " + xml_number(units::degree.number(device->scan_angle_max)) + " deg");
     }
     if (scanner.vertical_resolution == 0 && scanner.horizontal_resolution == 0) return;
     if (!device || !std::holds_alternative<RotatingOptic>(device->optic)) {
@@ -173,7 +173,7 @@ class LegReader {
       s.scan_frequency = rounded(s.scan_frequency, device->scan_frequency_min);
       s.head_speed = rounded(scanner.horizontal_resolution * s.scan_frequency, device->head_speed_max);
       if (!(s.scan_frequency <= 1e6 && s.head_speed <= radians(1e6)))
-        io.fault("verticalResolution_deg", "no scanner is as fast as these resolutions need: expected a finer one");
+        io.fault("verticalResolution_deg", "these resolutions need a scan frequency or head speed out of range: expected finer ones");
     }
   }
 

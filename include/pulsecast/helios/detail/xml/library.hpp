@@ -125,7 +125,7 @@ class XmlLibrary {
       return known->second.get();
     }
     if (documents_.size() == max_documents) {
-      io.fault(attribute, XmlInput::said(attribute, text) + " is one of more than " + std::to_string(max_documents) + " documents");
+      io.fault(attribute, XmlInput::said(attribute, text) + " exceeds the maximum of " + std::to_string(max_documents) + " documents");
       return nullptr;
     }
     try {

@@ -27,7 +27,7 @@ void axis(Io& io, const char* name, Of<Io, Vec3>& v) {
 
 /// Reports an axis or normal without a direction.
 inline void check_axis(const XmlInput& io, const char* name, const Vec3& v) {
-  if (!has_direction(v)) io.fault(name, std::string(name) + " is too short to have a direction");
+  if (!has_direction(v)) io.fault(name, std::string(name) + " is too short for a direction");
 }
 
 enum class MotionKind { identity, translation, rotation, helical, reflection, glide_plane, rotoreflection };
@@ -61,7 +61,7 @@ bool rotation_fields(Io& io, Of<Io, RotationMotion>& rotation, MotionKind kind) 
   }
   if constexpr (Io::reads) {
     if (!has_direction(rotation.axis) && rotation.angle == 0) {
-      io.warn("axis", "axis is too short to have a direction, and angle is 0: the motion does nothing");
+      io.warn("axis", "axis is too short for a direction, and angle is 0: the motion does nothing");
       return false;
     }
     check_axis(io, "axis", rotation.axis);

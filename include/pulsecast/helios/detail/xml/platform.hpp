@@ -78,7 +78,7 @@ void fields(Io& io, Of<Io, PlatformSettings>& platform) {
     io.without_effect({"yaw_speed_deg", "pitch_offset_deg"}, "has no effect with this type of platform");
   io.without_effect({"drag", "engine_max_force", "speedup_magnitude", "slowdown_magnitude", "slowdown_distance", "pitch_speed_deg",
                      "roll_speed_deg", "roll_offset_deg", "base_pitch_deg"},
-                    "has no effect: ways are planned by speed and acceleration");
+                    "has no effect: paths are planned by speed and acceleration");
 }
 
 }  // namespace pulsecast::helios::xml

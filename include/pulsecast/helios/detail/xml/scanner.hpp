@@ -96,7 +96,7 @@ inline void check_formula(const XmlInput& io, const char* name, const std::strin
     const Formula formula(text, variable);
     for (int i = 0; i < places; ++i)
       if (std::isfinite(formula(low + (high - low) * (i + 0.518) / places))) return;
-    io.fault(name, XmlInput::said(name, text) + " is no finite number for any " + variable + ": expected a formula with a finite value");
+    io.fault(name, XmlInput::said(name, text) + " is not finite for any " + variable + ": expected a formula with a finite value");
   } catch (const std::invalid_argument& error) {
     io.fault(name, error.what());
   }
@@ -196,10 +196,10 @@ inline void check(const XmlInput& io, ChannelSettings& channel) {
     channel.errors.head.clear();
   }
   if (rotating && rotating->effective_angle_max.value_or(1) == 0)
-    io.fault("scanAngleEffectiveMax_deg", "scanAngleEffectiveMax_deg is 0: no pulse could leave");
+    io.fault("scanAngleEffectiveMax_deg", "scanAngleEffectiveMax_deg is 0: no pulse is emitted");
   const auto* const risley = std::get_if<RisleyOptic>(&channel.optic);
   if (risley && risley->prisms[0].angle == 0 && risley->prisms[1].angle == 0 && risley->prisms[2].angle == 0)
-    io.report().warn(io.place("optics"), "no prism has an angle: the beam stays where it is");
+    io.report().warn(io.place("optics"), "no prism has an angle: the beam is not deflected");
 }
 
 /// `pulseFreqs_Hz`: numbers separated by commas.

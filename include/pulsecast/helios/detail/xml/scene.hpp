@@ -66,7 +66,7 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
     const std::string_view type = node.attribute("type").value();
     const auto is = [&](std::string_view name) { return text::is_same_word(type, name); };
     const auto load = [&](auto kind) {
-      if (source) io.report().fault(io.document().place(node), "a second filter that loads: expected one in each part");
+      if (source) io.report().fault(io.document().place(node), "a second loading filter: expected one per part");
       fields(filter, source.emplace(std::move(kind)).template emplace<decltype(kind)>());
     };
     if (is("objloader")) {
@@ -134,7 +134,7 @@ void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
   io.children("dmotion", part.motions, [](auto& inner, auto& sequence) { fields(inner, sequence); });
   io.children("swap", part.swaps, [](auto& inner, auto& swap) { fields(inner, swap); });
   if constexpr (Io::reads) {
-    io.without_effect({"kdtDynStep", "kdtDynTimeStep"}, "has no effect: a part is met where it is");
+    io.without_effect({"kdtDynStep", "kdtDynTimeStep"}, "has no effect: each pulse meets a part at its pose of that time");
     pugi::xml_node node = io.node().child("dmotion");
     if (part.motions.size() > 1000) io.report().fault(io.place(), "<part> holds more than 1000 <dmotion>");
     if (io.report().is_full() || part.motions.size() > 1000) return;
@@ -166,7 +166,7 @@ inline void fields(XmlInput& io, SceneSettings& scene) {
     dynamic_fields(inner, part);
     inner.finish();
     if (!source) {
-      io.report().warn(inner.place(), "<part> has no filter that loads: it is left out");
+      io.report().warn(inner.place(), "<part> has no loading filter: it is left out");
       ++number;
       continue;
     }
@@ -182,7 +182,7 @@ inline void fields(XmlInput& io, SceneSettings& scene) {
     }
     number += is_split ? loaded.size() : 1;
   }
-  if (scene.parts.empty()) io.report().fault(io.place(), "<scene> holds no <part> with a filter that loads");
+  if (scene.parts.empty()) io.report().fault(io.place(), "<scene> holds no <part> with a loading filter");
 }
 
 /// Writes a scene.

@@ -88,7 +88,7 @@ void fields(Io& io, Of<Io, XyzSource>& source) {
     io.without_effect({"sparse"});
     if (source.voxel_size == 0) {
       source.voxel_size = 1;
-      io.warn("voxelSize", "voxelSize of 0 stands for 1 m");
+      io.warn("voxelSize", "voxelSize of 0 means 1 m");
     }
     if (source.default_normal == Vec3{}) {
       source.default_normal.reset();

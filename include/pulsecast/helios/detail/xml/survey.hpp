@@ -44,7 +44,7 @@ class SurveyReader {
     const pugi::xml_node node = document.root().child("survey");
     if (!node) report_.fault(document.place(document.root()), "there is no <survey> in this document");
     if (const pugi::xml_node second = node.next_sibling("survey"))
-      report_.warn(document.place(second), "a second <survey>: the first one counts");
+      report_.warn(document.place(second), "a second <survey>: the first one is used");
     if (node) {
       XmlInput io(document, node, report_, document_.search());
       read_survey(io, std::filesystem::path(document.path()).stem().string());
@@ -84,7 +84,7 @@ class SurveyReader {
     io.text("name", survey_.name);
     fit_for_name(io, "name", survey_.name);
     if (survey_.name == ".." || survey_.name == ".") {
-      io.warn("name", XmlInput::said("name", survey_.name) + " is no name of a folder for results: that of the file is taken");
+      io.warn("name", XmlInput::said("name", survey_.name) + " cannot name a folder for results: the name of the file is used");
       survey_.name.clear();
     }
     if (survey_.name.empty()) survey_.name = std::move(name);
@@ -156,12 +156,12 @@ class SurveyReader {
       const auto [other, is_new] = numbers.emplace(id, k);
       if (channel_files_ && std::any_of(id.begin(), id.end(), fits_no_name))
         report_.fault(document.place(node, "id"),
-                      "the id of a channel becomes part of the names of files: expected no slashes and no control characters in it");
+                      "the id of a channel is part of file names: expected no slashes and no control characters in it");
       if (is_new) continue;
       const std::string problem =
           "channel " + std::to_string(k) + " has the id of channel " + std::to_string(other->second) + ", " + text::quoted(id);
       if (channel_files_)
-        report_.fault(document.place(node, "id"), problem + ": expected another one, as each is to have a file of its own");
+        report_.fault(document.place(node, "id"), problem + ": expected different ids, as each channel has its own file");
       else
         report_.warn(document.place(node, "id"), problem);
     }

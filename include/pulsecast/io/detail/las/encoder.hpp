@@ -162,10 +162,15 @@ class LasEncoder {
     }
   }
 
+  /// Settings, as given.
   [[nodiscard]] const LasSettings& settings() const noexcept { return settings_; }
+  /// Layout of a point record.
   [[nodiscard]] const detail::LasLayout& layout() const noexcept { return layout_; }
+  /// Offset of the coordinates [m].
   [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }
+  /// Statistics of the points located so far.
   [[nodiscard]] const LasTally& tally() const noexcept { return tally_; }
+  /// Statistics, for a sum over several encoders.
   [[nodiscard]] LasTally& tally() noexcept { return tally_; }
 
  private:

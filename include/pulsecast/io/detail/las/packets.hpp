@@ -93,7 +93,7 @@ class LasPackets {
     file_.commit();
   }
 
-  static constexpr double max_samples = 32768;                                                                     ///< of a waveform
+  static constexpr double max_samples = 32768;  ///< samples of a waveform, at most
   static constexpr unsigned size_classes = 23, gain_classes = 11, descriptor_count = size_classes * gain_classes;  ///< kinds of packets
 
  private:

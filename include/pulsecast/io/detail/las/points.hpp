@@ -40,7 +40,7 @@ class LasPoints {
     while (taken_ < count_) {
       at_ = file_.position();
       record_ = file_.take(record_size_);
-      if (record_.size() < record_size_) file_.fail_at_byte(at_, "the file ends: it has changed while it was read");
+      if (record_.size() < record_size_) file_.fail_at_byte(at_, "unexpected end: the file has changed while it was read");
       ++taken_;
       if (!withheld()) return true;
       ++withheld_;
@@ -53,7 +53,7 @@ class LasPoints {
     Vec3 p{};
     for (std::size_t axis = 0; axis < 3; ++axis)
       p[static_cast<int>(axis)] = number<std::int32_t>(record_, 4 * axis) * scale_[axis] + offset_[axis];
-    if (!(max_norm(p) <= 1e12)) fail_here("holds a point beyond 1e12 m: expected coordinates within");
+    if (!(max_norm(p) <= 1e12)) fail_here("has a point beyond 1e12 m: expected coordinates up to 1e12 m");
     return p;
   }
 
@@ -106,7 +106,7 @@ class LasPoints {
                                  std::to_string(header_sizes[minor_]));
     format_ = number<std::uint8_t>(bytes, 104);
     if (format_ >= 128)  // mark of LASzip
-      file_.fail_at_byte(104, "the points are compressed (LAZ): expected LAS; laszip or pdal translate turn one into the other");
+      file_.fail_at_byte(104, "the points are compressed (LAZ): expected LAS; laszip and pdal translate convert it");
     if (format_ >= sizes.size()) file_.fail_at_byte(104, "has the point format " + std::to_string(format_) + ": expected one from 0 to 10");
     colour_at_ = colours[format_];
     record_size_ = number<std::uint16_t>(bytes, 105);

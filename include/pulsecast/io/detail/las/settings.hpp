@@ -33,6 +33,7 @@ enum class GpsTime : std::uint16_t {
 
 /// Settings of a LAS or LAZ file.
 struct LasSettings {
+  /// Date of creation.
   using Date = std::chrono::year_month_day;
 
   LasFormat format = LasFormat::las_1_4;               ///< version and point format
@@ -51,7 +52,7 @@ struct LasSettings {
 
   void validate() const {
     if (waveforms && format == LasFormat::las_1_0)
-      throw SettingError("LasSettings::waveforms", 1, "", "false with version 1.0, which knows none");
+      throw SettingError("LasSettings::waveforms", 1, "", "false for version 1.0, which has no waveforms");
     require_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
     require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // with a terminator, counted by 16 bits
@@ -60,7 +61,7 @@ struct LasSettings {
     if (intensity_full_scale)
       require_positive("LasSettings::intensity_full_scale", *intensity_full_scale, intensity == LasIntensity::amplitude ? "W" : "");
     require_positive("LasSettings::amplitude_reference", amplitude_reference, "W");
-    if (created && !created->ok()) throw SettingError("LasSettings::created day", unsigned{created->day()}, "", "a day of its month");
+    if (created && !created->ok()) throw SettingError("LasSettings::created day", unsigned{created->day()}, "", "a valid date");
   }
 };
 

@@ -47,9 +47,8 @@ void las_in_blocks(OutputFile& file, std::uint64_t begin, std::size_t record, co
 /// - return numbers and counts end at 15, or 5, by format: later returns are written as the last;
 /// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; scanner channel is the channel's lowest two bits;
 /// - scan angle counts from down, positive to the right of the flight; GPS time is that of the pulse for all its returns;
-/// - a reference system given by its code alone, other than UTM, is written as GeoTIFF keys, with the WKT bit clear: the specification
-/// demands well-known text with point formats 6 and 9, but a code serves readers better than nothing. Legacy formats always take a code as
-/// keys;
+/// - a reference system given by its code alone, other than UTM, is written as GeoTIFF keys, with the WKT bit clear. The specification
+/// demands well-known text with point formats 6 and 9; a code is more useful than none. Legacy formats always take a code as keys;
 /// - flags, scan direction, edge of flight line and user data are 0, as echoes have no such fields.
 ///
 /// A waveform is written once for all echoes of its pulse, see `LasPackets`, and not at all without echoes, as no point could refer to it.
@@ -140,7 +139,7 @@ class LasFileWriter {
   [[nodiscard]] std::filesystem::path packets_path() const {
     std::filesystem::path path = file_.path();
     if (path.replace_extension(".wdp") != file_.path()) return path;
-    throw FileError(path.string(), "", "is where its waveforms go; expected a name that ends otherwise, as in .las");
+    throw FileError(path.string(), "", "is the name of its waveform file; expected another extension, as .las");
   }
 
   [[noreturn]] void misfit(const Vec3& point) {

@@ -19,7 +19,7 @@
 
 namespace pulsecast::io::detail {
 
-/// Compressor of a chunk of points of format 6 with extra bytes, as LASzip from its version 3 on: each attribute is a layer, left out if
+/// Compressor of a chunk of points of format 6 with extra bytes, as LASzip from its version 3 on. Each attribute is a layer, left out if
 /// constant. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4 (native extension), specification document; files of it, items POINT14 and
 /// BYTE14 in version 3, for details left open there.
 class LazChunk {
@@ -258,8 +258,8 @@ class LazChunk {
     for (std::size_t k = 0; k < extras; ++k) layers.push_back(extra_byte(std::span(columns).subspan(k * count, count)));
   }
 
-  /// Encodes differences to the last byte. As in all files of version 3, if the channel told changes, the last byte is still that of the
-  /// channel before, and is stored there, unless this channel is new.
+  /// Encodes differences to the last byte. As in all files of version 3, after a change of the scanner channel the last byte is still that
+  /// of the channel before, and is stored there, unless the channel is new.
   [[nodiscard]] std::vector<std::byte> extra_byte(std::span<const std::uint8_t> column) const {
     if (std::all_of(column.begin(), column.end(), [&](std::uint8_t byte) { return byte == column[0]; })) return {};
     std::array<LazModel<>, 4> models;

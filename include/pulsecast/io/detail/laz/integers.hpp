@@ -12,8 +12,8 @@
 
 namespace pulsecast::io::detail {
 
-/// Coder of integers as corrections to a prediction: first the bit length of the correction, by a model for each context, then its place
-/// among corrections of that length, with its highest eight bits modelled. Source: Isenburg 2013, LASzip, 4 (Entropy coding).
+/// Coder of integers as corrections to a prediction. First comes the bit length of the correction, by a model for each context, then its
+/// rank among corrections of that length, with its highest eight bits modelled. Source: Isenburg 2013, LASzip, 4 (Entropy coding).
 class LazIntegers {
  public:
   /// `bits` of the integers, 16 or 32; number of contexts.

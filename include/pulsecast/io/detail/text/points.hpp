@@ -34,8 +34,8 @@ struct PointColumns {
     for (const char c : separators)
       if (std::string_view("+-.#/\r\n").find(c) != std::string_view::npos || (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
           (c >= 'a' && c <= 'z'))
-        throw SettingError("PointColumns::separators character", static_cast<unsigned char>(c), "",
-                           "one that no number, comment or line end has");
+        throw SettingError("PointColumns::separators (character code)", static_cast<unsigned char>(c), "",
+                           "that of a character outside numbers, comments and line ends");
     for (const Columns& columns : {position, normal.value_or(position), colour.value_or(position)})
       for (const std::size_t column : columns)
         require_within("PointColumns::column", static_cast<double>(column), 0, static_cast<double>(max_column), "");
@@ -76,7 +76,7 @@ class TextPoints {
   /// Oddities that could still be read; complete after the last point.
   [[nodiscard]] std::vector<std::string> warnings() const {
     if (!cut_) return {};
-    return {file_.path() + ": the last line has no end: the file may have been cut short"};
+    return {file_.path() + ": the last line has no line end: the file may be truncated"};
   }
 
   [[noreturn]] void fail_here(const std::string& problem) const { file_.fail_at_line(problem); }

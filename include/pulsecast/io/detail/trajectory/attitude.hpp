@@ -27,8 +27,8 @@ struct ElementalRotation {
   Vec3 axis;                    ///< axis in the body, unit; right-handed
 };
 
-/// Convention of three angles: at zero the body is level and faces `zero_heading`; then it is rotated about its own axes, which are
-/// perpendicular to each other, in the order of the list.
+/// Convention of three angles. At zero the body is level and faces `zero_heading`. It is then rotated about its own axes in the order of
+/// the list; they are perpendicular to each other.
 struct AngleConvention {
   /// Intrinsic rotations; read backwards, the list is that of extrinsic ones.
   std::array<ElementalRotation, 3> turns{

@@ -171,11 +171,11 @@ class TrajectoryColumns {
     const int xyz = count({x, y, z}), directions = count({east, north}), vertical = count({up, down}), angles = count({roll, pitch, yaw}),
               quaternion = count({qx, qy, qz, qw});
     if (!has(time))
-      problem_ = "no column holds the time: expected one called 'time_s'";
+      problem_ = "no column is the time: expected one named 'time_s'";
     else if (!(xyz == 3 && directions + vertical == 0) && !(xyz == 0 && directions == 2 && vertical == 1))
-      problem_ = "the columns do not make one position: expected either x, y, z or east, north and up or down";
+      problem_ = "the columns do not define one position: expected either x, y, z or east, north and up or down";
     else if (quaternion > 0 && (quaternion < 4 || angles > 0))
-      problem_ = "the columns do not make one attitude: expected either angles or qx, qy, qz and qw, and others to be left out";
+      problem_ = "the columns do not define one attitude: expected either angles or qx, qy, qz and qw, the others set as left out";
   }
 
   [[nodiscard]] int count(std::initializer_list<Quantity> quantities) const {

@@ -37,25 +37,26 @@ struct TrajectoryFormat {
   void validate() const {
     angles.validate();
     if (std::string_view(",;\t ").find(separator) == std::string_view::npos)
-      throw SettingError("TrajectoryFormat::separator (its code)", separator, "", "a comma, a semicolon, a tab or a blank");
+      throw SettingError("TrajectoryFormat::separator (character code)", separator, "", "a comma, a semicolon, a tab or a blank");
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (columns[i].find_first_of(separator == ' ' ? ",;\"#\t\r\n " : ",;\"#\t\r\n") != std::string::npos)
-        throw SettingError("TrajectoryFormat::columns (place)", static_cast<double>(i), "",
-                           "that of a name without separators, quotation marks, # and line ends");
+        throw SettingError("TrajectoryFormat::columns (index)", static_cast<double>(i), "",
+                           "that of a name without separator, quotation mark, # or line end");
     const TrajectoryColumns plan(columns, left_out, angle_unit);
     if (plan.problem().empty()) return;
     if (!plan.culprit())
-      throw SettingError("TrajectoryFormat::columns (number)", static_cast<double>(columns.size()), "", "whole: " + plan.problem());
+      throw SettingError("TrajectoryFormat::columns (number)", static_cast<double>(columns.size()), "",
+                         "enough for a pose: " + plan.problem());
     const std::size_t i = *plan.culprit();
-    throw SettingError("TrajectoryFormat::columns (place)", static_cast<double>(i), "",
-                       "that of another name: '" + columns[i] + "' " + plan.problem());
+    throw SettingError("TrajectoryFormat::columns (index)", static_cast<double>(i), "",
+                       "that of a valid name: '" + columns[i] + "' " + plan.problem());
   }
 };
 
 /// CSV: columns in any order, with names and units in the first line.
 [[nodiscard]] inline TrajectoryFormat csv_format() { return {}; }
 
-/// Trajectories that HELIOS++ reads: names and place of the time in comments, angles in degrees. Other columns may stand between, if named.
+/// Trajectories that HELIOS++ reads: names and place of the time in comments, angles in degrees. Other columns may be between, if named.
 [[nodiscard]] inline TrajectoryFormat helios_format() {
   return {.names = ColumnNames::comments,
           .columns = {"t", "roll", "pitch", "yaw", "x", "y", "z"},

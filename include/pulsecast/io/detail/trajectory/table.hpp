@@ -44,9 +44,12 @@ struct TrajectoryTable {
 
 /// Reads a trajectory. Throws a `FileError` with path, line and column at the first error.
 ///
-/// Warnings: poses out of order, which are sorted; repeated poses, which are left out; different poses at one time within the window, which
-/// are a jump from the first in the file to the last; angles without a column, which are 0; quaternions that are visibly not unit, which
-/// are normalized. Errors: quaternions whose norm is off by more than 1/1000, and numbers beyond 1e12 s, m or rad.
+/// Warnings:
+/// - poses out of order, which are sorted; repeated poses, which are left out;
+/// - different poses at one time within the window, which are a jump from the first in the file to the last;
+/// - angles without a column, which are 0; quaternions that are visibly not unit, which are normalized.
+///
+/// Errors: quaternions whose norm is off by more than 1/1000, and numbers beyond 1e12 s, m or rad.
 [[nodiscard]] TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format = csv_format(),
                                               const TimeWindow& window = {});
 
@@ -78,7 +81,7 @@ class TrajectoryReader {
       }
     }
     if (rows_.empty()) table_.fail("holds no pose: expected at least one line of numbers");
-    if (table_.line_is_open()) warn(table_.line(), "has no line end: the file may have been cut short");
+    if (table_.line_is_open()) warn(table_.line(), "has no line end: the file may be truncated");
     sort();
     remarks();
     cut(validated(window));
@@ -135,8 +138,8 @@ class TrajectoryReader {
     };
     if (time_place_ && !named_) std::erase_if(names_, is_time);
     if (time_place_ && *time_place_ >= names_.size() + (named_ ? 0 : 1))
-      table_.fail_here("the time is to be column " + std::to_string(*time_place_) + ", from 0, of " + std::to_string(names_.size()) +
-                       ": expected #TIME_COLUMN to be one of them");
+      table_.fail_here("#TIME_COLUMN is " + std::to_string(*time_place_) + ": expected the index, from 0, of one of " +
+                       std::to_string(names_.size()) + " columns");
     if (time_place_ && named_ && !is_time(names_[*time_place_])) names_[*time_place_] = "t";
     if (time_place_ && !named_) names_.insert(names_.begin() + static_cast<std::ptrdiff_t>(*time_place_), "t");
     understand();
@@ -150,7 +153,7 @@ class TrajectoryReader {
     table_.fail_here(*columns_->culprit(), text::quoted(names_[*columns_->culprit()]) + " " + columns_->problem());
   }
 
-  /// True if extra columns are allowed: the file or the format tells which ones those are.
+  /// True if extra columns are allowed: the file or the format names the others.
   [[nodiscard]] bool may_have_more() const noexcept { return format_.more_columns && (named_ || format_.names != ColumnNames::comments); }
 
   void leave_out_unknown() {
@@ -163,8 +166,7 @@ class TrajectoryReader {
       format_.left_out.push_back(name);
       unknown += (unknown.empty() ? "" : ", ") + text::quoted(name);
     }
-    if (!unknown.empty())
-      result_.warnings.push_back(table_.path() + ": columns of names that are not known are left out: " + unknown.substr(0, 1000));
+    if (!unknown.empty()) result_.warnings.push_back(table_.path() + ": unknown columns are left out: " + unknown.substr(0, 1000));
   }
 
   void row() {
@@ -196,7 +198,7 @@ class TrajectoryReader {
     const Rotation given(values[qw], values[qx], values[qy], values[qz]);
     const double error = std::fabs(length(given) - 1);
     if (!(error <= 1e-3))
-      table_.fail_here("the quaternion has the length " + pulsecast::detail::to_text(length(given)) + ": expected 1, within 1e-3");
+      table_.fail_here("the quaternion has the norm " + pulsecast::detail::to_text(length(given)) + ": expected 1, within 1e-3");
     if (error > 2e-6) not_unit_.at(table_.line());  // more than six decimals explain
     return format_.axes.from_file(normalize(given));
   }
@@ -217,12 +219,12 @@ class TrajectoryReader {
 
   void remarks() {
     const auto of = [](const Oddity& oddity) { return ", the first of " + std::to_string(oddity.count); };
-    if (unsorted_.count > 0) warn(unsorted_.first, "is earlier than the one before it" + of(unsorted_) + ": the poses were sorted by time");
-    if (repeated_.count > 0) warn(repeated_.first, "is a pose that stands twice" + of(repeated_) + ": it is left out");
-    if (not_unit_.count > 0) warn(not_unit_.first, "has a quaternion whose length is not 1" + of(not_unit_) + ": it was made 1");
+    if (unsorted_.count > 0) warn(unsorted_.first, "is earlier than the previous pose" + of(unsorted_) + ": the poses were sorted by time");
+    if (repeated_.count > 0) warn(repeated_.first, "repeats a pose" + of(repeated_) + ": it is left out");
+    if (not_unit_.count > 0) warn(not_unit_.first, "has a quaternion that is not unit" + of(not_unit_) + ": it is normalized");
     if (columns_->has(Quantity::qw)) return;
     for (const auto& [quantity, name] : {std::pair{Quantity::roll, "roll"}, {Quantity::pitch, "pitch"}, {Quantity::yaw, "yaw"}})
-      if (!columns_->has(quantity)) result_.warnings.push_back(table_.path() + ": no column holds the " + name + ": it is taken to be 0");
+      if (!columns_->has(quantity)) result_.warnings.push_back(table_.path() + ": no column for the " + name + ": 0 is assumed");
   }
 
   /// Cuts the poses to the window and starts its clock.
@@ -233,9 +235,9 @@ class TrajectoryReader {
       table_.fail("has poses from " + seconds(first) + " to " + seconds(last) + ": expected some from " +
                   seconds(window.start.value_or(first)) + " to " + seconds(window.end.value_or(last)));
     if (window.start && *window.start < first)
-      result_.warnings.push_back(table_.path() + ": the window begins before the first pose, which stands at " + seconds(first));
+      result_.warnings.push_back(table_.path() + ": the window begins before the first pose, at " + seconds(first));
     if (window.end && *window.end > last)
-      result_.warnings.push_back(table_.path() + ": the window ends after the last pose, which stands at " + seconds(last));
+      result_.warnings.push_back(table_.path() + ": the window ends after the last pose, at " + seconds(last));
     result_.start_time = start;
     const auto within = std::upper_bound(rows_.begin(), rows_.end(), start, [](double t, const Row& row) { return t < row.pose.time; });
     const auto behind = std::lower_bound(within, rows_.end(), end, [](const Row& row, double t) { return row.pose.time < t; });
@@ -248,8 +250,8 @@ class TrajectoryReader {
     if (end > start) result_.poses.push_back(behind->pose.time == end ? behind->pose : between(behind, end));
     for (TimedPose& pose : result_.poses) pose.time -= start;
     if (jumps.count > 0)
-      warn(jumps.first, "has the time of the pose before it, but another pose, the first of " + std::to_string(jumps.count) +
-                            ": the platform jumps there");
+      warn(jumps.first, "repeats the time of the previous pose at another pose, the first of " + std::to_string(jumps.count) +
+                            ": a jump of the platform");
   }
 
   /// Pose at a time between a row and the one before.
