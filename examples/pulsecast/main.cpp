@@ -262,7 +262,7 @@ class Session {
     const auto put = [&](const char* words, const Vec3& v) { text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')'; };
     text << std::fixed << std::setprecision(1) << "no points: leg " << leg->number;
     put(" begins at ", compiled.source.legs()[leg->number].path().at({}).position);
-    put(" m, and the scene is from ", scene.least);
+    put(" m, and the scene extends from ", scene.least);
     put(" to ", scene.most);
     notes_.odd(text.str() + " m");
   }

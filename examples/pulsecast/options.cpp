@@ -76,7 +76,7 @@ template <class Number, class Holds>
 auto number_check(const Holds& holds, const std::string& problem) {
   return [holds, problem](const std::string& text) {
     const std::optional<Number> number = text::number_in<Number>(text);
-    return number && holds(*number) ? std::string() : "'" + text + "' is no " + problem;
+    return number && holds(*number) ? std::string() : "'" + text + "': expected a " + problem;
   };
 }
 
@@ -151,7 +151,8 @@ class CommandLine {
     app_.add_option("--seed", seed_, "Seed of all random numbers; default: the survey's own, or a new one each time")
         ->type_name("N")
         ->check([](const std::string& text) {
-          return text == "AUTO" || text::number_in<std::uint64_t>(text) ? std::string() : "'" + text + "' is no whole number from 0";
+          return text == "AUTO" || text::number_in<std::uint64_t>(text) ? std::string()
+                                                                        : "'" + text + "': expected a whole number from 0, or AUTO";
         });
     app_.add_option("-j,--threads,--nthreads,--njobs", o_.threads, "Number of threads; 0: all of the machine")
         ->type_name("N")
@@ -246,9 +247,9 @@ class CommandLine {
     const std::vector<std::string> commands(std::begin(all_commands), std::end(all_commands));
     const bool is_catalogue = o_.command == "catalogue";
     if (!extras.empty() && o_.survey.extension() != ".xml")
-      return "there is no command '" + o_.survey.string() + "'" + text::suggestion(o_.survey.string(), commands);
-    if (is_catalogue && !o_.survey.empty()) return "'" + o_.survey.string() + "' is too much: catalogue takes no document";
-    if (!extras.empty()) return "'" + extras.front() + "' is too much: one document at a time";
+      return "unknown command '" + o_.survey.string() + "'" + text::suggestion(o_.survey.string(), commands);
+    if (is_catalogue && !o_.survey.empty()) return "unexpected argument '" + o_.survey.string() + "': catalogue takes no document";
+    if (!extras.empty()) return "unexpected argument '" + extras.front() + "': expected one document";
     if (!is_catalogue && o_.survey.empty()) return "no document is given: expected SURVEY.xml";
     return "";
   }

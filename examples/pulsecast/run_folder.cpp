@@ -198,7 +198,7 @@ void RunLog::write(const fs::path& folder) const {
 std::string RunLog::text_in(const fs::path& folder) {
   constexpr std::uint64_t longest = std::uint64_t{1} << 28;  // a million legs [byte]
   io::InputFile file(folder / name, "the log of a run");
-  if (file.size() > longest) file.fail("is longer than " + std::to_string(longest) + " bytes: it is not what a run left");
+  if (file.size() > longest) file.fail("is longer than " + std::to_string(longest) + " bytes: expected the log of a run");
   return file.take_rest();
 }
 

@@ -105,7 +105,7 @@ void require_same_survey(const Options& options, const SurveyFile& file, const W
     channel.waveform.rings = change.rings;
     channel.waveform.bin_size = change.bin_size;
   }
-  if (written != wanted) throw FileError(path.string(), "", "would not be the same survey; nothing is written");
+  if (written != wanted) throw FileError(path.string(), "", "would be another survey; nothing is written");
 }
 
 }  // namespace

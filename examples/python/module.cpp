@@ -169,7 +169,7 @@ void bind_documents(py::module_& m) {
 }
 
 void bind_mesh(py::module_& m) {
-  py::class_<Simulation::Mesh>(m, "Mesh", "Triangles that stand in the scene beside the parts that the survey names.")
+  py::class_<Simulation::Mesh>(m, "Mesh", "Triangles in the scene, in addition to the survey's own parts.")
       .def(py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
            "ground"_a = false,
            "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), vertex indices from 0; object: object id of its "

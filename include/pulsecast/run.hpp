@@ -99,6 +99,7 @@ struct ResultBuffer {
   std::vector<SubrayHit> subrays{};  ///< as in `EchoBatch`
   RunSummary counts{};               ///< without rays and seconds
 
+  /// Removes all results, and keeps the memory.
   void clear() noexcept {
     shots.clear();
     echoes.clear();

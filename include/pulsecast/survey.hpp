@@ -60,13 +60,13 @@ class Survey {
 
   /// Scratch memory of one worker, with values cached between pulses.
   struct Workspace {
-    Laser laser;  ///< laser of `budget` and `directions`
-    LinkBudget budget;
-    SubrayDirections directions;
-    std::array<Hit, RayBundle::capacity> hits;  ///< hits of a bundle
-    std::vector<Reflection> reflections;  ///< reflections of a pulse, with room for all subrays
-    std::vector<SubrayHit> subrays;       ///< all of a pulse, if recorded
-    decltype(std::declval<const Instrument&>().workspace(0)) detector;
+    Laser laser;                                                        ///< laser of `budget` and `directions`
+    LinkBudget budget;                                                  ///< link budget of that laser
+    SubrayDirections directions;                                        ///< directions for that laser
+    std::array<Hit, RayBundle::capacity> hits;                          ///< hits of a bundle
+    std::vector<Reflection> reflections;                                ///< reflections of a pulse, with room for all subrays
+    std::vector<SubrayHit> subrays;                                     ///< all of a pulse, if recorded
+    decltype(std::declval<const Instrument&>().workspace(0)) detector;  ///< workspace of the detector
     struct {
       double range = -1;  ///< last range requested [m]
       double power = 0;   ///< power received from a white target there [W]

@@ -27,7 +27,7 @@ TEST_CASE("the nearest name is suggested, or all if none is near") {
   const std::vector<std::string> known{"scanFreq_hz", "pulseFreq_hz", "scanAngle_deg"};
   CHECK(suggestion("scanFreqHz", known) == "; did you mean 'scanFreq_hz'?");
   CHECK(suggestion("scanAngle", known) == "; did you mean 'scanAngle_deg'?");
-  CHECK(suggestion("q", known) == "; there are: scanFreq_hz, pulseFreq_hz, scanAngle_deg");
+  CHECK(suggestion("q", known) == "; known names: scanFreq_hz, pulseFreq_hz, scanAngle_deg");
   CHECK(suggestion("q", {}).empty());
   CHECK(suggestion("abcd", std::vector<std::string>{"abxy"}) == "; did you mean 'abxy'?");   // half of its letters
   CHECK(suggestion("abcdef", std::vector<std::string>{"abuvwx"}) == "; there are: abuvwx");  // more than half

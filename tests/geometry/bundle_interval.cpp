@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -60,19 +59,6 @@ RayBundle random_rays(Generator& random, const Vec3& origin, const Vec3& aim) {
 }
 
 }  // namespace
-
-TEST_CASE_TEMPLATE("rounding down never gives more, rounding up never less, and both are as near as can be", Real, float, double) {
-  Generator random(80);
-  for (int time = 0; time < 1000; ++time) {
-    const double v = (random.coin() ? 1 : -1) * random.log_uniform(1e-60, 1e30);
-    CHECK(static_cast<double>(round_down<Real>(v)) <= v);
-    CHECK(static_cast<double>(round_up<Real>(v)) >= v);
-    CHECK(static_cast<double>(std::nextafter(round_down<Real>(v), std::numeric_limits<Real>::infinity())) > v);
-    CHECK(static_cast<double>(std::nextafter(round_up<Real>(v), -std::numeric_limits<Real>::infinity())) < v);
-  }
-  CHECK(round_up<Real>(std::numeric_limits<double>::infinity()) == std::numeric_limits<Real>::infinity());
-  CHECK(round_down<Real>(0.5) == Real(0.5));
-}
 
 TEST_CASE_TEMPLATE("one ray is inside a box between its walls", Real, float, double) {
   const Box box{{2, -1, -1}, {5, 1, 1}};

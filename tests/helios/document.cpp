@@ -353,7 +353,7 @@ TEST_CASE("a leg that could never end, and rates beyond the device, are refused"
   const std::string stands = R"(<leg><platformSettings movePerSec_m="0"/><scannerSettings scanFreq_hz="20"/></leg>)";
   const std::string flies = R"(<leg><platformSettings x="9"/><scannerSettings scanFreq_hz="20"/></leg>)";
   refuses(survey_text(airplane, stands + flies), "movePerSec_m is 0");
-  refuses(survey_text(airplane, flies), "a single leg");
+  refuses(survey_text(airplane, flies), "the only leg");
   CHECK(faults_of(survey_text(airplane, flies + stands)).empty());
   refuses(survey_text("", leg(R"(scanFreq_hz="20")")), "neither platform nor head moves");
   refuses(survey_text("", leg(R"(scanFreq_hz="20" headRotateStop_deg="20")")), "the head does not turn");
@@ -369,7 +369,7 @@ TEST_CASE("a leg that could never end, and rates beyond the device, are refused"
           .empty());
   refuses(survey_text("", leg(R"(headRotatePerSec_deg="60" headRotateStop_deg="20" scanFreq_hz="201")")), "scanFreqMax_Hz, 200 Hz");
   refuses(survey_text("", leg(R"(headRotatePerSec_deg="60" headRotateStop_deg="20" scanFreq_hz="0.5")")), "scanFreqMin_Hz, 1 Hz");
-  refuses(survey_text("", leg(R"(verticalAngleMin_deg="10" verticalAngleMax_deg="10")")), "no pulse could leave");
+  refuses(survey_text("", leg(R"(verticalAngleMin_deg="10" verticalAngleMax_deg="10")")), "no pulse is emitted");
   refuses(survey_text("", ""), "holds no <leg>");
   refuses(survey_text("", "<leg><scannerSettings/></leg>"), "holds no <platformSettings>");
   refuses(survey_text(R"(platform="interpolated")", leg("")), "'trajectory'");
@@ -398,12 +398,12 @@ TEST_CASE("a platform that moves may stay where it is") {
   };
   const std::string last = R"(<leg><platformSettings x="9"/><scannerSettings active="false"/></leg>)", stay = R"(maxDuration_s="2")";
   CHECK_FALSE(contains(told(at("")), "maxDuration_s=\"2\""));
-  CHECK(contains(told(at("")), "says where it goes, or maxDuration_s"));
+  CHECK(contains(told(at("")), "as its destination, or maxDuration_s"));
   CHECK_FALSE(contains(told(at("", stay)), "leg"));
   CHECK_FALSE(contains(told(at("", stay) + at("") + last), "leg"));
   CHECK_FALSE(contains(told(at(R"(movePerSec_m="0")", stay) + at("") + last), "leg"));
-  CHECK(contains(told(at("") + at("") + last), "ends at once: expected maxDuration_s"));
-  CHECK(contains(told(at("") + at(R"(x="9")", stay)), "to stay there for maxDuration_s, expected another <leg> at the same place"));
+  CHECK(contains(told(at("") + at("") + last), "ends at once: maxDuration_s"));
+  CHECK(contains(told(at("") + at(R"(x="9")", stay)), "to stay there for maxDuration_s, expected another <leg> at the same position"));
 }
 
 TEST_CASE("a resolution that the scanner is too slow or too fast for is told as such, with one that it can do") {
@@ -609,7 +609,7 @@ TEST_CASE("hostile documents are refused at once") {
     bomb += "\">";
   }
   refuses(bomb + "]><document><survey name=\"&y;\"/></document>", "declares entities");
-  refuses(survey_text(R"(scene="../../../../../../etc/scenes.xml#yard")", leg("")), "is not there");
+  refuses(survey_text(R"(scene="../../../../../../etc/scenes.xml#yard")", leg("")), "does not exist");
   std::string deep;
   for (int i = 0; i < 200'000; ++i) deep += "<a>";
   refuses("<document>" + deep, "is not well-formed XML");

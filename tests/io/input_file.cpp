@@ -154,7 +154,7 @@ TEST_CASE("a file that was replaced or removed is still there for who had it") {
 TEST_CASE("what cannot be mapped is an error that says why") {
   const TemporaryFolder folder;
   write(folder / "empty", "");
-  CHECK_THROWS_WITH_AS((void)MappedFile(folder / "none"), doctest::Contains("is not there"), FileError);
+  CHECK_THROWS_WITH_AS((void)MappedFile(folder / "none"), doctest::Contains("does not exist"), FileError);
   CHECK_THROWS_WITH_AS((void)MappedFile(folder / "empty"), doctest::Contains("is empty"), FileError);
   CHECK_THROWS_WITH_AS((void)MappedFile(folder.path()), doctest::Contains("is a directory"), FileError);
   CHECK_THROWS_WITH_AS((void)MappedFile("/dev/null"), doctest::Contains("is a directory or device"), FileError);

@@ -36,7 +36,7 @@ namespace pulsecast::text {
 
 /// Known name, and its edit distance from a word.
 struct NearestName {
-  std::string_view name;
+  std::string_view name;     ///< the known name
   std::size_t distance = 0;  ///< of the first 100 bytes
 };
 
@@ -60,7 +60,7 @@ struct NearestName {
     return "; did you mean '" + std::string(nearest.name) + "'?";
   std::string list;
   for (const std::string& name : known.first(std::min(known.size(), max_listed))) list += (list.empty() ? "" : ", ") + name;
-  return "; there are: " + list + (known.size() > max_listed ? ", ..." : "");
+  return "; known names: " + list + (known.size() > max_listed ? ", ..." : "");
 }
 
 }  // namespace pulsecast::text

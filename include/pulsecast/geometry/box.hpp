@@ -21,10 +21,12 @@ struct Box {
   [[nodiscard]] Vec3 centre() const noexcept { return min * 0.5 + max * 0.5; }
   [[nodiscard]] Vec3 size() const noexcept { return max - min; }
 
+  /// Extends the box to contain a point [m].
   void extend(const Vec3& p) noexcept {
     min = pulsecast::min(min, p);
     max = pulsecast::max(max, p);
   }
+  /// Extends the box to contain another.
   void extend(const Box& b) noexcept {
     min = pulsecast::min(min, b.min);
     max = pulsecast::max(max, b.max);

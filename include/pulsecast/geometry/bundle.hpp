@@ -64,6 +64,7 @@ struct RayBundle : BundleOrigin {
   /// Ray j.
   [[nodiscard]] Ray ray(std::size_t j) const noexcept { return {origin, direction(j), near, far}; }
 
+  /// Sets the direction of ray j; `pad()` must follow.
   void set_direction(std::size_t j, const Vec3& d) noexcept {
     x[j] = d.x;
     y[j] = d.y;

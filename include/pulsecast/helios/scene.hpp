@@ -271,7 +271,8 @@ class SceneBuilder {
     const auto number = text::number_in<ObjectId>(part.id);
     ObjectId object = number.value_or(static_cast<ObjectId>(place));
     if (!number && !part.id.empty())
-      warn({"part '" + part.id + "': its id is not a number; its points are marked with its place in the scene, " + std::to_string(place)});
+      warn({"part '" + part.id + "': its id is not a number; the object id of its points is its place in the scene, " +
+            std::to_string(place)});
     for (const Loaded& loaded : load(source)) {
       all.push_back({loaded.geometry, loaded.materials, placement, object++, part.id, {}});
       const Box box = box_of(all.back());

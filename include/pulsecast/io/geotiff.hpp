@@ -95,7 +95,7 @@ class GeoTiffReader {
     word = word.substr(0, word.find('\0'));
     while (!word.empty() && (word.front() == ' ' || word.front() == '+')) word.remove_prefix(1);
     if (const auto value = text::take_number<double>(word)) return value;
-    if (!word.empty()) warn("its value for missing heights is no number, and does not count");
+    if (!word.empty()) warn("its value for missing heights is not a number, and is ignored");
     return std::nullopt;
   }
 
@@ -120,8 +120,8 @@ class GeoTiffReader {
     const auto row = [&](std::uint32_t r) { return heights.begin() + static_cast<std::ptrdiff_t>(std::size_t{r} * layout_.columns); };
     for (std::uint32_t r = 0; northward_ && r < layout_.rows / 2; ++r) std::swap_ranges(row(r), row(r + 1), row(layout_.rows - 1 - r));
     for (std::uint32_t r = 0; westward_ && r < layout_.rows; ++r) std::reverse(row(r), row(r + 1));
-    if (there_ == 0) file_.fail("has no height: expected some pixel that is not missing");
-    if (strange_ > 0) file_.warn(std::to_string(strange_) + " values beyond 1e15 m, or infinite, are taken for missing");
+    if (there_ == 0) file_.fail("has no height: expected at least one pixel with a height");
+    if (strange_ > 0) file_.warn(std::to_string(strange_) + " values beyond 1e15 m, or infinite, count as missing");
     return {.raster = std::move(raster_), .epsg = epsg_, .warnings = file_.take_warnings()};
   }
 
@@ -169,7 +169,7 @@ class GeoTiffReader {
                                     std::to_string(file_.size()) + ": expected a complete file");
     const auto size = static_cast<tmsize_t>(bytes);
     const tmsize_t read = layout_.tiled ? TIFFReadEncodedTile(tiff, chunk, to, size) : TIFFReadEncodedStrip(tiff, chunk, to, size);
-    if (read != size) file_.fail_at_byte(begin, what + " cannot be read" + file_.complaint() + ": expected a whole one");
+    if (read != size) file_.fail_at_byte(begin, what + " cannot be read" + file_.complaint() + ": expected a complete file");
     return true;
   }
 

@@ -102,6 +102,7 @@ class InputFile {
   [[noreturn]] void fail_at_column(std::size_t column, const std::string& problem) const {
     throw FileError(path_, "line " + std::to_string(line_) + ", column " + std::to_string(column + 1), problem);
   }
+  /// Throws a `FileError` about a byte, from 0.
   [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const {
     throw FileError(path_, "byte " + std::to_string(byte), problem);
   }
@@ -140,11 +141,12 @@ class InputFile {
 /// to. Throws a `FileError` if it cannot be mapped, or is a pipe (without waiting for it).
 class MappedFile {
  public:
+  /// Maps a file. @throws FileError
   explicit MappedFile(const std::filesystem::path& path) {
     const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
     const auto system_error = [] { return std::generic_category().message(errno); };
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-    if (file.number < 0) fail(errno == ENOENT ? "is not there" : "cannot be read: " + system_error());
+    if (file.number < 0) fail(errno == ENOENT ? "does not exist" : "cannot be read: " + system_error());
     struct stat status {};
     if (::fstat(file.number, &status) != 0 || !S_ISREG(status.st_mode)) fail("is a directory or device");
     const auto size = static_cast<std::size_t>(status.st_size);
@@ -157,6 +159,7 @@ class MappedFile {
   MappedFile& operator=(const MappedFile&) = delete;
   ~MappedFile() { ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size()); }
 
+  /// Content of the file.
   [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }
 
  private:

@@ -45,7 +45,7 @@ struct LeafRow {
     const bool is_g = column == 3;
     if (!value || !(*value >= (is_g ? 0 : -1.001) && *value <= (is_g ? 1 : 1.001)))
       table.fail_here(column, text::quoted(cells[column]) + (is_g ? ": expected G, the mean projection of unit leaf area, from 0 to 1"
-                                                                  : ": expected a part of a unit direction, from -1 to 1"));
+                                                                  : ": expected a component of a unit direction, from -1 to 1"));
     values[column] = *value;
   }
   const Vec3 direction{values[0], values[1], values[2]};

@@ -197,7 +197,7 @@ class SpectrumReader {
     }
     if (clipped.count > 0)
       warn(clipped.first, "a reflectance below 0 or above 1 is clipped, the first of " + std::to_string(clipped.count));
-    return std::string("reflectance in ") + (percent ? "percent" : "fractions") + (told ? ", as its header says" : ", as " + reach);
+    return std::string("reflectance in ") + (percent ? "percent" : "fractions") + (told ? ", by the header" : ", as " + reach);
   }
 
   /// Samples with those of equal wavelength averaged.
@@ -213,7 +213,7 @@ class SpectrumReader {
       i = end;
     }
     if (repeated.count > 0)
-      warn(repeated.first, "a wavelength comes again, the first of " + std::to_string(repeated.count) + ": the mean is taken");
+      warn(repeated.first, "a wavelength is repeated, the first of " + std::to_string(repeated.count) + ": the mean is used");
     return all;
   }
 

@@ -31,8 +31,10 @@ struct XyzSettings {
 /// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class XyzWriter {
  public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit XyzWriter(std::filesystem::path path, const XyzSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
+  /// Writes to an open file.
   explicit XyzWriter(OutputFile file, const XyzSettings& settings = {}) : settings_(validated(settings)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
@@ -46,7 +48,7 @@ class XyzWriter {
  private:
   void write(const Shot& shot, const Echo& echo) {
     constexpr double nano = 1e9;  // per unit
-    text_.vector("the place of an echo", point_of(shot, echo), 4).reals(4, echo.amplitude * nano, echo.width * nano);
+    text_.vector("the position of an echo", point_of(shot, echo), 4).reals(4, echo.amplitude * nano, echo.width * nano);
     text_.wholes(echo.number, shot.echoes, shot.index, echo.object, echo.classification);
     text_.reals(9, settings_.start_time + shot.tick.seconds()).end_row();
   }
@@ -75,8 +77,10 @@ struct PulseTextSettings {
 /// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class PulseTextWriter {
  public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit PulseTextWriter(std::filesystem::path path, const PulseTextSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
+  /// Writes to an open file.
   explicit PulseTextWriter(OutputFile file, const PulseTextSettings& settings = {})
       : settings_(validated(settings)), text_(std::move(file)) {}
 
@@ -105,7 +109,9 @@ static_assert(EchoSink<PulseTextWriter>);
 /// Subrays without a hit have no line. There is no header line. Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class SubrayTextWriter {
  public:
+  /// Opens the file. @throws FileError
   explicit SubrayTextWriter(std::filesystem::path path) : text_(OutputFile(std::move(path))) {}
+  /// Writes to an open file.
   explicit SubrayTextWriter(OutputFile file) : text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
@@ -123,7 +129,7 @@ class SubrayTextWriter {
  private:
   void write(const Shot& shot, std::size_t subray, const SubrayHit& hit) {
     constexpr double nano = 1e9;  // per unit
-    text_.wholes(shot.index, subray).vector("the place of a hit", hit.point, 4).reals(4, hit.range).reals(9, hit.power * nano);
+    text_.wholes(shot.index, subray).vector("the position of a hit", hit.point, 4).reals(4, hit.range).reals(9, hit.power * nano);
     text_.reals(6, hit.cos_incidence, hit.backscatter).wholes(hit.object, hit.classification).end_row();
   }
 
@@ -150,8 +156,10 @@ struct WaveformTextSettings {
 /// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class WaveformTextWriter {
  public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit WaveformTextWriter(std::filesystem::path path, const WaveformTextSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
+  /// Writes to an open file.
   explicit WaveformTextWriter(OutputFile file, const WaveformTextSettings& settings = {})
       : settings_(validated(settings)), text_(std::move(file)) {}
 

@@ -195,7 +195,7 @@ class VoxelFileReader {
     const double density = number(density_), transmittance = transmittance_ ? number(*transmittance_) : 0;
     if (density < 0 || density > max_number)
       table_.fail_here(density_, text::quoted(cells[density_]) + ": expected a density from 0 to 1e12");
-    if (table_.line_is_open()) file_.warnings.push_back(table_.path() + ": the last line has no end: the file may have been cut short");
+    if (table_.line_is_open()) file_.warnings.push_back(table_.path() + ": the last line has no line end: the file may be truncated");
     if (cells_.size() == CellNumbers::max_size) table_.fail_here("expected fewer than 2^32 - 1 voxels");
     const std::size_t before = cells_.size();
     if (cells_.number(cell) != before) table_.fail_here("the voxel " + to_text(cell) + " is repeated: expected each voxel once");

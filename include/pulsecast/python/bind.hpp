@@ -261,8 +261,8 @@ inline void bind_batch(pybind11::module_& m) {
           "fates", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.count(f); }); }, "Pulse slots by fate.")
       .def_property_readonly(
           "energy", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.energy_by_fate[static_cast<std::size_t>(f)]; }); },
-          "Energy sent, by what became of the subrays that carried it [J].")
-      .def("waveform_of", &waveform_of, py::arg("row"), "The samples of the pulse in a row of `pulses`, shape (n,) [W].")
+          "Energy sent, by the fate of its subrays [J].")
+      .def("waveform_of", &waveform_of, py::arg("row"), "Samples of the pulse in a row of `pulses`, shape (n,) [W].")
       .def("__repr__",
            [](const Batch& b) {
              return "<Batch of " + std::to_string(b.points.size()) + " points, " + std::to_string(b.pulses.size()) + " pulses, " +

@@ -96,19 +96,22 @@ using MaterialTable = std::shared_ptr<const std::vector<Material>>;
 /// Shared shape of one of several kinds.
 template <Geometry... Shapes>
 struct SharedShape {
+  /// Variant of shared pointers.
   using type = std::variant<std::shared_ptr<const Shapes>...>;
 };
 /// Shared shape of the only kind: a variant of one would take a twentieth of the time to compile a scene.
 template <Geometry Shape>
 struct SharedShape<Shape> {
+  /// Shared pointer.
   using type = std::shared_ptr<const Shape>;
 };
 
-/// Calls `visitor` with the shared pointer to a part's shape.
+/// Calls `visitor` with the shared pointer to a part's shape, of the only kind.
 template <class Visitor, class Shape>
 constexpr decltype(auto) visit_shape(const Visitor& visitor, const std::shared_ptr<const Shape>& geometry) {
   return visitor(geometry);
 }
+/// Calls `visitor` with the shared pointer to a part's shape, of one of several kinds.
 template <class Visitor, class... Pointers>
 constexpr decltype(auto) visit_shape(const Visitor& visitor, const std::variant<Pointers...>& geometry) {
   return std::visit(visitor, geometry);
@@ -118,11 +121,11 @@ constexpr decltype(auto) visit_shape(const Visitor& visitor, const std::variant<
 template <Geometry... Shapes>
 struct Part {
   typename SharedShape<Shapes...>::type geometry;  ///< shared pointer to the shape; a variant of them for several kinds
-  MaterialTable materials = material_table();
-  Similarity placement{};
-  ObjectId object = 0;                         ///< object id of its points
-  std::string name{};                          ///< user's name for it
-  std::shared_ptr<const PartMotion> motion{};  ///< motion on top of its placement; empty if static; for a `MovingScene`
+  MaterialTable materials = material_table();      ///< materials by the shape's material index
+  Similarity placement{};                          ///< placement in the world
+  ObjectId object = 0;                             ///< object id of its points
+  std::string name{};                              ///< user's name for it
+  std::shared_ptr<const PartMotion> motion{};      ///< motion on top of its placement; empty if static; for a `MovingScene`
 };
 
 }  // namespace pulsecast

@@ -92,6 +92,7 @@ struct Raster {
                            "within 1e15 m, or NaN; see pixel " + std::to_string(i));
   }
 
+  /// Placement of the pixels.
   [[nodiscard]] detail::RasterGrid grid() const noexcept { return {columns, rows, first, pixel}; }
 
   /// The same ground as a mesh, with the same hits and some 13 times the memory. @throws SettingError as `validate`

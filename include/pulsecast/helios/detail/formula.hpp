@@ -27,7 +27,7 @@ class Formula {
     if (text.size() > 10'000) fail("is longer than 10000 characters");
     sum(0);
     skip();
-    if (at_ != text_.size()) fail("cannot go on like this");
+    if (at_ != text_.size()) fail("has unexpected text");
     text_ = {};
     variable_ = {};
   }
@@ -144,7 +144,7 @@ class Formula {
     if (is_digit(at_) || (at_ < text_.size() && text_[at_] == '.' && is_digit(at_ + 1))) {
       std::string_view rest = text_.substr(at_);
       const auto number = text::take_number<double>(rest, std::chars_format::fixed);
-      if (!number) fail("has a number that cannot be");
+      if (!number) fail("has a number out of range");
       at_ = text_.size() - rest.size();
       return push({Kind::number, *number});
     }

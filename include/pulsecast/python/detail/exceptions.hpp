@@ -35,11 +35,11 @@ void raise(pybind11::handle type, const std::string& message, std::pair<const ch
 /// Exception classes of the library in Python.
 struct Exceptions {
   pybind11::handle setting =
-      shared_exception("SettingError", PyExc_ValueError, "A setting that cannot be. Attributes: field, value, unit, allowed.");
-  pybind11::handle file = shared_exception("FileError", PyExc_OSError,
-                                           "A file that is missing, malformed or cannot be written. Attributes: path, place, problem.");
-  pybind11::handle interrupted = shared_exception(
-      "Interrupted", PyExc_KeyboardInterrupt, "Ctrl-C while a survey ran. Attribute: result, all that came until then, which is whole.");
+      shared_exception("SettingError", PyExc_ValueError, "Setting outside its allowed range. Attributes: field, value, unit, allowed.");
+  pybind11::handle file =
+      shared_exception("FileError", PyExc_OSError, "Missing, malformed or unwritable file. Attributes: path, place, problem.");
+  pybind11::handle interrupted = shared_exception("Interrupted", PyExc_KeyboardInterrupt,
+                                                  "Ctrl-C during a run. Attribute: result, the Batch up to then, which is complete.");
 };
 
 /// Adds the exception classes to a module, which translates those of C++ into them.

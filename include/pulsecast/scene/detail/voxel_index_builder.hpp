@@ -66,8 +66,7 @@ class VoxelIndexBuilder {
     std::uint64_t last = no_key;
     for (const Keyed& cell : sorted) {
       if (cell.key == last)
-        throw SettingError("VoxelData::cells", cell.number, "",
-                           "each in its own place; this entry repeats entry " + std::to_string(order.back()));
+        throw SettingError("VoxelData::cells", cell.number, "", "unique; this entry repeats entry " + std::to_string(order.back()));
       bricks += cell.key >> 6 != last >> 6;
       blocks += cell.key >> 12 != last >> 12;
       last = cell.key;

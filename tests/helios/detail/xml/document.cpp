@@ -147,8 +147,8 @@ TEST_CASE("a reference that leads nowhere is told") {
   CHECK(contains(library.found("a.xml#noe"), "there is no <scanner> with the id 'noe' in "));
   CHECK(contains(library.found("a.xml#noe"), "did you mean 'one'?"));
   CHECK(contains(library.found("a.xml"), "expected file.xml#id"));
-  CHECK(contains(library.found("b.xml#one"), "is not there: looked for"));
-  CHECK(contains(library.found("../../a.xml#one"), "is not there: looked for"));
+  CHECK(contains(library.found("b.xml#one"), "does not exist: looked for"));
+  CHECK(contains(library.found("../../a.xml#one"), "does not exist: looked for"));
   CHECK(contains(library.found("broken.xml#one"), "broken.xml:1:"));
   CHECK(contains(library.found("broken.xml#one"), "scanner=\"broken.xml#one\" cannot be read"));
   CHECK(contains(library.found(""), "there is no <scanner> with the id ''"));
@@ -171,7 +171,7 @@ TEST_CASE("a document outside the folders is read, with a warning") {
   XmlInput io(inner.document(), inner.find("scanner", "x"), report, inner.search());
   CHECK(documents.find(io, inner, "scanner", "../outer.xml#y", "scanner"));
   REQUIRE(report.warnings().size() == 1);
-  CHECK(contains(report.warnings()[0], "inner.xml:1:12: scanner=\"../outer.xml#y\" leads out of the assets folders, to "));
+  CHECK(contains(report.warnings()[0], "inner.xml:1:12: scanner=\"../outer.xml#y\" is outside the assets folders: "));
 }
 
 TEST_CASE("of two elements with an id the first counts, with a warning; a document is read once") {

@@ -235,7 +235,7 @@ TEST_CASE("children are read in order, once where there may be one, and unknown 
   reading.io.children("b", numbers, [](XmlInput& io, int& n) { io.whole("n", n, 0, 9); });
   CHECK(numbers == std::vector<int>{1, 2});
   CHECK(reading.io.child("c", [](XmlInput&) {}));
-  CHECK_FALSE(reading.io.child("e", [](XmlInput&) { FAIL("is not there"); }));
+  CHECK_FALSE(reading.io.child("e", [](XmlInput&) { FAIL("does not exist"); }));
   const std::string warnings = reading.warnings();
   CHECK(contains(warnings, "a second <c> in <a>: the first one is used"));
   CHECK(contains(warnings, "element <d> in <a> is not known"));

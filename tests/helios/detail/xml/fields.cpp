@@ -117,7 +117,7 @@ TEST_CASE("of a scanner, what cannot be is told") {
   CHECK(contains(fault("optics=\"line\"", "<rangeError expr=\"\"/>"), "warning"));
   for (const char* never : {"1/0", "0/0", "ln(-1)", "sqrt(-1-THETA^2)", "1/(THETA-THETA)"}) {
     const std::string told = fault("optics=\"line\"", "\n<rangeError expr=\"" + std::string(never) + "\"/>");
-    CHECK(contains(told, "a.xml:2:13: expr=\"" + std::string(never) + "\" is no finite number for any THETA: expected a formula"));
+    CHECK(contains(told, "a.xml:2:13: expr=\"" + std::string(never) + "\" is not finite for any THETA: expected a formula"));
   }
   CHECK(fault("optics=\"line\"", "<rangeError expr=\"1/THETA+ln(THETA)\"/>").empty());  // of some angles
   CHECK(contains(fault("optics=\"line\" distanceMeasurementError=\"1/0\""), "for any t: expected a formula"));
@@ -130,7 +130,7 @@ TEST_CASE("of a scanner, what cannot be is told") {
   CHECK(fault("optics=\"line\"", "<rangeError expr=\"2*(THETA)\"/>").empty());
   CHECK(contains(fault("optics=\"line\" distanceMeasurementError=\"2*THETA\""), "a.xml:1:"));
   CHECK(fault("optics=\"line\" distanceMeasurementError=\"2*t^2\"").empty());
-  CHECK(contains(fault("optics=\"rotating\" scanAngleEffectiveMax_deg=\"0\""), "no pulse could leave"));
+  CHECK(contains(fault("optics=\"rotating\" scanAngleEffectiveMax_deg=\"0\""), "no pulse is emitted"));
   CHECK(contains(fault("optics=\"line\"", "<channels/>"), "warning"));
   CHECK(contains(fault("optics=\"line\" scanProduct=\"5\""), "warning "));
   const auto rates = [](const char* text) { return "<scanner id=\"s\" optics=\"line\" pulseFreqs_Hz=\"" + std::string(text) + "\"/>"; };
@@ -177,7 +177,7 @@ TEST_CASE("of a platform, what cannot be is told") {
                              "pitch_speed_deg", "roll_speed_deg", "roll_offset_deg"}) {
       const std::string begin = "<platform id=\"p\" type=\"" + std::string(type) + "\" " + name + "=\"";
       CHECK(contains(told<PlatformSettings>(begin + "1\"/>"), "warning"));
-      CHECK(contains(told<PlatformSettings>(begin + "1\"/>"), "'" + std::string(name) + "' has no effect: ways are planned"));
+      CHECK(contains(told<PlatformSettings>(begin + "1\"/>"), "'" + std::string(name) + "' has no effect: paths are planned"));
       CHECK(told<PlatformSettings>(begin + "much\"/>") == told<PlatformSettings>(begin + "1\"/>"));
     }
   CHECK(contains(told<PlatformSettings>(R"(<platform id="p" type="static"><attitudeYNoise type="UNIFORM" min="2"/></platform>)"),
@@ -204,14 +204,14 @@ TEST_CASE("any index of a column means that all are agreed") {
 }
 
 TEST_CASE("of a trajectory, what cannot be is told") {
-  CHECK(contains(told<LegPlatformSettings>(R"(<p trajectory="none.trj"/>)"), "is not there"));
+  CHECK(contains(told<LegPlatformSettings>(R"(<p trajectory="none.trj"/>)"), "does not exist"));
   CHECK(contains(told<LegPlatformSettings>(R"(<p trajectory="mesh.obj" tStart="2" tEnd="2"/>)"), "tEnd is not after tStart"));
   for (const char* separator : {";;", "|", ""}) {
     LegPlatformSettings settings;
     const std::string odd =
         told<LegPlatformSettings>("<p trajectory=\"mesh.obj\" trajectory_separator=\"" + std::string(separator) + "\"/>", settings);
     CHECK(odd.starts_with("\nwarning "));
-    CHECK(contains(odd, "has no effect: expected a comma, a semicolon, a tab or a blank; it is found"));
+    CHECK(contains(odd, "has no effect: expected a comma, a semicolon, a tab or a blank; it is detected"));
     CHECK_FALSE(settings.trajectory->separator);
   }
   CHECK(contains(told<LegPlatformSettings>(R"(<p trajectory="mesh.obj" tIndex="1000"/>)"), "from 0 to 999"));
@@ -273,10 +273,10 @@ TEST_CASE("of a scene, what cannot be is told") {
   const auto fault = [](const std::string& inside) { return told<SceneSettings>("<scene id=\"s\"><part>" + inside + "</part></scene>"); };
   const std::string loads = mesh;
   CHECK(fault(loads).empty());
-  CHECK(contains(fault(loads + loads), "a second filter that loads"));
+  CHECK(contains(fault(loads + loads), "a second loading filter"));
   CHECK(contains(fault("<filter type=\"objlaoder\"/>"), "did you mean 'objloader'?"));
   CHECK(contains(fault("<filter type=\"objloader\"/>"), "has no param 'filepath'"));
-  CHECK(contains(fault(""), "holds no <part> with a filter that loads"));
+  CHECK(contains(fault(""), "holds no <part> with a loading filter"));
   CHECK(contains(fault(loads + "<filter type=\"scale\"/>"), "has no param 'scale'"));
   CHECK(contains(fault(loads + R"(<filter type="scale"><param key="scale" value="-2"/></filter>)"), "scale=\"-2\""));
   CHECK(contains(fault(loads + R"(<filter type="scale"><param key="scale" value="1e-31"/></filter>)"), "the scale is less than 1e-30"));
@@ -308,7 +308,7 @@ TEST_CASE("a cloud that says little has the defaults of the format") {
   const std::string odd =
       R"(<param key="filepath" value="mesh.obj"/><param key="voxelSize" value="0"/><param key="defaultNormal" value="0;0;0"/>)";
   CHECK(filter_told(odd, other).starts_with("\nwarning "));
-  CHECK(contains(filter_told(odd, other), "a.xml:1:84: voxelSize of 0 stands for 1 m"));
+  CHECK(contains(filter_told(odd, other), "a.xml:1:84: voxelSize of 0 means 1 m"));
   CHECK(contains(filter_told(odd, other), "defaultNormal is zero: it has no direction, and no effect"));
   CHECK(other.voxel_size == 1);
   CHECK_FALSE(other.default_normal);
@@ -330,7 +330,7 @@ TEST_CASE("files may be one, those of a pattern, or a list") {
   CHECK(filter_told(R"(<param key="filepaths" value="mesh.obj|a.xml"/>)", list).empty());
   CHECK(one == pattern);
   CHECK(list.files.size() == 2);
-  CHECK(contains(filter_told(R"(<param key="filepaths" value="mesh.obj|b.xml"/>)", none), "filepaths=\"b.xml\" is not there"));
+  CHECK(contains(filter_told(R"(<param key="filepaths" value="mesh.obj|b.xml"/>)", none), "filepaths=\"b.xml\" does not exist"));
   CHECK(contains(filter_told("", none), "has no param 'filepath'"));
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="up" value="x"/>)", none), "up=\"x\" is not known"));
 }
@@ -346,7 +346,7 @@ TEST_CASE("voxels have a mode, a table and a material") {
   CHECK(voxels.leaf_angles.filename() == "mesh.obj");
   CHECK(voxels.material.name == "leaf");
   CHECK(voxels.material.random == 3);
-  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="ladlut" value="no.txt"/>)", voxels), "is not there"));
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="ladlut" value="no.txt"/>)", voxels), "does not exist"));
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="intersectionArgument" value="-1"/>)", voxels),
                  "from 0 to 100"));
 }
@@ -370,12 +370,12 @@ TEST_CASE("every type of motion is read") {
 
 TEST_CASE("of a motion, what cannot be is told") {
   CHECK(contains(told<MotionSettings>(R"(<motion type="translation"/>)"), "has no attribute 'vec'"));
-  CHECK(contains(told<MotionSettings>(R"(<motion type="rotation" axis="0;0;0" angle="1"/>)"), "too short to have a direction"));
+  CHECK(contains(told<MotionSettings>(R"(<motion type="rotation" axis="0;0;0" angle="1"/>)"), "too short for a direction"));
   for (const char* turn :
        {R"(<motion type="rotation" axis="0;0;0" angle="0"/>)", R"(<motion type="helical" axis="0;0;0" angle="0" glide="3"/>)"}) {
     MotionSettings still;
     CHECK(contains(told(turn, still), "warning"));
-    CHECK(contains(told(turn, still), "a.xml:1:25: axis is too short to have a direction, and angle is 0: the motion does nothing") ==
+    CHECK(contains(told(turn, still), "a.xml:1:25: axis is too short for a direction, and angle is 0: the motion does nothing") ==
           contains(turn, "rotation"));
     CHECK(still == MotionSettings{});
   }
@@ -396,8 +396,8 @@ TEST_CASE("a sequence that nothing can do is told, with its place") {
                     own = R"(<motion type="rotsym" axis="0;0;1" angle="9" selfMode="1"/>)";
   const std::string turn = R"(<motion type="rotation" axis="0;0;1" angle="9"/>)",
                     own_turn = R"(<motion type="rotation" axis="0;0;1" angle="9" selfMode="1"/>)";
-  CHECK(contains(sequence(mirror), "a.xml:1:2: <dmotion id='m'> cannot be done: expected reflections even in number"));
-  CHECK(contains(sequence(mirror + own), "even in number"));
+  CHECK(contains(sequence(mirror), "a.xml:1:2: <dmotion id='m'> is not supported: expected an even number of reflections"));
+  CHECK(contains(sequence(mirror + own), "an even number"));
   CHECK(sequence(mirror + mirror).empty());
   CHECK(sequence(own + own).empty());
   CHECK(contains(sequence(turn + own_turn), "not both in one sequence"));

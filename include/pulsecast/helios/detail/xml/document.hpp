@@ -220,7 +220,8 @@ class XmlDocument {
         if (name.size() + value.size() > max_attribute_size)
           fail_at(at, "an attribute is longer than " + std::to_string(max_attribute_size) + " bytes: " + text::quoted(name));
         if (std::find(names.begin(), names.end(), name) != names.end() || names.size() == max_attributes)
-          fail_at(at, "attribute " + text::quoted(name) + (names.size() == max_attributes ? " is one of too many" : " is given twice"));
+          fail_at(at, "attribute " + text::quoted(name) +
+                          (names.size() == max_attributes ? " exceeds the maximum number of attributes" : " is given twice"));
         names.push_back(name);
         return true;
       });

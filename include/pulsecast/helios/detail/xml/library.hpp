@@ -39,7 +39,7 @@ class XmlLibraryDocument {
       const auto [other, is_new] = by_id_.emplace(key(node.name(), node.attribute("id").value()), node);
       if (!is_new)
         report.warn(document_.place(node), "a second <" + std::string(node.name()) + "> with the id " +
-                                               text::quoted(node.attribute("id").value()) + ": the first one counts");
+                                               text::quoted(node.attribute("id").value()) + ": the first one is used");
     }
   }
 

@@ -124,7 +124,7 @@ void fields(Io& io, Of<Io, MotionSequenceSettings>& sequence) {
   io.children("motion", sequence.motions, [](auto& inner, auto& motion) { fields(inner, motion); });
   if constexpr (Io::reads)
     if (const std::string problem = motion_problem(sequence); !problem.empty())
-      io.report().fault(io.place(), "<dmotion id=" + text::quoted(sequence.id) + "> cannot be done: expected " + problem);
+      io.report().fault(io.place(), "<dmotion id=" + text::quoted(sequence.id) + "> is not supported: expected " + problem);
 }
 
 }  // namespace pulsecast::helios::xml

@@ -58,8 +58,8 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
   bool is_scaled = false, is_translated = false;
   const auto once = [&](pugi::xml_node node, bool& before) {
     if (std::exchange(before, true))
-      io.report().warn(io.document().place(node), "a second filter " + text::quoted(node.attribute("type").value()) +
-                                                      ": it replaces the one before, and does not add to it");
+      io.report().warn(io.document().place(node),
+                       "a second filter " + text::quoted(node.attribute("type").value()) + ": it replaces the first");
   };
   for (pugi::xml_node node = io.node().child("filter"); node; node = node.next_sibling("filter")) {
     XmlInput filter(io.document(), node, io.report(), io.search(), true);

@@ -39,7 +39,7 @@ inline constexpr std::uint16_t metre = 9001, foot = 9002, us_foot = 9003;  ///< 
   if (model == 2) file.fail("is in degrees (a geographic reference system): expected a projected one, in metres");
   if (model == 3) file.fail("is in a geocentric reference system: expected a projected one, in metres");
   if (unit == geotiff::foot || unit == geotiff::us_foot) file.fail("has coordinates in feet: expected metres");
-  if (unit != geotiff::metre) file.warn("the unit of its coordinates has the code " + std::to_string(unit) + "; it is taken for a metre");
+  if (unit != geotiff::metre) file.warn("the unit of its coordinates has the code " + std::to_string(unit) + "; metres are assumed");
   const std::uint16_t projected = geo_key(file, geotiff::projected, 0);
   return projected != 0 && projected != geotiff::user_defined ? std::optional(projected) : std::nullopt;
 }
@@ -52,7 +52,7 @@ inline constexpr std::uint16_t metre = 9001, foot = 9002, us_foot = 9003;  ///< 
     return unit == geotiff::foot ? 0.3048 : 1200.0 / 3937.0;  // source: EPSG registry, units 9002 and 9003
   }
   if (unit != geotiff::metre && unit != geotiff::user_defined)
-    file.warn("the unit of its heights has the code " + std::to_string(unit) + "; it is taken for a metre");
+    file.warn("the unit of its heights has the code " + std::to_string(unit) + "; metres are assumed");
   return 1;
 }
 
@@ -69,19 +69,18 @@ struct RasterCorner {
   if (matrix.size() >= 16) {
     const double turn = std::max(std::fabs(matrix[1]) * layout.rows, std::fabs(matrix[4]) * layout.columns);
     if (!(turn <= 1e-3 * std::min(std::fabs(matrix[0]), std::fabs(matrix[5]))))  // in pixels, over the whole raster
-      file.fail("is turned or sheared: expected rows that go east (a resampling to north up makes them so)");
+      file.fail("is rotated or sheared: expected rows to the east; resampling to north up makes them so");
     return {.x = matrix[3], .y = matrix[7], .step_x = matrix[0], .step_y = matrix[5]};
   }
   if (scale.size() >= 2 && ties.size() >= 6) {
     if (scale[1] < 0) file.warn("ModelPixelScale has a negative height of the pixel; its magnitude is taken, as GDAL does");
     if (scale[0] < 0) file.fail("has pixels of a negative width: expected a positive one");
     if (scale.size() >= 3 && scale[2] != 0 && scale[2] != 1)
-      file.warn("the vertical scale of ModelPixelScale does not count; there is a setting for one");
+      file.warn("the vertical scale of ModelPixelScale is ignored; vertical_scale is a setting");
     const double step_x = scale[0], step_y = -std::fabs(scale[1]);
     return {.x = ties[3] - ties[0] * step_x, .y = ties[4] - ties[1] * step_y, .step_x = step_x, .step_y = step_y};
   }
-  if (ties.size() > 6)
-    file.fail("is placed by control points: expected a raster with rows that go east (ModelPixelScale and ModelTiepoint)");
+  if (ties.size() > 6) file.fail("is placed by control points: expected rows to the east (ModelPixelScale and ModelTiepoint)");
   file.fail("has no georeference: expected ModelPixelScale and ModelTiepoint, or ModelTransformation");
 }
 

@@ -50,7 +50,7 @@ struct RasterLayout {
     const std::uint64_t pixels = std::uint64_t{columns} * rows;
     const std::uint64_t needed = std::uint64_t{chunk_columns} * chunk_rows;  // pixels of a strip or tile
     if (needed == 0 || chunk_bytes / (bits / 8U) / stride() != needed || chunk_bytes % (bits / 8U) != 0)
-      file.fail(std::string("has a ") + chunk() + "of no or too large a size" + file.complaint());
+      file.fail(std::string("has a ") + chunk() + "with a size of zero or too large" + file.complaint());
     const std::uint64_t chunks = tiled ? TIFFNumberOfTiles(file.handle()) : TIFFNumberOfStrips(file.handle());
     if (pixels > file.max_bytes() / sizeof(float) || chunk_bytes > file.max_bytes() || chunks > file.size())
       file.fail("claims " + size + ", more than its " + std::to_string(file.size()) + " bytes can hold");

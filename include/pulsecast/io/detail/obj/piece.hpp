@@ -69,7 +69,7 @@ class ObjPiece : private StatementBuffer {
     };
     try {
       std::istream stream(this);
-      stream.exceptions(std::ios::badbit);  // lets exceptions pass that are thrown while reading
+      stream.exceptions(std::ios::badbit);  // passes on exceptions thrown while reading
       tinyobj::LoadObjWithCallback(stream, callbacks, this);
     } catch (...) {
       failure = {line(), std::current_exception()};
@@ -178,7 +178,7 @@ class ObjPiece : private StatementBuffer {
     try {
       rewind();
       while (next_statement() && line() < face_line) continue;
-      fail_here(quoted() + " names vertex " + std::to_string(corner) + ": expected from 1 to the " + std::to_string(count) +
+      fail_here(quoted() + " refers to vertex " + std::to_string(corner) + ": expected from 1 to the " + std::to_string(count) +
                 " vertices above, or from -1 backwards");
     } catch (...) {
       failure = {face_line, std::current_exception()};

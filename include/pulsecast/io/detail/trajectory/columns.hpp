@@ -137,7 +137,7 @@ class TrajectoryColumns {
       if (columns_.back())
         put(i);
       else if (std::none_of(left_out.begin(), left_out.end(), same)) {
-        problem_ = "is no known column: expected perhaps '" + nearest_trajectory_column(names[i]) + "', or that it is to be left out";
+        problem_ = "is not a known column: did you mean '" + nearest_trajectory_column(names[i]) + "'? Others must be set as left out";
         culprit_ = i;
       }
     }
@@ -159,7 +159,7 @@ class TrajectoryColumns {
   void put(std::size_t i) {
     std::optional<std::size_t>& place = places_[static_cast<std::size_t>(columns_[i]->quantity)];
     if (place) {
-      problem_ = "says the same as column " + std::to_string(*place + 1) + ": expected one of them, or that one is to be left out";
+      problem_ = "duplicates column " + std::to_string(*place + 1) + ": expected one of them, the other set as left out";
       culprit_ = i;
     }
     place = i;

@@ -109,7 +109,7 @@ class TrajectoryReader {
       text = text::trimmed(text.substr(13));
       const std::optional<double> number = text::finite_number_in(text);
       if (!number || *number < 0 || *number > 1000 || *number != std::floor(*number))
-        table_.fail_here(text::quoted(text) + " is no place of a column: expected a whole number from 0");
+        table_.fail_here(text::quoted(text) + " is not a column index: expected a whole number from 0 to 1000");
       time_place_ = static_cast<std::size_t>(*number);
     }
   }

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/geometry/bounding_box.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "support/generators.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::support;
+
+TEST_CASE_TEMPLATE("rounding down never gives more, rounding up never less, and both are as near as can be", Real, float, double) {
+  Generator random(80);
+  for (int time = 0; time < 1000; ++time) {
+    const double v = (random.coin() ? 1 : -1) * random.log_uniform(1e-60, 1e30);
+    CHECK(static_cast<double>(round_down<Real>(v)) <= v);
+    CHECK(static_cast<double>(round_up<Real>(v)) >= v);
+    CHECK(static_cast<double>(std::nextafter(round_down<Real>(v), std::numeric_limits<Real>::infinity())) > v);
+    CHECK(static_cast<double>(std::nextafter(round_up<Real>(v), -std::numeric_limits<Real>::infinity())) < v);
+  }
+  CHECK(round_up<Real>(std::numeric_limits<double>::infinity()) == std::numeric_limits<Real>::infinity());
+  CHECK(round_down<Real>(0.5) == Real(0.5));
+}
+
+TEST_CASE_TEMPLATE("boxes contain what they stand for, and compact ones grow by two steps of their grid at most", Real, float, double) {
+  for (std::uint64_t seed = 90; seed < 290; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed);
+    const Vec3 centre = random.point(1e6);
+    std::array<Box, 8> boxes;
+    Box whole;
+    for (Box& box : boxes) {
+      box = random.box(1e6, 1e-3, 1e5);
+      whole.extend(box);
+    }
+    const auto around = BoundingBox<Real>::around(whole, centre);
+    QuantizedBox8<Real> compact;
+    compact.begin(around);
+    for (const Box& box : boxes) compact.add(BoundingBox<Real>::around(box, centre));
+    for (std::size_t place = 0; place < boxes.size(); ++place) {
+      const auto exact = BoundingBox<Real>::around(boxes[place], centre);
+      for (int k = 0; k < 3; ++k) {
+        const auto axis = static_cast<std::size_t>(k);
+        CHECK(static_cast<double>(exact.min[k]) <= boxes[place].min[k] - centre[k]);
+        CHECK(static_cast<double>(exact.max[k]) >= boxes[place].max[k] - centre[k]);
+        const double step = static_cast<double>(compact.step(axis)), origin = static_cast<double>(compact.origin[k]);
+        const double low = origin + step * compact.walls[k][0][place], high = origin + step * compact.walls[k][1][place];
+        CHECK(low <= static_cast<double>(exact.min[k]));
+        CHECK(low > static_cast<double>(exact.min[k]) - 2 * step);
+        CHECK(high >= static_cast<double>(exact.max[k]));
+        CHECK(high < static_cast<double>(exact.max[k]) + 2 * step);
+      }
+    }
+  }
+}
