@@ -22,7 +22,7 @@ function(add header)
     add(${include})
   endforeach()
   file(READ ${path} own)
-  string(REGEX REPLACE "^(//[^\n]*\n)+#pragma once\n" "" own "${own}")
+  string(REGEX REPLACE "^(//[^\n]*\n)+" "" own "${own}")
   string(REGEX REPLACE "#if !__has_include\\(<pulsecast/[^\n]*\n#error [^\n]*\n#endif\n" "" own "${own}")
   string(REGEX REPLACE "#include <pulsecast/[^\n]*\n" "" own "${own}")
   set(text "${text}\n// ---- ${header}\n${own}")
@@ -37,5 +37,6 @@ file(WRITE ${OUT} "// SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// Headers of pulsecast in one file, for those who copy rather than install. It needs GLM, C++20 and threads.
+// Headers of pulsecast in one file, for those who copy rather than install. It needs GLM, C++20 and threads. Each keeps its include guard:
+// this file may be included before and after other headers of the same version.
 ${text}")

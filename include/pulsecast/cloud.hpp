@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_CLOUD_HPP
+#define PULSECAST_CLOUD_HPP
 
 #include <cstddef>
 #include <vector>
@@ -32,3 +33,5 @@ struct Cloud {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_CONCEPTS_HPP
+#define PULSECAST_CONCEPTS_HPP
 
 #include <concepts>
 #include <cstddef>
@@ -197,3 +198,5 @@ template <class S>
 concept EchoSink = std::invocable<S&, const EchoBatch&>;
 
 }  // namespace pulsecast
+
+#endif

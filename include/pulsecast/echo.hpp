@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_ECHO_HPP
+#define PULSECAST_ECHO_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -97,3 +98,5 @@ struct EchoBatch {
 [[nodiscard]] inline Vec3 point_of(const Shot& shot, const Echo& echo) noexcept { return shot.origin + shot.direction * echo.range; }
 
 }  // namespace pulsecast
+
+#endif

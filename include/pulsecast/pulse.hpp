@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PULSE_HPP
+#define PULSECAST_PULSE_HPP
 
 #include <cstdint>
 #include <optional>
@@ -74,3 +75,5 @@ struct Pulse {
 };
 
 }  // namespace pulsecast
+
+#endif

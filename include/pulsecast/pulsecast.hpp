@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PULSECAST_HPP
+#define PULSECAST_PULSECAST_HPP
 
 /// The contract, the pipeline, and the models of most surveys: triangle meshes, mirrors and heads, tripods and straight lines, every
 /// footprint, two detectors, a cloud in memory. Include all else by name: other shapes, accelerators and optics, moving parts, trajectories
@@ -40,3 +41,5 @@
 #include <pulsecast/scene/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
 #include <pulsecast/version.hpp>
+
+#endif

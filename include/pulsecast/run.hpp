@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_RUN_HPP
+#define PULSECAST_RUN_HPP
 
 #include <algorithm>
 #include <array>
@@ -274,3 +275,5 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
 }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SURVEY_HPP
+#define PULSECAST_SURVEY_HPP
 
 #include <algorithm>
 #include <array>
@@ -319,3 +320,5 @@ class Survey {
 };
 
 }  // namespace pulsecast
+
+#endif

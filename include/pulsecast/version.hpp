@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_VERSION_HPP
+#define PULSECAST_VERSION_HPP
 
 /// The version of the library; CMake reads it here.
 #define PULSECAST_VERSION "0.1.1"
+
+#endif

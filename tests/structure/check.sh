@@ -63,10 +63,18 @@ found 'the library never prints and never exits' '#include <iostream>|std::(cout
 found 'random numbers come from base/random.hpp only' '#include <random>|\<s?rand *\('
 found 'lines and numbers are read from text by base/text.hpp only' 'from_chars|\<(sto(d|f|i|u?ll?)|strto[a-z]+|ato[fil]|getline) *\(|xEF.xBB' 'base/text\.hpp'
 found 'concepts, never enable_if' 'enable_if'
-found 'a header begins with #pragma once' '#(ifndef|define) [A-Z_]*_(H|HPP)_?$'
 
+# The single header keeps the guards of the headers that it holds, and so goes with all others in either order.
 # shellcheck disable=SC2086
-grep -L '^#pragma once$' $headers | violates 'a header begins with #pragma once'
+awk '
+  function finish() { if (file && (guards != 2 || last != "#endif")) print file ": " guard }
+  FNR == 1 { finish(); file = FILENAME; guards = 0
+             guard = toupper(file); sub(/^INCLUDE\//, "", guard); gsub(/[\/.]/, "_", guard) }
+  FNR == 3 && $0 == "#ifndef " guard || FNR == 4 && $0 == "#define " guard { ++guards }
+  /^#pragma once/ { guards = 0 }
+  { last = $0 }
+  END { finish() }' $headers | violates 'a header has the include guard of its path'
+echo "$headers" | tr '/' '_' | sort | uniq -d | violates 'a header has the include guard of its path'
 
 # shellcheck disable=SC2086
 awk 'FNR == 351 { print FILENAME }' $headers | violates 'a header has at most 350 lines'

@@ -35,7 +35,7 @@ fresh
 sh tests/structure/check.sh . > "$copy/before"
 
 below='a header includes only from layers below its own'
-add='sed -i "/^#pragma once/a'
+add='sed -i "/^#define PULSECAST_.*_HPP/a'
 notices "$below" "$add #include <pulsecast/concepts.hpp>\" include/pulsecast/base/frame.hpp"
 notices "$below" "$add #include <pulsecast/scanner/scanner.hpp>\" include/pulsecast/platform/platform.hpp"
 notices "$below" "$add #include <pulsecast/scene/scene.hpp>\" include/pulsecast/detector/radiometry.hpp"
@@ -55,7 +55,11 @@ text_rule='lines and numbers are read from text by base/text.hpp only'
 notices "$text_rule" "echo 'inline double f() { return std::stod(\"1\"); }' >> include/pulsecast/io/las.hpp"
 notices "$text_rule" "echo 'inline const char* mark = \"\\xEF\\xBB\\xBF\";' >> include/pulsecast/io/las.hpp"
 notices 'concepts, never enable_if' "echo 'template <class T, class = std::enable_if_t<true>> struct A;' >> include/pulsecast/echo.hpp"
-notices 'a header begins with #pragma once' 'sed -i "/^#pragma once/d" include/pulsecast/echo.hpp'
+guard='a header has the include guard of its path'
+notices "$guard" 'sed -i "s/PULSECAST_ECHO_HPP/PULSECAST_PULSE_HPP/" include/pulsecast/echo.hpp'
+notices "$guard" 'sed -i "/^#endif/d" include/pulsecast/echo.hpp'
+notices "$guard" "$add #pragma once\" include/pulsecast/echo.hpp"
+notices "$guard" 'mkdir -p include/pulsecast/io/text && cp include/pulsecast/io/text_files.hpp include/pulsecast/io/text/files.hpp'
 notices 'a header has at most 350 lines' 'seq 351 | sed "s|^|// |" >> include/pulsecast/echo.hpp'
 # long FUNCTION: one of 61 lines
 long() {

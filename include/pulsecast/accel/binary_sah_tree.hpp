@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_ACCEL_BINARY_SAH_TREE_HPP
+#define PULSECAST_ACCEL_BINARY_SAH_TREE_HPP
 
 #include <algorithm>
 #include <array>
@@ -339,3 +340,5 @@ class BinarySahTree {
 };
 
 }  // namespace pulsecast::detail
+
+#endif

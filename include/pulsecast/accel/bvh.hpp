@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_ACCEL_BVH_HPP
+#define PULSECAST_ACCEL_BVH_HPP
 
 #include <algorithm>
 #include <array>
@@ -259,3 +260,5 @@ class Bvh {
 static_assert(Accelerator<Bvh<float>>);
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_ACCEL_KD_TREE_HPP
+#define PULSECAST_ACCEL_KD_TREE_HPP
 
 #include <algorithm>
 #include <array>
@@ -258,3 +259,5 @@ class KdTree {
 static_assert(Accelerator<KdTree<float>>);
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_ACCEL_LINEAR_HPP
+#define PULSECAST_ACCEL_LINEAR_HPP
 
 #include <algorithm>
 #include <concepts>
@@ -58,3 +59,5 @@ class Linear {
 static_assert(Accelerator<Linear<float>>);
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_ACCEL_SAH_HPP
+#define PULSECAST_ACCEL_SAH_HPP
 
 #include <algorithm>
 #include <array>
@@ -255,3 +256,5 @@ struct BuildInput {
 [[nodiscard]] inline std::size_t levels_of_halving(std::size_t parts) noexcept { return parts < 2 ? 0 : std::bit_width(parts - 1); }
 
 }  // namespace pulsecast::detail
+
+#endif

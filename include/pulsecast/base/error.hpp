@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_ERROR_HPP
+#define PULSECAST_BASE_ERROR_HPP
 
 #include <array>
 #include <charconv>
@@ -79,3 +80,5 @@ class FileError : public std::runtime_error {
 };
 
 }  // namespace pulsecast
+
+#endif

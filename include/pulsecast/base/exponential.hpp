@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_EXPONENTIAL_HPP
+#define PULSECAST_BASE_EXPONENTIAL_HPP
 
 #include <bit>
 #include <concepts>
@@ -31,3 +32,5 @@ requires std::same_as<Number, double> || std::same_as<Number, simd::Doubles>
 }
 
 }  // namespace pulsecast
+
+#endif

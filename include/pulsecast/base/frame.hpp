@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_FRAME_HPP
+#define PULSECAST_BASE_FRAME_HPP
 
 #include <cmath>
 
@@ -59,3 +60,5 @@ struct TimedPose {
 [[nodiscard]] inline Vec3 from_forward_left_up(const Vec3& v) noexcept { return {-v.y, v.x, v.z}; }
 
 }  // namespace pulsecast
+
+#endif

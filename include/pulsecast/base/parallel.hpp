@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_PARALLEL_HPP
+#define PULSECAST_BASE_PARALLEL_HPP
 
 #include <algorithm>
 #include <atomic>
@@ -60,3 +61,5 @@ void for_each_index(std::size_t count, unsigned threads, const Task& task) {
 }
 
 }  // namespace pulsecast
+
+#endif

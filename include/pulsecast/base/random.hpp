@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_RANDOM_HPP
+#define PULSECAST_BASE_RANDOM_HPP
 
 #include <array>
 #include <cmath>
@@ -106,3 +107,5 @@ template <class... Lower>
 [[nodiscard]] inline double normal(const RandomKey& key) noexcept { return normal_quantile(uniform(key)); }
 
 }  // namespace pulsecast
+
+#endif

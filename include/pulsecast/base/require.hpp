@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_REQUIRE_HPP
+#define PULSECAST_BASE_REQUIRE_HPP
 
 #include <cassert>
 #include <cmath>
@@ -65,3 +66,5 @@ template <class Settings>
 }
 
 }  // namespace pulsecast
+
+#endif

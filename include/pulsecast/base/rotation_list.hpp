@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_ROTATION_LIST_HPP
+#define PULSECAST_BASE_ROTATION_LIST_HPP
 
 #include <vector>
 
@@ -43,3 +44,5 @@ struct AxisAngle {
 }
 
 }  // namespace pulsecast
+
+#endif

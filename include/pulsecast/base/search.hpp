@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_SEARCH_HPP
+#define PULSECAST_BASE_SEARCH_HPP
 
 #include <cstddef>
 
@@ -44,3 +45,5 @@ template <class Table, class Entry>
 }
 
 }  // namespace pulsecast::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_SHARED_ARRAY_HPP
+#define PULSECAST_BASE_SHARED_ARRAY_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -119,3 +120,5 @@ struct DeserializeTag {
 };
 
 }  // namespace pulsecast
+
+#endif

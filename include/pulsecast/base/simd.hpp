@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_SIMD_HPP
+#define PULSECAST_BASE_SIMD_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -252,3 +253,5 @@ inline void prefetch(const T* object) noexcept {
 }
 
 }  // namespace pulsecast
+
+#endif

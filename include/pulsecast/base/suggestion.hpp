@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_SUGGESTION_HPP
+#define PULSECAST_BASE_SUGGESTION_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -64,3 +65,5 @@ struct NearestName {
 }
 
 }  // namespace pulsecast::text
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_TEXT_HPP
+#define PULSECAST_BASE_TEXT_HPP
 
 #include <algorithm>
 #include <charconv>
@@ -103,3 +104,5 @@ template <class Number>
 }
 
 }  // namespace pulsecast::text
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_TICK_HPP
+#define PULSECAST_BASE_TICK_HPP
 
 #include <cmath>
 #include <compare>
@@ -66,3 +67,5 @@ struct Tick {
 };
 
 }  // namespace pulsecast
+
+#endif

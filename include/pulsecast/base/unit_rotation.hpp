@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_UNIT_ROTATION_HPP
+#define PULSECAST_BASE_UNIT_ROTATION_HPP
 
 #include <cmath>
 #include <string>
@@ -24,3 +25,5 @@ inline void require_rotation(std::string_view field, const Rotation& rotation) {
 }
 
 }  // namespace pulsecast
+
+#endif

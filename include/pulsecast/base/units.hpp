@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_UNITS_HPP
+#define PULSECAST_BASE_UNITS_HPP
 
 #include <numbers>
 
@@ -63,3 +64,5 @@ inline constexpr double speed_of_light = 299792458.0;
 [[nodiscard]] constexpr double degrees(double angle) noexcept { return angle * (180.0 / std::numbers::pi); }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_BASE_VECTOR_HPP
+#define PULSECAST_BASE_VECTOR_HPP
 
 #include <cmath>
 #include <numbers>
@@ -70,3 +71,5 @@ using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
 }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_AIM_HPP
+#define PULSECAST_DEFLECTOR_AIM_HPP
 
 #include <cmath>
 
@@ -29,3 +30,5 @@ namespace pulsecast {
 }
 
 }  // namespace pulsecast
+
+#endif

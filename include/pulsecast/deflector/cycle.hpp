@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_CYCLE_HPP
+#define PULSECAST_DEFLECTOR_CYCLE_HPP
 
 #include <cmath>
 #include <cstddef>
@@ -18,3 +19,5 @@ namespace pulsecast {
 }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_DEFLECTOR_HPP
+#define PULSECAST_DEFLECTOR_DEFLECTOR_HPP
 
 #include <optional>
 #include <utility>
@@ -47,3 +48,5 @@ class Deflector {
 };
 
 }  // namespace pulsecast
+
+#endif

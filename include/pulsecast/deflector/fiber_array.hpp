@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_FIBER_ARRAY_HPP
+#define PULSECAST_DEFLECTOR_FIBER_ARRAY_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -38,3 +39,5 @@ struct FiberArray {
 static_assert(Optic<FiberArray>);
 
 }  // namespace pulsecast
+
+#endif

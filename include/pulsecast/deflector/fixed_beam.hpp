@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_FIXED_BEAM_HPP
+#define PULSECAST_DEFLECTOR_FIXED_BEAM_HPP
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
@@ -25,3 +26,5 @@ struct FixedBeam {
 static_assert(Optic<FixedBeam>);
 
 }  // namespace pulsecast
+
+#endif

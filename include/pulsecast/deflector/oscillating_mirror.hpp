@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_OSCILLATING_MIRROR_HPP
+#define PULSECAST_DEFLECTOR_OSCILLATING_MIRROR_HPP
 
 #include <cmath>
 #include <cstdint>
@@ -49,3 +50,5 @@ struct OscillatingMirror {
 static_assert(Optic<OscillatingMirror>);
 
 }  // namespace pulsecast
+
+#endif

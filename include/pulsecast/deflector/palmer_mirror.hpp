@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_PALMER_MIRROR_HPP
+#define PULSECAST_DEFLECTOR_PALMER_MIRROR_HPP
 
 #include <cmath>
 #include <optional>
@@ -36,3 +37,5 @@ struct PalmerMirror {
 static_assert(Optic<PalmerMirror>);
 
 }  // namespace pulsecast
+
+#endif

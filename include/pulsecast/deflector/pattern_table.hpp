@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
+#define PULSECAST_DEFLECTOR_PATTERN_TABLE_HPP
 
 #include <cstddef>
 #include <vector>
@@ -44,3 +45,5 @@ struct PatternTable {
 static_assert(Optic<PatternTable>);
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_POLYGON_MIRROR_HPP
+#define PULSECAST_DEFLECTOR_POLYGON_MIRROR_HPP
 
 #include <cmath>
 #include <cstddef>
@@ -59,3 +60,5 @@ struct PolygonMirror {
 static_assert(Optic<PolygonMirror> && Gated<PolygonMirror>);
 
 }  // namespace pulsecast
+
+#endif

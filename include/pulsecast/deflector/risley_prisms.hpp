@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_RISLEY_PRISMS_HPP
+#define PULSECAST_DEFLECTOR_RISLEY_PRISMS_HPP
 
 #include <cmath>
 #include <optional>
@@ -75,3 +76,5 @@ struct RisleyPrisms {
 static_assert(Optic<RisleyPrisms> && Gated<RisleyPrisms>);
 
 }  // namespace pulsecast
+
+#endif

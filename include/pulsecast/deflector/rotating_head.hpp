@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DEFLECTOR_ROTATING_HEAD_HPP
+#define PULSECAST_DEFLECTOR_ROTATING_HEAD_HPP
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
@@ -27,3 +28,5 @@ struct RotatingHead {
 static_assert(Head<RotatingHead>);
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_ANALYTIC_WAVEFORM_HPP
+#define PULSECAST_DETECTOR_ANALYTIC_WAVEFORM_HPP
 
 #include <algorithm>
 #include <array>
@@ -244,3 +245,5 @@ class AnalyticWaveform {
 static_assert(Detector<AnalyticWaveform<>> && Detector<AnalyticWaveform<MomentWidth>>);
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_ECHO_WIDTH_HPP
+#define PULSECAST_DETECTOR_ECHO_WIDTH_HPP
 
 #include <cmath>
 #include <concepts>
@@ -76,3 +77,5 @@ template <EchoWidth Width>
 }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_FIRST_HIT_HPP
+#define PULSECAST_DETECTOR_FIRST_HIT_HPP
 
 #include <cstddef>
 #include <span>
@@ -39,3 +40,5 @@ struct FirstHit {
 static_assert(Detector<FirstHit>);
 
 }  // namespace pulsecast
+
+#endif

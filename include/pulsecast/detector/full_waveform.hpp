@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_FULL_WAVEFORM_HPP
+#define PULSECAST_DETECTOR_FULL_WAVEFORM_HPP
 
 #include <algorithm>
 #include <array>
@@ -231,3 +232,5 @@ class FullWaveform {
 static_assert(Detector<FullWaveform<>>);
 
 }  // namespace pulsecast
+
+#endif

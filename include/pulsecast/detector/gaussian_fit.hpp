@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_GAUSSIAN_FIT_HPP
+#define PULSECAST_DETECTOR_GAUSSIAN_FIT_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -165,3 +166,5 @@ struct GaussianFit {
 static_assert(EchoWidth<GaussianFit>);
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_PEAKS_HPP
+#define PULSECAST_DETECTOR_PEAKS_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -100,3 +101,5 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
 }
 
 }  // namespace pulsecast
+
+#endif

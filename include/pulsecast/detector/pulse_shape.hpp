@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_PULSE_SHAPE_HPP
+#define PULSECAST_DETECTOR_PULSE_SHAPE_HPP
 
 #include <cmath>
 #include <numbers>
@@ -35,3 +36,5 @@ struct PulseShape {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_PULSE_SUM_HPP
+#define PULSECAST_DETECTOR_PULSE_SUM_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -98,3 +99,5 @@ class SampledSum {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_RADIOMETRY_HPP
+#define PULSECAST_DETECTOR_RADIOMETRY_HPP
 
 #include <cmath>
 #include <cstddef>
@@ -122,3 +123,5 @@ class LinkBudget {
 };
 
 }  // namespace pulsecast
+
+#endif

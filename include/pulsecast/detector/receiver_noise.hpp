@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_RECEIVER_NOISE_HPP
+#define PULSECAST_DETECTOR_RECEIVER_NOISE_HPP
 
 #include <cmath>
 #include <cstdint>
@@ -39,3 +40,5 @@ struct ReceiverNoise {
 };
 
 }  // namespace pulsecast
+
+#endif

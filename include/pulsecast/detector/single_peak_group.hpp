@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_SINGLE_PEAK_GROUP_HPP
+#define PULSECAST_DETECTOR_SINGLE_PEAK_GROUP_HPP
 
 #include <cmath>
 #include <cstddef>
@@ -143,3 +144,5 @@ class SinglePeakGroup {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_DETECTOR_WAVEFORM_SETTINGS_HPP
+#define PULSECAST_DETECTOR_WAVEFORM_SETTINGS_HPP
 
 #include <cmath>
 #include <cstddef>
@@ -74,3 +75,5 @@ struct WaveformSettings {
 };
 
 }  // namespace pulsecast
+
+#endif

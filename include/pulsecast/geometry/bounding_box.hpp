@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_GEOMETRY_BOUNDING_BOX_HPP
+#define PULSECAST_GEOMETRY_BOUNDING_BOX_HPP
 
 #include <algorithm>
 #include <bit>
@@ -129,3 +130,5 @@ struct QuantizedBox8 {
 };
 
 }  // namespace pulsecast
+
+#endif

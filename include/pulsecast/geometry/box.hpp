@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_GEOMETRY_BOX_HPP
+#define PULSECAST_GEOMETRY_BOX_HPP
 
 #include <limits>
 
@@ -43,3 +44,5 @@ struct Box {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_GEOMETRY_BUNDLE_HPP
+#define PULSECAST_GEOMETRY_BUNDLE_HPP
 
 #include <array>
 #include <cmath>
@@ -164,3 +165,5 @@ struct ClosestHits {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_GEOMETRY_BUNDLE_INTERVAL_HPP
+#define PULSECAST_GEOMETRY_BUNDLE_INTERVAL_HPP
 
 #include <algorithm>
 #include <array>
@@ -239,3 +240,5 @@ class RayInterval {
 };
 
 }  // namespace pulsecast
+
+#endif

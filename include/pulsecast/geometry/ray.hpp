@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_GEOMETRY_RAY_HPP
+#define PULSECAST_GEOMETRY_RAY_HPP
 
 #include <limits>
 
@@ -17,3 +18,5 @@ struct Ray {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_GEOMETRY_TRIANGLE_HPP
+#define PULSECAST_GEOMETRY_TRIANGLE_HPP
 
 #include <algorithm>
 #include <array>
@@ -200,3 +201,5 @@ inline void intersect(const Triangle& triangle, PrimitiveIndex primitive, const 
 }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DOCUMENT_HPP
+#define PULSECAST_HELIOS_DOCUMENT_HPP
 
 #include <filesystem>
 #include <string>
@@ -92,3 +93,5 @@ inline void write_assets(const std::filesystem::path& path, const AssetDocument&
 inline std::string xml_text(const AssetDocument& assets) { return detail::document_of(assets).text(); }
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_MAKE_SIMULATION_HPP
+#define PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 
 #include <time.h>
 
@@ -288,3 +289,5 @@ inline std::unique_ptr<Simulation> make_simulation(const SurveySettings& survey,
 }
 
 }  // namespace pulsecast::helios
+
+#endif

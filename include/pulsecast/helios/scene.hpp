@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_SCENE_HPP
+#define PULSECAST_HELIOS_SCENE_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -341,3 +342,5 @@ class SceneBuilder {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_SETTINGS_HPP
+#define PULSECAST_HELIOS_SETTINGS_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -64,3 +65,5 @@ struct SurveySettings {
 }
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_SIMULATION_HPP
+#define PULSECAST_HELIOS_SIMULATION_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -128,3 +129,5 @@ class Simulation {
 }
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_SURVEY_HPP
+#define PULSECAST_HELIOS_SURVEY_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -169,3 +170,5 @@ class SurveyCompiler {
 }
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_COLOUR_HPP
+#define PULSECAST_IO_COLOUR_HPP
 
 #include <algorithm>
 #include <array>
@@ -92,3 +93,5 @@ inline constexpr std::array<Srgb, 7> okabe_ito{
 }
 
 }  // namespace pulsecast::io
+
+#endif

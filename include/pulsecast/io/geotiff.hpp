@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_GEOTIFF_HPP
+#define PULSECAST_IO_GEOTIFF_HPP
 
 #include <algorithm>
 #include <array>
@@ -210,3 +211,5 @@ inline std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::pat
 }
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_GZIP_HPP
+#define PULSECAST_IO_GZIP_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -75,3 +76,5 @@ class GzipEncoder final : public OutputEncoder {
 }
 
 }  // namespace pulsecast::io
+
+#endif

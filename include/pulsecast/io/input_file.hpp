@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_INPUT_FILE_HPP
+#define PULSECAST_IO_INPUT_FILE_HPP
 
 #include <algorithm>
 #include <cerrno>
@@ -174,3 +175,5 @@ class MappedFile {
 };
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_LAS_HPP
+#define PULSECAST_IO_LAS_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -61,3 +62,5 @@ class LasWriter : public detail::LasFileWriter<detail::LasRecords> {
 static_assert(EchoSink<LasWriter>);
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_LAZ_HPP
+#define PULSECAST_IO_LAZ_HPP
 
 #include <algorithm>
 #include <array>
@@ -180,3 +181,5 @@ class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
 static_assert(EchoSink<LazWriter>);
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_LEAF_ANGLES_HPP
+#define PULSECAST_IO_LEAF_ANGLES_HPP
 
 #include <algorithm>
 #include <array>
@@ -92,3 +93,5 @@ inline LeafAngles read_leaf_angles(const std::filesystem::path& path) {
 }
 
 }  // namespace pulsecast::io
+
+#endif

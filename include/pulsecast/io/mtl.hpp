@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_MTL_HPP
+#define PULSECAST_IO_MTL_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -313,3 +314,5 @@ inline MaterialLibrary read_mtl(const std::filesystem::path& path, const Spectra
 }
 
 }  // namespace pulsecast::io
+
+#endif

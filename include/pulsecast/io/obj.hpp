@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_OBJ_HPP
+#define PULSECAST_IO_OBJ_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -203,3 +204,5 @@ inline ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& s
 }
 
 }  // namespace pulsecast::io
+
+#endif

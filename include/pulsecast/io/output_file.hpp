@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_OUTPUT_FILE_HPP
+#define PULSECAST_IO_OUTPUT_FILE_HPP
 
 #include <cerrno>
 #include <cstddef>
@@ -248,3 +249,5 @@ class OutputFile {
 };
 
 }  // namespace pulsecast::io
+
+#endif

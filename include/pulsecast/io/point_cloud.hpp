@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_POINT_CLOUD_HPP
+#define PULSECAST_IO_POINT_CLOUD_HPP
 
 #include <algorithm>
 #include <array>
@@ -324,3 +325,5 @@ inline PointCloud read_point_cloud(const std::vector<std::filesystem::path>& pat
 }
 
 }  // namespace pulsecast::io
+
+#endif

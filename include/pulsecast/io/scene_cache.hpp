@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_SCENE_CACHE_HPP
+#define PULSECAST_IO_SCENE_CACHE_HPP
 
 #include <array>
 #include <concepts>
@@ -260,3 +261,5 @@ CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSource
 }
 
 }  // namespace pulsecast::io
+
+#endif

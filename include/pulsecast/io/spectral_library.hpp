@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_SPECTRAL_LIBRARY_HPP
+#define PULSECAST_IO_SPECTRAL_LIBRARY_HPP
 
 #include <algorithm>
 #include <array>
@@ -269,3 +270,5 @@ inline SpectralLibrary read_spectral_library(const std::filesystem::path& path) 
 }
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_TEXT_FILES_HPP
+#define PULSECAST_IO_TEXT_FILES_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -187,3 +188,5 @@ class WaveformTextWriter {
 static_assert(EchoSink<WaveformTextWriter>);
 
 }  // namespace pulsecast::io
+
+#endif

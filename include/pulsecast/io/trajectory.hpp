@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_TRAJECTORY_HPP
+#define PULSECAST_IO_TRAJECTORY_HPP
 
 #include <cmath>
 #include <cstddef>
@@ -160,3 +161,5 @@ inline void write_trajectory(const std::filesystem::path& path, std::span<const 
 }
 
 }  // namespace pulsecast::io
+
+#endif

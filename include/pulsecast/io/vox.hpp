@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_VOX_HPP
+#define PULSECAST_IO_VOX_HPP
 
 #include <algorithm>
 #include <array>
@@ -300,3 +301,5 @@ inline VoxelFile read_voxel_file(const std::filesystem::path& path, const VoxelF
 }
 
 }  // namespace pulsecast::io
+
+#endif

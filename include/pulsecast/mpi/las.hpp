@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_MPI_LAS_HPP
+#define PULSECAST_MPI_LAS_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -166,3 +167,5 @@ class MpiLas final : public MpiOutput {
 };
 
 }  // namespace pulsecast::mpi
+
+#endif

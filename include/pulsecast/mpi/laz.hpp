@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_MPI_LAZ_HPP
+#define PULSECAST_MPI_LAZ_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -201,3 +202,5 @@ class MpiLaz final : public MpiOutput {
 };
 
 }  // namespace pulsecast::mpi
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_MPI_ROWS_HPP
+#define PULSECAST_MPI_ROWS_HPP
 
 #include <cstddef>
 #include <filesystem>
@@ -72,3 +73,5 @@ class MpiRows final : public MpiOutput {
 };
 
 }  // namespace pulsecast::mpi
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_MPI_RUN_HPP
+#define PULSECAST_MPI_RUN_HPP
 
 #include <algorithm>
 #include <chrono>
@@ -238,3 +239,5 @@ RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options,
 }
 
 }  // namespace pulsecast::mpi
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PAGE_PAGE_HPP
+#define PULSECAST_PAGE_PAGE_HPP
 
 #include <algorithm>
 #include <array>
@@ -163,3 +164,5 @@ class PageWriter {
 static_assert(EchoSink<PageWriter>);
 
 }  // namespace pulsecast::page
+
+#endif

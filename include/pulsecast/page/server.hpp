@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PAGE_SERVER_HPP
+#define PULSECAST_PAGE_SERVER_HPP
 
 #include <sys/random.h>
 
@@ -191,3 +192,5 @@ class PageServer {
 static_assert(EchoSink<PageServer>);
 
 }  // namespace pulsecast::page
+
+#endif

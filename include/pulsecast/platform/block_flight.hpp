@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_BLOCK_FLIGHT_HPP
+#define PULSECAST_PLATFORM_BLOCK_FLIGHT_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -61,3 +62,5 @@ struct BlockFlight {
 }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_CURVED_PATH_HPP
+#define PULSECAST_PLATFORM_CURVED_PATH_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -76,3 +77,5 @@ struct PathPiece {
 }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
+#define PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -219,3 +220,5 @@ namespace detail {
 }
 
 }  // namespace pulsecast
+
+#endif

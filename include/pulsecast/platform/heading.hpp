@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_HEADING_HPP
+#define PULSECAST_PLATFORM_HEADING_HPP
 
 #include <cmath>
 
@@ -17,3 +18,5 @@ namespace pulsecast {
 [[nodiscard]] inline Rotation level(double heading) noexcept { return rotation_about(axis::up, -heading); }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_LEGS_HPP
+#define PULSECAST_PLATFORM_LEGS_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -93,3 +94,5 @@ class Legs {
 };
 
 }  // namespace pulsecast
+
+#endif

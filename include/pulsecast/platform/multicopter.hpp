@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_MULTICOPTER_HPP
+#define PULSECAST_PLATFORM_MULTICOPTER_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -261,3 +262,5 @@ struct FlightLegs {
 }
 
 }  // namespace pulsecast
+
+#endif

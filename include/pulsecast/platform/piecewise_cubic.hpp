@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_PIECEWISE_CUBIC_HPP
+#define PULSECAST_PLATFORM_PIECEWISE_CUBIC_HPP
 
 #include <algorithm>
 #include <vector>
@@ -61,3 +62,5 @@ class PiecewiseCubic {
 };
 
 }  // namespace pulsecast
+
+#endif

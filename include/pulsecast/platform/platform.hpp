@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_PLATFORM_HPP
+#define PULSECAST_PLATFORM_PLATFORM_HPP
 
 #include <cmath>
 #include <optional>
@@ -68,3 +69,5 @@ class Platform {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_POSE_ERRORS_HPP
+#define PULSECAST_PLATFORM_POSE_ERRORS_HPP
 
 #include <algorithm>
 #include <bit>
@@ -147,3 +148,5 @@ class WithPoseErrors {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_SPEED_PROFILE_HPP
+#define PULSECAST_PLATFORM_SPEED_PROFILE_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -105,3 +106,5 @@ inline void settle_speeds(std::span<double> joints, std::span<const PathSection>
 }
 
 }  // namespace pulsecast
+
+#endif

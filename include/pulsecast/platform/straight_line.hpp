@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_STRAIGHT_LINE_HPP
+#define PULSECAST_PLATFORM_STRAIGHT_LINE_HPP
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
@@ -34,3 +35,5 @@ struct StraightLine {
 static_assert(Trajectory<StraightLine>);
 
 }  // namespace pulsecast
+
+#endif

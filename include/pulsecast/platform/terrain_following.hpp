@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_TERRAIN_FOLLOWING_HPP
+#define PULSECAST_PLATFORM_TERRAIN_FOLLOWING_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -63,3 +64,5 @@ struct TerrainFollowing {
 }
 
 }  // namespace pulsecast
+
+#endif

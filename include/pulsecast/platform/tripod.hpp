@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_TRIPOD_HPP
+#define PULSECAST_PLATFORM_TRIPOD_HPP
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
@@ -26,3 +27,5 @@ struct Tripod {
 static_assert(Trajectory<Tripod>);
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PLATFORM_WAYPOINTS_HPP
+#define PULSECAST_PLATFORM_WAYPOINTS_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -150,3 +151,5 @@ static_assert(Trajectory<Waypoints>);
 }
 
 }  // namespace pulsecast
+
+#endif

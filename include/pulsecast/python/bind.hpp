@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PYTHON_BIND_HPP
+#define PULSECAST_PYTHON_BIND_HPP
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -327,3 +328,5 @@ pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_&
 }
 
 }  // namespace pulsecast::python
+
+#endif

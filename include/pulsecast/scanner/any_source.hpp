@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCANNER_ANY_SOURCE_HPP
+#define PULSECAST_SCANNER_ANY_SOURCE_HPP
 
 #include <cstdint>
 #include <utility>
@@ -44,3 +45,5 @@ class AnySource {
 };
 
 }  // namespace pulsecast
+
+#endif

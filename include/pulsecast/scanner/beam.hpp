@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCANNER_BEAM_HPP
+#define PULSECAST_SCANNER_BEAM_HPP
 
 #include <cmath>
 #include <limits>
@@ -53,3 +54,5 @@ struct BeamExit {
 }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCANNER_CHANNELS_HPP
+#define PULSECAST_SCANNER_CHANNELS_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -74,3 +75,5 @@ class Channels {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCANNER_FOOTPRINT_HPP
+#define PULSECAST_SCANNER_FOOTPRINT_HPP
 
 #include <cmath>
 #include <cstddef>
@@ -179,3 +180,5 @@ static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 }
 
 }  // namespace pulsecast
+
+#endif

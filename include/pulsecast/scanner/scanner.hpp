@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCANNER_SCANNER_HPP
+#define PULSECAST_SCANNER_SCANNER_HPP
 
 #include <optional>
 
@@ -51,3 +52,5 @@ struct Scanner {
 static_assert(BeamSource<Scanner>);
 
 }  // namespace pulsecast
+
+#endif

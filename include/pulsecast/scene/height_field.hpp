@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_HEIGHT_FIELD_HPP
+#define PULSECAST_SCENE_HEIGHT_FIELD_HPP
 
 #include <algorithm>
 #include <array>
@@ -335,3 +336,5 @@ class HeightField {
 static_assert(Geometry<HeightField>);
 
 }  // namespace pulsecast
+
+#endif

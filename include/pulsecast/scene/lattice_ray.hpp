@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_LATTICE_RAY_HPP
+#define PULSECAST_SCENE_LATTICE_RAY_HPP
 
 #include <array>
 #include <cmath>
@@ -96,3 +97,5 @@ class LatticeRay {
 };
 
 }  // namespace pulsecast
+
+#endif

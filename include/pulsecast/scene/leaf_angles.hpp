@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_LEAF_ANGLES_HPP
+#define PULSECAST_SCENE_LEAF_ANGLES_HPP
 
 #include <algorithm>
 #include <array>
@@ -170,3 +171,5 @@ class LeafAngles {
 };
 
 }  // namespace pulsecast
+
+#endif

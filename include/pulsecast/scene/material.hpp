@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_MATERIAL_HPP
+#define PULSECAST_SCENE_MATERIAL_HPP
 
 #include <cmath>
 #include <cstdint>
@@ -84,3 +85,5 @@ struct Material {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_MOTION_HPP
+#define PULSECAST_SCENE_MOTION_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -255,3 +256,5 @@ class PartMotion {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_MOVING_INDEX_HPP
+#define PULSECAST_SCENE_MOVING_INDEX_HPP
 
 #include <algorithm>
 #include <array>
@@ -145,3 +146,5 @@ class MovingIndex {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_MOVING_SCENE_HPP
+#define PULSECAST_SCENE_MOVING_SCENE_HPP
 
 #include <array>
 #include <cstddef>
@@ -112,3 +113,5 @@ class MovingScene {
 };
 
 }  // namespace pulsecast
+
+#endif

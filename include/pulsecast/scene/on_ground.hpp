@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_ON_GROUND_HPP
+#define PULSECAST_SCENE_ON_GROUND_HPP
 
 #include <algorithm>
 #include <concepts>
@@ -100,3 +101,5 @@ template <Geometry... Shapes>
 }
 
 }  // namespace pulsecast
+
+#endif

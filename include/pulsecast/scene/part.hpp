@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_PART_HPP
+#define PULSECAST_SCENE_PART_HPP
 
 #include <array>
 #include <cstddef>
@@ -129,3 +130,5 @@ struct Part {
 };
 
 }  // namespace pulsecast
+
+#endif

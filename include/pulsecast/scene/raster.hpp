@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_RASTER_HPP
+#define PULSECAST_SCENE_RASTER_HPP
 
 #include <algorithm>
 #include <array>
@@ -127,3 +128,5 @@ struct Raster {
 };
 
 }  // namespace pulsecast
+
+#endif

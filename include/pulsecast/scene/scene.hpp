@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_SCENE_HPP
+#define PULSECAST_SCENE_SCENE_HPP
 
 #include <cmath>
 #include <cstddef>
@@ -199,3 +200,5 @@ class Scene {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_SCREW_HPP
+#define PULSECAST_SCENE_SCREW_HPP
 
 #include <cmath>
 #include <cstdint>
@@ -78,3 +79,5 @@ struct RotationParts {
 }
 
 }  // namespace pulsecast::detail
+
+#endif

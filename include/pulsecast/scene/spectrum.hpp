@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_SPECTRUM_HPP
+#define PULSECAST_SCENE_SPECTRUM_HPP
 
 #include <cstddef>
 #include <span>
@@ -66,3 +67,5 @@ class Spectrum {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_TRIANGLE_MESH_HPP
+#define PULSECAST_SCENE_TRIANGLE_MESH_HPP
 
 #include <algorithm>
 #include <array>
@@ -264,3 +265,5 @@ class TriangleMesh {
 static_assert(Geometry<TriangleMesh<>>);
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_VARIATION_HPP
+#define PULSECAST_SCENE_VARIATION_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -60,3 +61,5 @@ namespace pulsecast {
 }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_VOXEL_DATA_HPP
+#define PULSECAST_SCENE_VOXEL_DATA_HPP
 
 #include <array>
 #include <cmath>
@@ -85,3 +86,5 @@ struct VoxelData {
 };
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_VOXEL_GRID_HPP
+#define PULSECAST_SCENE_VOXEL_GRID_HPP
 
 #include <algorithm>
 #include <array>
@@ -314,3 +315,5 @@ class VoxelGrid {
 static_assert(Geometry<VoxelGrid<OpaqueVoxels>> && Geometry<VoxelGrid<ScaledVoxels>> && Geometry<VoxelGrid<TransmissiveVoxels>>);
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_VOXEL_INDEX_HPP
+#define PULSECAST_SCENE_VOXEL_INDEX_HPP
 
 #include <algorithm>
 #include <array>
@@ -181,3 +182,5 @@ class VoxelIndex {
 };
 
 }  // namespace pulsecast
+
+#endif

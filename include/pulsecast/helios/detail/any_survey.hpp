@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_ANY_SURVEY_HPP
+#define PULSECAST_HELIOS_DETAIL_ANY_SURVEY_HPP
 
 #include <cstddef>
 #include <memory>
@@ -52,3 +53,5 @@ class SurveyOf final : public AnySurvey {
 };
 
 }  // namespace pulsecast::helios::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_ASSET_SEARCH_HPP
+#define PULSECAST_HELIOS_DETAIL_ASSET_SEARCH_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -147,3 +148,5 @@ class AssetSearch {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

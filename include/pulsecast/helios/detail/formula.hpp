@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_FORMULA_HPP
+#define PULSECAST_HELIOS_DETAIL_FORMULA_HPP
 
 #include <array>
 #include <charconv>
@@ -204,3 +205,5 @@ class Formula {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

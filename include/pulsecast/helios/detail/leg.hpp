@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_LEG_HPP
+#define PULSECAST_HELIOS_DETAIL_LEG_HPP
 
 #include <algorithm>
 #include <array>
@@ -125,3 +126,5 @@ class SurveyLeg {
 static_assert(WorldSource<SurveyLeg>);
 
 }  // namespace pulsecast::helios
+
+#endif

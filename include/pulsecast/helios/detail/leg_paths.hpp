@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_LEG_PATHS_HPP
+#define PULSECAST_HELIOS_DETAIL_LEG_PATHS_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -320,3 +321,5 @@ class LegPaths {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_MOTION_HPP
+#define PULSECAST_HELIOS_DETAIL_MOTION_HPP
 
 #include <cmath>
 #include <optional>
@@ -85,3 +86,5 @@ struct MotionSteps {
 }
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_OPTICS_HPP
+#define PULSECAST_HELIOS_DETAIL_OPTICS_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -338,3 +339,5 @@ namespace detail {
 }
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_PART_MOTION_HPP
+#define PULSECAST_HELIOS_DETAIL_PART_MOTION_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -54,3 +55,5 @@ namespace pulsecast::helios::detail {
 }
 
 }  // namespace pulsecast::helios::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_PASSING_HPP
+#define PULSECAST_HELIOS_DETAIL_PASSING_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -68,3 +69,5 @@ template <class Plan>
 }
 
 }  // namespace pulsecast::helios::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_RECEIVERS_HPP
+#define PULSECAST_HELIOS_DETAIL_RECEIVERS_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -116,3 +117,5 @@ template <Target Map, class Make>
 }
 
 }  // namespace pulsecast::helios
+
+#endif

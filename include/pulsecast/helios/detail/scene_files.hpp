@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_SCENE_FILES_HPP
+#define PULSECAST_HELIOS_DETAIL_SCENE_FILES_HPP
 
 #include <algorithm>
 #include <filesystem>
@@ -134,3 +135,5 @@ inline bool has_ground(const SceneSettings& scene) {
 }
 
 }  // namespace pulsecast::helios
+
+#endif

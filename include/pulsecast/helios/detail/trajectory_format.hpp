@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_TRAJECTORY_FORMAT_HPP
+#define PULSECAST_HELIOS_DETAIL_TRAJECTORY_FORMAT_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -41,3 +42,5 @@ inline void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format
 }
 
 }  // namespace pulsecast::helios::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_ARCHIVE_HPP
+#define PULSECAST_IO_DETAIL_ARCHIVE_HPP
 
 #include <array>
 #include <concepts>
@@ -295,3 +296,5 @@ class ArchiveReader {
 };
 
 }  // namespace pulsecast::io
+
+#endif

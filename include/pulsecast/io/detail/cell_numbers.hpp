@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_CELL_NUMBERS_HPP
+#define PULSECAST_IO_DETAIL_CELL_NUMBERS_HPP
 
 #include <algorithm>
 #include <array>
@@ -63,3 +64,5 @@ class CellNumbers {
 };
 
 }  // namespace pulsecast::io
+
+#endif

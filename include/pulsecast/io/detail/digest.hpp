@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_DIGEST_HPP
+#define PULSECAST_IO_DETAIL_DIGEST_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -110,3 +111,5 @@ class Digest {
 }
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_MPI_DETAIL_BLOCKS_HPP
+#define PULSECAST_MPI_DETAIL_BLOCKS_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -109,3 +110,5 @@ class MpiBlockScheduler {
 };
 
 }  // namespace pulsecast::mpi
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_MPI_DETAIL_CHANNEL_HPP
+#define PULSECAST_MPI_DETAIL_CHANNEL_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -216,3 +217,5 @@ class MpiMessage {
 };
 
 }  // namespace pulsecast::mpi
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_MPI_DETAIL_FILE_HPP
+#define PULSECAST_MPI_DETAIL_FILE_HPP
 
 #include <cerrno>
 #include <cstddef>
@@ -62,3 +63,5 @@ class MpiFile {
 };
 
 }  // namespace pulsecast::mpi
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_MPI_DETAIL_OUTPUT_HPP
+#define PULSECAST_MPI_DETAIL_OUTPUT_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -163,3 +164,5 @@ inline bool MpiGroup::serve() {
 }
 
 }  // namespace pulsecast::mpi
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_MPI_DETAIL_STREAM_HPP
+#define PULSECAST_MPI_DETAIL_STREAM_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -135,3 +136,5 @@ class MpiStream final : public MpiOutput {
 };
 
 }  // namespace pulsecast::mpi
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PAGE_DETAIL_COLUMNS_HPP
+#define PULSECAST_PAGE_DETAIL_COLUMNS_HPP
 
 #include <algorithm>
 #include <array>
@@ -262,3 +263,5 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
 }
 
 }  // namespace pulsecast::page
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PAGE_DETAIL_JSON_HPP
+#define PULSECAST_PAGE_DETAIL_JSON_HPP
 
 #include <array>
 #include <cmath>
@@ -101,3 +102,5 @@ class JsonWriter {
 };
 
 }  // namespace pulsecast::page::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PAGE_DETAIL_LOCAL_SERVER_HPP
+#define PULSECAST_PAGE_DETAIL_LOCAL_SERVER_HPP
 
 #include <fcntl.h>
 #include <poll.h>
@@ -201,3 +202,5 @@ class LocalServer final : public httplib::Server {
 };
 
 }  // namespace pulsecast::page
+
+#endif

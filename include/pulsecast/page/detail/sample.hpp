@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PAGE_DETAIL_SAMPLE_HPP
+#define PULSECAST_PAGE_DETAIL_SAMPLE_HPP
 
 #include <algorithm>
 #include <array>
@@ -110,3 +111,5 @@ class PageSample {
 static_assert(EchoSink<PageSample>);
 
 }  // namespace pulsecast::page
+
+#endif

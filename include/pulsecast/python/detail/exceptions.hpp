@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PYTHON_DETAIL_EXCEPTIONS_HPP
+#define PULSECAST_PYTHON_DETAIL_EXCEPTIONS_HPP
 
 #include <pybind11/pybind11.h>
 
@@ -63,3 +64,5 @@ inline void bind_exceptions(pybind11::module_& m) {
 
 }  // namespace gnu::visibility("hidden")]]python
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PYTHON_DETAIL_INTERRUPT_WATCH_HPP
+#define PULSECAST_PYTHON_DETAIL_INTERRUPT_WATCH_HPP
 
 #include <pybind11/pybind11.h>
 
@@ -43,3 +44,5 @@ class InterruptWatch {
 
 }  // namespace gnu::visibility("hidden")]]python
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_PYTHON_DETAIL_ROWS_HPP
+#define PULSECAST_PYTHON_DETAIL_ROWS_HPP
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -58,3 +59,5 @@ class Rows {
 
 }  // namespace gnu::visibility("hidden")]]python
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_DETAIL_HEIGHT_PYRAMID_HPP
+#define PULSECAST_SCENE_DETAIL_HEIGHT_PYRAMID_HPP
 
 #include <algorithm>
 #include <array>
@@ -152,3 +153,5 @@ struct HeightPyramid {
 };
 
 }  // namespace pulsecast::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_DETAIL_LATTICE_WALKER_HPP
+#define PULSECAST_SCENE_DETAIL_LATTICE_WALKER_HPP
 
 #include <array>
 #include <cstddef>
@@ -110,3 +111,5 @@ struct LatticeWalker {
 };
 
 }  // namespace pulsecast::detail
+
+#endif

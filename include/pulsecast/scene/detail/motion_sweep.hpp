@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_DETAIL_MOTION_SWEEP_HPP
+#define PULSECAST_SCENE_DETAIL_MOTION_SWEEP_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -154,3 +155,5 @@ inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own
 }
 
 }  // namespace pulsecast::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_DETAIL_MOTION_TIMELINE_HPP
+#define PULSECAST_SCENE_DETAIL_MOTION_TIMELINE_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -151,3 +152,5 @@ struct MotionTimeline {
 };
 
 }  // namespace pulsecast::detail
+
+#endif

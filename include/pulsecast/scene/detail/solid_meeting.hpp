@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_DETAIL_SOLID_MEETING_HPP
+#define PULSECAST_SCENE_DETAIL_SOLID_MEETING_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -60,3 +61,5 @@ class SolidMeeting {
 }
 
 }  // namespace pulsecast::detail
+
+#endif

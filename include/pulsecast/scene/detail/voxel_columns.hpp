@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_DETAIL_VOXEL_COLUMNS_HPP
+#define PULSECAST_SCENE_DETAIL_VOXEL_COLUMNS_HPP
 
 #include <algorithm>
 #include <array>
@@ -47,3 +48,5 @@ template <class To, class From>
 }
 
 }  // namespace pulsecast::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_DETAIL_VOXEL_INDEX_BUILDER_HPP
+#define PULSECAST_SCENE_DETAIL_VOXEL_INDEX_BUILDER_HPP
 
 #include <algorithm>
 #include <array>
@@ -205,3 +206,5 @@ inline VoxelIndex::VoxelIndex(const VoxelData& data, std::vector<std::uint32_t>&
 }
 
 }  // namespace pulsecast
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_SCENE_DETAIL_VOXEL_KEYS_HPP
+#define PULSECAST_SCENE_DETAIL_VOXEL_KEYS_HPP
 
 #include <array>
 #include <cstddef>
@@ -63,3 +64,5 @@ struct VoxelLevel {
 };
 
 }  // namespace pulsecast::detail
+
+#endif

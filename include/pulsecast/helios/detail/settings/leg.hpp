@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_LEG_HPP
+#define PULSECAST_HELIOS_DETAIL_SETTINGS_LEG_HPP
 
 #include <cstddef>
 #include <filesystem>
@@ -104,3 +105,5 @@ struct LegSettings {
 }
 
 }  // namespace pulsecast::helios
+
+#endif

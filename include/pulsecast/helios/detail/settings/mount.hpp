@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_MOUNT_HPP
+#define PULSECAST_HELIOS_DETAIL_SETTINGS_MOUNT_HPP
 
 #include <cstdint>
 #include <limits>
@@ -58,3 +59,5 @@ struct MountSettings {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_PLATFORM_HPP
+#define PULSECAST_HELIOS_DETAIL_SETTINGS_PLATFORM_HPP
 
 #include <array>
 #include <cstdint>
@@ -79,3 +80,5 @@ struct PlatformSettings {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

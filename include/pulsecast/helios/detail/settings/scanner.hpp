@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_SCANNER_HPP
+#define PULSECAST_HELIOS_DETAIL_SETTINGS_SCANNER_HPP
 
 #include <array>
 #include <limits>
@@ -144,3 +145,5 @@ struct ScannerSettings {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_SETTINGS_SCENE_HPP
+#define PULSECAST_HELIOS_DETAIL_SETTINGS_SCENE_HPP
 
 #include <array>
 #include <cstdint>
@@ -225,3 +226,5 @@ struct SceneSettings {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

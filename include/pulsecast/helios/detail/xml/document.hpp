@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_DOCUMENT_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_DOCUMENT_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -247,3 +248,5 @@ class XmlDocument {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

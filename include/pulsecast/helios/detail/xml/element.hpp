@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_ELEMENT_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_ELEMENT_HPP
 
 #include <algorithm>
 #include <array>
@@ -341,3 +342,5 @@ class XmlInput {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

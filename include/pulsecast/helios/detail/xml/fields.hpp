@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_FIELDS_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_FIELDS_HPP
 
 #include <limits>
 #include <string>
@@ -69,3 +70,5 @@ void fields(Io& io, Of<Io, MountSettings>& mount) {
 }
 
 }  // namespace pulsecast::helios::xml
+
+#endif

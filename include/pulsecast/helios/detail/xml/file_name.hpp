@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_FILE_NAME_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_FILE_NAME_HPP
 
 #include <algorithm>
 #include <string>
@@ -22,3 +23,5 @@ inline void fit_for_name(const XmlInput& io, const char* name, std::string& text
 }
 
 }  // namespace pulsecast::helios::detail
+
+#endif

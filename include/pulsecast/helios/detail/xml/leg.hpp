@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_LEG_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_LEG_HPP
 
 #include <array>
 #include <cstddef>
@@ -98,3 +99,5 @@ void fields(Io& io, Of<Io, LegScannerSettings>& scanner) {
 }
 
 }  // namespace pulsecast::helios::xml
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_LEG_CHECKS_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_LEG_CHECKS_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -170,3 +171,5 @@ class LegChecks {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

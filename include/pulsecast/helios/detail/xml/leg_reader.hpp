@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_LEG_READER_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_LEG_READER_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -184,3 +185,5 @@ class LegReader {
 };
 
 }  // namespace pulsecast::helios::detail
+
+#endif

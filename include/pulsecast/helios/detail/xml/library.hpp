@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_LIBRARY_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_LIBRARY_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -145,3 +146,5 @@ class XmlLibrary {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_MOTION_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_MOTION_HPP
 
 #include <cmath>
 #include <string>
@@ -128,3 +129,5 @@ void fields(Io& io, Of<Io, MotionSequenceSettings>& sequence) {
 }
 
 }  // namespace pulsecast::helios::xml
+
+#endif

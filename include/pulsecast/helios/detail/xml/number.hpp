@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_NUMBER_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_NUMBER_HPP
 
 #include <algorithm>
 #include <array>
@@ -84,3 +85,5 @@ inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 
 }
 
 }  // namespace pulsecast::helios
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_OUTPUT_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_OUTPUT_HPP
 
 #include <cmath>
 #include <filesystem>
@@ -99,3 +100,5 @@ class XmlOutput {
 };
 
 }  // namespace pulsecast::helios
+
+#endif

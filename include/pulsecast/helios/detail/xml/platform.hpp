@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_PLATFORM_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_PLATFORM_HPP
 
 #include <array>
 #include <cstddef>
@@ -82,3 +83,5 @@ void fields(Io& io, Of<Io, PlatformSettings>& platform) {
 }
 
 }  // namespace pulsecast::helios::xml
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_SCANNER_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_SCANNER_HPP
 
 #include <algorithm>
 #include <array>
@@ -269,3 +270,5 @@ void fields(Io& io, Of<Io, ScannerSettings>& scanner) {
 }
 
 }  // namespace pulsecast::helios::xml
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_SCENE_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_SCENE_HPP
 
 #include <algorithm>
 #include <array>
@@ -199,3 +200,5 @@ inline void fields(XmlOutput& io, const SceneSettings& scene) {
 }
 
 }  // namespace pulsecast::helios::xml
+
+#endif

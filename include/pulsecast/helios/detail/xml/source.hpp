@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_SOURCE_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_SOURCE_HPP
 
 #include <array>
 #include <cstddef>
@@ -109,3 +110,5 @@ void fields(Io& io, Of<Io, VoxelSource>& source) {
 }
 
 }  // namespace pulsecast::helios::xml
+
+#endif

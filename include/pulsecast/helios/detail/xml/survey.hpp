@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_SURVEY_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_SURVEY_HPP
 
 #include <algorithm>
 #include <array>
@@ -231,3 +232,5 @@ class SurveyReader {
 };
 
 }  // namespace pulsecast::helios::detail
+
+#endif

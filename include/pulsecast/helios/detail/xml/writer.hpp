@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_HELIOS_DETAIL_XML_WRITER_HPP
+#define PULSECAST_HELIOS_DETAIL_XML_WRITER_HPP
 
 #include <cstddef>
 #include <filesystem>
@@ -101,3 +102,5 @@ inline DocumentWriter document_of(const SurveySettings& survey) {
 }
 
 }  // namespace pulsecast::helios::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_GEOTIFF_GEOREFERENCE_HPP
+#define PULSECAST_IO_DETAIL_GEOTIFF_GEOREFERENCE_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -101,3 +102,5 @@ struct RasterCorner {
 }
 
 }  // namespace pulsecast::io::detail
+
+#endif

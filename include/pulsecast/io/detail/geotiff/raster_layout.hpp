@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_GEOTIFF_RASTER_LAYOUT_HPP
+#define PULSECAST_IO_DETAIL_GEOTIFF_RASTER_LAYOUT_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -81,3 +82,5 @@ struct RasterLayout {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

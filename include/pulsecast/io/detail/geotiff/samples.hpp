@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_GEOTIFF_SAMPLES_HPP
+#define PULSECAST_IO_DETAIL_GEOTIFF_SAMPLES_HPP
 
 #include <cmath>
 #include <cstdint>
@@ -47,3 +48,5 @@ template <class Sample>
 }
 
 }  // namespace pulsecast::io::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_GEOTIFF_TIFF_FILE_HPP
+#define PULSECAST_IO_DETAIL_GEOTIFF_TIFF_FILE_HPP
 
 #include <array>
 #include <cstdarg>
@@ -104,3 +105,5 @@ class TiffFile {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

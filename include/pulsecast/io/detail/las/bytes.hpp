@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAS_BYTES_HPP
+#define PULSECAST_IO_DETAIL_LAS_BYTES_HPP
 
 #include <array>
 #include <bit>
@@ -45,3 +46,5 @@ inline constexpr std::size_t las_vlr_header_size = 54;  ///< [byte]
 }
 
 }  // namespace pulsecast::io::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAS_ENCODER_HPP
+#define PULSECAST_IO_DETAIL_LAS_ENCODER_HPP
 
 #include <algorithm>
 #include <array>
@@ -207,3 +208,5 @@ class LasEncoder {
 };
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAS_LAYOUT_HPP
+#define PULSECAST_IO_DETAIL_LAS_LAYOUT_HPP
 
 #include <array>
 #include <cstddef>
@@ -59,3 +60,5 @@ struct LasLayout {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAS_PACKETS_HPP
+#define PULSECAST_IO_DETAIL_LAS_PACKETS_HPP
 
 #include <algorithm>
 #include <array>
@@ -152,3 +153,5 @@ class LasPackets {
 };
 
 }  // namespace pulsecast::io
+
+#endif

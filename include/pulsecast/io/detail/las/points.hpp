@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAS_POINTS_HPP
+#define PULSECAST_IO_DETAIL_LAS_POINTS_HPP
 
 #include <algorithm>
 #include <array>
@@ -153,3 +154,5 @@ class LasPoints {
 };
 
 }  // namespace pulsecast::io
+
+#endif

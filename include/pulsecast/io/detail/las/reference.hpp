@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAS_REFERENCE_HPP
+#define PULSECAST_IO_DETAIL_LAS_REFERENCE_HPP
 
 #include <algorithm>
 #include <array>
@@ -47,3 +48,5 @@ namespace pulsecast::io::detail {
 }
 
 }  // namespace pulsecast::io::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAS_SETTINGS_HPP
+#define PULSECAST_IO_DETAIL_LAS_SETTINGS_HPP
 
 #include <chrono>
 #include <cstdint>
@@ -66,3 +67,5 @@ struct LasSettings {
 };
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAS_WRITER_HPP
+#define PULSECAST_IO_DETAIL_LAS_WRITER_HPP
 
 #include <algorithm>
 #include <array>
@@ -242,3 +243,5 @@ class LasFileWriter {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

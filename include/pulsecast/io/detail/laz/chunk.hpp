@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAZ_CHUNK_HPP
+#define PULSECAST_IO_DETAIL_LAZ_CHUNK_HPP
 
 #include <algorithm>
 #include <array>
@@ -289,3 +290,5 @@ class LazChunk {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

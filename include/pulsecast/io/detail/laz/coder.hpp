@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAZ_CODER_HPP
+#define PULSECAST_IO_DETAIL_LAZ_CODER_HPP
 
 #include <algorithm>
 #include <array>
@@ -146,3 +147,5 @@ class LazEncoder {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

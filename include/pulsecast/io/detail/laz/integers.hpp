@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAZ_INTEGERS_HPP
+#define PULSECAST_IO_DETAIL_LAZ_INTEGERS_HPP
 
 #include <algorithm>
 #include <bit>
@@ -52,3 +53,5 @@ class LazIntegers {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAZ_MEDIAN_HPP
+#define PULSECAST_IO_DETAIL_LAZ_MEDIAN_HPP
 
 #include <array>
 #include <cstddef>
@@ -34,3 +35,5 @@ class LazMedian {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAZ_POINT_HPP
+#define PULSECAST_IO_DETAIL_LAZ_POINT_HPP
 
 #include <array>
 #include <bit>
@@ -50,3 +51,5 @@ struct LazPoint {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

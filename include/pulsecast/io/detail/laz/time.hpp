@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_LAZ_TIME_HPP
+#define PULSECAST_IO_DETAIL_LAZ_TIME_HPP
 
 #include <array>
 #include <cmath>
@@ -102,3 +103,5 @@ class LazTimes {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

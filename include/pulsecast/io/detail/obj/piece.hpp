@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_OBJ_PIECE_HPP
+#define PULSECAST_IO_DETAIL_OBJ_PIECE_HPP
 
 #include <algorithm>
 #include <array>
@@ -212,3 +213,5 @@ class ObjPiece : private StatementBuffer {
 };
 
 }  // namespace pulsecast::io::detail
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_OBJ_POLYGON_HPP
+#define PULSECAST_IO_DETAIL_OBJ_POLYGON_HPP
 
 #include <array>
 #include <cmath>
@@ -74,3 +75,5 @@ inline constexpr std::size_t max_polygon_corners = 4096;  ///< upper limit; tria
 }
 
 }  // namespace pulsecast::io::detail
+
+#endif

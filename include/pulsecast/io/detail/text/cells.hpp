@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_TEXT_CELLS_HPP
+#define PULSECAST_IO_DETAIL_TEXT_CELLS_HPP
 
 #include <array>
 #include <cstddef>
@@ -54,3 +55,5 @@ class RowCells {
 };
 
 }  // namespace pulsecast::io
+
+#endif

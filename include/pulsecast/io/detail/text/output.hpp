@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_TEXT_OUTPUT_HPP
+#define PULSECAST_IO_DETAIL_TEXT_OUTPUT_HPP
 
 #include <array>
 #include <charconv>
@@ -79,3 +80,5 @@ class TextOutput {
 };
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_TEXT_POINTS_HPP
+#define PULSECAST_IO_DETAIL_TEXT_POINTS_HPP
 
 #include <algorithm>
 #include <array>
@@ -128,3 +129,5 @@ class TextPoints {
 };
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_TEXT_ROW_HPP
+#define PULSECAST_IO_DETAIL_TEXT_ROW_HPP
 
 #include <array>
 #include <charconv>
@@ -92,3 +93,5 @@ class TextRow {
 };
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_TEXT_TABLE_HPP
+#define PULSECAST_IO_DETAIL_TEXT_TABLE_HPP
 
 #include <algorithm>
 #include <cstddef>
@@ -90,3 +91,5 @@ class TextTable {
 };
 
 }  // namespace pulsecast::io
+
+#endif

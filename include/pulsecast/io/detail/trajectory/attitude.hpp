@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_TRAJECTORY_ATTITUDE_HPP
+#define PULSECAST_IO_DETAIL_TRAJECTORY_ATTITUDE_HPP
 
 #include <array>
 #include <cmath>
@@ -148,3 +149,5 @@ struct Axes {
 };
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_TRAJECTORY_COLUMNS_HPP
+#define PULSECAST_IO_DETAIL_TRAJECTORY_COLUMNS_HPP
 
 #include <algorithm>
 #include <array>
@@ -189,3 +190,5 @@ class TrajectoryColumns {
 };
 
 }  // namespace pulsecast::io
+
+#endif

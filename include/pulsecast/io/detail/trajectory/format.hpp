@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
+#define PULSECAST_IO_DETAIL_TRAJECTORY_FORMAT_HPP
 
 #include <cstddef>
 #include <cstdint>
@@ -82,3 +83,5 @@ struct TrajectoryFormat {
 }
 
 }  // namespace pulsecast::io
+
+#endif

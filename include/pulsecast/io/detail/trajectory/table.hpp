@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#pragma once
+#ifndef PULSECAST_IO_DETAIL_TRAJECTORY_TABLE_HPP
+#define PULSECAST_IO_DETAIL_TRAJECTORY_TABLE_HPP
 
 #include <algorithm>
 #include <cmath>
@@ -286,3 +287,5 @@ inline TrajectoryTable read_trajectory(const std::filesystem::path& path, const 
 }
 
 }  // namespace pulsecast::io
+
+#endif

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_PNG_CAMERA_HPP
+#define PULSECAST_IO_DETAIL_PNG_CAMERA_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/io/detail/png/settings.hpp>
+
+namespace pulsecast::io::detail {
+
+/// Point of a picture.
+struct ImagePoint {
+  float x, y, z;  ///< relative to a nearby origin [m]
+  float value;    ///< quantity shown by the colour
+
+  [[nodiscard]] Vec3 position() const noexcept { return {x, y, z}; }
+};
+
+/// Percentiles that leave `share` of all values below, and above; those of a sample for many points.
+[[nodiscard]] std::pair<double, double> percentiles(std::span<const ImagePoint> points, double share, const auto& value) {
+  constexpr std::size_t sample = 200'000;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < points.size(); i += points.size() / sample + 1)
+    if (const double v = value(points[i]); std::isfinite(v)) values.push_back(v);
+  if (values.empty()) return {0, 0};
+  const auto at = [&](double s) {
+    const auto place = values.begin() + std::lround(s * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+  };
+  return {at(share), at(1 - share)};
+}
+
+/// Camera, framed so that the picture is full except for outliers, or at a given position.
+class Camera {
+ public:
+  Camera(const ImageSettings& s, std::span<const ImagePoint> points)
+      : parallel_(s.field_of_view == 0),
+        right_(std::cos(s.azimuth), -std::sin(s.azimuth), 0),
+        forward_(std::sin(s.azimuth) * std::cos(s.elevation), std::cos(s.azimuth) * std::cos(s.elevation), -std::sin(s.elevation)),
+        up_(cross(right_, forward_)) {
+    s.eye ? stand(s, *s.eye) : frame(s, points);
+  }
+
+  /// Column and row from the upper left corner of the picture [px], and depth along the view [m]. NaN behind the camera.
+  [[nodiscard]] Vec3 pixel(const ImagePoint& p) const {
+    const Vec3 v = seen(p);
+    return {shift_.x + scale_ * v.x, shift_.y - scale_ * v.y, v.z};
+  }
+
+  /// Size of a metre across the view at a depth [px/m].
+  [[nodiscard]] double scale(double depth) const { return parallel_ ? scale_ : scale_ * distance_ / depth; }
+
+  /// Magnification at a depth relative to the middle of the scene.
+  [[nodiscard]] double magnification(double depth) const { return parallel_ ? 1 : distance_ / depth; }
+
+ private:
+  [[nodiscard]] Vec3 seen(const ImagePoint& p) const {
+    const Vec3 v = p.position() - centre_;
+    const double depth = distance_ + dot(v, forward_);
+    const double m = depth > near_ ? magnification(depth) : std::numeric_limits<double>::quiet_NaN();
+    return {m * dot(v, right_), m * dot(v, up_), depth};
+  }
+
+  /// Places the camera at a given position.
+  void stand(const ImageSettings& s, const Vec3& eye) {
+    distance_ = 10;  // distance of the set point size [m]
+    near_ = 0.3;     // nearer points would fill the picture [m]
+    centre_ = eye + distance_ * forward_;
+    scale_ = 0.5 * s.width / (distance_ * std::tan(0.5 * s.field_of_view));
+    shift_ = {0.5 * s.width, 0.5 * s.height};
+  }
+
+  /// Places the camera so that the picture is full except for outliers.
+  void frame(const ImageSettings& s, std::span<const ImagePoint> points) {
+    constexpr double outliers = 0.001, margin = 0.95;
+    double radius = 1e-3;  // minimum, for a scene of one point [m]
+    for (const Vec3& axis : {right_, forward_, up_}) {
+      const auto [low, high] = percentiles(points, outliers, [&](const ImagePoint& p) { return dot(axis, p.position()); });
+      centre_ += axis * (0.5 * (low + high));
+      radius = std::max(radius, 0.5 * (high - low));
+    }
+    distance_ = radius / std::tan(0.5 * (parallel_ ? radians(30) : s.field_of_view));
+    const auto [x_low, x_high] = percentiles(points, outliers, [&](const ImagePoint& p) { return seen(p).x; });
+    const auto [y_low, y_high] = percentiles(points, outliers, [&](const ImagePoint& p) { return seen(p).y; });
+    scale_ = margin * std::min(s.width / std::max(x_high - x_low, 0.01 * radius), s.height / std::max(y_high - y_low, 0.01 * radius));
+    shift_ = {0.5 * s.width - scale_ * 0.5 * (x_low + x_high), 0.5 * s.height + scale_ * 0.5 * (y_low + y_high)};
+  }
+
+  bool parallel_;
+  Vec3 right_, forward_, up_, centre_{};
+  double distance_ = 0, near_ = 0, scale_ = 0;
+  Vec2 shift_{};
+};
+
+}  // namespace pulsecast::io::detail
+
+#endif
