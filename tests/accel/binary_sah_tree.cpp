@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -42,16 +43,16 @@ struct Shape {
 template <class Real>
 Shape shape_of(const Tree<Real>& tree) {
   Shape shape;
-  std::vector<typename Tree<Real>::Range> open{tree.root()}, children;
+  std::vector<typename Tree<Real>::Range> open{tree.root()};
   while (!open.empty()) {
     const auto range = open.back();
     open.pop_back();
-    children.clear();
     ++shape.nodes;
+    typename Tree<Real>::Children children;
     tree.gather(range, 8, children);
-    shape.max_children = std::max(shape.max_children, children.size());
+    shape.max_children = std::max(shape.max_children, children.count);
     std::uint32_t at = range.begin;
-    for (const auto& child : children) {
+    for (const auto& child : std::span(children.ranges).first(children.count)) {
       if (child.begin != at || !holds(tree.box(range), tree.box(child))) ++shape.torn;
       at = child.end;
       if (!tree.leaf(child)) {

@@ -30,7 +30,7 @@ TEST_CASE("the nearest name is suggested, or all if none is near") {
   CHECK(suggestion("q", known) == "; known names: scanFreq_hz, pulseFreq_hz, scanAngle_deg");
   CHECK(suggestion("q", {}).empty());
   CHECK(suggestion("abcd", std::vector<std::string>{"abxy"}) == "; did you mean 'abxy'?");   // half of its letters
-  CHECK(suggestion("abcdef", std::vector<std::string>{"abuvwx"}) == "; there are: abuvwx");  // more than half
+  CHECK(suggestion("abcdef", std::vector<std::string>{"abuvwx"}) == "; known names: abuvwx");  // more than half
 }
 
 TEST_CASE("of names that are equally near, the first is taken; only the beginning of long ones counts") {

@@ -88,7 +88,7 @@ endif()
 # Applies the cheapest settings there are, and sets `out` to the rings of subrays that were chosen: by time, so it may be others each time.
 function(applied out)
   execute_process(COMMAND ${PROGRAM} forecast ${ARGN} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  if(NOT result EQUAL 0 OR NOT text MATCHES "asked: beamSampleQuality ([0-9]+) .[0-9]+ subrays?., binSize_ns ([0-9.]+).*written to own/[a-z]+.xml")
+  if(NOT result EQUAL 0 OR NOT text MATCHES "limits: beamSampleQuality ([0-9]+) .[0-9]+ subrays?., binSize_ns ([0-9.]+).*written to own/[a-z]+.xml")
     message(SEND_ERROR "nothing was applied: ${text}")
   endif()
   set(${out} ${CMAKE_MATCH_1} PARENT_SCOPE)

@@ -96,7 +96,7 @@ class GeoTiffReader {
     word = word.substr(0, word.find('\0'));
     while (!word.empty() && (word.front() == ' ' || word.front() == '+')) word.remove_prefix(1);
     if (const auto value = text::take_number<double>(word)) return value;
-    if (!word.empty()) warn("its value for missing heights is not a number, and is ignored");
+    if (!word.empty()) file_.warn("its value for missing heights is not a number, and is ignored");
     return std::nullopt;
   }
 

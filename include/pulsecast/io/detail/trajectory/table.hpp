@@ -180,7 +180,7 @@ class TrajectoryReader {
       if (!column) continue;
       const std::optional<double> number = text::finite_number_in(cells[i]);
       if (!number || std::fabs(*number / column->per_si) > max_in_trajectory)
-        table_.fail_here(i, text::quoted(cells[i]) + " is no " + names_[i] +
+        table_.fail_here(i, text::quoted(cells[i]) + " in column " + names_[i] +
                                 ": expected a finite number, with a decimal point, within 1e12 s, m or rad");
       values[column->quantity] = *number / column->per_si;
     }
