@@ -61,9 +61,9 @@ step "a program of a user's own"
 cat > "$root/opt/try/CMakeLists.txt" <<'CMAKE'
 cmake_minimum_required(VERSION 3.25)
 project(user LANGUAGES CXX)
-find_package(pulsecast 0.1 REQUIRED COMPONENTS las)
+find_package(pulsecast 0.1 REQUIRED COMPONENTS io)
 add_executable(embed embed.cpp)
-target_link_libraries(embed PRIVATE pulsecast::pulsecast pulsecast::las)
+target_link_libraries(embed PRIVATE pulsecast::pulsecast pulsecast::io)
 CMAKE
 within 'apt-get install --yes -qq --no-install-recommends g++ cmake make > /dev/null
 cd /opt/try && cmake -B build -DCMAKE_BUILD_TYPE=Release > /dev/null && cmake --build build && build/embed'

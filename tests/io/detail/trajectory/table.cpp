@@ -300,7 +300,7 @@ TEST_CASE("numbers have a sign, a point and an exponent, and nothing else") {
     CAPTURE(cell);
     CHECK(error(head + "0," + cell + ",2,3,4,5,6\n").place() == "line 2, column 2");
   }
-  const std::string longest(64, 'x');  // of a long cell, an error shows the beginning
+  const std::string longest(80, 'x');  // of a long cell, an error shows the beginning
   CHECK(contains(error(head + "0," + longest + ",2,3,4,5,6\n").problem(), "'" + longest + "' in column x_m"));
   CHECK(contains(error(head + "0," + longest + "x,2,3,4,5,6\n").problem(), "'" + longest + "...' in column x_m"));
   CHECK(contains(error(head + "0,1,2\x01,3,4,5,6\n").problem(), "binary data"));
