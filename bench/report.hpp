@@ -20,9 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/page/detail/json.hpp>
-
-/// What the benchmarks share: clocks, rounds by turns, and a report with the machine, the compiler and its flags, on request as JSON.
+/// What the benchmarks share: clocks, rounds by turns, and a report with the machine, the compiler and its flags.
 namespace bench {
 
 namespace detail {
@@ -153,27 +151,6 @@ class Report {
       markdown_ ? std::printf(" %s |", rounded(figure).c_str()) : std::printf(" %10.4g %s", figure, what.c_str());
     std::printf("\n");
     std::fflush(stdout);
-    rows_.emplace_back(name, figures);
-  }
-
-  /// Writes the JSON file, if one was asked for. Gives what `main` returns.
-  [[nodiscard]] int finish() const {
-    if (json_.empty()) return 0;
-    pulsecast::page::detail::JsonWriter json;
-    json.begin_object().member("program", program_).member("machine", machine()).member("compiler", compiler());
-    json.member("flags", flags()).member("rounds", rounds_).key("results").begin_array();
-    for (const auto& [name, figures] : rows_) {
-      json.begin_object().member("name", name);
-      for (const auto& [what, figure] : figures) json.member(what, figure);
-      json.end_object();
-    }
-    json.end_array().end_object();
-    std::ofstream out(json_);
-    out << json.text() << '\n';
-    out.close();
-    if (out) return 0;
-    std::fprintf(stderr, "%s: cannot write %s\n", program_.c_str(), json_.c_str());
-    return 1;
   }
 
   [[nodiscard]] static std::string machine() {
@@ -224,7 +201,7 @@ class Report {
     return text;
   }
 
-  std::string program_, json_;
+  std::string program_;
   std::vector<std::string> only_, files_;
   int rounds_ = 7;
   double seconds_ = 0.15;
