@@ -86,6 +86,10 @@ TEST_CASE("a scan angle is zero below the body, positive to its right, and does 
     CHECK(scan_angle(rotation_about(axis::up, -90_deg), tripod) == support::relative(90_deg, 1e-14));
     // a beam that looks ahead and down has the scan angle of what is below
     CHECK(std::fabs(scan_angle(rotation_about(axis::right, -45_deg), tripod)) < 1e-15);
+    // a mount that is turned turns the beam with it
+    const Mount rolled{.boresight = rotation_about(axis::forward, 20_deg)};
+    const Platform platform{tripod, rolled, Deflector{Fixed{{down, {}}}, Scanner{.pulses = 1}}};
+    CHECK(platform.pulse(0)->scan_angle == support::relative(-20_deg, 1e-14));
   }
 }
 

@@ -107,6 +107,14 @@ TEST_CASE("a sunflower's subrays carry equal energy and spread as a Gaussian bea
   CHECK(static_cast<double>(inside) / n == support::relative(1 - std::exp(-2), 1e-4));
 }
 
+TEST_CASE("the subrays of a sunflower are at the middles of equal energies, a golden angle apart") {
+  const SunflowerFootprint f(2);
+  const double first = std::sqrt(-0.5 * std::log(1 - 0.25)), second = std::sqrt(-0.5 * std::log(1 - 0.75));
+  const double apart = std::sqrt(first * first + second * second - 2 * first * second * std::cos(pi * (3 - std::sqrt(5.0))));
+  const Vec2 between = f.offset(1) - f.offset(0);
+  CHECK(std::hypot(between.x, between.y) == support::relative(apart, 1e-14));
+}
+
 TEST_CASE("a lattice's subrays carry equal energy and spread as a Gaussian beam does, across and up") {
   const std::size_t n = 20000;
   const LatticeFootprint f(n);
