@@ -46,7 +46,8 @@ class BinarySahTree {
     };
     threads = thread_count(threads);
     const std::size_t grain = threads == 1 ? primitives.size() : std::max<std::size_t>(primitives.size() / (8 * threads), 4096);
-    std::vector<Step> steps{{{0, static_cast<std::uint32_t>(primitives.size()), 0, false, &root_, bounds(threads)}}};
+    std::vector<Step> steps;
+    steps.push_back({{0, static_cast<std::uint32_t>(primitives.size()), 0, false, &root_, bounds(threads)}});
     std::vector<std::size_t> subtrees;
     const SharedBuffer<ChunkBins> space(threads == 1 ? 1 : chunk_count(primitives.size()));
     for (std::size_t i = 0; i < steps.size(); ++i) {

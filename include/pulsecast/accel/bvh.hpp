@@ -172,7 +172,8 @@ class Bvh {
   void collapse(const BinaryTree& binary, unsigned threads) {
     const std::size_t count = binary.primitives().size();
     const SharedBuffer<PrimitiveIndex> primitives(count);
-    std::vector<Node> upper(1);
+    std::vector<Node> upper;
+    upper.resize(1);
     std::vector<Open> below;
     const std::size_t grain = std::max<std::size_t>(count / 64, 4096);
     std::size_t next = 0;

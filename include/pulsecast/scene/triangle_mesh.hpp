@@ -193,7 +193,10 @@ class TriangleMesh {
   /// Hash table of the unique corners of a block.
   class CornerTable {
    public:
-    explicit CornerTable(std::size_t triangles) : places_(std::bit_ceil(4 * triangles), nowhere) { corners_.reserve(triangles); }
+    explicit CornerTable(std::size_t triangles) : places_(std::bit_ceil(4 * triangles)) {
+      std::fill(places_.begin(), places_.end(), nowhere);
+      corners_.reserve(triangles);
+    }
 
     [[nodiscard]] std::uint16_t number_of(const Vec3& corner) {
       const auto bits = std::bit_cast<Bits>(corner);
@@ -216,7 +219,7 @@ class TriangleMesh {
     using Bits = std::array<std::uint64_t, 3>;
     static constexpr std::uint16_t nowhere = 0xFFFF;
 
-    std::vector<std::uint16_t> places_;
+    SharedBuffer<std::uint16_t> places_;
     std::vector<Vec3> corners_;
   };
 
