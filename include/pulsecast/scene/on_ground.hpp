@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <variant>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/triangle.hpp>

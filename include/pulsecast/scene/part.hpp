@@ -100,7 +100,7 @@ struct SharedShape {
   /// Variant of shared pointers.
   using type = std::variant<std::shared_ptr<const Shapes>...>;
 };
-/// Shared shape of the only kind: a variant of one would take a twentieth of the time to compile a scene.
+/// Shared shape of the only kind. A variant of one takes g++ 12 some 60 ms more to compile.
 template <Geometry Shape>
 struct SharedShape<Shape> {
   /// Shared pointer.
