@@ -12,6 +12,8 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/helios/detail/leg_paths.hpp>
+
 #include "support/generators.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"

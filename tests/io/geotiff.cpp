@@ -3,9 +3,11 @@
 #include <pulsecast/io/geotiff.hpp>
 
 #include <doctest/doctest.h>
+#include <tiffio.h>
 
 #include <bit>
 #include <cmath>
+#include <cstdarg>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -15,6 +17,7 @@
 #include <tuple>
 #include <vector>
 
+#include <pulsecast/io/detail/geotiff/samples.hpp>
 #include <pulsecast/scene/height_field.hpp>
 
 #include "support/data_folder.hpp"

@@ -21,6 +21,7 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/random.hpp>
+#include <pulsecast/io/detail/obj/reader.hpp>
 #include "support/data_folder.hpp"
 #include "support/file_errors.hpp"
 #include "support/generators.hpp"

@@ -19,6 +19,8 @@
 
 #include <Eigen/SVD>
 
+#include <pulsecast/io/detail/point_cloud_reader.hpp>
+
 #include "support/file_errors.hpp"
 #include "support/generators.hpp"
 #include "support/las_builder.hpp"

@@ -3,33 +3,22 @@
 #ifndef PULSECAST_HELIOS_SCENE_HPP
 #define PULSECAST_HELIOS_SCENE_HPP
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
-#include <memory>
+#include <functional>
 #include <set>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include <pulsecast/helios/detail/part_motion.hpp>
+#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/settings.hpp>
-#include <pulsecast/io/geotiff.hpp>
-#include <pulsecast/io/leaf_angles.hpp>
-#include <pulsecast/io/mtl.hpp>
-#include <pulsecast/io/obj.hpp>
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/spectral_library.hpp>
-#include <pulsecast/io/vox.hpp>
 #include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
-#include <pulsecast/scene/on_ground.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
-#include <pulsecast/scene/variation.hpp>
 #include <pulsecast/scene/voxel_grid.hpp>
 
 /// Converts the scene of a survey document to parts of the library.
@@ -61,43 +50,10 @@ class SceneBuilder {
       : settings_(validated(std::move(settings))), options_(validated(std::move(options))) {}
 
   /// Number of runs of the survey, from its swaps.
-  [[nodiscard]] int runs() const {
-    int most = 1;
-    for (const PartSettings& part : settings_.parts) {
-      int all = 1;
-      for (const SwapSettings& swap : part.swaps) all += swap.step;
-      most = std::max(most, all);
-    }
-    return most;
-  }
+  [[nodiscard]] int runs() const;
 
   /// Parts in a run, from 0.
-  [[nodiscard]] std::vector<SurveyPart> parts(int run = 0) {
-    std::vector<SurveyPart> all;
-    std::vector<int> lifted;  // `on_ground` of each part
-    for (std::size_t i = 0; i < settings_.parts.size(); ++i) {
-      const PartSettings& part = settings_.parts[i];
-      const PartSource* source = &part.source;
-      const TransformSettings* transform = &part.transform;
-      int begin = 1;
-      bool removed = false;
-      for (const SwapSettings& swap : part.swaps) {
-        if (run < begin) break;
-        removed = swap.removes;
-        source = swap.source ? &*swap.source : &part.source;
-        transform = &swap.transform;
-        begin += swap.step;
-      }
-      if (removed) continue;
-      add(part, *source, *transform, i, all);
-      lifted.resize(all.size(), transform->on_ground);
-    }
-    warn(options_.spectra.warnings);
-    tell_shared_objects(all);
-    stand_on_ground(all, lifted);
-    move(all);
-    return all;
-  }
+  [[nodiscard]] std::vector<SurveyPart> parts(int run = 0);
 
   /// Warnings so far, each once.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
@@ -108,230 +64,26 @@ class SceneBuilder {
     decltype(SurveyPart::geometry) geometry;
     MaterialTable materials;
   };
+  using Load = std::function<void(const std::filesystem::path&, std::vector<Loaded>&)>;
 
-  void warn(const std::vector<std::string>& what) {
-    for (const std::string& text : what)
-      if (warned_.insert(text).second) warnings_.push_back(text);
-  }
-
-  /// Reads each source once.
-  const std::vector<Loaded>& load(const PartSource& source) {
-    for (const auto& [known, loaded] : loaded_)
-      if (known == source) return loaded;
-    auto made = std::visit([&](const auto& s) { return read(s); }, source);
-    return loaded_.emplace_back(source, std::move(made)).second;
-  }
-
-  /// Loads files in order. A `SettingError` becomes a `FileError` of that file.
-  template <class Load>
-  static std::vector<Loaded> each(const std::vector<std::filesystem::path>& files, const Load& load) {
-    std::vector<Loaded> all;
-    for (const std::filesystem::path& file : files) try {
-        load(file, all);
-      } catch (const SettingError& error) {
-        throw FileError(file.string(), "", error.what());
-      }
-    return all;
-  }
-
-  std::vector<Loaded> read(const ObjSource& source) {
-    return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-      const io::UpAxis up_axis = source.y_up ? io::UpAxis::y : io::UpAxis::z;
-      io::ObjModel model = io::read_obj(file, {.up = up_axis, .spectra = options_.spectra}, options_.threads);
-      warn(model.warnings);
-      if (model.mesh.triangles.empty()) {
-        warn({file.string() + ": is left out"});
-        return;
-      }
-      all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh), options_.threads), table(std::move(model.materials))});
-    });
-  }
-
-  std::vector<Loaded> read(const GeoTiffSource& source) {
-    return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-      io::GeoTiff tiff = io::read_geotiff(file);
-      warn(tiff.warnings);
-      all.push_back({std::make_shared<const HeightField>(std::move(tiff.raster), options_.threads), table({material(source.material)})});
-    });
-  }
-
-  std::vector<Loaded> read(const XyzSource& source) {
-    io::PointCloudSettings s{.voxel_size = source.voxel_size, .default_normal = source.default_normal};
-    s.normals = source.estimate_normals > 0   ? io::VoxelNormals::fitted
-                : source.snap_neighbor_normal ? io::VoxelNormals::nearest
-                                              : io::VoxelNormals::mean;
-    s.columns.separators = source.separator;
-    io::PointColumns::Columns normal{};
-    std::transform(source.normal_columns.begin(), source.normal_columns.end(), normal.begin(),
-                   [](int column) { return static_cast<std::size_t>(column); });
-    s.columns.normal = normal;
-    s.validate();
-    return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-      io::PointCloud cloud = io::read_point_cloud(file, s);
-      if (s.normals == io::VoxelNormals::fitted && !s.default_normal)
-        drop_bare(file, cloud);
-      else
-        warn(cloud.warnings);
-      if (cloud.voxels.cells.empty()) {
-        warn({file.string() + ": has no voxel of three points or more, as required by estimateNormals, and is left out"});
-        return;
-      }
-      MaterialTable materials = assign_materials(source.material, cloud.voxels);
-      all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(cloud.voxels), std::move(materials)});
-    });
-  }
-
-  /// Removes voxels without a fitted plane.
-  void drop_bare(const std::filesystem::path& file, io::PointCloud& cloud) {
-    VoxelData& v = cloud.voxels;
-    const auto is_bare = [&](std::size_t i) { return v.normals[i] == std::array<float, 3>{}; };
-    std::size_t kept = 0;
-    const std::size_t all = v.normals.size();
-    for (std::size_t i = 0; i < all; ++i)
-      if (!is_bare(i)) {
-        v.cells[kept] = v.cells[i];
-        v.normals[kept++] = v.normals[i];
-      }
-    if (kept == all) return warn(cloud.warnings);
-    if (all > 0) {
-      v.cells.resize(kept);
-      v.normals.resize(kept);
-    }
-    warn({file.string() + ": " + std::to_string(all - kept) + " of " + std::to_string(all) +
-          " voxels have too few points for a normal, and are left out; defaultNormal would keep them"});
-  }
-
-  std::vector<Loaded> read(const VoxelSource& source) {
-    io::VoxelFileSettings s{.exponent = source.scaling_exponent};
-    s.use = source.mode == VoxelMode::transmittive ? io::VoxelUse::transmissive
-            : source.mode == VoxelMode::fixed      ? io::VoxelUse::opaque
-                                                   : io::VoxelUse::scaled;
-    if (source.random_shift) s.shift = options_.seed;
-    s.validate();
-    const LeafAngles leaves = source.leaf_angles.empty() ? LeafAngles::spherical() : io::read_leaf_angles(source.leaf_angles);
-    return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-      io::VoxelFile voxels = io::read_voxel_file(file, s);
-      warn(voxels.warnings);
-      if (voxels.voxels.cells.empty()) {
-        warn({file.string() + ": holds no occupied voxel, and is left out"});
-        return;
-      }
-      MaterialTable materials = assign_materials(source.material, voxels.voxels);
-      if (!source.leaf_angles.empty())  // convention of surveys: a `ladlut` gives 2 pi times the extinction of unit density
-        for (float& density : voxels.voxels.densities) density /= static_cast<float>(2 * pi);
-      if (source.mode == VoxelMode::transmittive)
-        all.push_back({std::make_shared<const VoxelGrid<TransmissiveVoxels>>(voxels.voxels, TransmissiveVoxels{leaves}), materials});
-      else if (source.mode == VoxelMode::fixed)
-        all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(voxels.voxels), materials});
-      else
-        all.push_back({std::make_shared<const VoxelGrid<ScaledVoxels>>(voxels.voxels), materials});
-    });
-  }
-
-  Material material(const MaterialSource& source) {
-    if (source.file.empty()) return io::undescribed("default");
-    const io::MaterialLibrary library = io::read_mtl(source.file, options_.spectra);
-    warn(library.warnings);
-    if (library.materials.empty() && !source.name) {
-      warn({source.file.string() + ": holds no material: a reflectance of 0.5 is assumed"});
-      return io::undescribed("default");
-    }
-    if (!source.name) return library.materials.begin()->second;
-    const auto found = library.materials.find(*source.name);
-    if (found != library.materials.end()) return found->second;
-    std::string known;
-    for (const auto& [name, m] : library.materials) known += (known.empty() ? "" : ", ") + name;
-    throw FileError(source.file.string(), "", "holds no material '" + *source.name + "'; it has " + known);
-  }
-
-  MaterialTable table(std::vector<Material> materials) const {
-    if (options_.fixed_incidence)
-      for (Material& m : materials) m.scattering = Scattering::direction_independent;
-    return material_table(std::move(materials));
-  }
-
-  /// Material of voxels, or its variants in turn.
-  MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels) {
-    std::vector<Material> all{material(source)};
-    if (source.random > 0) {
-      const std::vector<Material> variants =
-          vary_reflectance(all[0], static_cast<std::size_t>(source.random), std::min(1.0, source.random_range), options_.seed);
-      all.insert(all.end(), variants.begin(), variants.end());
-      const std::vector<std::uint32_t> turns = assign_round_robin(voxels.cells.size(), static_cast<std::uint32_t>(all.size()));
-      voxels.materials.assign(turns.begin(), turns.end());
-    }
-    return table(std::move(all));
-  }
-
+  void warn(const std::vector<std::string>& what);
+  const std::vector<Loaded>& load(const PartSource& source);  // each source once
+  static std::vector<Loaded> each(const std::vector<std::filesystem::path>& files, const Load& load);
+  std::vector<Loaded> read(const ObjSource& source);
+  std::vector<Loaded> read(const GeoTiffSource& source);
+  std::vector<Loaded> read(const XyzSource& source);
+  std::vector<Loaded> read(const VoxelSource& source);
+  void drop_bare(const std::filesystem::path& file, io::PointCloud& cloud);
+  Material material(const MaterialSource& source);
+  MaterialTable table(std::vector<Material> materials) const;
+  MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels);
   void add(const PartSettings& part, const PartSource& source, const TransformSettings& transform, std::size_t place,
-           std::vector<SurveyPart>& all) {
-    Similarity placement{.scale = transform.scale, .translation = transform.translation};
-    for (const RotationList& turns : transform.rotations) placement.rotation = turns.rotation() * placement.rotation;
-    placement.rotation = normalize(placement.rotation);
-    naming("part '" + part.id + "'", [&] { placement.validate(); });
-    const auto number = text::number_in<ObjectId>(part.id);
-    ObjectId object = number.value_or(static_cast<ObjectId>(place));
-    if (!number && !part.id.empty())
-      warn({"part '" + part.id + "': its id is not a number; the object id of its points is its place in the scene, " +
-            std::to_string(place)});
-    for (const Loaded& loaded : load(source)) {
-      all.push_back({loaded.geometry, loaded.materials, placement, object++, part.id, {}});
-      const Box box = box_of(all.back());
-      const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
-      if (!(extent <= 1e18)) throw SettingError("part '" + part.id + "': place", extent, "m", "within 1e18 m of the origin");
-      settings_of_.resize(all.size());
-      settings_of_.back() = &part;
-    }
-  }
-
-  /// Warns of the first two parts with the same number in their points.
-  void tell_shared_objects(const std::vector<SurveyPart>& all) {
-    std::map<ObjectId, const PartSettings*> first;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const auto [at, is_new] = first.try_emplace(all[i].object, settings_of_[i]);
-      if (is_new) continue;
-      warn({"the parts '" + at->second->id + "' and '" + settings_of_[i]->id + "' have the same object id, " +
-            std::to_string(all[i].object) + ": their points cannot be distinguished"});
-      return;
-    }
-  }
-
-  static Box box_of(const SurveyPart& part) {
-    return visit_shape([&](const auto& shape) { return part.placement.box(shape->bounds()); }, part.geometry);
-  }
-
-  void stand_on_ground(std::vector<SurveyPart>& all, const std::vector<int>& lifted) {
-    if (std::all_of(lifted.begin(), lifted.end(), [](int l) { return l == 0; })) return;
-    std::vector<SurveyPart> fixed;
-    for (std::size_t i = 0; i < all.size(); ++i)
-      if (lifted[i] == 0) fixed.push_back(all[i]);
-    const SurveyScene carriers(std::move(fixed), {.to = 1});
-    const auto ground = [&](const Vec2& at) { return carriers.ground_height(at); };
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (lifted[i] == 0) continue;
-      auto stood = on_ground(all[i], ground, lifted[i] == -1 ? GroundPlacement::touching : GroundPlacement::lowest_point);
-      if (stood)
-        all[i] = std::move(*stood);
-      else
-        warn({"part '" + all[i].name + "': there is no ground under it: it is not moved"});
-    }
-  }
-
-  void move(std::vector<SurveyPart>& all) {
-    Box box;
-    for (const SurveyPart& part : all) box.extend(box_of(part));
-    for (std::size_t i = 0; i < all.size(); ++i)
-      if (!settings_of_[i]->motions.empty()) all[i].motion = detail::part_motion(*settings_of_[i], box.centre(), step_of(*settings_of_[i]));
-  }
-
-  /// Time between two steps of a part [s].
-  [[nodiscard]] double step_of(const PartSettings& part) const {
-    if (settings_.dynamic_interval) {
-      const double scene = *settings_.dynamic_interval;
-      return part.dynamic_interval ? scene * std::max(1.0, std::floor(*part.dynamic_interval / scene)) : scene;
-    }
-    return settings_.dynamic_step * part.dynamic_step / options_.pulse_rate;
-  }
+           std::vector<SurveyPart>& all);
+  void tell_shared_objects(const std::vector<SurveyPart>& all);
+  static Box box_of(const SurveyPart& part);
+  void stand_on_ground(std::vector<SurveyPart>& all, const std::vector<int>& lifted);
+  void move(std::vector<SurveyPart>& all);
+  [[nodiscard]] double step_of(const PartSettings& part) const;
 
   SceneSettings settings_;
   SceneBuildOptions options_;
@@ -342,5 +94,9 @@ class SceneBuilder {
 };
 
 }  // namespace pulsecast::helios
+
+#if PULSECAST_DEFINITIONS
+#include <pulsecast/helios/detail/scene_builder.hpp>
+#endif
 
 #endif

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_HELIOS_SIMULATION_HPP
 #define PULSECAST_HELIOS_SIMULATION_HPP
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -13,11 +12,10 @@
 #include <string>
 #include <vector>
 
-#include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/run.hpp>
-#include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
@@ -116,18 +114,12 @@ class Simulation {
 };
 
 /// Checks legs and scanner, without loading the scene. Throws a `SettingError` or `FileError`; returns warnings.
-[[nodiscard]] inline std::vector<std::string> check_without_scene(const SurveySettings& survey,
-                                                                  const std::vector<std::string>& leg_places = {}) {
-  const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
-  std::vector<std::string> warnings = compile_survey(survey, ground, {.leg_places = leg_places}).warnings;
-  for (const ChannelSettings& channel : survey.scanner.channels) {
-    survey_receiver(channel).validate();
-    survey_waveform(channel).validate();
-    (void)RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)));
-  }
-  return warnings;
-}
+[[nodiscard]] std::vector<std::string> check_without_scene(const SurveySettings& survey, const std::vector<std::string>& leg_places = {});
 
 }  // namespace pulsecast::helios
+
+#if PULSECAST_DEFINITIONS
+#include <pulsecast/helios/detail/check_without_scene.hpp>
+#endif
 
 #endif

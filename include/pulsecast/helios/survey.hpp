@@ -3,22 +3,16 @@
 #ifndef PULSECAST_HELIOS_SURVEY_HPP
 #define PULSECAST_HELIOS_SURVEY_HPP
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <unordered_map>
-#include <utility>
 #include <vector>
 
+#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
-#include <pulsecast/helios/detail/leg_paths.hpp>
-#include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/helios/detail/survey_options.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/platform/legs.hpp>
-#include <pulsecast/platform/platform.hpp>
 
 /// Compilation of survey settings to pulses.
 namespace pulsecast::helios {
@@ -41,134 +35,15 @@ struct CompiledSurvey {
   std::vector<std::string> warnings{};  ///< warnings of the compilation
 };
 
-namespace detail {
-
-/// Compiles settings to a plan of legs.
-class SurveyCompiler {
- public:
-  SurveyCompiler(const SurveySettings& survey, const LegPaths& paths, const SurveyBuildOptions& options)
-      : survey_(survey), paths_(paths), options_(options) {}
-
-  [[nodiscard]] CompiledSurvey compile() const {
-    if (survey_.scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
-    survey_.scanner.validate();
-    survey_.platform.validate();
-    std::vector<Leg<SurveyLeg>> legs;
-    std::vector<CompiledSurvey::Leg> compiled;
-    std::vector<std::string> warnings = paths_.warnings();
-    PulseIndex first = 0;
-    Tick start{};
-    double optic_time = 0;
-    std::unordered_map<std::string, std::size_t> strips;  // first leg of each strip
-    for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
-      const LegSettings& leg = survey_.legs[k];
-      paths_.of_leg(k, [&] { leg.validate(); });
-      const double rate = paths_.of_leg(k, [&] { return rate_of(leg); });
-      const double duration = duration_of(k), way = paths_[k].duration;
-      if (way > 0 && duration > 1.1 * way && leg.scanner.active)
-        warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + brief(way) + " s, and stays for " +
-                           brief(duration - way) + " s until the head has turned; without headRotateStop_deg, the leg ends at its arrival");
-      require_within(paths_.leg_name(k) + " (duration)", duration, 0, 1e15, "s");
-      require_within(paths_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");
-      const double interval = leg.scanner.active ? leg.scanner.trajectory_interval : 0;
-      if (interval > 0)
-        require_within(paths_.leg_name(k) + ": trajectoryTimeInterval_s (records)", duration / interval, 0, max_records, "");
-      const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
-      if (!leg.scanner.active || teleports(leg)) optic_time = 0;
-      std::vector<SurveyChannel> channels;
-      for (const ChannelSettings& channel : survey_.scanner.channels)
-        channels.push_back(paths_.of_leg(k, [&] {
-          return SurveyChannel(
-              slots > 0 ? optic(channel, leg.scanner, rate, optic_time) : SurveyOptic{},  // without slots, it is never called
-              Scanner{.pulse_rate = rate, .pulses = slots, .laser = survey_laser(channel, leg.scanner)});
-        }));
-      const Tick time = Tick::of(slots, rate);
-      if (leg.scanner.active) optic_time += time.seconds();
-      SurveyNoise noise{.seed = options_.seed + 0x9e3779b97f4a7c15U * (k + 1)};
-      if (options_.platform_noise) {
-        noise.position = survey_.platform.position_noise;
-        noise.attitude = survey_.platform.attitude_noise;
-      }
-      const Mount mount{.lever_arm = survey_.platform.mount.position, .boresight = survey_.platform.mount.rotation.rotation()};
-      legs.push_back(
-          {SurveyLeg(paths_[k].path, mount, std::move(channels), time, std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
-      const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
-      compiled.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
-      first += size;
-      start = start + time;
-    }
-    return {Legs<SurveyLeg>(std::move(legs)), std::move(compiled), paths_.clock_start(), std::move(warnings)};
-  }
-
- private:
-  static constexpr double max_records = 1e9;  ///< records of a leg's trajectory: some 70 GB of text
-
-  [[nodiscard]] bool teleports(const LegSettings& leg) const {
-    return survey_.platform.kind == PlatformKind::interpolated && leg.platform.trajectory && leg.platform.trajectory->teleports;
-  }
-
-  /// Time for messages, rounded to the millisecond.
-  [[nodiscard]] static std::string brief(double seconds) { return pulsecast::detail::to_text(std::round(seconds * 1e3) / 1e3); }
-
-  [[nodiscard]] double rate_of(const LegSettings& leg) const {
-    double rate = leg.scanner.pulse_rate;
-    if (!(rate > 0) && !survey_.scanner.pulse_rates.empty()) rate = survey_.scanner.pulse_rates.front();
-    require_positive("pulseFreq_hz", rate, "Hz");
-    return rate;
-  }
-
-  /// Strip number of the leg's pulses: index of the first leg of the strip.
-  [[nodiscard]] static std::uint16_t strip_of(std::size_t k, const LegSettings& leg, std::unordered_map<std::string, std::size_t>& first) {
-    return static_cast<std::uint16_t>(leg.strip ? first.try_emplace(*leg.strip, k).first->second : k);
-  }
-
-  SurveyOptic optic(const ChannelSettings& channel, const LegScannerSettings& leg, double rate, double active) const {
-    if (leg.active) return survey_optic(channel, leg, rate, survey_.platform.mount.rotation.rotation(), {active});
-    return {};  // unused
-  }
-
-  /// Duration of a leg: until the platform has arrived and the head has turned, but at most `duration_max` [s].
-  [[nodiscard]] double duration_of(std::size_t k) const {
-    const LegSettings& leg = survey_.legs[k];
-    const LegScannerSettings& s = leg.scanner;
-    const double turn = s.head_stop - s.head_start, speed = head_rate(survey_.scanner.channels.front(), s);
-    const bool stands = paths_[k].duration == 0;
-    double duration = paths_[k].duration;
-    if (only_ends(survey_, k)) return 0;
-    if (speed != 0 && turn / speed > 0)
-      duration = std::max(duration, turn / speed - s.warm_up);
-    else if (turns_away(s))
-      throw SettingError(paths_.leg_name(k) + ": headRotateStop_deg", degrees(s.head_stop), "deg",
-                         "ahead of headRotateStart_deg in the head's direction of rotation");
-    else if (head_never_stops(survey_.scanner.channels.front(), leg) && s.active)
-      throw SettingError(paths_.leg_name(k) + ": headRotatePerSec_deg", degrees(s.head_speed), "deg/s",
-                         "other than 0, like headRotatePerSecMax_deg, as the leg would never end otherwise");
-    if (leg.duration_max) {
-      const double most = *leg.duration_max;
-      return stands && duration == 0 ? most : std::min(duration, most);
-    }
-    if (paths_.is_stationary(k) && k + 1 < survey_.legs.size()) return duration;
-    if (stands && duration == 0 && speed == 0 && s.active)
-      throw SettingError(paths_.leg_name(k) + ": maxDuration_s", 0, "s",
-                         "given if neither platform nor head moves, as the leg would never end otherwise");
-    return std::max(0.0, duration);
-  }
-
-  const SurveySettings& survey_;
-  const LegPaths& paths_;
-  const SurveyBuildOptions& options_;
-};
-
-}  // namespace detail
-
 /// Pulses of a survey. `ground` gives the height of the scene's ground [m]. Throws a `SettingError` with leg and attribute, or a
 /// `FileError` of a trajectory.
-[[nodiscard]] CompiledSurvey compile_survey(const SurveySettings& survey, const Ground auto& ground,
-                                            const SurveyBuildOptions& options = {}) {
-  const LegPaths paths(survey, ground, options);
-  return detail::SurveyCompiler(survey, paths, options).compile();
-}
+[[nodiscard]] CompiledSurvey compile_survey(const SurveySettings& survey, const GroundHeight& ground,
+                                            const SurveyBuildOptions& options = {});
 
 }  // namespace pulsecast::helios
+
+#if PULSECAST_DEFINITIONS
+#include <pulsecast/helios/detail/survey_compiler.hpp>
+#endif
 
 #endif

@@ -4,7 +4,6 @@
 #define PULSECAST_HELIOS_DETAIL_LEG_PATHS_HPP
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +18,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/passing.hpp>
+#include <pulsecast/helios/detail/survey_options.hpp>
 #include <pulsecast/helios/detail/trajectory_format.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/trajectory.hpp>
@@ -32,14 +32,6 @@
 /// Paths of the legs of a survey document.
 namespace pulsecast::helios {
 
-/// Options for compiling a survey to pulses.
-struct SurveyBuildOptions {
-  std::uint64_t seed = 0;                 ///< seed of leg offsets and noise
-  bool platform_noise = true;             ///< true: platform noise as in the survey; false: none
-  bool leg_noise = true;                  ///< true: random leg offsets as in the survey; false: none
-  std::vector<std::string> leg_places{};  ///< place of each leg in its document, for messages: `survey.xml:12:5`. May be empty
-};
-
 /// Path and duration of a leg.
 struct LegPath {
   SurveyPath path{};
@@ -50,7 +42,7 @@ struct LegPath {
 /// `FileError` of a trajectory. Settings and options must outlive it.
 class LegPaths {
  public:
-  LegPaths(const SurveySettings& survey, const Ground auto& ground, const SurveyBuildOptions& options)
+  LegPaths(const SurveySettings& survey, const GroundHeight& ground, const SurveyBuildOptions& options)
       : survey_(survey), options_(options) {
     if (survey_.legs.empty()) throw SettingError("legs (number)", 0, "", "at least 1");
     place(ground);
@@ -78,7 +70,7 @@ class LegPaths {
   [[nodiscard]] bool is_stationary(std::size_t k) const { return helios::is_stationary(survey_, k); }
 
  private:
-  void place(const Ground auto& ground) {
+  void place(const GroundHeight& ground) {
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegPlatformSettings& p = survey_.legs[k].platform;
       Vec3 at = p.position;
@@ -100,7 +92,7 @@ class LegPaths {
     }
   }
 
-  void plan_paths(const Ground auto& ground) {
+  void plan_paths(const GroundHeight& ground) {
     const std::size_t n = survey_.legs.size();
     paths_.resize(n);
     switch (survey_.platform.kind) {
@@ -221,7 +213,7 @@ class LegPaths {
     return flight;
   }
 
-  void drive(const Ground auto& ground) {
+  void drive(const GroundHeight& ground) {
     const std::size_t last = places_.size() - 1;
     for (std::size_t k = 0; k < last;) {
       if (is_stationary(k)) {
@@ -248,7 +240,7 @@ class LegPaths {
   }
 
   /// Gives a vehicle at rest the pose of its arrival; that of its departure if it never arrived.
-  void park(const Ground auto& ground) {
+  void park(const GroundHeight& ground) {
     for (std::size_t k = 0; k < paths_.size(); ++k) {
       if (!is_stationary(k)) continue;
       std::size_t next = k;

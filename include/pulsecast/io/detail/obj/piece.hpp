@@ -22,7 +22,7 @@
 
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
-#include <pulsecast/io/mtl.hpp>
+#include <pulsecast/io/detail/obj/statements.hpp>
 
 namespace pulsecast::io::detail {
 

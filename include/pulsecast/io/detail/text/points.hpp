@@ -4,7 +4,6 @@
 #define PULSECAST_IO_DETAIL_TEXT_POINTS_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -17,31 +16,10 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/text/cells.hpp>
+#include <pulsecast/io/detail/text/point_columns.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace pulsecast::io {
-
-/// Columns of a text file of points, counted from 0.
-struct PointColumns {
-  using Columns = std::array<std::size_t, 3>;
-
-  std::string separators = {};                       ///< any of these characters; if empty, found in the first row: see `TextPoints`
-  Columns position{0, 1, 2};                         ///< columns of x, y and z
-  std::optional<Columns> normal = Columns{3, 4, 5};  ///< columns of its x, y and z
-  std::optional<Columns> colour = Columns{6, 7, 8};  ///< columns of red, green and blue
-  static constexpr std::size_t max_column = 999;     ///< upper limit of a column
-
-  void validate() const {
-    for (const char c : separators)
-      if (std::string_view("+-.#/\r\n").find(c) != std::string_view::npos || (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
-          (c >= 'a' && c <= 'z'))
-        throw SettingError("PointColumns::separators (character code)", static_cast<unsigned char>(c), "",
-                           "that of a character outside numbers, comments and line ends");
-    for (const Columns& columns : {position, normal.value_or(position), colour.value_or(position)})
-      for (const std::size_t column : columns)
-        require_within("PointColumns::column", static_cast<double>(column), 0, static_cast<double>(max_column), "");
-  }
-};
 
 /// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are skipped. Default separators are semicolons
 /// if the first row has any, else commas, else blanks. Blanks and tabs around a cell are ignored; as separators, several count as one. The

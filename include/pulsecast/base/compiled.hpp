@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_BASE_COMPILED_HPP
+#define PULSECAST_BASE_COMPILED_HPP
+
+#include <pulsecast/version.hpp>
+
+/// Switch between headers alone and `pulsecast::compiled`, a library with the definitions of readers and of XML surveys. The target defines
+/// `PULSECAST_COMPILED` for its users, who then include declarations only.
+
+#if defined(PULSECAST_COMPILED)
+#define PULSECAST_DEFINITIONS 0  ///< true where a public header ends with its definitions
+#else
+#define PULSECAST_DEFINITIONS 1
+#endif
+
+#if defined(PULSECAST_COMPILED_SOURCE)
+#define PULSECAST_INLINE  ///< in sources of the library, which define each function once
+#else
+#define PULSECAST_INLINE inline
+#endif
+
+namespace pulsecast::detail {
+
+/// Version as a number: `0.1.1` is 101.
+[[nodiscard]] consteval unsigned version_number() {
+  unsigned whole = 0, part = 0;
+  for (const char* c = PULSECAST_VERSION;; ++c) {
+    if (*c >= '0' && *c <= '9') {
+      part = 10 * part + static_cast<unsigned>(*c - '0');
+      continue;
+    }
+    whole = 100 * whole + part;
+    part = 0;
+    if (*c == '\0') return whole;
+  }
+}
+
+}  // namespace pulsecast::detail
+
+#if defined(PULSECAST_COMPILED)
+#include <cstddef>
+
+#include <pulsecast/base/simd.hpp>
+
+namespace pulsecast::detail {
+
+/// Marks a build of the library by what a program must have in common with it, as sizes or code in headers depend on it. A program of
+/// another build does not link, for want of this function.
+template <unsigned version, std::size_t register_bytes, bool fma, bool checked_containers>
+void compiled_library_of_this_build()
+#if defined(PULSECAST_COMPILED_SOURCE)
+    {}
+#else
+    ;
+#endif
+
+#if defined(__FMA__)
+inline constexpr bool has_fma = true;
+#else
+inline constexpr bool has_fma = false;
+#endif
+#if defined(_GLIBCXX_DEBUG)
+inline constexpr bool has_checked_containers = true;
+#else
+inline constexpr bool has_checked_containers = false;
+#endif
+
+namespace {
+[[gnu::used]] void (*const needed)() =
+    &compiled_library_of_this_build<version_number(), simd::register_bytes, has_fma, has_checked_containers>;
+}
+
+}  // namespace pulsecast::detail
+#endif
+
+#endif

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_HELIOS_DETAIL_SURVEY_OPTIONS_HPP
+#define PULSECAST_HELIOS_DETAIL_SURVEY_OPTIONS_HPP
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <pulsecast/base/vector.hpp>
+
+namespace pulsecast::helios {
+
+/// Options for compiling a survey to pulses.
+struct SurveyBuildOptions {
+  std::uint64_t seed = 0;                 ///< seed of leg offsets and noise
+  bool platform_noise = true;             ///< true: platform noise as in the survey; false: none
+  bool leg_noise = true;                  ///< true: random leg offsets as in the survey; false: none
+  std::vector<std::string> leg_places{};  ///< place of each leg in its document, for messages: `survey.xml:12:5`. May be empty
+};
+
+/// Height of the ground at a place [m], none where there is no ground.
+using GroundHeight = std::function<std::optional<double>(const Vec2&)>;
+
+}  // namespace pulsecast::helios
+
+#endif

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_OBJ_MTL_READER_HPP
+#define PULSECAST_IO_DETAIL_OBJ_MTL_READER_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <istream>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <tiny_obj_loader.h>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/obj/statements.hpp>
+#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/mtl.hpp>
+#include <pulsecast/io/spectral_library.hpp>
+#include <pulsecast/scene/material.hpp>
+
+/// Reading of MTL files.
+namespace pulsecast::io {
+
+namespace detail {
+
+class MtlReader : private StatementBuffer {
+ public:
+  MtlReader(StatementFile file, const SpectralLibrary& spectra) : StatementBuffer(file.path(), file.all(), 0), spectra_(spectra) {}
+
+  [[nodiscard]] MaterialLibrary read() {
+    std::istream stream(this);
+    stream.exceptions(std::ios::badbit);  // passes on exceptions thrown while reading
+    std::map<std::string, int> ignored_numbers;
+    std::vector<tinyobj::material_t> found;
+    tinyobj::LoadMtl(&ignored_numbers, &found, &stream, nullptr, nullptr);
+    MaterialLibrary library;
+    for (const tinyobj::material_t& m : found)
+      if (!m.name.empty()) library.materials.emplace(m.name, material(m, library.warnings));
+    return library;
+  }
+
+ private:
+  void check(std::string& ready) override {
+    // tinyobjloader drops keys before the first name, and its default exponent is 1
+    static const std::string exponent = "\nNs " + pulsecast::detail::to_text(Material{}.specular_exponent) + "\n";
+    const bool is_first = !std::exchange(begun_, true);
+    if (keyword() == "newmtl") current_ = rest();
+    lines_.try_emplace({current_, std::string(keyword())}, line());
+    if (keyword() == "newmtl") {
+      require(!rest().empty(), "the name of a material");
+      ready = statement() + exponent;
+      return;
+    }
+    const std::vector<std::string_view>& given = words();
+    const auto are_within = [&](double high) {
+      return std::all_of(given.begin(), given.end(), [high](std::string_view word) {
+        const double value = number_in<double>(word).value_or(-1);
+        return value >= 0 && value <= high;
+      });
+    };
+    const bool is_one = given.size() == 1, is_colour = keyword() == "Kd" || keyword() == "Ks";
+    if (is_colour) require((is_one || given.size() == 3) && are_within(max_number), "one or three numbers that are not negative");
+    if (keyword() == "Ns") require(is_one && are_within(max_number), "a number that is not negative");
+    if (keyword() == "helios_reflectance") require(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
+    if (keyword() == "helios_classification") require(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
+    if (is_first) ready = "newmtl default" + exponent;
+    // with textures, tinyobjloader would change the colour, depending on the order
+    if (is_colour || keyword() == "Ns" || keyword().starts_with("helios_")) ready += statement();
+    // a single number is the value of red, green and blue. Source: MTL specification, Wavefront 1995.
+    if (is_colour && is_one) ready.append(" ").append(given[0]).append(" ").append(given[0]);
+  }
+
+  [[nodiscard]] Material material(const tinyobj::material_t& m, std::vector<std::string>& warnings) const {
+    const auto warn = [&](const char* key, const std::string& text) {
+      const auto known = lines_.find({m.name, key});
+      const std::string place = known == lines_.end() ? "" : ", line " + std::to_string(known->second);
+      warnings.push_back(path() + place + ": material '" + m.name + "' " + text);
+    };
+    const auto extra = [&](const char* key) {
+      const auto found = m.unknown_parameter.find(key);
+      return found == m.unknown_parameter.end() ? std::string() : found->second;
+    };
+    Material made = undescribed(m.name);
+    const double diffuse = m.diffuse[0] + m.diffuse[1] + m.diffuse[2], specular = m.specular[0] + m.specular[1] + m.specular[2];
+    if (specular > 0) {
+      made.scattering = Scattering::phong;
+      made.specular_share = specular / (diffuse + specular);
+    } else if (diffuse > 0) {
+      made.scattering = Scattering::lambert;
+    }
+    made.specular_exponent = m.shininess;
+    const std::string reflectance = extra("helios_reflectance"), spectrum(text::trimmed(extra("helios_spectra")));
+    if (!reflectance.empty()) {
+      made.reflectance = *number_in<double>(reflectance);
+      if (made.reflectance > 1) {
+        warn("helios_reflectance", "has the reflectance " + reflectance + ", which is taken as percent");
+        made.reflectance /= 100;
+      }
+    } else if (const auto found = spectra_.spectra.find(spectrum); found != spectra_.spectra.end()) {
+      made.spectrum = found->second;
+      const double shortest = made.spectrum->shortest(), longest = made.spectrum->longest();
+      for (const double wavelength : spectra_.wavelengths)
+        if (!(wavelength >= shortest && wavelength <= longest))
+          warn("helios_spectra", "has the spectrum '" + spectrum + "', which spans " + nanometres(shortest) + " to " + nanometres(longest) +
+                                     " nm: for the laser of " + nanometres(wavelength) + " nm the nearest sample is used");
+    } else if (!spectrum.empty()) {
+      warn("helios_spectra", "refers to the spectrum '" + spectrum + "', which is in no library: a reflectance of 0.5 is assumed");
+    }
+    made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
+    const std::string ground = text::lower(extra("helios_isGround"));
+    made.ground = ground == "true" || ground == "1";
+    if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
+      warn("helios_isGround", "has helios_isGround '" + ground + "', expected true or false: false is assumed");
+    return made;
+  }
+
+  [[nodiscard]] static std::string nanometres(double metres) { return pulsecast::detail::to_text(std::round(metres * 1e12) / 1e3); }
+
+  const SpectralLibrary& spectra_;
+  bool begun_ = false;
+  std::string current_ = "default";                                   // name of the current material
+  std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // of each material and keyword
+};
+
+}  // namespace detail
+
+PULSECAST_INLINE MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra) {
+  return detail::MtlReader(detail::StatementFile(path), spectra).read();
+}
+
+}  // namespace pulsecast::io
+
+#endif

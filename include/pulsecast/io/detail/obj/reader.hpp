@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_OBJ_READER_HPP
+#define PULSECAST_IO_DETAIL_OBJ_READER_HPP
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/io/detail/obj/piece.hpp>
+#include <pulsecast/io/mtl.hpp>
+#include <pulsecast/io/obj.hpp>
+#include <pulsecast/io/spectral_library.hpp>
+#include <pulsecast/scene/material.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
+
+/// Reading of OBJ files.
+namespace pulsecast::io {
+
+namespace detail {
+
+/// Reader of a file in windows of some pieces. Pieces are read in parallel, and triangulated in parallel once the vertices before them are
+/// known; results are joined in the order of the file.
+class ObjReader {
+ public:
+  ObjReader(const std::filesystem::path& path, const ObjSettings& settings, unsigned threads,
+            std::size_t piece_bytes = StatementFile::piece_bytes)
+      : file_(path), folder_(path.parent_path()), settings_(settings), threads_(thread_count(threads)), piece_bytes_(piece_bytes) {}
+
+  [[nodiscard]] ObjModel read() {
+    while (read_window()) continue;
+    MeshData& mesh = model_.mesh;
+    if (open_line_ > 0) warn(open_line_, "the last line has no line end: the file may be truncated");
+    if (unknown_ > 0)
+      warn(first_unknown_->line, first_unknown_->text + " is not known and left out, the first of " + std::to_string(unknown_));
+    if (flat_ > 0) warn(first_flat_->line, "a face without area is left out, the first of " + std::to_string(flat_));
+    if (mesh.triangles.empty())
+      model_.warnings.push_back(file_.path() + ": holds no face with an area: expected at least one 'f' statement of such a one");
+    resolve_materials();
+    return std::move(model_);
+  }
+
+ private:
+  using Note = ObjPiece::Note;
+  using Use = ObjPiece::Use;
+
+  /// Reads the next window; false at the end of the file.
+  bool read_window() {
+    std::vector<std::unique_ptr<ObjPiece>> pieces;
+    while (pieces.size() < std::size_t{4} * threads_) {
+      std::string text = file_.next(piece_bytes_);
+      if (text.empty()) break;
+      const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+      pieces.push_back(std::make_unique<ObjPiece>(file_.path(), std::move(text), lines_));
+      lines_ += lines;
+    }
+    for_each_index(pieces.size(), threads_, [&](std::size_t i) {
+      pieces[i]->read();
+      if (settings_.up == UpAxis::z) return;
+      for (Vec3& p : pieces[i]->vertices) p = {p.x, -p.z, p.y};
+    });
+    std::vector<Vec3>& vertices = model_.mesh.vertices;
+    std::vector<std::size_t> before;  // number of vertices before each piece
+    for (const auto& piece : pieces) {
+      before.push_back(vertices.size());
+      vertices.insert(vertices.end(), piece->vertices.begin(), piece->vertices.end());
+      if (vertices.size() > std::numeric_limits<int>::max()) file_.fail("has too many vertices: expected fewer than 2^31");
+    }
+    for_each_index(pieces.size(), threads_, [&](std::size_t i) { pieces[i]->triangulate(vertices, before[i]); });
+    for (const auto& piece : pieces) add(*piece);
+    return !pieces.empty();
+  }
+
+  void add(ObjPiece& piece) {
+    auto crossing = piece.crossings.begin();
+    const auto warn_before = [&](std::size_t line) {
+      for (; crossing != piece.crossings.end() && crossing->line < line; ++crossing) warn(crossing->line, crossing->text);
+    };
+    for (const ObjPiece::Libraries& statement : piece.libraries) {
+      if (statement.line > piece.failure.line) break;
+      warn_before(statement.line);
+      libraries(statement);
+    }
+    if (piece.failure.error) std::rethrow_exception(piece.failure.error);
+    warn_before(std::numeric_limits<std::size_t>::max());
+
+    piece.uses.front() = use_;
+    MeshData& mesh = model_.mesh;
+    mesh.triangles.insert(mesh.triangles.end(), piece.triangles.begin(), piece.triangles.end());
+    for (const std::uint32_t use : piece.triangle_uses) mesh.materials.push_back(material(piece.uses[use]));
+    use_ = piece.uses.back();
+    if (unknown_ == 0) first_unknown_ = piece.first_unknown;
+    if (flat_ == 0) first_flat_ = piece.first_flat;
+    unknown_ += piece.unknown;
+    flat_ += piece.flat;
+    open_line_ = std::max(open_line_, piece.open_line);
+  }
+
+  /// Number of a material in use, assigned when a triangle first needs it.
+  [[nodiscard]] std::uint32_t material(Use& use) {
+    if (!use.number) {
+      use.number = numbers_.try_emplace(use.name, static_cast<std::uint32_t>(numbers_.size())).first->second;
+      if (*use.number == uses_.size()) uses_.push_back(use);
+    }
+    return *use.number;
+  }
+
+  /// Reads the files of `mtllib`: one file, whose name may have blanks, or several.
+  void libraries(const ObjPiece::Libraries& statement) {
+    std::error_code ignored_error;
+    if (std::filesystem::exists(library_path(statement.rest), ignored_error)) return library(statement.rest, statement);
+    for (const std::string& name : statement.names) library(name, statement);
+  }
+
+  [[nodiscard]] std::filesystem::path library_path(std::string path) const {
+    std::replace(path.begin(), path.end(), '\\', '/');
+    return folder_ / path;
+  }
+
+  void library(const std::string& name, const ObjPiece::Libraries& statement) {
+    const std::filesystem::path path = library_path(name);
+    std::error_code ignored_error;
+    if (!std::filesystem::is_regular_file(path, ignored_error)) {
+      warn(statement.line, statement.quoted + ": expected an MTL file at " + path.string() + ", but there is none");
+      return;
+    }
+    if (!read_.insert(path.string()).second) return;
+    MaterialLibrary more = read_mtl(path, settings_.spectra);
+    library_.merge(more.materials);  // of one name, the first counts
+    model_.warnings.insert(model_.warnings.end(), more.warnings.begin(), more.warnings.end());
+  }
+
+  void resolve_materials() {
+    for (const Use& use : uses_) {
+      const auto found = library_.find(use.name);
+      if (found == library_.end() && use.line > 0)
+        warn(use.line, "no MTL file describes the material '" + use.name + "': a reflectance of 0.5 is assumed");
+      model_.materials.push_back(found == library_.end() ? undescribed(use.name) : found->second);
+    }
+  }
+
+  void warn(std::size_t line, const std::string& text) {
+    model_.warnings.push_back(file_.path() + ", line " + std::to_string(line) + ": " + text);
+  }
+
+  StatementFile file_;
+  std::filesystem::path folder_;
+  ObjSettings settings_;
+  unsigned threads_;
+  std::size_t piece_bytes_, lines_ = 0;  // `lines_`: number of lines read
+  ObjModel model_;
+  std::map<std::string, Material, std::less<>> library_;
+  std::set<std::string> read_;                    // paths of MTL files
+  Use use_;                                       // in force
+  std::vector<Use> uses_;                         // in use by triangles
+  std::map<std::string, std::uint32_t> numbers_;  // indices into `uses_` by name
+  std::optional<Note> first_unknown_, first_flat_;
+  std::size_t unknown_ = 0, flat_ = 0;
+  std::size_t open_line_ = 0;
+};
+
+}  // namespace detail
+
+PULSECAST_INLINE ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings, unsigned threads) {
+  return detail::ObjReader(path, settings, threads).read();
+}
+
+}  // namespace pulsecast::io
+
+#endif

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_OBJ_STATEMENTS_HPP
+#define PULSECAST_IO_DETAIL_OBJ_STATEMENTS_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <streambuf>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <tiny_obj_loader.h>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/spectral_library.hpp>
+#include <pulsecast/scene/material.hpp>
+
+/// Statements of OBJ and MTL files.
+namespace pulsecast::io::detail {
+
+static_assert(std::same_as<tinyobj::real_t, double>, "define TINYOBJLOADER_USE_DOUBLE and link libtinyobjloader_double");
+
+inline constexpr double max_number = 1e12;  ///< upper limit in a file, so that products of a few numbers cannot overflow
+
+/// Number in a word, if tinyobjloader would read the same. It takes other words for zero or the number that they begin with, and
+/// fails at very long ones.
+template <class Number>
+[[nodiscard]] std::optional<Number> number_in(std::string_view word) {
+  const std::optional<Number> value = word.size() <= 100 ? text::number_in<Number>(word) : std::nullopt;
+  return value && std::isfinite(static_cast<double>(*value)) ? value : std::nullopt;
+}
+
+/// Text of an OBJ or MTL file, read in pieces.
+class StatementFile {
+ public:
+  explicit StatementFile(const std::filesystem::path& path) : file_(path, "an OBJ or MTL file") {}
+
+  /// Next whole statements, about `bytes` long; empty at the end of the file.
+  [[nodiscard]] std::string next(std::size_t bytes) {
+    std::string text = std::exchange(rest_, {});
+    std::size_t end = 0;
+    while (end == 0) {
+      const std::string_view more = file_.take(bytes);
+      if (more.empty()) break;
+      text += more;
+      end = end_of_statements(text);
+    }
+    if (end > 0) {
+      rest_.assign(text, end);
+      text.resize(end);
+    }
+    if (!std::exchange(begun_, true)) text.erase(0, text.size() - text::without_byte_order_mark(text).size());
+    return text;
+  }
+
+  [[nodiscard]] std::string all() { return file_.take_rest(); }
+
+  static constexpr std::size_t piece_bytes = std::size_t{1} << 18;  ///< default size of a piece [byte]
+
+  [[nodiscard]] const std::string& path() const { return file_.path(); }
+  [[noreturn]] void fail(const std::string& problem) const { file_.fail(problem); }
+
+ private:
+  /// End of the last line that is not continued in the next; 0 if there is none.
+  static std::size_t end_of_statements(std::string_view text) {
+    while (!text.empty()) {
+      const std::size_t end = text.rfind('\n') + 1;
+      text = text.substr(0, end == 0 ? 0 : end - 1);
+      const std::size_t last = text.find_last_not_of(" \t\v\f\r");
+      if (end > 0 && (last == text.npos || text[last] != '\\')) return end;
+    }
+    return 0;
+  }
+
+  InputFile file_;
+  std::string rest_;
+  bool begun_ = false;
+};
+
+/// Stream buffer that feeds tinyobjloader statement by statement, so that every check and error knows its line.
+class StatementBuffer : public std::streambuf {
+ public:
+  /// `text` of whole statements of a file, behind `lines_before` lines.
+  StatementBuffer(std::string path, std::string text, std::size_t lines_before)
+      : path_(std::move(path)), text_(std::move(text)), lines_before_(lines_before), lines_(lines_before) {}
+
+ protected:
+  /// Sets `ready`, empty at first, to the text for tinyobjloader for the current statement. Throws a `FileError` if it is invalid.
+  virtual void check(std::string& ready) = 0;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::size_t line() const { return line_; }                   ///< first line of the current statement, from 1
+  [[nodiscard]] bool line_is_open() const { return open_; }                  ///< true for a last line without end
+  [[nodiscard]] const std::string& statement() const { return statement_; }  ///< current statement, with one blank after the keyword
+  [[nodiscard]] std::string_view keyword() const { return std::string_view(statement_).substr(0, statement_.find(' ')); }
+  [[nodiscard]] std::string_view rest() const { return text::trimmed(std::string_view(statement_).substr(keyword().size())); }
+
+  /// Words after the keyword.
+  [[nodiscard]] const std::vector<std::string_view>& words() {
+    words_.clear();
+    for (std::string_view left = rest(); !left.empty();) words_.push_back(text::take_word(left));
+    return words_;
+  }
+
+  [[nodiscard]] std::string quoted() const { return text::quoted(statement_); }
+  [[noreturn]] void fail_here(const std::string& problem) const { throw FileError(path_, "line " + std::to_string(line_), problem); }
+  void require(bool fulfilled, const char* expected) const {
+    if (!fulfilled) fail_here(quoted() + ": expected " + expected);
+  }
+
+  /// Returns to the beginning of the text.
+  void rewind() noexcept {
+    at_ = 0;
+    lines_ = lines_before_;
+  }
+
+  /// Advances to the next statement that is not empty; false at the end of the text.
+  bool next_statement() {
+    do {
+      if (!take_statement()) return false;
+    } while (statement_.empty() || statement_.starts_with('#'));
+    if (statement_.find('#') != statement_.npos && !keyword().ends_with("mtl"))  // names may contain it, as in `usemtl Material #25`
+      statement_.resize(std::min(statement_.find(" #"), statement_.size()));
+    const std::string_view word = keyword(), after = rest();
+    if (statement_.size() != word.size() + (after.empty() ? 0 : 1) + after.size())
+      statement_ = std::string(word) + (after.empty() ? "" : " ") + std::string(after);
+    return true;
+  }
+
+ private:
+  int_type underflow() final {
+    if (!next_statement()) return traits_type::eof();
+    ready_.clear();
+    check(ready_);
+    ready_ += '\n';
+    setg(ready_.data(), ready_.data(), ready_.data() + ready_.size());
+    return traits_type::to_int_type(ready_.front());
+  }
+
+  /// Joins lines continued by a backslash, which tinyobjloader does not know. False at the end of the text.
+  bool take_statement() {
+    joined_.clear();
+    line_ = lines_ + 1;
+    for (bool goes_on = true; goes_on;) {
+      open_ = at_ == text_.size();
+      if (open_) break;
+      const std::string_view text = take_line();
+      goes_on = text.ends_with('\\') && !(joined_.empty() && text.starts_with('#'));
+      if (joined_.empty() && !goes_on) {
+        statement_ = text;
+        return true;
+      }
+      joined_.append(text.substr(0, text.size() - (goes_on ? 1 : 0))) += ' ';
+    }
+    statement_ = text::trimmed(joined_);
+    return !joined_.empty();
+  }
+
+  std::string_view take_line() {
+    const std::size_t begin = at_, end = text_.find('\n', begin);
+    open_ = end == text_.npos;
+    at_ = open_ ? text_.size() : end + 1;
+    const std::size_t after = open_ ? text_.size() : end;
+    ++lines_;
+    for (std::size_t i = begin; i < after; ++i) {
+      char& c = text_[i];
+      if (static_cast<unsigned char>(c) >= ' ') continue;
+      if (c < '\t' || c > '\r') fail_here("holds binary data: expected the text of an OBJ or MTL file");
+      c = ' ';
+    }
+    return text::trimmed(std::string_view(text_).substr(begin, after - begin));
+  }
+
+  std::string path_, text_;
+  std::string joined_, statement_, ready_;
+  std::vector<std::string_view> words_;
+  std::size_t lines_before_, lines_, line_ = 0, at_ = 0;  // `at_`: begin of the next line in the text
+  bool open_ = false;
+};
+
+}  // namespace pulsecast::io::detail
+
+#endif

@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_POINT_CLOUD_READER_HPP
+#define PULSECAST_IO_DETAIL_POINT_CLOUD_READER_HPP
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/geometry/box.hpp>
+#include <pulsecast/io/detail/cell_numbers.hpp>
+#include <pulsecast/io/detail/las/points.hpp>
+#include <pulsecast/io/detail/text/points.hpp>
+#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/point_cloud.hpp>
+#include <pulsecast/scene/voxel_data.hpp>
+
+/// Reading of point clouds.
+namespace pulsecast::io {
+
+namespace detail {
+
+/// Calls a function with the reader for the format of a file.
+template <class Function>
+void with_points(const std::filesystem::path& path, const PointCloudSettings& settings, Function function) {
+  InputFile file(path, "a point cloud");
+  if (LasPoints::is_las(file)) {
+    LasPoints points(std::move(file));
+    function(points);
+  } else {
+    PointColumns columns = settings.columns;
+    if (settings.normals != VoxelNormals::mean && settings.normals != VoxelNormals::nearest) columns.normal.reset();
+    if (!settings.colours) columns.colour.reset();
+    TextPoints points(std::move(file), std::move(columns));
+    function(points);
+  }
+}
+
+/// Normal of the least-squares plane through points, pointing up; empty for fewer than three points, or points on one line. Arguments are
+/// their number, the sum of their offsets from a nearby origin, and the sums of the products xx, xy, xz, yy, yz, zz.
+/// Source: Pearson 1901: the eigenvector of the covariance with the least eigenvalue.
+[[nodiscard]] inline std::optional<Vec3> plane_normal(double count, const Vec3& sum, const std::array<double, 6>& products) {
+  if (count < 3) return std::nullopt;
+  const Eigen::Vector3d offset(sum.x, sum.y, sum.z);
+  Eigen::Matrix3d about{
+      {products[0], products[1], products[2]}, {products[1], products[3], products[4]}, {products[2], products[4], products[5]}};
+  const double size = about.trace();
+  if (!(size > 0)) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver((about - offset * offset.transpose() / count) / size);
+  constexpr double rounding = 1e-13;  // some hundred times the spacing of doubles at 1: smaller eigenvalues are noise
+  if (solver.info() != Eigen::Success || !(solver.eigenvalues()[1] > rounding)) return std::nullopt;
+  const Eigen::Vector3d least = solver.eigenvectors().col(0);
+  const Vec3 normal = normalize(Vec3{least.x(), least.y(), least.z()});
+  const double side = normal.z != 0 ? normal.z : normal.y != 0 ? normal.y : normal.x;
+  return side < 0 ? -normal : normal;
+}
+
+class PointCloudReader {
+ public:
+  PointCloudReader(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings) : settings_(validated(settings)) {
+    measure(paths);
+    for (int axis = 0; axis < 3; ++axis) lay(axis, paths.front());
+    require_room(paths.front());
+    for (const std::filesystem::path& path : paths)
+      with_points(path, settings_, [this](auto& points) {
+        while (points.next()) add(points);
+      });
+  }
+
+  [[nodiscard]] PointCloud result() && {
+    cloud_.voxels.edge = settings_.voxel_size;
+    cloud_.voxels.corner = corner();
+    finish_normals();
+    finish_colours();
+    cloud_.voxels.cells = std::move(cells_).release();
+    return std::move(cloud_);
+  }
+
+ private:
+  using Cell = CellNumbers::Cell;
+
+  /// First pass: finds the extent, and the normals and colours available.
+  void measure(const std::vector<std::filesystem::path>& paths) {
+    const bool from_file = settings_.normals == VoxelNormals::mean || settings_.normals == VoxelNormals::nearest;
+    normals_ = settings_.normals != VoxelNormals::none;
+    colours_ = settings_.colours;
+    for (const std::filesystem::path& path : paths)
+      with_points(path, settings_, [&](auto& points) {
+        const std::uint64_t before = cloud_.points;
+        for (; points.next(); ++cloud_.points) bounds_.extend(points.position());
+        if (cloud_.points == before) throw FileError(points.path(), "", "holds no point: expected at least one");
+        if (from_file && !points.has_normals()) {
+          normals_ = false;
+          cloud_.warnings.push_back(points.path() + ": has no normals: no voxel gets one from a file");
+        }
+        if (settings_.colours && !points.has_colours()) {
+          colours_ = false;
+          cloud_.warnings.push_back(points.path() + ": has no colours: no voxel gets one");
+        }
+        for (std::string& warning : points.warnings()) cloud_.warnings.push_back(std::move(warning));
+      });
+  }
+
+  /// Sets up the lattice along an axis.
+  void lay(int axis, const std::filesystem::path& path) {
+    const double edge = settings_.voxel_size, extent = bounds_.max[axis] - bounds_.min[axis];
+    double cells = std::max(std::ceil(extent / edge), 1.0);
+    if (settings_.lattice == VoxelLattice::at_multiples) {
+      origin_[axis] = 0;
+      first_[axis] = std::floor(bounds_.min[axis] / edge);
+      cells = std::floor(bounds_.max[axis] / edge) - first_[axis] + 1;
+    } else {
+      origin_[axis] = extent > 0 ? bounds_.min[axis] : bounds_.min[axis] - edge / 2;
+      first_[axis] = 0;
+    }
+    if (!(cells <= 0x1p32))
+      throw FileError(path.string(), "",
+                      std::string("the cloud extends over ") + pulsecast::detail::to_text(extent) + " m along " + "xyz"[axis] +
+                          ", which is " + pulsecast::detail::to_text(cells) + " voxels: expected no more than 2^32; voxels are " +
+                          pulsecast::detail::to_text(edge) + " m large");
+    last_[axis] = cells - 1;
+  }
+
+  [[nodiscard]] Vec3 corner() const noexcept { return origin_ + first_ * settings_.voxel_size; }
+
+  /// Throws a `FileError` for voxels that are small against the rounding of coordinates at their position.
+  void require_room(const std::filesystem::path& path) const {
+    const double edge = settings_.voxel_size, least = VoxelData::min_edge(corner());
+    if (edge >= least) return;
+    throw FileError(path.string(), "",
+                    "the cloud begins " + pulsecast::detail::to_text(max_norm(corner())) + " m from the origin, where voxels of " +
+                        pulsecast::detail::to_text(edge) + " m are below the resolution of coordinates: expected at least " +
+                        pulsecast::detail::to_text(least) + " m");
+  }
+
+  /// Second pass: adds a point to its voxel.
+  template <class Points>
+  void add(const Points& points) {
+    const Vec3 p = points.position();
+    Cell cell{};
+    Vec3 centre{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = std::min(std::floor((p[axis] - origin_[axis]) / settings_.voxel_size) - first_[axis], last_[axis]);
+      if (!(p[axis] >= bounds_.min[axis] && p[axis] <= bounds_.max[axis])) points.fail_here("the file has changed while it was read");
+      cell[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(place);
+      centre[axis] = origin_[axis] + (first_[axis] + place + 0.5) * settings_.voxel_size;
+    }
+    if (cells_.size() == CellNumbers::max_size) points.fail_here("exceeds the maximum of 2^32 - 2 voxels");
+    const std::size_t voxel = cells_.number(cell);
+    if (voxel == counts_.size()) append();
+    ++counts_[voxel];
+    if (normals_) add_normal(points, voxel, p - centre);
+    if (colours_) add_colour(points, voxel);
+  }
+
+  void append() {
+    counts_.push_back(0);
+    if (normals_) sums_.emplace_back(0, 0, 0);
+    if (normals_ && settings_.normals == VoxelNormals::nearest) nearest_.push_back(std::numeric_limits<double>::infinity());
+    if (normals_ && settings_.normals == VoxelNormals::fitted) products_.push_back({});
+    if (colours_) squares_.emplace_back(0, 0, 0);
+  }
+
+  template <class Points>
+  void add_normal(const Points& points, std::size_t voxel, const Vec3& d) {
+    if (settings_.normals == VoxelNormals::fitted) {
+      sums_[voxel] += d;
+      std::array<double, 6>& products = products_[voxel];
+      products[0] += d.x * d.x;
+      products[1] += d.x * d.y;
+      products[2] += d.x * d.z;
+      products[3] += d.y * d.y;
+      products[4] += d.y * d.z;
+      products[5] += d.z * d.z;
+      return;
+    }
+    const Vec3 given = points.normal();
+    if (given == Vec3{0, 0, 0}) return;
+    const Vec3 normal = normalize(given / max_norm(given));
+    if (settings_.normals == VoxelNormals::mean) {
+      sums_[voxel] += normal;
+    } else if (dot(d, d) < nearest_[voxel]) {
+      nearest_[voxel] = dot(d, d);
+      sums_[voxel] = normal;
+    }
+  }
+
+  template <class Points>
+  void add_colour(const Points& points, std::size_t voxel) {
+    const Vec3 colour = points.colour();
+    const double largest = settings_.colour_max.value_or(Points::max_colour);
+    for (int k = 0; k < 3; ++k)
+      if (!(colour[k] >= 0 && colour[k] <= largest))
+        points.fail_here("has the colour " + pulsecast::detail::to_text(colour[k]) + ": expected one from 0 to " +
+                         pulsecast::detail::to_text(largest));
+    const Vec3 share = colour / largest;
+    if (!settings_.colour_max && largest > 255) brightest_ = std::max(brightest_, max_norm(colour));
+    squares_[voxel] += share * share;
+  }
+
+  [[nodiscard]] std::optional<Vec3> normal_of(std::size_t voxel) const {
+    if (!normals_) return std::nullopt;
+    if (settings_.normals == VoxelNormals::fitted) return plane_normal(static_cast<double>(counts_[voxel]), sums_[voxel], products_[voxel]);
+    constexpr double rounding = 1e-12;  // residue where normals of one voxel cancel
+    if (!(length(sums_[voxel]) > rounding * static_cast<double>(counts_[voxel]))) return std::nullopt;
+    return normalize(sums_[voxel]);
+  }
+
+  void finish_normals() {
+    if (settings_.normals == VoxelNormals::none || (!normals_ && !settings_.default_normal)) return;
+    const std::optional<Vec3> otherwise =
+        settings_.default_normal ? std::optional(normalize(*settings_.default_normal / max_norm(*settings_.default_normal))) : std::nullopt;
+    std::uint64_t without = 0;
+    cloud_.voxels.normals.reserve(counts_.size());
+    for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
+      std::optional<Vec3> normal = normal_of(voxel);
+      if (!normal) normal = otherwise;
+      if (!normal) ++without;
+      const Vec3 n = normal.value_or(Vec3{});
+      cloud_.voxels.normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
+    }
+    if (without > 0)
+      cloud_.warnings.push_back(std::to_string(without) + " of " + std::to_string(counts_.size()) + " voxels have no normal: " +
+                                (settings_.normals == VoxelNormals::fitted ? "their points are fewer than three, or on one line"
+                                                                           : "the normals of their points are zero, or cancel"));
+  }
+
+  void finish_colours() {
+    if (!colours_) return;
+    if (brightest_ > 0 && brightest_ <= 255)
+      cloud_.warnings.push_back("no colour in the LAS files exceeds 255 of 65535: for 8-bit colours, the maximum should be 255");
+    cloud_.colours.reserve(counts_.size());
+    for (std::size_t voxel = 0; voxel < counts_.size(); ++voxel) {
+      const auto channel = [&](int k) { return static_cast<float>(std::sqrt(squares_[voxel][k] / static_cast<double>(counts_[voxel]))); };
+      cloud_.colours.push_back({channel(0), channel(1), channel(2)});
+    }
+  }
+
+  PointCloudSettings settings_;
+  PointCloud cloud_;
+  bool normals_ = false, colours_ = false;  // true if gathered in the second pass
+  Box bounds_;                              // extent of the points
+  Vec3 origin_{}, first_{}, last_{};        // of the lattice [m]; its first and last cells relative to that
+  double brightest_ = 0;                    // largest channel in LAS files
+  CellNumbers cells_;
+  // for each voxel:
+  std::vector<std::uint64_t> counts_;            // number of points
+  std::vector<Vec3> sums_;                       // sum of normals, or of the points' offsets from the centre
+  std::vector<double> nearest_;                  // squared distance from the centre to the point with the normal in use
+  std::vector<std::array<double, 6>> products_;  // sums of products of the offsets
+  std::vector<Vec3> squares_;                    // sums of squared colours
+};
+
+}  // namespace detail
+
+PULSECAST_INLINE PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings) {
+  if (paths.empty()) throw SettingError("read_point_cloud paths", 0, "", "at least one");
+  return detail::PointCloudReader(paths, settings).result();
+}
+
+}  // namespace pulsecast::io
+
+#endif
