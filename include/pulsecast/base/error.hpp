@@ -5,6 +5,7 @@
 
 #include <array>
 #include <charconv>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -17,6 +18,13 @@ namespace detail {
 inline std::string to_text(double value) {
   std::array<char, 32> digits;
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+/// Texts in a row, as of a message. Compiled once, while each `+` of two texts is compiled anew where it stands.
+[[gnu::noinline]] inline std::string joined(std::initializer_list<std::string_view> texts) {
+  std::string all;
+  for (const std::string_view text : texts) all.append(text);
+  return all;
 }
 }  // namespace detail
 
@@ -32,7 +40,7 @@ class SettingError : public std::invalid_argument {
         value_(value) {}
 
   /// Copy of this error whose field is prefixed by a name, as in `leg 3: Scanner::pulse_rate`.
-  [[nodiscard]] SettingError of(const std::string& name) const { return {name + ": " + field_, value_, unit_, allowed_}; }
+  [[nodiscard]] SettingError of(const std::string& name) const { return {detail::joined({name, ": ", field_}), value_, unit_, allowed_}; }
 
   [[nodiscard]] const std::string& field() const noexcept { return field_; }      ///< name of the setting, as in `Scanner::pulse_rate`
   [[nodiscard]] double value() const noexcept { return value_; }                  ///< value that was refused, in `unit()`
@@ -41,9 +49,7 @@ class SettingError : public std::invalid_argument {
 
  private:
   static std::string message(const std::string& field, double value, const std::string& unit, const std::string& allowed) {
-    std::string text = field;
-    text.append(" is ").append(detail::to_text(value)).append(unit.empty() ? "" : " ").append(unit);
-    return text.append(", but must be ").append(allowed);
+    return detail::joined({field, " is ", detail::to_text(value), unit.empty() ? "" : " ", unit, ", but must be ", allowed});
   }
 
   std::string field_, unit_, allowed_;
@@ -66,7 +72,7 @@ class FileError : public std::runtime_error {
  public:
   /// `place` in the file, as in "line 12" or "byte 375"; empty if the error concerns the whole file.
   FileError(std::string path, std::string place, std::string problem)
-      : std::runtime_error(path + (place.empty() ? "" : ", " + place) + ": " + problem),
+      : std::runtime_error(detail::joined({path, place.empty() ? "" : ", ", place, ": ", problem})),
         path_(std::move(path)),
         place_(std::move(place)),
         problem_(std::move(problem)) {}

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <system_error>
 
+#include <pulsecast/base/error.hpp>
+
 /// Lines, words and numbers of text. Letters are those of ASCII; the locale has no influence.
 namespace pulsecast::text {
 
@@ -56,7 +58,7 @@ inline constexpr std::string_view blanks = " \t";  ///< blank and tab
   std::string out(text.substr(0, longest));
   std::replace_if(
       out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-  return "'" + out + (text.size() > longest ? "...'" : "'");
+  return detail::joined({"'", out, text.size() > longest ? "...'" : "'"});
 }
 
 /// Removes the first word from a text, and the separators behind it. Returns the word; it is empty if a separator comes first.

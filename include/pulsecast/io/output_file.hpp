@@ -90,12 +90,12 @@ class OutputFile {
   void write(std::span<const std::byte> bytes) {
     if (piece_ != nullptr) {
       position_ += bytes.size();
-      return void(piece_->insert(piece_->end(), bytes.begin(), bytes.end()));
+      return void(piece_->insert(piece_->end(), bytes.data(), bytes.data() + bytes.size()));
     }
     require_open();
     if (buffer_.size() + bytes.size() > capacity) flush();
     if (bytes.size() < capacity) {
-      buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+      buffer_.insert(buffer_.end(), bytes.data(), bytes.data() + bytes.size());
     } else {
       hand_over(bytes, false);
     }
@@ -156,7 +156,9 @@ class OutputFile {
     } else {
       std::filesystem::rename(temporary, path_, error);
     }
-    if (error) fail("cannot be completed", error.value(), "room for " + std::to_string(position_) + " bytes and a replaceable name");
+    if (error)
+      fail("cannot be completed", error.value(),
+           pulsecast::detail::joined({"room for ", std::to_string(position_), " bytes and a replaceable name"}));
     std::fclose(file_.release());  // the lock ends after the renaming; closing reports no error that syncing has not
   }
 
@@ -196,14 +198,15 @@ class OutputFile {
         if (S_ISREG(status.st_mode)) ::unlink(temporary.c_str());
       }
       ::close(file);
-      if (!is_alone) throw FileError(path_.string(), "", "is already being written: " + temporary.string() + " is locked");
+      if (!is_alone)
+        throw FileError(path_.string(), "", pulsecast::detail::joined({"is already being written: ", temporary.string(), " is locked"}));
     }
     fail("cannot be created", EEXIST, "no other file " + temporary.string());
   }
 
   [[noreturn]] void fail(std::string_view what, int error, std::string_view expected) {
     discard();
-    throw FileError(path_.string(), "", std::string(what) + ": " + system_error(error).message() + "; expected " + std::string(expected));
+    throw FileError(path_.string(), "", pulsecast::detail::joined({what, ": ", system_error(error).message(), "; expected ", expected}));
   }
 
   void require_open() const {
@@ -213,7 +216,7 @@ class OutputFile {
   void put(std::span<const std::byte> bytes) {
     errno = 0;
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size()) return;
-    fail("cannot be written", errno, "room for " + std::to_string(bytes.size()) + " more bytes");
+    fail("cannot be written", errno, pulsecast::detail::joined({"room for ", std::to_string(bytes.size()), " more bytes"}));
   }
 
   void hand_over(std::span<const std::byte> bytes, bool last) {

@@ -24,7 +24,7 @@ struct Scanner {
     require_within("Scanner::pulses", static_cast<double>(pulses), 0, 0x1p52, "");  // limit of the counts in `Tick` and `step_in_cycle`
     require_within("Scanner::pulses (duration)", static_cast<double>(pulses) / pulse_rate, 0, 1e15, "s");
     if (!(delay >= 0 && delay < 1 / pulse_rate))
-      throw SettingError("Scanner::delay", delay, "s", "at least 0 and less than " + detail::to_text(1 / pulse_rate));
+      throw SettingError("Scanner::delay", delay, "s", detail::joined({"at least 0 and less than ", detail::to_text(1 / pulse_rate)}));
     require_within("Laser::wavelength", laser.wavelength, 1e-8, 1e-2, "m");
     require_within("Laser::peak_power", laser.peak_power, 1e-20, 1e20, "W");
     require_within("Laser::pulse_length", laser.pulse_length, 1e-15, 1, "s");

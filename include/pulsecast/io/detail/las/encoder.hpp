@@ -5,17 +5,18 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <locale>
 #include <span>
-#include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 
+#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
@@ -120,13 +121,16 @@ class LasEncoder {
   [[nodiscard]] std::string misfit(const Vec3& point) const {
     std::size_t axis = 0;
     while (axis < 2 && fits(steps_of(point, axis))) ++axis;
-    std::ostringstream problem;
-    problem.imbue(std::locale::classic());
-    problem.precision(12);
-    problem << "xyz"[axis] << " is " << point[static_cast<int>(axis)] << " m, which does not fit 32 bits; expected "
-            << offset_[static_cast<int>(axis)] << " m +- " << settings_.scale * std::numeric_limits<std::int32_t>::max()
-            << " m (offset, and 2^31 steps of " << settings_.scale << " m)";
-    return problem.str();
+    const auto text = [](double value) {
+      std::array<char, 32> digits;
+      return std::string(digits.data(),
+                         std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 12).ptr);
+    };
+    const int k = static_cast<int>(axis);
+    return pulsecast::detail::joined({std::string_view("xyz").substr(axis, 1), " is ", text(point[k]),
+                                      " m, which does not fit 32 bits; expected ", text(offset_[k]), " m +- ",
+                                      text(settings_.scale * std::numeric_limits<std::int32_t>::max()), " m (offset, and 2^31 steps of ",
+                                      text(settings_.scale), " m)"});
   }
 
   /// Chooses the offset of the coordinates from the first point of the file, unless set. Stored numbers stay small far from the origin, and

@@ -9,8 +9,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -82,8 +84,8 @@ class LasPackets {
         d.put(6, spacing_);
         d.put(10, gain_of(gain_class));
         d.put(18, -no_light * gain_of(gain_class));
-        bytes.insert(bytes.end(), head.begin(), head.end());
-        bytes.insert(bytes.end(), d.begin(), d.end());
+        bytes.insert(bytes.end(), head.data(), head.data() + head.size());
+        bytes.insert(bytes.end(), d.data(), d.data() + d.size());
       }
     return bytes;
   }
@@ -113,7 +115,7 @@ class LasPackets {
     unsigned c = 0;
     while (c < size_classes && samples_of(c) < samples) ++c;
     if (c < size_classes) return c;
-    reject("a waveform has " + std::to_string(samples) + " samples", "at most " + std::to_string(samples_of(size_classes - 1)));
+    reject({"a waveform has ", std::to_string(samples), " samples; expected at most ", std::to_string(samples_of(size_classes - 1))});
   }
 
   [[nodiscard]] static unsigned gain_class_of(std::span<const float> waveform) noexcept {
@@ -129,13 +131,13 @@ class LasPackets {
     const bool can_be = std::fabs(picoseconds - whole) <= 1e-6 && whole >= 1 && whole <= 4294967295.0;
     if (can_be && spacing_ == 0) spacing_ = static_cast<std::uint32_t>(whole);
     if (can_be && spacing_ == whole) return;
-    reject("samples are " + pulsecast::detail::to_text(picoseconds) + " ps apart",
-           spacing_ == 0 ? "a whole number from 1 to 2^32 - 1" : std::to_string(spacing_) + " ps, as before");
+    const std::string allowed = spacing_ == 0 ? "a whole number from 1 to 2^32 - 1" : std::to_string(spacing_) + " ps, as before";
+    reject({"samples are ", pulsecast::detail::to_text(picoseconds), " ps apart; expected ", allowed});
   }
 
-  [[noreturn]] void reject(const std::string& problem, const std::string& expected) {
+  [[noreturn]] void reject(std::initializer_list<std::string_view> problem) {
     file_.discard();
-    throw FileError(file_.path().string(), "byte " + std::to_string(file_.position()), problem + "; expected " + expected);
+    throw FileError(file_.path().string(), "byte " + std::to_string(file_.position()), pulsecast::detail::joined(problem));
   }
 
   [[nodiscard]] detail::LasBytes<header_size> header() const {

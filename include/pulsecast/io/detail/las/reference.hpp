@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include <pulsecast/base/error.hpp>
+
 namespace pulsecast::io::detail {
 
 /// Well-known text of a UTM system on WGS 84, ETRS89 or NAD83; empty for other codes, whose definitions fill a register of thousands.
@@ -29,17 +31,23 @@ namespace pulsecast::io::detail {
   const auto family = std::find_if(families.begin(), families.end(), [&](const Family& f) { return epsg >= f.first && epsg <= f.last; });
   if (family == families.end()) return {};
   const unsigned zone = epsg - family->first + family->zone;
-  const auto code = [](std::string_view number) { return "AUTHORITY[\"EPSG\",\"" + std::string(number) + "\"]"; };
-  const auto quoted = [](std::string_view name) { return "[\"" + std::string(name) + "\","; };
-  const std::string name = std::string(family->system) + " / UTM zone " + std::to_string(zone) + (family->south ? "S" : "N");
-  return "PROJCS" + quoted(name) + "GEOGCS" + quoted(family->system) + "DATUM" + quoted(family->datum) + "SPHEROID" +
-         quoted(family->ellipsoid) + "6378137," + std::string(family->flattening) + ',' + code(family->ellipsoid_code) + "]," +
-         code(family->datum_code) + "],PRIMEM[\"Greenwich\",0," + code("8901") + "],UNIT[\"degree\",0.0174532925199433," + code("9122") +
-         "]," + code(family->system_code) + "],PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0]," +
-         "PARAMETER[\"central_meridian\"," + std::to_string(6 * static_cast<int>(zone) - 183) +
-         "],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\"," +
-         (family->south ? "10000000" : "0") + "],UNIT[\"metre\",1," + code("9001") + "],AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]," +
-         code(std::to_string(epsg)) + ']';
+  const auto code = [](std::string_view number) { return pulsecast::detail::joined({"AUTHORITY[\"EPSG\",\"", number, "\"]"}); };
+  const std::string ellipsoid = pulsecast::detail::joined(
+      {"SPHEROID[\"", family->ellipsoid, "\",6378137,", family->flattening, ",", code(family->ellipsoid_code), "]"});
+  const std::string datum = pulsecast::detail::joined({"DATUM[\"", family->datum, "\",", ellipsoid, ",", code(family->datum_code), "]"});
+  const std::string geographic =
+      pulsecast::detail::joined({"GEOGCS[\"", family->system, "\",", datum, ",PRIMEM[\"Greenwich\",0,", code("8901"),
+                                 "],UNIT[\"degree\",0.0174532925199433,", code("9122"), "],", code(family->system_code), "]"});
+  const std::string name =
+      pulsecast::detail::joined({"PROJCS[\"", family->system, " / UTM zone ", std::to_string(zone), family->south ? "S" : "N", "\","});
+  const std::string projection =
+      pulsecast::detail::joined({",PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",",
+                                 std::to_string(6 * static_cast<int>(zone) - 183),
+                                 "],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\",",
+                                 family->south ? "10000000" : "0", "],"});
+  const std::string axes =
+      pulsecast::detail::joined({"UNIT[\"metre\",1,", code("9001"), "],AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH],"});
+  return pulsecast::detail::joined({name, geographic, projection, axes, code(std::to_string(epsg)), "]"});
 }
 
 /// GeoTIFF key directory: header and three keys (projected model, its code, metre as unit). Source: OGC GeoTIFF 1.1, 7.1.2 and annex B.
