@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/io/spectral_library.hpp>
+#include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/scene/material.hpp>
 
 namespace pulsecast::io {

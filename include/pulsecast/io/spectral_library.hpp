@@ -5,13 +5,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
+#include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
 namespace pulsecast::io {
@@ -34,14 +33,6 @@ struct SpectrumFile {
 /// above 1.5 are percent. The report states units and reasons.
 /// Throws a `FileError` with path and line at the first error.
 [[nodiscard]] SpectrumFile read_spectrum(const std::filesystem::path& path);
-
-/// Spectra by name.
-struct SpectralLibrary {
-  std::map<std::string, std::shared_ptr<const Spectrum>, std::less<>> spectra{};  ///< spectra by name
-  std::vector<std::string> reports{};                                             ///< report of each file, as in `SpectrumFile`
-  std::vector<std::string> warnings{};                                            ///< oddities that could still be read
-  std::vector<double> wavelengths{};  ///< of the lasers, if known: materials whose spectra do not reach them cause a warning [m]
-};
 
 /// Reads a file, or all files of a folder. A spectrum is named like its file without the extension; files without one are left out with a
 /// warning. Throws a `FileError` if there is no spectrum at all.

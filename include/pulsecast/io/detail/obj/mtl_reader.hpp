@@ -22,7 +22,6 @@
 #include <pulsecast/io/detail/obj/statements.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
-#include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/scene/material.hpp>
 
 /// Reading of MTL files.

@@ -23,7 +23,6 @@
 #include <pulsecast/io/detail/obj/piece.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
-#include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
