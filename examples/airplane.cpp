@@ -35,9 +35,9 @@ auto airplane(const StraightLine& pass, double pulse_rate) {
 int main(int argc, char** argv) {
   CommandLine line("Scans generated hills from an airplane.");
   double height = 450, overlap_percent = 30, pulse_rate_kHz = 50;
-  line.app.add_option("--height", height, "Flying height above the hills")->type_name("M")->check(CLI::Range(100.0, 5000.0));
-  line.app.add_option("--overlap", overlap_percent, "Overlap of neighbouring strips")->type_name("%")->check(CLI::Range(0.0, 90.0));
-  line.app.add_option("--pulse-rate", pulse_rate_kHz, "Pulse rate of the laser")->type_name("kHz")->check(CLI::Range(1.0, 2000.0));
+  line.add_number("--height", height, 100, 5000, "M", "Flying height above the hills");
+  line.add_number("--overlap", overlap_percent, 0, 90, "%", "Overlap of neighbouring strips");
+  line.add_number("--pulse-rate", pulse_rate_kHz, 1, 2000, "kHz", "Pulse rate of the laser");
 
   return line.run(argc, argv, [&] {
     const auto scene = hills::scene(line.seed);

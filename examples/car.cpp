@@ -34,10 +34,8 @@ auto scanner(const GroundVehicleDrive& drive, double angle, double pulse_rate) {
 int main(int argc, char** argv) {
   CommandLine line("Scans the streets of a generated small town from a car.");
   double speed_kmh = 30, pulse_rate_kHz = 40;
-  line.app.add_option("--speed", speed_kmh, "Speed of the car on straight roads")->type_name("KM/H")->check(CLI::Range(1.0, 100.0));
-  line.app.add_option("--pulse-rate", pulse_rate_kHz, "Pulse rate of each of the two scanners")
-      ->type_name("kHz")
-      ->check(CLI::Range(1.0, 1000.0));
+  line.add_number("--speed", speed_kmh, 1, 100, "KM/H", "Speed of the car on straight roads");
+  line.add_number("--pulse-rate", pulse_rate_kHz, 1, 1000, "kHz", "Pulse rate of each of the two scanners");
 
   return line.run(argc, argv, [&] {
     const auto scene = street::scene(line.seed);

@@ -2,72 +2,51 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <filesystem>
-#include <iostream>
-#include <sstream>
+#include <functional>
+#include <memory>
 #include <string>
-#include <system_error>
-#include <thread>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-#include <pulsecast/base/error.hpp>
 #include <pulsecast/base/vector.hpp>
 
-/// What every example takes on its command line. An example adds its own options to `app`, then runs inside `run`.
-struct CommandLine {
-  CLI::App app;
-  std::filesystem::path output = "pulsecast-output";                     ///< folder of the files that are left
-  unsigned threads = std::max(1U, std::thread::hardware_concurrency());  ///< how many
-  std::uint64_t seed = 1;                                                ///< of all that is random
+namespace CLI {
+class App;
+}
 
-  explicit CommandLine(const std::string& what) : app(what) {
-    app.get_formatter()->column_width(34);
-    app.option_defaults()->always_capture_default();
-    app.add_option("-o,--output", output, "Folder for the results, created if missing")->type_name("DIR");
-    app.add_option("-t,--threads", threads, "Number of threads")->type_name("N")->check(CLI::Range(1U, 1024U));
-    app.add_option("-s,--seed", seed, "Seed of all random numbers; the same seed gives the same files")
-        ->type_name("N")
-        ->check(CLI::NonNegativeNumber);
-  }
+/// Command line that all examples share. An example adds its own options, then runs inside `run`. Each option keeps its variable's value as
+/// the default. `type` is the unit or the kind of a value, as the help shows it.
+class CommandLine {
+ public:
+  std::filesystem::path output = "pulsecast-output";  ///< folder of the results
+  unsigned threads;                                   ///< number of threads, by default those of the machine
+  std::uint64_t seed = 1;                             ///< of all random numbers
 
-  /// An option that takes a place, as in `--position 1.5,-2,0`, and may be given again for further ones.
-  void add_places(const std::string& name, std::vector<pulsecast::Vec3>& places, const std::string& what) {
-    const auto add = [&places](const std::string& text) {
-      std::istringstream in(text);
-      pulsecast::Vec3 place{};
-      char first = 0, second = 0;
-      in >> place.x >> first >> place.y >> second >> place.z;
-      if (!in || first != ',' || second != ',' || !(in >> std::ws).eof()) return false;
-      places.push_back(place);
-      return true;
-    };
-    const auto add_all = [add](const CLI::results_t& texts) { return std::ranges::all_of(texts, add); };
-    app.add_option(name, add_all, what)->type_name("X,Y,Z")->expected(1, -1)->allow_extra_args(false);
-  }
+  explicit CommandLine(const std::string& purpose);
+  ~CommandLine();
 
-  /// Reads the command line, makes the output folder, and does the work. Returns what `main` should: 0 if all went well, 1 if a setting
-  /// or a file was at fault, 2 if the command line was.
-  int run(int argc, char** argv, auto&& work) {
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      if (error.get_exit_code() == 0) return app.exit(error);  // --help
-      std::cerr << "error: " << error.what() << "\nTry --help.\n";
-      return 2;
-    }
-    try {
-      std::error_code problem;
-      std::filesystem::create_directories(output, problem);
-      if (problem) throw pulsecast::FileError(output.string(), "", "the output folder cannot be created (" + problem.message() + ")");
-      work();
-    } catch (const std::exception& error) {
-      std::cerr << "\nerror: " << error.what() << '\n';
-      return 1;
-    }
-    return 0;
-  }
+  /// Number from an interval, ends included.
+  void add_number(const std::string& name, double& value, double least, double most, const std::string& type, const std::string& meaning);
+  void add_number(const std::string& name, std::size_t& value, int least, int most, const std::string& meaning);
+
+  void add_flag(const std::string& name, bool& value, const std::string& meaning);
+
+  /// Position, as in `--position 1.5,-2,0`; repeatable.
+  void add_positions(const std::string& name, std::vector<pulsecast::Vec3>& positions, const std::string& meaning);
+
+  /// File or files without a name of an option.
+  void add_file(const std::string& name, std::filesystem::path& file, const std::string& type, const std::string& meaning);
+  void add_files(const std::string& name, std::vector<std::string>& files, const std::string& type, const std::string& meaning);
+
+  /// Search folder; repeatable.
+  void add_folders(const std::string& name, std::vector<std::filesystem::path>& folders, const std::string& meaning);
+
+  /// Reads the command line, makes the output folder and does the work. Returns the exit status: 0 for success, 1 for an error of a setting
+  /// or a file, 2 for one of the command line.
+  int run(int argc, char** argv, const std::function<void()>& work);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
 };

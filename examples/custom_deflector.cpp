@@ -3,6 +3,8 @@
 
 // User-defined optic: two rotating prisms draw a rosette. Writes custom_deflector.png.
 
+#include <cmath>
+
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/pulsecast.hpp>
 

@@ -38,10 +38,10 @@ int main(int argc, char** argv) {
   CommandLine line("Scans a generated wood from a drone.");
   double height = 45, speed = 6, pulse_rate_kHz = 12;
   bool stop = false;
-  line.app.add_option("--height", height, "Flying height above the glade at the start")->type_name("M")->check(CLI::Range(35.0, 500.0));
-  line.app.add_option("--speed", speed, "Maximum speed of the drone")->type_name("M/S")->check(CLI::Range(0.5, 25.0));
-  line.app.add_option("--pulse-rate", pulse_rate_kHz, "Pulse rate of the laser")->type_name("kHz")->check(CLI::Range(1.0, 1000.0));
-  line.app.add_flag("--stop-and-turn", stop, "Hover to turn, instead of banked turns");
+  line.add_number("--height", height, 35, 500, "M", "Flying height above the glade at the start");
+  line.add_number("--speed", speed, 0.5, 25, "M/S", "Maximum speed of the drone");
+  line.add_number("--pulse-rate", pulse_rate_kHz, 1, 1000, "kHz", "Pulse rate of the laser");
+  line.add_flag("--stop-and-turn", stop, "Hover to turn, instead of banked turns");
 
   return line.run(argc, argv, [&] {
     const auto scene = wood::scene(line.seed);

@@ -111,10 +111,8 @@ int main(int argc, char** argv) {
   CommandLine line("Scans a forest of meshes, voxels and point clouds from an airplane.");
   std::size_t trees = 10'000;
   double voxel_size = 0.2;
-  line.app.add_option("--trees", trees, "Number of trees")->type_name("N")->check(CLI::Range(1, 1'000'000));
-  line.app.add_option("--voxel-size", voxel_size, "Voxel size of the trees made from a point cloud")
-      ->type_name("M")
-      ->check(CLI::Range(0.02, 2.0));
+  line.add_number("--trees", trees, 1, 1'000'000, "Number of trees");
+  line.add_number("--voxel-size", voxel_size, 0.02, 2, "M", "Voxel size of the trees made from a point cloud");
 
   return line.run(argc, argv, [&] {
     const auto tree = std::make_shared<const Mesh>(wood::broadleaf({}, wood::Dice(line.seed, 1)));

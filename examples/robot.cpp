@@ -73,8 +73,8 @@ struct Scan {
 int main(int argc, char** argv) {
   CommandLine line("A robot drives down a street and scans it with a spinning sensor, scan by scan.");
   std::size_t scans = 300, beams = 32;
-  line.app.add_option("--scans", scans, "Number of revolutions of the sensor")->type_name("N")->check(CLI::Range(1, 100'000));
-  line.app.add_option("--beams", beams, "Number of beams of the sensor")->type_name("N")->check(CLI::Range(2, 128));
+  line.add_number("--scans", scans, 1, 100'000, "Number of revolutions of the sensor");
+  line.add_number("--beams", beams, 2, 128, "Number of beams of the sensor");
   return line.run(argc, argv, [&] {
     const auto map = street::scene(line.seed);
     const auto sensor = spinning_sensor(beams, 10, 1024);

@@ -2,52 +2,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <sys/resource.h>
-#include <unistd.h>
-
-#include <iomanip>
-#include <iostream>
-
 #include <pulsecast/run.hpp>
 
 /// Tells on the terminal how far a run is, its rate and the time left: in one line that is renewed in place. Elsewhere, as in the log of
 /// a server, a new line every five seconds.
 class ProgressLine {
  public:
-  void operator()(const pulsecast::Progress& progress) {
-    const bool last = progress.done == progress.total;
-    if (progress.done == 0 || (progress.seconds < next_ && !(last && shown_))) return;
-    next_ = progress.seconds + interval_;
-    shown_ = true;
-    const double done = static_cast<double>(progress.done), total = static_cast<double>(progress.total), rate = done / progress.seconds;
-    std::cerr << (terminal_ ? "\r" : "") << std::fixed << std::setprecision(0) << std::setw(4) << 100 * done / total << " %  "
-              << std::setprecision(2) << rate / 1e6 << " million pulses/s  " << std::setprecision(0) << (total - done) / rate
-              << " s left   " << (terminal_ && !last ? "" : "\n") << std::flush;
-  }
+  ProgressLine();
+  void operator()(const pulsecast::Progress& progress);
 
  private:
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  bool terminal_;
   double interval_ = terminal_ ? 0.2 : 5.0;
   double next_ = interval_;
   bool shown_ = false;
 };
 
 /// The table that ends a run.
-inline void print(const pulsecast::RunSummary& run) {
-  using enum pulsecast::Fate;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto line = [](const char* name, auto value, const char* unit) {
-    std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << value << ' ' << unit << '\n';
-  };
-  std::cout << std::fixed << std::setprecision(2);
-  line("pulses", run.pulses(), "");
-  line("echoes", run.echoes, "");
-  line("missed", run.count(missed), "pulses");
-  if (run.count(out_of_range) > 0) line("out of range", run.count(out_of_range), "pulses");
-  if (run.count(absorbed) > 0) line("absorbed", run.count(absorbed), "pulses");
-  if (run.count(below_threshold) > 0) line("too weak", run.count(below_threshold), "pulses");
-  line("time", run.seconds, "s");
-  if (run.pulses() > 0) line("speed", static_cast<double>(run.rays) / run.seconds / 1e6, "million rays/s");
-  line("peak memory", static_cast<double>(usage.ru_maxrss) / 1024, "MiB");  // Linux counts in KiB. Source: getrusage(2)
-}
+void print(const pulsecast::RunSummary& run);

@@ -22,11 +22,8 @@ int main(int argc, char** argv) {
   CommandLine line("Runs the survey of an XML document.");
   std::filesystem::path path = "survey.xml";
   std::vector<std::filesystem::path> assets;
-  line.app.add_option("survey", path, "Survey document")->type_name("SURVEY.xml");
-  line.app.add_option("--assets", assets, "Search folder for files of the document; repeatable")
-      ->type_name("DIR")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  line.add_file("survey", path, "SURVEY.xml", "Survey document");
+  line.add_folders("--assets", assets, "Search folder for files of the document; repeatable");
 
   return line.run(argc, argv, [&] {
     const helios::SurveyDocument document = helios::read_survey(path, {.assets = assets});

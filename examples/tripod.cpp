@@ -77,13 +77,11 @@ int main(int argc, char** argv) {
   std::vector<Vec3> positions;
   double step_deg = 0.25;
   bool xyz = false, y_up = false;
-  line.app.add_option("scene", files, "OBJ files of the scene [m]; without any, a generated wood")->type_name("OBJ");
-  line.add_places("-p,--position", positions, "Position of the tripod [m]; repeatable for further set-ups");
-  line.app.add_option("-r,--resolution", step_deg, "Angular step between pulses and between lines")
-      ->type_name("DEG")
-      ->check(CLI::Range(0.005, 10.0));
-  line.app.add_flag("--y-up", y_up, "Vertical axis of the OBJ files is y, not z");
-  line.app.add_flag("--xyz", xyz, "Write the points as text, too");
+  line.add_files("scene", files, "OBJ", "OBJ files of the scene [m]; without any, a generated wood");
+  line.add_positions("-p,--position", positions, "Position of the tripod [m]; repeatable for further set-ups");
+  line.add_number("-r,--resolution", step_deg, 0.005, 10, "DEG", "Angular step between pulses and between lines");
+  line.add_flag("--y-up", y_up, "Vertical axis of the OBJ files is y, not z");
+  line.add_flag("--xyz", xyz, "Write the points as text, too");
 
   return line.run(argc, argv, [&] {
     const auto scene = files.empty() ? wood::scene(line.seed) : read_scene(files, y_up ? io::UpAxis::y : io::UpAxis::z);

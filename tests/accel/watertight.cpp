@@ -20,7 +20,7 @@ using namespace pulsecast::support;
 
 namespace {
 
-/// Rays in all; the environment variable PULSECAST_RAYS asks for more.
+/// Rays in all; the environment variable PULSECAST_RAYS asks for another number.
 std::uint64_t rays_asked() {
   const char* text = std::getenv("PULSECAST_RAYS");
   return text ? std::strtoull(text, nullptr, 10) : 500000;

@@ -9,7 +9,7 @@ using namespace pulsecast::helios;
 
 /// The input is a document of a survey and of assets, which may name itself, and a file `a`. What can be read can be written, and read
 /// again.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(document) {
   static constexpr std::uint8_t mesh[] = "v 0 0 0\n";
   static const std::filesystem::path folder = fuzz::file(mesh, sizeof mesh - 1, "a").parent_path();
   const std::filesystem::path path = fuzz::file(data, size, "a.xml"), again = folder / "b.xml";
@@ -34,5 +34,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::expect(false);
     }
   });
-  return 0;
 }

@@ -7,17 +7,24 @@
 #include <filesystem>
 #include <fstream>
 #include <ios>
+#include <map>
 #include <string>
 
 #include <pulsecast/base/error.hpp>
 
 #include "support/temporary_folder.hpp"
 
-/// What libFuzzer calls with an input that it has made up.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-
 /// Programs that try a reader on files that nobody would write. Only a `FileError` may come of it.
 namespace pulsecast::fuzz {
+
+/// Tries one input.
+using Target = void (*)(const std::uint8_t* data, std::size_t size);
+
+/// The targets of this program, by name.
+inline std::map<std::string, Target>& targets() {
+  static std::map<std::string, Target> all;
+  return all;
+}
 
 /// The input as a file of its name.
 inline std::filesystem::path file(const std::uint8_t* data, std::size_t size, const char* name) {
@@ -43,3 +50,9 @@ inline void expect(bool condition) {
 }
 
 }  // namespace pulsecast::fuzz
+
+/// Begins the definition of a target, as `FUZZ_TARGET(las) { ... }`, whose parameters are `data` and `size`.
+#define FUZZ_TARGET(name)                                                                                               \
+  static void try_##name(const std::uint8_t* data, std::size_t size);                                                   \
+  [[maybe_unused]] static const bool name##_is_target = ::pulsecast::fuzz::targets().emplace(#name, try_##name).second; \
+  static void try_##name(const std::uint8_t* data, std::size_t size)

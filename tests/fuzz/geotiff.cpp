@@ -7,7 +7,7 @@
 using namespace pulsecast;
 using namespace pulsecast::io;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(geotiff) {
   const std::filesystem::path path = fuzz::file(data, size, "terrain.tif");
   for (const GeoTiffSettings& settings : {GeoTiffSettings{}, GeoTiffSettings{.band = 2, .vertical_scale = 0.1, .missing = 0}})
     fuzz::may_refuse([&] {
@@ -15,5 +15,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       file.raster.validate();
       fuzz::expect(file.raster.heights.size() * sizeof(float) <= (std::size_t{1} << 26) + 4096 * size);
     });
-  return 0;
 }

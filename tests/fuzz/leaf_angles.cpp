@@ -10,8 +10,8 @@ using namespace pulsecast;
 using namespace pulsecast::io;
 
 /// The first byte chooses how many rows, evenly spread over all zenith angles, stand behind the input: without them, few would be whole.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
+FUZZ_TARGET(leaf_angles) {
+  if (size == 0) return;
   std::string text(reinterpret_cast<const char*>(data + 1), size - 1);
   const int rows = data[0] % 32;
   for (int i = 0; i < rows; ++i) {
@@ -26,5 +26,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::expect(projection >= 0 && projection <= 1);
     }
   });
-  return 0;
 }

@@ -8,7 +8,7 @@ using namespace pulsecast;
 using namespace pulsecast::io;
 
 /// The input is an OBJ file that may name itself, and `a.mtl`, which is the same text again.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(obj) {
   (void)fuzz::file(data, size, "a.mtl");
   const std::filesystem::path path = fuzz::file(data, size, "a.obj");
   fuzz::may_refuse([&] {
@@ -21,5 +21,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const std::uint32_t material : mesh.materials) fuzz::expect(material < model.materials.size());
     for (const Material& material : model.materials) material.validate();
   });
-  return 0;
 }

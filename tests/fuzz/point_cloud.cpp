@@ -7,7 +7,7 @@
 using namespace pulsecast;
 using namespace pulsecast::io;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(point_cloud) {
   const std::filesystem::path path = fuzz::file(data, size, "cloud");
   for (const PointCloudSettings& settings : {PointCloudSettings{.normals = VoxelNormals::fitted},
                                              PointCloudSettings{.voxel_size = 0.25,
@@ -25,5 +25,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (const auto& channels : cloud.colours)
         for (const float channel : channels) fuzz::expect(channel >= 0 && channel <= 1.000001F);
     });
-  return 0;
 }

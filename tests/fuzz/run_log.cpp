@@ -16,7 +16,7 @@
 using namespace pulsecast;
 
 /// What can be read names no file outside of the run's folder, and is the same when it is written and read again.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(run_log) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   fuzz::may_refuse([&] {
     const RunLog log = RunLog::parse(text, "log");
@@ -31,5 +31,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::expect(false);
     }
   });
-  return 0;
 }

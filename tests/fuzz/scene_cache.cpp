@@ -106,8 +106,8 @@ void trace(const Tested& scene) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) return 0;
+FUZZ_TARGET(scene_cache) {
+  if (size == 0) return;
   std::string file = tampered(data, size);
   seal(file);
   const std::shared_ptr<std::byte> memory = mapped(file);
@@ -122,5 +122,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const ArchiveError&) {
   } catch (const SettingError&) {
   }
-  return 0;
 }

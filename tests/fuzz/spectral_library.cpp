@@ -7,7 +7,7 @@
 using namespace pulsecast;
 using namespace pulsecast::io;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(spectral_library) {
   const std::filesystem::path path = fuzz::file(data, size, "oak.txt");
   fuzz::may_refuse([&] {
     const SpectrumFile file = read_spectrum(path);
@@ -21,5 +21,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const SpectralLibrary library = read_spectral_library(path);
     fuzz::expect(library.spectra.size() == 1 && library.spectra.contains("oak"));
   });
-  return 0;
 }

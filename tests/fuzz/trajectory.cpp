@@ -32,7 +32,7 @@ void check(const TrajectoryTable& table) {
 }  // namespace
 
 /// What can be read moves a platform, and can be written and read again, unless its times are too close to each other to be told apart.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(trajectory) {
   const std::filesystem::path path = fuzz::file(data, size, "flight.txt"), again = path.parent_path() / "again.txt";
   for (const TrajectoryFormat& format : {csv_format(), helios_format(), helios_output_format(), tum_format()})
     fuzz::may_refuse([&] {
@@ -45,5 +45,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::expect(same.poses.size() <= table.poses.size());
     });
   fuzz::may_refuse([&] { check(read_trajectory(path, csv_format(), {.start = 1, .end = 2.5})); });
-  return 0;
 }

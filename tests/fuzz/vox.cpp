@@ -9,7 +9,7 @@
 using namespace pulsecast;
 using namespace pulsecast::io;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+FUZZ_TARGET(vox) {
   const std::filesystem::path path = fuzz::file(data, size, "grid.vox");
   for (const VoxelFileSettings& settings :
        {VoxelFileSettings{}, VoxelFileSettings{.use = VoxelUse::opaque}, VoxelFileSettings{.use = VoxelUse::scaled, .shift = 1}})
@@ -26,5 +26,4 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::sort(cells.begin(), cells.end());
       fuzz::expect(std::adjacent_find(cells.begin(), cells.end()) == cells.end());
     });
-  return 0;
 }

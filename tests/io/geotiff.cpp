@@ -104,6 +104,8 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
   TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, form.format);
   TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, form.photometric);
   TIFFSetField(tiff, TIFFTAG_COMPRESSION, form.compression);
+  if (form.compression == COMPRESSION_LZMA) TIFFSetField(tiff, TIFFTAG_LZMAPRESET, 0);  // without 100 MB of memory for each strip
+  if (form.compression == COMPRESSION_ZSTD) TIFFSetField(tiff, TIFFTAG_ZSTD_LEVEL, 1);
   if (form.predictor != 1) TIFFSetField(tiff, TIFFTAG_PREDICTOR, form.predictor);
   if (!place.scale.empty()) TIFFSetField(tiff, 33550, static_cast<int>(place.scale.size()), place.scale.data());
   if (!place.ties.empty()) TIFFSetField(tiff, 33922, static_cast<int>(place.ties.size()), place.ties.data());

@@ -2,15 +2,22 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Checks what the architecture promises and no compiler sees. Usage: check.sh [ROOT]; prints every violation and fails if there is one.
+# Checks what the architecture promises and no compiler sees. Usage: check.sh [ROOT [RULE]]; prints every violation and fails if there is one.
+# With RULE, only the rule of that name is checked.
 set -u
 export LC_ALL=C
 cd "${1:-.}" || exit 2
+only=${2:-}
 violations=$(mktemp) || exit 2
 trap 'rm -f "$violations"' EXIT
 
-# Says each line that comes in, as a violation of the rule given.
-violates() { sed "s|^|$1: |" >> "$violations"; }
+# rule NAME COMMAND [ARGUMENT...]: each line that COMMAND prints is a violation of the rule.
+rule() {
+  name=$1
+  shift
+  [ -z "$only" ] || [ "$only" = "$name" ] || return 0
+  "$@" | sed "s|^|$name: |" >> "$violations"
+}
 
 headers=$(find include -name '*.hpp' | sort)
 sources=$(find include examples tests bench .ci CMakeLists.txt -type f \
@@ -18,8 +25,9 @@ sources=$(find include examples tests bench .ci CMakeLists.txt -type f \
              -o -name '*.js' -o -name '*.mjs' -o -name '*.css' -o -name '*.glsl' -o -name '*.html' \) | sort)
 
 # Which rooms a room may include; its own is understood. Rooms of one layer meet through concepts.hpp.
-# shellcheck disable=SC2086
-awk '
+includes_of_higher_layers() {
+  # shellcheck disable=SC2086
+  awk '
   BEGIN {
     words = "base geometry pulse echo"
     may["base"] = "version"
@@ -38,50 +46,59 @@ awk '
   /^#include <pulsecast\// {
     other = $2; sub(/^<pulsecast\//, "", other); sub(/[\/.].*/, "", other)
     if (other != room && index(" " may[room] " ", " " other " ") == 0) print FILENAME ":" FNR ": " $0
-  }' $headers | violates "a header includes only from layers below its own"
+  }' $headers
+}
+rule 'a header includes only from layers below its own' includes_of_higher_layers
 
 # What stands in a detail/ is its own room's.
-# shellcheck disable=SC2086
-awk '
+includes_of_other_details() {
+  # shellcheck disable=SC2086
+  awk '
   FNR == 1 { room = FILENAME; sub(/^include\/pulsecast\//, "", room); sub(/[\/.].*/, "", room) }
   /^#include <pulsecast\/[a-z_]*\/detail\// {
     other = $2; sub(/^<pulsecast\//, "", other); sub(/\/.*/, "", other)
     if (other != room) print FILENAME ":" FNR ": " $0
-  }' $headers | violates "no room includes another's detail/"
+  }' $headers
+}
+rule "no room includes another's detail/" includes_of_other_details
 
-# Greps headers: found RULE PATTERN [EXCEPTION], where EXCEPTION is a pattern of headers that may.
+# Greps headers: found PATTERN [EXCEPTION], where EXCEPTION is a pattern of headers that may.
 found() {
   # shellcheck disable=SC2086
-  grep -nE "$2" $headers | grep -vE "^include/pulsecast/(${3:-no exception}):?" | violates "$1"
+  grep -nE "$1" $headers | grep -vE "^include/pulsecast/(${2:-no exception}):?"
 }
-found 'GLM is named in base/vector.hpp only' '<glm/|glm::' 'base/vector\.hpp'
-found 'threads live in run.hpp and base/parallel.hpp only' \
-      '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel|page/(server|detail/local_server)|python/detail/interrupt_watch)\.hpp'
-found 'files are for the rooms beside the core' '#include <(fstream|filesystem|cstdio|stdio\.h)>' '(io|helios|mpi|page|python)/[^:]*'
-found 'degrees and nanoseconds are for the rooms beside the core' '[a-z]_(deg|ns)\>[^(]*[;=]' '(io|helios|mpi|page|python)/[^:]*|base/units\.hpp'
-found 'the library never prints and never exits' '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('
-found 'random numbers come from base/random.hpp only' '#include <random>|\<s?rand *\('
-found 'lines and numbers are read from text by base/text.hpp only' 'from_chars|\<(sto(d|f|i|u?ll?)|strto[a-z]+|ato[fil]|getline) *\(|xEF.xBB' 'base/text\.hpp'
-found 'concepts, never enable_if' 'enable_if'
+rule 'GLM is named in base/vector.hpp only' found '<glm/|glm::' 'base/vector\.hpp'
+rule 'threads live in run.hpp and base/parallel.hpp only' found \
+     '#include <(thread|mutex|shared_mutex|condition_variable|atomic|future|semaphore|barrier|latch)>' '(run|base/parallel|page/(server|detail/local_server)|python/detail/interrupt_watch)\.hpp'
+rule 'files are for the rooms beside the core' found '#include <(fstream|filesystem|cstdio|stdio\.h)>' '(io|helios|mpi|page|python)/[^:]*'
+rule 'degrees and nanoseconds are for the rooms beside the core' found '[a-z]_(deg|ns)\>[^(]*[;=]' '(io|helios|mpi|page|python)/[^:]*|base/units\.hpp'
+rule 'the library never prints and never exits' found '#include <iostream>|std::(cout|cerr|clog|exit|abort|terminate)\>|printf *\('
+rule 'random numbers come from base/random.hpp only' found '#include <random>|\<s?rand *\('
+rule 'lines and numbers are read from text by base/text.hpp only' found 'from_chars|\<(sto(d|f|i|u?ll?)|strto[a-z]+|ato[fil]|getline) *\(|xEF.xBB' 'base/text\.hpp'
+rule 'concepts, never enable_if' found 'enable_if'
 
 # The single header keeps the guards of the headers that it holds, and so goes with all others in either order.
-# shellcheck disable=SC2086
-awk '
+without_guard() {
+  # shellcheck disable=SC2086
+  awk '
   function finish() { if (file && (guards != 2 || last != "#endif")) print file ": " guard }
   FNR == 1 { finish(); file = FILENAME; guards = 0
              guard = toupper(file); sub(/^INCLUDE\//, "", guard); gsub(/[\/.]/, "_", guard) }
   FNR == 3 && $0 == "#ifndef " guard || FNR == 4 && $0 == "#define " guard { ++guards }
   /^#pragma once/ { guards = 0 }
   { last = $0 }
-  END { finish() }' $headers | violates 'a header has the include guard of its path'
-echo "$headers" | tr '/' '_' | sort | uniq -d | violates 'a header has the include guard of its path'
+  END { finish() }' $headers
+  echo "$headers" | tr '/' '_' | sort | uniq -d
+}
+rule 'a header has the include guard of its path' without_guard
 
 # shellcheck disable=SC2086
-awk 'FNR == 351 { print FILENAME }' $headers | violates 'a header has at most 350 lines'
+rule 'a header has at most 350 lines' awk 'FNR == 351 { print FILENAME }' $headers
 
 # A function begins with its statement, as clang-format sets it: at the line after the end of another. A body ends with its closing brace.
 # The test of a packet of triangles is one loop over lanes, which parts would slow down.
-find include examples bench tests/support -name '*.[ch]pp' -o -name '*.js' | sort | xargs awk -v limit=60 '
+long_functions() {
+  find include examples bench tests/support -name '*.[ch]pp' -o -name '*.js' | sort | xargs awk -v limit=60 '
   FNR == 1 { depth = 0; statement = raw = ""; split("", begin); split("", name) }
   {
     line = $0
@@ -122,58 +139,68 @@ find include examples bench tests/support -name '*.[ch]pp' -o -name '*.js' | sor
       sub(/ {.*/, "", name[depth])
     }
     if (line ~ /[;{}]$/) statement = ""
-  }' | grep -v '^include/pulsecast/geometry/triangle.hpp:.* void intersect(const TrianglePacket&' |
-  violates 'a function has at most 60 lines'
+  }' | grep -v '^include/pulsecast/geometry/triangle.hpp:.* void intersect(const TrianglePacket&'
+}
+rule 'a function has at most 60 lines' long_functions
 
 # shellcheck disable=SC2086
-awk 'FNR <= 3 && /SPDX-FileCopyrightText: / { holder[FILENAME] = 1 }
-     FNR <= 3 && /SPDX-License-Identifier: MIT( \*\/| -->)?$/ { licence[FILENAME] = 1 }
-     END { for (i = 1; i < ARGC; ++i) if (!(ARGV[i] in holder && ARGV[i] in licence)) print ARGV[i] }' $sources |
-  violates 'a file begins with two SPDX lines'
+rule 'a file begins with two SPDX lines' awk '
+  FNR <= 3 && /SPDX-FileCopyrightText: / { holder[FILENAME] = 1 }
+  FNR <= 3 && /SPDX-License-Identifier: MIT( \*\/| -->)?$/ { licence[FILENAME] = 1 }
+  END { for (i = 1; i < ARGC; ++i) if (!(ARGV[i] in holder && ARGV[i] in licence)) print ARGV[i] }' $sources
 
-code=$(echo "$sources" | grep '\.[ch]pp$')
-# shellcheck disable=SC2086
-awk -f tests/structure/commas.awk $code | violates 'no statements joined by commas'
+# shellcheck disable=SC2046
+rule 'no statements joined by commas' awk -f tests/structure/commas.awk $(echo "$sources" | grep '\.[ch]pp$')
 
 # shellcheck disable=SC2086
-grep -nE 'TO''DO|FIX''ME|(^|[^X])XX''X([^X]|$)' $sources | violates 'no open ends in the tree'
-absolute='(^|[^A-Za-z0-9_.])/(home|root|work|tmp)/'
-{
+rule 'no open ends in the tree' grep -nE 'TO''DO|FIX''ME|(^|[^X])XX''X([^X]|$)' $sources
+
+absolute_paths() {
+  absolute='(^|[^A-Za-z0-9_.])/(home|root|work|tmp)/'
   # shellcheck disable=SC2086
   grep -nE "$absolute" $sources
   find . \( -path ./.git -o -path ./build \) -prune -o -type f \( -name '*.md' -o -name '*.json' \) -exec grep -HnE "$absolute" {} +
-} | violates 'no absolute paths'
+}
+rule 'no absolute paths' absolute_paths
 
 # The umbrella is the contract, and what most surveys need: bench/include_cost.sh says what it costs.
-for header in concepts cloud echo pulse run survey; do
-  grep -qxF "#include <pulsecast/$header.hpp>" include/pulsecast/pulsecast.hpp || echo "include/pulsecast/$header.hpp"
-done | violates 'pulsecast.hpp includes the contract and the pipeline'
+missing_in_umbrella() {
+  for header in concepts cloud echo pulse run survey; do
+    grep -qxF "#include <pulsecast/$header.hpp>" include/pulsecast/pulsecast.hpp || echo "include/pulsecast/$header.hpp"
+  done
+}
+rule 'pulsecast.hpp includes the contract and the pipeline' missing_in_umbrella
 
 # The other half of a header: change the prefix.
-for header in $headers; do
-  case $header in */pulsecast.hpp | */version.hpp | */detail/*) continue ;; esac
-  test=${header#include/pulsecast/}
-  test=tests/${test%.hpp}.cpp
-  [ -f "$test" ] || echo "$header has no $test"
-done | violates 'every header has its test'
+without_test() {
+  for header in $headers; do
+    case $header in */pulsecast.hpp | */version.hpp | */detail/*) continue ;; esac
+    test=${header#include/pulsecast/}
+    test=tests/${test%.hpp}.cpp
+    [ -f "$test" ] || echo "$header has no $test"
+  done
+}
+rule 'every header has its test' without_test
 
 # A target with a library of its own brings the headers that include that library.
-claimed=$(sed -n 's/^set(pulsecast_[a-z_]*_headers \(.*\))$/\1/p' CMakeLists.txt)
-with_library=$(sed -n 's/^set(pulsecast_\([a-z_]*\) .*/\1/p' CMakeLists.txt)
-without=
-for header in $(find include/pulsecast/io include/pulsecast/helios include/pulsecast/mpi include/pulsecast/page include/pulsecast/python -name '*.hpp'); do
-  name=${header#include/pulsecast/}
-  name=${name%.hpp}
-  case " $(echo $claimed) " in *" $name "*) continue ;; esac
-  case " $(echo $with_library) " in *" ${name%%/*} "*) continue ;; esac
-  without="$without $header"
-done
-# shellcheck disable=SC2086
-grep -HnE '^#include (<.*[/.].*>|")' $without | grep -vE '#include <(pulsecast/|(fcntl|unistd|sys/(mman|stat|file))\.h>)' |
-  violates 'CMakeLists.txt knows what a header needs'
+claimed=$(sed -n 's/^set(pulsecast_[a-z_]*_headers \(.*\))$/\1/p' CMakeLists.txt | tr '\n' ' ')
+with_library=$(sed -n 's/^set(pulsecast_\([a-z_]*\) .*/\1/p' CMakeLists.txt | tr '\n' ' ')
+unclaimed_includes() {
+  without=
+  for header in $(find include/pulsecast/io include/pulsecast/helios include/pulsecast/mpi include/pulsecast/page include/pulsecast/python -name '*.hpp'); do
+    name=${header#include/pulsecast/}
+    name=${name%.hpp}
+    case " $claimed" in *" $name "*) continue ;; esac
+    case " $with_library" in *" ${name%%/*} "*) continue ;; esac
+    without="$without $header"
+  done
+  # shellcheck disable=SC2086
+  grep -HnE '^#include (<.*[/.].*>|")' $without | grep -vE '#include <(pulsecast/|(fcntl|unistd|sys/(mman|stat|file))\.h>)'
+}
+rule 'CMakeLists.txt knows what a header needs' unclaimed_includes
 
 # The table of the README is the list of the public headers beside the core.
-if [ -f README.md ]; then
+differences_of_table() {
   for header in include/pulsecast/io/*.hpp include/pulsecast/helios/*.hpp include/pulsecast/mpi/*.hpp include/pulsecast/page/*.hpp include/pulsecast/python/*.hpp; do
     name=${header#include/pulsecast/}
     grep -q "^|.*\`${name%.hpp}\`" README.md || echo "$header"
@@ -181,29 +208,33 @@ if [ -f README.md ]; then
   sed -n '/^| target/,/^$/p' README.md | grep -oE '`(io|helios|mpi|page|python)/[a-z_]+`' | tr -d '`' | while read -r name; do
     [ -f "include/pulsecast/$name.hpp" ] || echo "README.md: there is no $name.hpp"
   done
-fi | violates "the README's table lists the public headers"
+}
+rule "the README's table lists the public headers" differences_of_table
 
 # Every C++ block of the README is a whole example, without its licence lines.
-if [ -f README.md ]; then
-  blocks=$(mktemp -d) || exit 2
-  trap 'rm -rf "$violations" "$blocks"' EXIT
-  awk -v folder="$blocks" '/^```/ && inside { inside = 0; close(file); next }
-                           inside { print > file }
-                           /^```cpp$/ { inside = 1; file = folder "/" NR }' README.md
+blocks=$(mktemp -d) || exit 2
+trap 'rm -rf "$violations" "$blocks"' EXIT
+awk -v folder="$blocks" '/^```/ && inside { inside = 0; close(file); next }
+                         inside { print > file }
+                         /^```cpp$/ { inside = 1; file = folder "/" NR }' README.md
+program() { sed 1,2d "$1" | sed '/./,$!d'; }
+blocks_without_program() {
   for block in "$blocks"/*; do
     [ -f "$block" ] || continue
     for example in examples/*.cpp; do
-      sed '1,2d' "$example" | sed '/./,$!d' | cmp -s - "$block" && continue 2
+      program "$example" | cmp -s - "$block" && continue 2
     done
     echo "README.md:${block##*/}: this block is no program in examples/"
-  done | violates 'the code in the README is compiled'
-  if [ -f examples/embed.cpp ]; then
-    sed '1,2d' examples/embed.cpp | sed '/./,$!d' > "$blocks/embed"
-    same=no
-    for block in "$blocks"/[0-9]*; do cmp -s "$block" "$blocks/embed" && same=yes; done
-    [ $same = yes ] || echo examples/embed.cpp
-  fi | violates 'the README shows examples/embed.cpp'
-fi
+  done
+}
+rule 'the code in the README is compiled' blocks_without_program
+embed_without_block() {
+  for block in "$blocks"/*; do
+    program examples/embed.cpp | cmp -s - "$block" && return
+  done
+  echo examples/embed.cpp
+}
+rule 'the README shows examples/embed.cpp' embed_without_block
 
 if [ -s "$violations" ]; then
   cat "$violations"

@@ -16,7 +16,8 @@ fresh() {
   cp "$root"/*.md "$root"/*.json . 2> /dev/null
 }
 
-# notices RULE COMMAND: check.sh says RULE once COMMAND was run in a copy, and does not say it of the tree as it is.
+# notices RULE COMMAND: check.sh says RULE once COMMAND was run in a copy, and does not say it of the tree as it is. Of the copy, the check
+# asks for this rule alone.
 notices() {
   tried=$((tried + 1))
   if grep -qF "$1: " "$copy/before"; then
@@ -25,7 +26,7 @@ notices() {
   fi
   fresh
   eval "$2"
-  if ! sh tests/structure/check.sh . | grep -qF "$1: "; then
+  if ! sh tests/structure/check.sh . "$1" | grep -qF "$1: "; then
     echo "not noticed: $1, after: $2"
     missed=1
   fi

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -30,12 +31,13 @@ template <class Density>
 double projection(const Density& density, double zenith) {
   const int n = 2000;
   double sum = 0;
-  for (int i = 0; i < n; ++i)
-    for (int k = 0; k < n; ++k) {
-      const double t = (i + 0.5) / n * pi / 2, azimuth = (k + 0.5) / n * pi;
-      const double cosine = std::cos(zenith) * std::cos(t) + std::sin(zenith) * std::sin(t) * std::cos(azimuth);
-      sum += density(t) * std::fabs(cosine);
-    }
+  std::vector<double> cosines;  // of the azimuths
+  for (int k = 0; k < n; ++k) cosines.push_back(std::cos((k + 0.5) / n * pi));
+  for (int i = 0; i < n; ++i) {
+    const double t = (i + 0.5) / n * pi / 2, share = density(t);
+    const double upright = std::cos(zenith) * std::cos(t), aside = std::sin(zenith) * std::sin(t);
+    for (const double cosine : cosines) sum += share * std::fabs(upright + aside * cosine);
+  }
   return sum * pi / 2 / n / n;
 }
 

@@ -24,13 +24,13 @@ using namespace pulsecast::validation;
 
 namespace {
 
-/// A Gaussian beam cut into cells that shrink towards its axis by a twentieth each, so that targets a ten-thousandth of its size are
+/// A Gaussian beam cut into cells that shrink towards its axis by a tenth each, so that targets a ten-thousandth of its size are
 /// sampled as finely as those that fill it.
 class Lens {
  public:
   Lens() {
     std::vector<double> edges{0, 1e-6};
-    while (edges.back() < 2.5) edges.push_back(edges.back() * 1.05);
+    while (edges.back() < 2.5) edges.push_back(edges.back() * 1.1);
     for (std::size_t k = 0; k + 1 < edges.size(); ++k)
       for (const int side : {-1, 1}) {
         places_.push_back(side * (k == 0 ? 0.5e-6 : std::sqrt(edges[k] * edges[k + 1])));
