@@ -52,6 +52,7 @@ TEST_CASE_TEMPLATE("a Bvh is the same on any number of threads, and of boxes tha
   Generator random(51);
   std::vector<Box> boxes;
   for (int i = 0; i < 40'000; ++i) boxes.push_back(random.box(100, 1e-3, 1));  // several chunks, and several subtrees
+  std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.min.y < b.min.y; });  // chunks of different bounds
   struct Made {
     const std::vector<Box>& all;
     [[nodiscard]] std::size_t size() const noexcept { return all.size(); }
@@ -70,4 +71,31 @@ TEST_CASE_TEMPLATE("a Bvh is the same on any number of threads, and of boxes tha
     CHECK(other.is_consistent(boxes.size()));
     CHECK(offers(other, boxes.size(), largest) == std::vector<std::size_t>(boxes.size(), 1));
   }
+}
+
+TEST_CASE_TEMPLATE("an archive whose nodes are no tree of 64 levels at most, or lead beyond it, is noticed", Real, float, double) {
+  const std::vector<Box> boxes{{{0, 0, 0}, {1, 1, 1}}, {{5, 0, 0}, {6, 1, 1}}, {{50, 0, 0}, {51, 1, 1}}};
+  const Bvh<Real> tree(boxes, 1, 1);  // one node of three leaves
+  const auto is_sound = [&](std::size_t count, const auto& change) { return with_nodes(tree, count, change).is_consistent(boxes.size()); };
+  const auto chain = [](auto& nodes) {
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+      nodes[i].kinds[0] = 0;
+      nodes[i].children = static_cast<std::uint32_t>(i + 1);
+    }
+  };
+  CHECK(is_sound(1, chain));
+  CHECK(is_sound(64, chain));
+  CHECK_FALSE(is_sound(65, chain));
+  CHECK_FALSE(is_sound(2, [](auto&) {}));  // the second node has no parent
+  CHECK_FALSE(is_sound(2, [&](auto& nodes) {
+    chain(nodes);
+    nodes[0].kinds[1] = 0;  // the second node twice
+  }));
+  for (std::size_t count = 1; count < 64; ++count)
+    CHECK_FALSE(is_sound(count, [&](auto& nodes) {
+      chain(nodes);
+      nodes.back().kinds[0] = 0;  // a node that is missing
+      nodes.back().children = static_cast<std::uint32_t>(count);
+    }));
+  CHECK_FALSE(is_sound(1, [](auto& nodes) { ++nodes[0].primitives; }));
 }

@@ -84,3 +84,26 @@ TEST_CASE_TEMPLATE("a tree that was built is sound for as many primitives as it 
   CHECK(Tree(crowd(200, 0.5)).is_consistent(400));
   CHECK(Tree(DeserializeTag{}).is_consistent(0));
 }
+
+TEST_CASE_TEMPLATE("an archive whose nodes are no tree of 64 levels at most, or lead beyond it, is noticed", Real, float, double) {
+  const std::vector<Box> boxes{{{0, 0, 0}, {1, 1, 1}}};
+  const KdTree<Real> tree(boxes);  // one leaf
+  const auto is_sound = [&](std::size_t count, const auto& change) { return with_nodes(tree, count, change).is_consistent(boxes.size()); };
+  const auto chain = [](auto& nodes) {
+    for (std::size_t i = 0; i + 2 < nodes.size(); i += 2) nodes[i].place(i + 1, 0);
+  };
+  CHECK(is_sound(1, chain));
+  CHECK(is_sound(2 * 64 + 1, chain));
+  CHECK_FALSE(is_sound(2 * 65 + 1, chain));
+  for (std::size_t count = 2; count < 64; count += 2)
+    CHECK_FALSE(is_sound(count, [&](auto& nodes) {
+      chain(nodes);
+      nodes[count - 2].place(count - 1, 0);  // the upper child is missing
+    }));
+  CHECK_FALSE(is_sound(6, [](auto& nodes) {
+    nodes[0].place(1, 0);
+    nodes[1].place(4, 0);
+    nodes[2].place(3, 0);  // its upper child is the lower one of the node before
+  }));
+  CHECK_FALSE(is_sound(1, [](auto& nodes) { nodes[0].place(1, 3); }));
+}

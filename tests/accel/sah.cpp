@@ -115,6 +115,8 @@ TEST_CASE("boxes too far away and too many primitives are refused") {
   CHECK_THROWS_AS(Input(std::span(&box, 1)), SettingError);
   box.max.y = std::numeric_limits<double>::quiet_NaN();  // such a box is empty
   CHECK(Input(std::span(&box, 1)).primitives.empty());
+  box = {{0, -1.1e18, 0}, {1, 1, 1}};
+  CHECK_THROWS_AS(Input(std::span(&box, 1)), SettingError);
   CHECK_THROWS_AS(Input(std::span<const Box>(&box, std::size_t{0xFFFFFFFF})), SettingError);  // refused before it is looked at
 }
 

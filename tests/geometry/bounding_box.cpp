@@ -59,3 +59,20 @@ TEST_CASE_TEMPLATE("boxes contain what they stand for, and compact ones grow by 
     }
   }
 }
+
+TEST_CASE_TEMPLATE("a box holds what the subtraction of its centre rounds away", Real, float, double) {
+  for (const double wall : {1.0, -1.0})
+    for (const double shift : {0x1p-55, -0x1p-55}) {
+      const auto box = BoundingBox<Real>::around({Vec3(wall), Vec3(wall)}, Vec3(shift));
+      CHECK(static_cast<double>(box.min[0]) < wall);
+      CHECK(static_cast<double>(box.max[0]) > wall);
+    }
+}
+
+TEST_CASE_TEMPLATE("a wall between the last two steps of the grid does not overflow it", Real, float, double) {
+  QuantizedBox8<Real> boxes;
+  const BoundingBox<Real> box{{0, 0, 0}, {Real(65535.5), 1, 1}};
+  boxes.begin(box);
+  boxes.add(box);
+  CHECK(boxes.step(0) * boxes.walls[0][1][0] >= Real(65535.5));
+}

@@ -33,6 +33,20 @@ TEST_CASE("a bundle is filled up with copies of its last ray") {
   }
 }
 
+TEST_CASE("the bounds of the directions leave NaN out") {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  for (const std::size_t size : {1U, 2U, 3U}) {
+    RayBundle rays;
+    rays.set_direction(0, {nan, nan, nan});
+    rays.set_direction(1, {1, -2, 3});
+    rays.set_direction(2, {4, nan, -5});
+    rays.size = size;
+    rays.pad();
+    CHECK(rays.least == (size == 1 ? Vec3(infinity) : Vec3{1, -2, size == 2 ? 3.0 : -5.0}));
+    CHECK(rays.most == (size == 1 ? Vec3(-infinity) : Vec3{size == 2 ? 1.0 : 4.0, -2, 3}));
+  }
+}
+
 TEST_CASE("the nearer offer wins, and on equal range the smaller number, whatever the order") {
   const RayBundle rays = bundle_of({});
   ClosestHits nearest(rays);

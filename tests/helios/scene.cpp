@@ -72,6 +72,9 @@ TEST_CASE("parts are turned, scaled and moved, and keep their ids and materials"
   CHECK(ground.range == relative(100, 1e-12));
   CHECK(ground.classification == 2);
   CHECK(scene.ground_height({10, 5}) == 0);
+  cube.transform.rotations = {{.turns = {{Axis::x, pi / 2}}}, {.turns = {{Axis::z, pi / 2}}}};  // up lies down, and then aside
+  const Similarity twice = SceneBuilder(scene_of({cube}), {}).parts()[0].placement;
+  CHECK(std::fabs((twice.rotation * axis::up).x) == relative(1, 1e-12));
 }
 
 TEST_CASE("an id that is no number gives way to the part's place, with a note") {
@@ -99,6 +102,11 @@ TEST_CASE("a part is let down onto the ground") {
   cube.transform.translation = {3, 3, 8};
   cube.transform.on_ground = 1;
   CHECK(below(built(scene_of({cube, files.part("plane.obj", "0")})), 3, 3).range == relative(98, 1e-9));
+  std::ofstream(files.folder / "plane.obj") << "mtllib m.mtl\nusemtl ground\nv -50 -50 -5\nv 50 -50 5\nv 50 50 5\nv -50 50 -5\nf 1 2 3 4\n";
+  cube.transform.translation = {0, 3, 8};
+  CHECK(below(built(scene_of({cube, files.part("plane.obj", "0")})), 0, 3).range == relative(98, 1e-9));
+  cube.transform.on_ground = -1;  // no part of it below the slope
+  CHECK(below(built(scene_of({cube, files.part("plane.obj", "0")})), 0, 3).range == relative(97.9, 1e-9));
   cube.transform.translation = {300, 3, 8};
   SceneBuilder nowhere(scene_of({cube, files.part("plane.obj", "0")}), {});
   CHECK(nowhere.parts()[0].placement.translation.z == 8);
@@ -134,9 +142,27 @@ TEST_CASE("motions go on from step to step, at the pulse rate") {
     cube.motions = {sequence("go", 500, {TranslationMotion{{0.01, 0, 0}}}), sequence("back", 0, {TranslationMotion{{0, 0.01, 0}}})};
     cube.motions[0].next = "back";
     const SurveyScene scene = built(scene_of({files.part("plane.obj", "0"), cube}), options);
-    CHECK(below(scene, 5.9, 0, 1).object == 1);
+    CHECK(below(scene, 5.995, 0, 1).object == 1);
     CHECK(below(scene, 5.9, 4.5, 2).object == 1);
     CHECK(below(scene, 6.1, 4.5, 2).object == 0);
+  }
+  SUBCASE("there once, and then up and down for ever") {
+    cube.motions = {sequence("go", 100, {TranslationMotion{{0.01, 0, 0}}}), sequence("up", 100, {TranslationMotion{{0, 0.01, 0}}}),
+                    sequence("down", 100, {TranslationMotion{{0, -0.01, 0}}})};
+    cube.motions[0].next = cube.motions[2].next = "up";
+    cube.motions[1].next = "down";
+    const SurveyScene scene = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(scene, 1.9, 1.9, 9.8 + 0.2).object == 1);
+    CHECK(below(scene, 1.9, -0.1, 9.8 + 0.2).object == 0);
+  }
+  SUBCASE("in whole intervals of the scene") {
+    cube.dynamic_interval = 0.0025;
+    cube.motions = {sequence("go", 0, {TranslationMotion{{0.01, 0, 0}}})};
+    SceneSettings settings = scene_of({files.part("plane.obj", "0"), cube});
+    settings.dynamic_interval = 0.001;
+    const SurveyScene scene = built(settings, options);
+    CHECK(below(scene, 10.9, 0, 2).object == 1);
+    CHECK(below(scene, 11.1, 0, 2).object == 0);
   }
   SUBCASE("a turn about itself stays where it is; one about a place does not") {
     cube.transform.translation = {10, 0, 0};
@@ -145,6 +171,9 @@ TEST_CASE("motions go on from step to step, at the pulse rate") {
     const SurveyScene own = built(scene_of({files.part("plane.obj", "0"), cube}), options);
     CHECK(below(own, 11.3, 0, 1).object == 1);
     CHECK(below(own, 11.3, 0, 0).object == 0);
+    cube.motions[0].motions.push_back({TranslationMotion{{0.01, 0, 0}}});
+    const SurveyScene rolls = built(scene_of({files.part("plane.obj", "0"), cube}), options);
+    CHECK(below(rolls, 21.3, 0, 1).object == 1);
     cube.motions = {sequence("turn", 0, {RotationMotion{.axis = axis::up, .angle = 2 * angle}, false, 0})};
     const SurveyScene orbit = built(scene_of({files.part("plane.obj", "0"), cube}), options);
     CHECK(below(orbit, 0, 10, 1).object == 1);

@@ -229,7 +229,7 @@ TEST_CASE("a random star-shaped polygon is covered once") {
 
 TEST_CASE("a polygon that crosses itself becomes a fan, with a warning") {
   const ObjModel model = Folder().obj("v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 1 0\nv -1 0.5 0\nf 1 2 3 4 5\n");
-  CHECK(model.mesh.triangles.size() == 3);
+  CHECK(model.mesh.triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
   REQUIRE(model.warnings.size() == 1);
   CHECK(contains(model.warnings[0], "line 6"));
 }
@@ -356,7 +356,8 @@ TEST_CASE("a damaged OBJ file gives one error with its line") {
       {"v nan 0 0\n", "line 1"},                //
       {"v 0 0 0\nv 0 -inf 0\n", "line 2"},      //
       {"v 0 0 0\nv 0 1e400 0\n", "line 2"},     //
-      {"v 0 0 0\nv 0 1e13 0\n", "line 2"},      //
+      {"v 0 0 0\nv 0 1.1e12 0\n", "line 2"},    //
+      {"v 0 0 \x1b 0\n", "line 1"},             //
       {"v 0 0 0\nv 0 1,5 0\n", "line 2"},       //
       {"v 0 0 0\n\n# x\nv a b c\n", "line 4"},  //
       {"v 0 0 0\\\n\nv 0 0 x\n", "line 3"},     // after a line that goes on
@@ -385,9 +386,13 @@ TEST_CASE("a last line without an end is read, with a warning that the file may 
 
 TEST_CASE("a face of more corners than the limit is refused") {
   const Folder folder;
-  std::string text = corners + "f";
-  for (int k = 0; k <= 4096; ++k) text.append(" ").append(std::to_string(1 + k % 4));
-  CHECK(folder.error(text + "\n").place() == "line 5");
+  std::string text, face = "f";
+  for (int k = 1; k <= 4096; ++k) {
+    text += "v " + std::to_string(k) + " " + std::to_string(k * k) + " 0\n";
+    face += " " + std::to_string(k);
+  }
+  CHECK(folder.obj(text + face + "\n").mesh.triangles.size() == 4094);
+  CHECK(folder.error(text + face + " 1\n").place() == "line 4097");
 }
 
 TEST_CASE("a file that is not there, or is a folder, is an error that names it") {
@@ -402,6 +407,7 @@ TEST_CASE("a damaged MTL file is an error with its own path and line") {
   const FileError error = folder.error("mtllib m.mtl\n" + corners + "f 1 2 3\n");
   CHECK(error.path() == (folder.path() / "m.mtl").string());
   CHECK(error.place() == "line 2");
+  CHECK(folder.error(corners + "f 1 2 5\nmtllib m.mtl\n").place() == "line 5");  // the first error counts
 }
 
 TEST_CASE("an MTL file that is not there is a warning with the line that names it, and its materials are not described") {

@@ -318,6 +318,30 @@ TEST_CASE("the box that is swept is as large as it has to be where that is plain
   CHECK(year.min.x > -radius - 1e-5);
 }
 
+TEST_CASE("what a body sweeps after very many short motions is inside of the box") {
+  const MotionSequence rests{.motions = {{.duration = 0.01}}, .times = 40},
+      steps{.motions = {{.velocity = axis::right, .duration = 0.01}}, .times = 1000};
+  const MotionSequence turn{.motions = {{.rate = 2 * pi, .centre = Vec3{}, .duration = 1}}}, way{.motions = {{.velocity = axis::right}}};
+  const MotionSequence there{.motions = {{.velocity = axis::right, .duration = 1}}},
+      back{.motions = {{.velocity = -axis::right, .duration = 1}}};
+  const Vec3 start{10, 0, 0};
+  const auto swept = [&](const PartMotion& motion, double seconds) {
+    return motion.swept(std::array{start}, start, {}, Tick::of_seconds(seconds));
+  };
+  CHECK(swept(PartMotion({steps}), 5.005).max.x > 15.0049);
+  CHECK(swept(PartMotion({rests, turn}), 1.4).min.x < -9.999);
+  CHECK(swept(PartMotion({rests, way}), 10).max.x > 19.5999);
+  CHECK(swept(PartMotion({rests, there, back}, 1), 3).max.x > 10.9999);
+}
+
+TEST_CASE("an archive of a run without motions is noticed") {
+  PartMotion motion(SteadyMotion{.rate = 1, .duration = 1});
+  CHECK(motion.is_consistent());
+  const auto empty = [](auto& runs, auto&...) { runs[0].end = runs[0].first; };
+  motion.archive(empty);
+  CHECK_FALSE(motion.is_consistent());
+}
+
 TEST_CASE("timed poses and steps of single precision move rigidly") {
   const Rotation rounded{0.6F, 0.8F, 0, 0};
   const PartMotion poses(std::vector<TimedPose>{{0, {}, rounded}, {1, axis::right, rounded}}),

@@ -186,6 +186,7 @@ TEST_CASE("what moves is no ground") {
   const Discs scene({car, soil}, {.to = 1});
   CHECK(scene.ground_height({0, 0}).value() == 0);
   CHECK_FALSE(Discs({car}, {.to = 1}).ground_height({0, 0}).has_value());
+  CHECK(Discs({car}, {.to = 1}).bounds().min.z == support::relative(1, 1e-5));
 }
 
 TEST_CASE("the memory of a moving scene counts its boxes, and motions once") {

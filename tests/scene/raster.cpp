@@ -72,6 +72,13 @@ TEST_CASE("a raster that cannot be is refused, and the refusal says what is wron
         "Raster::heights is inf m, but must be within 1e15 m, or NaN; see pixel 4");
   CHECK(with([](Raster& r) { r.pixel.y = -1; }).find("Raster::pixel.y is -1 m") == 0);
   CHECK(with([&](Raster& r) { r.pixel.x = none; }).find("Raster::pixel.x is nan m") == 0);
+  for (const int axis : {0, 1}) {
+    const auto fine_and_far = [&](Raster& r) {
+      r.first[axis] = 1e15;
+      r.pixel[axis] = 0.5;  // a coordinate there rounds by 0.0625 m
+    };
+    CHECK(with(fine_and_far).find(axis == 0 ? "Raster::pixel.x is 0.5 m" : "Raster::pixel.y is 0.5 m") == 0);
+  }
   CHECK(with([](Raster& r) { r.first.x = 1e16; }).find("Raster::first.x is ") == 0);
   CHECK(with([&](Raster& r) { r.first.y = none; }).find("Raster::first.y is nan m") == 0);
 }

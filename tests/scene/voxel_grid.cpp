@@ -206,6 +206,7 @@ TEST_CASE("a ray that begins inside a cube meets its far side") {
   const VoxelGrid<> grid(one_cell());
   CHECK(range(grid, {{2, 3, 4}, axis::right}) == 1);
   CHECK(normal(grid, {{2, 3, 4}, axis::right}) == -axis::right);
+  CHECK(normal(grid, {{2.8, 2.1, 4}, normalize(Vec3{1, 0.5, 0})}) == -axis::right);  // though nearer to a face along y
   CHECK(range(grid, {{2, 3, 4}, -axis::up}) == 1);
   CHECK(range(grid, {{0, 3, 4}, axis::right, 1.5}) == 3);
   CHECK(range(grid, {{0, 3, 4}, axis::right, 1}) == 3);  // nothing is met at `near` itself
@@ -272,6 +273,12 @@ TEST_CASE("normals are kept to a few millionths, and those along axes exactly") 
   }
 }
 
+TEST_CASE("a normal that is a little too long keeps its direction") {
+  VoxelData data = one_cell();
+  data.normals = {{0, 0, 1.0005F}};
+  CHECK(normal(VoxelGrid<>(data), {{2, 3, 10}, -axis::up}) == axis::up);
+}
+
 TEST_CASE("a scaled cube is as large as it is said and where it is said") {
   VoxelData data{.corner = {10, 20, 30}, .edge = 2, .cells = {{1, 1, 1}}};
   data.scales = {0.5F};
@@ -286,6 +293,9 @@ TEST_CASE("a scaled cube is as large as it is said and where it is said") {
   CHECK(range(grid, {{13.5, 22.5, 33}, axis::up}) == relative(0.5, 1e-5));
   CHECK(range(grid, {{12.5, 22.5, 33}, axis::right}) == relative(0.5, 1e-5));
   CHECK(normal(grid, {{12.5, 22.5, 33}, axis::right}) == -axis::right);
+  data.shifts = {{-0.2500009F, 0.2500009F, 0}};  // as far as rounding of a file may go, and no farther than the cell
+  CHECK(range(VoxelGrid<ScaledVoxels>(data), {{0, 23.5, 33}, axis::right}) == 12);
+  CHECK(range(VoxelGrid<ScaledVoxels>(data), {{12.5, 30, 33}, -axis::forward}) == 6);
   data.scales = {1};
   data.shifts.clear();
   CHECK(range(VoxelGrid<ScaledVoxels>(data), {{13, 23, 40}, -axis::up}) == 6);

@@ -295,6 +295,22 @@ template <Accelerator A>
   return count;
 }
 
+/// A tree of one node with this number of copies of it, then changed: `change(nodes)`.
+template <Accelerator A, class Change>
+[[nodiscard]] A with_nodes(A tree, std::size_t count, const Change& change) {
+  const auto replace = [&]<class Member>(Member& member) {
+    if constexpr (
+        requires { member[0].first(0); } || requires { member[0].first(); }) {
+      std::vector<typename Member::value_type> nodes(count, member[0]);
+      change(nodes);
+      member = Member(std::move(nodes));
+    }
+  };
+  auto each = [&](auto&... members) { (replace(members), ...); };
+  tree.archive(each);
+  return tree;
+}
+
 /// Small boxes that crowd at the origin, each a fraction of the size and distance of the one before, on both sides: a build that cuts
 /// space evenly peels them off one by one.
 [[nodiscard]] inline std::vector<Box> crowd(std::size_t n, double fraction) {

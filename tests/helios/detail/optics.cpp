@@ -57,6 +57,13 @@ TEST_CASE("an oscillating mirror makes cycles of whole pulses, from its lower en
   const SurveyOptic optic = survey_optic(c, {.scan_frequency = 20.3, .scan_angle = radians(20)}, rate);
   const auto& mirror = std::get<OscillatingMirror>(optic.optic);
   CHECK(mirror.cycles_per_second == relative(rate / 985, 1e-9));
+  const auto made = [&](double product_max_deg, double pulse_rate) {
+    const ChannelSettings limited = channel(OscillatingOptic{.scan_product_max = radians(product_max_deg)}, 30);
+    return std::get<OscillatingMirror>(survey_optic(limited, {.scan_frequency = 20, .scan_angle = radians(20)}, pulse_rate).optic);
+  };
+  CHECK(made(310, 15e3).cycles_per_second == relative(15e3 / 967, 1e-9));
+  CHECK(made(1000, 15e3).turning_time == relative(100 / 15e3, 1e-9));
+  CHECK(made(1000, 100).turning_time == relative(0.5 / 20, 1e-9));
   CHECK(angle_deg(optic, 0) == relative(-20, 1e-9));
   CHECK(angle_deg(optic, 985) == relative(-20, 1e-9));
   SUBCASE("it does not swing farther than it can") {
@@ -180,6 +187,18 @@ TEST_CASE("mechanical errors move the beam, and not what is reported of it") {
   c.errors.head = "0.1";
   const SurveyOptic head = survey_optic(c, {.scan_frequency = 20}, rate);
   CHECK(length(head.at(t).direction(axis::forward) - rotation_about(axis::up, 0.1) * head.exact(t).direction(axis::forward)) < 1e-12);
+  c.errors = {.head = "THETA", .head_zero_threshold = 0.2};
+  const SurveyOptic kept_off = survey_optic(c, {.scan_frequency = 20}, rate);
+  for (const PulseIndex slot : {PulseIndex{10}, PulseIndex{100}}) {
+    const Vec3 exact = kept_off.exact(Tick::of(slot, rate)).direction(axis::forward);
+    const Vec3 turned = rotation_about(axis::up, slot == 10 ? 0.2 : radians(24)) * exact;
+    CHECK(length(kept_off.at(Tick::of(slot, rate)).direction(axis::forward) - turned) < 1e-12);
+  }
+  c.errors = {.deflection = "0.1"};
+  c.beam_origin.rotation = {.turns = {{Axis::y, pi / 2}}};  // the mirror lies on its side
+  const Vec3 aside = survey_optic(c, {.scan_frequency = 20}, rate).at({}).direction(axis::forward);
+  CHECK(std::fabs(aside.x) == relative(std::sin(0.1), 1e-9));
+  CHECK(std::fabs(aside.z) < 1e-12);
 }
 
 TEST_CASE("noise of the range may depend on it by any formula that is finite where the scanner measures") {

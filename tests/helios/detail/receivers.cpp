@@ -124,6 +124,26 @@ TEST_CASE("channels that receive alike share a receiver, whatever they send, and
   CHECK(same_receiver(channels[0], channels[1]));
 }
 
+TEST_CASE("channels that differ in any property of their receivers share none") {
+  const auto share = [](const auto& change) {
+    ChannelSettings other = ahead();
+    change(other);
+    return same_receiver(ahead(), other);
+  };
+  CHECK(share([](ChannelSettings& c) { c.average_power *= 2; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.receiver_diameter *= 2; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.efficiency *= 0.5; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.visibility *= 0.5; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.accuracy += 1; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.errors.range_noise = "t"; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.range_min += 1; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.range_max = 7; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.returns_max += 1; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.received_power_min += 1; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.pulse_length *= 2; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.waveform.rings += 1; }));
+}
+
 TEST_CASE("channels that do not fit together are refused") {
   std::vector<ChannelSettings> channels(2, ahead());
   channels[1].waveform.bin_size *= 2;
