@@ -4,7 +4,8 @@
 
 # Compiles each of a target's headers by itself, as far as it matters: in chains, each header after some of those that it includes, directly
 # or through others. All that stands before a header is then what it would include anyhow, so that a name that it fails to include is
-# missing as in a file of its own. Usage: headers_alone.sh INCLUDE "HEADER..." COMPILER [OPTION...], with headers as in an #include.
+# missing as in a file of its own. Headers end without their definitions, as for users of pulsecast::compiled.
+# Usage: headers_alone.sh INCLUDE "HEADER..." COMPILER [OPTION...], with headers as in an #include.
 set -u
 export LC_ALL=C
 cd "$1" || exit 2
@@ -28,6 +29,7 @@ awk -v headers="$headers" '
       if (!(list[k] in done) && (above == "" || (above, list[k]) in reached) && (best == "" || size[list[k]] > size[best])) best = list[k]
     return best
   }
+  /^#if PULSECAST_DEFINITIONS/ { getline; next }
   /^#include <pulsecast\// { gsub(/[<>]/, "", $2); includes[FILENAME] = includes[FILENAME] " " $2 }
   END {
     count = split(headers, list, " ")
@@ -47,7 +49,7 @@ failed=0
 while read -r chain; do
   number=$((number + 1))
   for header in $chain; do echo "#include <$header>"; done > "$work/$number.cpp"
-  "$@" -fsyntax-only "$work/$number.cpp" || { echo "not by itself: $chain"; failed=1; }
+  "$@" -DPULSECAST_COMPILED -fsyntax-only "$work/$number.cpp" || { echo "not by itself: $chain"; failed=1; }
 done < "$work/chains"
 echo "$(echo "$headers" | wc -w) headers in $number chains"
 [ "$number" -gt 0 ] && exit $failed
