@@ -26,8 +26,8 @@ PointWriter point_writer(const fs::path& path, const Options& o, double start_ti
   if (o.format == "laz") return PointWriter(std::in_place_type<io::LazWriter>, path, las_settings(o, start_time), o.threads);
   if (o.format == "las") return PointWriter(std::in_place_type<io::LasWriter>, path, las_settings(o, start_time));
   if (o.format == "xyz.gz")
-    return PointWriter(std::in_place_type<io::XyzWriter>, io::gzip_file(path), io::XyzSettings{.start_time = start_time});
-  return PointWriter(std::in_place_type<io::XyzWriter>, path, io::XyzSettings{.start_time = start_time});
+    return PointWriter(std::in_place_type<io::XyzWriter>, io::gzip_file(path), io::TextFileSettings{.start_time = start_time});
+  return PointWriter(std::in_place_type<io::XyzWriter>, path, io::TextFileSettings{.start_time = start_time});
 }
 
 }  // namespace
@@ -73,8 +73,8 @@ LegFiles::LegFiles(const fs::path& folder, const std::string& prefix, const Opti
                    const std::vector<std::string>& channels)
     : inside_(new Inside{{}, io::TrajectoryWriter(folder / (prefix + "_trajectory.txt"), {.start_time = start_time}), {}, {}, {}}) {
   for (const fs::path& path : point_files(folder, prefix, o, channels)) inside_->points.push_back(point_writer(path, o, start_time));
-  if (o.write_waveform) inside_->waveforms.emplace(folder / (prefix + "_fullwave.txt"), io::WaveformTextSettings{start_time});
-  if (o.write_pulse) inside_->pulses.emplace(folder / (prefix + "_pulse.txt"), io::PulseTextSettings{start_time});
+  if (o.write_waveform) inside_->waveforms.emplace(folder / (prefix + "_fullwave.txt"), io::TextFileSettings{start_time});
+  if (o.write_pulse) inside_->pulses.emplace(folder / (prefix + "_pulse.txt"), io::TextFileSettings{start_time});
 }
 LegFiles::~LegFiles() = default;
 

@@ -32,8 +32,8 @@ namespace {
 std::unique_ptr<MpiOutput> shared_points(MpiGroup& group, const fs::path& path, const Options& o, double start_time) {
   if (o.format == "laz") return std::make_unique<mpi::MpiLaz>(group, path, las_settings(o, start_time), o.threads);
   if (o.format == "las") return std::make_unique<mpi::MpiLas>(group, path, las_settings(o, start_time));
-  const io::XyzSettings settings{.start_time = start_time};
-  if (o.format == "xyz") return std::make_unique<mpi::MpiRows<io::XyzWriter, io::XyzSettings>>(group, path, settings);
+  const io::TextFileSettings settings{.start_time = start_time};
+  if (o.format == "xyz") return std::make_unique<mpi::MpiRows<io::XyzWriter, io::TextFileSettings>>(group, path, settings);
   const auto file = group.first() ? std::make_shared<io::OutputFile>(io::gzip_file(path)) : nullptr;
   return std::make_unique<mpi::MpiStream<io::XyzWriter>>(
       group, [settings](io::OutputFile piece) { return io::XyzWriter(std::move(piece), settings); },
@@ -53,11 +53,11 @@ class SharedLegRun final : public LegRun {
       if (files.size() > 1) points->channel = static_cast<std::uint8_t>(outputs_.size() - 1);
     }
     if (o.write_waveform)
-      add(std::make_unique<mpi::MpiRows<io::WaveformTextWriter, io::WaveformTextSettings>>(group, folder / (prefix + "_fullwave.txt"),
-                                                                                           io::WaveformTextSettings{start_time}));
+      add(std::make_unique<mpi::MpiRows<io::WaveformTextWriter, io::TextFileSettings>>(group, folder / (prefix + "_fullwave.txt"),
+                                                                                       io::TextFileSettings{start_time}));
     if (o.write_pulse)
-      add(std::make_unique<mpi::MpiRows<io::PulseTextWriter, io::PulseTextSettings>>(group, folder / (prefix + "_pulse.txt"),
-                                                                                     io::PulseTextSettings{start_time}));
+      add(std::make_unique<mpi::MpiRows<io::PulseTextWriter, io::TextFileSettings>>(group, folder / (prefix + "_pulse.txt"),
+                                                                                    io::TextFileSettings{start_time}));
   }
 
   void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override {

@@ -23,7 +23,7 @@ using support::content;
 using support::TemporaryFolder;
 
 std::string points_of(const TemporaryFolder& folder, const std::vector<Shot>& shots, const std::vector<Echo>& echoes,
-                      XyzSettings settings = {}) {
+                      TextFileSettings settings = {}) {
   XyzWriter writer(folder / "points.xyz", settings);
   writer(EchoBatch{shots, echoes, {}, 0});
   writer.close();
@@ -120,7 +120,7 @@ TEST_CASE("a start time that is no number is refused before a file is made") {
   CHECK(folder.empty());
 }
 
-std::string pulses_of(const std::vector<Shot>& shots, PulseTextSettings settings = {}) {
+std::string pulses_of(const std::vector<Shot>& shots, TextFileSettings settings = {}) {
   const TemporaryFolder folder;
   PulseTextWriter writer(folder / "pulses.txt", settings);
   writer(EchoBatch{shots, {}, {}, 0});
@@ -207,7 +207,7 @@ TEST_CASE("without recorded subrays, and without pulses, the file is empty; a hi
   CHECK_FALSE(std::filesystem::exists(folder / "bad.txt.part"));
 }
 
-std::string waveforms_of(const EchoBatch& batch, WaveformTextSettings settings = {}) {
+std::string waveforms_of(const EchoBatch& batch, TextFileSettings settings = {}) {
   const TemporaryFolder folder;
   WaveformTextWriter writer(folder / "waveforms.txt", settings);
   writer(batch);

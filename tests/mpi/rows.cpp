@@ -23,18 +23,18 @@ using support::written_by_all;
 
 TEST_CASE("texts are those of one process") {
   const Showers survey{50'000, 8};
-  require_same_bytes(survey, "xyz", written_alone<io::XyzWriter>(survey, io::XyzSettings{.start_time = 5}),
-                     written_by_all<MpiRows<io::XyzWriter, io::XyzSettings>>(io::XyzSettings{.start_time = 5}), {""});
-  require_same_bytes(survey, "txt", written_alone<io::PulseTextWriter>(survey, io::PulseTextSettings{}),
-                     written_by_all<MpiRows<io::PulseTextWriter, io::PulseTextSettings>>(io::PulseTextSettings{}), {""});
-  require_same_bytes(survey, "txt", written_alone<io::WaveformTextWriter>(survey, io::WaveformTextSettings{}),
-                     written_by_all<MpiRows<io::WaveformTextWriter, io::WaveformTextSettings>>(io::WaveformTextSettings{}), {""});
+  require_same_bytes(survey, "xyz", written_alone<io::XyzWriter>(survey, io::TextFileSettings{.start_time = 5}),
+                     written_by_all<MpiRows<io::XyzWriter, io::TextFileSettings>>(io::TextFileSettings{.start_time = 5}), {""});
+  require_same_bytes(survey, "txt", written_alone<io::PulseTextWriter>(survey, io::TextFileSettings{}),
+                     written_by_all<MpiRows<io::PulseTextWriter, io::TextFileSettings>>(io::TextFileSettings{}), {""});
+  require_same_bytes(survey, "txt", written_alone<io::WaveformTextWriter>(survey, io::TextFileSettings{}),
+                     written_by_all<MpiRows<io::WaveformTextWriter, io::TextFileSettings>>(io::TextFileSettings{}), {""});
 }
 
 TEST_CASE("outputs may want one channel only") {
   const SharedFolder folder;
   const Showers survey{20'000};
-  MpiRows<io::XyzWriter, io::XyzSettings> rows(mpi_group(), folder / "all.xyz", {});
+  MpiRows<io::XyzWriter, io::TextFileSettings> rows(mpi_group(), folder / "all.xyz", {});
   rows.channel = 2;
   run(mpi_group(), survey, {.threads = 1}, rows);
   rows.close();

@@ -15,11 +15,11 @@
 /// Text files of points, pulses, subrays and waveforms.
 namespace pulsecast::io {
 
-/// Settings of a point file.
-struct XyzSettings {
+/// Settings of a text file.
+struct TextFileSettings {
   double start_time = 0;  ///< clock time at tick 0 [s]
 
-  void validate() const { require_finite("XyzSettings::start_time", start_time, "s"); }
+  void validate() const { require_finite("TextFileSettings::start_time", start_time, "s"); }
 };
 
 /// Writes points as text, one a line, in these columns, separated by blanks, without a header line:
@@ -33,10 +33,10 @@ struct XyzSettings {
 class XyzWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
-  explicit XyzWriter(std::filesystem::path path, const XyzSettings& settings = {})
+  explicit XyzWriter(std::filesystem::path path, const TextFileSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
   /// Writes to an open file.
-  explicit XyzWriter(OutputFile file, const XyzSettings& settings = {}) : settings_(validated(settings)), text_(std::move(file)) {}
+  explicit XyzWriter(OutputFile file, const TextFileSettings& settings = {}) : settings_(validated(settings)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots) {
@@ -54,17 +54,10 @@ class XyzWriter {
     text_.reals(9, settings_.start_time + shot.tick.seconds()).end_row();
   }
 
-  XyzSettings settings_;
+  TextFileSettings settings_;
   TextOutput text_;
 };
 static_assert(EchoSink<XyzWriter>);
-
-/// Settings of a pulse file.
-struct PulseTextSettings {
-  double start_time = 0;  ///< clock time at tick 0 [s]
-
-  void validate() const { require_finite("PulseTextSettings::start_time", start_time, "s"); }
-};
 
 /// Writes pulses as text, with or without echoes, one a line, in these columns, separated by blanks, without a header line:
 ///
@@ -79,10 +72,10 @@ struct PulseTextSettings {
 class PulseTextWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
-  explicit PulseTextWriter(std::filesystem::path path, const PulseTextSettings& settings = {})
+  explicit PulseTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
   /// Writes to an open file.
-  explicit PulseTextWriter(OutputFile file, const PulseTextSettings& settings = {})
+  explicit PulseTextWriter(OutputFile file, const TextFileSettings& settings = {})
       : settings_(validated(settings)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
@@ -96,7 +89,7 @@ class PulseTextWriter {
   void close() { text_.close(); }
 
  private:
-  PulseTextSettings settings_;
+  TextFileSettings settings_;
   TextOutput text_;
 };
 static_assert(EchoSink<PulseTextWriter>);
@@ -138,13 +131,6 @@ class SubrayTextWriter {
 };
 static_assert(EchoSink<SubrayTextWriter>);
 
-/// Settings of a waveform file.
-struct WaveformTextSettings {
-  double start_time = 0;  ///< clock time at tick 0 [s]
-
-  void validate() const { require_finite("WaveformTextSettings::start_time", start_time, "s"); }
-};
-
 /// Writes waveforms as text, one a line, with or without echoes, in these columns, separated by blanks, without a header line:
 ///
 ///     fullwaveIndex ox oy oz dx dy dz tmin tmax gpsTime w_0 ... w_(n-1)
@@ -158,10 +144,10 @@ struct WaveformTextSettings {
 class WaveformTextWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
-  explicit WaveformTextWriter(std::filesystem::path path, const WaveformTextSettings& settings = {})
+  explicit WaveformTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
       : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
   /// Writes to an open file.
-  explicit WaveformTextWriter(OutputFile file, const WaveformTextSettings& settings = {})
+  explicit WaveformTextWriter(OutputFile file, const TextFileSettings& settings = {})
       : settings_(validated(settings)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
@@ -182,7 +168,7 @@ class WaveformTextWriter {
     text_.end_row();
   }
 
-  WaveformTextSettings settings_;
+  TextFileSettings settings_;
   TextOutput text_;
 };
 static_assert(EchoSink<WaveformTextWriter>);
