@@ -109,6 +109,40 @@ TEST_CASE("ideal receivers take the noise away, and those of the survey bring it
   CHECK(run(*simulation).points == noisy.points);
 }
 
+TEST_CASE("a repetition draws noise of its own, and a receiver without rings has its central ray") {
+  const support::TemporaryFolder folder;
+  std::ofstream(folder / "wall.obj") << "v -5 50 0\nv 5 50 0\nv 0 50 9\nf 1 2 3\n";
+  SurveySettings s = survey();
+  s.scanner.channels[0].accuracy = 1;
+  PartSettings part{.id = "1", .source = ObjSource{.files = {folder / "wall.obj"}}};
+  part.swaps.push_back({.removes = true});
+  s.scene.parts = {part};
+  const auto simulation = make_simulation(s, {.seed = 3, .meshes = {plane()}});
+  REQUIRE(simulation->runs() == 2);
+  const Cloud first = run(*simulation);
+  simulation->begin(1);
+  CHECK(run(*simulation).points != first.points);
+  simulation->begin(0);
+  CHECK(run(*simulation).points == first.points);
+  simulation->receive({.rings = 0});
+  const RunSummary summary = simulation->run({}, [](const EchoBatch&) {});
+  CHECK(summary.rays == summary.pulses());
+}
+
+TEST_CASE("waveform noise has a quarter of the least received power as its deviation") {
+  SurveySettings s = survey();
+  s.legs[0].duration_max = 0.1;
+  const auto simulation = make_simulation(s, {.seed = 3, .waveforms = true, .waveform_noise = true, .meshes = {plane()}});
+  const double probable_error = 0.6745 * 0.25 * s.scanner.channels[0].received_power_min;  // half of normal draws are within it
+  std::size_t all = 0, within = 0;
+  simulation->run({}, [&](const EchoBatch& batch) {
+    all += batch.samples.size();
+    for (const float sample : batch.samples) within += std::fabs(static_cast<double>(sample)) < probable_error ? 1 : 0;
+  });
+  REQUIRE(all > 100'000);  // hardly any of which an echo reaches
+  CHECK(static_cast<double>(within) / static_cast<double>(all) == doctest::Approx(0.5).epsilon(0.03));
+}
+
 TEST_CASE("waveforms are sampled and cut as LAS can hold them, with a warning for each") {
   SurveySettings s = survey();
   s.scanner.channels[0].waveform.bin_size = 0.2505e-9;
