@@ -67,7 +67,7 @@ inline constexpr bool has_checked_containers = false;
 #endif
 
 namespace {
-[[gnu::used]] void (*const needed)() =
+[[gnu::used]] void (*const reference_to_the_compiled_library)() =
     &compiled_library_of_this_build<version_number(), simd::register_bytes, has_fma, has_checked_containers>;
 }
 
