@@ -14,6 +14,7 @@
 
 #include <pulsecast/scene/triangle_mesh.hpp>
 
+#include "support/allocations.hpp"
 #include "support/archetypes.hpp"
 #include "support/generators.hpp"
 #include "support/relative.hpp"
@@ -311,4 +312,98 @@ TEST_CASE("the ground of a slope at UTM coordinates is where it should be") {
   const Scene<TriangleMesh<>> scene(
       {{.geometry = std::make_shared<const TriangleMesh<>>(slope), .materials = material_table({{.ground = true}})}});
   CHECK(std::fabs(scene.ground_height({east + 30, north + 50}).value() - (100 + 3 + 10)) < 1e-8);
+}
+
+TEST_CASE("a scene of other placements meets what a scene made of these parts meets") {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Disc> discs;
+    const std::size_t count = 1 + any.whole(150);
+    const auto anywhere = [&] { return Similarity{any.rotation(), any.log_uniform(0.1, 10), any.point(50)}; };
+    for (ObjectId k = 0; k < count; ++k) discs.push_back(disc(anywhere(), k));
+    Scene<LeastGeometry> now(discs), unused({});
+    for (int tick = 0; tick < 6; ++tick) {
+      std::vector<Similarity> placements;
+      for (Disc& d : discs) {
+        d.placement.translation = d.placement.translation + any.point(1);
+        if (tick == 4) d.placement = anywhere();  // the index is made anew
+        placements.push_back(d.placement);
+      }
+      Scene<LeastGeometry> next = tick % 2 ? now.with_placements(placements) : now.with_placements(placements, std::move(unused));
+      unused = std::exchange(now, std::move(next));
+      const Scene<LeastGeometry> fresh(discs);
+      for (int k = 0; k < 30; ++k) {
+        const RayBundle rays = any.cone(any.point(60), any.unit(), any.log_uniform(1e-4, 1), any.coin() ? 1 : 40);
+        std::array<Hit, RayBundle::capacity> hits, expected;
+        now.closest(rays, hits);
+        fresh.closest(rays, expected);
+        for (std::size_t j = 0; j < rays.size; ++j) {
+          REQUIRE(hits[j].range == expected[j].range);
+          REQUIRE(hits[j].object == expected[j].object);
+          REQUIRE(hits[j].cos_incidence == expected[j].cos_incidence);
+        }
+      }
+      for (int k = 0; k < 3; ++k) {
+        REQUIRE(now.bounds().min[k] == doctest::Approx(fresh.bounds().min[k]));
+        REQUIRE(now.bounds().max[k] == doctest::Approx(fresh.bounds().max[k]));
+      }
+    }
+  }
+}
+
+TEST_CASE("of two scenes placed by turns nothing is allocated after the second tick") {
+  support::Generator any(5);
+  std::vector<Disc> discs;
+  for (ObjectId k = 0; k < 500; ++k) {
+    discs.push_back(disc({.translation = any.point(50)}, k));
+    discs.back().name = "a name too long to be held in place, number " + std::to_string(k);
+  }
+  std::vector<Similarity> placements;
+  for (const Disc& d : discs) placements.push_back(d.placement);
+  Scene<LeastGeometry> now(discs), unused(discs);
+  std::size_t before = 0;
+  for (int tick = 0; tick < 8; ++tick) {
+    if (tick == 2) before = support::allocations;
+    for (Similarity& placement : placements) placement.translation.x += 0.1;
+    Scene<LeastGeometry> next = now.with_placements(placements, std::move(unused));
+    unused = std::move(now);
+    now = std::move(next);
+  }
+  CHECK(support::allocations == before);
+  CHECK(now.parts()[7].placement.translation == placements[7].translation);
+}
+
+TEST_CASE("a scene is placed anew beside a copy that is still used, and into itself") {
+  const std::array<Similarity, 3> lower{}, higher{Similarity{.translation = {0, 0, 1}}, {.translation = {0, 0, 2}}, {}};
+  Scene<LeastGeometry> now({disc({}, 1), disc({}, 2), disc({}, 3)});
+  const Ray down{{0, 0, 10}, {0, 0, -1}};
+  now = now.with_placements(lower);
+  const Scene<LeastGeometry> copy = now;
+  now = now.with_placements(higher, std::move(now));
+  CHECK(ask(now, down).range == 8);
+  CHECK(ask(now, down).object == 2);
+  CHECK(ask(copy, down).range == 10);
+}
+
+TEST_CASE("placements of another number or out of range are refused") {
+  const Scene<LeastGeometry> scene({disc()});
+  CHECK_THROWS_WITH_AS(static_cast<void>(scene.with_placements({})), "Scene::with_placements (number) is 0, but must be from 1 to 1",
+                       SettingError);
+  const std::array<Similarity, 1> flat{Similarity{.scale = 0}};
+  CHECK_THROWS_AS(static_cast<void>(scene.with_placements(flat)), SettingError);
+}
+
+TEST_CASE("parts are added and removed, and share their geometry") {
+  const Scene<LeastGeometry> scene({disc({}, 1), disc({.translation = {0, 0, 1}}, 2)});
+  const std::array<Disc, 1> more{disc({.translation = {0, 0, 3}}, 3)};
+  const Ray down{{0, 0, 10}, {0, 0, -1}};
+  const Scene<LeastGeometry> fuller = scene.with_parts(more);
+  CHECK(fuller.parts().size() == 3);
+  CHECK(fuller.parts()[0].geometry == scene.parts()[0].geometry);
+  CHECK(ask(fuller, down).object == 3);
+  const Scene<LeastGeometry> emptier = fuller.without([](const Disc& part) { return part.object >= 2; });
+  CHECK(emptier.parts().size() == 1);
+  CHECK(ask(emptier, down).object == 1);
+  CHECK(scene.without([](const Disc&) { return true; }).parts().empty());
 }

@@ -22,6 +22,9 @@
 
 namespace pulsecast {
 
+template <std::floating_point Real>
+class BvhRefit;
+
 /// BVH with up to eight children per node, whose boxes are tested against a bundle together. The build splits a binary SAH tree down to
 /// single primitives. It then collapses the tree at least SAH cost into nodes and leaves of up to `leaf_size` primitives. Every primitive
 /// is in exactly one leaf. A bundle traverses the tree as a whole, front to back. The build halves a range where an SAH split would exceed
@@ -91,6 +94,7 @@ class Bvh {
   }
 
  private:
+  friend class BvhRefit<Real>;
   using BinaryTree = detail::BinarySahTree<Real>;
   static constexpr std::size_t places = BinaryTree::places;
 

@@ -4,6 +4,7 @@
 #define PULSECAST_SCENE_PART_HPP
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -78,6 +79,23 @@ struct Similarity {
     return local;
   }
 };
+
+namespace detail {
+
+/// Box around a placed box [m], from its centre and half sides; as `Similarity::box` up to rounding. Empty for an empty box.
+/// Source: Arvo 1990, Transforming axis-aligned bounding boxes, Graphics Gems.
+[[nodiscard]] inline Box placed_box(const Similarity& placement, const Box& box) noexcept {
+  if (box.empty()) return {};
+  const Matrix3 turn = matrix_of(placement.rotation);
+  const Vec3 centre = placement.scale * box.centre(), half = 0.5 * placement.scale * box.size();
+  const auto size = [&](int k) noexcept {
+    return std::fabs(turn[0][k]) * half.x + std::fabs(turn[1][k]) * half.y + std::fabs(turn[2][k]) * half.z;
+  };
+  const Vec3 middle = turn * centre + placement.translation, reach{size(0), size(1), size(2)};
+  return {middle - reach, middle + reach};
+}
+
+}  // namespace detail
 
 /// Materials by index, shareable among parts.
 using MaterialTable = std::shared_ptr<const std::vector<Material>>;

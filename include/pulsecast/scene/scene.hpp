@@ -4,6 +4,7 @@
 #define PULSECAST_SCENE_SCENE_HPP
 
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
+#include <pulsecast/accel/refit.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/scene/part.hpp>
 
@@ -40,13 +42,51 @@ class Scene {
   /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a placement out of range
   explicit Scene(std::vector<Part> parts) : Scene(std::move(parts), Motions::refused) {}
 
+  /// Scene of the same parts at other placements, one per part. Shares all geometry. The index over the parts is refitted, and made anew
+  /// where it would be too slow; hits are those of a scene made of these parts. @throws SettingError for another number of placements, or
+  /// one out of range
+  [[nodiscard]] Scene with_placements(std::span<const Similarity> placements) const {
+    return with_placements(placements, Scene(std::vector<Part>()));
+  }
+  /// As above, in the memory of a scene that is no longer used: a loop over two scenes allocates nothing after its second tick.
+  [[nodiscard]] Scene with_placements(std::span<const Similarity> placements, Scene&& unused) const {
+    const auto count = static_cast<double>(parts_.size());
+    require_within("Scene::with_placements (number)", static_cast<double>(placements.size()), count, count, "");
+    unused.parts_ = parts_;
+    unused.boxes_.resize(placements.size());
+    for (std::size_t i = 0; i < placements.size(); ++i) {
+      Part& part = unused.parts_[i];
+      part.placement = validated(placements[i]);
+      const auto bounds = [](const auto& shape) -> const Box& { return shape->bounds(); };
+      unused.boxes_[i] = detail::placed_box(part.placement, visit_shape(bounds, part.geometry));
+    }
+    unused.refit_.update(index_, refit_, unused.boxes_, unused.index_);
+    unused.alone_ = alone_;
+    return std::move(unused);
+  }
+
+  /// Scene with more parts, after those of this one. Shares all geometry. @throws SettingError as the constructor
+  [[nodiscard]] Scene with_parts(std::span<const Part> more) const {
+    std::vector<Part> all = parts_;
+    all.insert(all.end(), more.begin(), more.end());
+    return Scene(std::move(all));
+  }
+  /// Scene without the parts for which `leaves(part)` is true. Shares all geometry.
+  template <std::predicate<const Part&> Leaves>
+  [[nodiscard]] Scene without(const Leaves& leaves) const {
+    std::vector<Part> all;
+    for (const Part& part : parts_)
+      if (!leaves(part)) all.push_back(part);
+    return Scene(std::move(all));
+  }
+
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
 
   /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
-    std::size_t bytes = index_.memory() + parts_.capacity() * sizeof(Part);
+    std::size_t bytes = index_.memory() + parts_.capacity() * sizeof(Part) + boxes_.capacity() * sizeof(Box) + refit_.memory();
     std::unordered_set<const void*> counted;
     for (const Part& part : parts_) {
       bytes += detail::heap_bytes(part.name);
@@ -196,7 +236,9 @@ class Scene {
 
   std::vector<Part> parts_;
   Bvh<float> index_;
-  bool alone_ = false;  ///< true for a single part, static
+  bool alone_ = false;      ///< true for a single part, static
+  std::vector<Box> boxes_;  ///< box of each part of a scene made by `with_placements`
+  BvhRefit<float> refit_;
 };
 
 }  // namespace pulsecast

@@ -67,6 +67,8 @@ struct MeshData {
   }
 };
 
+class DeformingMesh;
+
 /// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are never hit. Triangles
 /// keep their numbers but are stored in the index's order, in blocks with vertices of their own for 16-bit indices. A triangle takes 10
 /// bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials.
@@ -130,6 +132,8 @@ class TriangleMesh {
   }
 
  private:
+  friend class DeformingMesh;
+
   /// Leaf test and prefetch of the index.
   struct Test {
     const TriangleMesh& mesh;

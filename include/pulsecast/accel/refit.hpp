@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_ACCEL_REFIT_HPP
+#define PULSECAST_ACCEL_REFIT_HPP
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <pulsecast/accel/bvh.hpp>
+
+namespace pulsecast {
+
+/// Trees over primitives that move, in reused memory. `refit` keeps the topology of a tree and recomputes its boxes; `update` builds the
+/// tree anew where that would be too slow. Quality is the SAH cost of the boxes. Hits do not depend on it.
+/// Source: Lauterbach et al. 2006 (refit, with the cost watched).
+template <std::floating_point Real>
+class BvhRefit {
+ public:
+  static constexpr double max_growth = 1.6;  ///< SAH cost at which a tree is made anew, in units of its cost when built
+
+  /// SAH cost of a tree: sum of the surfaces of all its boxes, relative to that of the root; 0 for a tree without surface.
+  [[nodiscard]] static double cost(const Bvh<Real>& tree) noexcept {
+    double sum = 0, root = 0;
+    for (const Node& node : tree.nodes_) {
+      GrowingBox around;
+      for (std::size_t place = 0; place < node.boxes.count; ++place) {
+        BoundingBox<Real> box;
+        for (std::size_t k = 0; k < 3; ++k) {
+          box.min[k] = node.boxes.origin[k] + static_cast<Real>(node.boxes.walls[k][0][place]) * node.boxes.step(k);
+          box.max[k] = node.boxes.origin[k] + static_cast<Real>(node.boxes.walls[k][1][place]) * node.boxes.step(k);
+        }
+        sum += detail::half_area(box);
+        around.extend(corner(box.min), corner(box.max));
+      }
+      if (&node == tree.nodes_.begin()) root = around.half_area();
+    }
+    return relative(sum, root);
+  }
+
+  /// Sets `to` to the topology of `from` over boxes that have moved. `box_of(primitives)` returns the `Box` [m] around some primitives of
+  /// `from.order()`. `bounds` hold all of them [m]. `to`, last set by this object or empty, gives its memory;
+  /// without another owner nothing is allocated. Returns false if the cost exceeds `max_growth`: `to` is then empty. @throws SettingError
+  /// for boxes beyond 1e18 m
+  template <class BoxOf>
+  [[nodiscard]] bool refit(const Bvh<Real>& from, const BvhRefit& state, const Box& bounds, const BoxOf& box_of, Bvh<Real>& to) {
+    if (from.nodes_.empty()) {
+      to = from;
+      return true;
+    }
+    const SharedArray<Node> topology = from.nodes_;
+    const SharedArray<PrimitiveIndex> order = from.primitives_;
+    const std::size_t depth = from.depth_;
+    built_cost_ = state.built_cost_ > 0 ? state.built_cost_ : cost(from);
+    to.nodes_ = {};
+    to.primitives_ = {};
+    if (nodes_.size() != topology.size() || nodes_.memory().use_count() != 1) nodes_ = SharedBuffer<Node>(topology.size());
+    std::atomic_thread_fence(std::memory_order_acquire);  // after the last use of the memory by another thread
+    around_.resize(topology.size());
+    return finish(topology.data(), order, depth, bounds, box_of, to);
+  }
+
+  /// Sets `to` to a tree over `boxes` [m], of one primitive a leaf: a refit `from`, a tree over as many boxes, or a new one.
+  void update(const Bvh<Real>& from, const BvhRefit& state, std::span<const Box> boxes, Bvh<Real>& to) {
+    Box bounds;
+    for (const Box& box : boxes) bounds.extend(box);  // an empty box changes nothing
+    const auto box_of = [&](std::span<const PrimitiveIndex> primitives) noexcept { return boxes[primitives[0]]; };
+    if (refit(from, state, bounds, box_of, to)) return;
+    to = Bvh<Real>(boxes, 0, 1);
+    nodes_ = {};
+  }
+
+  /// Memory held beside the tree [byte].
+  [[nodiscard]] std::size_t memory() const noexcept { return around_.capacity() * sizeof(GrowingBox); }
+
+ private:
+  using Node = typename Bvh<Real>::Node;
+  using GrowingBox = detail::GrowingBox<Real>;
+  static constexpr std::size_t places = Bvh<Real>::places;
+
+  static simd::Vec4<Real> corner(const Real (&at)[3]) noexcept { return {at[0], at[1], at[2]}; }
+  static double relative(double sum, double root) noexcept { return root > 0 ? sum / root : 0; }
+
+  /// Box relative to a centre, extended by the rounding of the greatest coordinate: without a branch.
+  static GrowingBox rounded(const Box& box, const Vec3& centre, const simd::Vec4<Real>& margin) noexcept {
+    const auto lanes = [](const Vec3& p) noexcept { return simd::Vec4<double>(p.x, p.y, p.z).template as<Real>(); };
+    GrowingBox out;
+    out.min = lanes(box.min - centre) - margin;
+    out.max = lanes(box.max - centre) + margin;
+    return out;
+  }
+
+  /// Sets boxes on the grid of a node, rounded outwards by up to two steps: without conversion to double.
+  static void quantize(std::span<const GrowingBox> boxes, const GrowingBox& around, QuantizedBox8<Real>& to) noexcept {
+    constexpr Real margin = Real(0.01);  // above the rounding of 65,535 steps in single precision
+    to.begin(around.box());
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Real origin = to.origin[k], per_step = 1 / to.step(k);
+      for (std::size_t place = 0; place < boxes.size(); ++place) {
+        const Real low = (boxes[place].min[k] - origin) * per_step - margin,
+                   high = (boxes[place].max[k] - origin) * per_step + (1 + margin);
+        to.walls[k][0][place] = static_cast<std::uint16_t>(static_cast<std::int32_t>(low));
+        to.walls[k][1][place] = static_cast<std::uint16_t>(static_cast<std::int32_t>(high));
+      }
+    }
+    to.count = static_cast<std::uint8_t>(boxes.size());
+  }
+
+  /// Computes all boxes, children before their parents, and sets the tree unless its cost is too high.
+  template <class BoxOf>
+  [[nodiscard]] bool finish(const Node* topology, const SharedArray<PrimitiveIndex>& order, std::size_t depth, const Box& bounds,
+                            const BoxOf& box_of, Bvh<Real>& to) {
+    const double extent = std::max(max_norm(bounds.min), max_norm(bounds.max));
+    if (!(extent <= detail::max_coordinate)) throw_setting_error("Accelerator::boxes", extent, "m", "within 1e18 m of the origin");
+    const Vec3 centre = bounds.centre();
+    const double reach = 0.5 * max_norm(bounds.size()) * 2 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+    const simd::Vec4<Real> margin(static_cast<Real>(reach) + std::numeric_limits<Real>::min());
+    double sum = 0;
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+      Node& node = nodes_[i] = topology[i];
+      const std::size_t count = node.boxes.count;
+      std::array<GrowingBox, places> boxes;
+      GrowingBox around;
+      for (std::size_t place = 0; place < count; ++place) {
+        const std::size_t first = node.first(place), size = node.size(place);
+        boxes[place] = size > 0 ? rounded(box_of(std::span(order.data() + first, size)), centre, margin) : around_[first];
+        around.extend(boxes[place]);
+        sum += boxes[place].half_area();
+      }
+      around_[i] = around;
+      quantize(std::span(boxes).first(count), around, node.boxes);
+    }
+    if (relative(sum, around_[0].half_area()) > max_growth * built_cost_) {
+      built_cost_ = 0;
+      return false;
+    }
+    to.bounds_ = bounds;
+    to.centre_ = centre;
+    to.nodes_ = nodes_;
+    to.primitives_ = order;
+    to.depth_ = depth;
+    return true;
+  }
+
+  SharedBuffer<Node> nodes_;        ///< memory of the last tree
+  double built_cost_ = 0;           ///< SAH cost of the topology when built; 0 for that of a tree not yet refitted
+  std::vector<GrowingBox> around_;  ///< box of each node
+};
+
+}  // namespace pulsecast
+
+#endif

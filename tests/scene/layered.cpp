@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/scene/layered.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/scene/scene.hpp>
+
+#include "support/archetypes.hpp"
+#include "support/generators.hpp"
+
+using namespace pulsecast;
+using support::LeastGeometry;
+
+namespace {
+
+using Discs = Scene<LeastGeometry>;
+using Disc = Discs::Part;
+
+Disc disc(const Similarity& placement, ObjectId object, bool ground = false) {
+  static const auto shape = std::make_shared<const LeastGeometry>();
+  return {shape, material_table({{.ground = ground}}), placement, object};
+}
+
+template <class Map>
+Hit ask(const Map& map, const Ray& ray) {
+  std::array<Hit, 1> hits;
+  map.closest(bundle_of(ray), hits);
+  return hits[0];
+}
+
+/// Hit of range NaN.
+struct Broken {
+  std::optional<Hit> closest_hit(const Ray&) const noexcept { return Hit{.range = std::numeric_limits<double>::quiet_NaN()}; }
+};
+
+static_assert(BundleTarget<Layered<Discs, Discs>> && BundleTarget<Layered<support::LeastRayTarget, Discs>>);
+static_assert(BundleTarget<Layered<Layered<Discs, Discs>, support::LeastBundleTarget>>);
+static_assert(std::is_constructible_v<Layered<Discs, Discs>, const Discs&, const Discs&>);
+static_assert(!std::is_constructible_v<Layered<Discs, Discs>, const Discs&, Discs>);
+static_assert(!std::is_constructible_v<Layered<Discs, Discs>, Discs, const Discs&>);
+template <class Map>
+concept Bounded = requires(const Map& map) {
+  map.bounds();
+};
+template <class Map>
+concept Grounded = requires(const Map& map) {
+  map.ground_height({0, 0});
+};
+static_assert(Bounded<Layered<Discs, Discs>> && Grounded<Layered<Discs, Discs>>);
+static_assert(!Bounded<Layered<Discs, support::LeastRayTarget>> && !Grounded<Layered<Discs, support::LeastRayTarget>>);
+
+}  // namespace
+
+TEST_CASE("of layers the nearest hit is met, whichever comes first") {
+  const Discs low({disc({}, 1)}), high({disc({.translation = {0.5, 0, 2}}, 2)});
+  const Ray both{{0, 0, 10}, {0, 0, -1}}, left{{-0.9, 0, 10}, {0, 0, -1}}, none{{5, 0, 10}, {0, 0, -1}};
+  for (const Layered<Discs, Discs>& world : {Layered{low, high}, Layered{high, low}}) {
+    CHECK(ask(world, both).range == 8);
+    CHECK(ask(world, both).object == 2);
+    CHECK(ask(world, left).range == 10);
+    CHECK(ask(world, left).object == 1);
+    CHECK_FALSE(ask(world, none).met());
+    CHECK(world.bounds().min == Vec3{-1, -1, 0});
+    CHECK(world.bounds().max == Vec3{1.5, 1, 2});
+  }
+}
+
+TEST_CASE("at equal range the first layer is met") {
+  const Discs one({disc({}, 1)}), two({disc({}, 2)}), three({disc({}, 3)});
+  CHECK(ask(Layered{one, two, three}, {{0, 0, 10}, {0, 0, -1}}).object == 1);
+  CHECK(ask(Layered{three, two, one}, {{0, 0, 10}, {0, 0, -1}}).object == 3);
+}
+
+TEST_CASE("the ground of layers is the highest of theirs") {
+  const Discs low({disc({}, 1, true)}), high({disc({.translation = {0.5, 0, 2}}, 2, true), disc({.translation = {0, 0, 5}}, 3)});
+  const Layered world{low, high};
+  CHECK(world.ground_height({0, 0}) == 2);
+  CHECK(world.ground_height({-0.9, 0}) == 0);
+  CHECK(world.ground_height({1.2, 0}) == 2);
+  CHECK_FALSE(world.ground_height({9, 9}));
+}
+
+TEST_CASE("a layer assigned anew is met as it then is") {
+  const Discs still({disc({}, 1)});
+  Discs moving({disc({.translation = {0, 0, 1}}, 2)});
+  const Layered world{still, moving};
+  const Ray down{{0, 0, 10}, {0, 0, -1}};
+  CHECK(ask(world, down).range == 9);
+  const std::array<Similarity, 1> next{Similarity{.translation = {0, 0, 3}}};
+  moving = moving.with_placements(next);
+  CHECK(ask(world, down).range == 7);
+}
+
+TEST_CASE("a range of NaN in any layer is kept") {
+  const Discs still({disc({}, 1)});
+  const Broken broken;
+  const Ray down{{0, 0, 10}, {0, 0, -1}};
+  CHECK(std::isnan(ask(Layered{still, broken}, down).range));
+  CHECK(std::isnan(ask(Layered{broken, still}, down).range));
+}
+
+TEST_CASE("layers meet what one scene of all their parts meets") {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::array<std::vector<Disc>, 3> layers;
+    std::vector<Disc> all;
+    for (ObjectId k = 0; k < 60; ++k) {
+      layers[k / 20].push_back(disc({any.rotation(), any.log_uniform(0.5, 5), any.point(20)}, k));
+      all.push_back(layers[k / 20].back());
+    }
+    const Discs a(layers[0]), b(layers[1]), c(layers[2]), together(all);
+    const Layered world{a, b, c};
+    for (int k = 0; k < 20; ++k) {
+      const RayBundle rays = any.cone(any.point(40), any.unit(), any.log_uniform(1e-3, 1), 1 + any.whole(RayBundle::capacity));
+      std::array<Hit, RayBundle::capacity> hits, expected;
+      world.closest(rays, hits);
+      together.closest(rays, expected);
+      for (std::size_t j = 0; j < rays.size; ++j) {
+        REQUIRE(hits[j].range == expected[j].range);
+        REQUIRE(hits[j].object == expected[j].object);
+        REQUIRE(hits[j].backscatter == expected[j].backscatter);
+      }
+    }
+  }
+}
