@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -61,7 +60,7 @@ class BvhRefit {
     to.nodes_ = {};
     to.primitives_ = {};
     if (nodes_.size() != topology.size() || nodes_.memory().use_count() != 1) nodes_ = SharedBuffer<Node>(topology.size());
-    std::atomic_thread_fence(std::memory_order_acquire);  // after the last use of the memory by another thread
+    static_cast<void>(SharedBuffer<Node>(nodes_));  // counting an owner down acquires what another thread did to the memory before
     around_.resize(topology.size());
     return finish(topology.data(), order, depth, bounds, box_of, to);
   }

@@ -50,6 +50,7 @@ class DeformingMesh {
     next.mesh->corners_ = {};
     if (next.corners.size() != sources_.size() || next.corners.memory().use_count() != 1)
       next.corners = SharedBuffer<Vec3>(sources_.size());
+    static_cast<void>(SharedBuffer<Vec3>(next.corners));  // as in `BvhRefit`
     Box bounds;
     Vec3 sum{};  // keeps every NaN and infinity
     for (std::size_t i = 0; i < sources_.size(); ++i) {
