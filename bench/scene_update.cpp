@@ -86,14 +86,14 @@ double sum_of_ranges(const Map& map, double reach) {
 
 extern "C" {
 
-[[gnu::noinline]] World update_built(std::vector<World::Part> parts) { return World(std::move(parts)); }
+[[gnu::noinline]] void update_built(std::vector<World::Part> parts, World& to) { to = World(std::move(parts)); }
 
-[[gnu::noinline]] World update_nudged(const World& world, const std::vector<Similarity>& placements, World&& unused) {
-  return world.with_placements(placements, std::move(unused));
+[[gnu::noinline]] void update_nudged(const World& world, const std::vector<Similarity>& placements, World& to) {
+  to = world.with_placements(placements, std::move(to));
 }
 
-[[gnu::noinline]] World update_anywhere(const World& world, const std::vector<Similarity>& placements, World&& unused) {
-  return world.with_placements(placements, std::move(unused));
+[[gnu::noinline]] void update_anywhere(const World& world, const std::vector<Similarity>& placements, World& to) {
+  to = world.with_placements(placements, std::move(to));
 }
 
 [[gnu::noinline]] void update_movers(std::vector<MovingScene<Mesh>::Part> parts, double& top) {
@@ -114,16 +114,20 @@ int main() {
   const std::vector<Similarity> first = anywhere(dice);
   std::vector<World::Part> parts;
   for (const Similarity& placement : first) parts.push_back({.geometry = shape, .placement = placement});
-  World now = update_built(parts), unused = now.with_placements(first);
+  World now({}), next({});
+  update_built(parts, now);
+  World unused = now.with_placements(first);
   double sum = update_trace_built(now);
   unused = now.with_placements(first, std::move(unused));
-  World next = update_nudged(unused, nudged(first, dice), unused.with_placements(first));
+  next = unused.with_placements(first);
+  update_nudged(unused, nudged(first, dice), next);
   sum += update_trace_nudged(next);
   for (int tick = 0; tick < 2; ++tick) {  // the first allocates
     World moved = now.with_placements(anywhere(dice), std::move(unused));
     unused = std::exchange(now, std::move(moved));
   }
-  next = update_anywhere(now, anywhere(dice), std::move(unused));
+  next = std::move(unused);
+  update_anywhere(now, anywhere(dice), next);
   sum += update_trace_anywhere(next);
 
   std::vector<MovingScene<Mesh>::Part> movers;
