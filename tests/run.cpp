@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/run.hpp>
 
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <concepts>
 #include <cstdlib>
 #include <limits>
 #include <new>
@@ -11,10 +13,12 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/base/thread_pool.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/cloud.hpp>
 #include <pulsecast/deflector/deflector.hpp>
@@ -274,18 +278,153 @@ TEST_CASE("a run of nothing is complete") {
   }
 }
 
+namespace {
+
+/// Allocations of a run; a thread needs one.
+template <class Survey>
+std::size_t allocations_of(const Survey& survey, const RunOptions& options) {
+  const std::size_t before = allocations;
+  const RunSummary summary = run(survey, options);
+  CHECK(summary.complete);
+  return allocations - before;
+}
+
+/// Executor of a user's: the tasks in reverse, one after the other.
+struct Reverse {
+  int calls = 0;
+  unsigned threads() const { return 5; }
+  void for_each(std::size_t count, const IndexTask& task) {
+    ++calls;
+    while (count-- > 0) task(count);
+  }
+};
+
+/// Executor of a user's: one thread for each task.
+struct ThreadPerTask {
+  unsigned threads() const { return 4; }
+  void for_each(std::size_t count, const IndexTask& task) const {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < count; ++i) threads.emplace_back([&task, i] { task(i); });
+  }
+};
+
+static_assert(Executor<Reverse> && Executor<const ThreadPerTask> && !MemoryKeepingExecutor<Reverse>);
+static_assert(!Executor<const Reverse>);
+static_assert(!std::constructible_from<ExecutorRef, Reverse>);  // a temporary would dangle
+
+template <class Survey>
+std::string checksum_of(const Survey& survey, const RunOptions& options) {
+  support::LawfulSink sink;
+  run(survey, options, sink);
+  CHECK(sink.broken() == "");
+  return sink.checksum();
+}
+
+}  // namespace
+
 TEST_CASE("no more threads are started than there are chunks of work") {
   const auto survey = rain();
-  const auto allocations_of = [&](unsigned threads, PulseIndex pulses) {  // a thread needs one
-    const std::size_t before = allocations;
-    CHECK(run(survey, {.threads = threads, .end = pulses}).slots == pulses);
-    return allocations - before;
-  };
   for (const PulseIndex pulses : {0U, 1U, 2048U}) {
     CAPTURE(pulses);
-    CHECK(allocations_of(64, pulses) == allocations_of(1, pulses));
+    CHECK(allocations_of(survey, {.threads = 64, .end = pulses}) == allocations_of(survey, {.threads = 1, .end = pulses}));
   }
-  CHECK(allocations_of(max_threads, 2049) < 100);
+  CHECK(allocations_of(survey, {.threads = max_threads, .end = 2049}) < 100);
+}
+
+TEST_CASE("a run on a pool allocates nothing after the first run over the survey or its copies") {
+  ThreadPool pool(64);
+  const RunOptions options{.threads = 64, .executor = pool, .end = 1};
+  const auto survey = small_survey(), other = small_survey();
+  const auto copy = survey;
+  const bool counted = allocations_of(survey, options) > 0;  // not so under the thread sanitizer
+  for (int k = 0; k < 3; ++k) {
+    CHECK(allocations_of(survey, options) == 0);
+    CHECK(allocations_of(copy, options) == 0);
+  }
+  if (counted) {
+    CHECK(allocations_of(other, options) > 0);  // whose workspaces may differ
+    pool.memory().clear();
+    CHECK(allocations_of(other, options) > 0);
+  }
+  CHECK(allocations_of(other, options) == 0);
+}
+
+TEST_CASE("surveys of one type that follow each other on a pool do not see each other's workspaces") {
+  ThreadPool pool(3);
+  for (int round = 0; round < 2; ++round)
+    for (const std::size_t rings : {2U, 7U, 3U}) {
+      CAPTURE(rings);
+      std::optional<Survey<decltype(two_legs()), RingFootprint, Steps, std::remove_const_t<decltype(waveforms)>>> survey;
+      survey.emplace(two_legs(), RingFootprint{rings}, steps, Receiver{.efficiency = 0.1 * static_cast<double>(rings)}, waveforms);
+      CHECK(checksum_of(*survey, {.executor = pool}) == checksum_of(*survey, {.threads = 1}));
+    }
+}
+
+TEST_CASE("a run gives the same bytes on any executor") {
+  const auto survey = small_survey();
+  const std::string expected = checksum_of(survey, {.threads = 1});
+  ThreadPool one(1), seven(7);
+  Reverse reverse;
+  const ThreadPerTask thread_per_task;
+  for (const ExecutorRef executor : {ExecutorRef(one), ExecutorRef(seven), ExecutorRef(reverse), ExecutorRef(thread_per_task)})
+    for (const unsigned threads : {0U, 2U, 3U, 64U}) {
+      CAPTURE(threads);
+      CHECK(checksum_of(survey, {.threads = threads, .executor = executor}) == expected);
+    }
+  CHECK(reverse.calls == 4);
+}
+
+TEST_CASE("two threads may run surveys on one pool at once") {
+  ThreadPool pool(3);
+  const auto survey = small_survey();
+  const std::string expected = checksum_of(survey, {.threads = 1});
+  std::array<std::array<std::string, 4>, 2> sums;
+  {
+    std::array<std::jthread, 2> callers;
+    for (std::size_t k = 0; k < callers.size(); ++k)
+      callers[k] = std::jthread([&, k] {
+        for (std::string& sum : sums[k]) {
+          support::LawfulSink sink;
+          run(survey, {.executor = pool}, sink);
+          sum = sink.checksum();
+        }
+      });
+  }
+  for (const auto& of_caller : sums)
+    for (const std::string& sum : of_caller) CHECK(sum == expected);
+}
+
+TEST_CASE("a sink may run a survey on the pool that calls it") {
+  ThreadPool pool(3);
+  const auto survey = rain(20000), inner = rain(5000);
+  const std::string expected = checksum_of(inner, {.threads = 1});
+  std::size_t batches = 0;
+  run(survey, {.executor = pool}, [&](const EchoBatch&) {
+    support::LawfulSink sink;
+    run(inner, {.executor = pool}, sink);
+    CHECK(sink.checksum() == expected);
+    ++batches;
+  });
+  CHECK(batches == 10);
+}
+
+TEST_CASE("a pool goes on after a sink that throws and after a stop") {
+  ThreadPool pool(3);
+  const auto survey = rain(200000);
+  const std::string expected = checksum_of(survey, {.threads = 1});
+  for (int round = 0; round < 2; ++round) {
+    int calls = 0;
+    const auto spill = [&](const EchoBatch&) {
+      if (++calls == 3) throw Spilled("the third batch");
+    };
+    CHECK_THROWS_WITH_AS(run(survey, {.executor = pool}, spill), "the third batch", Spilled);
+    CHECK(calls == 3);
+    std::stop_source source;
+    const RunSummary stopped =
+        run(survey, {.executor = pool, .stop = source.get_token()}, [&](const EchoBatch&) { source.request_stop(); });
+    CHECK_FALSE(stopped.complete);
+    CHECK(checksum_of(survey, {.executor = pool}) == expected);
+  }
 }
 
 TEST_CASE("more threads than a machine can have are refused, by name") {

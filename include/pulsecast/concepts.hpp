@@ -192,6 +192,30 @@ concept EchoWidth = std::copyable<W> && requires(const W w, std::span<const doub
   { w.width(samples, interval) } noexcept -> std::same_as<double>;
 };
 
+// ---------------------------------------------------------------------------------------------------------------- the run
+
+struct Outcome;
+
+/// Simulation as `run` takes it: from a pulse slot to its outcome. `Survey` models it. A worker's only writable memory is a workspace.
+/// `sample_interval()` is the sample spacing of waveforms, or 0 [s]. `subrays()` and `recorded_subrays()` are counts per pulse.
+/// Law: pure; the same slot gives the same outcome, in any order, with any workspace of the survey.
+/// Not required: workspaces that can be moved or copied. For threads of one's own see `Executor` in base/parallel.hpp.
+template <class S>
+concept PulseSurvey = requires(const S s, PulseIndex i, decltype(s.workspace())& workspace) {
+  { s.size() } noexcept -> std::same_as<PulseIndex>;
+  { s.subrays() } noexcept -> std::convertible_to<std::size_t>;
+  { s.recorded_subrays() } noexcept -> std::convertible_to<std::size_t>;
+  { s.sample_interval() } noexcept -> std::same_as<double>;
+  { s(i, workspace) } noexcept -> std::same_as<Outcome>;
+};
+
+/// Survey that can be told from others, so that an executor may keep its workspaces from one run to the next.
+/// Law: two surveys of one type share an identity, which is not null, only if each may use the other's workspaces.
+template <class S>
+concept IdentifiedSurvey = PulseSurvey<S> && requires(const S s) {
+  { s.identity() } noexcept -> std::convertible_to<std::shared_ptr<const void>>;
+};
+
 /// Receiver of results: a writer, a cloud in memory, a lambda.
 /// Law of the caller: batches come in ascending pulse order, one call at a time.
 template <class S>

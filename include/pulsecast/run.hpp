@@ -19,6 +19,7 @@
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/scratch_memory.hpp>
 #include <pulsecast/survey.hpp>
 
 namespace pulsecast {
@@ -41,7 +42,8 @@ struct RunSlots {
 
 /// Options of a run.
 struct RunOptions {
-  unsigned threads = 0;                                     ///< number of threads, at most `max_threads`; 0 for the hardware concurrency
+  unsigned threads = 0;                                     ///< threads, at most `max_threads`; 0: all of the executor or the hardware
+  ExecutorRef executor{};                                   ///< runs the work, as `ThreadPool` does; empty: threads that live for the call
   PulseIndex first = 0;                                     ///< first slot
   PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< one past the last slot, at most the survey's size
   PulseIndex stride = 1;                                    ///< step between slots, greater than 1 for a preview
@@ -52,6 +54,9 @@ struct RunOptions {
     require_within("RunOptions::threads", threads, 0, max_threads, "");
     require_within("RunOptions::stride", static_cast<double>(stride), 1, 1e18, "");
   }
+
+  /// Threads of the run, as a builder takes them.
+  [[nodiscard]] Workers workers() const noexcept { return {executor, threads}; }
 
   /// Slots of a run over `size` slots. @throws SettingError for options out of range
   [[nodiscard]] RunSlots slots(PulseIndex size) const {
@@ -152,19 +157,52 @@ struct ResultChunk : ResultBuffer {
   }
 };
 
+/// Chunks of a reorder buffer.
+struct ChunkMemory {
+  std::size_t size = 0;
+  std::unique_ptr<ResultChunk[]> chunks{};
+  std::unique_ptr<ResultChunk* []> finished {};  ///< ring by chunk number; null until finished
+
+  /// Makes room for `count` chunks at least; all are unfinished then.
+  void require(std::size_t count) {
+    if (size < count) {
+      *this = {};
+      chunks = std::make_unique<ResultChunk[]>(count);
+      finished = std::make_unique<ResultChunk*[]>(count);
+      size = count;
+    }
+    std::fill_n(finished.get(), size, nullptr);
+  }
+};
+
+/// Memory of a run, which an executor may keep for the next run with such workspaces.
+template <class Workspace>
+struct RunMemory : ScratchItem {
+  ChunkMemory chunks{};
+  std::vector<std::unique_ptr<Workspace>> workspaces{};  ///< by worker; null until needed
+  std::shared_ptr<const void> identity{};                ///< of the survey that the workspaces are for
+
+  /// Readies the memory for a survey. Keeps the workspaces of the same survey.
+  template <class Survey>
+  void adapt_to(const Survey& survey, std::size_t workers) {
+    std::shared_ptr<const void> wanted;
+    if constexpr (IdentifiedSurvey<Survey>) wanted = survey.identity();
+    if (!wanted || wanted != identity) workspaces.clear();
+    identity = std::move(wanted);
+    if (workspaces.size() < workers) workspaces.resize(workers);
+  }
+};
+
 /// Reorder buffer: hands out chunks to workers, and delivers finished ones in order, one at a time. Workers run ahead, so that none waits
 /// for a slow or descheduled one. Memory is bounded: they stop when finished chunks fill a few megabytes, or at two chunks per worker if
 /// these are large. The chunk delivered last is reused first, as it is in the cache.
 class ReorderBuffer {
  public:
-  ReorderBuffer(std::uint64_t chunks, std::size_t workers, std::stop_token stop)
-      : chunks_(chunks),
-        always_ahead_(2 * workers + 2),
-        max_ahead_(16 * always_ahead_),
-        room_(std::make_unique<ResultChunk[]>(max_ahead_)),
-        finished_(std::make_unique<ResultChunk*[]>(max_ahead_)),
-        stop_(std::move(stop)) {
-    for (std::size_t i = 0; i < max_ahead_; ++i) room_[i].next_free = std::exchange(free_, &room_[i]);
+  ReorderBuffer(ChunkMemory& memory, std::uint64_t chunks, std::size_t workers, std::stop_token stop)
+      : chunks_(chunks), always_ahead_(2 * workers + 2), max_ahead_(16 * always_ahead_), stop_(std::move(stop)) {
+    memory.require(max_ahead_);
+    for (std::size_t i = max_ahead_; i-- > 0;) memory.chunks[i].next_free = std::exchange(free_, &memory.chunks[i]);
+    finished_ = memory.finished.get();
   }
 
   /// Next empty chunk to work on; null at the end, or when the run is stopped.
@@ -219,9 +257,8 @@ class ReorderBuffer {
 
   std::uint64_t chunks_, handed_out_ = 0, delivered_ = 0;
   std::size_t always_ahead_, max_ahead_, finished_bytes_ = 0;
-  std::unique_ptr<ResultChunk[]> room_;
-  std::unique_ptr<ResultChunk*[]> finished_;  // ring by chunk number; null until finished
-  ResultChunk* free_ = nullptr;               // head of the free list
+  ResultChunk** finished_;       // ring by chunk number; null until finished
+  ResultChunk* free_ = nullptr;  // head of the free list
   std::stop_token stop_;
   bool delivering_ = false;
   std::exception_ptr failure_;
@@ -231,21 +268,24 @@ class ReorderBuffer {
 
 }  // namespace detail
 
-/// Simulates the pulses of a survey on several threads, and passes the results to the sinks in pulse order. The batches do not depend on
-/// the number of threads. Exceptions of sinks and of the progress callback end the run and are rethrown.
+/// Simulates the pulses of a survey on several threads, and passes the results to the sinks in pulse order. The batches depend neither on
+/// the number of threads nor on the executor. Exceptions of sinks and of the progress callback end the run and are rethrown.
 /// @throws SettingError for options out of range
-template <class Survey, EchoSink... Sinks>
+template <PulseSurvey Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   const RunSlots slots = options.slots(survey.size());
   const PulseIndex subrays_per_chunk = 65'536;  // bound where subrays are recorded; otherwise they take no memory
   const PulseIndex slots_per_chunk =
       std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, PulseIndex{2048});
   const std::uint64_t chunks = (slots.count + slots_per_chunk - 1) / slots_per_chunk;
-  const std::size_t workers = std::min<std::uint64_t>(thread_count(options.threads), std::max<std::uint64_t>(chunks, 1));
+  const std::size_t workers = std::min<std::uint64_t>(options.workers().count(), std::max<std::uint64_t>(chunks, 1));
   const auto began = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
 
-  detail::ReorderBuffer buffer(chunks, workers, options.stop);
+  using Workspace = decltype(survey.workspace());
+  const Borrowed<detail::RunMemory<Workspace>> memory(options.executor.memory());
+  memory->adapt_to(survey, workers);
+  detail::ReorderBuffer buffer(memory->chunks, chunks, workers, options.stop);
   RunSummary summary;
   const auto deliver = [&](const detail::ResultChunk& chunk) {
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
@@ -253,11 +293,13 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
     summary.add(chunk.counts);
     if (options.progress) options.progress({summary.slots, slots.count, summary.echoes, elapsed()});
   };
-  for_each_index(workers, options.threads, [&](std::size_t) noexcept {  // each worker runs until no chunk is left
+  for_each_index(workers, options.workers(), [&](std::size_t worker) noexcept {  // each worker runs until no chunk is left
     try {
       detail::ResultChunk* chunk = buffer.next();
       if (!chunk) return;
-      auto workspace = survey.workspace();
+      std::unique_ptr<Workspace>& place = memory->workspaces[worker];
+      if (!place) place.reset(new Workspace(survey.workspace()));  // which need not be movable
+      Workspace& workspace = *place;
       for (; chunk; chunk = buffer.next()) {
         const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots.count);
         for (PulseIndex n = from; n < to; ++n) chunk->append(survey(slots[n], workspace));
@@ -272,6 +314,14 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   summary.seconds = elapsed();
   summary.complete = summary.slots == slots.count;
   return summary;
+}
+
+/// Says of a call of `run` what is wrong with it.
+template <class Survey, class... Sinks>
+requires(!PulseSurvey<Survey> || !(EchoSink<Sinks> && ...)) RunSummary run(const Survey&, const RunOptions&, Sinks&&...) {
+  static_assert(PulseSurvey<Survey>, "run: the first argument must be a survey; for a type of your own, static_assert(PulseSurvey<T>)");
+  static_assert((EchoSink<Sinks> && ...), "run: a sink must be callable with one batch, as is [](const EchoBatch& batch) { ... }");
+  return {};
 }
 
 }  // namespace pulsecast

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -107,6 +108,9 @@ class Survey {
     else
       return 0;
   }
+
+  /// Token that this survey shares with its copies alone: they may use each other's workspaces.
+  [[nodiscard]] const std::shared_ptr<const void>& identity() const noexcept { return identity_; }
 
   /// Simulates pulse i.
   [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
@@ -317,6 +321,7 @@ class Survey {
   Receiver receiver_;
   Instrument detector_;
   std::uint64_t seed_;
+  std::shared_ptr<const void> identity_ = std::make_shared<char>();
 };
 
 }  // namespace pulsecast

@@ -3,6 +3,7 @@
 #include <pulsecast/base/parallel.hpp>
 
 #include <atomic>
+#include <concepts>
 #include <cstddef>
 #include <stdexcept>
 #include <vector>
@@ -50,4 +51,67 @@ TEST_CASE("what a task throws comes out, and what has not begun is left out") {
     CHECK(done < 1'000'000 - 1);
     CHECK(done >= (threads == 1 ? 10 : 0));
   }
+}
+
+namespace {
+
+/// Executor whose tasks run one after the other, the last one first.
+struct Reverse {
+  std::vector<std::size_t> counts{};
+  unsigned threads() const { return 3; }
+  void for_each(std::size_t count, const IndexTask& task) {
+    counts.push_back(count);
+    while (count-- > 0) task(count);
+  }
+};
+
+struct WithoutThreads {
+  void for_each(std::size_t, const IndexTask&) const {}
+};
+struct WithoutLoop {
+  unsigned threads() const { return 3; }
+};
+
+}  // namespace
+
+static_assert(Executor<Reverse> && !Executor<WithoutThreads> && !Executor<WithoutLoop>);
+static_assert(sizeof(ExecutorRef) == 2 * sizeof(void*) && sizeof(IndexTask) == 2 * sizeof(void*));
+static_assert(std::convertible_to<Reverse&, Workers> && std::convertible_to<unsigned, Workers>);
+static_assert(!std::convertible_to<Reverse, Workers>);  // a temporary would dangle
+
+TEST_CASE("workers are a number of threads, those of an executor, or some of these") {
+  Reverse executor;
+  CHECK(Workers().count() == thread_count(0));
+  CHECK(Workers(7).count() == 7);
+  CHECK(Workers(executor).count() == 3);
+  CHECK(Workers(executor, 0).count() == 3);
+  CHECK(Workers(executor, 2).count() == 2);
+  CHECK(Workers({}, 2).count() == 2);
+  CHECK_FALSE(Workers(7).executor());
+  CHECK(Workers(executor).executor());
+  CHECK(ExecutorRef().memory() == nullptr);
+  CHECK(ExecutorRef(executor).memory() == nullptr);
+}
+
+TEST_CASE("an executor gets a task for each thread, at most one for each index, and none for a single index") {
+  Reverse executor;
+  for (const std::size_t count : {0U, 1U, 2U, 1000U}) {
+    std::vector<std::size_t> done;
+    for_each_index(count, executor, [&](std::size_t i) { done.push_back(i); });
+    REQUIRE(done.size() == count);
+    for (std::size_t i = 0; i < count; ++i) CHECK(done[i] == i);
+  }
+  CHECK(executor.counts == std::vector<std::size_t>{2, 3});
+}
+
+TEST_CASE("a task's exception does not pass through the executor, and comes out of the loop") {
+  Reverse executor;
+  std::size_t done = 0;
+  const auto task = [&](std::size_t i) {
+    if (i == 10) throw std::runtime_error("ten");
+    ++done;
+  };
+  CHECK_THROWS_WITH_AS(for_each_index(1000, executor, task), "ten", std::runtime_error);
+  CHECK(done == 10);
+  CHECK(executor.counts.size() == 1);
 }

@@ -47,7 +47,9 @@ notices "the README's table lists the public headers" 'cp include/pulsecast/io/l
 notices "the README's table lists the public headers" 'rm include/pulsecast/io/text_files.hpp'
 notices "$below" "mkdir include/pulsecast/utils && cp include/pulsecast/pulse.hpp include/pulsecast/utils"
 notices 'GLM is named in base/vector.hpp only' "echo 'inline glm::dvec3 v;' >> include/pulsecast/pulse.hpp"
-notices 'threads live in run.hpp and base/parallel.hpp only' "$add #include <mutex>\" include/pulsecast/survey.hpp"
+threads='threads live in run.hpp and three headers of base/ only'
+notices "$threads" "$add #include <mutex>\" include/pulsecast/survey.hpp"
+notices "$threads" "$add #include <thread>\" include/pulsecast/base/shared_array.hpp"
 notices 'files are for the rooms beside the core' "$add #include <fstream>\" include/pulsecast/survey.hpp"
 notices 'degrees and nanoseconds are for the rooms beside the core' "echo 'inline double angle_deg = 1;' >> include/pulsecast/pulse.hpp"
 notices 'the library never prints and never exits' "echo 'inline void f() { std::exit(1); }' >> include/pulsecast/pulse.hpp"

@@ -36,7 +36,7 @@ class BinarySahTree {
 
   /// Takes at least one primitive; the array must outlive the tree. `leaf_size`: greatest number of primitives per leaf of the collapsed
   /// tree.
-  BinarySahTree(std::span<Boxed<Real>> primitives, std::uint32_t leaf_size, unsigned threads)
+  BinarySahTree(std::span<Boxed<Real>> primitives, std::uint32_t leaf_size, const Workers& workers)
       : primitives_(primitives), leaf_size_(leaf_size), spare_(primitives.size()), nodes_(primitives.size()) {
     // upper levels: one node at a time on all threads; then the subtrees in parallel
     struct Step {
@@ -44,10 +44,10 @@ class BinarySahTree {
       Sums sums{};
       std::size_t halves = 0;  // index of the first half, the second follows it; 0 if built as one subtree
     };
-    threads = thread_count(threads);
+    const unsigned threads = workers.count();
     const std::size_t grain = threads == 1 ? primitives.size() : std::max<std::size_t>(primitives.size() / (8 * threads), 4096);
     std::vector<Step> steps;
-    steps.push_back({{0, static_cast<std::uint32_t>(primitives.size()), 0, false, &root_, bounds(threads)}});
+    steps.push_back({{0, static_cast<std::uint32_t>(primitives.size()), 0, false, &root_, bounds(workers)}});
     std::vector<std::size_t> subtrees;
     const SharedBuffer<ChunkBins> space(threads == 1 ? 1 : chunk_count(primitives.size()));
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -57,11 +57,11 @@ class BinarySahTree {
           std::swap(subtrees[k - 1], subtrees[k]);  // largest first
         continue;
       }
-      const auto halves = split(steps[i].task, space, threads);
+      const auto halves = split(steps[i].task, space, workers);
       steps[i].halves = steps.size();
       for (const Task& half : halves) steps.push_back({half});
     }
-    for_each_index(subtrees.size(), threads, [&](std::size_t i) {
+    for_each_index(subtrees.size(), workers, [&](std::size_t i) {
       Step& step = steps[subtrees[i]];
       step.sums = build(step.task, SharedBuffer<ChunkBins>(1));
     });
@@ -154,9 +154,9 @@ class BinarySahTree {
     double cost = std::numeric_limits<double>::infinity();
   };
 
-  [[nodiscard]] Bounds bounds(unsigned threads) const {
+  [[nodiscard]] Bounds bounds(const Workers& workers) const {
     const SharedBuffer<Bounds> all(chunk_count(primitives_.size()));
-    for_each_chunk(primitives_.size(), threads, [&](std::size_t i, std::size_t begin, std::size_t end) {
+    for_each_chunk(primitives_.size(), workers, [&](std::size_t i, std::size_t begin, std::size_t end) {
       Bounds own;
       for (std::size_t at = begin; at < end; ++at) own.extend(primitives_[at]);
       all[i] = own;
@@ -191,13 +191,13 @@ class BinarySahTree {
   }
 
   /// Splits a node of three or more primitives. Both halves keep enough levels for halving down to single primitives.
-  std::array<Task, 2> split(const Task& task, const SharedBuffer<ChunkBins>& space, unsigned threads) {
+  std::array<Task, 2> split(const Task& task, const SharedBuffer<ChunkBins>& space, const Workers& workers) {
     const Boxed<Real>* const from = array(task.spare) + task.begin;
-    if (threads == 1 || task.size() <= 2 * chunk_size) threads = 1;
-    const std::size_t parts = threads == 1 ? 1 : chunk_count(task.size());
+    const bool alone = task.size() <= 2 * chunk_size || workers.count() == 1;
+    const std::size_t parts = alone ? 1 : chunk_count(task.size());
     const auto each_part = [&](const auto& act) {
-      if (threads == 1) return act(space[0], from, from + task.size());
-      for_each_chunk(task.size(), threads,
+      if (alone) return act(space[0], from, from + task.size());
+      for_each_chunk(task.size(), workers,
                      [&](std::size_t i, std::size_t begin, std::size_t end) { act(space[i], from + begin, from + end); });
     };
     const std::size_t count = primitives_.size() <= few ? Bins::max_slices : std::min<std::size_t>(Bins::max_slices, 4 + task.size() / 16);

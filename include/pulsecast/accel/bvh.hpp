@@ -28,7 +28,7 @@ class BvhRefit;
 /// BVH with up to eight children per node, whose boxes are tested against a bundle together. The build splits a binary SAH tree down to
 /// single primitives. It then collapses the tree at least SAH cost into nodes and leaves of up to `leaf_size` primitives. Every primitive
 /// is in exactly one leaf. A bundle traverses the tree as a whole, front to back. The build halves a range where an SAH split would exceed
-/// 64 levels of the binary tree. The tree is the same for any number of build threads; 0 as in `thread_count`.
+/// 64 levels of the binary tree. The tree is the same for any workers.
 /// Source: Wald 2007 (binned build); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic); Wald, Benthin & Boulos 2008
 /// (collapsing).
 template <std::floating_point Real = float>
@@ -37,14 +37,14 @@ class Bvh {
   /// Builds the tree over `boxes` [m]: a span, or any sized range that yields a `Box` by index. `leaf_size`, from 1 to 7: several
   /// primitives for vectorized tests; 1 where a test is a search of its own, as for the parts of a scene.
   /// @throws SettingError for a `leaf_size` out of range, coordinates beyond 1e18 m, or more than 4294967294 boxes
-  explicit Bvh(const detail::BoxRangeRef& boxes, unsigned threads = 0, std::uint32_t leaf_size = 4) {
+  explicit Bvh(const detail::BoxRangeRef& boxes, const Workers& workers = {}, std::uint32_t leaf_size = 4) {
     require_within("Bvh::leaf_size", leaf_size, 1, 7, "");
-    detail::BuildInput<Real> input(boxes, threads);
+    detail::BuildInput<Real> input(boxes, workers);
     bounds_ = input.bounds;
     centre_ = input.centre;
     if (input.primitives.empty()) return;
-    const BinaryTree binary(input.primitives, leaf_size, threads);
-    collapse(binary, threads);
+    const BinaryTree binary(input.primitives, leaf_size, workers);
+    collapse(binary, workers);
   }
 
   explicit Bvh(DeserializeTag) {}
@@ -173,7 +173,7 @@ class Bvh {
   };
 
   /// Makes the upper nodes serially and the subtrees in parallel, then copies the subtrees into place.
-  void collapse(const BinaryTree& binary, unsigned threads) {
+  void collapse(const BinaryTree& binary, const Workers& workers) {
     const std::size_t count = binary.primitives().size();
     const SharedBuffer<PrimitiveIndex> primitives(count);
     std::vector<Node> upper;
@@ -191,7 +191,7 @@ class Bvh {
       subtrees[i].first_primitive = next;
       next += below[i].range.size();
     }
-    for_each_index(below.size(), threads, [&](std::size_t i) {
+    for_each_index(below.size(), workers, [&](std::size_t i) {
       Subtree& own = subtrees[i];
       own.nodes.resize(1);
       std::size_t at = own.first_primitive;
@@ -206,7 +206,7 @@ class Bvh {
     }
     const SharedBuffer<Node> all(nodes);
     std::copy(upper.begin(), upper.end(), all.begin());
-    for_each_index(subtrees.size(), threads, [&](std::size_t i) {  // the first node of a subtree takes its reserved slot
+    for_each_index(subtrees.size(), workers, [&](std::size_t i) {  // the first node of a subtree takes its reserved slot
       const Subtree& own = subtrees[i];
       for (std::size_t k = 0; k < own.nodes.size(); ++k) {
         Node& node = all[k == 0 ? below[i].node : own.first_node + k - 1] = own.nodes[k];

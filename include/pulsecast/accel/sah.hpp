@@ -170,8 +170,8 @@ struct Bins {
 inline constexpr std::size_t chunk_size = std::size_t{1} << 14;
 [[nodiscard]] constexpr std::size_t chunk_count(std::size_t count) noexcept { return (count + chunk_size - 1) / chunk_size; }
 template <class Act>
-void for_each_chunk(std::size_t count, unsigned threads, const Act& act) {
-  for_each_index(chunk_count(count), threads, [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
+void for_each_chunk(std::size_t count, const Workers& workers, const Act& act) {
+  for_each_index(chunk_count(count), workers, [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
 }
 
 /// Non-owning, type-erased view of an indexable range of boxes, so that builders compile once. The range must outlive the view, and yield
@@ -215,7 +215,7 @@ struct BuildInput {
   Vec3 centre{};
   SharedBuffer<Boxed<Real>> primitives;
 
-  explicit BuildInput(const BoxRangeRef& boxes, unsigned threads = 1) {
+  explicit BuildInput(const BoxRangeRef& boxes, const Workers& workers = 1) {
     constexpr std::size_t most = std::numeric_limits<PrimitiveIndex>::max() - 1;  // greater indices are left to `ClosestHits::none`
     if (boxes.size() > most)
       throw SettingError("Accelerator::boxes", static_cast<double>(boxes.size()), "", "at most 4294967294 in number");
@@ -224,7 +224,7 @@ struct BuildInput {
       std::size_t first = 0, met = 0;  // index of the first in `primitives`, and count
     };
     const SharedBuffer<ChunkBounds> all(chunk_count(boxes.size()));
-    for_each_chunk(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    for_each_chunk(boxes.size(), workers, [&](std::size_t part, std::size_t begin, std::size_t end) {
       ChunkBounds own;
       boxes.for_each(begin, end, [&](std::size_t, const Box& box) {
         const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
@@ -243,7 +243,7 @@ struct BuildInput {
     if (met == 0) return;
     centre = bounds.centre();
     primitives = SharedBuffer<Boxed<Real>>(met);
-    for_each_chunk(boxes.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    for_each_chunk(boxes.size(), workers, [&](std::size_t part, std::size_t begin, std::size_t end) {
       Boxed<Real>* to = primitives.data() + all[part].first;
       boxes.for_each(begin, end, [&](std::size_t i, const Box& box) {
         *to++ = {BoundingBox<Real>::around(box, centre), static_cast<PrimitiveIndex>(i)};

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <concepts>
 #include <cstddef>
 #include <exception>
 #include <memory>
 #include <thread>
+#include <type_traits>
 
 #include <pulsecast/base/require.hpp>
 
@@ -22,42 +24,154 @@ inline constexpr unsigned max_threads = 1024;  ///< upper limit of a setting for
   return asked > 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
 }
 
+/// Reference to a function of an index. Refers to the function, which must outlive it.
+class IndexTask {
+ public:
+  template <class Task>
+  requires(!std::same_as<Task, IndexTask> && std::invocable<const Task&, std::size_t>) IndexTask(const Task& task)
+  noexcept : task_(&task), call_([](const void* t, std::size_t i) { (*static_cast<const Task*>(t))(i); }) {}
+
+  void operator()(std::size_t i) const { call_(task_, i); }
+
+ private:
+  const void* task_;
+  void (*call_)(const void*, std::size_t);
+};
+
+/// Threads of the user's: `ThreadPool`, or an adaptor to a task scheduler. `threads()` is the number of threads that a call may use, the
+/// caller's included. `for_each(count, task)` calls task(i) once for each i below `count`, on any threads.
+/// Law: `for_each` returns when all calls have returned. While it waits it runs no task of another call (oneTBB: by
+/// `this_task_arena::isolate`). If several threads share an executor, they may call it at once.
+/// Not required: tasks that run at the same time; an order; handling of exceptions, as the library's tasks throw none.
+template <class E>
+concept Executor = requires(E& e, std::size_t count, const IndexTask& task) {
+  { e.threads() } -> std::convertible_to<unsigned>;
+  e.for_each(count, task);
+};
+
+class ScratchMemory;
+
+/// Executor that keeps memory from one call to the next: a second run then allocates nothing.
+template <class E>
+concept MemoryKeepingExecutor = Executor<E> && requires(E& e) {
+  { e.memory() } -> std::same_as<ScratchMemory&>;
+};
+
+/// Reference to an executor, or none. Refers to the executor, which must outlive it; temporaries are refused.
+class ExecutorRef {
+ public:
+  ExecutorRef() = default;
+  template <Executor E>
+  requires(!std::same_as<std::remove_const_t<E>, ExecutorRef>) ExecutorRef(E& executor)
+  noexcept : executor_(const_cast<std::remove_const_t<E>*>(&executor)), functions_(&functions<E>) {}
+
+  /// False without an executor; the other functions then must not be called.
+  explicit operator bool() const noexcept { return executor_ != nullptr; }
+  [[nodiscard]] unsigned threads() const { return functions_->threads(executor_); }
+  void for_each(std::size_t count, const IndexTask& task) const { functions_->for_each(executor_, count, task); }
+  /// Memory kept between calls; null if the executor keeps none.
+  [[nodiscard]] ScratchMemory* memory() const { return executor_ ? functions_->memory(executor_) : nullptr; }
+
+ private:
+  struct Functions {
+    unsigned (*threads)(void*);
+    void (*for_each)(void*, std::size_t, const IndexTask&);
+    ScratchMemory* (*memory)(void*);
+  };
+  template <class E>
+  static constexpr Functions functions{[](void* e) { return static_cast<unsigned>(static_cast<E*>(e)->threads()); },
+                                       [](void* e, std::size_t count, const IndexTask& task) { static_cast<E*>(e)->for_each(count, task); },
+                                       [](void* e) -> ScratchMemory* {
+                                         if constexpr (MemoryKeepingExecutor<E>)
+                                           return &static_cast<E*>(e)->memory();
+                                         else
+                                           return nullptr;
+                                       }};
+
+  void* executor_ = nullptr;
+  const Functions* functions_ = nullptr;
+};
+
+/// Threads for a call: a number of them, which live for the call, or an executor. Converts from either.
+class Workers {
+ public:
+  /// Up to `threads` threads with the caller's; 0 as in `thread_count`.
+  Workers(unsigned threads = 0) noexcept : threads_(threads) {}
+  /// The threads of an executor.
+  template <class E>
+  requires std::constructible_from<ExecutorRef, E&> Workers(E& executor)
+  noexcept : executor_(executor) {}
+  /// Up to `threads` threads of an executor, 0 for all of its threads; without an executor as above.
+  Workers(ExecutorRef executor, unsigned threads) noexcept : executor_(executor), threads_(threads) {}
+
+  /// Number of threads. Throws a `SettingError` above `max_threads`.
+  [[nodiscard]] unsigned count() const {
+    if (threads_ == 0 && executor_) return std::clamp(executor_.threads(), 1U, max_threads);
+    return thread_count(threads_);
+  }
+  [[nodiscard]] const ExecutorRef& executor() const noexcept { return executor_; }
+
+ private:
+  ExecutorRef executor_{};
+  unsigned threads_ = 0;
+};
+
 namespace detail {
 
-/// Type-erased `for_each_index`, compiled once for all tasks; call(task, i) runs one index.
-inline void call_for_each_index(std::size_t count, unsigned threads, void (*call)(const void*, std::size_t), const void* task) {
-  std::atomic<std::size_t> next = 0;
-  std::atomic<bool> failed = false;
-  std::exception_ptr failure;
-  const auto work = [&]() noexcept {
-    for (std::size_t i = next++; i < count; i = next++) try {
-        call(task, i);
+/// Indices below `count`, handed out to all threads that call `work`, low ones first.
+class IndexLoop {
+ public:
+  IndexLoop(std::size_t count, const IndexTask& task) noexcept : task_(task), count_(count) {}
+
+  /// Runs indices until none is left. After an exception none is.
+  void work() noexcept {
+    for (std::size_t i = next_++; i < count_; i = next_++) try {
+        task_(i);
       } catch (...) {
-        next = count;
-        if (!failed.exchange(true)) failure = std::current_exception();
+        next_ = count_;
+        if (!failed_.exchange(true)) failure_ = std::current_exception();
       }
-  };
-  const std::size_t together = std::min<std::size_t>(thread_count(threads), count);
-  {
-    std::unique_ptr<std::jthread[]> helpers;
-    try {
-      helpers = std::make_unique<std::jthread[]>(together);  // of which the first is this one
-      for (std::size_t k = 1; k < together; ++k) helpers[k] = std::jthread(work);
-    } catch (...) {  // no more threads available: the existing ones do all the work
-    }
-    work();
   }
-  if (failure) std::rethrow_exception(failure);
+  [[nodiscard]] bool exhausted() const noexcept { return next_ >= count_; }
+  /// Rethrows the first exception of a task, if there is one. Due when all calls of `work` have returned.
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  IndexTask task_;
+  std::size_t count_;
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> failed_ = false;
+  std::exception_ptr failure_;
+};
+
+/// Runs a loop on `threads` threads with the caller's; the others live for this call.
+inline void work_on_threads(IndexLoop& loop, std::size_t threads) {
+  std::unique_ptr<std::jthread[]> helpers;
+  try {
+    helpers = std::make_unique<std::jthread[]>(threads - 1);
+    for (std::size_t k = 0; k + 1 < threads; ++k) helpers[k] = std::jthread([&loop] { loop.work(); });
+  } catch (...) {  // no more threads available: the existing ones do all the work
+  }
+  loop.work();
 }
 
 }  // namespace detail
 
-/// Calls task(i) once for each i below `count`, low ones first, on up to `threads` threads with the caller's; 0 as in `thread_count`.
-/// Tasks that share no data need no lock. Rethrows the exception of a task, or one of several; indices not yet begun are then skipped.
-template <class Task>
-void for_each_index(std::size_t count, unsigned threads, const Task& task) {
-  detail::call_for_each_index(
-      count, threads, [](const void* t, std::size_t i) { (*static_cast<const Task*>(t))(i); }, &task);
+/// Calls task(i) once for each i below `count`, low ones first, on up to as many threads as `workers` says. Tasks that share no data need
+/// no lock. Starts no thread for a single index, and none with an executor. Rethrows the exception of a task, or one of several; indices
+/// not yet begun are then skipped.
+inline void for_each_index(std::size_t count, const Workers& workers, const IndexTask& task) {
+  detail::IndexLoop loop(count, task);
+  const std::size_t threads = std::min<std::size_t>(workers.count(), count);
+  if (threads <= 1)
+    loop.work();
+  else if (workers.executor())
+    workers.executor().for_each(threads, [&loop](std::size_t) { loop.work(); });
+  else
+    detail::work_on_threads(loop, threads);
+  loop.rethrow();
 }
 
 }  // namespace pulsecast

@@ -148,7 +148,11 @@ class MpiRun {
     send(0, ask, {});  // requested early, so that it is here when this one is done
     Held& held = held_.emplace_back(Held{block.number, {}});
     for (MpiOutput* output : outputs_) held.pieces.push_back(output->take_piece());
-    RunOptions part{.threads = options_.threads, .first = slots_[block.from], .end = slots_[block.to - 1] + 1, .stride = slots_.stride};
+    RunOptions part{.threads = options_.threads,
+                    .executor = options_.executor,
+                    .first = slots_[block.from],
+                    .end = slots_[block.to - 1] + 1,
+                    .stride = slots_.stride};
     part.progress = [this](const Progress&) { serve(); };
     std::vector<Shot> shots;
     const RunSummary summary = simulate_(part, [&](const EchoBatch& batch) {
@@ -209,15 +213,19 @@ template <class Sink>
 
 /// Runs a survey of `size` slots, any part of which every process can simulate. Outputs may serve several runs; their makers close them.
 /// `options.progress` and `options.stop` count on the first process only: a stopped run finishes the blocks begun, so its results are
-/// complete up to some slot. `options.threads` is per process.
+/// complete up to some slot. `options.threads` and `options.executor` are per process.
 inline RunSummary run_parts(MpiGroup& group, PulseIndex size, const RunOptions& options, const MpiSimulate& simulate,
                             std::span<MpiOutput* const> outputs) {
   return detail::MpiRun(group, size, options, simulate, outputs).run();
 }
 
+/// Receiver of results in `run`: an output of all processes, or a sink of the first.
+template <class S>
+concept MpiSink = std::is_base_of_v<MpiOutput, std::remove_reference_t<S>> || EchoSink<S>;
+
 /// Simulates the pulses of a survey, made alike on all processes. A sink is an `MpiOutput`, written by all, or any `EchoSink`, called on
 /// the first process only, with batches in pulse order. Every process gets the summary of all.
-template <class Survey, class... Sinks>
+template <PulseSurvey Survey, MpiSink... Sinks>
 RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   std::vector<MpiOutput*> outputs;
   std::vector<std::unique_ptr<MpiOutput>> own;
@@ -225,7 +233,6 @@ RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options,
     if constexpr (std::is_base_of_v<MpiOutput, Sink>) {
       outputs.push_back(&sink);
     } else {
-      static_assert(EchoSink<Sink>);
       outputs.push_back(own.emplace_back(detail::mpi_output(group, sink)).get());
     }
   };
@@ -236,6 +243,15 @@ RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options,
   const RunSummary summary = run_parts(group, survey.size(), options, simulate, outputs);
   for (const auto& output : own) output->close();
   return summary;
+}
+
+/// Says of a call of `run` what is wrong with it.
+template <class Survey, class... Sinks>
+requires(!PulseSurvey<Survey> || !(MpiSink<Sinks> && ...)) RunSummary run(MpiGroup&, const Survey&, const RunOptions&, Sinks&&...) {
+  static_assert(PulseSurvey<Survey>, "run: the second argument must be a survey; for a type of your own, static_assert(PulseSurvey<T>)");
+  static_assert((MpiSink<Sinks> && ...),
+                "run: a sink must be an MpiOutput or callable with one batch, as is [](const EchoBatch& batch) { ... }");
+  return {};
 }
 
 }  // namespace pulsecast::mpi

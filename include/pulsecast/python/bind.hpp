@@ -315,7 +315,7 @@ namespace pulsecast::python {
 
 /// Adds a class of surveys, with all it needs, to a module. Constructors are up to the caller, by `.def(pybind11::init(...))`; a survey
 /// that refers to a scene held by Python needs `pybind11::keep_alive`.
-template <class Survey>
+template <PulseSurvey Survey>
 pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_& m, const char* name) {
   python::bind_common(m);
   pybind11::class_<Survey, std::shared_ptr<Survey>> bound(m, name, "A survey: a pure function from the number of a pulse to its echoes.");

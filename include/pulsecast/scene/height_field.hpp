@@ -33,15 +33,15 @@ class HeightField {
  public:
   static constexpr bool flat = true;  ///< as the concept Geometry describes
 
-  /// `threads`: build threads, as in `thread_count`. @throws SettingError as `Raster::validate`
-  explicit HeightField(Raster raster, unsigned threads = 0) {
+  /// `workers`: threads of the build. @throws SettingError as `Raster::validate`
+  explicit HeightField(Raster raster, const Workers& workers = {}) {
     raster.validate();
     grid_ = raster.grid();
     heights_ = std::move(raster.heights);
     const detail::PyramidLayout layout(grid_);
     levels_ = layout.levels;
     top_ = layout.top;
-    detail::HeightPyramid built(grid_, heights_.data(), layout, threads);
+    detail::HeightPyramid built(grid_, heights_.data(), layout, workers);
     pyramid_ = std::move(built.heights);
     bounds_ = built.bounds;
     per_metre_ = {1 / grid_.pixel.x, -1 / grid_.pixel.y};

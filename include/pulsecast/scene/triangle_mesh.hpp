@@ -79,9 +79,9 @@ class TriangleMesh {
  public:
   static constexpr bool flat = true;  ///< as the concept Geometry describes
 
-  /// `threads` of the build; 0 as in `thread_count`. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
-  explicit TriangleMesh(MeshData data, unsigned threads = 0) : index_(built(data, threads)) {
-    arrange(data, threads);
+  /// `workers`: threads of the build. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
+  explicit TriangleMesh(MeshData data, const Workers& workers = {}) : index_(built(data, workers)) {
+    arrange(data, workers);
     for (const std::uint32_t m : data.materials) material_count_ = std::max<std::size_t>(material_count_, std::size_t{m} + 1);
     if (material_count_ > 256)
       materials_ = numbers<std::uint32_t>(data.materials);
@@ -168,17 +168,17 @@ class TriangleMesh {
     [[nodiscard]] Box operator[](std::size_t i) const noexcept { return data.triangle(i).bounds(); }
   };
 
-  static Index built(const MeshData& data, unsigned threads) {
+  static Index built(const MeshData& data, const Workers& workers) {
     data.validate();
     const Boxes boxes{data};
-    if constexpr (std::constructible_from<Index, Boxes, unsigned>) {
-      return Index(boxes, threads);
+    if constexpr (std::constructible_from<Index, Boxes, Workers>) {
+      return Index(boxes, workers);
     } else {
       std::vector<Box> all;
       all.reserve(boxes.size());
       for (std::size_t i = 0; i < boxes.size(); ++i) all.push_back(boxes[i]);
-      if constexpr (std::constructible_from<Index, std::span<const Box>, unsigned>)
-        return Index(all, threads);
+      if constexpr (std::constructible_from<Index, std::span<const Box>, Workers>)
+        return Index(all, workers);
       else
         return Index(all);
     }
@@ -228,14 +228,14 @@ class TriangleMesh {
   };
 
   /// Stores triangles and corners in the index's order, block by block.
-  void arrange(const MeshData& data, unsigned threads) {
+  void arrange(const MeshData& data, Workers workers) {
     const auto order = index_.order();
-    if (order.size() > data.triangles.size()) threads = 1;  // a triangle may be in several blocks: the last one wins
+    if (order.size() > data.triangles.size()) workers = 1;  // a triangle may be in several blocks: the last one wins
     const SharedBuffer<std::uint32_t> places(data.triangles.size());
     if (order.size() < places.size()) std::fill(places.begin(), places.end(), 0);  // triangles left out of the index are never hit
     const SharedBuffer<Corners> triangles(order.size());
     std::vector<std::vector<Vec3>> parts(detail::chunk_count(order.size()));
-    detail::for_each_chunk(order.size(), threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    detail::for_each_chunk(order.size(), workers, [&](std::size_t block, std::size_t begin, std::size_t end) {
       CornerTable table(end - begin);
       for (std::size_t place = begin; place < end; ++place) {
         places[order[place]] = static_cast<std::uint32_t>(place);
@@ -251,7 +251,7 @@ class TriangleMesh {
       count += parts[block].size();
     }
     const SharedBuffer<Vec3> corners(count);
-    for_each_index(parts.size(), threads,
+    for_each_index(parts.size(), workers,
                    [&](std::size_t block) { std::copy(parts[block].begin(), parts[block].end(), corners.data() + first_corners[block]); });
     corners_ = corners;
     first_corners_ = first_corners;

@@ -122,14 +122,13 @@ struct HeightPyramid {
   std::vector<float> heights;
   Box bounds{};
 
-  /// `threads` as in `thread_count`.
-  HeightPyramid(const RasterGrid& grid, const float* pixels, const PyramidLayout& layout, unsigned threads) : heights(layout.size) {
+  HeightPyramid(const RasterGrid& grid, const float* pixels, const PyramidLayout& layout, Workers workers) : heights(layout.size) {
     constexpr HeightInterval empty;
     for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = i % 16 < 8 ? empty.least : empty.greatest;
     std::vector<Box> grounds(layout.levels[1].rows);
-    if (std::size_t{grid.columns} * grid.rows < 1'000'000) threads = 1;  // starting threads would take longer
+    if (std::size_t{grid.columns} * grid.rows < 1'000'000) workers = 1;  // starting threads would take longer
     for (unsigned level = 1; level <= layout.top; ++level)
-      for_each_index(layout.levels[level].rows, level <= 2 ? threads : 1, [&](std::size_t task) {
+      for_each_index(layout.levels[level].rows, level <= 2 ? workers : 1, [&](std::size_t task) {
         const auto row = static_cast<std::uint32_t>(task);
         for (std::uint32_t column = 0; column < layout.levels[level].columns; ++column) {
           HeightInterval own;

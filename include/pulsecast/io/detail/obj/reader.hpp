@@ -35,9 +35,9 @@ namespace detail {
 /// known; results are joined in the order of the file.
 class ObjReader {
  public:
-  ObjReader(const std::filesystem::path& path, const ObjSettings& settings, unsigned threads,
+  ObjReader(const std::filesystem::path& path, const ObjSettings& settings, const Workers& workers,
             std::size_t piece_bytes = StatementFile::piece_bytes)
-      : file_(path), folder_(path.parent_path()), settings_(settings), threads_(thread_count(threads)), piece_bytes_(piece_bytes) {}
+      : file_(path), folder_(path.parent_path()), settings_(settings), workers_(workers), piece_bytes_(piece_bytes) {}
 
   [[nodiscard]] ObjModel read() {
     while (read_window()) continue;
@@ -59,14 +59,14 @@ class ObjReader {
   /// Reads the next window; false at the end of the file.
   bool read_window() {
     std::vector<std::unique_ptr<ObjPiece>> pieces;
-    while (pieces.size() < std::size_t{4} * threads_) {
+    while (pieces.size() < std::size_t{4} * workers_.count()) {
       std::string text = file_.next(piece_bytes_);
       if (text.empty()) break;
       const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
       pieces.push_back(std::make_unique<ObjPiece>(file_.path(), std::move(text), lines_));
       lines_ += lines;
     }
-    for_each_index(pieces.size(), threads_, [&](std::size_t i) {
+    for_each_index(pieces.size(), workers_, [&](std::size_t i) {
       pieces[i]->read();
       if (settings_.up == UpAxis::z) return;
       for (Vec3& p : pieces[i]->vertices) p = {p.x, -p.z, p.y};
@@ -78,7 +78,7 @@ class ObjReader {
       vertices.insert(vertices.end(), piece->vertices.begin(), piece->vertices.end());
       if (vertices.size() > std::numeric_limits<int>::max()) file_.fail("has too many vertices: expected fewer than 2^31");
     }
-    for_each_index(pieces.size(), threads_, [&](std::size_t i) { pieces[i]->triangulate(vertices, before[i]); });
+    for_each_index(pieces.size(), workers_, [&](std::size_t i) { pieces[i]->triangulate(vertices, before[i]); });
     for (const auto& piece : pieces) add(*piece);
     return !pieces.empty();
   }
@@ -158,7 +158,7 @@ class ObjReader {
   StatementFile file_;
   std::filesystem::path folder_;
   ObjSettings settings_;
-  unsigned threads_;
+  Workers workers_;
   std::size_t piece_bytes_, lines_ = 0;  // `lines_`: number of lines read
   ObjModel model_;
   std::map<std::string, Material, std::less<>> library_;
@@ -173,8 +173,8 @@ class ObjReader {
 
 }  // namespace detail
 
-PULSECAST_INLINE ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings, unsigned threads) {
-  return detail::ObjReader(path, settings, threads).read();
+PULSECAST_INLINE ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings, const Workers& workers) {
+  return detail::ObjReader(path, settings, workers).read();
 }
 
 }  // namespace pulsecast::io

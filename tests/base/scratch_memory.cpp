@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/base/scratch_memory.hpp>
+
+#include <memory>
+
+#include <doctest/doctest.h>
+
+using namespace pulsecast;
+
+namespace {
+
+struct Counted : ScratchItem {
+  explicit Counted(int& alive) : alive_(&alive) { ++*alive_; }
+  ~Counted() override { --*alive_; }
+  int* alive_;
+};
+
+struct Number : ScratchItem {
+  int value = 0;
+};
+
+struct Other : ScratchItem {};
+
+}  // namespace
+
+TEST_CASE("a scratch memory gives back what was left, by type, each object once") {
+  ScratchMemory memory;
+  CHECK(memory.take<Number>() == nullptr);
+  auto one = std::make_unique<Number>(), two = std::make_unique<Number>();
+  Number* const first = one.get();
+  Number* const second = two.get();
+  memory.give_back(std::move(one));
+  memory.give_back(std::make_unique<Other>());
+  memory.give_back(std::move(two));
+  const auto a = memory.take<Number>(), b = memory.take<Number>();
+  CHECK(((a.get() == first && b.get() == second) || (a.get() == second && b.get() == first)));
+  CHECK(memory.take<Number>() == nullptr);
+  CHECK(memory.take<Other>() != nullptr);
+  CHECK(memory.take<Other>() == nullptr);
+}
+
+TEST_CASE("a scratch memory deletes its objects when it is cleared and at its end") {
+  int alive = 0;
+  {
+    ScratchMemory memory;
+    for (int k = 0; k < 3; ++k) memory.give_back(std::make_unique<Counted>(alive));
+    CHECK(alive == 3);
+    memory.clear();
+    CHECK(alive == 0);
+    memory.give_back(std::make_unique<Counted>(alive));
+  }
+  CHECK(alive == 0);
+}
+
+TEST_CASE("an object is borrowed from a scratch memory, or is the call's own") {
+  ScratchMemory memory;
+  const Number* kept = nullptr;
+  {
+    const Borrowed<Number> first(&memory), second(&memory);
+    CHECK(&*first != &*second);
+    first->value = 7;
+    second->value = 7;
+    kept = &*first;
+  }
+  const Borrowed<Number> again(&memory), own(nullptr);
+  CHECK(again->value == 7);
+  CHECK(own->value == 0);
+  CHECK(kept != nullptr);
+}
