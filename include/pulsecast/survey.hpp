@@ -321,7 +321,7 @@ class Survey {
   Receiver receiver_;
   Instrument detector_;
   std::uint64_t seed_;
-  std::shared_ptr<const void> identity_ = std::make_shared<char>();
+  std::shared_ptr<const void> identity_{new char};  // compiles faster than make_shared
 };
 
 }  // namespace pulsecast

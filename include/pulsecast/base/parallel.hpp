@@ -28,7 +28,7 @@ inline constexpr unsigned max_threads = 1024;  ///< upper limit of a setting for
 class IndexTask {
  public:
   template <class Task>
-  requires(!std::same_as<Task, IndexTask> && std::invocable<const Task&, std::size_t>) IndexTask(const Task& task)
+  requires(!std::same_as<Task, IndexTask> && requires(const Task& task, std::size_t i) { task(i); }) IndexTask(const Task& task)
   noexcept : task_(&task), call_([](const void* t, std::size_t i) { (*static_cast<const Task*>(t))(i); }) {}
 
   void operator()(std::size_t i) const { call_(task_, i); }
