@@ -39,7 +39,7 @@ struct Showers {
   [[nodiscard]] std::size_t recorded_subrays() const noexcept { return 0; }
   [[nodiscard]] double sample_interval() const noexcept { return 1e-9; }
 
-  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const {
+  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
     const std::uint64_t mixed = (i + 1) * 0x9e3779b97f4a7c15U;
     const auto bits = [&](int from, std::uint64_t below) { return (mixed >> from) % below; };
     w.echoes.clear();
