@@ -245,6 +245,39 @@ TEST_CASE("a step done again and again is a steady motion") {
   }
 }
 
+TEST_CASE("the velocity of a point is what a body does at that time") {
+  const auto at = [](double seconds) { return Tick::of_seconds(seconds); };
+  const PartMotion orbit(SteadyMotion{.velocity = {0, 0, 1}, .rate = 2, .centre = Vec3{10, 0, 0}, .spin = Vec3{}, .duration = 5});
+  // a Ferris wheel's cabin: every point of it moves as its centre does
+  for (const double x : {-3.0, 0.0, 4.0}) CHECK(length(orbit.velocity(at(0), {13, 0, 0}, {13 + x, 1, 0}) - Vec3{0, 6, 1}) < 1e-12);
+  CHECK(orbit.velocity(at(6), {13, 0, 0}, {13, 0, 0}) == Vec3{});
+  CHECK(orbit.velocity({-1, 0.5}, {13, 0, 0}, {13, 0, 0}) == Vec3{});
+  const PartMotion poses({{1, {0, 0, 0}, no_rotation}, {3, {4, 0, 0}, rotation_about(axis::up, 1)}});
+  CHECK(poses.velocity(at(0.5), {9, 9, 9}, {1, 2, 3}) == Vec3{});
+  CHECK(length(poses.velocity(at(2), {9, 9, 9}, {2, 6, 7}) - Vec3{2 - 0.5 * 6, 0, 0}) < 1e-12);
+}
+
+TEST_CASE("the velocity of any motion is the difference quotient of its places") {
+  std::size_t checked = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const Plan plan = any_plan(any);
+    const PartMotion motion = any.whole(4) == 0 ? PartMotion(any_poses(any)) : PartMotion(plan.sequences, plan.again_from);
+    const Vec3 centre = any.point(5), p = centre + any.point(2);
+    for (int k = 0; k < 10; ++k) {
+      const double seconds = any.uniform(0.01, 20), h = 1e-5;
+      CAPTURE(seconds);
+      const Vec3 before = moved(motion, seconds - h, p, centre), now = moved(motion, seconds, p, centre);
+      const Vec3 after = moved(motion, seconds + h, p, centre);
+      if (length(after - 2.0 * now + before) > 1e-7) continue;  // a change of motion in between
+      CHECK(length(motion.velocity(Tick::of_seconds(seconds), centre, now) - (after - before) / (2 * h)) < 1e-4);
+      ++checked;
+    }
+  }
+  CHECK(checked > 3000);
+}
+
 TEST_CASE("what a body sweeps is inside of the box, whatever it does and however long") {
   std::size_t close = 0, all = 0;
   for (std::uint64_t seed = 0; seed < 1500; ++seed) {

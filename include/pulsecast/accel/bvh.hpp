@@ -82,12 +82,14 @@ class Bvh {
   /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
-  /// Traverses the tree front to back; `test` gets the primitives of each leaf that the bundle may meet.
-  template <class Test>
+  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `BundleOfOne` may meet.
+  template <class Rays, class Test, class Hits>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
-  void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
+  void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
     if (nodes_.empty()) return;
-    if (rays.size == 1)
+    if constexpr (Rays::capacity == 1)
+      descend(RayInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
+    else if (rays.size == 1)
       descend(RayInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
     else
       descend(BundleInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
@@ -117,8 +119,8 @@ class Bvh {
   };
   static constexpr std::uint32_t nothing = 0xFFFFFFFF;  ///< sentinel in place of a size
 
-  template <class Interval, class Test>
-  void descend(const Interval& interval, const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
+  template <class Interval, class Rays, class Test, class Hits>
+  void descend(const Interval& interval, const Rays& rays, const Test& test, Hits& nearest) const noexcept {
     std::array<StackEntry, (places - 1) * detail::max_depth + 1> stack;
     std::size_t stack_size = 0;
     Real limit = interval.limit(rays, nearest);

@@ -69,10 +69,10 @@ class KdTree {
   /// Steps from the root to the deepest leaf, at most 64.
   [[nodiscard]] std::size_t depth() const noexcept { return depth_; }
 
-  /// Traverses the tree front to back; `test` gets the primitives of each leaf that the bundle may meet.
-  template <class Test>
+  /// Traverses the tree front to back; `test` gets the primitives of each leaf that a bundle or a `BundleOfOne` may meet.
+  template <class Rays, class Test, class Hits>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
-  void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
+  void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
     if (nodes_.empty()) return;
     const BundleInterval<Real> interval(rays, bounds_, centre_);
     std::array<StackEntry, detail::max_depth> stack;

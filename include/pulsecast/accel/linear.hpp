@@ -45,9 +45,9 @@ class Linear {
   [[nodiscard]] std::size_t memory() const noexcept { return primitives_.memory(); }
   [[nodiscard]] std::span<const PrimitiveIndex> order() const noexcept { return {primitives_.data(), primitives_.size()}; }
 
-  template <class Test>
+  template <class Rays, class Test, class Hits>
   requires std::invocable<const Test&, std::span<const PrimitiveIndex>>
-  void closest(const RayBundle&, const Test& test, ClosestHits&) const noexcept {
+  void closest(const Rays&, const Test& test, Hits&) const noexcept {
     if (!primitives_.empty()) test(std::span<const PrimitiveIndex>(primitives_.data(), primitives_.size()));
   }
 

@@ -63,7 +63,11 @@ struct RayBundle : BundleOrigin {
   /// Direction of ray j.
   [[nodiscard]] Vec3 direction(std::size_t j) const noexcept { return {x[j], y[j], z[j]}; }
   /// Ray j.
-  [[nodiscard]] Ray ray(std::size_t j) const noexcept { return {origin, direction(j), near, far}; }
+  [[nodiscard]] Ray ray(std::size_t j) const noexcept {
+    return {origin, direction(j), near, far, tick, seed, pulse, first_subray + static_cast<std::uint32_t>(j)};
+  }
+  [[nodiscard]] double least_along(int k) const noexcept { return least[k]; }  ///< component k of `least`
+  [[nodiscard]] double most_along(int k) const noexcept { return most[k]; }    ///< component k of `most`
 
   /// Sets the direction of ray j; `pad()` must follow.
   void set_direction(std::size_t j, const Vec3& d) noexcept {
@@ -116,6 +120,10 @@ struct RayBundle : BundleOrigin {
   rays.near = ray.near;
   rays.far = ray.far;
   rays.size = 1;
+  rays.tick = ray.tick;
+  rays.seed = ray.seed;
+  rays.pulse = ray.pulse;
+  rays.first_subray = ray.subray;
   rays.set_direction(0, ray.direction);
   rays.pad();
   return rays;
@@ -154,6 +162,8 @@ struct ClosestHits {
     }
   }
 
+  /// Largest range at which ray j can still find a closer hit [m].
+  [[nodiscard]] double limit_of(std::size_t j) const noexcept { return range[j]; }
   /// Largest range at which any ray of the bundle can still find a closer hit [m].
   [[nodiscard]] double limit(const RayBundle& rays) const noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();

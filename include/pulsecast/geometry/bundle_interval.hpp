@@ -30,13 +30,14 @@ class BundleInterval {
   };
 
   /// `bounds` of the accelerator; its boxes are relative to `centre`.
-  BundleInterval(const RayBundle& rays, const Box& bounds, const Vec3& centre) noexcept : near_(round_down<Real>(rays.near)) {
+  template <class Rays>
+  BundleInterval(const Rays& rays, const Box& bounds, const Vec3& centre) noexcept : near_(round_down<Real>(rays.near)) {
     // Primitive tests round in double relative to the largest coordinates: a hit may lie this far outside its box.
     const double scale = std::max(max_norm(rays.origin), std::max(max_norm(bounds.min), max_norm(bounds.max)));
     const double slack = 64 * std::numeric_limits<double>::epsilon() * scale;
     if (!finite(rays.origin)) near_ = infinity;
     for (int k = 0; k < 3; ++k) {
-      const double low = rays.least[k], high = rays.most[k];
+      const double low = rays.least_along(k), high = rays.most_along(k);
       if (!(low <= high)) near_ = infinity;
       const double o = rays.origin[k] - centre[k];
       // rounding to Real; a wall is at most three half extents away from the origin of a grid, see `inside`
@@ -54,7 +55,10 @@ class BundleInterval {
   }
 
   /// Largest range at which any ray can still find a closer hit.
-  [[nodiscard]] Real limit(const RayBundle& rays, const ClosestHits& nearest) const noexcept { return round_up<Real>(nearest.limit(rays)); }
+  template <class Rays, class Hits>
+  [[nodiscard]] Real limit(const Rays& rays, const Hits& nearest) const noexcept {
+    return round_up<Real>(nearest.limit(rays));
+  }
 
   /// Interval of range over which any ray may be inside the box; empty if none can be.
   [[nodiscard]] Span inside(const BoundingBox<Real>& box) const noexcept {
@@ -175,7 +179,8 @@ template <std::floating_point Real>
 class RayInterval {
  public:
   /// Of the only ray of a bundle. `bounds` of the accelerator; its boxes are relative to `centre`.
-  RayInterval(const RayBundle& ray, const Box& bounds, const Vec3& centre) noexcept {
+  template <class Rays>
+  RayInterval(const Rays& ray, const Box& bounds, const Vec3& centre) noexcept {
     using Axes = simd::Vec4<double>;
     const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
     const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin), low = axes(bounds.min), high = axes(bounds.max);
@@ -195,8 +200,9 @@ class RayInterval {
   }
 
   /// Largest range at which the ray can still find a closer hit.
-  [[nodiscard]] Real limit(const RayBundle&, const ClosestHits& nearest) const noexcept {
-    return static_cast<Real>(std::min(nearest.range[0] * (1 + tolerance), double{std::numeric_limits<Real>::max()}));
+  template <class Rays, class Hits>
+  [[nodiscard]] Real limit(const Rays&, const Hits& nearest) const noexcept {
+    return static_cast<Real>(std::min(nearest.limit_of(0) * (1 + tolerance), double{std::numeric_limits<Real>::max()}));
   }
 
   /// Bit mask of the boxes that the ray may be inside of at a range up to `limit`, and their entry ranges.

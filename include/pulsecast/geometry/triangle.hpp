@@ -15,6 +15,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
+#include <pulsecast/geometry/single_ray.hpp>
 
 namespace pulsecast {
 
@@ -32,6 +33,18 @@ struct Triangle {
 
   /// Unit normal, right-handed about a, b, c; NaN without area.
   [[nodiscard]] Vec3 normal() const noexcept { return normalize(cross(b - a, c - a)); }
+
+  /// Barycentric weights of a, b and c at the point that a ray meets, none negative; they sum to one. A third each without area.
+  [[nodiscard]] Vec3 weights(const Vec3& origin, const Vec3& direction) const noexcept {
+    const Vec3 to_a = a - origin, to_b = b - origin, to_c = c - origin;
+    const Vec3 volumes{dot(direction, cross(c - b, to_c + to_b)), dot(direction, cross(a - c, to_a + to_c)),
+                       dot(direction, cross(b - a, to_b + to_a))};
+    const double whole = volumes.x + volumes.y + volumes.z;
+    const auto share = [&](double volume) noexcept { return volume / whole > 0 ? volume / whole : 0.0; };
+    const Vec3 shares{share(volumes.x), share(volumes.y), share(volumes.z)};
+    const double sum = shares.x + shares.y + shares.z;
+    return sum > 0 && sum < std::numeric_limits<double>::infinity() ? shares / sum : Vec3(1.0 / 3);
+  }
 };
 
 /// Triangles tested together, one a lane; idle lanes repeat the last one.
@@ -65,7 +78,7 @@ struct TrianglePacket {
   }
 };
 
-/// Intersects triangles with every ray of a bundle: the deciding test, always in double precision.
+/// Intersects triangles with every ray of a bundle, or with a `BundleOfOne`: the deciding test, always in double precision.
 ///
 /// A ray is inside if it is on the same side of the three planes through the origin and an edge. The planes depend on the bundle alone, so
 /// a ray costs three dot products, and none where the whole bundle passes a plane on one side.
@@ -77,8 +90,10 @@ struct TrianglePacket {
 /// Never inlined, so that every accelerator gets the same bits.
 /// Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin 2007; interval inside the box:
 /// Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
-[[gnu::noinline]] inline void intersect(const TrianglePacket& triangles, const RayBundle& rays, ClosestHits& nearest) noexcept {
+template <class Rays, class Hits>
+[[gnu::noinline]] void intersect(const TrianglePacket& triangles, const Rays& rays, Hits& nearest) noexcept {
   static_assert(RayBundle::lanes % simd::lane_count == 0);
+  constexpr bool single = Rays::capacity == 1;  // a lane a triangle, not a lane a ray
   constexpr double unit = std::numeric_limits<double>::epsilon();
   using Corner = TrianglePacket::Corner;
   const auto magnitude = [](const simd::Doubles& v) noexcept { return simd::Doubles(simd::Ids(v) & 0x7FFF'FFFF'FFFF'FFFF); };
@@ -104,14 +119,21 @@ struct TrianglePacket {
   // no ray is inside where all of them pass one plane on its right and one on its left; rounding may come in here once more
   simd::Mask may_meet;
   const auto most = [&](const Planes& p) noexcept {
-    return simd::max(p.x * rays.least.x, p.x * rays.most.x) + simd::max(p.y * rays.least.y, p.y * rays.most.y) +
-           simd::max(p.z * rays.least.z, p.z * rays.most.z);
+    return simd::max(p.x * rays.least_along(0), p.x * rays.most_along(0)) + simd::max(p.y * rays.least_along(1), p.y * rays.most_along(1)) +
+           simd::max(p.z * rays.least_along(2), p.z * rays.most_along(2));
   };
   const auto least = [&](const Planes& p) noexcept {
-    return simd::min(p.x * rays.least.x, p.x * rays.most.x) + simd::min(p.y * rays.least.y, p.y * rays.most.y) +
-           simd::min(p.z * rays.least.z, p.z * rays.most.z);
+    return simd::min(p.x * rays.least_along(0), p.x * rays.most_along(0)) + simd::min(p.y * rays.least_along(1), p.y * rays.most_along(1)) +
+           simd::min(p.z * rays.least_along(2), p.z * rays.most_along(2));
   };
-  if (rays.size == 1) {
+  [[maybe_unused]] simd::Mask between_edges;  // of the only ray
+  if constexpr (single) {
+    const Vec3 d = rays.direction(0);
+    const auto side = [&](const Planes& p) noexcept { return simd::Doubles(d.x * p.x + d.y * p.y + d.z * p.z); };
+    const simd::Doubles u = side(ab), v = side(bc), w = side(ca);
+    between_edges = ((u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt)) | ((u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt));
+    may_meet = between_edges;
+  } else if (rays.size == 1) {
     const auto side = [&](const Planes& p) noexcept { return p.x * rays.x[0] + p.y * rays.y[0] + p.z * rays.z[0]; };
     const simd::Doubles u = side(ab), v = side(bc), w = side(ca), doubt = 4 * simd::max(ab.doubt, simd::max(bc.doubt, ca.doubt));
     may_meet = (simd::min(u, simd::min(v, w)) >= -doubt) | (simd::max(u, simd::max(v, w)) <= doubt);
@@ -141,61 +163,83 @@ struct TrianglePacket {
                 simd::max(magnitude(lowest.z), magnitude(highest.z)));
   const simd::Doubles margin = 8 * unit * extent;
 
-  for (; candidates != 0; candidates &= candidates - 1) {
-    const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
-    const PrimitiveIndex primitive = triangles.primitives[t];
-    for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
-      const simd::Doubles x = simd::load<simd::Doubles>(rays.x[j]), y = simd::load<simd::Doubles>(rays.y[j]),
-                          z = simd::load<simd::Doubles>(rays.z[j]);
-      const simd::Doubles u = x * ab.x[t] + y * ab.y[t] + z * ab.z[t];
-      const simd::Doubles v = x * bc.x[t] + y * bc.y[t] + z * bc.z[t];
-      const simd::Doubles w = x * ca.x[t] + y * ca.y[t] + z * ca.z[t];
-      const simd::Mask on_left = (u >= -ab.doubt[t]) & (v >= -bc.doubt[t]) & (w >= -ca.doubt[t]);
-      const simd::Mask on_right = (u <= ab.doubt[t]) & (v <= bc.doubt[t]) & (w <= ca.doubt[t]);
-      const simd::Mask between = on_left | on_right;
-      if (simd::bits(between) == 0) continue;
+  // interval inside the box; a zero direction is made so small that walls it never reaches lie at infinity
+  const simd::Doubles outside = simd::Doubles{} - std::numeric_limits<double>::infinity();
+  const auto between_walls = [](simd::Doubles& entry, simd::Doubles& exit, const auto& direction, const auto& low,
+                                const auto& high) noexcept {
+    const simd::Doubles tiny = simd::Doubles{} + 1e-300;
+    const simd::Doubles per = 1 / (direction * direction > 0 ? direction : tiny);
+    const simd::Doubles to_low = low * per, to_high = high * per;
+    entry = simd::max(simd::min(to_low, to_high), entry);
+    exit = simd::min(simd::max(to_low, to_high), exit);
+  };
+  const auto clamped = [](const simd::Doubles& crossing, const simd::Doubles& entry, const simd::Doubles& exit) noexcept {
+    const simd::Doubles after_entry = crossing < entry ? entry : crossing;
+    return simd::Doubles(after_entry > exit ? exit : after_entry);
+  };
+  if constexpr (single) {
+    const Vec3 d = rays.direction(0);
+    const simd::Doubles x = simd::Doubles{} + d.x, y = simd::Doubles{} + d.y, z = simd::Doubles{} + d.z;
+    const simd::Doubles slope = x * normals.x + y * normals.y + z * normals.z;
+    simd::Doubles entry = outside, exit = -outside;
+    between_walls(entry, exit, x, simd::Doubles(lowest.x - margin), simd::Doubles(highest.x + margin));
+    between_walls(entry, exit, y, simd::Doubles(lowest.y - margin), simd::Doubles(highest.y + margin));
+    between_walls(entry, exit, z, simd::Doubles(lowest.z - margin), simd::Doubles(highest.z + margin));
+    const simd::Doubles at = clamped(offsets / slope, entry, exit);
+    const simd::Mask hit = between_edges & (slope * slope > grazing) & (entry <= exit) & (at > rays.near);
+    for (candidates &= simd::bits(hit); candidates != 0; candidates &= candidates - 1) {
+      const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
+      nearest.offer(0, at[t], triangles.primitives[t]);
+    }
+  } else {
+    for (; candidates != 0; candidates &= candidates - 1) {
+      const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
+      const PrimitiveIndex primitive = triangles.primitives[t];
+      for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
+        const simd::Doubles x = simd::load<simd::Doubles>(rays.x[j]), y = simd::load<simd::Doubles>(rays.y[j]),
+                            z = simd::load<simd::Doubles>(rays.z[j]);
+        const simd::Doubles u = x * ab.x[t] + y * ab.y[t] + z * ab.z[t];
+        const simd::Doubles v = x * bc.x[t] + y * bc.y[t] + z * bc.z[t];
+        const simd::Doubles w = x * ca.x[t] + y * ca.y[t] + z * ca.z[t];
+        const simd::Mask on_left = (u >= -ab.doubt[t]) & (v >= -bc.doubt[t]) & (w >= -ca.doubt[t]);
+        const simd::Mask on_right = (u <= ab.doubt[t]) & (v <= bc.doubt[t]) & (w <= ca.doubt[t]);
+        const simd::Mask between = on_left | on_right;
+        if (simd::bits(between) == 0) continue;
 
-      const simd::Doubles slope = x * normals.x[t] + y * normals.y[t] + z * normals.z[t];
-      const simd::Mask inside = between & (slope * slope > grazing[t]);
+        const simd::Doubles slope = x * normals.x[t] + y * normals.y[t] + z * normals.z[t];
+        const simd::Mask inside = between & (slope * slope > grazing[t]);
 
-      // interval inside the box; a zero direction is made so small that walls it never reaches lie at infinity
-      const simd::Doubles tiny = simd::Doubles{} + 1e-300;
-      simd::Doubles entry = simd::Doubles{} - std::numeric_limits<double>::infinity(), exit = -entry;
-      const auto between_walls = [&](const simd::Doubles& direction, double low, double high) noexcept {
-        const simd::Doubles per = 1 / (direction * direction > 0 ? direction : tiny);
-        const simd::Doubles to_low = low * per, to_high = high * per;
-        entry = simd::max(simd::min(to_low, to_high), entry);
-        exit = simd::min(simd::max(to_low, to_high), exit);
-      };
-      between_walls(x, lowest.x[t] - margin[t], highest.x[t] + margin[t]);
-      between_walls(y, lowest.y[t] - margin[t], highest.y[t] + margin[t]);
-      between_walls(z, lowest.z[t] - margin[t], highest.z[t] + margin[t]);
-      const simd::Doubles crossing = offsets[t] / slope;
-      const simd::Doubles after_entry = crossing < entry ? entry : crossing;
-      const simd::Doubles at = after_entry > exit ? exit : after_entry;
+        simd::Doubles entry = outside, exit = -outside;
+        between_walls(entry, exit, x, lowest.x[t] - margin[t], highest.x[t] + margin[t]);
+        between_walls(entry, exit, y, lowest.y[t] - margin[t], highest.y[t] + margin[t]);
+        between_walls(entry, exit, z, lowest.z[t] - margin[t], highest.z[t] + margin[t]);
+        const simd::Doubles at = clamped(offsets[t] / slope, entry, exit);
 
-      const simd::Doubles best = simd::load<simd::Doubles>(nearest.range[j]);
-      const simd::Ids best_id = simd::load<simd::Ids>(nearest.id[j]), own_id = simd::Ids{} + (nearest.part | primitive);
-      const simd::Mask nearer = (at < best) | ((at == best) & (own_id < best_id));
-      const simd::Mask hit = inside & (entry <= exit) & (at > rays.near) & nearer;
-      simd::store(hit ? at : best, nearest.range[j]);
-      simd::store(hit ? own_id : best_id, nearest.id[j]);
+        const simd::Doubles best = simd::load<simd::Doubles>(nearest.range[j]);
+        const simd::Ids best_id = simd::load<simd::Ids>(nearest.id[j]), own_id = simd::Ids{} + (nearest.part | primitive);
+        const simd::Mask nearer = (at < best) | ((at == best) & (own_id < best_id));
+        const simd::Mask hit = inside & (entry <= exit) & (at > rays.near) & nearer;
+        simd::store(hit ? at : best, nearest.range[j]);
+        simd::store(hit ? own_id : best_id, nearest.id[j]);
+      }
     }
   }
 }
 
 /// Intersects as many triangles as there are primitives; `triangle_of(n)` returns the n-th.
-template <class TriangleOf>
-void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const RayBundle& rays,
-               ClosestHits& nearest) noexcept {
-  for (std::size_t first = 0; first < primitives.size(); first += simd::lane_count)
-    intersect({primitives.subspan(first, std::min(simd::lane_count, primitives.size() - first)),
-               [&](std::size_t n) noexcept { return triangle_of(first + n); }},
-              rays, nearest);
+template <class TriangleOf, class Rays, class Hits>
+void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const Rays& rays, Hits& nearest) noexcept {
+  for (std::size_t first = 0; first < primitives.size(); first += simd::lane_count) {
+    const std::size_t count = std::min(simd::lane_count, primitives.size() - first);
+    intersect({primitives.subspan(first, count), [&](std::size_t n) noexcept { return triangle_of(first + n); }}, rays, nearest);
+    if constexpr (requires { nearest.done(); })
+      if (nearest.done()) return;
+  }
 }
 
 /// Intersects one triangle.
-inline void intersect(const Triangle& triangle, PrimitiveIndex primitive, const RayBundle& rays, ClosestHits& nearest) noexcept {
+template <class Rays, class Hits>
+void intersect(const Triangle& triangle, PrimitiveIndex primitive, const Rays& rays, Hits& nearest) noexcept {
   intersect(
       std::span(&primitive, 1), [&](std::size_t) noexcept { return triangle; }, rays, nearest);
 }

@@ -78,9 +78,11 @@ class HeightField {
     return detail::RasterCell(grid_, heights_.data(), cell % cells, cell / cells).triangle(grid_, static_cast<int>(i % 2));
   }
 
-  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
+  /// For a bundle or a `BundleOfOne`.
+  template <class Rays, class Hits>
+  void closest(const Rays& rays, Hits& nearest) const noexcept {
     if (bounds_.empty()) return;
-    Walk walk(*this, rays, nearest);
+    Walk<Rays, Hits> walk(*this, rays, nearest);
     auto span = walk.interval.inside(slab(static_cast<float>(bounds_.min.z), static_cast<float>(bounds_.max.z)));
     Cells cells{0, levels_[0].columns - 1, 0, levels_[0].rows - 1};
     if (span.empty() || !walk.narrow(span, cells)) return;
@@ -106,7 +108,8 @@ class HeightField {
         visit(walk, level, walk.westward ? nodes.east - j : nodes.west + j, walk.northward ? nodes.south - i : nodes.north + i);
   }
 
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle&, std::size_t) const noexcept {
+  template <class Rays>
+  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
     return {finite(normal) ? normal : Vec3{}, 0};
   }
@@ -121,9 +124,10 @@ class HeightField {
   using Level = detail::PyramidLevel;
 
   /// Traversal of one bundle.
+  template <class Rays, class Hits>
   struct Walk {
-    const RayBundle& rays;
-    ClosestHits& nearest;
+    const Rays& rays;
+    Hits& nearest;
     BundleInterval<float> interval;
     double least[2], greatest[2];  ///< bounds of the directions [pixels east and south]
     double from[2], slack[2];      ///< origin and its bound of rounding [pixels east and south]
@@ -135,14 +139,14 @@ class HeightField {
     std::array<PrimitiveIndex, simd::lane_count> primitives;
     std::size_t taken = 0;
 
-    Walk(const HeightField& field, const RayBundle& r, ClosestHits& n) noexcept
+    Walk(const HeightField& field, const Rays& r, Hits& n) noexcept
         : rays(r), nearest(n), interval(r, field.bounds_, field.centre_), limit(round_up<float>(n.limit(r))) {
       const double scale = std::max(max_norm(r.origin), std::max(max_norm(field.bounds_.min), max_norm(field.bounds_.max)));
       const double rounding = 128 * std::numeric_limits<double>::epsilon() * scale;
       for (int k = 0; k < 2; ++k) {
         const double per_metre = field.per_metre_[k];
-        least[k] = (k == 0 ? r.least[k] : r.most[k]) * per_metre;
-        greatest[k] = (k == 0 ? r.most[k] : r.least[k]) * per_metre;
+        least[k] = (k == 0 ? r.least_along(k) : r.most_along(k)) * per_metre;
+        greatest[k] = (k == 0 ? r.most_along(k) : r.least_along(k)) * per_metre;
         from[k] = (r.origin[k] - field.grid_.first[k]) * per_metre;
         slack[k] = rounding * std::fabs(per_metre);
         pad[k] = static_cast<float>(field.pad_[k] + rounding);
@@ -228,6 +232,7 @@ class HeightField {
     return all;
   }
 
+  template <class Walk>
   void visit(Walk& walk, unsigned level, std::uint32_t column, std::uint32_t row) const noexcept {
     const Level& own = levels_[level];
     Box8<float> boxes;
@@ -254,6 +259,7 @@ class HeightField {
   }
 
   /// Sets the walls of a node's children.
+  template <class Walk>
   void put_walls(Box8<float>& boxes, const Walk& walk, const Level& own, std::uint32_t column, std::uint32_t row) const noexcept {
     const float west = west_of(column << own.shift[0]) - walk.pad[0], north = north_of(row << own.shift[1]) + walk.pad[1];
     const float width = own.size[0] + 2 * walk.pad[0], height = own.size[1] + 2 * walk.pad[1];

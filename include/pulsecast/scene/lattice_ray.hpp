@@ -35,7 +35,8 @@ struct Crossing {
 class LatticeRay {
  public:
   /// `corner`: meeting point of the planes 0 [m]; `edge`: edge of a cell [m].
-  LatticeRay(const Vec3& corner, double edge, const RayBundle& rays, std::size_t j) noexcept : edge_(edge), per_edge_(1 / edge) {
+  template <class Rays>
+  LatticeRay(const Vec3& corner, double edge, const Rays& rays, std::size_t j) noexcept : edge_(edge), per_edge_(1 / edge) {
     const Vec3 direction = rays.direction(j);
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);

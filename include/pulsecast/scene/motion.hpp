@@ -150,6 +150,16 @@ class PartMotion {
     return {state.attitude, centre, state.centre - start};
   }
 
+  /// Velocity at a time of a point of the body [m/s]; `point` is its place in the world at that time [m]. Zero before the start; at a
+  /// change of motion that of the later one.
+  [[nodiscard]] Vec3 velocity(const Tick& tick, const Vec3& own_centre, const Vec3& point) const noexcept {
+    if (tick < Tick{}) return {};
+    const Vec3 start = (from_origin_ ? Vec3{} : own_centre) - reference_;
+    const detail::MotionPlace place = timeline_.place_of(tick);
+    const Vec3 centre = detail::state_at(place, start).centre;
+    return detail::velocity_at(place, centre) + place.piece->attitude.rate * cross(place.piece->attitude.axis, point - reference_ - centre);
+  }
+
   /// Box that holds all points passed by the hull of the given points, as placed [m], between two times. Tight for small rotations and few
   /// changes of motion in this time, loose otherwise.
   [[nodiscard]] Box swept(std::span<const Vec3> points, const Vec3& own_centre, const Tick& from, const Tick& to) const noexcept {

@@ -75,9 +75,9 @@ class MovingIndex {
     return bytes;
   }
 
-  /// Calls `test(i)` for each body that the bundle may meet at its tick before its nearest hits.
-  template <class Test>
-  void closest(const RayBundle& rays, const Test& test, ClosestHits& nearest) const noexcept {
+  /// Calls `test(i)` for each body that a bundle or a `BundleOfOne` may meet at its tick before its nearest hits.
+  template <class Rays, class Test, class Hits>
+  void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
     const double share = (rays.tick.seconds() - time_.from) / span_;
     if (!(share >= 0 && share <= 1)) {
       for (std::size_t i = 0; i < all_; ++i) test(static_cast<PrimitiveIndex>(i));

@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -57,15 +59,38 @@ class MovingScene {
   [[nodiscard]] Similarity placement(std::size_t part, const Tick& tick) const noexcept {
     const Part& moving = parts()[part];
     if (!moving.motion) return moving.placement;
-    return moved(movers_[detail::first_not(movers_.size(), [&](std::size_t i) noexcept { return movers_[i].part < part; })], tick);
+    return moved(mover_of(part), tick);
   }
 
   /// Nearest hit of each ray of the bundle at its tick. Ties between parts go to the first in the list, moving or not.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    ClosestHits nearest = scene_.nearest(rays);
-    const auto test = [&](PrimitiveIndex i) noexcept { scene_.closest_in(movers_[i].part, moved(movers_[i], rays.tick), rays, nearest); };
-    index_.closest(rays, test, nearest);
+    ClosestHits nearest(rays);
+    search(rays, nearest);
     scene_.describe(rays, nearest, hits, [&](std::size_t part) noexcept { return placement(part, rays.tick); });
+  }
+
+  /// Closest hit of a ray at its tick, as of `Scene`.
+  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept { return detail::closest_hit(ray, searcher()); }
+
+  /// True if the ray meets anything at its tick, as of `Scene`.
+  [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept {
+    return detail::occluded(ray, range, searcher());
+  }
+
+  /// All hits of a ray at its tick, as of `Scene`.
+  template <class Visitor>
+  std::size_t all_hits(const Ray& ray, Visitor&& visitor) const noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
+    return detail::visit_hits(ray, searcher(), visitor);
+  }
+
+  /// Surface at a hit of the same ray at its tick, in the world, with its velocity.
+  [[nodiscard]] SurfacePoint surface(const RayHit& hit, const Ray& ray) const noexcept {
+    const Part& part = parts()[hit.part];
+    if (!part.motion) return detail::surface_at(hit, ray, part, part.placement);
+    const Mover& mover = mover_of(hit.part);
+    SurfacePoint point = detail::surface_at(hit, ray, part, moved(mover, ray.tick));
+    point.velocity = part.motion->velocity(ray.tick, mover.centre, point.position);
+    return point;
   }
 
   /// Height of the ground at a place [m], as of `Scene`; moving parts are no ground.
@@ -77,6 +102,20 @@ class MovingScene {
     std::size_t part;
     Vec3 centre;  ///< centre of its box as placed [m]
   };
+
+  const Mover& mover_of(std::size_t part) const noexcept {
+    return movers_[detail::first_not(movers_.size(), [&](std::size_t i) noexcept { return movers_[i].part < part; })];
+  }
+
+  template <class Rays, class Hits>
+  void search(const Rays& rays, Hits& hits) const noexcept {
+    scene_.search(rays, hits);
+    const auto test = [&](PrimitiveIndex i) noexcept { scene_.closest_in(movers_[i].part, moved(movers_[i], rays.tick), rays, hits); };
+    index_.closest(rays, test, hits);
+  }
+  auto searcher() const noexcept {
+    return [this](const BundleOfOne& ray, auto& hits) noexcept { this->search(ray, hits); };
+  }
 
   static Box bounds_of(const Part& part) noexcept {
     return visit_shape([](const auto& shape) noexcept { return shape->bounds(); }, part.geometry);

@@ -15,6 +15,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/geometry/single_ray.hpp>
 #include <pulsecast/scene/material.hpp>
 
 namespace pulsecast {
@@ -76,6 +77,17 @@ struct Similarity {
       local.z[j] = x.z * rays.x[j] + y.z * rays.y[j] + z.z * rays.z[j];
     }
     local.pad();
+    return local;
+  }
+  /// Ray of the world in the part's own frame, as above.
+  [[nodiscard]] BundleOfOne to_local(const BundleOfOne& ray) const noexcept {
+    BundleOfOne local = ray;
+    const double per_metre = 1 / scale;
+    const Matrix3 back = per_metre * matrix_of(conjugate(rotation));
+    local.origin = back * (ray.origin - translation);
+    local.direction_length = ray.direction_length * per_metre;
+    const Vec3 x = back[0], y = back[1], z = back[2], &d = ray.toward;
+    local.toward = {x.x * d.x + y.x * d.y + z.x * d.z, x.y * d.x + y.y * d.y + z.y * d.z, x.z * d.x + y.z * d.y + z.z * d.z};
     return local;
   }
 };

@@ -7,9 +7,11 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -17,7 +19,9 @@
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/accel/refit.hpp>
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/scene/detail/ray_queries.hpp>
 #include <pulsecast/scene/part.hpp>
+#include <pulsecast/scene/ray_hit.hpp>
 
 namespace pulsecast {
 
@@ -106,11 +110,32 @@ class Scene {
     describe(rays, nearest(rays), hits, [&](std::size_t part) noexcept -> const Similarity& { return parts_[part].placement; });
   }
 
+  /// Closest hit of a ray; empty for a miss. The same as of `closest`, for a ray alone.
+  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept { return detail::closest_hit(ray, searcher()); }
+
+  /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`. Stops at the first hit found.
+  [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept {
+    return detail::occluded(ray, range, searcher());
+  }
+
+  /// Calls `visitor(hit)` with every `RayHit` of a ray, by range and then by part and primitive, until it returns false; it may return
+  /// nothing. Each triangle counts once, a solid voxel where the ray enters it or leaves for the open, and of leaves those that the light
+  /// of the ray's key meets first. Shapes of one's own count by `closest` from each hit on. Allocates nothing. Returns the number of calls.
+  template <class Visitor>
+  std::size_t all_hits(const Ray& ray, Visitor&& visitor) const noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
+    return detail::visit_hits(ray, searcher(), visitor);
+  }
+
+  /// Surface at a hit of the same ray, in the world.
+  [[nodiscard]] SurfacePoint surface(const RayHit& hit, const Ray& ray) const noexcept {
+    return detail::surface_at(hit, ray, parts_[hit.part], parts_[hit.part].placement);
+  }
+
   /// Height of the highest surface of a ground material at a place [m]; empty if there is none.
   [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept {
     if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
     const double top = bounds().max.z + 1;
-    RayBundle down = bundle_of({.origin = {at.x, at.y, top}, .direction = -axis::up});
+    RayBundle down = bundle_of(Ray{.origin = {at.x, at.y, top}, .direction = -axis::up});
     for (;;) {
       const ClosestHits nearest = this->nearest(down);
       if (!nearest.met(0)) return std::nullopt;
@@ -154,14 +179,23 @@ class Scene {
 
   ClosestHits nearest(const RayBundle& rays) const noexcept {
     ClosestHits nearest(rays);
+    search(rays, nearest);
+    return nearest;
+  }
+
+  /// Offers the hits of a bundle, or of a single ray, to `hits`.
+  template <class Rays, class Hits>
+  void search(const Rays& rays, Hits& hits) const noexcept {
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
-      for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, nearest);
+      for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, hits);
     };
     if (alone_)
-      closest_in(0, parts_[0].placement, rays, nearest);  // shapes test their own bounds
+      closest_in(0, parts_[0].placement, rays, hits);  // shapes test their own bounds
     else
-      index_.closest(rays, test, nearest);
-    return nearest;
+      index_.closest(rays, test, hits);
+  }
+  auto searcher() const noexcept {
+    return [this](const BundleOfOne& ray, auto& hits) noexcept { this->search(ray, hits); };
   }
 
   /// Material met by the bundle's only ray.
@@ -172,10 +206,11 @@ class Scene {
     return (*part.materials)[visit_shape(material, part.geometry)];
   }
 
-  void closest_in(std::size_t part, const Similarity& placement, const RayBundle& rays, ClosestHits& nearest) const noexcept {
+  template <class Rays, class Hits>
+  void closest_in(std::size_t part, const Similarity& placement, const Rays& rays, Hits& nearest) const noexcept {
     nearest.part = std::uint64_t{part} << 32;
-    const auto closest = [&](const RayBundle& local) noexcept {
-      visit_shape([&](const auto& shape) noexcept { shape->closest(local, nearest); }, parts_[part].geometry);
+    const auto closest = [&](const Rays& local) noexcept {
+      visit_shape([&](const auto& shape) noexcept { detail::offer_hits(*shape, local, nearest); }, parts_[part].geometry);
     };
     placement.identity() ? closest(rays) : closest(placement.to_local(rays));
   }

@@ -10,6 +10,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -24,11 +25,12 @@
 
 namespace pulsecast {
 
-/// Vertices and triangles of a mesh.
+/// Vertices and triangles of a mesh. Texture coordinates are kept in single precision; they may jump at an edge, as in OBJ files.
 struct MeshData {
   std::vector<Vec3> vertices{};                           ///< positions [m]
   std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertex indices of the corners
   std::vector<std::uint32_t> materials{};                 ///< one per triangle: index into the part's table; empty if all are 0
+  std::vector<std::array<Vec2, 3>> texture{};             ///< one per triangle: texture coordinates of its corners; empty without
 
   /// @throws SettingError for no triangles, an index out of range, a vertex that is not finite, or columns of different lengths
   void validate() const {
@@ -46,6 +48,7 @@ struct MeshData {
     }
     if (!materials.empty() && materials.size() != triangles.size())
       reject_at("MeshData::materials", static_cast<double>(materials.size()), "", "as many as triangles, ", triangles.size(), ", or none");
+    validate_texture();
   }
 
   /// Refuses counts beyond 32 bits, before memory is allocated; `ClosestHits::none` is no triangle. @throws SettingError
@@ -61,6 +64,15 @@ struct MeshData {
   }
 
  private:
+  void validate_texture() const {
+    if (!texture.empty() && texture.size() != triangles.size())
+      reject_at("MeshData::texture", static_cast<double>(texture.size()), "", "as many as triangles, ", triangles.size(), ", or none");
+    for (std::size_t i = 0; i < texture.size(); ++i)
+      for (const Vec2& at : texture[i])
+        for (int k = 0; k < 2; ++k)
+          if (!(std::fabs(at[k]) <= 1e30)) reject_at("MeshData::texture", at[k], "", "from -1e+30 to 1e+30; see triangle ", i, "");
+  }
+
   [[noreturn]] static void reject_at(const char* field, double value, const char* unit, std::string allowed, std::size_t number,
                                      const std::string& rest) {
     throw_setting_error(field, value, unit, allowed.append(std::to_string(number)).append(rest));
@@ -87,12 +99,13 @@ class TriangleMesh {
       materials_ = numbers<std::uint32_t>(data.materials);
     else if (material_count_ > 1)
       few_materials_ = numbers<std::uint8_t>(data.materials);
+    if (!data.texture.empty()) texture_ = texture_of(data);
   }
 
   explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}
   template <class Archive>
   void archive(Archive& a) {
-    a(corners_, first_corners_, triangles_, places_, few_materials_, materials_, index_, material_count_);
+    a(corners_, first_corners_, triangles_, places_, few_materials_, materials_, texture_, index_, material_count_);
   }
   [[nodiscard]] bool is_consistent() const {
     if (triangles_.size() != index_.order().size() || first_corners_.size() != detail::chunk_count(triangles_.size())) return false;
@@ -106,6 +119,7 @@ class TriangleMesh {
       return (materials.empty() || materials.size() == size()) &&
              std::all_of(materials.begin(), materials.end(), [&](std::uint32_t m) { return m < material_count_; });
     };
+    if (!texture_.empty() && texture_.size() != size()) return false;
     if (material_count_ == 0 || !in_table(few_materials_) || !in_table(materials_)) return false;
     if constexpr (requires { index_.is_consistent(size()); }) return index_.is_consistent(size());
     return true;
@@ -120,12 +134,37 @@ class TriangleMesh {
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   [[nodiscard]] std::size_t memory() const noexcept {
     return index_.memory() + corners_.memory() + first_corners_.memory() + triangles_.memory() + places_.memory() +
-           few_materials_.memory() + materials_.memory();
+           few_materials_.memory() + materials_.memory() + texture_.memory();
   }
 
-  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept { index_.closest(rays, Test{*this, rays, nearest}, nearest); }
+  /// For a bundle or a `BundleOfOne`, which an accelerator that takes bundles only gets as one.
+  template <class Rays, class Hits>
+  void closest(const Rays& rays, Hits& nearest) const noexcept {
+    const Test<Rays, Hits> test{*this, rays, nearest};
+    if constexpr (requires { index_.closest(rays, test, nearest); }) {
+      index_.closest(rays, test, nearest);
+    } else {
+      const RayBundle bundle = bundle_of(rays, nearest.limit_of(0));
+      ClosestHits limits(bundle);
+      const auto test_found = [&](std::span<const PrimitiveIndex> primitives) noexcept {
+        test(primitives);
+        limits.range[0] = nearest.limit_of(0);
+      };
+      index_.closest(bundle, test_found, limits);
+    }
+  }
 
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle&, std::size_t) const noexcept {
+  /// Texture coordinates where the corners have these weights; empty without a column of them.
+  [[nodiscard]] std::optional<Vec2> texture(PrimitiveIndex i, const Vec3& weights) const noexcept {
+    if (texture_.empty()) return std::nullopt;
+    const auto& corners = texture_[i];
+    Vec2 at{};
+    for (std::size_t k = 0; k < 3; ++k) at += weights[static_cast<int>(k)] * Vec2(corners[k][0], corners[k][1]);
+    return at;
+  }
+
+  template <class Rays>
+  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
     const std::uint32_t material = !few_materials_.empty() ? few_materials_[i] : !materials_.empty() ? materials_[i] : 0;
     return {finite(normal) ? normal : Vec3{}, material};
@@ -135,10 +174,11 @@ class TriangleMesh {
   friend class DeformingMesh;
 
   /// Leaf test and prefetch of the index.
+  template <class Rays, class Hits>
   struct Test {
     const TriangleMesh& mesh;
-    const RayBundle& rays;
-    ClosestHits& nearest;
+    const Rays& rays;
+    Hits& nearest;
 
     void operator()(std::span<const PrimitiveIndex> primitives) const noexcept {
       const std::size_t place = place_of(primitives);
@@ -189,6 +229,15 @@ class TriangleMesh {
     const SharedBuffer<Number> copy(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) copy[i] = static_cast<Number>(all[i]);
     return copy;
+  }
+
+  using TextureCorners = std::array<std::array<float, 2>, 3>;
+
+  static SharedBuffer<TextureCorners> texture_of(const MeshData& data) {
+    const SharedBuffer<TextureCorners> all(data.texture.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) all[i][k] = {static_cast<float>(data.texture[i][k].x), static_cast<float>(data.texture[i][k].y)};
+    return all;
   }
 
   using Corners = std::array<std::uint16_t, 3>;  ///< vertex indices of a triangle in its block
@@ -265,6 +314,7 @@ class TriangleMesh {
   SharedArray<std::uint32_t> places_;         ///< position of each triangle in that order
   SharedArray<std::uint8_t> few_materials_;   ///< material of each triangle; empty if all are 0, or if an index exceeds 255
   SharedArray<std::uint32_t> materials_;      ///< material of each triangle if an index exceeds 255, else empty
+  SharedArray<TextureCorners> texture_;       ///< texture coordinates of each triangle's corners; empty without
   Index index_;
   std::size_t material_count_ = 1;
 };

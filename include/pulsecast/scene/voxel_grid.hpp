@@ -11,6 +11,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
+#include <pulsecast/geometry/single_ray.hpp>
 #include <pulsecast/scene/detail/solid_meeting.hpp>
 #include <pulsecast/scene/detail/voxel_columns.hpp>
 #include <pulsecast/scene/detail/voxel_index_builder.hpp>
@@ -59,12 +61,13 @@ struct OpaqueVoxels {
       return {in, out};
     }
 
-    [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const RayBundle& rays, std::size_t j,
-                               ClosestHits& nearest) const noexcept {
-      return detail::SolidMeeting(*this, ray, rays, j, nearest);
+    template <class Rays, class Hits>
+    [[nodiscard]] auto meeting(const OpaqueVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j, Hits& nearest) const noexcept {
+      return detail::SolidMeeting(*this, ray, rays.near, j, nearest);
     }
 
-    [[nodiscard]] Vec3 normal(const OpaqueVoxels& settings, std::uint32_t number, const VoxelIndex& index, const RayBundle& rays,
+    template <class Rays>
+    [[nodiscard]] Vec3 normal(const OpaqueVoxels& settings, std::uint32_t number, const VoxelIndex& index, const Rays& rays,
                               std::size_t j) const noexcept {
       if (settings.incidence == Incidence::perpendicular) return {};
       if (settings.incidence == Incidence::normal && !normals_.empty()) {
@@ -127,12 +130,13 @@ struct ScaledVoxels {
       return ray.through(low, high);
     }
 
-    [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const RayBundle& rays, std::size_t j,
-                               ClosestHits& nearest) const noexcept {
-      return detail::SolidMeeting(*this, ray, rays, j, nearest);
+    template <class Rays, class Hits>
+    [[nodiscard]] auto meeting(const ScaledVoxels&, const LatticeRay& ray, const Rays& rays, std::size_t j, Hits& nearest) const noexcept {
+      return detail::SolidMeeting(*this, ray, rays.near, j, nearest);
     }
 
-    [[nodiscard]] Vec3 normal(const ScaledVoxels& settings, std::uint32_t number, const VoxelIndex& index, const RayBundle& rays,
+    template <class Rays>
+    [[nodiscard]] Vec3 normal(const ScaledVoxels& settings, std::uint32_t number, const VoxelIndex& index, const Rays& rays,
                               std::size_t j) const noexcept {
       if (settings.incidence == Incidence::perpendicular) return {};
       const LatticeRay ray = index.ray(rays, j);
@@ -179,10 +183,11 @@ struct TransmissiveVoxels {
     [[nodiscard]] std::size_t memory() const noexcept { return densities_.memory(); }
 
     /// Visitor of the voxels along a ray, which consumes its optical depth.
+    template <class Rays, class Hits>
     class Meeting {
      public:
       /// Ray j of a bundle; `nearest` gets its hit.
-      Meeting(const Columns& columns, const LeafAngles& leaf_angles, const RayBundle& rays, std::size_t j, ClosestHits& nearest) noexcept
+      Meeting(const Columns& columns, const LeafAngles& leaf_angles, const Rays& rays, std::size_t j, Hits& nearest) noexcept
           : columns_(columns), leaf_angles_(leaf_angles), rays_(rays), j_(j), nearest_(nearest) {}
 
       /// Passes a voxel; returns the range limit of the walk [m].
@@ -216,19 +221,21 @@ struct TransmissiveVoxels {
 
       const Columns& columns_;
       const LeafAngles& leaf_angles_;
-      const RayBundle& rays_;
+      const Rays& rays_;
       std::size_t j_;
-      ClosestHits& nearest_;
+      Hits& nearest_;
       double left_ = 0;         ///< optical depth left to the ray
       double per_density_ = 0;  ///< optical depth per range and density; 0 before the draw
     };
 
-    [[nodiscard]] Meeting meeting(const TransmissiveVoxels& settings, const LatticeRay&, const RayBundle& rays, std::size_t j,
-                                  ClosestHits& nearest) const noexcept {
+    template <class Rays, class Hits>
+    [[nodiscard]] Meeting<Rays, Hits> meeting(const TransmissiveVoxels& settings, const LatticeRay&, const Rays& rays, std::size_t j,
+                                              Hits& nearest) const noexcept {
       return {*this, settings.leaf_angles, rays, j, nearest};
     }
 
-    [[nodiscard]] Vec3 normal(const TransmissiveVoxels&, std::uint32_t, const VoxelIndex&, const RayBundle&, std::size_t) const noexcept {
+    template <class Rays>
+    [[nodiscard]] Vec3 normal(const TransmissiveVoxels&, std::uint32_t, const VoxelIndex&, const Rays&, std::size_t) const noexcept {
       return {};
     }
 
@@ -267,19 +274,30 @@ class VoxelGrid {
     return {low, low + Vec3(index_.edge())};
   }
 
-  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
+  /// For a bundle or a `BundleOfOne`.
+  template <class Rays, class Hits>
+  void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Vec3 centre = bounds().centre();
     const auto span = BundleInterval<double>(rays, bounds(), centre).inside(BoundingBox<double>::around(bounds(), centre));
     if (span.empty() || span.entry > nearest.limit(rays)) return;
     for (std::size_t j = 0; j < rays.size; ++j) {
       const LatticeRay ray = index_.ray(rays, j);
       auto meeting = columns_.meeting(filling_, ray, rays, j, nearest);
-      index_.walk(ray, rays.near, nearest.range[j], [&meeting](auto... crossed) noexcept { return meeting(crossed...); });
+      index_.walk(ray, rays.near, nearest.limit_of(j), [&meeting](auto... crossed) noexcept { return meeting(crossed...); });
       meeting.finish();
     }
   }
 
-  [[nodiscard]] Surface surface(PrimitiveIndex i, const RayBundle& rays, std::size_t j) const noexcept {
+  /// All hits of a ray with solid voxels: the closest one from each on. Light through leaves ends at its first leaf.
+  void closest(const BundleOfOne& ray, HitBuffer& hits) const noexcept {
+    if constexpr (std::is_same_v<Filling, TransmissiveVoxels>)
+      hits.offer_first(ray, [this](const BundleOfOne& from, ClosestHit& first) noexcept { closest(from, first); });
+    else
+      hits.offer_chain(ray, [this](const BundleOfOne& from, ClosestHit& next) noexcept { closest(from, next); });
+  }
+
+  template <class Rays>
+  [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
     return {columns_.normal(filling_, i, index_, rays, j), materials_.empty() ? 0U : materials_[i]};
   }
 

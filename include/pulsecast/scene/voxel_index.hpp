@@ -61,7 +61,10 @@ class VoxelIndex {
   }
 
   /// Ray j in the lattice, relative to the lower corner of the bounds.
-  [[nodiscard]] LatticeRay ray(const RayBundle& rays, std::size_t j) const noexcept { return {corner_, edge_, rays, j}; }
+  template <class Rays>
+  [[nodiscard]] LatticeRay ray(const Rays& rays, std::size_t j) const noexcept {
+    return {corner_, edge_, rays, j};
+  }
 
   /// Traverses a ray from `near` on, and calls `limit = visit(number, cell, in, out)` at each occupied cell in order. Stops at a cell
   /// beyond the limit. `in` is the crossing into the cell; `near` if the ray begins there.

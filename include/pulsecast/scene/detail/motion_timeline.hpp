@@ -95,6 +95,15 @@ struct BodyState {
   return {all.attitude, all.path.point(start)};
 }
 
+/// Velocity of a body's own centre, now at `centre`, relative to the reference [m/s].
+[[nodiscard]] inline Vec3 velocity_at(const MotionPlace& place, const Vec3& centre) noexcept {
+  const MotionPiece& p = *place.piece;
+  if (p.about_itself) return p.velocity;
+  const Turning& orbit = p.spins ? p.orbit : p.attitude;
+  const Vec3 axis_point = p.centre + p.velocity * static_cast<double>(place.time.second) + p.velocity * place.time.fraction;
+  return p.velocity + orbit.rate * cross(orbit.axis, centre - axis_point);
+}
+
 /// Runs one after another; the last of them may make a cycle that repeats for ever.
 struct MotionTimeline {
   std::vector<MotionRun> runs;      ///< the cycle's last

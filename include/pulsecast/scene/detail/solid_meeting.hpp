@@ -14,11 +14,11 @@ namespace pulsecast::detail {
 
 /// Intersection of a ray's walk with solid cubes, equal to that with a mesh of them without walls between two. A ray that begins inside a
 /// cube meets its far side, or the cube that touches it there.
-template <class Columns>
+template <class Columns, class Hits>
 class SolidMeeting {
  public:
-  SolidMeeting(const Columns& columns, const LatticeRay& ray, const RayBundle& rays, std::size_t j, ClosestHits& nearest) noexcept
-      : columns_(columns), ray_(ray), begin_{rays.near, Crossing::begin}, j_(j), nearest_(nearest) {}
+  SolidMeeting(const Columns& columns, const LatticeRay& ray, double near, std::size_t j, Hits& nearest) noexcept
+      : columns_(columns), ray_(ray), begin_{near, Crossing::begin}, j_(j), nearest_(nearest) {}
 
   double operator()(std::uint32_t number, const LatticeCell& cell, const Crossing& in, const Crossing& out) noexcept {
     const LatticeRay::Passage cube = columns_.passage(ray_, number, cell, in, out);
@@ -46,7 +46,7 @@ class SolidMeeting {
   const LatticeRay& ray_;
   Crossing begin_;
   std::size_t j_;
-  ClosestHits& nearest_;
+  Hits& nearest_;
   double far_side_ = infinity;  ///< far side of the cube around the ray's start [m]
   std::uint32_t around_ = 0;    ///< number of that cube
 };

@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_GEOMETRY_SINGLE_RAY_HPP
+#define PULSECAST_GEOMETRY_SINGLE_RAY_HPP
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/geometry/bundle.hpp>
+#include <pulsecast/geometry/ray.hpp>
+
+/// A single ray in flight, and what it may look for: its closest hit, any hit, all hits. Accelerators and shapes take them through the same
+/// templates as a `RayBundle` and its `ClosestHits`; the hit is the same to the last bit.
+namespace pulsecast {
+
+/// Bundle of one ray without its columns: 104 bytes, 128 with its `ClosestHit`. The hits hold the far end; there is no wavelength.
+struct BundleOfOne {
+  static constexpr std::size_t capacity = 1, size = 1;  ///< as in `RayBundle`
+
+  Vec3 origin{};                   ///< origin [m]
+  Vec3 toward = axis::forward;     ///< direction, of length `direction_length`
+  double direction_length = 1;     ///< 1 in the world, 1/scale in an instance
+  double near = 0;                 ///< nothing is met at this range or before it, at least 0 [m]
+  Tick tick{};                     ///< time
+  std::uint64_t seed = 0;          ///< as in `BundleOrigin`
+  PulseIndex pulse = 0;            ///< as in `BundleOrigin`
+  std::uint32_t first_subray = 0;  ///< as in `BundleOrigin`
+
+  BundleOfOne() = default;
+  /// A ray of the world, of a unit direction.
+  explicit BundleOfOne(const Ray& ray) noexcept
+      : origin(ray.origin),
+        toward(ray.direction),
+        near(ray.near),
+        tick(ray.tick),
+        seed(ray.seed),
+        pulse(ray.pulse),
+        first_subray(ray.subray) {
+    PULSECAST_ASSERT(!(near < 0));
+  }
+
+  [[nodiscard]] const Vec3& direction(std::size_t) const noexcept { return toward; }  ///< direction of the ray
+  /// Component k of the direction; infinite for NaN, as in `RayBundle`.
+  [[nodiscard]] double least_along(int k) const noexcept { return std::isnan(toward[k]) ? infinity : toward[k]; }
+  /// Component k of the direction; minus infinity for NaN, as in `RayBundle`.
+  [[nodiscard]] double most_along(int k) const noexcept { return std::isnan(toward[k]) ? -infinity : toward[k]; }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+};
+
+/// Bundle of a single ray up to a range [m], for shapes that take nothing else.
+[[nodiscard]] inline RayBundle bundle_of(const BundleOfOne& ray, double far) noexcept {
+  RayBundle rays = bundle_of(Ray{ray.origin, ray.toward, ray.near, far, ray.tick, ray.seed, ray.pulse, ray.first_subray});
+  rays.direction_length = ray.direction_length;
+  return rays;
+}
+
+/// Closest hit so far of a single ray. At exactly equal range the smallest id wins.
+struct ClosestHit {
+  static constexpr std::uint64_t none = ClosestHits::none;  ///< id of no hit
+
+  double range;             ///< range of the hit [m]; the greatest that counts without a hit
+  std::uint64_t id = none;  ///< part in the upper half, primitive in the lower; `none` if nothing was met
+  std::uint64_t part = 0;   ///< part under test, in the upper half
+
+  /// No hit so far, up to a range [m].
+  explicit ClosestHit(double far) noexcept : range(far) {}
+
+  [[nodiscard]] bool met(std::size_t) const noexcept { return id != none; }  ///< true if the ray has a hit
+  /// Part that the ray hits.
+  [[nodiscard]] std::uint32_t part_of(std::size_t) const noexcept { return static_cast<std::uint32_t>(id >> 32); }
+  /// Primitive of that part that the ray hits.
+  [[nodiscard]] PrimitiveIndex primitive_of(std::size_t) const noexcept { return static_cast<PrimitiveIndex>(id); }
+
+  /// Records a hit with a primitive of the current part, if it is closer than the one before.
+  void offer(std::size_t, double at, PrimitiveIndex primitive) noexcept {
+    const std::uint64_t candidate = part | primitive;
+    if (at < range || (at == range && candidate < id)) {
+      range = at;
+      id = candidate;
+    }
+  }
+
+  [[nodiscard]] double limit_of(std::size_t) const noexcept { return range; }  ///< as in `ClosestHits`
+  /// Largest range at which the ray can still find a closer hit [m]; minus infinity for NaN.
+  [[nodiscard]] double limit(const BundleOfOne&) const noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return range > -infinity ? range : -infinity;
+  }
+};
+
+/// Search for any hit of a single ray: ends at the first that is found, by a limit before every box.
+struct AnyHit {
+  double far;              ///< greatest range that counts [m]; minus infinity once something is met
+  bool found = false;      ///< true once something is met
+  std::uint64_t part = 0;  ///< part under test, in the upper half
+
+  /// Nothing found so far, up to a range [m].
+  explicit AnyHit(double range) noexcept : far(range) {}
+
+  [[nodiscard]] bool done() const noexcept { return found; }  ///< true if no further test is of use
+  /// Ends the search, if the hit is in range.
+  void offer(std::size_t, double at, PrimitiveIndex) noexcept {
+    if (!(at <= far)) return;
+    found = true;
+    far = -std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] double limit_of(std::size_t) const noexcept { return far; }  ///< as in `ClosestHits`
+  /// Largest range at which a hit still counts [m]; minus infinity for NaN.
+  [[nodiscard]] double limit(const BundleOfOne&) const noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return far > -infinity ? far : -infinity;
+  }
+};
+
+/// The closest hits of a single ray, up to `capacity` of them, by range and then by id; a hit offered twice counts once. Once it is full,
+/// `continue_after` makes room for those that come next. In 600 bytes; allocates nothing.
+class HitBuffer {
+ public:
+  static constexpr std::size_t capacity = 32;  ///< greatest number of hits held
+
+  /// A hit, ordered by range and then by id.
+  struct Entry {
+    double range;      ///< range of the hit [m]
+    std::uint64_t id;  ///< part in the upper half, primitive in the lower
+
+    friend bool operator==(const Entry&, const Entry&) = default;
+    /// True if `a` comes first.
+    friend bool operator<(const Entry& a, const Entry& b) noexcept { return a.range < b.range || (a.range == b.range && a.id < b.id); }
+  };
+
+  std::uint64_t part = 0;  ///< part under test, in the upper half
+
+  /// No hits so far between two ranges [m].
+  HitBuffer(double near, double far) noexcept : near_(near), limit_(far), far_(far), last_{near, ClosestHits::none} {}
+
+  /// Hits so far, in order.
+  [[nodiscard]] std::span<const Entry> hits() const noexcept { return {hits_.data(), size_}; }
+  /// True if there may be more hits than are held.
+  [[nodiscard]] bool full() const noexcept { return size_ == capacity; }
+
+  /// Empties the buffer for the hits after those that it held. Returns the range to search from [m].
+  double continue_after() noexcept {
+    last_ = hits_[size_ - 1];
+    size_ = 0;
+    limit_ = far_;
+    return std::nextafter(last_.range, -std::numeric_limits<double>::infinity());  // others may be at the same range
+  }
+
+  /// Adds a hit with a primitive of the current part, if it is among the closest that are asked for.
+  void offer(std::size_t, double at, PrimitiveIndex primitive) noexcept {
+    const Entry hit{at, part | primitive};
+    if (!(at <= limit_) || !(last_ < hit)) return;
+    std::size_t place = size_;
+    while (place > 0 && hit < hits_[place - 1]) --place;
+    if ((place > 0 && hits_[place - 1] == hit) || place == capacity) return;
+    if (size_ < capacity) ++size_;
+    std::copy_backward(hits_.begin() + static_cast<std::ptrdiff_t>(place), hits_.begin() + static_cast<std::ptrdiff_t>(size_ - 1),
+                       hits_.begin() + static_cast<std::ptrdiff_t>(size_));
+    hits_[place] = hit;
+    if (full()) limit_ = hits_[capacity - 1].range;
+  }
+
+  /// Offers the hits of a shape that knows the closest one only: `closest(ray, hit)` from each hit on.
+  template <class Closest>
+  void offer_chain(BundleOfOne ray, const Closest& closest) noexcept {
+    for (;;) {
+      ClosestHit next(limit_);
+      next.part = part;
+      closest(ray, next);
+      if (!next.met(0)) return;
+      offer(0, next.range, next.primitive_of(0));
+      ray.near = next.range;
+    }
+  }
+
+  /// Offers the closest hit alone, of a shape whose hits are drawn at random from the ray's beginning on.
+  template <class Closest>
+  void offer_first(BundleOfOne ray, const Closest& closest) noexcept {
+    ray.near = near_;
+    ClosestHit first(limit_);
+    first.part = part;
+    closest(ray, first);
+    if (first.met(0)) offer(0, first.range, first.primitive_of(0));
+  }
+
+  [[nodiscard]] double limit_of(std::size_t) const noexcept { return limit_; }  ///< as in `ClosestHits`
+  /// Largest range at which a hit is still held [m]; minus infinity for NaN.
+  [[nodiscard]] double limit(const BundleOfOne&) const noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return limit_ > -infinity ? limit_ : -infinity;
+  }
+
+ private:
+  double near_, limit_, far_;
+  Entry last_;  ///< the last hit before those that are asked for
+  std::size_t size_ = 0;
+  std::array<Entry, capacity> hits_;
+};
+
+}  // namespace pulsecast
+
+#endif

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_SCENE_DETAIL_RAY_QUERIES_HPP
+#define PULSECAST_SCENE_DETAIL_RAY_QUERIES_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
+#include <pulsecast/geometry/single_ray.hpp>
+#include <pulsecast/scene/part.hpp>
+#include <pulsecast/scene/ray_hit.hpp>
+
+/// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an `AnyHit` or a `HitBuffer`.
+namespace pulsecast::detail {
+
+/// Offers the hits of a shape with a bundle or a single ray. A shape that takes neither single rays nor such hits is asked for the closest
+/// hit of a bundle.
+template <class Shape, class Rays, class Hits>
+void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
+  if constexpr (requires { shape.closest(rays, hits); }) {
+    shape.closest(rays, hits);
+  } else if constexpr (std::is_same_v<Hits, HitBuffer>) {
+    hits.offer_chain(rays, [&shape](const BundleOfOne& from, ClosestHit& next) noexcept { offer_hits(shape, from, next); });
+  } else {
+    const RayBundle bundle = bundle_of(rays, hits.limit_of(0));
+    ClosestHits nearest(bundle);
+    nearest.part = hits.part;
+    shape.closest(bundle, nearest);
+    if (nearest.met(0)) hits.offer(0, nearest.range[0], nearest.primitive_of(0));
+  }
+}
+
+/// Surface of a shape's primitive where a single ray meets it.
+template <class Shape>
+[[nodiscard]] Surface surface_of(const Shape& shape, PrimitiveIndex primitive, const BundleOfOne& ray) noexcept {
+  if constexpr (requires { shape.surface(primitive, ray, 0); })
+    return shape.surface(primitive, ray, 0);
+  else
+    return shape.surface(primitive, bundle_of(ray, std::numeric_limits<double>::infinity()), 0);
+}
+
+[[nodiscard]] inline RayHit ray_hit(double range, std::uint64_t id) noexcept {
+  return {range, static_cast<std::uint32_t>(id >> 32), static_cast<PrimitiveIndex>(id)};
+}
+
+template <class Search>
+[[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray, const Search& search) noexcept {
+  ClosestHit nearest(ray.far);
+  search(BundleOfOne(ray), nearest);
+  if (!nearest.met(0)) return std::nullopt;
+  return ray_hit(nearest.range, nearest.id);
+}
+
+template <class Search>
+[[nodiscard]] bool occluded(const Ray& ray, double range, const Search& search) noexcept {
+  AnyHit any(range < ray.far ? range : ray.far);
+  search(BundleOfOne(ray), any);
+  return any.found;
+}
+
+template <class Search, class Visitor>
+std::size_t visit_hits(const Ray& ray, const Search& search,
+                       Visitor& visitor) noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
+  BundleOfOne from(ray);
+  HitBuffer buffer(ray.near, ray.far);
+  for (std::size_t visited = 0;;) {
+    search(from, buffer);
+    for (const HitBuffer::Entry& hit : buffer.hits()) {
+      ++visited;
+      if constexpr (std::is_void_v<std::invoke_result_t<Visitor&, const RayHit&>>)
+        visitor(ray_hit(hit.range, hit.id));
+      else if (!visitor(ray_hit(hit.range, hit.id)))
+        return visited;
+    }
+    if (!buffer.full()) return visited;
+    from.near = buffer.continue_after();
+  }
+}
+
+template <class Part>
+[[nodiscard]] SurfacePoint surface_at(const RayHit& hit, const Ray& ray, const Part& part, const Similarity& placement) noexcept {
+  BundleOfOne before(ray);
+  before.near = std::nextafter(hit.range, -std::numeric_limits<double>::infinity());  // the hit is the next one, also on a far side
+  const BundleOfOne local = placement.to_local(before);
+  SurfacePoint point{
+      .position = ray.origin + hit.range * ray.direction, .part = hit.part, .primitive = hit.primitive, .object = part.object};
+  const auto look = [&](const auto& shape) noexcept {
+    using Shape = std::remove_cvref_t<decltype(*shape)>;
+    const Surface surface = surface_of(*shape, hit.primitive, local);
+    point.front = !(dot(surface.normal, local.toward) > 0);
+    point.normal = placement.rotation * (point.front ? surface.normal : -surface.normal);
+    point.material = &(*part.materials)[surface.material];
+    if constexpr (MadeOfTriangles<Shape>) point.weights = shape->triangle(hit.primitive).weights(local.origin, local.toward);
+    if constexpr (Textured<Shape>) point.texture = shape->texture(hit.primitive, *point.weights);
+  };
+  visit_shape(look, part.geometry);
+  point.classification = point.material->classification;
+  return point;
+}
+
+}  // namespace pulsecast::detail
+
+#endif
