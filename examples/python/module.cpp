@@ -19,6 +19,9 @@
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/python/bind.hpp>
+#include <pulsecast/python/ray_queries.hpp>
+#include <pulsecast/scene/scene.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
 #include <pulsecast/version.hpp>
 
 #include "../pulsecast/loading.hpp"
@@ -55,7 +58,8 @@ void warn(const std::vector<std::string>& warnings) {
 
 /// Triangles of arrays, with one material.
 Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices, const py::object& triangles_given,
-                         ObjectId object, double reflectance, std::uint16_t classification, bool ground) {
+                         ObjectId object, double reflectance, std::uint16_t classification, bool ground,
+                         const std::optional<python::NumberArray>& texture) {
   const auto require_rows_of_three = [](const py::array& array, const std::string& field) {
     if (array.ndim() != 2) throw SettingError(field + " (dimensions)", static_cast<double>(array.ndim()), "", "2: shape (n, 3)");
     if (array.shape(1) != 3) throw SettingError(field + " (columns)", static_cast<double>(array.shape(1)), "", "3: shape (n, 3)");
@@ -80,8 +84,29 @@ Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::arra
       corners[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(corner);
     }
   }
+  if (texture) {
+    if (texture->ndim() != 3 || texture->shape(1) != 3 || texture->shape(2) != 2)
+      throw SettingError("Mesh::texture (dimensions)", static_cast<double>(texture->ndim()), "", "3: shape (m, 3, 2)");
+    for (py::ssize_t i = 0; i < texture->shape(0); ++i) {
+      std::array<Vec2, 3>& corners = mesh.data.texture.emplace_back();
+      for (py::ssize_t k = 0; k < 3; ++k) corners[static_cast<std::size_t>(k)] = {texture->at(i, k, 0), texture->at(i, k, 1)};
+    }
+  }
   mesh.data.validate();
   return mesh;
+}
+
+/// Scene of meshes by themselves, for ray queries.
+using RaycastingScene = Scene<TriangleMesh<>>;
+
+std::unique_ptr<RaycastingScene> raycasting_scene_of(const std::vector<Simulation::Mesh>& meshes, unsigned threads) {
+  const py::gil_scoped_release free;
+  std::vector<RaycastingScene::Part> parts;
+  for (const Simulation::Mesh& mesh : meshes)
+    parts.push_back({.geometry = std::make_shared<const TriangleMesh<>>(mesh.data, threads),
+                     .materials = material_table({mesh.material}),
+                     .object = mesh.object});
+  return std::make_unique<RaycastingScene>(std::move(parts));
 }
 
 std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
@@ -171,14 +196,26 @@ void bind_documents(py::module_& m) {
 void bind_mesh(py::module_& m) {
   py::class_<Simulation::Mesh>(m, "Mesh", "Triangles in the scene, in addition to the survey's own parts.")
       .def(py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
-           "ground"_a = false,
+           "ground"_a = false, "texture"_a = py::none(),
            "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), vertex indices from 0; object: object id of its "
-           "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry platforms.")
+           "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry platforms; "
+           "texture: shape (m, 3, 2), texture coordinates of the corners, which ray queries interpolate.")
       .def_property_readonly(
           "size", [](const Simulation::Mesh& mesh) { return mesh.data.triangles.size(); }, "Number of triangles.")
       .def("__repr__", [](const Simulation::Mesh& mesh) {
         return "<Mesh of " + std::to_string(mesh.data.triangles.size()) + " triangles, object " + std::to_string(mesh.object) + '>';
       });
+}
+
+void bind_raycasting_scene(py::module_& m) {
+  py::class_<RaycastingScene> scene(m, "RaycastingScene", "Meshes to be asked by rays, without a survey. Part i is mesh i.");
+  scene
+      .def(py::init(&raycasting_scene_of), "meshes"_a, py::kw_only(), "threads"_a = 0,
+           "meshes: list of Mesh. threads: for building the index; 0: all. Raises SettingError.")
+      .def_property_readonly(
+          "memory", [](const RaycastingScene& s) { return s.memory(); }, "Memory of the scene [byte].")
+      .def("__repr__", [](const RaycastingScene& s) { return "<RaycastingScene of " + std::to_string(s.parts().size()) + " meshes>"; });
+  python::bind_ray_queries(scene);
 }
 
 void bind_simulation(py::module_& m) {
@@ -234,5 +271,6 @@ PYBIND11_MODULE(_core, m) {
   bind_settings(m);
   bind_documents(m);
   bind_mesh(m);
+  bind_raycasting_scene(m);
   bind_simulation(m);
 }

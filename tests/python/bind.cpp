@@ -12,6 +12,8 @@
 
 #include <pulsecast/pulsecast.hpp>
 
+#include "python/interpreter.hpp"
+
 using namespace pulsecast;
 using namespace pulsecast::literals;
 namespace py = pybind11;
@@ -42,15 +44,8 @@ PYBIND11_EMBEDDED_MODULE(scans, m) {
   m.def("interrupt", [] { std::raise(SIGINT); });
 }
 
-/// Python that has the module at hand; the interpreter lives as long as the tests, as NumPy cannot be loaded twice.
-py::dict names() {
-  static py::scoped_interpreter* const interpreter = new py::scoped_interpreter;
-  (void)interpreter;
-  py::dict scope;
-  scope["__builtins__"] = py::module_::import("builtins");
-  py::exec("import scans, numpy", scope);
-  return scope;
-}
+/// Python that has the module at hand.
+py::dict names() { return support::python_names("import scans, numpy"); }
 
 /// What an expression of Python gives, in its own words.
 std::string said(py::dict scope, const std::string& expression) { return py::str(py::eval(expression, scope)); }

@@ -377,7 +377,7 @@ TEST_CASE("the weights of a hit put its point together, and the texture follows 
     Generator any(seed);
     MeshData data;
     add_triangle(data, {any.point(3), any.point(3), any.point(3)});
-    for (int k = 0; k < 3; ++k) data.texture.resize(1), data.texture[0][static_cast<std::size_t>(k)] = {k == 1 ? 1 : 0, k == 2 ? 1 : 0};
+    data.texture = {{Vec2{0, 0}, {1, 0}, {0, 1}}};
     const Scene<Mesh> scene({{.geometry = shared(Mesh(data)), .placement = {any.rotation(), 2, any.point(5)}}});
     const Similarity& placement = scene.parts()[0].placement;
     const Triangle t = data.triangle(0);

@@ -209,6 +209,60 @@ def test_the_corners_of_triangles_are_whole_numbers():
         assert pulsecast.Mesh(np.asfortranarray(SQUARE[0], dtype="f4"), np.array(SQUARE[1] * 2, kind)[::2]).size == 2
 
 
+def test_a_mesh_is_asked_by_rays():
+    floor = pulsecast.Mesh(*SQUARE, object=9, classification=2, texture=[[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]])
+    roof = pulsecast.Mesh(np.array(SQUARE[0]) / 10 + [0, 0, 3], SQUARE[1])
+    scene = pulsecast.RaycastingScene([floor, roof])
+    assert repr(scene) == "<RaycastingScene of 2 meshes>" and scene.memory > 0
+    origins, directions = [[2, 1, 10], [20, -10, 10], [0, 0, 10], [0, 0, 10]], [[0, 0, -2], [0, 0, -1], [0, 0, 1], [0, 0, np.nan]]
+    hits = scene.closest_hits(origins, directions)
+    assert list(hits["range"]) == [7, 10, np.inf, np.inf]
+    assert list(hits["part"]) == [1, 0, -1, -1] and list(hits["primitive"]) == [0, 0, -1, -1] and list(hits["ray"]) == [0, 1, 2, 3]
+    assert list(hits["object"]) == [0, 9, 0, 0] and list(hits["classification"]) == [0, 2, 0, 0] and list(hits["front"]) == [1, 1, 0, 0]
+    assert (hits["normal"] == [[0, 0, 1], [0, 0, 1], [0, 0, 0], [0, 0, 0]]).all() and (hits["velocity"] == 0).all()
+    assert np.allclose(hits["texture"][1], [0.7, 0.4]) and np.isnan(hits["texture"][[0, 2, 3]]).all()
+    assert np.allclose(hits["weights"][1] @ np.array(SQUARE[0])[SQUARE[1][0]], [20, -10, 0]) and np.isnan(hits["weights"][2:]).all()
+    assert scene.closest_hits(np.hstack([origins, directions])).tobytes() == hits.tobytes()
+    assert list(scene.occluded(origins, directions)) == [True, True, False, False]
+    assert list(scene.occluded(origins, directions, far=8)) == [True, False, False, False]
+    every = scene.all_hits(origins, directions)
+    assert list(every["ray"]) == [0, 0, 1] and list(every["range"]) == [7, 10, 10] and list(every["part"]) == [1, 0, 0]
+    assert list(scene.all_hits(origins, directions, near=7)["range"]) == [10, 10]
+
+
+def test_rays_are_answered_alike_by_any_number_of_threads():
+    random = np.random.default_rng(1)
+    scene = pulsecast.RaycastingScene([pulsecast.Mesh(random.normal(size=(300, 3)), np.arange(300).reshape(100, 3))])
+    rays = random.normal(size=(50_000, 6))
+    one, two = (scene.closest_hits(rays, threads=n) for n in (1, 2))
+    assert one.tobytes() == two.tobytes() and 1000 < np.isfinite(one["range"]).sum() < 50_000
+    assert (scene.occluded(rays, threads=2) == np.isfinite(one["range"])).all()
+    every = scene.all_hits(rays, threads=2)
+    assert every.tobytes() == scene.all_hits(rays, threads=1).tobytes() and len(every) > np.isfinite(one["range"]).sum()
+    _, first = np.unique(every["ray"], return_index=True)
+    assert (every["range"][first] == one["range"][np.isfinite(one["range"])]).all()
+    assert len(scene.closest_hits(np.empty((0, 6)))) == len(scene.all_hits(np.empty((0, 6)))) == 0
+
+
+@pytest.mark.parametrize(("asked", "field"), [
+    ({"rays": np.zeros((2, 5))}, "rays rays"), ({"rays": np.zeros(6)}, "rays rays"),
+    ({"rays": np.zeros((2, 3)), "directions": np.zeros((3, 3))}, "rays directions"),
+    ({"rays": np.zeros((2, 6)), "directions": np.zeros((2, 3))}, "rays rays"),
+    ({"rays": np.zeros((2, 6)), "near": -1}, "rays near"), ({"rays": np.zeros((2, 6)), "far": math.nan}, "rays far"),
+    ({"rays": np.zeros((2, 6)), "time": [1, 2, 3]}, "rays time"), ({"rays": np.zeros((2, 6)), "threads": 1025}, "threads"),
+])
+def test_rays_that_cannot_be_are_refused(asked, field):
+    scene = pulsecast.RaycastingScene([pulsecast.Mesh(*SQUARE)])
+    for query in (scene.closest_hits, scene.all_hits, scene.occluded):
+        with pytest.raises(pulsecast.SettingError) as error:
+            query(**asked)
+        assert field in error.value.field
+    with pytest.raises(pulsecast.SettingError):
+        pulsecast.Mesh(*SQUARE, texture=np.zeros((2, 3)))
+    with pytest.raises(pulsecast.SettingError):
+        pulsecast.Mesh(*SQUARE, texture=np.zeros((1, 3, 2)))
+
+
 def test_results_are_copied_and_sent(survey):
     run = simulation(survey, waveforms=True)
     batch = run.run()

@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_PYTHON_RAY_QUERIES_HPP
+#define PULSECAST_PYTHON_RAY_QUERIES_HPP
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/python/detail/exceptions.hpp>
+#include <pulsecast/python/detail/rows.hpp>
+#include <pulsecast/scene/ray_hit.hpp>
+
+/// Ray queries of scenes for Python: arrays of rays in, arrays of hits out.
+///
+///     pulsecast::python::bind_ray_queries(pybind11::class_<OwnScene>(m, "OwnScene").def(...));
+///
+/// A call releases the GIL and uses several threads. Its results do not depend on their number.
+namespace pulsecast::python {
+
+/// Hit of a ray as a row of a NumPy array. A miss has an infinite range, and -1 as part and primitive.
+struct HitRow {
+  double range = std::numeric_limits<double>::infinity();          ///< as in `RayHit` [m]
+  double normal[3] = {};                                           ///< as in `SurfacePoint`; zero for a miss
+  double weights[3] = {not_a_number, not_a_number, not_a_number};  ///< as in `SurfacePoint`; NaN without
+  double texture[2] = {not_a_number, not_a_number};                ///< as in `SurfacePoint`; NaN without
+  double velocity[3] = {};                                         ///< as in `SurfacePoint` [m/s]
+  std::int64_t ray = 0;                                            ///< number of the ray, from 0
+  std::int64_t primitive = -1;                                     ///< as in `RayHit`
+  std::int32_t part = -1;                                          ///< as in `RayHit`
+  std::uint32_t object = 0;                                        ///< as in `SurfacePoint`
+  std::uint16_t classification = 0;                                ///< as in `SurfacePoint`
+  std::uint8_t front = 0;                                          ///< 1 if the shape's own normal is towards the ray's origin
+  std::uint8_t spare[5] = {};                                      ///< zeros outside the array
+
+ private:
+  static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace pulsecast::python
+
+// hidden, as pybind11's own names, so that modules of different builds can coexist
+namespace pulsecast {
+namespace [[gnu::visibility("hidden")]] python {
+
+/// Array of numbers in rows, as Python passes it.
+using NumberArray = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+
+/// Rays of one call: shape (n, 6), origins and directions, or both of shape (n, 3). Directions may have any length.
+class RayTable {
+ public:
+  /// @throws SettingError for arrays of other shapes, or values out of range
+  RayTable(NumberArray rays, std::optional<NumberArray> directions, NumberArray time, double near, double far, std::uint64_t seed)
+      : rays_(std::move(rays)),
+        directions_(directions ? std::move(*directions) : rays_),
+        time_(std::move(time)),
+        near_(near),
+        far_(far),
+        seed_(seed) {
+    stride_ = directions ? 3 : 6;
+    require_shape(rays_, "rays");
+    require_shape(directions_, "directions");
+    if (directions_.shape(0) != rays_.shape(0))
+      throw SettingError("rays directions (rows)", static_cast<double>(directions_.shape(0)), "",
+                         "as many as origins, " + std::to_string(size()));
+    if (time_.size() != 1 && (time_.ndim() != 1 || time_.shape(0) != rays_.shape(0)))
+      throw SettingError("rays time (number)", static_cast<double>(time_.size()), "", "1, or as many as rays, " + std::to_string(size()));
+    for (pybind11::ssize_t i = 0; i < time_.size(); ++i) require_within("rays time", time_.data()[i], -1e15, 1e15, "s");
+    require_not_negative("rays near", near, "m");
+    if (!(far >= 0)) throw SettingError("rays far", far, "m", "at least 0");
+  }
+
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(rays_.shape(0)); }
+
+  /// Ray i; of NaN if it has no direction. Leaves are drawn by the seed and the number of the ray.
+  [[nodiscard]] Ray operator[](std::size_t i) const {
+    const double* const o = rays_.data() + i * stride_;
+    const double* const d = directions_.data() + i * stride_ + (stride_ - 3);
+    const Vec3 direction(d[0], d[1], d[2]);
+    return {.origin = {o[0], o[1], o[2]},
+            .direction = direction / length(direction),
+            .near = near_,
+            .far = far_,
+            .tick = Tick::of_seconds(time_.data()[time_.size() == 1 ? 0 : i]),
+            .seed = seed_,
+            .pulse = i};
+  }
+
+ private:
+  void require_shape(const NumberArray& array, const std::string& name) const {
+    if (array.ndim() != 2 || array.shape(1) != static_cast<pybind11::ssize_t>(stride_))
+      throw SettingError("rays " + name + " (columns)", static_cast<double>(array.ndim() == 2 ? array.shape(1) : 0), "",
+                         std::to_string(stride_) + ": shape (n, " + std::to_string(stride_) + ")");
+  }
+
+  NumberArray rays_, directions_, time_;
+  std::size_t stride_ = 6;
+  double near_, far_;
+  std::uint64_t seed_;
+};
+
+/// Row of a hit, with its surface.
+template <class World>
+[[nodiscard]] HitRow hit_row(const World& scene, const RayHit& hit, const Ray& ray) {
+  const SurfacePoint at = scene.surface(hit, ray);
+  HitRow row;
+  row.range = hit.range;
+  for (int k = 0; k < 3; ++k) {
+    row.normal[k] = at.normal[k];
+    row.velocity[k] = at.velocity[k];
+    if (at.weights) row.weights[k] = (*at.weights)[k];
+  }
+  for (int k = 0; k < 2 && at.texture; ++k) row.texture[k] = (*at.texture)[k];
+  row.ray = static_cast<std::int64_t>(ray.pulse);
+  row.primitive = hit.primitive;
+  row.part = static_cast<std::int32_t>(hit.part);
+  row.object = at.object;
+  row.classification = at.classification;
+  row.front = at.front ? 1 : 0;
+  return row;
+}
+
+/// Calls `task(block, first, end)` for blocks of rays on several threads, without the GIL.
+template <class Task>
+void for_each_block(std::size_t rays, unsigned threads, const Task& task) {
+  constexpr std::size_t block = 4096;
+  const pybind11::gil_scoped_release free;
+  const std::size_t blocks = (rays + block - 1) / block;
+  for_each_index(blocks, threads, [&](std::size_t b) { task(b, b * block, std::min(rays, (b + 1) * block)); });
+}
+
+/// Closest hit of each ray, a row a ray.
+template <class World>
+[[nodiscard]] pybind11::array_t<HitRow> closest_hits(const World& scene, const RayTable& rays, unsigned threads) {
+  pybind11::array_t<HitRow> rows(static_cast<pybind11::ssize_t>(rays.size()));
+  HitRow* const out = rows.mutable_data();
+  for_each_block(rays.size(), threads, [&](std::size_t, std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const Ray ray = rays[i];
+      const auto hit = scene.closest_hit(ray);
+      out[i] = hit ? hit_row(scene, *hit, ray) : HitRow{};
+      out[i].ray = static_cast<std::int64_t>(i);
+    }
+  });
+  return rows;
+}
+
+/// All hits of each ray, by ray and then by range.
+template <class World>
+[[nodiscard]] pybind11::array_t<HitRow> all_hits(const World& scene, const RayTable& rays, unsigned threads) {
+  std::vector<std::vector<HitRow>> found(rays.size() / 4096 + 1);
+  for_each_block(rays.size(), threads, [&](std::size_t block, std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const Ray ray = rays[i];
+      scene.all_hits(ray, [&](const RayHit& hit) { found[block].push_back(hit_row(scene, hit, ray)); });
+    }
+  });
+  Rows<HitRow> rows;
+  for (const auto& some : found)
+    for (const HitRow& row : some) rows.push_back(row);
+  return rows.take();
+}
+
+/// True for each ray that meets anything.
+template <class World>
+[[nodiscard]] pybind11::array_t<bool> occluded(const World& scene, const RayTable& rays, unsigned threads) {
+  pybind11::array_t<bool> all(static_cast<pybind11::ssize_t>(rays.size()));
+  bool* const out = all.mutable_data();
+  for_each_block(rays.size(), threads, [&](std::size_t, std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) out[i] = scene.occluded(rays[i]);
+  });
+  return all;
+}
+
+/// Adds the methods `closest_hits`, `all_hits` and `occluded` to a class of scenes, as `Scene` and `MovingScene`.
+template <class Class>
+Class& bind_ray_queries(Class&& bound) {
+  namespace py = pybind11;
+  using World = typename std::remove_reference_t<Class>::type;
+  if (!py::detail::get_numpy_internals().get_type_info<HitRow>(false))
+    PYBIND11_NUMPY_DTYPE(HitRow, range, normal, weights, texture, velocity, ray, primitive, part, object, classification, front);
+  const auto add = [&bound](const char* name, auto query, const std::string& returned) {
+    const std::string doc =
+        returned +
+        " rays: shape (n, 6), origin [m] and direction of any length; or origins, shape (n, 3), with directions, shape "
+        "(n, 3). near, far: ranges that count [m]. time: of all rays or of each, for parts that move [s]. seed: with the "
+        "number of the ray, the key of leaves met at random. threads: 0 for all. Rays of NaN or without direction miss.";
+    bound.def(
+        name,
+        [query](const World& scene, NumberArray rays, std::optional<NumberArray> directions, double near, double far, NumberArray time,
+                std::uint64_t seed, unsigned threads) {
+          return query(scene, RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed), threads);
+        },
+        py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
+        py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0, py::arg("threads") = 0,
+        doc.c_str());
+  };
+  const std::string row =
+      "range [m], normal (3, towards the ray's origin), weights (3, of a triangle's corners), texture (2), velocity (3) [m/s], ray, "
+      "primitive, part, object, classification, front.";
+  add(
+      "closest_hits", [](const World& s, const RayTable& r, unsigned t) { return python::closest_hits(s, r, t); },
+      "Structured array, one row per ray: " + row + " A miss has an infinite range, and -1 as part and primitive.");
+  add(
+      "all_hits", [](const World& s, const RayTable& r, unsigned t) { return python::all_hits(s, r, t); },
+      "Structured array of all hits, by ray and then by range: " + row);
+  add(
+      "occluded", [](const World& s, const RayTable& r, unsigned t) { return python::occluded(s, r, t); },
+      "Boolean array: True for each ray that meets anything.");
+  return bound;
+}
+
+}  // namespace gnu::visibility("hidden")]]python
+}  // namespace pulsecast
+
+#endif

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/python/ray_queries.hpp>
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <pybind11/embed.h>
+#include <pybind11/stl.h>
+
+#include <pulsecast/scene/motion.hpp>
+#include <pulsecast/scene/moving_scene.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
+
+#include "python/interpreter.hpp"
+
+using namespace pulsecast;
+namespace py = pybind11;
+
+static_assert(sizeof(python::HitRow) == 128);
+
+namespace {
+
+using Doors = MovingScene<TriangleMesh<>>;
+
+/// A triangle 10 m to the north, which moves east at 2 m/s.
+std::unique_ptr<Doors> door() {
+  const MeshData mesh{.vertices = {{-1, 10, 0}, {1, 10, 0}, {0, 10, 2}}, .triangles = {{0, 1, 2}}};
+  const auto slide = std::make_shared<const PartMotion>(SteadyMotion{.velocity = {2, 0, 0}});
+  return std::make_unique<Doors>(
+      std::vector<Doors::Part>{{.geometry = std::make_shared<const TriangleMesh<>>(mesh), .object = 5, .motion = slide}},
+      MovingIndexSettings{.to = 10});
+}
+
+PYBIND11_EMBEDDED_MODULE(doors, m) {
+  py::class_<Doors> bound(m, "Door");
+  bound.def(py::init(&door));
+  python::bind_ray_queries(bound);
+}
+
+}  // namespace
+
+TEST_CASE("rays of several times meet a moving part of a scene of one's own") {
+  py::dict scope = support::python_names("import doors, numpy");
+  py::exec("hits = doors.Door().closest_hits([[0, 0, 0.5], [6, 0, 0.5], [6, 0, 0.5]], [[0, 1, 0]] * 3, time=[0, 0, 3])", scope);
+  CHECK(py::eval("hits['range'].tolist()", scope).cast<std::vector<double>>() ==
+        std::vector<double>{10, std::numeric_limits<double>::infinity(), 10});
+  CHECK(py::eval("hits['velocity'][:, 0].tolist()", scope).cast<std::vector<double>>() == std::vector<double>{2, 0, 2});
+  CHECK(py::eval("hits['object'].tolist()", scope).cast<std::vector<int>>() == std::vector<int>{5, 0, 5});
+  CHECK(py::eval("doors.Door().occluded([[6, 0, 0.5, 0, 1, 0]], time=3).tolist()", scope).cast<std::vector<bool>>() ==
+        std::vector<bool>{true});
+}
