@@ -25,6 +25,7 @@ using namespace pulsecast::support;
 static_assert(sizeof(BundleOfOne) == 104);
 static_assert(sizeof(BundleOfOne) + sizeof(ClosestHit) == 128);
 static_assert(sizeof(HitBuffer) <= 600);
+static_assert(!BundleTarget<TriangleMesh<>> && Geometry<TriangleMesh<>>);  // a shape is no scene
 
 namespace {
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -172,6 +173,16 @@ struct ClosestHits {
     for (std::size_t j = 0; j < rays.size; j += simd::lane_count) last = simd::max(simd::load<simd::Doubles>(range[j]), last);
     return simd::max(last);
   }
+};
+
+/// Hits that a shape offers to: of a bundle or of a single ray. `limit_of(j)` is the range up to which ray j still takes any [m],
+/// `limit(rays)` that of all rays; `part` is the part under test, in the upper half.
+template <class H, class Rays>
+concept HitsOf = requires(H& hits, const Rays& rays, std::size_t j, double at, PrimitiveIndex primitive, std::uint64_t part) {
+  hits.part = part;
+  hits.offer(j, at, primitive);
+  { hits.limit_of(j) } -> std::same_as<double>;
+  { hits.limit(rays) } -> std::same_as<double>;
 };
 
 }  // namespace pulsecast

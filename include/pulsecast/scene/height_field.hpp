@@ -79,7 +79,7 @@ class HeightField {
   }
 
   /// For a bundle or a `BundleOfOne`.
-  template <class Rays, class Hits>
+  template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     if (bounds_.empty()) return;
     Walk<Rays, Hits> walk(*this, rays, nearest);

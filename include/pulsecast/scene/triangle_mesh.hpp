@@ -138,7 +138,7 @@ class TriangleMesh {
   }
 
   /// For a bundle or a `BundleOfOne`, which an accelerator that takes bundles only gets as one.
-  template <class Rays, class Hits>
+  template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Test<Rays, Hits> test{*this, rays, nearest};
     if constexpr (requires { index_.closest(rays, test, nearest); }) {

@@ -275,7 +275,7 @@ class VoxelGrid {
   }
 
   /// For a bundle or a `BundleOfOne`.
-  template <class Rays, class Hits>
+  template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Vec3 centre = bounds().centre();
     const auto span = BundleInterval<double>(rays, bounds(), centre).inside(BoundingBox<double>::around(bounds(), centre));

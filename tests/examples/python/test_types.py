@@ -129,7 +129,7 @@ def test_functions_have_the_parameters_that_pybind11_knows_of(name):
     first, _, last = name.partition(".")
     bound = getattr(getattr(pulsecast, first), last) if last else getattr(pulsecast, first)
     known = re.match(r"\w+\((.*)\) -> ", bound.__doc__)[1]
-    parameters = re.findall(r"(\*|\w+)(?:: [\w:.]+(?:\[[^=\]]*\])?)?(?: = ([^,]+))?(?:, |$)", known)
+    parameters = re.findall(r"(\*|\w+)(?:: [\w:.]+(?:\[[^=\]]*\]+)?)?(?: = ([^,]+))?(?:, |$)", known)
     written = FUNCTIONS[name].args
     plain = [one.arg for one in written.args]
     assert [one for one, _ in parameters] == plain + (["*"] if written.kwonlyargs else []) + [one.arg for one in written.kwonlyargs]
