@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -32,7 +31,6 @@ using namespace pulsecast::support;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 using Mesh = TriangleMesh<>;
 
 /// The triangle (0, 0), (2, 0), (0, 2) at height 0, seen anticlockwise from above, with a texture.
