@@ -23,7 +23,7 @@ namespace {
 
 /// Of the pulses that were sent.
 struct Counts {
-  std::size_t pulses = 0, same_laser = 0, hits = 0, described = 0, met = 0, described_once = 0, detected = 0, in_closed_form = 0;
+  std::size_t pulses = 0, hits = 0, described = 0, met = 0, described_once = 0, detected = 0, in_closed_form = 0;
 };
 
 /// A scene, and a count of how often its surfaces are described.
@@ -79,15 +79,12 @@ void count(Report& report, const std::string& name, const Source& source, const 
   const Survey survey{source, SunflowerFootprint(subrays), watched, Receiver{}, WatchedDetector{FullWaveform{}, &counts}};
   auto workspace = survey.workspace();
   for (PulseIndex i = 0; i < survey.size(); ++i) {
-    const Laser before = workspace.laser;
     const Outcome outcome = survey(i, workspace);
     if (outcome.shot.fate == Fate::blocked) continue;
     ++counts.pulses;
-    if (workspace.laser == before) ++counts.same_laser;
   }
   const auto percent = [](std::size_t some, std::size_t all) { return 100.0 * static_cast<double>(some) / static_cast<double>(all); };
-  report.row(row, {{"% laser as before: beam and link budget kept", percent(counts.same_laser, counts.pulses)},
-                   {"% nothing met: nothing described, no detector", percent(counts.pulses - counts.met, counts.pulses)},
+  report.row(row, {{"% nothing met: nothing described, no detector", percent(counts.pulses - counts.met, counts.pulses)},
                    {"% one surface met: described once", percent(counts.described_once, counts.pulses)},
                    {"descriptions a hit", static_cast<double>(counts.described) / static_cast<double>(counts.hits)},
                    {"% of detections in closed form, without samples", percent(counts.in_closed_form, counts.detected)}});

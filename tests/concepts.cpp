@@ -152,6 +152,21 @@ struct PulseChanges : LeastSource<frame::Beam> {
 };
 static_assert(!BeamSource<PulseChanges>, "pulse() is not const");
 
+struct EmittersUnknown : LeastSource<frame::Beam> {
+  void emitters() const = delete;
+};
+static_assert(!BeamSource<EmittersUnknown>, "it does not list its emitters");
+
+struct EmittersChange : LeastSource<frame::Beam> {
+  std::vector<Emitter> emitters() { return {}; }
+};
+static_assert(!BeamSource<EmittersChange>, "emitters() is not const");
+
+struct LasersAlone : LeastSource<frame::Beam> {
+  std::vector<Laser> emitters() const { return {}; }
+};
+static_assert(!BeamSource<LasersAlone>, "a list of lasers is no table of emitters");
+
 // -------------------------------------------------------------------------------------------------------------- the scene
 
 static_assert(Accelerator<LeastAccelerator>);

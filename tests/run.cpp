@@ -95,11 +95,11 @@ struct Rain {
   mutable std::atomic<PulseIndex>* asked = nullptr;  ///< the slot after the highest that was asked for
   PulseIndex size() const noexcept { return pulses; }
   Tick duration() const noexcept { return Tick::of(pulses, 1e5); }
+  std::vector<Emitter> emitters() const { return std::vector<Emitter>(1); }
   std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     if (asked)
       for (PulseIndex seen = *asked; seen < i + 1 && !asked->compare_exchange_weak(seen, i + 1);) continue;
     Pulse<frame::World> p;
-    p.index = i;
     p.tick = Tick::of(i, 1e5);
     p.pose = {rotation_about(axis::right, -90_deg), {0.001 * static_cast<double>(i), 0, 10}};
     return p;

@@ -5,6 +5,7 @@
 #include <array>
 #include <csignal>
 #include <cstdlib>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -88,6 +89,19 @@ struct Changed : LeastSource<frame::Beam> {
 
 struct Hurried : LeastSource<frame::Beam> {
   Tick duration() const noexcept { return {3, 0}; }
+};
+
+struct Unlisted : LeastSource<frame::Beam> {
+  std::vector<Emitter> emitters() const { return {}; }
+};
+
+struct Crowded : LeastSource<frame::Beam> {
+  std::vector<Emitter> emitters() const { return std::vector<Emitter>(max_emitters + 1); }
+};
+
+struct Retuned : LeastSource<frame::Beam> {
+  mutable std::shared_ptr<double> scale = std::make_shared<double>(1);
+  std::vector<Emitter> emitters() const { return {{.footprint_scale = ++*scale}}; }
 };
 
 struct Longer : LeastSource<frame::Beam> {
@@ -265,13 +279,16 @@ TEST_CASE("motions that keep the law pass, and those that break it do not") {
 TEST_CASE("sources that keep the law pass, and those that break it do not") {
   CHECK(source_laws(LeastSource<frame::Beam>{}) == "");
   CHECK(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p.reset(); })) == "");
-  CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->index = 3; })), "calls itself"));
+  CHECK(names(source_laws(Changed([](PulseIndex i, BeamPulse& p) noexcept { p->emitter = i == 7; })), "pulse 7 is of emitter 1"));
+  CHECK(names(source_laws(Unlisted{}), "emitter 0, which is not listed"));
+  CHECK(names(source_laws(Crowded{}), "65536 emitters"));
+  CHECK(names(source_laws(Retuned{}), "emitters"));
   CHECK(
       names(source_laws(Changed([](PulseIndex i, BeamPulse& p) noexcept { p->tick.second = i == 6 ? 4 : p->tick.second; })), "decreases"));
   CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->tick.fraction = 1; })), "not normal"));
   CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->pose.rotation.x = 0.1; })), "not rigid"));
   static int asked = 0;
-  CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->scan_angle = 1e-9 * ++asked; })), "differs"));
+  CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->pose.position.x = 1e-9 * ++asked; })), "differs"));
   CHECK(names(source_laws(Hurried{}), "duration"));
 }
 
@@ -283,7 +300,8 @@ TEST_CASE("wrappers that keep the law pass, and those that break it do not") {
   CHECK(names(wrapped_source_laws(Longer{}, inner), "size"));
   CHECK(names(wrapped_source_laws(Hurried{}, inner), "duration"));
   CHECK(names(wrapped_source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->tick.fraction = 1e-12; }), inner), "tick"));
-  CHECK(names(wrapped_source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->laser.divergence = 1; }), inner), "laser"));
+  CHECK(names(wrapped_source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->emitter = 1; }), inner), "emitter of pulse"));
+  CHECK(names(wrapped_source_laws(Unlisted{}, inner), "emitters differ"));
 }
 
 TEST_CASE("footprints that keep the law pass, and those that break it do not") {

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -18,6 +21,7 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/channels.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
 #include "support/archetypes.hpp"
@@ -425,10 +429,14 @@ TEST_CASE("the footprint follows the divergence and the waist of each pulse") {
   struct Beams : support::LeastSource<frame::World> {
     std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
       auto p = support::LeastSource<frame::World>::pulse(i);
-      p->laser.divergence = i % 4 == 3 ? 0.2 : 0.01;
-      p->laser.waist_diameter = i % 4 == 1 || i % 4 == 2 ? 2 : 0;
-      p->laser.waist_range = i % 4 == 2 ? 10 : 0;
+      p->emitter = i % 4;
       return p;
+    }
+    std::vector<Emitter> emitters() const {
+      return {{.laser = {.divergence = 0.01}},
+              {.laser = {.divergence = 0.01, .waist_diameter = 2}},
+              {.laser = {.divergence = 0.01, .waist_diameter = 2, .waist_range = 10}},
+              {.laser = {.divergence = 0.2}}};
     }
   };
   /// A plate 10 m ahead, 0.06 m in radius.
@@ -543,6 +551,7 @@ TEST_CASE("the true pose casts the ray, and the reported one writes the point") 
   struct Mistaken {
     [[nodiscard]] PulseIndex size() const noexcept { return 1; }
     [[nodiscard]] Tick duration() const noexcept { return {1, 0}; }
+    [[nodiscard]] std::vector<Emitter> emitters() const { return std::vector<Emitter>(1); }
     [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex) const noexcept {
       Pulse<frame::World> p;
       p.pose = {rotation_about(axis::right, -90_deg), {0, 0, 10}};
@@ -556,4 +565,178 @@ TEST_CASE("the true pose casts the ray, and the reported one writes the point") 
   const Outcome out = survey(0, w);
   REQUIRE(out.echoes.size() == 1);
   CHECK(length(point_of(out.shot, out.echoes[0]) - Vec3{1, 12, 3}) < 1e-12);
+}
+
+namespace {
+
+/// A plate, and another behind its left half.
+struct TwoPlates {
+  std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+    if (!(ray.direction.y > 0)) return std::nullopt;
+    const Vec3 p = ray.origin + ray.direction * (100 - ray.origin.y) / ray.direction.y;
+    const bool left = p.x < 0.01;
+    return Hit{(left ? 103 : 100) / ray.direction.y, ray.direction.y, left ? 0.7 : 0.3, left ? 2U : 1U, 0};
+  }
+};
+
+/// Pulses straight ahead, of emitters as listed.
+struct Listed : support::LeastSource<frame::World> {
+  std::vector<Emitter> table;
+  std::vector<std::uint16_t> of_pulse = std::vector<std::uint16_t>(10);
+  explicit Listed(std::vector<Emitter> emitters) : table(std::move(emitters)) {}
+
+  std::vector<Emitter> emitters() const { return table; }
+  std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+    auto p = support::LeastSource<frame::World>::pulse(i);
+    p->emitter = of_pulse[i];
+    return p;
+  }
+};
+
+using Unit = ReceiverUnit<SunflowerFootprint, FullWaveform<>>;
+
+void check_equal(const Outcome& a, const Outcome& b) {
+  CHECK(a.shot.fate == b.shot.fate);
+  CHECK(a.energy == b.energy);
+  CHECK(a.shares == b.shares);
+  REQUIRE(a.echoes.size() == b.echoes.size());
+  for (std::size_t e = 0; e < a.echoes.size(); ++e) CHECK(support::detail::same(a.echoes[e], b.echoes[e]));
+  CHECK(std::equal(a.waveform.begin(), a.waveform.end(), b.waveform.begin(), b.waveform.end()));
+}
+
+}  // namespace
+
+TEST_CASE("two emitters of different beams and receivers in one survey give what each gives in a survey of its own") {
+  const Laser narrow{.peak_power = 5, .divergence = 0.2_mrad}, wide{.wavelength = 532_nm, .pulse_length = 6_ns, .divergence = 3_mrad};
+  const std::vector<Unit> units{
+      {SunflowerFootprint{19}, {.range_errors = {.deviation = 0.1}}, FullWaveform{WaveformSettings{.record_length = 60_ns}}},
+      {SunflowerFootprint{40}, {.diameter = 0.3, .range_max = 102}, FullWaveform{WaveformSettings{.returns_max = 1}}}};
+  const auto device = [](const Laser& first, std::uint16_t first_receiver, const Laser& second, std::uint16_t second_receiver) {
+    std::vector<Scanner> lasers{{.pulse_rate = 10, .pulses = 200, .laser = first, .receiver = first_receiver},
+                                {.pulse_rate = 10, .pulses = 200, .delay = 0.05, .laser = second, .receiver = second_receiver}};
+    return Platform{Tripod{}, Mount{}, Deflector{RotatingHead{.rate = 0.01_deg}, Deflector{Fixed{}, Channels{lasers}}}};
+  };
+  const TwoPlates plates;
+  const Survey both{device(narrow, 0, wide, 1), units, plates, 7};
+  const Survey first{device(narrow, 0, narrow, 0), units[0].footprint, plates, units[0].receiver, units[0].detector, 7};
+  const Survey second{device(wide, 0, wide, 0), units[1].footprint, plates, units[1].receiver, units[1].detector, 7};
+  auto u = both.workspace();
+  auto v = first.workspace();
+  auto w = second.workspace();
+  std::size_t echoes[2]{};
+  for (PulseIndex k = 0; k < both.size(); ++k) {
+    const PulseIndex i = k * 37 % both.size();  // also the same emitter twice in a row
+    CAPTURE(i);
+    const Outcome one = both(i, u);
+    CHECK(one.shot.channel == i % 2);
+    echoes[i % 2] += one.echoes.size();
+    check_equal(one, i % 2 == 0 ? first(i, v) : second(i, w));
+  }
+  CHECK(echoes[0] >= 200);
+  CHECK(echoes[1] > 50);  // of the near plate alone, which the beam leaves
+  CHECK(both.subrays() == 29);
+  CHECK(both.receivers().size() == 2);
+}
+
+TEST_CASE("each pulse is that of its emitter, whatever the table and the order") {
+  const TwoPlates plates;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Unit> units;
+    for (std::size_t k = 0; k < 1 + any.whole(3); ++k)
+      units.push_back({SunflowerFootprint{1 + any.whole(30)},
+                       {.diameter = any.uniform(0.05, 0.2), .range_errors = {.deviation = any.coin() ? 0.2 : 0}},
+                       FullWaveform{WaveformSettings{.threshold = any.log_uniform(1e-12, 1e-9)}}});
+    std::vector<Emitter> table(1 + any.whole(8));
+    for (Emitter& emitter : table)
+      emitter = {.laser = {.wavelength = any.coin() ? 532_nm : 1064_nm,
+                           .peak_power = any.log_uniform(0.1, 100),
+                           .divergence = any.coin() ? 1_mrad : any.log_uniform(1e-4, 1e-2),
+                           .waist_diameter = any.coin() ? 0 : 0.02},
+                 .footprint_scale = any.coin() ? 1 : any.uniform(0, 2),
+                 .receiver = static_cast<std::uint16_t>(any.whole(units.size())),
+                 .channel = static_cast<std::uint16_t>(any.whole(65536))};
+    Listed source{table};
+    for (std::uint16_t& emitter : source.of_pulse) emitter = static_cast<std::uint16_t>(any.whole(table.size()));
+    const Survey survey{source, units, plates, seed};
+    auto w = survey.workspace();
+    for (int k = 0; k < 30; ++k) {
+      const PulseIndex i = any.whole(10);
+      Emitter emitter = table[source.of_pulse[i]];
+      const Unit& unit = units[emitter.receiver];
+      emitter.receiver = 0;
+      const Survey alone{Listed{{emitter}}, unit.footprint, plates, unit.receiver, unit.detector, seed};
+      auto v = alone.workspace();
+      const Outcome of_many = survey(i, w);
+      CHECK(of_many.shot.channel == emitter.channel);
+      check_equal(of_many, alone(i, v));
+    }
+  }
+}
+
+TEST_CASE("twice the footprint is twice the divergence, to the bit") {
+  const TwoPlates plates;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const double across = any.log_uniform(1e-4, 1e-2), up = across * any.uniform(0.5, 2);
+    const Emitter scaled{.laser = {.divergence = {across, up}}, .footprint_scale = 2}, wide{.laser = {.divergence = {2 * across, 2 * up}}};
+    const Survey a{Listed{{scaled}}, SunflowerFootprint{50}, plates, clear_air, FullWaveform{}};
+    const Survey b{Listed{{wide}}, SunflowerFootprint{50}, plates, clear_air, FullWaveform{}};
+    auto v = a.workspace();
+    auto w = b.workspace();
+    check_equal(a(3, v), b(3, w));
+  }
+}
+
+TEST_CASE("the last of many emitters is refused as the first is") {
+  const TwoPlates plates;
+  const auto survey = [&](const std::vector<Emitter>& table) {
+    return Survey{Listed{table}, SunflowerFootprint{}, plates, Receiver{}, FullWaveform{}}.subrays();
+  };
+  const double nan = std::nan("");
+  CHECK(survey(std::vector<Emitter>(3000)) == 19);
+  for (const std::size_t k : {0U, 1U, 1500U, 2999U})
+    for (const Emitter& bad :
+         {Emitter{.laser = {.pulse_length = 1e-15}},  // too short for the samples of the detector
+          Emitter{.laser = {.wavelength = 1}}, Emitter{.laser = {.peak_power = nan}}, Emitter{.laser = {.divergence = {1_mrad, 0}}},
+          Emitter{.laser = {.waist_range = nan}}, Emitter{.footprint_scale = -1}, Emitter{.footprint_scale = 1001},
+          Emitter{.footprint_scale = nan}, Emitter{.receiver = 1}}) {
+      CAPTURE(k);
+      std::vector<Emitter> table(3000);
+      table[k] = bad;
+      CHECK_THROWS_AS(survey(table), SettingError);
+    }
+  CHECK_THROWS_AS(survey({}), SettingError);
+  CHECK_THROWS_AS(survey(std::vector<Emitter>(max_emitters + 1)), SettingError);
+}
+
+TEST_CASE("a device of more than 256 channels tells each of them") {
+  const TwoPlates plates;
+  const Platform source{Tripod{}, Mount{}, Deflector{Fixed{}, Channels{std::vector<Scanner>(1000, Scanner{.pulses = 3})}}};
+  const Survey survey{source, SingleRay{}, plates, Receiver{}, FirstHit{}};
+  auto w = survey.workspace();
+  for (PulseIndex i = 0; i < survey.size(); ++i) REQUIRE(survey(i, w).shot.channel == i % 1000);
+}
+
+TEST_CASE("receivers that do not fit together are refused") {
+  const TwoPlates plates;
+  const Listed source{std::vector<Emitter>(1)};
+  const auto survey = [&](const auto& units) { return Survey{source, units, plates}; };
+  const Unit usual{SunflowerFootprint{7}, Receiver{}, FullWaveform{}};
+  Unit coarse = usual, few = usual, tiny = usual;
+  coarse.detector = FullWaveform{WaveformSettings{.sample_interval = 1_ns}};
+  few.footprint = SunflowerFootprint{3};
+  tiny.receiver.diameter = 0;
+  CHECK_THROWS_AS(survey(std::vector<Unit>{}), SettingError);
+  CHECK_THROWS_AS(survey(std::vector{usual, coarse}), SettingError);
+  CHECK_THROWS_AS(survey(std::vector{usual, tiny}), SettingError);
+  CHECK(survey(std::vector{usual, few}).recorded_subrays() == 0);
+
+  using RecordedUnit = ReceiverUnit<WithSubrayRecord<SunflowerFootprint>, FirstHit>;
+  const RecordedUnit seven{WithSubrayRecord{SunflowerFootprint{7}}, Receiver{}, FirstHit{}},
+      three{WithSubrayRecord{SunflowerFootprint{3}}, Receiver{}, FirstHit{}};
+  CHECK(survey(std::vector{seven, seven}).recorded_subrays() == 7);
+  CHECK_THROWS_AS(survey(std::vector{seven, three}), SettingError);
 }

@@ -20,14 +20,17 @@ using namespace pulsecast;
 class Pulses {
  public:
   Pulses() = default;
-  explicit Pulses(std::vector<Pulse<frame::World>> all) : all_(std::make_shared<const std::vector<Pulse<frame::World>>>(std::move(all))) {}
+  Pulses(std::vector<Pulse<frame::World>> all, std::vector<Emitter> emitters)
+      : all_(std::make_shared<const std::vector<Pulse<frame::World>>>(std::move(all))), emitters_(std::move(emitters)) {}
 
   [[nodiscard]] PulseIndex size() const noexcept { return all_->size(); }
   [[nodiscard]] Tick duration() const noexcept { return all_->back().tick; }
+  [[nodiscard]] std::vector<Emitter> emitters() const { return emitters_; }
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return (*all_)[i]; }
 
  private:
   std::shared_ptr<const std::vector<Pulse<frame::World>>> all_ = std::make_shared<const std::vector<Pulse<frame::World>>>();
+  std::vector<Emitter> emitters_;
 };
 
 static_assert(WorldSource<Pulses>);
@@ -43,13 +46,12 @@ template <WorldSource Source, class Wanted>
   for (std::size_t run = 0; run < runs; ++run) {
     const PulseIndex end = source.size() * (run + 1) / runs;
     for (PulseIndex i = source.size() * run / runs; i < end && all.size() < (run + 1) * run_length; ++i) {
-      auto pulse = source.pulse(i);
+      const auto pulse = source.pulse(i);
       if (!pulse || !wanted(*pulse)) continue;
-      pulse->index = all.size();
       all.push_back(*pulse);
     }
   }
-  return Pulses(std::move(all));
+  return Pulses(std::move(all), source.emitters());
 }
 
 template <WorldSource Source>

@@ -56,21 +56,21 @@ template <class S>
 
 /// The pulses whose beams meet more than one thing: of the rays out to 1.2 radii some differ in what they meet, or by a hand's breadth.
 template <class AnyScene>
-[[nodiscard]] auto meets_an_edge(const AnyScene& scene) {
-  return
-      [&scene, footprint = SunflowerFootprint(37), hits = std::vector<Hit>(RayBundle::capacity)](const Pulse<frame::World>& pulse) mutable {
-        RayBundle rays;
-        rays.origin = pulse.origin();
-        rays.size = footprint.size();
-        for (std::size_t j = 0; j < rays.size; ++j)
-          rays.set_direction(j, pulse.pose.rotation * subray_direction(0.8 * footprint.offset(j), pulse.laser.divergence));
-        rays.pad();
-        scene.closest(rays, hits);
-        for (std::size_t j = 1; j < rays.size; ++j)
-          if (hits[j].met() != hits[0].met() || hits[j].object != hits[0].object || std::fabs(hits[j].range - hits[0].range) > 0.05)
-            return true;
-        return false;
-      };
+[[nodiscard]] auto meets_an_edge(const AnyScene& scene, const Laser& laser) {
+  return [&scene, &laser, footprint = SunflowerFootprint(37),
+          hits = std::vector<Hit>(RayBundle::capacity)](const Pulse<frame::World>& pulse) mutable {
+    RayBundle rays;
+    rays.origin = pulse.origin();
+    rays.size = footprint.size();
+    for (std::size_t j = 0; j < rays.size; ++j)
+      rays.set_direction(j, pulse.pose.rotation * subray_direction(0.8 * footprint.offset(j), laser.divergence));
+    rays.pad();
+    scene.closest(rays, hits);
+    for (std::size_t j = 1; j < rays.size; ++j)
+      if (hits[j].met() != hits[0].met() || hits[j].object != hits[0].object || std::fabs(hits[j].range - hits[0].range) > 0.05)
+        return true;
+    return false;
+  };
 }
 
 /// Rough ground, 350 m by 350 m in pixels of half a metre, or of several times that.
@@ -262,7 +262,7 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
   const Platform tripod{Tripod{.position = {0, -35, 0}}, Mount{.lever_arm = {0, 0, 1.7}},
                         Deflector{RotatingHead{.rate = -50_deg / scanner.duration().seconds(), .start = 25_deg},
                                   Deflector{PolygonMirror{.lines_per_second = 100_Hz, .sweep = 14_deg, .angle_min = -3_deg}, scanner}}};
-  s.pulses = sampled(tripod, pulses, meets_an_edge(whole));
+  s.pulses = sampled(tripod, pulses, meets_an_edge(whole, laser));
   s.exact = shared(in_double(whole));
   s.map = shared(whole);
   return s;
@@ -291,7 +291,7 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
                           Mount{.boresight = extrinsic({{axis::right, -90_deg}, {axis::up, -90_deg}})},
                           Deflector{OscillatingMirror{.cycles_per_second = 50_Hz, .half_angle = 2.5_deg},
                                     Scanner{.pulse_rate = 500_kHz, .pulses = 800'000, .laser = laser}}};
-  s.pulses = sampled(airplane, pulses, meets_an_edge(whole));
+  s.pulses = sampled(airplane, pulses, meets_an_edge(whole, laser));
   s.exact = shared(in_double(whole));
   s.map = shared(whole);
   return s;

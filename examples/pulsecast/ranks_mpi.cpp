@@ -50,7 +50,7 @@ class SharedLegRun final : public LegRun {
     const std::vector<fs::path> files = point_files(folder, prefix, o, channels);
     for (const fs::path& path : files) {
       MpiOutput* const points = add(shared_points(group, path, o, start_time));
-      if (files.size() > 1) points->channel = static_cast<std::uint8_t>(outputs_.size() - 1);
+      if (files.size() > 1) points->channel = static_cast<std::uint16_t>(outputs_.size() - 1);
     }
     if (o.write_waveform)
       add(std::make_unique<mpi::MpiRows<io::WaveformTextWriter, io::TextFileSettings>>(group, folder / (prefix + "_fullwave.txt"),

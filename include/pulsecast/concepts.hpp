@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/echo.hpp>
@@ -63,13 +64,16 @@ concept Ground = requires(const G ground, Vec2 place) {
 // ---------------------------------------------------------------------------------------------------------- pulse sources
 
 /// Pulses by number, in one frame. Slots may be requested in any order, and are empty if an optic blocks the pulse. `duration()` is the
-/// time from the first slot to one past the last.
-/// Law: pure in i; time does not decrease with i; the pose's rotation is unit; a wrapper of a source keeps its size and ticks.
+/// time from the first slot to one past the last. `emitters()` is the table of emitters, at most `max_emitters`, that pulses refer to by
+/// index. Surveys and wrappers ask for it once, when they are made; it may allocate.
+/// Law: pure in i; time does not decrease with i; the pose's rotation is unit; the table is always the same and lists the emitter of each
+/// pulse; a wrapper of a source keeps its size, ticks and emitters.
 template <class S, class Frame>
 concept PulseSource = std::copyable<S> && requires(const S s, PulseIndex i) {
   { s.size() } noexcept -> std::same_as<PulseIndex>;
   { s.duration() } noexcept -> std::same_as<Tick>;
   { s.pulse(i) } noexcept -> std::same_as<std::optional<Pulse<Frame>>>;
+  { s.emitters() } -> std::same_as<std::vector<Emitter>>;
 };
 
 template <class S>
@@ -174,7 +178,7 @@ struct Detection {
 /// Turns the returns of the subrays into echoes. Reflections are in the order of the subrays, without those of zero power. Its only
 /// writable memory is a `Workspace`, made once per worker by `workspace(subrays)`.
 /// Law: pure; echoes are sorted by range; their energy does not exceed that received.
-/// Not required: use of all reflections; randomness; `void validate(const Laser&) const`, which refuses lasers before the first pulse. A
+/// Not required: use of all reflections; randomness; `void validate(const Laser&) const`, which refuses lasers when the survey is made. A
 /// detector with random draws takes a last argument, `RandomKey key = {}`, with seed and pulse. It draws from a `purpose` of its own, as
 /// `Purpose{128}`, with any `subray` and `part`.
 template <class D>

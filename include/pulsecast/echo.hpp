@@ -59,7 +59,7 @@ struct Shot {
   Vec3 direction{};                ///< unit vector, in the world
   double scan_angle = 0;           ///< as in `Pulse` [rad]
   std::uint16_t leg = 0;           ///< number of the leg, from 0
-  std::uint8_t channel = 0;        ///< number of the emitter, from 0
+  std::uint16_t channel = 0;       ///< number of the emitter in its device, from 0
   Fate fate = Fate::missed;        ///< fate of the slot
   std::uint32_t first_echo = 0;    ///< index of its first echo in the batch
   std::uint32_t echoes = 0;        ///< number of its echoes

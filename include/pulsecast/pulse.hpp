@@ -3,11 +3,14 @@
 #ifndef PULSECAST_PULSE_HPP
 #define PULSECAST_PULSE_HPP
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/tick.hpp>
+#include <pulsecast/base/units.hpp>
 
 namespace pulsecast {
 
@@ -27,8 +30,8 @@ struct Divergence {
   friend bool operator==(const Divergence&, const Divergence&) = default;
 };
 
-/// Laser, in the terms of its data sheet. A beam from or through a point has a waist of zero diameter. `Scanner` enforces the ranges: they
-/// keep received powers, down to 10^-30 of the power sent, and their squares within a double's range.
+/// Laser, in the terms of its data sheet. A beam from or through a point has a waist of zero diameter. The ranges keep received powers,
+/// down to 10^-30 of the power sent, and their squares within a double's range.
 struct Laser {
   double wavelength = 1.064e-6;    ///< wavelength, from 10 nm to 1 cm [m]
   double peak_power = 4;           ///< peak power of a pulse, from 1e-20 to 1e20 [W]
@@ -40,33 +43,68 @@ struct Laser {
   /// True if the beam diverges from the exit point.
   [[nodiscard]] bool from_a_point() const noexcept { return waist_diameter == 0 && waist_range == 0; }
 
+  void validate() const {
+    using namespace literals;
+    require_within("Laser::wavelength", wavelength, 1e-8, 1e-2, "m");
+    require_within("Laser::peak_power", peak_power, 1e-20, 1e20, "W");
+    require_within("Laser::pulse_length", pulse_length, 1e-15, 1, "s");
+    require_within("Laser::divergence", divergence.across, 0, 30_deg, "rad");
+    require_within("Laser::divergence", divergence.up, 0, 30_deg, "rad");
+    if ((divergence.across > 0) != (divergence.up > 0))
+      throw SettingError("Laser::divergence", 0, "rad", "greater than 0 both across and up, or neither");
+    require_within("Laser::divergence (up by across)", divergence.aspect(), 1e-6, 1e6, "");
+    require_not_negative("Laser::waist_diameter", waist_diameter, "m");
+    require_finite("Laser::waist_range", waist_range, "m");
+  }
+
   friend bool operator==(const Laser&, const Laser&) = default;
 };
 
-/// One laser pulse, in a frame.
+/// Emitter of a device, and the receiver that hears it. A pulse source lists its emitters once, and each pulse names its own by number.
+struct Emitter {
+  Laser laser{};               ///< laser of its pulses
+  double footprint_scale = 1;  ///< factor of the footprint's offsets, from 0 to 1000; 1: in units of the 1/e^2 radius
+  std::uint16_t receiver = 0;  ///< index of its receiver in the survey
+  std::uint16_t channel = 0;   ///< number in its device, from 0, as in `Shot`
+
+  void validate() const {
+    laser.validate();
+    require_within("Emitter::footprint_scale", footprint_scale, 0, 1000, "");
+  }
+
+  friend bool operator==(const Emitter&, const Emitter&) = default;
+};
+
+inline constexpr std::size_t max_emitters = 65'535;  ///< limit of the emitters of a source
+
+namespace detail {
+
+/// Data of a pulse that no stage before the platform knows.
 template <class Frame>
-struct Pulse {
-  PulseIndex index = 0;                                ///< slot in its source
-  Tick tick{};                                         ///< emission time, since the survey's start
-  Pose<frame::Beam, Frame> pose{};                     ///< pose at the exit
-  std::optional<Pose<frame::Beam, Frame>> reported{};  ///< pose as known to the instrument; empty if exact
-  Laser laser{};                                       ///< laser that emitted the pulse
-  double scan_angle = 0;     ///< angle about the body's forward axis: 0 down, positive to the right, in [-pi, pi] [rad]; set by a platform
-  std::uint16_t leg = 0;     ///< number of its leg or strip, from 0
-  std::uint8_t channel = 0;  ///< number of the emitter in a multi-emitter device, from 0
+struct PulseOnPlatform {};
+
+template <>
+struct PulseOnPlatform<frame::World> {
+  std::optional<Pose<frame::Beam, frame::World>> reported{};  ///< pose as known to the instrument; empty if exact
+  double scan_angle = 0;  ///< angle about the body's forward axis: 0 down, positive to the right, in [-pi, pi] [rad]
+  std::uint16_t leg = 0;  ///< number of its leg or strip, from 0
+};
+
+}  // namespace detail
+
+/// One laser pulse, in a frame. In the world it has besides `reported`, `scan_angle` and `leg`.
+template <class Frame>
+struct Pulse : detail::PulseOnPlatform<Frame> {
+  Tick tick{};                      ///< emission time, since the survey's start
+  Pose<frame::Beam, Frame> pose{};  ///< pose at the exit
+  std::uint16_t emitter = 0;        ///< index in the emitters of its source
 
   Pulse() = default;
 
-  /// Transforms a pulse into the frame around its own. Drops `reported`, which is of no use there.
+  /// Transforms a pulse into the frame around its own.
   template <class Inner>
   Pulse(const Pose<Inner, Frame>& outer_from_inner, const Pulse<Inner>& p) noexcept
-      : index(p.index),
-        tick(p.tick),
-        pose(outer_from_inner * p.pose),
-        laser(p.laser),
-        scan_angle(p.scan_angle),
-        leg(p.leg),
-        channel(p.channel) {}
+      : tick(p.tick), pose(outer_from_inner * p.pose), emitter(p.emitter) {}
 
   /// Exit of the beam [m].
   [[nodiscard]] const Vec3& origin() const noexcept { return pose.position; }

@@ -34,80 +34,85 @@ struct Outcome {
   [[nodiscard]] double share(Fate fate) const noexcept { return shares[static_cast<std::size_t>(fate)]; }
 };
 
+/// Receiving half of a device, for the emitters with its index as their `Emitter::receiver`.
+template <Footprint Pattern, Detector Instrument>
+struct ReceiverUnit {
+  Pattern footprint;    ///< sampling of the beams
+  Receiver receiver;    ///< aperture, range gate and range errors
+  Instrument detector;  ///< detector
+};
+
 /// Simulation as a pure function from a pulse index to echoes. Immutable, so that pulses may be requested in any order and from any number
 /// of threads. Refers to the map, which must outlive it.
 template <WorldSource Source, Footprint Pattern, Target Map, Detector Instrument>
 class Survey {
  public:
+  /// Survey with one receiver for all emitters.
   /// @throws SettingError for settings out of range, footprint shares that do not sum to one, or a laser that the detector refuses
   Survey(Source source, Pattern footprint, const Map& map, Receiver receiver, Instrument detector, std::uint64_t seed = 0)
-      : source_(validated(std::move(source))),
-        footprint_(validated(std::move(footprint))),
-        map_(&map),
-        receiver_(validated(receiver)),
-        detector_(validated(std::move(detector))),
-        seed_(seed) {
-    require_whole_beam();
-    if constexpr (requires(const Laser& laser) { detector_.validate(laser); }) require_lasers();
+      : Survey(std::move(source), one_unit(std::move(footprint), std::move(receiver), std::move(detector)), map, seed) {}
+
+  /// Survey with a receiver for each group of emitters. Sample intervals must be equal, and numbers of subrays if they are recorded.
+  /// @throws SettingError as above, or for an emitter without a receiver
+  Survey(Source source, std::vector<ReceiverUnit<Pattern, Instrument>> receivers, const Map& map, std::uint64_t seed = 0)
+      : source_(validated(std::move(source))), map_(&map), receivers_(std::move(receivers)), seed_(seed) {
+    require_within("Survey::receivers (number)", static_cast<double>(receivers_.size()), 1, max_emitters, "");
+    for (Unit& unit : receivers_) {
+      unit = {validated(std::move(unit.footprint)), validated(std::move(unit.receiver)), validated(std::move(unit.detector))};
+      require_whole_beam(unit.footprint);
+    }
+    require_alike();
+    const std::vector<Emitter> emitters = source_.emitters();
+    require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), size() > 0 ? 1 : 0, max_emitters, "");
+    for (std::size_t e = 0; e < emitters.size(); ++e) add_emitter(validated(emitters[e]), {emitters.data(), e});
   }
 
   Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would dangle
+  Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, const Map&&, std::uint64_t = 0) = delete;
 
-  /// Directions, shares and exits of the subrays in the beam's frame, by number, padded to whole SIMD vectors.
-  struct SubrayDirections {
-    std::vector<double> x, y, z;  ///< components of the unit directions
-    std::vector<double> shares;   ///< shares of the energy
-    std::vector<Vec3> exits;      ///< exit points; not set for a beam from a point [m]
-  };
-
-  /// Scratch memory of one worker, with values cached between pulses.
+  /// Scratch memory of one worker.
   struct Workspace {
-    Laser laser;                                                        ///< laser of `budget` and `directions`
-    LinkBudget budget;                                                  ///< link budget of that laser
-    SubrayDirections directions;                                        ///< directions for that laser
-    std::array<Hit, RayBundle::capacity> hits;                          ///< hits of a bundle
-    std::vector<Reflection> reflections;                                ///< reflections of a pulse, with room for all subrays
-    std::vector<SubrayHit> subrays;                                     ///< all of a pulse, if recorded
-    decltype(std::declval<const Instrument&>().workspace(0)) detector;  ///< workspace of the detector
+    using OfDetector = decltype(std::declval<const Instrument&>().workspace(0));
+
+    std::array<Hit, RayBundle::capacity> hits;  ///< hits of a bundle
+    std::vector<Reflection> reflections;        ///< reflections of a pulse, with room for all subrays
+    std::vector<SubrayHit> subrays;             ///< all of a pulse, if recorded
+    std::vector<OfDetector> detectors;          ///< workspace of each receiver's detector
     struct {
-      double range = -1;  ///< last range requested [m]
-      double power = 0;   ///< power received from a white target there [W]
-    } white_target{};     ///< last result of `white_target_power`
+      std::uint16_t emitter = 0;  ///< emitter of the last pulse
+      double range = -1;          ///< last range requested for it [m]
+      double power = 0;           ///< power received from a white target there [W]
+    } white_target{};             ///< last result of `white_target_power`
   };
 
   /// Scratch memory for one worker.
   [[nodiscard]] Workspace workspace() const {
-    const Laser laser{};
-    const std::size_t n = footprint_.size();
-    const std::vector<double> column(n + RayBundle::lanes);
-    Workspace w{laser,
-                {receiver_, laser},
-                {column, column, column, column, std::vector<Vec3>(n)},
-                {},
-                std::vector<Reflection>(n),
-                std::vector<SubrayHit>(recorded_subrays()),
-                detector_.workspace(n)};
-    for (std::size_t j = 0; j < n; ++j) w.directions.shares[j] = footprint_.share(j);
-    fill_subrays(laser, w.directions);
+    Workspace w{{}, {}, std::vector<SubrayHit>(recorded_subrays()), {}};
+    std::size_t most = 0;
+    for (const Unit& unit : receivers_) {
+      const std::size_t n = unit.footprint.size();
+      most = std::max(most, n);
+      w.detectors.push_back(unit.detector.workspace(n));
+    }
+    w.reflections.resize(most);
     return w;
   }
 
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
-  /// Subrays of a pulse.
-  [[nodiscard]] std::size_t subrays() const noexcept { return footprint_.size(); }
+  /// Subrays of a pulse: the mean over the emitters, if their receivers differ.
+  [[nodiscard]] std::size_t subrays() const noexcept {
+    if (receivers_.size() == 1 || emitters_.empty()) return receivers_.front().footprint.size();
+    std::size_t sum = 0;
+    for (const EmitterConstants& e : emitters_) sum += receivers_[e.receiver].footprint.size();
+    return sum / emitters_.size();
+  }
   [[nodiscard]] std::size_t recorded_subrays() const noexcept { return recorded ? subrays() : 0; }  ///< subrays passed on with each pulse
   /// Source of the pulses.
   [[nodiscard]] const Source& source() const noexcept { return source_; }
-  /// Detector.
-  [[nodiscard]] const Instrument& detector() const noexcept { return detector_; }
-
-  /// Sample spacing of a waveform; 0 if the detector has none [s].
-  [[nodiscard]] double sample_interval() const noexcept {
-    if constexpr (requires { detector_.sample_interval(); })
-      return detector_.sample_interval();
-    else
-      return 0;
-  }
+  /// Receivers.
+  [[nodiscard]] std::span<const ReceiverUnit<Pattern, Instrument>> receivers() const noexcept { return receivers_; }
+  /// Sample spacing of a waveform; 0 if the detectors have none [s].
+  [[nodiscard]] double sample_interval() const noexcept { return interval_of(receivers_.front()); }
 
   /// Token that this survey shares with its copies alone: they may use each other's workspaces.
   [[nodiscard]] const std::shared_ptr<const void>& identity() const noexcept { return identity_; }
@@ -127,11 +132,14 @@ class Survey {
     out.shot.direction = reported.direction(axis::forward);
     out.shot.scan_angle = pulse->scan_angle;
     out.shot.leg = pulse->leg;
-    out.shot.channel = pulse->channel;
+    PULSECAST_ASSERT(pulse->emitter < emitters_.size());
+    const EmitterConstants& emitter = emitters_[pulse->emitter];
+    const Unit& unit = receivers_[emitter.receiver];
+    out.shot.channel = emitter.channel;
 
-    if (pulse->laser != w.laser) adapt_to(pulse->laser, w);
-    const EnergyByFate by_fate = trace(*pulse, reported, w);
-    out.energy = pulse->laser.peak_power * pulse->laser.pulse_length;
+    if (pulse->emitter != w.white_target.emitter) w.white_target = {pulse->emitter};
+    const EnergyByFate by_fate = trace(*pulse, i, emitter, reported, w);
+    out.energy = emitter.laser.peak_power * emitter.laser.pulse_length;
     out.subrays = w.subrays;
     out.shares[static_cast<std::size_t>(Fate::missed)] = by_fate.missed;
     out.shares[static_cast<std::size_t>(Fate::out_of_range)] = by_fate.out_of_range;
@@ -142,13 +150,14 @@ class Survey {
       return out;
     }
 
-    const Detection detection = detect(pulse->laser, i, {w.reflections.data(), by_fate.reflections}, w.detector);
+    const Detection detection =
+        detect(unit.detector, emitter.laser, i, {w.reflections.data(), by_fate.reflections}, w.detectors[emitter.receiver]);
+    const RangeErrors& errors = unit.receiver.range_errors;
     for (Echo& echo : detection.echoes) {
-      echo.reflectance = echo.amplitude / white_target_power(w, echo.range);
-      if (!receiver_.range_errors.none())
-        echo.range += receiver_.range_errors.at(echo.range, echo.cos_incidence, normal({seed_, i, echo.number, Purpose::range_noise}));
+      echo.reflectance = echo.amplitude / white_target_power(emitter.budget, w, echo.range);
+      if (!errors.none()) echo.range += errors.at(echo.range, echo.cos_incidence, normal({seed_, i, echo.number, Purpose::range_noise}));
     }
-    if (detection.echoes.size() > 1 && !receiver_.range_errors.none()) sort_by_range(detection.echoes);
+    if (detection.echoes.size() > 1 && !errors.none()) sort_by_range(detection.echoes);
     out.echoes = detection.echoes;
     out.waveform = detection.waveform;
     out.shot.waveform_start = detection.waveform_start;
@@ -158,35 +167,72 @@ class Survey {
   }
 
  private:
-  using Scratch = decltype(Workspace::detector);
+  using Unit = ReceiverUnit<Pattern, Instrument>;
+
+  /// Constants of an emitter, computed once for all pulses.
+  struct EmitterConstants {
+    Laser laser;             // laser of its pulses
+    LinkBudget budget;       // link budget of that laser and its receiver
+    std::uint32_t beam;      // index of its subrays, which it shares with emitters of equal beams
+    std::uint16_t receiver;  // index of its receiver
+    std::uint16_t channel;   // number in its device
+  };
+
+  static std::vector<Unit> one_unit(Pattern footprint, Receiver receiver, Instrument detector) {
+    std::vector<Unit> one;
+    one.push_back({std::move(footprint), std::move(receiver), std::move(detector)});
+    return one;
+  }
 
   /// Refuses a footprint whose shares do not sum to the whole beam.
-  void require_whole_beam() const {
+  static void require_whole_beam(const Pattern& footprint) {
     double sum = 0;
-    for (std::size_t j = 0; j < footprint_.size(); ++j) {
-      const double share = footprint_.share(j);
+    for (std::size_t j = 0; j < footprint.size(); ++j) {
+      const double share = footprint.share(j);
       require_not_negative("Footprint::share", share, "");
-      require_finite("Footprint::offset (length)", length(footprint_.offset(j)), "");
+      require_finite("Footprint::offset (length)", length(footprint.offset(j)), "");
       sum += share;
     }
     require_within("Footprint::share (sum)", sum, 1 - 1e-6, 1 + 1e-6, "");  // tolerates the rounding of a sum of a million
   }
 
-  /// Refuses a laser that the detector refuses, as sampled: the first slots, of every channel, and some at random numbers.
-  void require_lasers() const {
-    constexpr PulseIndex first = 256;
-    for (PulseIndex k = 0; k < 2 * first && k < size(); ++k) {
-      const PulseIndex i = k < first ? k : static_cast<PulseIndex>(uniform({.pulse = k}) * static_cast<double>(size()));
-      if (const auto pulse = source_.pulse(i)) detector_.validate(pulse->laser);
+  /// Refuses receivers whose results do not fit in one batch.
+  void require_alike() const {
+    const double interval = sample_interval(), subrays = static_cast<double>(receivers_.front().footprint.size());
+    for (const Unit& unit : receivers_) {
+      if (interval_of(unit) != interval) throw SettingError("Survey::receivers (sample interval)", interval_of(unit), "s", "equal for all");
+      if (recorded) require_within("Survey::receivers (subrays)", static_cast<double>(unit.footprint.size()), subrays, subrays, "");
     }
   }
 
-  [[nodiscard]] Detection detect(const Laser& laser, PulseIndex i, std::span<Reflection> reflections, Scratch& scratch) const noexcept {
-    const RandomKey key{.seed = seed_, .pulse = i};
-    if constexpr (requires { detector_.detect(laser, reflections, scratch, key); })
-      return detector_.detect(laser, reflections, scratch, key);
+  static double interval_of(const Unit& unit) noexcept {
+    if constexpr (requires { unit.detector.sample_interval(); })
+      return unit.detector.sample_interval();
     else
-      return detector_.detect(laser, reflections, scratch);
+      return 0;
+  }
+
+  /// Adds a valid emitter to the `earlier` ones. Throws a `SettingError` if it has no receiver, or if the detector refuses its laser.
+  void add_emitter(const Emitter& emitter, std::span<const Emitter> earlier) {
+    require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
+    const Unit& unit = receivers_[emitter.receiver];
+    if constexpr (requires { unit.detector.validate(emitter.laser); }) unit.detector.validate(emitter.laser);
+    const auto alike = std::find_if(earlier.begin(), earlier.end(), [&](const Emitter& other) {
+      return other.receiver == emitter.receiver && SubrayDirections::equal(other, emitter);
+    });
+    const std::size_t beam = alike == earlier.end() ? beams_.size() : emitters_[static_cast<std::size_t>(alike - earlier.begin())].beam;
+    if (beam == beams_.size()) beams_.emplace_back(unit.footprint, emitter);
+    emitters_.push_back(
+        {emitter.laser, LinkBudget(unit.receiver, emitter.laser), static_cast<std::uint32_t>(beam), emitter.receiver, emitter.channel});
+  }
+
+  [[nodiscard]] Detection detect(const Instrument& detector, const Laser& laser, PulseIndex i, std::span<Reflection> reflections,
+                                 typename Workspace::OfDetector& scratch) const noexcept {
+    const RandomKey key{.seed = seed_, .pulse = i};
+    if constexpr (requires { detector.detect(laser, reflections, scratch, key); })
+      return detector.detect(laser, reflections, scratch, key);
+    else
+      return detector.detect(laser, reflections, scratch);
   }
 
   /// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are renumbered in order.
@@ -200,25 +246,6 @@ class Survey {
 
   static constexpr bool recorded = requires { requires bool{Pattern::recorded}; };
 
-  void fill_subrays(const Laser& laser, SubrayDirections& directions) const noexcept {
-    for (std::size_t j = 0; j < footprint_.size(); ++j) {
-      const Vec3 direction = subray_direction(footprint_.offset(j), laser.divergence);
-      directions.x[j] = direction.x;
-      directions.y[j] = direction.y;
-      directions.z[j] = direction.z;
-      if (!laser.from_a_point()) directions.exits[j] = subray_exit(footprint_.offset(j), laser);
-    }
-  }
-
-  void adapt_to(const Laser& laser, Workspace& w) const noexcept {
-    if (laser.divergence != w.laser.divergence || laser.waist_diameter != w.laser.waist_diameter ||
-        laser.waist_range != w.laser.waist_range)
-      fill_subrays(laser, w.directions);
-    w.budget = LinkBudget(receiver_, laser);
-    w.white_target = {};
-    w.laser = laser;
-  }
-
   /// Shares of a pulse's energy by fate, and counts of its subrays.
   struct EnergyByFate {
     double missed = 0, out_of_range = 0, absorbed = 0, reflected = 0;
@@ -227,31 +254,34 @@ class Survey {
   };
 
   /// Traces all subrays; sets the reflections, and the subrays if they are recorded.
-  EnergyByFate trace(const Pulse<frame::World>& pulse, const Pose<frame::Beam, frame::World>& reported, Workspace& w) const noexcept {
+  EnergyByFate trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& emitter,
+                     const Pose<frame::Beam, frame::World>& reported, Workspace& w) const noexcept {
+    const SubrayDirections& beam = beams_[emitter.beam];
+    const Receiver& receiver = receivers_[emitter.receiver].receiver;
     EnergyByFate by_fate;
     RayBundle rays;
     rays.origin = pulse.origin();
-    rays.wavelength = pulse.laser.wavelength;
+    rays.wavelength = emitter.laser.wavelength;
     rays.tick = pulse.tick;
     rays.seed = seed_;
-    rays.pulse = pulse.index;
+    rays.pulse = i;
     const Matrix3 world_from_beam = matrix_of(pulse.pose.rotation);
-    const bool from_a_point = pulse.laser.from_a_point();
-    const std::size_t subrays = footprint_.size();
+    const bool from_a_point = beam.from_a_point();
+    const std::size_t subrays = receivers_[emitter.receiver].footprint.size();
     RayBundle::Column power;
     for (std::size_t first = 0; first < subrays; first += rays.size) {
       rays.first_subray = static_cast<std::uint32_t>(first);
       rays.size = std::min(from_a_point ? RayBundle::capacity : 1, subrays - first);
-      if (!from_a_point) rays.origin = pulse.origin() + world_from_beam * w.directions.exits[first];
-      to_world(world_from_beam, w.directions, first, rays);
+      if (!from_a_point) rays.origin = pulse.origin() + world_from_beam * beam.exits[first];
+      beam.to_world(world_from_beam, first, rays);
       intersect(rays, w.hits);
-      received_power(w, first, rays.size, power);
+      received_power(emitter.budget, beam, first, rays.size, w, power);
       for (std::size_t j = 0; j < rays.size; ++j) {
         const Hit& hit = w.hits[j];
-        const double share = w.directions.shares[first + j];
+        const double share = beam.shares[first + j];
         if constexpr (recorded) {
-          const Vec3 exit = from_a_point ? Vec3{} : w.directions.exits[first + j];
-          const Vec3 direction{w.directions.x[first + j], w.directions.y[first + j], w.directions.z[first + j]};
+          const Vec3 exit = from_a_point ? Vec3{} : beam.exits[first + j];
+          const Vec3 direction{beam.x[first + j], beam.y[first + j], beam.z[first + j]};
           w.subrays[first + j] = {hit, 0, hit.met() ? reported.point(exit + hit.range * direction) : Vec3{}};
         }
         if (!hit.met()) {
@@ -259,7 +289,7 @@ class Survey {
           continue;
         }
         ++by_fate.hits;
-        if (!receiver_.in_gate(hit.range)) {
+        if (!receiver.in_gate(hit.range)) {
           by_fate.out_of_range += share;
           continue;
         }
@@ -276,35 +306,23 @@ class Survey {
     return by_fate;
   }
 
-  /// Sets the directions of a bundle from those of subrays `first` on.
-  static void to_world(const Matrix3& world_from_beam, const SubrayDirections& directions, std::size_t first, RayBundle& rays) noexcept {
-    const Vec3 across = world_from_beam[0], ahead = world_from_beam[1], above = world_from_beam[2];
-    for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
-      const simd::Doubles x = simd::load<simd::Doubles>(directions.x[first + j]), y = simd::load<simd::Doubles>(directions.y[first + j]),
-                          z = simd::load<simd::Doubles>(directions.z[first + j]);
-      simd::store(simd::Doubles(x * across.x + y * ahead.x + z * above.x), rays.x[j]);
-      simd::store(simd::Doubles(x * across.y + y * ahead.y + z * above.y), rays.y[j]);
-      simd::store(simd::Doubles(x * across.z + y * ahead.z + z * above.z), rays.z[j]);
-    }
-    rays.pad();
-  }
-
   /// Power received from a white Lambertian target facing the beam at `range` [W]. Cached: a single ray's echo has the range of its hit.
-  static double white_target_power(Workspace& w, double range) noexcept {
-    if (range != w.white_target.range) w.white_target = {range, w.budget.power(1, 1, range)};
+  static double white_target_power(const LinkBudget& budget, Workspace& w, double range) noexcept {
+    if (range != w.white_target.range) w.white_target = {w.white_target.emitter, range, budget.power(1, 1, range)};
     return w.white_target.power;
   }
 
   /// Power received from the hits of a bundle, without the range gate [W]. Undefined for misses.
-  static void received_power(Workspace& w, std::size_t first, std::size_t size, RayBundle::Column& power) noexcept {
+  static void received_power(const LinkBudget& budget, const SubrayDirections& beam, std::size_t first, std::size_t size, Workspace& w,
+                             RayBundle::Column& power) noexcept {
     if (size == 1) {
-      power[0] = w.directions.shares[first] * w.hits[0].backscatter * white_target_power(w, w.hits[0].range);
+      power[0] = beam.shares[first] * w.hits[0].backscatter * white_target_power(budget, w, w.hits[0].range);
       return;
     }
     for (std::size_t j = 0; j < size; j += simd::lane_count) {
       const simd::Doubles range = simd::generate([&](std::size_t lane) { return w.hits[j + lane].range; });
       const simd::Doubles backscatter = simd::generate([&](std::size_t lane) { return w.hits[j + lane].backscatter; });
-      simd::store(w.budget.power(simd::load<simd::Doubles>(w.directions.shares[first + j]), backscatter, range), power[j]);
+      simd::store(budget.power(simd::load<simd::Doubles>(beam.shares[first + j]), backscatter, range), power[j]);
     }
   }
 
@@ -316,10 +334,10 @@ class Survey {
   }
 
   Source source_;
-  Pattern footprint_;
   const Map* map_;
-  Receiver receiver_;
-  Instrument detector_;
+  std::vector<Unit> receivers_;
+  std::vector<EmitterConstants> emitters_;  // by number
+  std::vector<SubrayDirections> beams_;     // distinct beams of the emitters
   std::uint64_t seed_;
   std::shared_ptr<const void> identity_{new char};  // compiles faster than make_shared
 };

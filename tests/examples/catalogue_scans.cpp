@@ -17,6 +17,8 @@
 #include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/document.hpp>
 #include <pulsecast/helios/survey.hpp>
+#include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/survey.hpp>
 
 #include <doctest/doctest.h>
 
@@ -95,10 +97,10 @@ Scan scan(const SurveySettings& survey) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
   const CompiledSurvey compiled = compile_survey(survey, ground);
   const Floor floor;
-  const auto receiver = [](const ChannelSettings& channel) -> ChannelReceiver<FullWaveform<>> {
+  const auto receiver = [](const ChannelSettings& channel) -> ReceiverUnit<RingFootprint, FullWaveform<>> {
     return {RingFootprint(2), survey_receiver(channel), FullWaveform(survey_waveform(channel))};
   };
-  const auto run = survey_by_channel(survey.scanner, compiled.source, floor, 7, receiver);
+  const Survey run(compiled.source, ReceiverGroups(survey.scanner).units(survey.scanner, receiver), floor, 7);
   auto workspace = run.workspace();
   Scan out;
   const PulseIndex slots = run.size(), step = std::max<PulseIndex>(1, slots / 1200) | 1;

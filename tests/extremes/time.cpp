@@ -179,10 +179,11 @@ TEST_CASE("the phase of each optic") {
 
 TEST_CASE("channels and legs") {
   const Channels device{std::vector<Scanner>(16, Scanner{.pulse_rate = rate / 16.0, .pulses = all / 16})};
+  const std::vector<Emitter> emitters = device.emitters();
   std::uint64_t wrong = 0;
   for (PulseIndex i = late; i < late + window; ++i) {
     const auto pulse = device.pulse(i);
-    wrong += pulse && pulse->channel == i % 16 && pulse->index == i && pulse->tick == Tick::of(i / 16, rate / 16.0) ? 0 : 1;
+    wrong += pulse && emitters[pulse->emitter].channel == i % 16 && pulse->tick == Tick::of(i / 16, rate / 16.0) ? 0 : 1;
   }
   row(quantity, "Channels, 20 000 slots from 1e12: of a wrong channel or time", 0, static_cast<double>(wrong), 0);
 

@@ -432,9 +432,12 @@ TEST_CASE("channels fire together, each from its own place") {
   const auto a = compiled.source.pulse(20), b = compiled.source.pulse(21);
   REQUIRE((a && b));
   CHECK(a->tick == b->tick);
-  CHECK(b->channel == 1);
+  const std::vector<Emitter> emitters = compiled.source.emitters();
+  REQUIRE(emitters.size() == 2);
+  CHECK(emitters[b->emitter].channel == 1);
   CHECK(b->pose.position.z == 0.3);
-  CHECK(b->laser.wavelength == 1550e-9);
+  CHECK(emitters[b->emitter].laser.wavelength == 1550e-9);
+  CHECK(emitters[b->emitter].receiver == 0);
 }
 
 TEST_CASE("noise of the platform is reported alone, as the settings say, and can be left out") {

@@ -3,18 +3,22 @@
 #include <pulsecast/platform/legs.hpp>
 
 #include <concepts>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
 #include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/channels.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
 #include <doctest/doctest.h>
 
 #include "support/archetypes.hpp"
+#include "support/generators.hpp"
 #include "support/laws.hpp"
 
 using namespace pulsecast;
@@ -45,7 +49,6 @@ TEST_CASE("legs stand end to end: their slots are numbered through, and time run
     CAPTURE(i);
     const auto p = legs.pulse(i);
     REQUIRE(p);
-    CHECK(p->index == i);
     CHECK(p->tick.seconds() == expected[i].first);
     CHECK(p->leg == expected[i].second);
     CHECK(legs.leg_of(i) == expected[i].second);
@@ -120,6 +123,62 @@ TEST_CASE("legs of one strip carry its number") {
   CHECK(legs.pulse(0)->leg == 7);
   CHECK(legs.pulse(6)->leg == 7);
   CHECK(legs.pulse(9)->leg == 3);
+}
+
+TEST_CASE("legs share equal tables of emitters, and the pulses of each keep their own") {
+  const auto pass = [](std::vector<double> wavelengths, PulseIndex pulses = 4) {
+    std::vector<Deflector<FixedBeam, Scanner>> channels;
+    for (const double wavelength : wavelengths)
+      channels.emplace_back(FixedBeam{}, Scanner{.pulses = pulses, .laser = {.wavelength = wavelength}});
+    return Platform{Tripod{}, Mount{}, Channels{channels}};
+  };
+  const std::vector green_and_red{532_nm, 905_nm}, red_and_green{905_nm, 532_nm};
+  const std::vector passes{pass(green_and_red), pass(red_and_green), pass(green_and_red),
+                           pass({1_um}, 0),     pass(red_and_green), pass({532_nm})};
+  const Legs legs(passes);
+  CHECK(support::source_laws(legs) == "");
+  const std::vector<Emitter> emitters = legs.emitters();
+  CHECK(emitters.size() == 4);  // the last leg's table is the begin of the first one's
+  PulseIndex i = 0;
+  for (const auto& platform : passes)
+    for (PulseIndex k = 0; k < platform.size(); ++k, ++i) {
+      CAPTURE(i);
+      CHECK(emitters[legs.pulse(i)->emitter] == platform.emitters()[platform.pulse(k)->emitter]);
+    }
+  CHECK(i == legs.size());
+}
+
+TEST_CASE("each leg finds its emitters among those of all, whatever they are") {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Platform<Tripod, Deflector<FixedBeam, Channels<Scanner>>>> passes;
+    for (std::size_t k = 0; k < 30; ++k) {
+      std::vector<Scanner> channels(1 + any.whole(5), Scanner{.pulses = any.whole(4)});
+      for (Scanner& channel : channels) {
+        channel.footprint_scale = static_cast<double>(1 + any.whole(2));
+        channel.receiver = static_cast<std::uint16_t>(any.whole(2));
+      }
+      passes.push_back({Tripod{}, Mount{}, Deflector{FixedBeam{}, Channels{channels}}});
+    }
+    const Legs legs(passes);
+    REQUIRE(support::source_laws(legs) == "");
+    const std::vector<Emitter> emitters = legs.emitters();
+    PulseIndex i = 0;
+    for (const auto& platform : passes)
+      for (PulseIndex k = 0; k < platform.size(); ++k, ++i)
+        REQUIRE(emitters[legs.pulse(i)->emitter] == platform.emitters()[platform.pulse(k)->emitter]);
+  }
+}
+
+TEST_CASE("more emitters than a pulse can number are refused") {
+  const auto pass = [](double wavelength) {
+    return Platform{
+        Tripod{}, Mount{},
+        Deflector{FixedBeam{}, Channels{std::vector<Scanner>(40'000, Scanner{.pulses = 1, .laser = {.wavelength = wavelength}})}}};
+  };
+  CHECK(Legs(std::vector{pass(532_nm), pass(532_nm)}).emitters().size() == 40'000);
+  CHECK_THROWS_WITH_AS((Legs(std::vector{pass(532_nm), pass(905_nm)})), doctest::Contains("Legs::legs (emitters) is 80000"), SettingError);
 }
 
 TEST_CASE("no legs are refused") { CHECK_THROWS_AS(Legs(std::vector<Pass>{}), SettingError); }

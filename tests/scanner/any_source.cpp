@@ -22,8 +22,8 @@ using namespace pulsecast;
 namespace {
 using Fixed = Deflector<FixedBeam, Scanner>;
 using Swinging = Deflector<OscillatingMirror, Scanner>;
-using Emitter = AnySource<Fixed, Swinging>;
-static_assert(InstrumentSource<Emitter> && !WorldSource<Emitter>);
+using Channel = AnySource<Fixed, Swinging>;
+static_assert(InstrumentSource<Channel> && !WorldSource<Channel>);
 
 const Scanner scanner{.pulse_rate = 1000, .pulses = 50};
 }  // namespace
@@ -31,15 +31,17 @@ const Scanner scanner{.pulse_rate = 1000, .pulses = 50};
 TEST_CASE("emitters behind different optics make one device, and each is what it is alone") {
   const Fixed fixed{FixedBeam{aimed_at(0.1, 0.2)}, scanner};
   const Swinging swinging{OscillatingMirror{}, scanner};
-  const Channels device{std::vector<Emitter>{fixed, swinging}};
+  const Channels device{std::vector<Channel>{fixed, swinging}};
   REQUIRE(device.size() == 100);
+  const std::vector<Emitter> emitters = device.emitters();
+  REQUIRE(emitters.size() == 2);
   CHECK(device.duration() == scanner.duration());
   for (PulseIndex i = 0; i < device.size(); ++i) {
     const auto pulse = device.pulse(i), alone = i % 2 == 0 ? fixed.pulse(i / 2) : swinging.pulse(i / 2);
     REQUIRE(pulse.has_value());
     CHECK(pulse->direction() == alone->direction());
     CHECK(pulse->tick == alone->tick);
-    CHECK(pulse->channel == i % 2);
+    CHECK(emitters[pulse->emitter].channel == i % 2);
   }
 }
 

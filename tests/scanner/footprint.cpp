@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/scanner/footprint.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -219,4 +222,39 @@ TEST_CASE("subrays are unit, and without divergence all go along the axis") {
     CHECK(std::atan2(std::hypot(d.x, d.z), d.y) == support::relative(radius(offset) * divergence / 2, 1e-12));
     CHECK(subray_direction(offset, 0) == axis::forward);
   }
+}
+
+TEST_CASE("the subrays of an emitter are those of its footprint, scaled, in any bundle of the world") {
+  const SunflowerFootprint footprint{70};
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const Emitter emitter{.laser = {.divergence = any.log_uniform(1e-5, 1e-2), .waist_diameter = any.coin() ? 0.1 : 0},
+                          .footprint_scale = any.uniform(0, 3)};
+    const SubrayDirections subrays(footprint, emitter);
+    CHECK(subrays.from_a_point() == emitter.laser.from_a_point());
+    const Rotation turn = any.rotation();
+    RayBundle rays;
+    for (std::size_t first = 0; first < 70; first += rays.size) {
+      rays.size = std::min<std::size_t>(70 - first, 1 + any.whole(RayBundle::capacity));
+      subrays.to_world(matrix_of(turn), first, rays);
+      for (std::size_t k = 0; k < rays.size; ++k) {
+        const std::size_t j = first + k;
+        const Vec2 offset = emitter.footprint_scale * footprint.offset(j);
+        CHECK(subrays.shares[j] == footprint.share(j));
+        CHECK(length(rays.direction(k) - turn * subray_direction(offset, emitter.laser.divergence)) < 1e-14);
+        if (!subrays.from_a_point()) CHECK(subrays.exits[j] == subray_exit(offset, emitter.laser));
+      }
+    }
+  }
+}
+
+TEST_CASE("emitters have equal subrays if beam and scale are equal") {
+  const auto equal = [](const Emitter& other) { return SubrayDirections::equal({}, other); };
+  CHECK(equal({.laser = {.wavelength = 532e-9, .peak_power = 1, .pulse_length = 1e-9}, .receiver = 1, .channel = 2}));
+  CHECK_FALSE(equal({.laser = {.divergence = 1e-3}}));
+  CHECK_FALSE(equal({.laser = {.divergence = {0.3e-3, 1e-3}}}));
+  CHECK_FALSE(equal({.laser = {.waist_diameter = 1e-3}}));
+  CHECK_FALSE(equal({.laser = {.waist_range = 1}}));
+  CHECK_FALSE(equal({.footprint_scale = 2}));
 }

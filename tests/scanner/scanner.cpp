@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -18,12 +19,12 @@ TEST_CASE("a scanner sends its pulses at a constant rate, forward, from its orig
   CHECK(scanner.duration() == Tick{10, 0});
   const auto p = scanner.pulse(250001);
   REQUIRE(p);
-  CHECK(p->index == 250001);
   CHECK(p->tick == Tick{2, 50001 / 1e5});
   CHECK(p->origin() == Vec3{});
   CHECK(p->direction() == axis::forward);
-  CHECK(p->laser.wavelength == 1550_nm);
-  CHECK(p->leg == 0);
+  CHECK(p->emitter == 0);
+  const Scanner wide{.laser = {.wavelength = 532_nm}, .footprint_scale = 2, .receiver = 3};
+  CHECK(wide.emitters() == std::vector<Emitter>{{.laser = wide.laser, .footprint_scale = 2, .receiver = 3}});
 }
 
 TEST_CASE("a scanner with a delay sends each pulse that much after its slot begins") {

@@ -26,14 +26,14 @@ struct LeastTrajectory {
   Pose<frame::Body, frame::World> at(Tick) const noexcept { return {}; }
 };
 
-/// Ten pulses, one a second.
+/// Ten pulses, one a second, of one emitter.
 template <class Frame>
 struct LeastSource {
   PulseIndex size() const noexcept { return 10; }
   Tick duration() const noexcept { return {10, 0}; }
+  std::vector<Emitter> emitters() const { return std::vector<Emitter>(1); }
   std::optional<Pulse<Frame>> pulse(PulseIndex i) const noexcept {
     Pulse<Frame> p;
-    p.index = i;
     p.tick = {static_cast<std::int64_t>(i), 0};
     return p;
   }

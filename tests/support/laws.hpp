@@ -13,6 +13,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 #include <pulsecast/concepts.hpp>
@@ -54,11 +55,20 @@ inline bool same(const Laser& a, const Laser& b) noexcept {
          same(a.waist_diameter, b.waist_diameter) && same(a.waist_range, b.waist_range);
 }
 
+inline bool same(const Emitter& a, const Emitter& b) noexcept {
+  return same(a.laser, b.laser) && same(a.footprint_scale, b.footprint_scale) && a.receiver == b.receiver && a.channel == b.channel;
+}
+
+inline bool same(const std::vector<Emitter>& a, const std::vector<Emitter>& b) noexcept {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Emitter& x, const Emitter& y) { return same(x, y); });
+}
+
 template <class Frame>
 bool same(const std::optional<Pulse<Frame>>& a, const std::optional<Pulse<Frame>>& b) noexcept {
   if (!a || !b) return !a && !b;
-  return a->index == b->index && same(a->tick, b->tick) && same(a->pose, b->pose) && same(a->reported, b->reported) &&
-         same(a->laser, b->laser) && same(a->scan_angle, b->scan_angle) && a->leg == b->leg && a->channel == b->channel;
+  if constexpr (std::is_same_v<Frame, frame::World>)
+    if (!same(a->reported, b->reported) || !same(a->scan_angle, b->scan_angle) || a->leg != b->leg) return false;
+  return same(a->tick, b->tick) && same(a->pose, b->pose) && a->emitter == b->emitter;
 }
 
 inline bool same(const Echo& a, const Echo& b) noexcept {
@@ -113,7 +123,8 @@ template <class M>
   return {};
 }
 
-/// Pure in i, numbered, in order of time, rigid. Asks `samples` slots evenly spread over the source and those next to them.
+/// Pure in i, in order of time, rigid, of an emitter in the table. Asks `samples` slots evenly spread over the source and those next to
+/// them.
 template <class S>
 [[nodiscard]] std::string source_laws(const S& source, std::size_t samples = 200) {
   const PulseIndex size = source.size();
@@ -130,11 +141,15 @@ template <class S>
   if (auto broken = detail::purity_laws(source, slots.size(), [&](const S& s, std::size_t k) { return s.pulse(slots[k]); });
       !broken.empty())
     return broken;
+  if (auto broken = detail::purity_laws(source, 1, [](const S& s, std::size_t) { return s.emitters(); }); !broken.empty())
+    return "emitters: " + broken;
+  const std::vector<Emitter> emitters = source.emitters();
+  if (emitters.size() > max_emitters) return detail::sentence("there are ", emitters.size(), " emitters");
   std::optional<Tick> first, last;
   for (const PulseIndex i : slots) {
     const auto pulse = source.pulse(i);
     if (!pulse) continue;
-    if (pulse->index != i) return detail::sentence("slot ", i, " calls itself ", pulse->index);
+    if (pulse->emitter >= emitters.size()) return detail::sentence("pulse ", i, " is of emitter ", pulse->emitter, ", which is not listed");
     if (!detail::rigid(pulse->pose)) return detail::sentence("the pose of pulse ", i, " is not rigid");
     if (!(pulse->tick.fraction >= 0 && pulse->tick.fraction < 1)) return detail::sentence("the tick of pulse ", i, " is not normal");
     if (last && pulse->tick < *last) return detail::sentence("time decreases at pulse ", i);
@@ -145,18 +160,19 @@ template <class S>
   return {};
 }
 
-/// What wraps a source keeps its size, its duration and its ticks, and opens no slot that is blocked inside.
+/// What wraps a source keeps its size, its duration, its ticks and its emitters, and opens no slot that is blocked inside.
 template <class Outer, class Inner>
 [[nodiscard]] std::string wrapped_source_laws(const Outer& outer, const Inner& inner, std::size_t samples = 1000) {
   if (outer.size() != inner.size()) return "the size differs from that of what is inside";
   if (!detail::same(outer.duration(), inner.duration())) return "the duration differs from that of what is inside";
+  if (!detail::same(outer.emitters(), inner.emitters())) return "the emitters differ from those of what is inside";
   for (std::size_t k = 0; k < samples && k < outer.size(); ++k) {
     const PulseIndex i = outer.size() <= samples ? k : outer.size() / samples * k;
     const auto out = outer.pulse(i);
     const auto in = inner.pulse(i);
     if (out && !in) return detail::sentence("slot ", i, " is blocked inside but not outside");
     if (out && !detail::same(out->tick, in->tick)) return detail::sentence("the tick of pulse ", i, " differs from that inside");
-    if (out && !detail::same(out->laser, in->laser)) return detail::sentence("the laser of pulse ", i, " differs from that inside");
+    if (out && out->emitter != in->emitter) return detail::sentence("the emitter of pulse ", i, " differs from that inside");
   }
   return {};
 }

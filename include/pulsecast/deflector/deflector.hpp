@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
@@ -24,6 +25,7 @@ class Deflector {
 
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return source_.duration(); }
+  [[nodiscard]] std::vector<Emitter> emitters() const { return source_.emitters(); }
 
   [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept {
     const auto inner = source_.pulse(i);

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_PLATFORM_LEGS_HPP
 #define PULSECAST_PLATFORM_LEGS_HPP
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -24,27 +25,28 @@ struct Leg {
 };
 
 /// Passes in sequence, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's own clock starts at zero; the survey's
-/// time continues from leg to leg.
+/// time continues from leg to leg. Legs with equal tables of emitters share one.
 template <WorldSource P>
 class Legs {
  public:
-  /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total. Throws a `SettingError`.
+  /// From 1 to 65535 legs, of at most 2^60 slots and 1e15 s in total, with at most `max_emitters`. Throws a `SettingError`.
   explicit Legs(std::vector<Leg<P>> legs) {
     require_within("Legs::legs (number)", static_cast<double>(legs.size()), 1, 65535, "");
     PulseIndex first = 0;
     Tick start{};
     for (Leg<P>& leg : legs) {
       starts_.push_back({first, start, leg.strip.value_or(static_cast<std::uint16_t>(starts_.size()))});
-      if (leg.active) {
+      if (leg.active && leg.platform.size() > 0) {
         require_within("Legs::legs (slots)", static_cast<double>(first) + static_cast<double>(leg.platform.size()), 0, 0x1p60, "");
         first += leg.platform.size();
+        starts_.back().first_emitter = add_emitters(leg.platform.emitters());
       }
       if constexpr (DrawsByLeg<P>) leg.platform.draw_for_leg(static_cast<std::uint32_t>(legs_.size()));
       start = start + leg.platform.duration();
       require_within("Legs::legs (duration)", start.seconds(), 0, 1e15, "s");
       legs_.push_back(std::move(leg.platform));
     }
-    end_ = {first, start, 0};
+    end_ = {first, start};
   }
 
   /// All legs active.
@@ -52,14 +54,16 @@ class Legs {
 
   [[nodiscard]] PulseIndex size() const noexcept { return end_.pulse; }
   [[nodiscard]] Tick duration() const noexcept { return end_.tick; }
+  /// Emitters of the legs that have slots.
+  [[nodiscard]] std::vector<Emitter> emitters() const { return emitters_; }
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     const std::size_t k = leg_of(i);
     auto p = legs_[k].pulse(i - starts_[k].pulse);
     if (p) {
-      p->index = i;
       p->tick = starts_[k].tick + p->tick;
       p->leg = starts_[k].number;
+      p->emitter = static_cast<std::uint16_t>(starts_[k].first_emitter + p->emitter);
     }
     return p;
   }
@@ -80,7 +84,18 @@ class Legs {
     PulseIndex pulse;
     Tick tick;
     std::uint16_t number = 0;
+    std::uint16_t first_emitter = 0;  // index of its table in that of all legs
   };
+
+  /// Index of a leg's table in that of all legs, where it is appended unless an earlier leg has an equal one.
+  std::uint16_t add_emitters(const std::vector<Emitter>& table) {
+    const auto known = std::search(emitters_.begin(), emitters_.end(), table.begin(), table.end());
+    const auto first = static_cast<std::uint16_t>(known - emitters_.begin());
+    if (known != emitters_.end()) return first;
+    require_within("Legs::legs (emitters)", static_cast<double>(emitters_.size() + table.size()), 0, max_emitters, "");
+    emitters_.insert(emitters_.end(), table.begin(), table.end());
+    return first;
+  }
 
   static std::vector<Leg<P>> active(std::vector<P> platforms) {
     std::vector<Leg<P>> legs;
@@ -90,6 +105,7 @@ class Legs {
 
   std::vector<P> legs_;
   std::vector<Start> starts_;
+  std::vector<Emitter> emitters_;
   Start end_{};
 };
 

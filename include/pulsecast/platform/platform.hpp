@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
@@ -38,6 +39,7 @@ class Platform {
 
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return source_.duration(); }
+  [[nodiscard]] std::vector<Emitter> emitters() const { return source_.emitters(); }
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     const auto inner = source_.pulse(i);
@@ -47,12 +49,17 @@ class Platform {
 
   /// Pulse of the instrument, transformed into the world. Never empty; optional so that `pulse` returns it without a copy.
   [[nodiscard]] std::optional<Pulse<frame::World>> placed(const Pulse<frame::Instrument>& inner) const noexcept {
-    const Pose<frame::Body, frame::World> world_from_body = path_.at(inner.tick);
-    PULSECAST_ASSERT(world_from_body.rigid());
-    std::optional<Pulse<frame::World>> out(std::in_place, world_from_body * mount_.pose(), inner);
+    std::optional<Pulse<frame::World>> out(std::in_place, instrument_at(inner.tick), inner);
     const Vec3 on_body = mount_.boresight * inner.direction();
     out->scan_angle = std::atan2(on_body.x, -on_body.z);
     return out;
+  }
+
+  /// Pose of the instrument in the world.
+  [[nodiscard]] Pose<frame::Instrument, frame::World> instrument_at(Tick t) const noexcept {
+    const Pose<frame::Body, frame::World> world_from_body = path_.at(t);
+    PULSECAST_ASSERT(world_from_body.rigid());
+    return world_from_body * mount_.pose();
   }
 
   /// Trajectory of the body.

@@ -59,6 +59,7 @@ class WithPoseErrors {
 
   [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
+  [[nodiscard]] std::vector<Emitter> emitters() const { return truth_.emitters(); }
   /// Platform without errors.
   [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }
 
@@ -74,7 +75,7 @@ class WithPoseErrors {
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     const auto inner = truth_.source().pulse(i);
     if (!inner) return std::nullopt;
-    auto out = truth_.placed(jittered(*inner));
+    auto out = truth_.placed(jittered(*inner, i));
     const Pose<frame::Instrument, frame::Body> calibrated{truth_.mount().boresight * errors_.boresight_error,
                                                           truth_.mount().lever_arm + errors_.lever_arm_error};
     out->reported = reported(inner->tick) * calibrated * inner->pose;
@@ -106,10 +107,10 @@ class WithPoseErrors {
     return deviation * normals(std::bit_cast<std::uint64_t>(t.fraction), purpose, static_cast<std::uint32_t>(t.second));
   }
 
-  Pulse<frame::Instrument> jittered(Pulse<frame::Instrument> p) const noexcept {
+  Pulse<frame::Instrument> jittered(Pulse<frame::Instrument> p, PulseIndex i) const noexcept {
     if (errors_.angular_jitter == 0) return p;
-    const double aside = errors_.angular_jitter * drawn(p.index, 0, Purpose::angular_jitter);
-    const double upwards = errors_.angular_jitter * drawn(p.index, 1, Purpose::angular_jitter);
+    const double aside = errors_.angular_jitter * drawn(i, 0, Purpose::angular_jitter);
+    const double upwards = errors_.angular_jitter * drawn(i, 1, Purpose::angular_jitter);
     p.pose.rotation = p.pose.rotation * rotation_about(axis::up, -aside) * rotation_about(axis::right, upwards);
     return p;
   }

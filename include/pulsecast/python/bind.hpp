@@ -48,8 +48,8 @@ struct PointRow {
   std::uint16_t leg;               ///< number of the leg, from 0
   std::uint8_t return_number;      ///< return number, from 1 in order of range
   std::uint8_t number_of_returns;  ///< returns of its pulse, 255 if more
-  std::uint8_t channel;            ///< number of the emitter, from 0
-  std::uint8_t spare[5]{};         ///< zeros outside the array, so that equal rows have equal bytes
+  std::uint16_t channel;           ///< number of the emitter, from 0
+  std::uint8_t spare[4]{};         ///< zeros outside the array, so that equal rows have equal bytes
 };
 
 /// Pulse sent, as a row of a NumPy array.
@@ -63,9 +63,9 @@ struct PulseRow {
   std::int64_t first_sample, first_point;        ///< indices into the other arrays
   std::uint32_t samples, points;                 ///< numbers of samples and points
   std::uint16_t leg;                             ///< number of the leg, from 0
-  std::uint8_t channel;                          ///< number of the emitter, from 0
+  std::uint16_t channel;                         ///< number of the emitter, from 0
   std::uint8_t fate;                             ///< as in `Fate`
-  std::uint8_t spare[4]{};                       ///< zeros outside the array
+  std::uint8_t spare[3]{};                       ///< zeros outside the array
 };
 
 }  // namespace pulsecast::python

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
@@ -28,6 +29,9 @@ class AnySource {
   }
   [[nodiscard]] Tick duration() const noexcept {
     return std::visit([](const auto& s) noexcept { return s.duration(); }, source_);
+  }
+  [[nodiscard]] std::vector<Emitter> emitters() const {
+    return std::visit([](const auto& s) { return s.emitters(); }, source_);
   }
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const First&>().pulse(i)) {
     return std::visit([i](const auto& s) noexcept { return s.pulse(i); }, source_);

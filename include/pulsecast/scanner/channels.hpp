@@ -3,6 +3,7 @@
 #ifndef PULSECAST_SCANNER_CHANNELS_HPP
 #define PULSECAST_SCANNER_CHANNELS_HPP
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -22,14 +23,20 @@ concept SourceInSomeFrame = BeamSource<S> || InstrumentSource<S> || WorldSource<
 
 /// Device with many emitters, each a pulse source with its own laser, origin and optic, all in one frame and of one type. Of n channels,
 /// slot i is slot `i / n` of channel `i % n`. Emitters that fire in turn differ in `Scanner::delay`, which must not decrease from channel
-/// to channel; emitters that fire together share it.
+/// to channel; emitters that fire together share it. The emitters of channel k have the channel number k.
 template <detail::SourceInSomeFrame Source>
 class Channels {
  public:
-  /// From 1 to 256 channels, all of one size and duration. Throws a `SettingError`.
+  /// From 1 to `max_emitters` channels, all of one size and duration, with at most as many emitters. Throws a `SettingError`.
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {
-    require_within("Channels::channels (number)", static_cast<double>(channels_.size()), 1, 256, "");
-    for (Source& c : channels_) c = validated(std::move(c));
+    require_within("Channels::channels (number)", static_cast<double>(channels_.size()), 1, max_emitters, "");
+    std::size_t emitters = 0;
+    for (Source& c : channels_) {
+      c = validated(std::move(c));
+      first_emitter_.push_back(static_cast<std::uint16_t>(emitters));
+      emitters += c.emitters().size();
+      require_within("Channels::channels (emitters)", static_cast<double>(emitters), 0, max_emitters, "");
+    }
     const double size = static_cast<double>(channels_[0].size()), duration = channels_[0].duration().seconds();
     for (const Source& c : channels_) {
       require_within("Channels::channels (slots)", static_cast<double>(c.size()), size, size, "");
@@ -40,14 +47,20 @@ class Channels {
 
   [[nodiscard]] PulseIndex size() const noexcept { return channels_.size() * channels_[0].size(); }
   [[nodiscard]] Tick duration() const noexcept { return channels_[0].duration(); }
+  [[nodiscard]] std::vector<Emitter> emitters() const {
+    std::vector<Emitter> all;
+    for (std::size_t k = 0; k < channels_.size(); ++k)
+      for (Emitter& emitter : channels_[k].emitters()) {
+        emitter.channel = static_cast<std::uint16_t>(k);
+        all.push_back(emitter);
+      }
+    return all;
+  }
 
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const Source&>().pulse(i)) {
     const std::size_t k = i % channels_.size();
     auto p = channels_[k].pulse(i / channels_.size());
-    if (p) {
-      p->index = i;
-      p->channel = static_cast<std::uint8_t>(k);
-    }
+    if (p) p->emitter = static_cast<std::uint16_t>(first_emitter_[k] + p->emitter);
     return p;
   }
 
@@ -55,23 +68,31 @@ class Channels {
   [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }
 
  private:
-  /// Throws a `SettingError` if time decreases from one channel to the next. Samples some rounds spread over the whole; channels of one
-  /// rate show it in any round.
+  /// Throws a `SettingError` if time decreases from one pulse to the next in the first or the last rounds: two of each, and more until
+  /// every channel has fired, as an optic may block it at first. Channels of one rate show their order in any round.
   void require_order() const {
-    const PulseIndex n = channels_.size(), rounds = channels_[0].size(), step = rounds / 64 + 1;
-    for (PulseIndex round = 0; round < rounds; round += step) {
-      std::optional<Tick> last;
-      for (PulseIndex i = round * n; i < (round + 2) * n && i < size(); ++i) {
-        const auto p = pulse(i);
-        if (p && last && p->tick < *last)
-          throw SettingError("Channels::channels (pulse of channel " + std::to_string(i % n) + ")", p->tick.seconds(), "s",
-                             "at least that of the previous channel, " + detail::to_text(last->seconds()) + " s");
-        if (p) last = p->tick;
-      }
-    }
+    constexpr PulseIndex max_waiting = 4096;  // slots in which a channel may be blocked
+    const PulseIndex n = channels_.size(), some = 2 * n + max_waiting;
+    std::vector<bool> fired(channels_.size());
+    std::size_t waiting = channels_.size();
+    std::optional<Tick> last;
+    const auto require_next = [&](PulseIndex i) {
+      const auto p = pulse(i);
+      if (!p) return;
+      if (last && p->tick < *last)
+        throw SettingError("Channels::channels (pulse of channel " + std::to_string(i % n) + ")", p->tick.seconds(), "s",
+                           "at least that of the previous channel, " + detail::to_text(last->seconds()) + " s");
+      last = p->tick;
+      if (!fired[i % n]) --waiting;
+      fired[i % n] = true;
+    };
+    PulseIndex i = 0;
+    for (; i < std::min(size(), some) && (i < 2 * n || waiting > 0); ++i) require_next(i);
+    for (i = std::max(i, size() - std::min(size(), 2 * n)); i < size(); ++i) require_next(i);
   }
 
   std::vector<Source> channels_;
+  std::vector<std::uint16_t> first_emitter_;  // of each channel, in the table of all
 };
 
 }  // namespace pulsecast

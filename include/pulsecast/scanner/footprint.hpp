@@ -12,7 +12,9 @@
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/geometry/bundle.hpp>
 
 namespace pulsecast {
 
@@ -178,6 +180,50 @@ static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
   const Vec3 at_waist = 0.5 * laser.waist_diameter * Vec3{-offset.y, 0, offset.x * laser.divergence.aspect()};
   return at_waist - direction * (laser.waist_range / direction.y) + Vec3{0, laser.waist_range, 0};
 }
+
+/// Subrays of an emitter's beam, in the beam's frame. Columns of numbers are padded to whole SIMD vectors.
+struct SubrayDirections {
+  std::vector<double> x, y, z;  ///< components of the unit directions
+  std::vector<double> shares;   ///< shares of the energy
+  std::vector<Vec3> exits;      ///< exit points; empty for a beam from a point [m]
+
+  /// Takes a valid footprint and emitter.
+  template <Footprint Pattern>
+  SubrayDirections(const Pattern& footprint, const Emitter& emitter)
+      : x(footprint.size() + RayBundle::lanes), y(x), z(x), shares(x), exits(emitter.laser.from_a_point() ? 0 : footprint.size()) {
+    for (std::size_t j = 0; j < footprint.size(); ++j) {
+      const Vec2 offset = emitter.footprint_scale * footprint.offset(j);
+      const Vec3 direction = subray_direction(offset, emitter.laser.divergence);
+      x[j] = direction.x;
+      y[j] = direction.y;
+      z[j] = direction.z;
+      shares[j] = footprint.share(j);
+      if (!exits.empty()) exits[j] = subray_exit(offset, emitter.laser);
+    }
+  }
+
+  /// True if the beam leaves through a point.
+  [[nodiscard]] bool from_a_point() const noexcept { return exits.empty(); }
+
+  /// True if two emitters with the same footprint have equal subrays.
+  [[nodiscard]] static bool equal(const Emitter& a, const Emitter& b) noexcept {
+    return a.footprint_scale == b.footprint_scale && a.laser.divergence == b.laser.divergence &&
+           a.laser.waist_diameter == b.laser.waist_diameter && a.laser.waist_range == b.laser.waist_range;
+  }
+
+  /// Sets the directions of a bundle, whose size is set, from those of subrays `first` on.
+  void to_world(const Matrix3& world_from_beam, std::size_t first, RayBundle& rays) const noexcept {
+    const Vec3 across = world_from_beam[0], ahead = world_from_beam[1], above = world_from_beam[2];
+    for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
+      const simd::Doubles right = simd::load<simd::Doubles>(x[first + j]), forward = simd::load<simd::Doubles>(y[first + j]),
+                          up = simd::load<simd::Doubles>(z[first + j]);
+      simd::store(simd::Doubles(right * across.x + forward * ahead.x + up * above.x), rays.x[j]);
+      simd::store(simd::Doubles(right * across.y + forward * ahead.y + up * above.y), rays.y[j]);
+      simd::store(simd::Doubles(right * across.z + forward * ahead.z + up * above.z), rays.z[j]);
+    }
+    rays.pad();
+  }
+};
 
 }  // namespace pulsecast
 

@@ -3,6 +3,7 @@
 #include <pulsecast/helios/detail/receivers.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/run.hpp>
+#include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/survey.hpp>
 
 #include "support/relative.hpp"
 
@@ -39,13 +42,13 @@ SurveySettings survey_of(const std::vector<ChannelSettings>& channels) {
   return survey;
 }
 
-ChannelReceiver<FullWaveform<>> receiver_of(const ChannelSettings& channel) {
+ReceiverUnit<RingFootprint, FullWaveform<>> receiver_of(const ChannelSettings& channel) {
   return {RingFootprint(static_cast<std::size_t>(channel.waveform.rings)), survey_receiver(channel),
           FullWaveform(survey_waveform(channel))};
 }
 
 auto build(const SurveySettings& survey, const Wall& wall) {
-  return survey_by_channel(survey.scanner, compile_survey(survey, no_ground).source, wall, 3, receiver_of);
+  return Survey(compile_survey(survey, no_ground).source, ReceiverGroups(survey.scanner).units(survey.scanner, receiver_of), wall, 3);
 }
 
 ChannelSettings ahead() {
@@ -103,10 +106,11 @@ TEST_CASE("channels that receive alike share a receiver, whatever they send, and
   const SurveySettings survey = survey_of(channels);
   const Wall wall;
   int made = 0;
-  const auto run = survey_by_channel(survey.scanner, compile_survey(survey, no_ground).source, wall, 3, [&](const ChannelSettings& c) {
+  const auto units = ReceiverGroups(survey.scanner).units(survey.scanner, [&](const ChannelSettings& c) {
     ++made;
     return receiver_of(c);
   });
+  const Survey run(compile_survey(survey, no_ground).source, units, wall, 3);
   CHECK(made == 1);
   const Survey plain(compile_survey(survey, no_ground).source, RingFootprint(3), wall, survey_receiver(channels[0]),
                      FullWaveform(survey_waveform(channels[0])), 3);
@@ -151,8 +155,21 @@ TEST_CASE("channels that do not fit together are refused") {
   const Wall wall;
   CHECK_THROWS_AS((void)build(survey, wall), SettingError);
   const auto legs = compile_survey(survey, no_ground).source;
-  CHECK_THROWS_AS((SurveyByChannel<Wall, FullWaveform<>>(legs, {receiver_of(channels[0])}, {0, 1}, wall, 0)), SettingError);
-  CHECK_THROWS_AS((SurveyByChannel<Wall, FullWaveform<>>(legs, {receiver_of(channels[0])}, {}, wall, 0)), SettingError);
+  CHECK_THROWS_AS(Survey(legs, std::vector{receiver_of(channels[0])}, wall), SettingError);
+}
+
+TEST_CASE("channels with equal receivers are one group, and pulses carry its number, however many there are") {
+  std::vector<ChannelSettings> channels(300, ahead());
+  for (std::size_t k = 0; k < channels.size(); ++k) channels[k].accuracy = 0.001 * static_cast<double>(k % 3);
+  const SurveySettings survey = survey_of(channels);
+  const ReceiverGroups groups(survey.scanner);
+  CHECK(groups.channels == std::vector<std::size_t>{0, 1, 2});
+  const std::vector<Emitter> emitters = compile_survey(survey, no_ground).source.emitters();
+  REQUIRE(emitters.size() == 300);
+  for (std::size_t k = 0; k < 300; ++k) {
+    CHECK(emitters[k].receiver == k % 3);
+    CHECK(emitters[k].channel == k);
+  }
 }
 
 }  // namespace

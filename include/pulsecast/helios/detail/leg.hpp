@@ -24,6 +24,7 @@
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
+#include <pulsecast/scanner/channels.hpp>
 
 /// Pulses of one leg of a survey, for any platform and scanner.
 namespace pulsecast::helios {
@@ -76,32 +77,25 @@ struct SurveyNoise {
   }
 };
 
-/// One leg of a survey: channels that fire together, on one platform.
+/// One leg of a survey: channels that fire together, on one platform. Where optics or platform err, it reports poses as documents define
+/// them: optics by formulas of their deflection, platforms by noise of each slot, which `PoseErrors` has not.
 class SurveyLeg {
  public:
-  SurveyLeg(SurveyPath path, Mount mount, std::vector<SurveyChannel> channels, Tick duration, SurveyNoise noise)
-      : path_(std::move(path)), mount_(validated(mount)), channels_(std::move(channels)), duration_(duration), noise_(std::move(noise)) {
-    require_within("SurveyLeg::channels (number)", static_cast<double>(channels_.size()), 1, 256, "");
-    noisy_ = !noise_.none();
-  }
+  SurveyLeg(SurveyPath path, const Mount& mount, std::vector<SurveyChannel> channels, SurveyNoise noise)
+      : truth_(std::move(path), mount, Channels(std::move(channels))), noise_(std::move(noise)), noisy_(!noise_.none()) {}
 
-  [[nodiscard]] PulseIndex size() const noexcept { return channels_.size() * channels_.front().size(); }
-  [[nodiscard]] Tick duration() const noexcept { return duration_; }
+  [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
+  [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
+  [[nodiscard]] std::vector<Emitter> emitters() const { return truth_.emitters(); }
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
-    const std::size_t k = i % channels_.size();
-    const auto inner = channels_[k].pulse(i / channels_.size());
-    if (!inner) return std::nullopt;
-    const Pose<frame::Instrument, frame::World> instrument = path_.at(inner->tick) * mount_.pose();
-    std::optional<Pulse<frame::World>> out(std::in_place, instrument, *inner);
-    out->index = i;
-    out->channel = static_cast<std::uint8_t>(k);
-    const Vec3 on_body = mount_.boresight * inner->direction();
-    out->scan_angle = std::atan2(on_body.x, -on_body.z);
-    const SurveyOptic& optic = channels_[k].moving();
-    if (optic.errs()) out->reported = instrument * optic.reported(inner->tick);
+    auto out = truth_.pulse(i);
+    if (!out) return out;
+    const std::size_t channels = truth_.source().channels().size();
+    const SurveyOptic& optic = truth_.source().channels()[i % channels].moving();
+    if (optic.errs()) out->reported = truth_.instrument_at(out->tick) * optic.reported(out->tick);
     if (noisy_) {
-      const PulseIndex slot = i / channels_.size();
+      const PulseIndex slot = i / channels;
       const Vec3 turn = noise_.draw(noise_.attitude, slot, Purpose::attitude_noise);
       if (!out->reported) out->reported = out->pose;
       out->reported->position += noise_.draw(noise_.position, slot, Purpose::position_noise);
@@ -111,16 +105,12 @@ class SurveyLeg {
     return out;
   }
 
-  [[nodiscard]] const SurveyPath& path() const noexcept { return path_; }
-  [[nodiscard]] const std::vector<SurveyChannel>& channels() const noexcept { return channels_; }
+  [[nodiscard]] const SurveyPath& path() const noexcept { return truth_.trajectory(); }
 
  private:
-  SurveyPath path_;
-  Mount mount_;
-  std::vector<SurveyChannel> channels_;
-  Tick duration_;
+  Platform<SurveyPath, Channels<SurveyChannel>> truth_;
   SurveyNoise noise_;
-  bool noisy_ = false;
+  bool noisy_;
 };
 
 static_assert(WorldSource<SurveyLeg>);

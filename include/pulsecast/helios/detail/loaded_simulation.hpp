@@ -33,7 +33,9 @@
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/run.hpp>
+#include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/survey.hpp>
 
 /// Surveys with their scenes, ready to run.
 namespace pulsecast::helios {
@@ -242,7 +244,7 @@ class LoadedSimulation final : public Simulation {
   void connect(const ScannerSettings& scanner, bool ideal, std::vector<std::string>& odd) {
     const Vec3 size = scene_->bounds().empty() ? Vec3{} : scene_->bounds().size();
     const bool waveforms = settings_.waveforms && !ideal, noisy = settings_.waveform_noise && !ideal;
-    const auto receiver = [&](const ChannelSettings& channel) -> ChannelReceiver<FullWaveform<Width>> {
+    const auto receiver = [&](const ChannelSettings& channel) -> ReceiverUnit<RingFootprint, FullWaveform<Width>> {
       const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
       WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0);
       limits_.limit_record(waveform, odd);
@@ -251,8 +253,9 @@ class LoadedSimulation final : public Simulation {
       return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings))), survey_receiver(channel),
               FullWaveform<Width>(waveform, {}, noise)};
     };
-    using Pipeline = SurveyByChannel<SurveyScene, FullWaveform<Width>>;
-    pipeline_ = std::make_unique<SurveyOf<Pipeline>>(survey_by_channel(scanner, compiled_->source, *scene_, seed_, receiver));
+    using Pipeline = Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, FullWaveform<Width>>;
+    std::vector<ReceiverUnit<RingFootprint, FullWaveform<Width>>> units = ReceiverGroups(survey_.scanner).units(scanner, receiver);
+    pipeline_ = std::make_unique<SurveyOf<Pipeline>>(Pipeline(compiled_->source, std::move(units), *scene_, seed_));
   }
 
   SurveySettings survey_;

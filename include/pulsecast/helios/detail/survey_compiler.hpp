@@ -15,6 +15,7 @@
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/leg_paths.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/helios/detail/receivers.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/platform/legs.hpp>
@@ -35,6 +36,7 @@ class SurveyCompiler {
     if (survey_.scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
     survey_.scanner.validate();
     survey_.platform.validate();
+    const ReceiverGroups receivers(survey_.scanner);
     std::vector<Leg<SurveyLeg>> legs;
     std::vector<CompiledSurvey::Leg> compiled;
     std::vector<std::string> warnings = paths_.warnings();
@@ -58,11 +60,13 @@ class SurveyCompiler {
       const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
       if (!leg.scanner.active || teleports(leg)) optic_time = 0;
       std::vector<SurveyChannel> channels;
-      for (const ChannelSettings& channel : survey_.scanner.channels)
+      for (std::size_t c = 0; c < survey_.scanner.channels.size(); ++c)
         channels.push_back(paths_.of_leg(k, [&] {
+          const ChannelSettings& channel = survey_.scanner.channels[c];
           return SurveyChannel(
               slots > 0 ? optic(channel, leg.scanner, rate, optic_time) : SurveyOptic{},  // without slots, it is never called
-              Scanner{.pulse_rate = rate, .pulses = slots, .laser = survey_laser(channel, leg.scanner)});
+              Scanner{
+                  .pulse_rate = rate, .pulses = slots, .laser = survey_laser(channel, leg.scanner), .receiver = receivers.of_channel[c]});
         }));
       const Tick time = Tick::of(slots, rate);
       if (leg.scanner.active) optic_time += time.seconds();
@@ -73,7 +77,7 @@ class SurveyCompiler {
       }
       const Mount mount{.lever_arm = survey_.platform.mount.position, .boresight = survey_.platform.mount.rotation.rotation()};
       legs.push_back(
-          {SurveyLeg(paths_[k].path, mount, std::move(channels), time, std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
+          {SurveyLeg(paths_[k].path, mount, std::move(channels), std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
       const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
       compiled.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size;

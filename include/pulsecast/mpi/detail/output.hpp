@@ -122,7 +122,7 @@ class MpiOutput {
   /// Writes the rest and gives the file its final name.
   virtual void close() = 0;
 
-  std::optional<std::uint8_t> channel{};  ///< only emitter whose pulses are wanted; all if empty
+  std::optional<std::uint16_t> channel{};  ///< only emitter whose pulses are wanted; all if empty
 
  protected:
   [[nodiscard]] MpiGroup& group() const noexcept { return group_; }

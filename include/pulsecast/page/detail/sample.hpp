@@ -32,7 +32,7 @@ struct PagePoint {
   std::uint16_t classification = 0;      ///< as in `Echo`
   std::uint16_t leg = 0;                 ///< as in `Shot`
   std::uint8_t number = 1, returns = 1;  ///< number of the echo, total of its pulse
-  std::uint8_t channel = 0;              ///< as in `Shot`
+  std::uint16_t channel = 0;             ///< as in `Shot`
 };
 
 /// Pseudo-random number of an echo, independent of the rest of the cloud. Source: Appleby 2011, MurmurHash3, fmix64.
