@@ -157,39 +157,32 @@ struct ResultChunk : ResultBuffer {
   }
 };
 
-/// Chunks of a reorder buffer.
-struct ChunkMemory {
-  std::size_t size = 0;
-  std::unique_ptr<ResultChunk[]> chunks{};
-  std::unique_ptr<ResultChunk* []> finished {};  ///< ring by chunk number; null until finished
+/// Chunks of a reorder buffer, which an executor may keep for the next run.
+struct ChunkMemory : ScratchItem {
+  std::size_t size;
+  std::unique_ptr<ResultChunk[]> chunks;
+  std::unique_ptr<ResultChunk*[]> finished;  ///< ring by chunk number; null until finished
 
-  /// Makes room for `count` chunks at least; all are unfinished then.
-  void require(std::size_t count) {
-    if (size < count) {
-      *this = {};
-      chunks = std::make_unique<ResultChunk[]>(count);
-      finished = std::make_unique<ResultChunk*[]>(count);
-      size = count;
-    }
-    std::fill_n(finished.get(), size, nullptr);
-  }
+  explicit ChunkMemory(std::size_t count)
+      : size(count), chunks(std::make_unique<ResultChunk[]>(count)), finished(std::make_unique<ResultChunk*[]>(count)) {}
+  [[nodiscard]] bool fits(std::size_t count) const noexcept { return size >= count; }
 };
 
-/// Memory of a run, which an executor may keep for the next run with such workspaces.
-template <class Workspace>
-struct RunMemory : ScratchItem {
-  ChunkMemory chunks{};
-  std::vector<std::unique_ptr<Workspace>> workspaces{};  ///< by worker; null until needed
-  std::shared_ptr<const void> identity{};                ///< of the survey that the workspaces are for
+/// Workspace of a worker, which an executor may keep for the next run of the same survey.
+template <class Survey>
+struct WorkspaceMemory : ScratchItem {
+  decltype(std::declval<const Survey&>().workspace()) workspace;  ///< which need not be movable
+  std::shared_ptr<const void> identity;                           ///< of its survey
 
-  /// Readies the memory for a survey. Keeps the workspaces of the same survey.
-  template <class Survey>
-  void adapt_to(const Survey& survey, std::size_t workers) {
-    std::shared_ptr<const void> wanted;
-    if constexpr (IdentifiedSurvey<Survey>) wanted = survey.identity();
-    if (!wanted || wanted != identity) workspaces.clear();
-    identity = std::move(wanted);
-    if (workspaces.size() < workers) workspaces.resize(workers);
+  explicit WorkspaceMemory(const Survey& survey) : workspace(survey.workspace()), identity(identity_of(survey)) {}
+  [[nodiscard]] bool fits(const Survey& survey) const noexcept { return identity && identity == identity_of(survey); }
+
+ private:
+  static std::shared_ptr<const void> identity_of(const Survey& survey) noexcept {
+    if constexpr (IdentifiedSurvey<Survey>)
+      return survey.identity();
+    else
+      return nullptr;
   }
 };
 
@@ -198,11 +191,10 @@ struct RunMemory : ScratchItem {
 /// these are large. The chunk delivered last is reused first, as it is in the cache.
 class ReorderBuffer {
  public:
-  ReorderBuffer(ChunkMemory& memory, std::uint64_t chunks, std::size_t workers, std::stop_token stop)
-      : chunks_(chunks), always_ahead_(2 * workers + 2), max_ahead_(16 * always_ahead_), stop_(std::move(stop)) {
-    memory.require(max_ahead_);
-    for (std::size_t i = max_ahead_; i-- > 0;) memory.chunks[i].next_free = std::exchange(free_, &memory.chunks[i]);
-    finished_ = memory.finished.get();
+  ReorderBuffer(ScratchMemory* kept, std::uint64_t chunks, std::size_t workers, std::stop_token stop)
+      : chunks_(chunks), always_ahead_(2 * workers + 2), max_ahead_(16 * always_ahead_), memory_(kept, max_ahead_), stop_(std::move(stop)) {
+    for (std::size_t i = max_ahead_; i-- > 0;) memory_->chunks[i].next_free = std::exchange(free_, &memory_->chunks[i]);
+    std::fill_n(memory_->finished.get(), max_ahead_, nullptr);
   }
 
   /// Next empty chunk to work on; null at the end, or when the run is stopped.
@@ -253,11 +245,11 @@ class ReorderBuffer {
     const std::uint64_t ahead = handed_out_ - delivered_;
     return ahead < always_ahead_ || (ahead < max_ahead_ && finished_bytes_ < max_bytes);
   }
-  [[nodiscard]] ResultChunk*& place(std::uint64_t number) noexcept { return finished_[number % max_ahead_]; }
+  [[nodiscard]] ResultChunk*& place(std::uint64_t number) noexcept { return memory_->finished[number % max_ahead_]; }
 
   std::uint64_t chunks_, handed_out_ = 0, delivered_ = 0;
   std::size_t always_ahead_, max_ahead_, finished_bytes_ = 0;
-  ResultChunk** finished_;       // ring by chunk number; null until finished
+  Borrowed<ChunkMemory> memory_;
   ResultChunk* free_ = nullptr;  // head of the free list
   std::stop_token stop_;
   bool delivering_ = false;
@@ -282,10 +274,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   const auto began = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
 
-  using Workspace = decltype(survey.workspace());
-  const Borrowed<detail::RunMemory<Workspace>> memory(options.executor.memory());
-  memory->adapt_to(survey, workers);
-  detail::ReorderBuffer buffer(memory->chunks, chunks, workers, options.stop);
+  detail::ReorderBuffer buffer(options.executor.memory(), chunks, workers, options.stop);
   RunSummary summary;
   const auto deliver = [&](const detail::ResultChunk& chunk) {
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
@@ -293,16 +282,14 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
     summary.add(chunk.counts);
     if (options.progress) options.progress({summary.slots, slots.count, summary.echoes, elapsed()});
   };
-  for_each_index(workers, options.workers(), [&](std::size_t worker) noexcept {  // each worker runs until no chunk is left
+  for_each_index(workers, options.workers(), [&](std::size_t) noexcept {  // each worker runs until no chunk is left
     try {
       detail::ResultChunk* chunk = buffer.next();
       if (!chunk) return;
-      std::unique_ptr<Workspace>& place = memory->workspaces[worker];
-      if (!place) place.reset(new Workspace(survey.workspace()));  // which need not be movable
-      Workspace& workspace = *place;
+      const Borrowed<detail::WorkspaceMemory<Survey>> memory(options.executor.memory(), survey);
       for (; chunk; chunk = buffer.next()) {
         const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots.count);
-        for (PulseIndex n = from; n < to; ++n) chunk->append(survey(slots[n], workspace));
+        for (PulseIndex n = from; n < to; ++n) chunk->append(survey(slots[n], memory->workspace));
         buffer.finish(*chunk, deliver);
       }
     } catch (...) {

@@ -65,12 +65,15 @@ class ScratchMemory {
   std::unique_ptr<ScratchItem> items_;  // linked list
 };
 
-/// Object of type T for the duration of a call: taken from `memory` and given back to it, or the call's own if `memory` is null.
+/// Object of type T for the duration of a call: taken from `memory` if it fits, or else new, and given back to `memory` unless that is
+/// null.
 template <class T>
 class Borrowed {
  public:
-  explicit Borrowed(ScratchMemory* memory) : memory_(memory), item_(memory ? memory->take<T>() : nullptr) {
-    if (!item_) item_ = std::make_unique<T>();
+  /// Takes an object for which `fits(need)` is true, or makes one from `need`. Deletes one that does not fit.
+  template <class Need>
+  Borrowed(ScratchMemory* memory, const Need& need) : memory_(memory), item_(memory ? memory->take<T>() : nullptr) {
+    if (!item_ || !item_->fits(need)) item_ = std::make_unique<T>(need);
   }
   Borrowed(const Borrowed&) = delete;
   Borrowed& operator=(const Borrowed&) = delete;
