@@ -55,10 +55,11 @@ void add(const Report& report, const Case& what, const std::string& name, const 
   echoes.push_back(0);
   works.emplace_back([&what, &echoes, k = echoes.size() - 1, detector, workspace = detector.workspace(what.number),
                       scratch = std::vector<Reflection>(what.number)]() mutable {
+    const Emitter emitter;
     std::size_t count = 0;
     for (std::size_t i = 0; i < pulses; ++i) {
       std::copy_n(what.reflections.begin() + static_cast<std::ptrdiff_t>(i * what.number), what.number, scratch.begin());
-      count += detector.detect(Laser{}, std::span(scratch), workspace).echoes.size();
+      count += detector.detect(Heard{emitter, {}, scratch}, workspace).echoes.size();
     }
     echoes[k] = count;
   });

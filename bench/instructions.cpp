@@ -99,8 +99,9 @@ int main() {
   const auto ground = std::make_shared<const Mesh>(raster.mesh());
   const Mesh leaves(tree());
   const auto town = street::scene(1);
-  std::printf("trace %.9g\n", budget_trace(*ground, HeightField(raster), some(beams(from_the_air(), 19, 0.25_mrad)), leaves,
-                                           some(beams(from_a_tripod(leaves.bounds()), 19, 0.3_mrad)), incoherent_rays(leaves.bounds(), 2048)));
+  std::printf("trace %.9g\n",
+              budget_trace(*ground, HeightField(raster), some(beams(from_the_air(), 19, 0.25_mrad)), leaves,
+                           some(beams(from_a_tripod(leaves.bounds()), 19, 0.3_mrad)), incoherent_rays(leaves.bounds(), 2048)));
   std::printf("pipeline %.9g\n", budget_pipeline(scene_of(ground, {}), town));
 
   const auto plane = std::make_shared<const Mesh>(

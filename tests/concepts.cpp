@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/transport/direct_light.hpp>
+
 #include "support/archetypes.hpp"
 
 using namespace pulsecast;
@@ -297,7 +299,52 @@ struct FootprintMayThrow : LeastFootprint {
 };
 static_assert(!Footprint<FootprintMayThrow>, "share() is not noexcept");
 
-static_assert(Detector<LeastDetector>);
+static_assert(Transport<LeastTransport, LeastRayTarget> && Transport<LeastTransport, LeastBundleTarget>);
+static_assert(!TracesVelocity<LeastTransport, LeastRayTarget>, "it has no trace<true>");
+static_assert(Transport<DirectLight, LeastRayTarget> && TracesVelocity<DirectLight, LeastRayTarget>);
+static_assert(!VelocityTarget<LeastRayTarget>, "it has no surfaces");
+
+struct UnsizedTransport : LeastTransport {
+  void reflections_per_subray() const = delete;
+};
+static_assert(!Transport<UnsizedTransport, LeastRayTarget>, "it does not tell how many reflections there may be");
+
+struct TransportMayThrow : LeastTransport {
+  template <class Map>
+  TransportResult trace(const Map&, const Illumination&, Workspace&, std::span<Reflection>) const {
+    return {};
+  }
+};
+static_assert(!Transport<TransportMayThrow, LeastRayTarget>, "trace() is not noexcept");
+
+struct TransportWithoutLedger : LeastTransport {
+  template <class Map>
+  std::size_t trace(const Map&, const Illumination&, Workspace&, std::span<Reflection>) const noexcept {
+    return 0;
+  }
+};
+static_assert(!Transport<TransportWithoutLedger, LeastRayTarget>, "trace() returns a number of reflections only");
+
+struct TransportOfBundles : LeastTransport {
+  template <BundleTarget Map>
+  TransportResult trace(const Map&, const Illumination&, Workspace&, std::span<Reflection>) const noexcept {
+    return {};
+  }
+};
+static_assert(Transport<TransportOfBundles, LeastBundleTarget> && !Transport<TransportOfBundles, LeastRayTarget>,
+              "a transport may ask more of a map");
+
+static_assert(Detector<LeastDetector> && !ListensAlways<LeastDetector> && !ReadsVelocity<LeastDetector>);
+
+struct Listener : LeastDetector {
+  static constexpr bool listens_always = true, reads_velocity = true;
+};
+static_assert(ListensAlways<Listener> && ReadsVelocity<Listener>);
+
+struct Deaf : LeastDetector {
+  static constexpr bool listens_always = false, reads_velocity = false;
+};
+static_assert(!ListensAlways<Deaf> && !ReadsVelocity<Deaf>);
 
 struct NoWorkspace : LeastDetector {
   void workspace(std::size_t) const = delete;
@@ -310,22 +357,22 @@ struct VoidWorkspace : LeastDetector {
 static_assert(!Detector<VoidWorkspace>, "its workspace is nothing");
 
 struct DetectorMayThrow : LeastDetector {
-  Detection detect(const Laser&, std::span<Reflection>, Workspace&) const { return {}; }
+  Detection detect(const Heard&, Workspace&) const { return {}; }
 };
 static_assert(!Detector<DetectorMayThrow>, "detect() is not noexcept");
 
 struct DetectorChanges : LeastDetector {
-  Detection detect(const Laser&, std::span<Reflection>, Workspace&) noexcept { return {}; }
+  Detection detect(const Heard&, Workspace&) noexcept { return {}; }
 };
 static_assert(!Detector<DetectorChanges>, "detect() is not const");
 
 struct EchoesOnly : LeastDetector {
-  std::span<const Echo> detect(const Laser&, std::span<Reflection>, Workspace&) const noexcept { return {}; }
+  std::span<const Echo> detect(const Heard&, Workspace&) const noexcept { return {}; }
 };
 static_assert(!Detector<EchoesOnly>, "detect() returns echoes, not a detection");
 
 struct ForeignWorkspace : LeastDetector {
-  Detection detect(const Laser&, std::span<Reflection>, int&) const noexcept { return {}; }
+  Detection detect(const Heard&, int&) const noexcept { return {}; }
 };
 static_assert(!Detector<ForeignWorkspace>, "detect() does not take the workspace that it makes");
 

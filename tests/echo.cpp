@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include <limits>
+
 #include <doctest/doctest.h>
 
 using namespace pulsecast;
@@ -51,4 +53,24 @@ TEST_CASE("a batch hands out the subrays of each shot, as many for each") {
     REQUIRE(batch.subrays_of(k).size() == 4);
     CHECK(batch.subrays_of(k)[0].power == 4 * static_cast<double>(k));
   }
+}
+
+TEST_CASE("ledgers are added and scaled term by term") {
+  const EnergyLedger one{.sent = 10, .missed = 1, .out_of_range = 2, .absorbed = 1.5, .scattered = 4, .cut = 1.5, .received = 0.5};
+  EnergyLedger sum = one;
+  sum.add(one.times(3));
+  CHECK(sum == one.times(4));
+  CHECK(sum == EnergyLedger{40, 4, 8, 6, 16, 6, 2});
+  CHECK(one.share(&EnergyLedger::scattered) == 0.4);
+  CHECK(EnergyLedger{}.share(&EnergyLedger::scattered) == 0);
+}
+
+TEST_CASE("a range gate includes both its ends") {
+  const RangeGate gate{2, 100};
+  CHECK(gate.contains(2));
+  CHECK(gate.contains(100));
+  CHECK_FALSE(gate.contains(1.9999));
+  CHECK_FALSE(gate.contains(100.0001));
+  CHECK_FALSE(gate.contains(std::numeric_limits<double>::quiet_NaN()));
+  CHECK(RangeGate{}.contains(1e300));
 }

@@ -22,6 +22,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/cloud.hpp>
 #include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/detector/first_hit.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
@@ -231,16 +232,15 @@ TEST_CASE("a run accounts for all the energy that was sent, the same on any numb
   const auto survey = small_survey();
   const RunSummary one = run(survey, {.threads = 1}), three = run(survey, {.threads = 3});
   const double each = Laser{}.peak_power * Laser{}.pulse_length;
-  CHECK(one.energy == support::relative(each * static_cast<double>(one.pulses()), 1e-12));
-  double sum = 0;
-  for (const double spent : one.energy_by_fate) sum += spent;
-  CHECK(sum == support::relative(one.energy, 1e-12));
-  CHECK(one.share(Fate::blocked) == 0);
-  CHECK(one.share(Fate::returned) > 0.3);
-  CHECK(one.share(Fate::missed) > 0.1);
+  CHECK(one.energy.sent == support::relative(each * static_cast<double>(one.pulses()), 1e-12));
+  const EnergyLedger& e = one.energy;
+  CHECK(e.missed + e.out_of_range + e.absorbed + e.scattered + e.cut == support::relative(e.sent, 1e-12));
+  CHECK(e.share(&EnergyLedger::scattered) > 0.3);
+  CHECK(e.share(&EnergyLedger::missed) > 0.1);
+  CHECK(e.received > 0);
+  CHECK(e.received < e.scattered);
   CHECK(one.energy == three.energy);
-  CHECK(one.energy_by_fate == three.energy_by_fate);
-  CHECK(run(survey, {.threads = 1, .end = 0}).share(Fate::returned) == 0);
+  CHECK(run(survey, {.threads = 1, .end = 0}).energy.share(&EnergyLedger::scattered) == 0);
 }
 
 TEST_CASE("a run hands on the subrays of a footprint that is recorded, in batches that stay small") {
@@ -573,3 +573,91 @@ TEST_CASE("workers run ahead of the sink by two batches each and two if batches 
 }
 
 TEST_CASE("a run refuses a stride of zero") { CHECK_THROWS_AS(run(rain(), {.stride = 0}), SettingError); }
+
+namespace {
+
+const double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// A user's trajectory that loses its position, or its rotation, for a while after half a second.
+struct Lost {
+  double position = 0, rotation = 1;
+  Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+    if (t.seconds() < 0.5 || t.seconds() > 0.9) return {no_rotation, {0, 0, 5}};
+    return {Rotation{rotation, 0, 0, 0}, {0, 0, 5 + position}};
+  }
+};
+
+/// A user's map of the ground that answers some pulses with NaN, at one of their subrays.
+struct Broken {
+  PulseIndex from;
+  bool range = false, backscatter = false;
+  std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+    const bool bad = ray.pulse >= from && ray.subray == 3;
+    return Hit{.range = range && bad ? not_a_number : 5, .backscatter = backscatter && bad ? not_a_number : 0.5};
+  }
+};
+
+/// Poses that are reported wrong.
+struct Misreported : Rain {
+  std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+    auto p = Rain::pulse(i);
+    p->reported = p->pose;
+    if (i >= 3000) p->reported->position.y = not_a_number;
+    return p;
+  }
+};
+
+/// Message that a run ends with, whatever the threads, after whole results of the pulses before.
+template <class S>
+std::string message_of(const S& survey, PulseIndex bad) {
+  std::string first;
+  for (const unsigned threads : {1U, 2U, 7U}) {
+    support::LawfulSink sink;
+    std::string message;
+    try {
+      run(survey, {.threads = threads}, sink);
+    } catch (const std::runtime_error& error) {
+      message = error.what();
+    }
+    CHECK(sink.broken() == "");
+    CHECK(sink.shots() == bad);
+    if (threads == 1) first = message;
+    CHECK(message == first);
+    CHECK(run(survey, {.threads = threads, .end = bad}).slots == bad);
+  }
+  return first;
+}
+
+}  // namespace
+
+TEST_CASE("a pose of a user's own type that is not finite ends a run at its pulse, on any number of threads") {
+  const Deflector still{FixedBeam{rotation_about(axis::right, -90_deg)}, Scanner{.pulse_rate = 65536, .pulses = 65536}};
+  const support::LeastRayTarget plane;
+  const char* const message = "pulse 32768 at 0.5 s has a pose that is not finite: check the trajectory, optic or pose errors";
+  for (const Lost& lost :
+       {Lost{.position = not_a_number}, Lost{.position = std::numeric_limits<double>::infinity()}, Lost{.rotation = not_a_number}})
+    CHECK(message_of(Survey{Platform{lost, Mount{}, still}, SingleRay{}, plane, Receiver{}, FirstHit{}}, 32768) == message);
+  CHECK(message_of(Survey{Misreported{}, SingleRay{}, plane, Receiver{}, FirstHit{}}, 3000) ==
+        "pulse 3000 at 0.03 s has a pose that is not finite: check the trajectory, optic or pose errors");
+}
+
+TEST_CASE("NaN from a user's own map ends a run at its pulse, on any number of threads") {
+  for (const Broken& map : {Broken{5000, true, false}, Broken{5000, false, true}})
+    CHECK(message_of(Survey{Rain{.pulses = 20000}, RingFootprint{}, map, Receiver{}, FirstHit{}}, 5000) ==
+          "the map answered pulse 5000 at 0.05 s with NaN: check its ranges and backscatter");
+  const Broken whole{0};
+  CHECK(run(Survey{Rain{.pulses = 3000}, RingFootprint{}, whole, Receiver{}, FirstHit{}}, {}).echoes == 3000);
+}
+
+TEST_CASE("the outcome of a pulse tells its error") {
+  const support::LeastRayTarget plane;
+  const Survey misreported{Misreported{}, SingleRay{}, plane, Receiver{}, FirstHit{}};
+  auto v = misreported.workspace();
+  CHECK(misreported(2999, v).error == PulseError::none);
+  CHECK(misreported(3000, v).error == PulseError::pose);
+  const Broken map{10, true, false};
+  const Survey broken{Rain{}, RingFootprint{}, map, Receiver{}, FirstHit{}};
+  auto w = broken.workspace();
+  CHECK(broken(9, w).error == PulseError::none);
+  CHECK(broken(10, w).error == PulseError::map);
+}

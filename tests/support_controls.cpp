@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/transport/direct_light.hpp>
+
 #include "support/aborts.hpp"
 #include "support/archetypes.hpp"
 #include "support/checksum.hpp"
@@ -129,7 +131,8 @@ struct Flawed {
     int uses = 0;
   };
   Workspace workspace(std::size_t subrays) const { return {std::vector<Echo>(subrays + 1), 0}; }
-  Detection detect(const Laser&, std::span<Reflection> reflections, Workspace& w) const noexcept {
+  Detection detect(const Heard& heard, Workspace& w) const noexcept {
+    const std::span<Reflection> reflections = heard.reflections;
     std::sort(reflections.begin(), reflections.end(), [](const Reflection& a, const Reflection& b) { return a.range < b.range; });
     std::size_t n = 0;
     for (const Reflection& r : reflections) {
@@ -151,6 +154,37 @@ template <class Flaw>
 std::string flaw_found(Flaw flaw) {
   const std::vector<std::vector<Reflection>> cases{{{5, 1}, {3, 2}}, {}, {{7, 1}}};
   return detector_laws(Flawed{flaw}, Laser{}, cases);
+}
+
+// --------------------------------------------------------------------------------------------------------- bad transports
+
+/// Direct light, in whose results something goes wrong.
+template <class Flaw>
+struct FlawedTransport {
+  Flaw flaw;
+  struct Workspace {
+    DirectLight::Workspace inside;
+    int uses = 0;
+  };
+  std::size_t reflections_per_subray() const noexcept { return 1; }
+  Workspace workspace(std::size_t) const { return {}; }
+  template <class Map>
+  TransportResult trace(const Map& map, const Illumination& light, Workspace& w, std::span<Reflection> reflections) const noexcept {
+    TransportResult r = DirectLight{}.trace(map, light, w.inside, reflections);
+    flaw(r, reflections, light.record, w.uses++);
+    return r;
+  }
+};
+template <class Flaw>
+FlawedTransport(Flaw) -> FlawedTransport<Flaw>;
+
+const std::array<Pose<frame::Beam, frame::World>, 2> downwards{
+    Pose<frame::Beam, frame::World>{rotation_about(axis::right, -pi / 2), {0, 0, 5}},
+    Pose<frame::Beam, frame::World>{rotation_about(axis::right, -pi / 3), {0, 0, 8}}};
+
+template <class Flaw>
+std::string transport_flaw_found(Flaw flaw) {
+  return transport_laws(FlawedTransport{flaw}, LeastRayTarget{}, downwards, {.range_min = 1, .range_max = 100});
 }
 
 // ------------------------------------------------------------------------------------------------------------ bad callers
@@ -311,6 +345,34 @@ TEST_CASE("footprints that keep the law pass, and those that break it do not") {
   CHECK(names(footprint_laws(Two{1.5, -0.5}), "share of subray 1"));
   CHECK(names(footprint_laws(Two{0.5, std::nan("")}), "share of subray 1"));
   CHECK(names(footprint_laws(Two{0.5, 0.5, {std::nan(""), 0}}), "offset"));
+}
+
+TEST_CASE("transports that keep the law pass, and those that break it do not") {
+  using R = TransportResult;
+  using Found = std::span<Reflection>;
+  using Record = std::span<SubrayHit>;
+  CHECK(transport_laws(LeastTransport{}, LeastRayTarget{}, downwards) == "");
+  CHECK(transport_flaw_found([](R&, Found, Record, int) {}) == "");
+  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.sent *= 1.001; }), "are sent"));
+  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.scattered *= 1 - 1e-5; }), "sum to"));
+  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.cut += 1e-5 * r.energy.sent; }), "sum to"));
+  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.missed = -1e-9; }), "a term of"));
+  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.received = 2 * r.energy.sent; }), "more is received"));
+  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.energy.received *= 1.001; }), "the reflections are"));
+  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { --r.reflections; }), "the reflections are"));
+  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) { r.reflections = 100; }), "no room"));
+  CHECK(names(transport_flaw_found([](R&, Found found, Record, int) { found.data()[found.size()].power = 1; }), "no room"));
+  CHECK(names(transport_flaw_found([](R&, Found found, Record, int) { found[3].power = 0; }), "a reflection of 0 W"));
+  CHECK(names(transport_flaw_found([](R&, Found found, Record, int) { found[3].range = 0.5; }), "outside the gate"));
+  CHECK(names(transport_flaw_found([](R&, Found, Record record, int) {
+                if (!record.empty()) record.back().power = -1;
+              }),
+              "not recorded"));
+  CHECK(names(transport_flaw_found([](R& r, Found, Record, int) {
+                r = {.energy = {.sent = r.energy.sent, .missed = r.energy.sent}, .fate = Fate::returned};
+              }),
+              "a fate"));
+  CHECK(names(transport_flaw_found([](R&, Found found, Record, int uses) { found[0].range += uses; }), "another answer"));
 }
 
 TEST_CASE("detectors that keep the law pass, and those that break it do not") {

@@ -191,7 +191,7 @@ TEST_CASE("the amplitude of an extended plate met squarely is that of the radar 
       auto workspace = survey.workspace();
       const Outcome o = survey(0, workspace);
       REQUIRE(o.echoes.size() == 1);
-      CHECK(o.hits == survey.subrays());
+      CHECK(o.energy.scattered == support::relative(o.energy.sent, 1e-12));
       CHECK(o.echoes[0].reflectance == support::relative(0.4, 1e-4));
       return o.echoes[0].amplitude;
     };
@@ -303,17 +303,15 @@ TEST_CASE("the energy of a pulse is spent to the last bit, each subray's by what
     return survey(0, workspace);
   };
   const Outcome bright = outcome(0), faint = outcome(1);
-  CHECK(bright.energy == support::relative(40e-9, 1e-15));
-  for (const Fate fate : {Fate::missed, Fate::out_of_range, Fate::absorbed, Fate::returned})
-    CHECK(bright.share(fate) == support::relative(0.25, 0.01));
-  CHECK(bright.share(Fate::below_threshold) == 0);
-  CHECK(faint.share(Fate::below_threshold) == bright.share(Fate::returned));
-  CHECK(faint.share(Fate::returned) == 0);
-  for (const Outcome& o : {bright, faint}) {
-    double sum = 0;
-    for (const double share : o.shares) sum += share;
-    CHECK(sum == support::relative(1, 1e-12));
-  }
+  CHECK(bright.energy.sent == support::relative(40e-9, 1e-15));
+  for (const auto term : {&EnergyLedger::missed, &EnergyLedger::out_of_range, &EnergyLedger::absorbed, &EnergyLedger::scattered})
+    CHECK(bright.energy.share(term) == support::relative(0.25, 0.01));
+  CHECK(bright.energy.cut == 0);
+  CHECK(bright.shot.fate == Fate::returned);
+  CHECK(faint.shot.fate == Fate::below_threshold);
+  CHECK(faint.energy == bright.energy);
+  const EnergyLedger& e = bright.energy;
+  CHECK(e.missed + e.out_of_range + e.absorbed + e.scattered == support::relative(e.sent, 1e-12));
 }
 
 TEST_CASE("subrays that are recorded lie where they met the plane, with the power that they brought back") {
@@ -373,7 +371,7 @@ TEST_CASE("a beam with a waist is traced subray by subray, each with a name of i
     auto workspace = survey.workspace();
     const Outcome o = survey(0, workspace);
     // of a Gaussian beam, erf(sqrt(2) a / w) is inside of a strip of half width a
-    CHECK(o.share(Fate::returned) == support::relative(std::erf(std::sqrt(2.0) * 0.5), 0.002));
+    CHECK(o.energy.share(&EnergyLedger::scattered) == support::relative(std::erf(std::sqrt(2.0) * 0.5), 0.002));
     REQUIRE(strip.seen.size() == 5000);
     for (std::uint32_t j = 0; j < 5000; ++j) REQUIRE(strip.seen[j] == j);
   }
@@ -452,7 +450,8 @@ TEST_CASE("the footprint follows the divergence and the waist of each pulse") {
   for (const PulseIndex i : {0U, 1U, 2U, 0U, 3U, 4U, 2U, 1U, 3U, 7U, 5U, 0U}) {
     CAPTURE(i);
     const Outcome o = survey(i, workspace);
-    CHECK(o.hits == (i % 4 == 0 ? survey.subrays() : 1));
+    const auto hits = std::count_if(o.subrays.begin(), o.subrays.end(), [](const Hit& hit) { return hit.met(); });
+    CHECK(static_cast<std::size_t>(hits) == (i % 4 == 0 ? survey.subrays() : 1));
   }
 }
 
@@ -598,7 +597,6 @@ using Unit = ReceiverUnit<SunflowerFootprint, FullWaveform<>>;
 void check_equal(const Outcome& a, const Outcome& b) {
   CHECK(a.shot.fate == b.shot.fate);
   CHECK(a.energy == b.energy);
-  CHECK(a.shares == b.shares);
   REQUIRE(a.echoes.size() == b.echoes.size());
   for (std::size_t e = 0; e < a.echoes.size(); ++e) CHECK(support::detail::same(a.echoes[e], b.echoes[e]));
   CHECK(std::equal(a.waveform.begin(), a.waveform.end(), b.waveform.begin(), b.waveform.end()));
@@ -739,4 +737,84 @@ TEST_CASE("receivers that do not fit together are refused") {
       three{WithSubrayRecord{SunflowerFootprint{3}}, Receiver{}, FirstHit{}};
   CHECK(survey(std::vector{seven, seven}).recorded_subrays() == 7);
   CHECK_THROWS_AS(survey(std::vector{seven, three}), SettingError);
+}
+
+namespace {
+
+/// Counts what it is asked for, and has an echo of the dark for each third pulse.
+struct DarkCounts : support::LeastDetector {
+  static constexpr bool listens_always = true;
+  std::vector<Heard>* asked = nullptr;
+  Detection detect(const Heard& heard, Workspace& w) const noexcept {
+    if (asked) asked->push_back(heard);
+    if (heard.key.pulse % 3 != 0) return support::LeastDetector::detect(heard, w);
+    w[0] = Echo{.range = 1, .amplitude = 1e-9};
+    return {w, {}, 0};
+  }
+};
+struct DarkCountsOfLight : DarkCounts {
+  static constexpr bool listens_always = false;
+};
+
+/// Pulses ahead, upwards, downwards; each fourth slot is blocked.
+struct AllAround : support::LeastSource<frame::World> {
+  PulseIndex size() const noexcept { return 120; }
+  std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+    if (i % 4 == 3) return std::nullopt;
+    Pulse<frame::World> p;
+    p.tick = {static_cast<std::int64_t>(i), 0};
+    p.pose.rotation = rotation_about(axis::right, i % 4 == 0 ? 0.5 : i % 4 == 1 ? -0.5 : -1.5);
+    p.pose.position = {0, 0, 5};
+    return p;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a detector that listens always is asked for every pulse sent, also towards the sky; others are asked for light") {
+  const Plane ground;
+  const Receiver receiver{.range_min = 2, .range_max = 8};
+  std::vector<Heard> asked, asked_of_light;
+  DarkCounts listening;
+  listening.asked = &asked;
+  DarkCountsOfLight usual;
+  usual.asked = &asked_of_light;
+  const Survey always{AllAround{}, SingleRay{}, ground, receiver, listening, 9};
+  const Survey plain{AllAround{}, SingleRay{}, ground, receiver, FirstHit{}, 9};
+  const Survey of_light{AllAround{}, SingleRay{}, ground, receiver, usual, 9};
+  auto u = always.workspace();
+  auto v = plain.workspace();
+  auto w = of_light.workspace();
+  std::size_t sent = 0, with_light = 0;
+  for (PulseIndex i = 0; i < always.size(); ++i) {
+    CAPTURE(i);
+    const Outcome o = always(i, u), usually = plain(i, v);
+    CHECK(of_light(i, w).echoes.size() == (usually.echoes.empty() ? 0 : 1));
+    CHECK(o.energy == usually.energy);
+    if (i % 4 == 3) {
+      CHECK(o.shot.fate == Fate::blocked);
+      CHECK(asked.size() == sent);
+      continue;
+    }
+    ++sent;
+    REQUIRE(asked.size() == sent);
+    const Heard& heard = asked.back();
+    CHECK(heard.key.pulse == i);
+    CHECK(heard.key.seed == 9);
+    CHECK(heard.gate.near == 2);
+    CHECK(heard.gate.far == 8);
+    CHECK(heard.reflections.size() == usually.echoes.size());
+    with_light += heard.reflections.size();
+    if (i % 3 == 0) {
+      CHECK(o.shot.fate == Fate::returned);
+      CHECK(o.echoes.size() == 1);
+      CHECK(std::isfinite(o.echoes[0].reflectance));
+    } else {
+      CHECK(o.shot.fate == usually.shot.fate);
+      CHECK(o.echoes.size() == usually.echoes.size());
+    }
+  }
+  CHECK(sent == 90);
+  CHECK(asked_of_light.size() == with_light);
+  CHECK(with_light == 30);
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/random.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
@@ -147,7 +148,13 @@ concept RayTarget = requires(const T t, const Ray& ray) {
 template <class T>
 concept Target = BundleTarget<T> || RayTarget<T>;
 
-// ----------------------------------------------------------------------------------------------------------- the detector
+/// Map that knows how its surfaces move, as `MovingScene`: queries by a ray give the surface at the hit, with its velocity [m/s].
+template <class T>
+concept VelocityTarget = Target<T> && requires(const T t, const Ray& ray) {
+  { t.surface(*t.closest_hit(ray), ray).velocity } noexcept -> std::convertible_to<Vec3>;
+};
+
+// ---------------------------------------------------------------------------------------------- from the beam to the echoes
 
 /// Sampling of a beam's cross section by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along the beam.
 /// Law: the shares are not negative and sum to one; a survey refuses others.
@@ -159,13 +166,58 @@ concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
   { f.share(j) } noexcept -> std::same_as<double>;
 };
 
-/// Return of one subray: the input of a detector.
+/// Origin of a reflection.
+enum class ReflectionKind : std::uint8_t {
+  surface,  ///< a surface that the subray met directly
+};
+
+/// Light that returned along one path of a subray: the input of a detector.
 struct Reflection {
-  double range = 0;                  ///< distance from the pulse's origin [m]
-  double power = 0;                  ///< received power for a pulse of zero length; greater than 0 [W]
-  ObjectId object = 0;               ///< as in `Hit`
-  std::uint16_t classification = 0;  ///< as in `Hit`
-  double cos_incidence = 1;          ///< as in `Hit`
+  double range = 0;                               ///< half the optical path from the pulse's origin and back [m]
+  double power = 0;                               ///< received power for a pulse of zero length; greater than 0 [W]
+  ObjectId object = 0;                            ///< as in `Hit`
+  std::uint16_t classification = 0;               ///< as in `Hit`
+  ReflectionKind kind = ReflectionKind::surface;  ///< origin
+  double cos_incidence = 1;                       ///< as in `Hit`
+  double velocity = 0;                            ///< velocity of the surface along the ray, positive away; set for `ReadsVelocity` [m/s]
+};
+
+/// Light of one pulse, as a transport takes it: `transport/illumination.hpp`.
+struct Illumination;
+
+/// Result of a transport for one pulse.
+struct TransportResult {
+  EnergyLedger energy{};        ///< energy of the pulse by the end of its paths
+  std::size_t reflections = 0;  ///< number of reflections
+  Fate fate = Fate::missed;     ///< fate of a pulse without reflections: `missed`, `out_of_range` or `absorbed`
+  bool nan = false;             ///< true if the map answered with NaN: an error of the run
+};
+
+/// Paths of light from the beam to surfaces and back. Sets the first of `reflections`, in any order. There is room for
+/// `reflections_per_subray()` of each subray. Its only writable memory is a `Workspace`, made once per worker by `workspace(subrays)`.
+/// Law: pure; the terms of the ledger sum to the energy sent to 1e-6; `received` is the sum of the reflections' powers, times the pulse
+/// length, and at most `scattered`; reflections are of positive power, from inside the gate; each of `Illumination::record` is set.
+/// Not required: `trace<true>(...)`, which also sets velocities: `TracesVelocity`.
+template <class T, class Map>
+concept Transport = std::copyable<T> && requires(const T t, const Map& map, const Illumination& light, std::size_t subrays,
+                                                 decltype(t.workspace(subrays))& workspace, std::span<Reflection> reflections) {
+  { t.reflections_per_subray() } noexcept -> std::same_as<std::size_t>;
+  { t.trace(map, light, workspace, reflections) } noexcept -> std::same_as<TransportResult>;
+};
+
+/// Transport that also sets `Reflection::velocity`, if the first template argument of `trace` is true.
+template <class T, class Map>
+concept TracesVelocity = Transport<T, Map> && requires(const T t, const Map& map, const Illumination& light, std::size_t subrays,
+                                                       decltype(t.workspace(subrays))& workspace, std::span<Reflection> reflections) {
+  { t.template trace<true>(map, light, workspace, reflections) } noexcept -> std::same_as<TransportResult>;
+};
+
+/// Input of a detector for one pulse.
+struct Heard {
+  const Emitter& emitter;               ///< emitter of the pulse
+  RangeGate gate{};                     ///< range gate of the receiver
+  std::span<Reflection> reflections{};  ///< all reflections, in any order; a detector may reorder and change them
+  RandomKey key{};                      ///< seed of the survey, and index of the pulse
 };
 
 /// Result of a detector for one pulse; the spans stay valid until the workspace is used again.
@@ -175,17 +227,26 @@ struct Detection {
   double waveform_start = 0;        ///< two-way travel time of the first sample [s]
 };
 
-/// Turns the returns of the subrays into echoes. Reflections are in the order of the subrays, without those of zero power. Its only
-/// writable memory is a `Workspace`, made once per worker by `workspace(subrays)`.
-/// Law: pure; echoes are sorted by range; their energy does not exceed that received.
-/// Not required: use of all reflections; randomness; `void validate(const Laser&) const`, which refuses lasers when the survey is made. A
-/// detector with random draws takes a last argument, `RandomKey key = {}`, with seed and pulse. It draws from a `purpose` of its own, as
-/// `Purpose{128}`, with any `subray` and `part`.
+/// Turns the reflections of a pulse into echoes. Its only writable memory is a `Workspace`, made once per worker by `workspace(n)` for up
+/// to n reflections. Random draws take `heard.key` with a `purpose` of the detector's own, as `Purpose{128}`, and any `subray` and `part`.
+/// Law: pure; echoes are sorted by range. Unless it listens always, nothing heard gives no echo, and the echoes' energy does not exceed
+/// that received.
+/// Not required: use of all reflections; randomness; `void validate(const Laser&) const`, which refuses lasers when the survey is made.
 template <class D>
-concept Detector = std::copyable<D> && requires(const D d, const Laser& laser, std::span<Reflection> reflections, std::size_t subrays,
-                                                decltype(d.workspace(subrays))& workspace) {
-  { d.detect(laser, reflections, workspace) } noexcept -> std::same_as<Detection>;
+concept Detector = std::copyable<D> &&
+    requires(const D d, const Heard& heard, std::size_t reflections, decltype(d.workspace(reflections))& workspace) {
+  { d.detect(heard, workspace) } noexcept -> std::same_as<Detection>;
 };
+
+/// Detector that is asked for every pulse sent, also if no light returned: `static constexpr bool listens_always = true`. Others are asked
+/// for pulses with reflections only.
+template <class D>
+concept ListensAlways = Detector<D> && requires { requires bool{D::listens_always}; };
+
+/// Detector that reads `Reflection::velocity`: `static constexpr bool reads_velocity = true`. It needs a transport that `TracesVelocity`,
+/// and a `VelocityTarget`.
+template <class D>
+concept ReadsVelocity = Detector<D> && requires { requires bool{D::reads_velocity}; };
 
 /// Measure of the width of an echo: a policy of the waveform detectors. `samples` is the waveform [W] between the valleys to the
 /// neighbouring echoes, every `interval` [s]. The result is a standard deviation in time [s], or NaN if none is found.

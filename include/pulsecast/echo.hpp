@@ -51,6 +51,48 @@ enum class Fate : std::uint8_t {
 };
 inline constexpr std::size_t fate_count = 6;  ///< number of fates
 
+/// Energy of a pulse, or of all pulses of a run, by the end of its paths [J]. To rounding, `sent` is the sum of the five terms that follow.
+/// Each term is summed from its own paths; none is the remainder.
+struct EnergyLedger {
+  double sent = 0;          ///< peak power times pulse length; the pulse shape makes some percent of difference
+  double missed = 0;        ///< met nothing
+  double out_of_range = 0;  ///< met a surface outside the range gate
+  double absorbed = 0;      ///< met a surface inside the gate that sent nothing back: black, edge-on, or too far in the haze
+  double scattered = 0;     ///< met a surface inside the gate that sent light back
+  double cut = 0;           ///< left on paths that the transport follows no further
+  double received = 0;      ///< arrived at the receiver, of `scattered`
+
+  /// Adds another ledger.
+  void add(const EnergyLedger& other) noexcept {
+    sent += other.sent;
+    missed += other.missed;
+    out_of_range += other.out_of_range;
+    absorbed += other.absorbed;
+    scattered += other.scattered;
+    cut += other.cut;
+    received += other.received;
+  }
+
+  /// Ledger of `factor` times the energy.
+  [[nodiscard]] EnergyLedger times(double factor) const noexcept {
+    return {factor * sent, factor * missed, factor * out_of_range, factor * absorbed, factor * scattered, factor * cut, factor * received};
+  }
+
+  /// Term by the energy sent, as `share(&EnergyLedger::missed)`; 0 if nothing was sent.
+  [[nodiscard]] double share(double EnergyLedger::*term) const noexcept { return sent > 0 ? this->*term / sent : 0; }
+
+  friend bool operator==(const EnergyLedger&, const EnergyLedger&) = default;
+};
+
+/// Distances inside which a receiver listens, both included [m].
+struct RangeGate {
+  double near = 0;                                       ///< start [m]
+  double far = std::numeric_limits<double>::infinity();  ///< end [m]
+
+  /// True if a range [m] is within the gate.
+  [[nodiscard]] bool contains(double range) const noexcept { return range >= near && range <= far; }
+};
+
 /// Pulse as reported by the instrument.
 struct Shot {
   PulseIndex index = 0;            ///< number of the slot

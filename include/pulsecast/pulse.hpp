@@ -40,6 +40,9 @@ struct Laser {
   double waist_diameter = 0;       ///< waist at 1/e^2, across; up in proportion to the divergences [m]
   double waist_range = 0;          ///< distance of the waist from the exit; a focus if positive [m]
 
+  /// Energy of a pulse: peak power times pulse length [J].
+  [[nodiscard]] double energy() const noexcept { return peak_power * pulse_length; }
+
   /// True if the beam diverges from the exit point.
   [[nodiscard]] bool from_a_point() const noexcept { return waist_diameter == 0 && waist_range == 0; }
 

@@ -40,6 +40,7 @@
 #include <pulsecast/scene/spectrum.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
+#include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/version.hpp>
 
 #endif

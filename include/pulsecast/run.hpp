@@ -13,7 +13,9 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <stop_token>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -68,32 +70,27 @@ struct RunOptions {
 
 /// Totals of a run.
 struct RunSummary {
-  PulseIndex slots = 0;                             ///< pulse slots done
-  std::array<std::uint64_t, fate_count> fates{};    ///< slots by `Fate`
-  double energy = 0;                                ///< energy sent, as in `Outcome` [J]
-  std::array<double, fate_count> energy_by_fate{};  ///< that energy by the fate of its subrays [J]
-  std::uint64_t echoes = 0;                         ///< echoes found
-  std::uint64_t rays = 0;                           ///< subrays traced
-  double seconds = 0;                               ///< duration [s]
-  bool complete = true;                             ///< false if stopped
+  PulseIndex slots = 0;                           ///< pulse slots done
+  std::array<std::uint64_t, fate_count> fates{};  ///< slots by `Fate`
+  EnergyLedger energy{};                          ///< energy by the end of its paths [J]
+  std::uint64_t echoes = 0;                       ///< echoes found
+  std::uint64_t rays = 0;                         ///< subrays traced
+  double seconds = 0;                             ///< duration [s]
+  bool complete = true;                           ///< false if stopped
 
   /// Adds the totals of another run, or of another part of the same run.
   void add(const RunSummary& other) noexcept {
     slots += other.slots;
     echoes += other.echoes;
     rays += other.rays;
-    energy += other.energy;
+    energy.add(other.energy);
     seconds += other.seconds;
-    for (std::size_t f = 0; f < fate_count; ++f) {
-      fates[f] += other.fates[f];
-      energy_by_fate[f] += other.energy_by_fate[f];
-    }
+    for (std::size_t f = 0; f < fate_count; ++f) fates[f] += other.fates[f];
     complete = complete && other.complete;
   }
 
   /// Slots of a fate.
   [[nodiscard]] std::uint64_t count(Fate fate) const noexcept { return fates[static_cast<std::size_t>(fate)]; }
-  [[nodiscard]] double share(Fate fate) const noexcept { return energy > 0 ? energy_by_fate[static_cast<std::size_t>(fate)] / energy : 0; }
   [[nodiscard]] PulseIndex pulses() const noexcept { return slots - count(Fate::blocked); }  ///< pulses sent
 };
 
@@ -131,8 +128,7 @@ struct ResultBuffer {
     }
     for (const SubrayHit& subray : outcome.subrays) subrays.push_back(subray);
     counts.echoes += outcome.echoes.size();
-    counts.energy += outcome.energy;
-    for (std::size_t f = 0; f < fate_count; ++f) counts.energy_by_fate[f] += outcome.energy * outcome.shares[f];
+    counts.energy.add(outcome.energy);
   }
 
   /// Batch for the sinks; valid until this buffer changes.
@@ -151,6 +147,17 @@ namespace detail {
 struct ResultChunk : ResultBuffer {
   std::uint64_t number = 0;
   ResultChunk* next_free = nullptr;
+  PulseError error = PulseError::none;  ///< of the slot after the last; ends the run once all slots before it are delivered
+  Shot wrong{};                         ///< that slot
+
+  /// Appends the result of a slot, or notes its error.
+  void add(const Outcome& outcome) {
+    error = outcome.error;
+    if (error == PulseError::none)
+      append(outcome);
+    else
+      wrong = outcome.shot;
+  }
 
   [[nodiscard]] std::size_t bytes() const noexcept {
     return shots.size() * sizeof(Shot) + echoes.size() * sizeof(Echo) + samples.size() * sizeof(float) + subrays.size() * sizeof(SubrayHit);
@@ -204,6 +211,7 @@ class ReorderBuffer {
     if (failure_ || handed_out_ == chunks_ || stop_.stop_requested()) return nullptr;
     ResultChunk* const chunk = std::exchange(free_, free_->next_free);
     chunk->clear();
+    chunk->error = PulseError::none;
     chunk->number = handed_out_++;
     return chunk;
   }
@@ -258,11 +266,20 @@ class ReorderBuffer {
   std::condition_variable moved_;
 };
 
+/// Reports a pulse with an error.
+[[noreturn]] inline void throw_pulse_error(PulseError error, const Shot& shot) {
+  const std::string pulse = joined({"pulse ", std::to_string(shot.index), " at ", to_text(shot.tick.seconds()), " s"});
+  if (error == PulseError::map)
+    throw std::runtime_error(joined({"the map answered ", pulse, " with NaN: check its ranges and backscatter"}));
+  throw std::runtime_error(joined({pulse, " has a pose that is not finite: check the trajectory, optic or pose errors"}));
+}
+
 }  // namespace detail
 
 /// Simulates the pulses of a survey on several threads, and passes the results to the sinks in pulse order. The batches depend neither on
 /// the number of threads nor on the executor. Exceptions of sinks and of the progress callback end the run and are rethrown.
-/// @throws SettingError for options out of range
+/// @throws SettingError for options out of range @throws std::runtime_error for the first pulse with a `PulseError`, after the sinks have
+/// got all pulses before it
 template <PulseSurvey Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   const RunSlots slots = options.slots(survey.size());
@@ -280,6 +297,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
     (sinks(batch), ...);
     summary.add(chunk.counts);
+    if (chunk.error != PulseError::none) detail::throw_pulse_error(chunk.error, chunk.wrong);
     if (options.progress) options.progress({summary.slots, slots.count, summary.echoes, elapsed()});
   };
   for_each_index(workers, options.workers(), [&](std::size_t) noexcept {  // each worker runs until no chunk is left
@@ -289,7 +307,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
       const Borrowed<detail::WorkspaceMemory<Survey>> memory(options.executor.memory(), survey);
       for (; chunk; chunk = buffer.next()) {
         const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots.count);
-        for (PulseIndex n = from; n < to; ++n) chunk->append(survey(slots[n], memory->workspace));
+        for (PulseIndex n = from; n < to && chunk->error == PulseError::none; ++n) chunk->add(survey(slots[n], memory->workspace));
         buffer.finish(*chunk, deliver);
       }
     } catch (...) {

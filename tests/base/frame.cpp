@@ -4,6 +4,8 @@
 
 #include <concepts>
 
+#include <limits>
+
 #include <doctest/doctest.h>
 
 #include "support/generators.hpp"
@@ -86,4 +88,20 @@ TEST_CASE("the conversions to and from forward-left-up axes undo each other and 
     CHECK(to_forward_left_up(from_forward_left_up(a)) == a);
     CHECK(cross(to_forward_left_up(a), to_forward_left_up(b)) == to_forward_left_up(cross(a, b)));
   }
+}
+
+TEST_CASE("a pose is finite if all of its numbers are") {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  CHECK(Pose<frame::Body, frame::World>{no_rotation, {1e100, -1e100, 0}}.finite());
+  for (const double odd : {nan, infinity, -infinity})
+    for (int k = 0; k < 7; ++k) {
+      CAPTURE(odd);
+      CAPTURE(k);
+      Pose<frame::Body, frame::World> pose;
+      double* const numbers[] = {&pose.position.x, &pose.position.y, &pose.position.z, &pose.rotation.w,
+                                 &pose.rotation.x, &pose.rotation.y, &pose.rotation.z};
+      *numbers[k] = odd;
+      CHECK_FALSE(pose.finite());
+      CHECK_FALSE(pose.rigid());
+    }
 }

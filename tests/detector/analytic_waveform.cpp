@@ -13,6 +13,7 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 
+#include "support/detect.hpp"
 #include "support/generators.hpp"
 #include "support/laws.hpp"
 #include "support/relative.hpp"
@@ -28,7 +29,7 @@ const double metres_per_tau = 0.5 * speed_of_light * shape.tau;
 template <class D>
 std::vector<Echo> echoes_of(const D& detector, std::vector<Reflection> reflections) {
   auto workspace = detector.workspace(reflections.size());
-  const Detection d = detector.detect(laser, reflections, workspace);
+  const Detection d = support::detect(detector, laser, reflections, workspace);
   return {d.echoes.begin(), d.echoes.end()};
 }
 
@@ -67,7 +68,7 @@ TEST_CASE("one hit gives one echo, exact to rounding, wherever it is") {
       CAPTURE(seed);
       support::Generator any(seed);
       const double range = any.log_uniform(0.5, 1e5), power = any.log_uniform(1e-11, 1e-3);
-      const auto echoes = echoes_of(detector, {{range, power, 42, 6, 0.5}});
+      const auto echoes = echoes_of(detector, {{range, power, 42, 6, {}, 0.5}});
       REQUIRE(echoes.size() == 1);
       CHECK(std::fabs(echoes[0].range - range) < 1e-10);
       CHECK(echoes[0].amplitude == support::relative(power, 1e-12));
@@ -249,7 +250,7 @@ TEST_CASE("a kept waveform is that of the sampling detector") {
   std::vector<Reflection> reflections{{60, 2e-8}, {61, 1e-8}, {70, 5e-9}, {95, 3e-8}};
   auto w = exact.workspace(4);
   auto v = sampled.workspace(4);
-  const Detection a = exact.detect(laser, reflections, w), b = sampled.detect(laser, reflections, v);
+  const Detection a = support::detect(exact, laser, reflections, w), b = support::detect(sampled, laser, reflections, v);
   REQUIRE(a.waveform.size() > 400);
   REQUIRE(a.waveform.size() <= b.waveform.size() + 1);
   REQUIRE(b.waveform.size() <= a.waveform.size() + 1);
@@ -258,7 +259,7 @@ TEST_CASE("a kept waveform is that of the sampling detector") {
   CHECK(echoes_of(AnalyticWaveform<>{}, reflections).size() == 4);
   std::vector<Reflection> one{{60, 1}};
   auto u = AnalyticWaveform<>{}.workspace(1);
-  CHECK(AnalyticWaveform<>{}.detect(laser, one, u).waveform.empty());
+  CHECK(support::detect(AnalyticWaveform<>{}, laser, one, u).waveform.empty());
 }
 
 TEST_CASE("a fitted width is that of the sampling detector, to what the place of the samples makes") {

@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/detect.hpp"
 #include "support/generators.hpp"
 #include "support/laws.hpp"
 
@@ -16,7 +17,7 @@ TEST_CASE("the first hit is the nearest reflection, as it is") {
   const FirstHit detector;
   auto workspace = detector.workspace(3);
   std::vector<Reflection> reflections{{20, 3e-9, 7, 2}, {10, 1e-9, 8, 5}, {30, 2e-9, 9, 6}};
-  const Detection d = detector.detect(Laser{}, reflections, workspace);
+  const Detection d = support::detect(detector, Laser{}, reflections, workspace);
   REQUIRE(d.echoes.size() == 1);
   CHECK(d.echoes[0].range == 10);
   CHECK(d.echoes[0].amplitude == 1e-9);
@@ -30,16 +31,16 @@ TEST_CASE("reflections below the threshold are not seen, and one on it is") {
   const FirstHit detector{.threshold = 2e-9};
   auto workspace = detector.workspace(3);
   std::vector<Reflection> weak_before_strong{{10, 1.999e-9}, {20, 2e-9}, {30, 5e-9}}, all_weak{{10, 1e-9}}, none;
-  CHECK(detector.detect(Laser{}, weak_before_strong, workspace).echoes[0].range == 20);
-  CHECK(detector.detect(Laser{}, all_weak, workspace).echoes.empty());
-  CHECK(detector.detect(Laser{}, none, workspace).echoes.empty());
+  CHECK(support::detect(detector, Laser{}, weak_before_strong, workspace).echoes[0].range == 20);
+  CHECK(support::detect(detector, Laser{}, all_weak, workspace).echoes.empty());
+  CHECK(support::detect(detector, Laser{}, none, workspace).echoes.empty());
 }
 
 TEST_CASE("of two reflections at the same range the first subray's counts") {
   const FirstHit detector;
   auto workspace = detector.workspace(2);
   std::vector<Reflection> reflections{{10, 1e-9, 1}, {10, 2e-9, 2}};
-  CHECK(detector.detect(Laser{}, reflections, workspace).echoes[0].object == 1);
+  CHECK(support::detect(detector, Laser{}, reflections, workspace).echoes[0].object == 1);
 }
 
 TEST_CASE("the first hit keeps the laws of a detector") {

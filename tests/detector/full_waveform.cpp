@@ -11,6 +11,7 @@
 
 #include <pulsecast/detector/gaussian_fit.hpp>
 
+#include "support/detect.hpp"
 #include "support/generators.hpp"
 #include "support/laws.hpp"
 #include "support/relative.hpp"
@@ -26,7 +27,7 @@ const Laser laser{.pulse_length = 4e-9};
 template <class Width>
 std::vector<Echo> echoes_of(const FullWaveform<Width>& detector, std::vector<Reflection> reflections, const Laser& l = laser) {
   auto workspace = detector.workspace(reflections.size());
-  const Detection d = detector.detect(l, reflections, workspace);
+  const Detection d = support::detect(detector, l, reflections, workspace);
   return {d.echoes.begin(), d.echoes.end()};
 }
 
@@ -273,7 +274,7 @@ TEST_CASE("a kept waveform is the sum of the pulses, sample by sample, as long a
   const std::vector<Reflection> reflections{{60, 2e-8}, {61, 1e-8}, {70, 5e-9}, {95, 3e-8}};
   auto workspace = detector.workspace(4);
   auto input = reflections;
-  const Detection d = detector.detect(laser, input, workspace);
+  const Detection d = support::detect(detector, laser, input, workspace);
   REQUIRE(d.waveform.size() > 400);
   REQUIRE(d.waveform.size() <= 600);
   const double leading_edge = 2 * 60 / speed_of_light - 2 * PulseShape(laser.pulse_length).tau;
@@ -291,7 +292,7 @@ TEST_CASE("a kept waveform leaves out nothing between hits that are far apart") 
   const std::vector<Reflection> reflections{{60, 2e-8}, {300, 1e-8}, {1000, 1e-8}};
   auto workspace = detector.workspace(3);
   auto input = reflections;
-  const Detection d = detector.detect(laser, input, workspace);
+  const Detection d = support::detect(detector, laser, input, workspace);
   REQUIRE(d.waveform.size() <= 8000);
   bool second_hit = false;
   for (std::size_t i = 0; i < d.waveform.size(); ++i) {
@@ -318,12 +319,12 @@ TEST_CASE("a waveform that is not asked for is not kept, and nothing comes of no
   const FullWaveform detector;
   auto workspace = detector.workspace(4);
   std::vector<Reflection> one{{60, 2e-8}}, none;
-  CHECK(detector.detect(laser, one, workspace).waveform.empty());
-  CHECK(detector.detect(laser, none, workspace).echoes.empty());
+  CHECK(support::detect(detector, laser, one, workspace).waveform.empty());
+  CHECK(support::detect(detector, laser, none, workspace).echoes.empty());
   const FullWaveform keeps(WaveformSettings{.record_length = 1e-7});
   auto other = keeps.workspace(4);
-  CHECK_FALSE(keeps.detect(laser, one, other).waveform.empty());
-  CHECK(keeps.detect(laser, none, other).waveform.empty());
+  CHECK_FALSE(support::detect(keeps, laser, one, other).waveform.empty());
+  CHECK(support::detect(keeps, laser, none, other).waveform.empty());
 }
 
 TEST_CASE("full waveforms keep the laws of a detector") {
@@ -375,7 +376,7 @@ TEST_CASE("noise is that of its key: of seed, pulse and sample") {
   auto workspace = detector.workspace(1);
   const auto record = [&](RandomKey key, double range = 60) {
     std::vector<Reflection> one{{range, 1e-8}};
-    const auto w = detector.detect(laser, one, workspace, key).waveform;
+    const auto w = support::detect(detector, laser, one, workspace, key).waveform;
     return std::vector<float>(w.begin(), w.end());
   };
   CHECK(record({.seed = 1, .pulse = 2}) == record({.seed = 1, .pulse = 2}));
@@ -390,8 +391,8 @@ TEST_CASE("samples of noise have the deviation and the mean asked for, as long a
   const FullWaveform noisy(settings, NoWidth{}, noise), still(settings);
   auto workspace = noisy.workspace(2), other = still.workspace(2);
   std::vector<Reflection> reflections{{60, 1e-7}, {1000, 1e-7}};
-  const auto a = noisy.detect(laser, reflections, workspace, {.seed = 5});
-  const auto b = still.detect(laser, reflections, other);
+  const auto a = support::detect(noisy, laser, reflections, workspace, {.seed = 5});
+  const auto b = support::detect(still, laser, reflections, other);
   REQUIRE(a.waveform.size() == 40000);
   CHECK(a.waveform_start == b.waveform_start);
   double sum = 0, square = 0;
@@ -417,7 +418,7 @@ TEST_CASE("false echoes come at the rate that the normal distribution predicts")
     std::size_t found = 0, looked_at = 0;
     for (PulseIndex pulse = 0; looked_at < samples; ++pulse) {
       std::vector<Reflection> faint{{100, 1e-30}};
-      const Detection d = detector.detect(laser, faint, workspace, {.seed = 11, .pulse = pulse});
+      const Detection d = support::detect(detector, laser, faint, workspace, {.seed = 11, .pulse = pulse});
       REQUIRE(d.waveform.size() >= 1000);
       // where the number of returns ends the search, it was over there
       const double end = d.echoes.size() < 255 ? static_cast<double>(d.waveform.size())

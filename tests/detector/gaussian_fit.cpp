@@ -13,6 +13,7 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 
+#include "support/detect.hpp"
 #include "support/generators.hpp"
 #include "support/relative.hpp"
 
@@ -131,7 +132,7 @@ TEST_CASE("each echo has a fitted width of its own") {
   auto workspace = detector.workspace(300);
   std::vector<Reflection> reflections{{50, 3e-8}};
   for (int k = 0; k < 200; ++k) reflections.push_back({80 + 0.005 * k, 1e-9});
-  const Detection d = detector.detect(laser, reflections, workspace);
+  const Detection d = support::detect(detector, laser, reflections, workspace);
   REQUIRE(d.echoes.size() == 2);
   CHECK(d.echoes[0].width == support::relative(detector.pulse_width(laser), 0.006));
   // Source: variances of a convolution add up; a box of two-way length T has T^2 / 12

@@ -93,7 +93,8 @@ TEST_CASE("windows are kept to by all that stay, whatever there is") {
 TEST_CASE("an echo is made of the reflections between its valleys, and has the labels of the strongest at its peak") {
   const PulseShape shape(3.5e-9);  // tau is 1 ns
   const double metre = 2 / speed_of_light;
-  const std::vector<Reflection> reflections{{10, 9, 1, 1, 0.1}, {20, 1, 2, 2, 0.2}, {20.1, 3, 3, 3, 0.3}, {21, 2, 4, 4, 0.4}};
+  const std::vector<Reflection> reflections{
+      {10, 9, 1, 1, {}, 0.1}, {20, 1, 2, 2, {}, 0.2}, {20.1, 3, 3, 3, {}, 0.3}, {21, 2, 4, 4, {}, 0.4}};
   const Peak peak{.time = 20.15 * metre, .height = 3.5, .begin = 19 * metre, .end = 20.9 * metre, .width = 7};
   const Echo e = echo_of(peak, reflections, shape, EchoTiming::energy, 2);
   CHECK(e.range == support::relative(20.075, 1e-12));

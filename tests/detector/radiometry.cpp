@@ -84,11 +84,11 @@ TEST_CASE("near by, an aperture holds sin^2 of half the angle that it subtends, 
 
 TEST_CASE("a receiver's gate holds its ends") {
   const Receiver receiver{.range_min = 2, .range_max = 100};
-  CHECK(receiver.in_gate(2));
-  CHECK(receiver.in_gate(100));
-  CHECK_FALSE(receiver.in_gate(1.9999));
-  CHECK_FALSE(receiver.in_gate(100.0001));
-  CHECK(Receiver{}.in_gate(1e9));
+  CHECK(receiver.gate().contains(2));
+  CHECK(receiver.gate().contains(100));
+  CHECK_FALSE(receiver.gate().contains(1.9999));
+  CHECK_FALSE(receiver.gate().contains(100.0001));
+  CHECK(Receiver{}.gate().contains(1e9));
 }
 
 TEST_CASE("a receiver refuses what cannot be") {
@@ -122,4 +122,10 @@ TEST_CASE("a range error is its bias, and a deviation that grows with range and 
   CHECK_THROWS_AS((RangeErrors{.deviations = std::vector<DeviationAtRange>{{10, 0.01}, {10, 0.02}}}.validate()), SettingError);
   CHECK_THROWS_AS((RangeErrors{.deviations = std::vector<DeviationAtRange>{{10, -0.01}}}.validate()), SettingError);
   CHECK_THROWS_AS(RangeErrors{.bias = std::numeric_limits<double>::infinity()}.validate(), SettingError);
+}
+
+TEST_CASE("a white target has the power of its budget at any range, asked in any order") {
+  const LinkBudget budget(Receiver{}, Laser{});
+  WhiteTarget white;
+  for (const double range : {0.0, 10.0, 10.0, 500.0, 10.0, 0.0, -1.0}) CHECK(white.power(budget, range) == budget.power(1, 1, range));
 }

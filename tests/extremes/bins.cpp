@@ -24,6 +24,7 @@
 
 #include "extremes/detectors.hpp"
 #include "extremes/row.hpp"
+#include "support/detect.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::extremes;
@@ -158,7 +159,7 @@ TEST_CASE("the noise of a sample does not come again") {
                                 ReceiverNoise{.deviation = 1e-10}};
   auto workspace = detector.workspace(2);
   std::vector<Reflection> reflections{{.range = 100, .power = 1e-9}, {.range = 100 + apart, .power = 1e-9}};
-  const Detection detection = detector.detect(laser, reflections, workspace, {.seed = 1});
+  const Detection detection = support::detect(detector, laser, reflections, workspace, {.seed = 1});
   REQUIRE(detection.echoes.size() == 2);
   row(quantity, "echoes 2^32 bins of 1 ps apart, with noise: how many have the same amplitude", 0,
       std::fabs(detection.echoes[0].amplitude / detection.echoes[1].amplitude - 1) < 1e-6 ? 1 : 0, 0);

@@ -101,7 +101,7 @@ TEST_CASE("divergences before a wall") {
       REQUIRE(result.echoes.size() == 1);
       const bool first = std::string(detector_name) == "FirstHit";
       worst = std::max(worst, static_cast<double>(std::fabs(result.echoes[0].range - (first ? expected.nearest : expected.mean))));
-      CHECK(result.share(Fate::missed) == 0);
+      CHECK(result.energy.share(&EnergyLedger::missed) == 0);
       CHECK(std::isfinite(result.echoes[0].width));
       for (const auto& other : {one(bvh), one(kd_tree), one(exact_bvh), one(exact_kd_tree)})
         differ += other.echoes.size() == 1 && other.echoes[0].range == result.echoes[0].range &&

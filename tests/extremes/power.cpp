@@ -54,8 +54,8 @@ TEST_CASE("powers before a wall") {
     row(quantity, wall + "largest error of the range [m]", 0, errors.range, 1e-6);
     row(quantity, wall + "largest error of the amplitude, as a share", 0, errors.amplitude, 1e-3);
     row(quantity, wall + "largest error of the width, as a share", 0, errors.width, 0.01);
-    row(quantity, name + std::string(", record of FullWaveform: energy, of the right one"), 1, energy_of_record<FullWaveform<>>(laser, range),
-        1e-3);
+    row(quantity, name + std::string(", record of FullWaveform: energy, of the right one"), 1,
+        energy_of_record<FullWaveform<>>(laser, range), 1e-3);
     row(quantity, name + std::string(", record of AnalyticWaveform: energy, of the right one"), 1,
         energy_of_record<AnalyticWaveform<>>(laser, range), 1e-3);
   }

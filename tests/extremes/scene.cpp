@@ -83,7 +83,7 @@ TEST_CASE("a scene without parts, and shapes without primitives, are met nowhere
   row(quantity, "no part, no box, no pixel: rays that meet something, of 1900", 0, static_cast<double>(met), 0);
   const validation::Result pulse = validation::one_pulse(none, SunflowerFootprint(19));
   CHECK(pulse.echoes.empty());
-  row(quantity, "no part: share of a pulse that misses", 1, pulse.share(Fate::missed), 1e-12);
+  row(quantity, "no part: share of a pulse that misses", 1, pulse.energy.share(&EnergyLedger::missed), 1e-12);
 }
 
 TEST_CASE("a scene of one triangle") {

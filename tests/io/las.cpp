@@ -17,6 +17,7 @@
 
 #include <pulsecast/detector/full_waveform.hpp>
 
+#include "support/detect.hpp"
 #include "support/generators.hpp"
 #include "support/las_reader.hpp"
 #include "support/relative.hpp"
@@ -551,7 +552,7 @@ TEST_CASE("what a detector kept peaks in its packet where the locations of its r
   const FullWaveform detector{WaveformSettings{.sample_interval = Survey::interval, .timing = EchoTiming::peak, .record_length = 100e-9}};
   auto workspace = detector.workspace(2);
   std::vector<Reflection> reflections{{.range = 812.3456, .power = 1e-7}, {.range = 815.4321, .power = 3e-8}};
-  const Detection detection = detector.detect(Laser{}, reflections, workspace);
+  const Detection detection = support::detect(detector, Laser{}, reflections, workspace);
   REQUIRE(detection.echoes.size() == 2);
   Survey survey;
   survey.add({.origin = {478412, 5429876, 1000}, .direction = normalize(Vec3{0.3, -0.2, -1}), .waveform_start = detection.waveform_start},

@@ -35,7 +35,8 @@ includes_of_higher_layers() {
     may["concepts"] = words
     may["accel"] = may["scanner"] = may["deflector"] = may["platform"] = may["detector"] = may["cloud"] = words " concepts"
     may["scene"] = words " concepts accel"
-    may["survey"] = may["scene"] " scene scanner deflector platform detector cloud"
+    may["transport"] = words " concepts scanner detector"
+    may["survey"] = may["scene"] " scene scanner deflector platform detector transport cloud"
     may["run"] = may["survey"] " survey"
     may["pulsecast"] = may["io"] = may["run"] " run version"
     may["helios"] = may["mpi"] = may["page"] = may["python"] = may["io"] " io"

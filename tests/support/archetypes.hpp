@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/transport/illumination.hpp>
 
 /// The least model of each concept: what a user has to write, and nothing more.
 namespace pulsecast::support {
@@ -107,13 +108,25 @@ struct LeastFootprint {
   double share(std::size_t) const noexcept { return 1; }
 };
 
+/// Light that meets nothing, whatever is there.
+struct LeastTransport {
+  struct Workspace {};
+  std::size_t reflections_per_subray() const noexcept { return 0; }
+  Workspace workspace(std::size_t) const { return {}; }
+  template <class Map>
+  TransportResult trace(const Map&, const Illumination& light, Workspace&, std::span<Reflection>) const noexcept {
+    for (SubrayHit& subray : light.record) subray = {};
+    return {.energy = {.sent = light.energy(), .missed = light.energy()}};
+  }
+};
+
 /// One echo for the nearest reflection.
 struct LeastDetector {
   using Workspace = std::array<Echo, 1>;
   Workspace workspace(std::size_t) const { return {}; }
-  Detection detect(const Laser&, std::span<Reflection> reflections, Workspace& workspace) const noexcept {
+  Detection detect(const Heard& heard, Workspace& workspace) const noexcept {
     const Reflection* nearest = nullptr;
-    for (const Reflection& r : reflections)
+    for (const Reflection& r : heard.reflections)
       if (!nearest || r.range < nearest->range) nearest = &r;
     if (!nearest) return {};
     workspace[0] = Echo{};

@@ -17,8 +17,10 @@
 #include <vector>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/transport/illumination.hpp>
 
 #include "support/checksum.hpp"
+#include "support/detect.hpp"
 
 /// The laws of `concepts.hpp` that a compiler cannot check. Each function names the first law that it finds broken, and returns an empty
 /// string if all are kept: `CHECK(support::motion_laws(mirror, ticks) == "");`
@@ -194,8 +196,69 @@ template <class F>
   return {};
 }
 
+/// The terms of the ledger sum to what was sent, none is negative; what is received is that of the reflections, which are inside the gate
+/// and of positive power, no more than there is room for; every subray is recorded if asked for; the answer depends neither on the record
+/// nor on what the workspace was used for before. Pulses of a wide beam leave with each of the poses.
+template <class T, class Map>
+[[nodiscard]] std::string transport_laws(const T& transport, const Map& map, std::span<const Pose<frame::Beam, frame::World>> poses,
+                                         const Receiver& receiver = {}) {
+  const RingFootprint footprint(3);
+  const Emitter emitter{.laser = {.divergence = 0.02}};
+  const SubrayDirections beam(footprint, emitter);
+  const LinkBudget budget(receiver, emitter.laser);
+  const std::size_t subrays = footprint.size(), most = subrays * transport.reflections_per_subray();
+  std::vector<Reflection> reflections, others;
+  auto used = transport.workspace(subrays);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    Pulse<frame::World> pulse;
+    pulse.pose = poses[k];
+    const auto trace = [&](auto& workspace, std::vector<Reflection>& found, std::span<SubrayHit> record) {
+      WhiteTarget white;
+      found.assign(most + 1, Reflection{.power = -1});
+      const Illumination light{pulse, k, 7, emitter, beam, subrays, budget, white, receiver.gate(), record};
+      return transport.trace(map, light, workspace, std::span(found).first(most));
+    };
+    auto fresh = transport.workspace(subrays);
+    SubrayHit unset;
+    unset.power = -1;
+    std::vector<SubrayHit> record(subrays, unset);
+    const TransportResult r = trace(fresh, reflections, record);
+    const EnergyLedger& e = r.energy;
+    const double sent = emitter.laser.energy();
+    if (!(std::fabs(e.sent - sent) <= 1e-9 * sent)) return detail::sentence("pulse ", k, ": ", e.sent, " J are sent, not ", sent);
+    for (const double term : {e.missed, e.out_of_range, e.absorbed, e.scattered, e.cut, e.received})
+      if (!(term >= 0)) return detail::sentence("pulse ", k, ": a term of ", term, " J");
+    const double sum = e.missed + e.out_of_range + e.absorbed + e.scattered + e.cut;
+    if (!(std::fabs(sum - sent) <= 1e-6 * sent)) return detail::sentence("pulse ", k, ": the terms sum to ", sum, " J of ", sent);
+    if (!(e.received <= e.scattered)) return detail::sentence("pulse ", k, ": more is received than was scattered");
+    if (r.reflections > most || reflections[most].power != -1)
+      return detail::sentence("pulse ", k, ": there is no room for its reflections");
+    double received = 0;
+    for (const Reflection& reflection : std::span(reflections).first(r.reflections)) {
+      if (!(reflection.power > 0)) return detail::sentence("pulse ", k, ": a reflection of ", reflection.power, " W");
+      if (!receiver.gate().contains(reflection.range)) return detail::sentence("pulse ", k, ": a reflection outside the gate");
+      received += reflection.power * emitter.laser.pulse_length;
+    }
+    if (!(std::fabs(received - e.received) <= 1e-6 * received))
+      return detail::sentence("pulse ", k, ": the reflections are ", received, " J");
+    if (r.reflections == 0 && r.fate != Fate::missed && r.fate != Fate::out_of_range && r.fate != Fate::absorbed)
+      return detail::sentence("pulse ", k, ": a fate that asks for reflections");
+    for (const SubrayHit& subray : record)
+      if (!(subray.power >= 0)) return detail::sentence("pulse ", k, ": a subray is not recorded");
+    const TransportResult again = trace(used, others, {});
+    const auto equal = [](const Reflection& a, const Reflection& b) {
+      return detail::same(a.range, b.range) && detail::same(a.power, b.power);
+    };
+    if (!(again.energy == e) || again.reflections != r.reflections ||
+        !std::equal(reflections.begin(), reflections.begin() + static_cast<std::ptrdiff_t>(r.reflections), others.begin(), equal))
+      return detail::sentence("pulse ", k, ": a used workspace, or no record, gives another answer");
+  }
+  return {};
+}
+
 /// Echoes ascend in range and are numbered from 1; none is stronger than all that came back together; the answer does not depend on what
-/// the workspace was used for before; who brought nothing back gets nothing. `cases` are what the subrays of several pulses brought back.
+/// the workspace was used for before; who brought nothing back gets nothing, unless the detector listens always. `cases` are what the
+/// subrays of several pulses brought back.
 template <class D>
 [[nodiscard]] std::string detector_laws(const D& detector, const Laser& laser, std::span<const std::vector<Reflection>> cases) {
   std::size_t subrays = 1;
@@ -206,7 +269,7 @@ template <class D>
     double start;
   };
   const auto detect = [&](std::vector<Reflection> reflections, auto& workspace) {  // a detector may reorder its input
-    const Detection d = detector.detect(laser, reflections, workspace);
+    const Detection d = support::detect(detector, laser, reflections, workspace);
     return Answer{{d.echoes.begin(), d.echoes.end()}, {d.waveform.begin(), d.waveform.end()}, d.waveform_start};
   };
   auto used = detector.workspace(subrays);
@@ -219,11 +282,11 @@ template <class D>
       const Echo& echo = answer.echoes[e];
       if (e > 0 && !(answer.echoes[e - 1].range < echo.range)) return detail::sentence("case ", k, ": echoes are not sorted by range");
       if (echo.number != e + 1) return detail::sentence("case ", k, ": echo ", e, " has number ", int{echo.number});
-      if (!(echo.amplitude <= power * (1 + 1e-4)))  // a peak between two samples is interpolated
+      if (!ListensAlways<D> && !(echo.amplitude <= power * (1 + 1e-4)))  // a peak between two samples is interpolated
         return detail::sentence("case ", k, ": an echo of ", echo.amplitude, " W came out of ", power, " W");
       if (!(echo.amplitude >= 0)) return detail::sentence("case ", k, ": an echo of ", echo.amplitude, " W");
     }
-    if (cases[k].empty() && !answer.echoes.empty()) return detail::sentence("case ", k, ": an echo of nothing");
+    if (!ListensAlways<D> && cases[k].empty() && !answer.echoes.empty()) return detail::sentence("case ", k, ": an echo of nothing");
     for (int time = 0; time < 2; ++time) {
       const Answer again = detect(cases[k], used);
       const bool equal = std::equal(answer.echoes.begin(), answer.echoes.end(), again.echoes.begin(), again.echoes.end(),

@@ -66,7 +66,7 @@ struct Showers {
                                          : Fate::missed,
                     .waveform_start = 5e-7};
     if (outcome.shot.fate == Fate::blocked) return outcome;
-    outcome.energy = 1;
+    outcome.energy.sent = 1;
     outcome.echoes = w.echoes;
     outcome.waveform = w.waveform;
     return outcome;

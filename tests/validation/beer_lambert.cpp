@@ -55,7 +55,7 @@ double passed(const LeafAngles& leaves, double zenith, std::uint64_t seed) {
   const Platform source{Tripod{.position = {0, 0, 10}}, Mount{.boresight = rotation_about(axis::right, zenith - pi / 2)},
                         Deflector{FixedBeam{}, Scanner{.pulses = 2000, .laser = {.divergence = 1e-6}}}};
   const Survey survey{source, SunflowerFootprint{500}, scene, vacuum, FirstHit{}, seed};
-  return run(survey, {}).share(Fate::missed);
+  return run(survey, {}).energy.share(&EnergyLedger::missed);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <pulsecast/detector/analytic_waveform.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 
+#include "support/detect.hpp"
 #include "support/generators.hpp"
 #include "validation/one_pulse.hpp"
 #include "validation/table.hpp"
@@ -69,7 +70,7 @@ double recorded() {
   }
   auto workspace = detector.workspace(100);
   double sum = 0;
-  for (const float sample : detector.detect(laser, reflections, workspace).waveform) sum += static_cast<double>(sample);
+  for (const float sample : support::detect(detector, laser, reflections, workspace).waveform) sum += static_cast<double>(sample);
   return sum * detector.sample_interval() / power;
 }
 

@@ -15,6 +15,7 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 
+#include "support/detect.hpp"
 #include "support/generators.hpp"
 #include "validation/table.hpp"
 
@@ -29,7 +30,7 @@ TEST_CASE("rate of false echoes") {
     double found = 0, samples = 0;
     for (PulseIndex pulse = 0; pulse < 500; ++pulse) {
       std::vector<Reflection> faint{{100, 1e-30}};
-      const Detection d = detector.detect({}, faint, workspace, {.seed = 3, .pulse = pulse});
+      const Detection d = support::detect(detector, {}, faint, workspace, {.seed = 3, .pulse = pulse});
       found += static_cast<double>(d.echoes.size());
       samples += static_cast<double>(d.waveform.size() - 4);  // the ends have no peaks
     }

@@ -66,27 +66,27 @@ TEST_CASE("energy by its fate, over a survey in which pulses have all of them") 
   const Survey survey{source, RingFootprint{5}, map, Receiver{.range_min = 3, .range_max = 50},
                       FullWaveform{WaveformSettings{.sample_interval = 1_ns, .threshold = 2e-6}}};
   const RunSummary summary = run(survey, {.threads = 2});
-  double spent = 0;
+  const EnergyLedger& energy = summary.energy;
+  const double spent = energy.missed + energy.out_of_range + energy.absorbed + energy.scattered + energy.cut;
   std::uint64_t slots = 0;
   for (std::size_t f = 0; f < fate_count; ++f) {
     CAPTURE(f);
     CHECK(summary.fates[f] > 0);
-    spent += summary.energy_by_fate[f];
     slots += summary.fates[f];
   }
-  row(Kind::consistency, "50 000 pulses of all fates: sum of the energies of all fates, of what was sent", 1, spent / summary.energy, 1e-6);
+  row(Kind::consistency, "50 000 pulses of all fates: sum of the energies of all fates, of what was sent", 1, spent / energy.sent, 1e-6);
   const double each = Laser{}.peak_power * Laser{}.pulse_length * static_cast<double>(summary.pulses());
-  row(Kind::consistency, "50 000 pulses of all fates: what was sent, of peak power by pulse length by their number", 1,
-      summary.energy / each, 1e-6);
+  row(Kind::consistency, "50 000 pulses of all fates: what was sent, of peak power by pulse length by their number", 1, energy.sent / each,
+      1e-6);
   row(Kind::consistency, "50 000 slots: sum over all fates", 50'000, static_cast<double>(slots), 0.1);
 }
 
 TEST_CASE("energy by its fate, over a beam in quarters") {
   const Result result = one_pulse(Quarters{}, SunflowerFootprint{2001}, Laser{}, Receiver{.range_min = 2});
-  row("beam in quarters: share that missed", 0.25, result.share(Fate::missed), 0.01);
-  row("beam in quarters: share that met something before the range gate", 0.25, result.share(Fate::out_of_range), 0.01);
-  row("beam in quarters: share that was absorbed", 0.25, result.share(Fate::absorbed), 0.01);
-  row("beam in quarters: share that returned", 0.25, result.share(Fate::returned), 0.01);
+  row("beam in quarters: share that missed", 0.25, result.energy.share(&EnergyLedger::missed), 0.01);
+  row("beam in quarters: share that met something before the range gate", 0.25, result.energy.share(&EnergyLedger::out_of_range), 0.01);
+  row("beam in quarters: share that was absorbed", 0.25, result.energy.share(&EnergyLedger::absorbed), 0.01);
+  row("beam in quarters: share that returned", 0.25, result.energy.share(&EnergyLedger::scattered), 0.01);
 }
 
 TEST_CASE("what is detected is never more than what was sent, and near by all but a little of it") {

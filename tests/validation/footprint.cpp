@@ -60,18 +60,19 @@ TEST_CASE("footprint over a hole") {
     const std::string text = std::to_string(radius).substr(0, 4);
     // Source: irradiance exp(-2 r^2 / w^2), integrated
     row("hole of " + text + " of the beam's radius: share of energy that passes", 1 - std::exp(-2 * radius * radius),
-        one_pulse(Hole{radius * w}, sunflower, laser).share(Fate::missed), 0.01);
+        one_pulse(Hole{radius * w}, sunflower, laser).energy.share(&EnergyLedger::missed), 0.01);
   }
 }
 
 TEST_CASE("footprint over an edge") {
   for (const double at : {-1.0, -0.5, 0.0, 0.5, 1.0})
     row("edge " + std::to_string(at).substr(0, at < 0 ? 4 : 3) + " of the beam's radius from its axis: share of energy that meets the wall",
-        before_edge(at, 1), one_pulse(Edge{at * w}, sunflower, laser).share(Fate::returned), 0.01);
+        before_edge(at, 1), one_pulse(Edge{at * w}, sunflower, laser).energy.share(&EnergyLedger::scattered), 0.01);
   double worst = 0;
   for (int k = -200; k <= 200; ++k) {
     const double at = k * 0.01;
-    worst = std::fmax(worst, std::fabs(one_pulse(Edge{at * w}, sunflower, laser).share(Fate::returned) - before_edge(at, 1)));
+    worst =
+        std::fmax(worst, std::fabs(one_pulse(Edge{at * w}, sunflower, laser).energy.share(&EnergyLedger::scattered) - before_edge(at, 1)));
   }
   row("edge at 401 places from 0 to 100 %: largest error of the share", 0, worst, 0.01);
 }
@@ -79,9 +80,9 @@ TEST_CASE("footprint over an edge") {
 TEST_CASE("elliptical footprint over an edge") {
   const Laser ellipse{.divergence = {0.5e-3, 2e-3}};
   row("ellipse of 0.5 by 2 mrad: share left of its radius across", before_edge(1, 1),
-      one_pulse(Edge{0.25e-3 * range, 1}, sunflower, ellipse).share(Fate::returned), 0.01);
+      one_pulse(Edge{0.25e-3 * range, 1}, sunflower, ellipse).energy.share(&EnergyLedger::scattered), 0.01);
   row("ellipse of 0.5 by 2 mrad: share below its radius up", before_edge(1, 1),
-      one_pulse(Edge{1e-3 * range, -1}, sunflower, ellipse).share(Fate::returned), 0.01);
+      one_pulse(Edge{1e-3 * range, -1}, sunflower, ellipse).energy.share(&EnergyLedger::scattered), 0.01);
 }
 
 TEST_CASE("radius of a focused beam") {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -20,12 +19,10 @@ namespace pulsecast::validation {
 
 /// What a pulse brought back: an `Outcome` that keeps.
 struct Result {
-  std::array<double, fate_count> shares{};
+  EnergyLedger energy;
   double power = 0;  ///< of all subrays together [W]
   std::vector<SubrayHit> subrays;
   std::vector<Echo> echoes;
-
-  [[nodiscard]] double share(Fate fate) const { return shares[static_cast<std::size_t>(fate)]; }
 };
 
 inline const Receiver vacuum{.visibility = std::numeric_limits<double>::infinity()};
@@ -38,7 +35,7 @@ template <Footprint Pattern, Target Map, Detector Instrument = FirstHit>
   const Survey survey{source, WithSubrayRecord{footprint}, map, receiver, detector};
   auto workspace = survey.workspace();
   const Outcome o = survey(0, workspace);
-  Result result{o.shares, 0, {o.subrays.begin(), o.subrays.end()}, {o.echoes.begin(), o.echoes.end()}};
+  Result result{o.energy, 0, {o.subrays.begin(), o.subrays.end()}, {o.echoes.begin(), o.echoes.end()}};
   for (const SubrayHit& hit : o.subrays) result.power += hit.power;
   return result;
 }

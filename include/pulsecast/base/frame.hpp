@@ -36,8 +36,14 @@ struct Pose {
     return {back, -(back * position)};
   }
 
+  /// True if all numbers are finite.
+  [[nodiscard]] bool finite() const noexcept {
+    const double sum = position.x + position.y + position.z + rotation.w + rotation.x + rotation.y + rotation.z;
+    return std::isfinite(sum);  // a sum keeps NaN and infinity
+  }
+
   /// True if the position is finite and the rotation unit to 1e-6 (single precision): the law of every motion.
-  [[nodiscard]] bool rigid() const noexcept { return finite(position) && std::fabs(length(rotation) - 1) <= 1e-6; }
+  [[nodiscard]] bool rigid() const noexcept { return pulsecast::finite(position) && std::fabs(length(rotation) - 1) <= 1e-6; }
 };
 
 /// Composition of two poses, the right one first.

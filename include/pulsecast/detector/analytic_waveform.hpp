@@ -121,18 +121,20 @@ class AnalyticWaveform {
     SinglePeakGroup::Workspace group;  ///< ages and weights
   };
 
-  /// Scratch memory for pulses of up to `subrays` subrays.
-  [[nodiscard]] Workspace workspace(std::size_t subrays) const {
-    Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(subrays)};
-    w.peaks.reserve(subrays);
+  /// Scratch memory for pulses of up to `reflections` reflections.
+  [[nodiscard]] Workspace workspace(std::size_t reflections) const {
+    Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(reflections)};
+    w.peaks.reserve(reflections);
     if constexpr (by_samples) w.samples.reserve(max_samples);
-    w.echoes.reserve(std::min(subrays, s_.returns_max));
+    w.echoes.reserve(std::min(reflections, s_.returns_max));
     w.record.reserve(s_.record_capacity());
     return w;
   }
 
   /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted.
-  [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> all, Workspace& w) const noexcept {
+  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
+    const Laser& laser = heard.emitter.laser;
+    const std::span<Reflection> all = heard.reflections;
     w.peaks.clear();
     w.echoes.clear();
     w.record.clear();

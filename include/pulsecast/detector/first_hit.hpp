@@ -4,7 +4,6 @@
 #define PULSECAST_DETECTOR_FIRST_HIT_HPP
 
 #include <cstddef>
-#include <span>
 
 #include <pulsecast/concepts.hpp>
 
@@ -23,9 +22,9 @@ struct FirstHit {
 
   [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
 
-  [[nodiscard]] Detection detect(const Laser&, std::span<Reflection> reflections, Workspace& workspace) const noexcept {
+  [[nodiscard]] Detection detect(const Heard& heard, Workspace& workspace) const noexcept {
     const Reflection* first = nullptr;
-    for (const Reflection& r : reflections)
+    for (const Reflection& r : heard.reflections)
       if (r.power >= threshold && (!first || r.range < first->range)) first = &r;
     if (!first) return {};
     workspace.echo = Echo{.range = first->range,

@@ -67,19 +67,21 @@ class FullWaveform {
     SinglePeakGroup::Workspace group;  ///< ages and weights
   };
 
-  /// Scratch memory for pulses of up to `subrays` subrays.
-  [[nodiscard]] Workspace workspace(std::size_t subrays) const {
-    Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(subrays)};
+  /// Scratch memory for pulses of up to `reflections` reflections.
+  [[nodiscard]] Workspace workspace(std::size_t reflections) const {
+    Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(reflections)};
     w.samples.reserve(window_samples);
-    w.peaks.reserve(noise_.none() ? subrays : std::max(subrays, max_peaks));
+    w.peaks.reserve(noise_.none() ? reflections : std::max(reflections, max_peaks));
     w.echoes.reserve(std::min(w.peaks.capacity(), s_.returns_max));
     w.record.reserve(s_.record_capacity());
     return w;
   }
 
   /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted. Noise is drawn per
-  /// sample from the seed and pulse of `key`.
-  [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> all, Workspace& w, RandomKey key = {}) const noexcept {
+  /// sample from the seed and pulse of `heard.key`.
+  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
+    const Laser& laser = heard.emitter.laser;
+    const std::span<Reflection> all = heard.reflections;
     w.peaks.clear();
     w.echoes.clear();
     w.record.clear();
@@ -100,6 +102,7 @@ class FullWaveform {
     const double record_start = first_sample(0);
     const double min_separation = s_.min_separation(laser.pulse_length);
 
+    RandomKey key = heard.key;
     key.purpose = Purpose::receiver_noise;
     for (std::size_t next = 0; next < reflections.size();) {
       SampledSum sum(reflections, shape, s_.sample_interval, next, first_sample(next));

@@ -13,6 +13,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/echo.hpp>
 #include <pulsecast/pulse.hpp>
 
 namespace pulsecast {
@@ -86,8 +87,8 @@ struct Receiver {
     require_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
   }
 
-  /// True if a range [m] is within the gate.
-  [[nodiscard]] bool in_gate(double range) const noexcept { return range >= range_min && range <= range_max; }
+  /// Range gate.
+  [[nodiscard]] RangeGate gate() const noexcept { return {range_min, range_max}; }
 };
 
 /// Link budget: received power of a subray from the power of a pulse.
@@ -120,6 +121,25 @@ class LinkBudget {
   double gain_;       ///< received power times squared range, from a white surface in vacuum [W m^2]
   double near_;       ///< square of half the aperture's diameter [m^2]
   double both_ways_;  ///< slope of the logarithm of the power over range [1/m]
+};
+
+/// Power received from a white Lambertian target facing the beam, of one link budget. Keeps the last result: the echo of a single ray has
+/// the range of its hit.
+class WhiteTarget {
+ public:
+  /// Power received from a range [m] by the link budget, always the same one [W].
+  [[nodiscard]] double power(const LinkBudget& budget, double range) noexcept {
+    if (range != range_) *this = WhiteTarget(range, budget.power(1, 1, range));
+    return power_;
+  }
+
+  WhiteTarget() = default;
+
+ private:
+  WhiteTarget(double range, double power) noexcept : range_(range), power_(power) {}
+
+  double range_ = std::numeric_limits<double>::quiet_NaN();  ///< none yet [m]
+  double power_ = 0;                                         ///< [W]
 };
 
 }  // namespace pulsecast

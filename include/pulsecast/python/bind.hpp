@@ -231,12 +231,20 @@ inline void bind_rows() {
   return b;
 }
 
+/// Terms of a ledger by name [J].
+[[nodiscard]] inline pybind11::dict dict_of(const EnergyLedger& energy) {
+  using namespace pybind11::literals;
+  return pybind11::dict("sent"_a = energy.sent, "missed"_a = energy.missed, "out_of_range"_a = energy.out_of_range,
+                        "absorbed"_a = energy.absorbed, "scattered"_a = energy.scattered, "cut"_a = energy.cut,
+                        "received"_a = energy.received);
+}
+
 /// Adds the class `Batch` to a module.
 inline void bind_batch(pybind11::module_& m) {
   namespace py = pybind11;
-  const auto by_fate = [](const auto& of) {
+  const auto fates = [](const Batch& b) {
     py::dict all;
-    for (std::size_t f = 0; f < fate_count; ++f) all[fate_names[f]] = of(static_cast<Fate>(f));
+    for (std::size_t f = 0; f < fate_count; ++f) all[fate_names[f]] = b.summary.fates[f];
     return all;
   };
   py::class_<Batch>(m, "Batch", py::module_local(), "Results of a run, or, in a callback, those since the last call.")
@@ -258,11 +266,12 @@ inline void bind_batch(pybind11::module_& m) {
           "seconds", [](const Batch& b) { return b.summary.seconds; }, "Elapsed time of the run [s].")
       .def_property_readonly(
           "complete", [](const Batch& b) { return b.summary.complete; }, "False if the run was stopped.")
+      .def_property_readonly("fates", fates, "Pulse slots by fate.")
       .def_property_readonly(
-          "fates", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.count(f); }); }, "Pulse slots by fate.")
-      .def_property_readonly(
-          "energy", [=](const Batch& b) { return by_fate([&](Fate f) { return b.summary.energy_by_fate[static_cast<std::size_t>(f)]; }); },
-          "Energy sent, by the fate of its subrays [J].")
+          "energy", [](const Batch& b) { return dict_of(b.summary.energy); },
+          "Energy sent, and its parts by the end of their paths [J]: missed, out_of_range, absorbed, scattered, cut. received: energy at "
+          "the "
+          "receiver, of that scattered.")
       .def("waveform_of", &waveform_of, py::arg("row"), "Samples of the pulse in a row of `pulses`, shape (n,) [W].")
       .def("__repr__",
            [](const Batch& b) {

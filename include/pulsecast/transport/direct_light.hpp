@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_TRANSPORT_DIRECT_LIGHT_HPP
+#define PULSECAST_TRANSPORT_DIRECT_LIGHT_HPP
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <pulsecast/base/simd.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/transport/illumination.hpp>
+
+namespace pulsecast {
+
+/// Transport of light that each subray's first surface scatters straight back. The rest of the light is not followed.
+struct DirectLight {
+  /// Scratch memory of one worker.
+  struct Workspace {
+    std::array<Hit, RayBundle::capacity> hits;  ///< hits of a bundle
+  };
+
+  [[nodiscard]] std::size_t reflections_per_subray() const noexcept { return 1; }
+  [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
+
+  /// Traces all subrays. Sets velocities, too, if `with_velocity`: the rays that return are then asked again one by one.
+  // always inlined, with `received_power`: a footprint of one subray is then known to be one, which saves 140 instructions a pulse
+  template <bool with_velocity = false, Target Map>
+  [[nodiscard, gnu::always_inline]] TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
+                                                          std::span<Reflection> reflections) const noexcept {
+    const SubrayDirections& beam = light.beam;
+    RayBundle rays;
+    rays.origin = light.pulse.origin();
+    rays.wavelength = light.emitter.laser.wavelength;
+    rays.tick = light.pulse.tick;
+    rays.seed = light.seed;
+    rays.pulse = light.index;
+    const Matrix3 world_from_beam = matrix_of(light.pulse.pose.rotation);
+    const bool from_a_point = beam.from_a_point();
+    TransportResult result;
+    double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;  // shares of the energy; power [W]
+    bool met = false, in_gate = false;
+    RayBundle::Column power;
+    for (std::size_t first = 0; first < light.subrays; first += rays.size) {
+      rays.first_subray = static_cast<std::uint32_t>(first);
+      rays.size = std::min(from_a_point ? RayBundle::capacity : 1, light.subrays - first);
+      if (!from_a_point) rays.origin = light.pulse.origin() + world_from_beam * beam.exits[first];
+      beam.to_world(world_from_beam, first, rays);
+      intersect(map, rays, w.hits);
+      received_power(light, first, rays.size, w, power);
+      if (!light.record.empty()) record(light, first, rays.size, w, power);
+      for (std::size_t j = 0; j < rays.size; ++j) {
+        const Hit& hit = w.hits[j];
+        const double share = beam.shares[first + j];
+        if (!hit.met()) {
+          missed += share;
+          result.nan |= std::isnan(hit.range);
+          continue;
+        }
+        met = true;
+        if (!light.gate.contains(hit.range)) {
+          out_of_range += share;
+          continue;
+        }
+        in_gate = true;
+        if (!(power[j] > 0)) {
+          absorbed += share;
+          result.nan |= std::isnan(power[j]);
+          continue;
+        }
+        scattered += share;
+        received += power[j];
+        Reflection& reflection = reflections[result.reflections++];
+        set(reflection, hit, power[j]);
+        if constexpr (with_velocity) reflection.velocity = radial_velocity(map, rays.ray(j));
+      }
+    }
+    result.fate = in_gate ? Fate::absorbed : met ? Fate::out_of_range : Fate::missed;
+    const double sent = light.energy();
+    result.energy = {.sent = sent,
+                     .missed = missed * sent,
+                     .out_of_range = out_of_range * sent,
+                     .absorbed = absorbed * sent,
+                     .scattered = scattered * sent,
+                     .received = received * light.emitter.laser.pulse_length};
+    return result;
+  }
+
+ private:
+  template <class Map>
+  static void intersect(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexcept {
+    if constexpr (BundleTarget<Map>)
+      map.closest(rays, hits);
+    else
+      for (std::size_t j = 0; j < rays.size; ++j) hits[j] = map.closest_hit(rays.ray(j)).value_or(Hit{});
+  }
+
+  /// Power received from the hits of a bundle, without the range gate [W]. Undefined for misses.
+  [[gnu::always_inline]] static void received_power(const Illumination& light, std::size_t first, std::size_t size, const Workspace& w,
+                                                    RayBundle::Column& power) noexcept {
+    const SubrayDirections& beam = light.beam;
+    if (size == 1) {
+      power[0] = beam.shares[first] * w.hits[0].backscatter * light.white_target.power(light.budget, w.hits[0].range);
+      return;
+    }
+    for (std::size_t j = 0; j < size; j += simd::lane_count) {
+      const simd::Doubles range = simd::generate([&](std::size_t lane) { return w.hits[j + lane].range; });
+      const simd::Doubles backscatter = simd::generate([&](std::size_t lane) { return w.hits[j + lane].backscatter; });
+      simd::store(light.budget.power(simd::load<simd::Doubles>(beam.shares[first + j]), backscatter, range), power[j]);
+    }
+  }
+
+  /// Sets a reflection from a hit, without a velocity.
+  static void set(Reflection& reflection, const Hit& hit, double power) noexcept {
+    reflection.range = hit.range;
+    reflection.power = power;
+    reflection.object = hit.object;
+    reflection.classification = hit.classification;
+    reflection.kind = ReflectionKind::surface;
+    reflection.cos_incidence = hit.cos_incidence;
+  }
+
+  /// Records the subrays of a bundle.
+  static void record(const Illumination& light, std::size_t first, std::size_t size, const Workspace& w,
+                     const RayBundle::Column& power) noexcept {
+    const SubrayDirections& beam = light.beam;
+    for (std::size_t j = 0; j < size; ++j) {
+      const Hit& hit = w.hits[j];
+      SubrayHit& subray = light.record[first + j];
+      subray = {hit, 0, Vec3{}};
+      if (!hit.met()) continue;
+      const Vec3 exit = beam.from_a_point() ? Vec3{} : beam.exits[first + j];
+      const Vec3 direction{beam.x[first + j], beam.y[first + j], beam.z[first + j]};
+      subray.point = light.reported().point(exit + hit.range * direction);
+      if (light.gate.contains(hit.range) && power[j] > 0) subray.power = power[j];
+    }
+  }
+
+  /// Velocity of the surface that a ray meets, along the ray [m/s].
+  template <class Map>
+  static double radial_velocity(const Map& map, const Ray& ray) noexcept {
+    static_assert(VelocityTarget<Map>,
+                  "the detector reads velocities, which this map does not give: it needs closest_hit(ray) and surface(hit, ray), as Scene");
+    if constexpr (VelocityTarget<Map>) {
+      if (const auto hit = map.closest_hit(ray)) return dot(map.surface(*hit, ray).velocity, ray.direction);
+    }
+    return 0;
+  }
+};
+
+}  // namespace pulsecast
+
+#endif

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_TRANSPORT_ILLUMINATION_HPP
+#define PULSECAST_TRANSPORT_ILLUMINATION_HPP
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <pulsecast/detector/radiometry.hpp>
+#include <pulsecast/echo.hpp>
+#include <pulsecast/pulse.hpp>
+#include <pulsecast/scanner/footprint.hpp>
+
+namespace pulsecast {
+
+/// Light of one pulse, as a `Transport` takes it. Valid during the call.
+struct Illumination {
+  const Pulse<frame::World>& pulse;  ///< tick, true pose, and reported pose unless exact
+  PulseIndex index;                  ///< number of the pulse; with `seed`, key of random numbers
+  std::uint64_t seed;                ///< seed of the survey
+  const Emitter& emitter;            ///< emitter of the pulse
+  const SubrayDirections& beam;      ///< subrays of the emitter, in the frame of the pose
+  std::size_t subrays;               ///< number of subrays
+  const LinkBudget& budget;          ///< link budget of emitter and receiver
+  WhiteTarget& white_target;         ///< memory of that budget's last result
+  RangeGate gate{};                  ///< range gate of the receiver
+  std::span<SubrayHit> record{};     ///< first surface of each subray, to be set; empty unless subrays are recorded
+
+  /// Energy of the pulse [J].
+  [[nodiscard]] double energy() const noexcept { return emitter.laser.energy(); }
+  /// Pose of the beam as known to the instrument.
+  [[nodiscard]] const Pose<frame::Beam, frame::World>& reported() const noexcept { return pulse.reported ? *pulse.reported : pulse.pose; }
+};
+
+}  // namespace pulsecast
+
+#endif
