@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "report.hpp"
@@ -54,15 +55,12 @@ struct WatchedScene {
 };
 
 /// A detector, and a count of how often it does without samples.
-struct WatchedDetector {
-  FullWaveform<> inside;
-  Counts* counts;
+struct WatchedDetector : DetectorAdaptor<FullWaveform<>> {
+  Counts* counts = nullptr;
 
-  using Workspace = FullWaveform<>::Workspace;
-  [[nodiscard]] Workspace workspace(std::size_t subrays) const { return inside.workspace(subrays); }
-  [[nodiscard]] Detection detect(const Laser& laser, std::span<Reflection> all, Workspace& w) const noexcept {
+  [[nodiscard]] Detection detect(const Heard& heard, FullWaveform<>::Workspace& w) const noexcept {
     w.samples.clear();
-    const Detection detection = inside.detect(laser, all, w);
+    const Detection detection = inner.detect(heard, w);
     ++counts->detected;
     if (w.samples.empty()) ++counts->in_closed_form;
     return detection;
@@ -76,7 +74,7 @@ void count(Report& report, const std::string& name, const Source& source, const 
   Counts counts;
   const Mesh flat(flattened(scene));
   const WatchedScene watched{scene, flat, counts};
-  const Survey survey{source, SunflowerFootprint(subrays), watched, Receiver{}, WatchedDetector{FullWaveform{}, &counts}};
+  const Survey survey{source, SunflowerFootprint(subrays), watched, Receiver{}, WatchedDetector{{FullWaveform{}}, &counts}};
   auto workspace = survey.workspace();
   for (PulseIndex i = 0; i < survey.size(); ++i) {
     const Outcome outcome = survey(i, workspace);

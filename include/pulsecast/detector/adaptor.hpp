@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_DETECTOR_ADAPTOR_HPP
+#define PULSECAST_DETECTOR_ADAPTOR_HPP
+
+#include <cstddef>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace pulsecast {
+
+/// Base of detectors around another one, `inner`. It hands on whatever a derived detector does not define itself, so that none of the
+/// optional members is lost:
+///
+///     template <Detector Inner>
+///     struct LastEcho : DetectorAdaptor<Inner> {
+///       Detection detect(const Heard& heard, auto& workspace) const noexcept { ... this->inner.detect(heard, workspace) ... }
+///     };
+///     template <Detector Inner>
+///     LastEcho(Inner) -> LastEcho<Inner>;  // so that LastEcho{FullWaveform{}} names no type
+template <Detector Inner>
+struct DetectorAdaptor {
+  Inner inner;  ///< detector inside
+
+  static constexpr bool listens_always = ListensAlways<Inner>;  ///< as of the detector inside
+  static constexpr bool reads_velocity = ReadsVelocity<Inner>;  ///< as of the detector inside
+
+  /// Validates the detector inside. @throws SettingError
+  void validate() const {
+    if constexpr (requires(const Inner& d) { d.validate(); }) inner.validate();
+  }
+  /// Refuses the lasers that the detector inside refuses. @throws SettingError
+  void validate(const Laser& laser) const {
+    if constexpr (requires(const Inner& d) { d.validate(laser); }) inner.validate(laser);
+  }
+  /// Normalizes the detector inside.
+  void normalize() noexcept requires Normalizable<Inner> { inner.normalize(); }
+
+  /// Sample spacing of waveforms [s].
+  [[nodiscard]] double sample_interval() const noexcept requires(requires(const Inner& d) { d.sample_interval(); }) {
+    return inner.sample_interval();
+  }
+
+  /// Scratch memory of the detector inside.
+  [[nodiscard]] auto workspace(std::size_t reflections) const { return inner.workspace(reflections); }
+
+  /// Echoes of the detector inside.
+  template <class Workspace>
+  [[nodiscard]] Detection detect(const Heard& heard, Workspace& workspace) const noexcept {
+    return inner.detect(heard, workspace);
+  }
+};
+
+}  // namespace pulsecast
+
+#endif
