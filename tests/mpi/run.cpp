@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/mpi/run.hpp>
 
+#include <stdexcept>
 #include <stop_token>
 #include <vector>
 
@@ -36,13 +37,29 @@ TEST_CASE("sinks of the first process get all, in pulse order") {
   CHECK(summary.echoes == alone.echoes);
   CHECK(summary.fates == alone.fates);
   CHECK(summary.rays == alone.rays);
-  CHECK(summary.energy == alone.energy);  // whole numbers
+  CHECK(summary.energy.sent == alone.energy.sent);  // whole numbers
   CHECK(summary.complete);
   CHECK(cloud.size() == (mpi_group().first() ? expected.size() : 0));
   REQUIRE(told.empty() != mpi_group().first());
   if (!mpi_group().first()) return;
   CHECK(told.back().done == alone.slots);
   CHECK(told.back().total == alone.slots);
+}
+
+TEST_CASE("a pose that is not finite ends a run, as an exception of a sink does") {
+  if (mpi_group().size() > 1) return;  // it ends all processes
+  struct Lost : Showers {
+    Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
+      Outcome outcome = Showers::operator()(i, w);
+      if (i >= 9'000) outcome.error = PulseError::pose;
+      return outcome;
+    }
+  };
+  MpiGroup own;
+  PulseIndex shots = 0;
+  const auto count = [&](const EchoBatch& batch) { shots += batch.shots.size(); };
+  CHECK_THROWS_AS(run(own, Lost{{50'000, 3}}, {.threads = 2}, count), std::runtime_error);
+  CHECK(shots <= 9'000);
 }
 
 TEST_CASE("a run that is stopped leaves whole results up to some slot") {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/python/bind.hpp>
 
+#include <cmath>
 #include <csignal>
 #include <memory>
 #include <string>
@@ -35,11 +36,22 @@ auto survey_of(PulseIndex pulses, double record) {
 }
 using WallSurvey = decltype(survey_of(1, 0));
 
+/// A user's trajectory that is lost at once.
+struct Lost {
+  Pose<frame::Body, frame::World> at(Tick) const noexcept { return {no_rotation, {0, 0, std::nan("")}}; }
+};
+using LostSurvey = decltype(Survey{Platform{Lost{}, Mount{}, Deflector{FixedBeam{}, Scanner{}}}, SingleRay{}, wall(), Receiver{},
+                                   FirstHit{}});
+LostSurvey lost_survey() {
+  return Survey{Platform{Lost{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 10}}}, SingleRay{}, wall(), Receiver{}, FirstHit{}};
+}
+
 /// Throws what a reader throws.
 void fail_to_read() { throw FileError("scene.obj", "line 3", "expected a number"); }
 
 PYBIND11_EMBEDDED_MODULE(scans, m) {
   python::bind_survey<WallSurvey>(m, "WallSurvey").def(py::init(&survey_of), py::arg("pulses") = 200, py::arg("record") = 0.0);
+  python::bind_survey<LostSurvey>(m, "LostSurvey").def(py::init(&lost_survey));
   m.def("fail_to_read", &fail_to_read);
   m.def("interrupt", [] { std::raise(SIGINT); });
 }
@@ -161,4 +173,30 @@ TEST_CASE("Ctrl-C stops a run, what came is whole, and Python's own handler is b
   CHECK(said(scope, "len(result.pulses) == result.slots and list(result.pulses['pulse']) == list(range(result.slots))") == "True");
   CHECK(said(scope, "issubclass(scans.Interrupted, KeyboardInterrupt)") == "True");
   CHECK_THROWS_WITH(py::exec("scans.interrupt()\nfor i in range(1000000): pass", scope), doctest::Contains("KeyboardInterrupt"));
+}
+
+TEST_CASE("a pose of a user's own trajectory that is not finite is a RuntimeError that names the pulse") {
+  py::dict scope = names();
+  py::exec(R"(
+try:
+    scans.LostSurvey().run(threads=2)
+    said = "nothing"
+except RuntimeError as error:
+    said = str(error)
+)",
+           scope);
+  CHECK(said(scope, "said") == "pulse 0 at 0 s has a pose that is not finite: check the trajectory, optic or pose errors");
+}
+
+TEST_CASE("the energy of a batch is the ledger of its run") {
+  py::dict scope = names();
+  py::exec("energy = scans.WallSurvey(200, 0).run(threads=1).energy", scope);
+  const EnergyLedger e = run(survey_of(200, 0), {.threads = 1}).energy;
+  const auto term = [&](const char* name) { return scope["energy"][name].cast<double>(); };
+  CHECK(said(scope, "list(energy)") == "['sent', 'missed', 'out_of_range', 'absorbed', 'scattered', 'cut', 'received']");
+  CHECK(EnergyLedger{term("sent"), term("missed"), term("out_of_range"), term("absorbed"), term("scattered"), term("cut"),
+                     term("received")} == e);
+  CHECK(e.missed > 0);
+  CHECK(e.scattered > 0);
+  CHECK(e.received > 0);
 }
