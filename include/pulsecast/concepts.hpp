@@ -9,9 +9,11 @@
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/optional_member.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/geometry/box.hpp>
@@ -24,6 +26,141 @@
 // clang-format off
 // version 14 breaks up compound requirements
 namespace pulsecast {
+
+// ------------------------------------------------------------------------------------------------------- optional members
+
+// Refinements of the concepts below by one optional member each. The stage or class that uses the member refuses one of another form, or of
+// a name that is near, by a static assertion. `Validated`, `ValidatesLaser` and `Normalizable`, for settings of all kinds, are in
+// base/require.hpp.
+
+namespace detail {
+template <class G>
+concept FlatConstant = requires {
+  requires std::same_as<decltype(G::flat), const bool>;
+  typename std::bool_constant<G::flat>;
+};
+template <class F>
+concept RecordedConstant = requires {
+  requires std::same_as<decltype(F::recorded), const bool>;
+  typename std::bool_constant<F::recorded>;
+};
+template <class D>
+concept ListensConstant = requires {
+  requires std::same_as<decltype(D::listens_always), const bool>;
+  typename std::bool_constant<D::listens_always>;
+};
+template <class D>
+concept VelocityConstant = requires {
+  requires std::same_as<decltype(D::reads_velocity), const bool>;
+  typename std::bool_constant<D::reads_velocity>;
+};
+}  // namespace detail
+
+/// Optic or head that transmits light at some times only.
+/// Law: as for `Motion`.
+template <class M>
+concept Gated = requires(const M m, Tick t) {
+  { m.open(t) } noexcept -> std::same_as<bool>;
+};
+PULSECAST_OPTIONAL_MEMBER(Gated, "bool open(Tick) const noexcept", open, (Tick{}), is_open, opened, gate, transmits)
+
+/// Source with random errors, as `WithPoseErrors`. `Legs` passes each of its legs its place in the list, so that their draws are
+/// independent.
+/// Law: place 0 changes nothing.
+template <class S>
+concept DrawsByLeg = requires(S& s, std::uint32_t leg) {
+  { s.draw_for_leg(leg) } -> std::same_as<void>;
+};
+PULSECAST_OPTIONAL_MEMBER(DrawsByLeg, "void draw_for_leg(std::uint32_t)", draw_for_leg, (std::uint32_t{}), draw_leg, draw_by_leg,
+                          draw_of_leg, set_leg)
+
+/// Leaf test of an accelerator that loads primitives into the cache ahead of their test.
+template <class T>
+concept PrefetchesPrimitives = requires(const T& test, std::span<const PrimitiveIndex> primitives) {
+  { test.prefetch(primitives) } noexcept -> std::same_as<void>;
+};
+PULSECAST_OPTIONAL_MEMBER(PrefetchesPrimitives, "void prefetch(std::span<const PrimitiveIndex>) const noexcept", prefetch,
+                          (std::span<const PrimitiveIndex>{}), soon, pre_fetch, prefetch_primitives, announce)
+
+/// Geometry whose primitives have the same surface at all their points: `surface` is called once for all hits of one.
+template <class G>
+concept FlatGeometry = detail::FlatConstant<G> && G::flat;
+PULSECAST_OPTIONAL_MEMBER(FlatConstant, "static constexpr bool flat = true", flat, , is_flat, planar, is_planar, flat_surface)
+
+/// Footprint whose subrays are all passed to the sinks, as those of `WithSubrayRecord`.
+template <class F>
+concept RecordsSubrays = detail::RecordedConstant<F> && F::recorded;
+PULSECAST_OPTIONAL_MEMBER(RecordedConstant, "static constexpr bool recorded = true", recorded, , is_recorded, record, records,
+                          records_subrays)
+
+/// Detector that samples waveforms, every so many seconds [s].
+template <class D>
+concept SamplesWaveforms = requires(const D detector) {
+  { detector.sample_interval() } noexcept -> std::same_as<double>;
+};
+PULSECAST_OPTIONAL_MEMBER(SamplesWaveforms, "double sample_interval() const noexcept", sample_interval, (), sampling_interval,
+                          sample_spacing,
+                          sample_time, sampling_period)
+
+/// Detector that is asked for every pulse sent, also if no light returned. Others are asked for pulses with reflections only.
+template <class D>
+concept ListensAlways = detail::ListensConstant<D> && D::listens_always;
+PULSECAST_OPTIONAL_MEMBER(ListensConstant, "static constexpr bool listens_always = true", listens_always, , always_listens, listens,
+                          listen_always, always_on)
+
+/// Detector that reads `Reflection::velocity`. It needs a transport that `TracesVelocity`, and a `VelocityTarget`.
+template <class D>
+concept ReadsVelocity = detail::VelocityConstant<D> && D::reads_velocity;
+PULSECAST_OPTIONAL_MEMBER(VelocityConstant, "static constexpr bool reads_velocity = true", reads_velocity, , needs_velocity, velocity,
+                          uses_velocity, reads_velocities)
+
+struct WaveformMoments;
+
+/// Measure of width that is exact from moments, without samples: a width in time, in the unit of the moments.
+template <class W>
+concept MomentWidthMeasure = requires(const W w, const WaveformMoments& moments) {
+  { w.width(moments) } noexcept -> std::same_as<double>;
+};
+PULSECAST_OPTIONAL_MEMBER(MomentWidthMeasure, "double width(const WaveformMoments&) const noexcept", width_of_moments,
+                          (std::declval<const WaveformMoments&>()), width, moment_width, width_by_moments, width_from_moments)
+
+/// Measure of width that needs no samples below a share of the highest one, so that the tail of a waveform need not be sampled.
+template <class W>
+concept TruncatedWidthMeasure = requires(const W w) {
+  { w.min_share() } noexcept -> std::same_as<double>;
+};
+PULSECAST_OPTIONAL_MEMBER(TruncatedWidthMeasure, "double min_share() const noexcept", min_share, (), least_share, share_min, minimum_share,
+                          min_fraction)
+
+/// Data structure that checks itself after it was read from a file: true if all indices in its arrays are in bounds.
+template <class T>
+concept SelfChecking = requires(const T& t) {
+  { t.is_consistent() } -> std::same_as<bool>;
+};
+
+/// Accelerator that checks itself after it was read from a file: true if it is one of so many primitives.
+template <class A>
+concept SelfCheckingAccelerator = requires(const A& a, std::size_t primitives) {
+  { a.is_consistent(primitives) } -> std::same_as<bool>;
+};
+
+namespace detail {
+template <class T>
+concept ConsistencyChecking = SelfChecking<T> || SelfCheckingAccelerator<T>;
+}  // namespace detail
+PULSECAST_OPTIONAL_MEMBER(ConsistencyChecking, "bool is_consistent() const", is_consistent, (), sound, consistent, check_consistency,
+                          is_valid)
+PULSECAST_OPTIONAL_MEMBER(SelfCheckingAccelerator, "bool is_consistent(std::size_t) const", is_consistent, (std::size_t{}), sound,
+                          consistent, check_consistency, is_valid)
+
+/// Survey that can be told from others, so that an executor may keep its workspaces from one run to the next.
+/// Law: two surveys of one type share an identity, which is not null, only if each may use the other's workspaces.
+template <class S>
+concept IdentifiedSurvey = requires(const S& s) {
+  { s.identity() } noexcept -> std::convertible_to<std::shared_ptr<const void>>;
+};
+PULSECAST_OPTIONAL_MEMBER(IdentifiedSurvey, "std::shared_ptr<const void> identity() const noexcept", identity, (), get_identity, identify,
+                          identifier, workspace_identity)
 
 // ---------------------------------------------------------------------------------------------------------------- motions
 
@@ -38,13 +175,6 @@ concept Motion = std::copyable<M> && requires(const M m, Tick t) {
 /// Optic in the path of the outgoing laser beam: a mirror, a prism, a fibre.
 template <class O>
 concept Optic = Motion<O, frame::Beam, frame::Instrument>;
-
-/// Motion that transmits light at some times only. An optic or head need not be gated.
-/// Law: as for `Motion`.
-template <class M>
-concept Gated = requires(const M m, Tick t) {
-  { m.open(t) } noexcept -> std::same_as<bool>;
-};
 
 /// Rotation of a whole instrument that already deflects its beam.
 template <class H>
@@ -84,12 +214,6 @@ concept InstrumentSource = PulseSource<S, frame::Instrument>;  ///< as `Deflecto
 template <class S>
 concept WorldSource = PulseSource<S, frame::World>;  ///< as `Platform<...>`
 
-/// Source with random errors, as `WithPoseErrors`. `Legs` passes each of its legs its place in the list, so that their draws are
-/// independent.
-/// Law: place 0 changes nothing.
-template <class S>
-concept DrawsByLeg = WorldSource<S> && requires(S& s, std::uint32_t leg) { s.draw_for_leg(leg); };
-
 // -------------------------------------------------------------------------------------------------------------- the scene
 
 namespace detail {
@@ -100,7 +224,7 @@ struct TestsPrimitives {
 
 /// Search structure over the boxes of numbered primitives, independent of their kind. `closest` calls `test` with the primitives that a
 /// bundle may meet, and `test` enters hits into `nearest`. Each call gets a subrange of `order()`. `order()` holds every primitive that can
-/// be hit, next to its neighbours, possibly repeated. An optional `test.prefetch(range)` may be called some time before.
+/// be hit, next to its neighbours, possibly repeated. A test that `PrefetchesPrimitives` may be told some time before.
 /// Law: if primitives are inside their boxes, `nearest` ends as if every primitive had been tested; rays of NaN miss.
 template <class A>
 concept Accelerator = std::copyable<A> && std::constructible_from<A, std::span<const Box>> &&
@@ -120,7 +244,7 @@ struct Surface {
 /// Shape for ray intersection, in its own frame [m], shared by any number of parts. `memory()` is in bytes; `material_count()` is the least
 /// length of a part's material table.
 /// `surface(i, rays, j)` is the surface of primitive i at its hit by ray j. The hit point is not passed; a curved primitive recomputes it.
-/// An optional `static constexpr bool flat = true` promises the same surface at any hit of a primitive: it is then called once.
+/// Not required: one surface for all hits of a primitive, as of a `FlatGeometry`.
 /// Law: pure; random draws depend on the bundle's names only; `closest` offers primitives to `nearest` and does nothing else.
 template <class G>
 concept Geometry = requires(const G g, const RayBundle& rays, ClosestHits& nearest, PrimitiveIndex i, std::size_t j) {
@@ -158,7 +282,7 @@ concept VelocityTarget = Target<T> && requires(const T t, const Ray& ray) {
 
 /// Sampling of a beam's cross section by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along the beam.
 /// Law: the shares are not negative and sum to one; a survey refuses others.
-/// Optional: `static constexpr bool recorded = true` passes all subrays to the sinks, as `WithSubrayRecord` does.
+/// Not required: a record of all subrays, as of one that `RecordsSubrays`.
 template <class F>
 concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
   { f.size() } noexcept -> std::same_as<std::size_t>;
@@ -229,29 +353,19 @@ struct Detection {
 
 /// Turns the reflections of a pulse into echoes. Its only writable memory is a `Workspace`, made once per worker by `workspace(n)` for up
 /// to n reflections. Random draws take `heard.key` with a `purpose` of the detector's own, as `Purpose{128}`, and any `subray` and `part`.
-/// Law: pure; echoes are sorted by range. Unless it listens always, nothing heard gives no echo, and the echoes' energy does not exceed
+/// Law: pure; echoes are sorted by range. Unless it `ListensAlways`, nothing heard gives no echo, and the echoes' energy does not exceed
 /// that received.
-/// Not required: use of all reflections; randomness; `void validate(const Laser&) const`, which refuses lasers when the survey is made.
+/// Not required: use of all reflections; randomness; waveforms, as of one that `SamplesWaveforms`; limits of the laser, as of one that
+/// `ValidatesLaser`; velocities, as of one that `ReadsVelocity`.
 template <class D>
 concept Detector = std::copyable<D> &&
     requires(const D d, const Heard& heard, std::size_t reflections, decltype(d.workspace(reflections))& workspace) {
   { d.detect(heard, workspace) } noexcept -> std::same_as<Detection>;
 };
 
-/// Detector that is asked for every pulse sent, also if no light returned: `static constexpr bool listens_always = true`. Others are asked
-/// for pulses with reflections only.
-template <class D>
-concept ListensAlways = Detector<D> && requires { requires bool{D::listens_always}; };
-
-/// Detector that reads `Reflection::velocity`: `static constexpr bool reads_velocity = true`. It needs a transport that `TracesVelocity`,
-/// and a `VelocityTarget`.
-template <class D>
-concept ReadsVelocity = Detector<D> && requires { requires bool{D::reads_velocity}; };
-
 /// Measure of the width of an echo: a policy of the waveform detectors. `samples` is the waveform [W] between the valleys to the
 /// neighbouring echoes, every `interval` [s]. The result is a standard deviation in time [s], or NaN if none is found.
-/// Not required: `width(const WaveformMoments&)`, for the exact width without samples in `AnalyticWaveform`; `min_share()`, a share of the
-/// highest sample below which samples are irrelevant, so that a waveform's tail need not be sampled.
+/// Not required: a width from moments, as of a `MomentWidthMeasure`; a limit of the tail, as of a `TruncatedWidthMeasure`.
 template <class W>
 concept EchoWidth = std::copyable<W> && requires(const W w, std::span<const double> samples, double interval) {
   { w.width(samples, interval) } noexcept -> std::same_as<double>;
@@ -266,19 +380,12 @@ struct Outcome;
 /// Law: pure; the same slot gives the same outcome, in any order, with any workspace of the survey.
 /// Not required: workspaces that can be moved or copied. For threads of one's own see `Executor` in base/parallel.hpp.
 template <class S>
-concept PulseSurvey = requires(const S s, PulseIndex i, decltype(s.workspace())& workspace) {
+concept PulseSurvey = requires(const S& s, PulseIndex i, decltype(s.workspace())& workspace) {
   { s.size() } noexcept -> std::same_as<PulseIndex>;
   { s.subrays() } noexcept -> std::convertible_to<std::size_t>;
   { s.recorded_subrays() } noexcept -> std::convertible_to<std::size_t>;
   { s.sample_interval() } noexcept -> std::same_as<double>;
   { s(i, workspace) } noexcept -> std::same_as<Outcome>;
-};
-
-/// Survey that can be told from others, so that an executor may keep its workspaces from one run to the next.
-/// Law: two surveys of one type share an identity, which is not null, only if each may use the other's workspaces.
-template <class S>
-concept IdentifiedSurvey = PulseSurvey<S> && requires(const S s) {
-  { s.identity() } noexcept -> std::convertible_to<std::shared_ptr<const void>>;
 };
 
 /// Receiver of results: a writer, a cloud in memory, a lambda.

@@ -186,6 +186,7 @@ struct WorkspaceMemory : ScratchItem {
 
  private:
   static std::shared_ptr<const void> identity_of(const Survey& survey) noexcept {
+    static_assert(detail::IdentifiedSurveyCheck<Survey>::passed);
     if constexpr (IdentifiedSurvey<Survey>)
       return survey.identity();
     else

@@ -162,9 +162,10 @@ class Bvh {
 
   template <class Test>
   void prefetch_entry(const StackEntry& next, const Test& test) const noexcept {
+    static_assert(detail::PrefetchesPrimitivesCheck<Test>::passed);
     if (next.size == 0)
       prefetch(&nodes_[next.first]);
-    else if constexpr (requires { test.prefetch(std::span<const PrimitiveIndex>()); })
+    else if constexpr (PrefetchesPrimitives<Test>)
       test.prefetch(std::span<const PrimitiveIndex>(primitives_.data() + next.first, next.size));
   }
 

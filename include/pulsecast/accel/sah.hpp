@@ -174,14 +174,17 @@ void for_each_chunk(std::size_t count, const Workers& workers, const Act& act) {
   for_each_index(chunk_count(count), workers, [&](std::size_t i) { act(i, i * chunk_size, std::min(count, (i + 1) * chunk_size)); });
 }
 
+/// Indexable range of boxes: an array, or a generator.
+template <class B>
+concept BoxRange = requires(const B& boxes) {
+  { boxes[boxes.size()] } -> std::convertible_to<Box>;
+};
+
 /// Non-owning, type-erased view of an indexable range of boxes, so that builders compile once. The range must outlive the view, and yield
-/// the same `Box` for an index every time: an array, or a generator.
+/// the same `Box` for an index every time.
 class BoxRangeRef {
  public:
-  template <class Boxes>
-  requires requires(const Boxes& boxes) {
-    { boxes[boxes.size()] } -> std::convertible_to<Box>;
-  }
+  template <BoxRange Boxes>
   BoxRangeRef(const Boxes& boxes)  // NOLINT(google-explicit-constructor): implicit from an array
       : boxes_(&boxes), size_(boxes.size()), copy_([](const void* all, std::size_t begin, std::size_t end, Box* to) {
           for (std::size_t i = begin; i < end; ++i) *to++ = (*static_cast<const Boxes*>(all))[i];

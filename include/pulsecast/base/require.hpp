@@ -5,18 +5,30 @@
 
 #include <cassert>
 #include <cmath>
+#include <concepts>
 #include <string_view>
+#include <utility>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/optional_member.hpp>
 
 /// Asserts a condition that only a bug of the caller can break; checked in debug builds, on the hot path too.
 #define PULSECAST_ASSERT(condition) assert(condition)
 
 namespace pulsecast {
 
-/// Throws a `SettingError`. Separate from the checks, so that these stay small when inlined.
+/// Limit of angles [rad]: one turn, and room for rounding.
+inline constexpr double max_angle = 6.2831854;
+
+/// Throws a `SettingError`. Asks about the unit if an angle exceeds a turn, or a rate is less than 1 Hz. Separate from the checks, so that
+/// these stay small when inlined.
 [[noreturn]] inline void throw_setting_error(std::string_view field, double value, std::string_view unit, std::string_view allowed) {
-  throw SettingError(std::string(field), value, std::string(unit), std::string(allowed));
+  const bool degrees = unit == "rad" && std::isfinite(value) && std::fabs(value) > max_angle;
+  const bool period = unit == "Hz" && value > 0 && value < 1;
+  throw SettingError(std::string(field), value, std::string(unit),
+                     detail::joined({allowed, degrees  ? ": given in degrees?"
+                                              : period ? ": a period?"
+                                                       : ""}));
 }
 
 /// Throws a `SettingError` unless the value is finite and greater than zero.
@@ -50,18 +62,54 @@ inline void require_within(std::string_view field, double value, double low, dou
   if (!(value >= low && value <= high)) detail::refuse_outside(field, value, low, high, unit);
 }
 
+/// Throws a `SettingError` unless the angle is within a turn: in [-2 pi, 2 pi].
+inline void require_angle(std::string_view field, double value) {
+  if (!(std::fabs(value) <= max_angle)) throw_setting_error(field, value, "rad", "from -2 pi to 2 pi");
+}
+
+struct Laser;
+
+/// Settings that refuse values out of range, by a `SettingError` when the stage that holds them is made.
+template <class Settings>
+concept Validated = requires(const Settings& settings) {
+  { settings.validate() } -> std::same_as<void>;
+};
+
+/// Detector that refuses lasers, by a `SettingError` when a survey is made.
+template <class Instrument>
+concept ValidatesLaser = requires(const Instrument& detector, const Laser& laser) {
+  { detector.validate(laser) } -> std::same_as<void>;
+};
+
 /// Settings with rotations: `normalize()` makes them unit after `validate()` has accepted their norms.
 template <class Settings>
 concept Normalizable = requires(Settings& settings) {
   { settings.normalize() }
-  noexcept;
+  noexcept->std::same_as<void>;
 };
 
-/// Settings of a stage, validated by their `void validate() const` if they have one, and normalized. Throws a `SettingError`.
+/// Settings or detector with a `validate` of either form.
+template <class T>
+concept Validating = Validated<T> || ValidatesLaser<T>;
+
+PULSECAST_OPTIONAL_MEMBER(Validating, "void validate() const, or of a detector void validate(const Laser&) const", validate, (), check,
+                          verify, is_valid, validate_settings)
+PULSECAST_OPTIONAL_MEMBER(ValidatesLaser, "void validate(const Laser&) const", validate_laser, (std::declval<const Laser&>()), validate,
+                          check, check_laser, validate_for)
+PULSECAST_OPTIONAL_MEMBER(Normalizable, "void normalize() noexcept", normalize, (), normalise, normalized, normalised, make_unit)
+
+/// Validates settings in place, and normalizes them. Throws a `SettingError`.
+template <class Settings>
+void validate_in_place(Settings& settings) {
+  static_assert(detail::ValidatingCheck<Settings>::passed && detail::NormalizableCheck<Settings>::passed);
+  if constexpr (Validated<Settings>) settings.validate();
+  if constexpr (Normalizable<Settings>) settings.normalize();
+}
+
+/// Settings of a stage, validated and normalized. Throws a `SettingError`.
 template <class Settings>
 [[nodiscard]] Settings validated(Settings settings) {
-  if constexpr (requires { settings.validate(); }) settings.validate();
-  if constexpr (Normalizable<Settings>) settings.normalize();
+  validate_in_place(settings);
   return settings;
 }
 

@@ -28,17 +28,17 @@ struct DetectorAdaptor {
 
   /// Validates the detector inside. @throws SettingError
   void validate() const {
-    if constexpr (requires(const Inner& d) { d.validate(); }) inner.validate();
+    if constexpr (Validated<Inner>) inner.validate();
   }
   /// Refuses the lasers that the detector inside refuses. @throws SettingError
   void validate(const Laser& laser) const {
-    if constexpr (requires(const Inner& d) { d.validate(laser); }) inner.validate(laser);
+    if constexpr (ValidatesLaser<Inner>) inner.validate(laser);
   }
   /// Normalizes the detector inside.
   void normalize() noexcept requires Normalizable<Inner> { inner.normalize(); }
 
   /// Sample spacing of waveforms [s].
-  [[nodiscard]] double sample_interval() const noexcept requires(requires(const Inner& d) { d.sample_interval(); }) {
+  [[nodiscard]] double sample_interval() const noexcept requires SamplesWaveforms<Inner> {
     return inner.sample_interval();
   }
 

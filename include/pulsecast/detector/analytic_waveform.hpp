@@ -162,7 +162,8 @@ class AnalyticWaveform {
   }
 
  private:
-  static constexpr bool by_moments = requires(const Width w, const WaveformMoments& m) { w.width(m); };
+  static_assert(detail::MomentWidthMeasureCheck<Width>::passed);
+  static constexpr bool by_moments = MomentWidthMeasure<Width>;
   static constexpr bool by_samples = !by_moments && !std::same_as<Width, NoWidth>;
   static constexpr std::size_t max_samples = 4096;  ///< samples of one echo; a longer echo gets a coarser grid
   static constexpr double infinity = std::numeric_limits<double>::infinity();

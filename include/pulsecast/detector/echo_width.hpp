@@ -61,7 +61,8 @@ static_assert(EchoWidth<NoWidth> && EchoWidth<MomentWidth>);
 /// Time after the peak of its last pulse up to which a waveform affects a width [tau].
 template <EchoWidth Width>
 [[nodiscard]] double tail_of(const Width& width) noexcept {
-  if constexpr (requires { width.min_share(); })
+  static_assert(detail::TruncatedWidthMeasureCheck<Width>::passed);
+  if constexpr (TruncatedWidthMeasure<Width>)
     return std::fmin(SampledSum::negligible, PulseShape::fallen_to(width.min_share()));
   else
     return std::same_as<Width, NoWidth> ? 0 : SampledSum::negligible;

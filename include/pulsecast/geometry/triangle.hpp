@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -226,13 +227,20 @@ template <class Rays, class Hits>
   }
 }
 
+/// Hits that may need no further test, as `AnyHit` does after the first.
+template <class Hits>
+concept EndsEarly = requires(const Hits& hits) {
+  { hits.done() }
+  noexcept->std::same_as<bool>;
+};
+
 /// Intersects as many triangles as there are primitives; `triangle_of(n)` returns the n-th.
 template <class TriangleOf, class Rays, class Hits>
 void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const Rays& rays, Hits& nearest) noexcept {
   for (std::size_t first = 0; first < primitives.size(); first += simd::lane_count) {
     const std::size_t count = std::min(simd::lane_count, primitives.size() - first);
     intersect({primitives.subspan(first, count), [&](std::size_t n) noexcept { return triangle_of(first + n); }}, rays, nearest);
-    if constexpr (requires { nearest.done(); })
+    if constexpr (EndsEarly<Hits>)
       if (nearest.done()) return;
   }
 }

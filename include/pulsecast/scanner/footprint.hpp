@@ -154,7 +154,7 @@ static_assert(Footprint<SingleRay> && Footprint<RingFootprint> && Footprint<Sunf
 /// `WithSubrayRecord{RingFootprint{5}}`.
 template <Footprint Pattern>
 struct WithSubrayRecord : Pattern {
-  static constexpr bool recorded = true;  ///< as the concept Footprint describes
+  static constexpr bool recorded = true;  ///< as the concept RecordsSubrays describes
   /// Takes a valid footprint.
   explicit WithSubrayRecord(Pattern pattern) : Pattern(std::move(pattern)) {}
 };

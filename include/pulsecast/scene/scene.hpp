@@ -25,20 +25,14 @@
 
 namespace pulsecast {
 
-namespace detail {
-/// True if the surface of a primitive is the same at all its points.
-template <class Shape>
-inline constexpr bool flat = requires {
-  requires bool{Shape::flat};
-};
-}  // namespace detail
-
 /// Static parts of the given kinds of geometry, without code for other kinds: `Scene<TriangleMesh<>>`. `MovingScene` moves parts.
 ///
 /// Parts share their geometries, so a second scene of other parts or placements costs one box per part. For changes between repetitions of
 /// a survey (leaves fall, a car is gone), make one scene each from the same geometries.
 template <Geometry... Shapes>
 class Scene {
+  static_assert((detail::FlatConstantCheck<Shapes>::passed && ...));
+
  public:
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
@@ -234,7 +228,7 @@ class Scene {
               .backscatter = material.backscatter(local.wavelength),
               .object = part.object,
               .classification = material.classification,
-              .flat = detail::flat<Shape>};
+              .flat = FlatGeometry<Shape>};
     };
     return visit_shape(look, part.geometry);
   }

@@ -81,6 +81,14 @@ struct MeshData {
 
 class DeformingMesh;
 
+namespace detail {
+/// Accelerator that takes such rays and hits.
+template <class Index, class Rays, class Test, class Hits>
+concept Searches = requires(const Index& index, const Rays& rays, const Test& test, Hits& hits) {
+  index.closest(rays, test, hits);
+};
+}  // namespace detail
+
 /// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are never hit. Triangles
 /// keep their numbers but are stored in the index's order, in blocks with vertices of their own for 16-bit indices. A triangle takes 10
 /// bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials.
@@ -89,7 +97,7 @@ class DeformingMesh;
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
-  static constexpr bool flat = true;  ///< as the concept Geometry describes
+  static constexpr bool flat = true;  ///< as the concept FlatGeometry describes
 
   /// `workers`: threads of the build. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
   explicit TriangleMesh(MeshData data, const Workers& workers = {}) : index_(built(data, workers)) {
@@ -121,7 +129,8 @@ class TriangleMesh {
     };
     if (!texture_.empty() && texture_.size() != size()) return false;
     if (material_count_ == 0 || !in_table(few_materials_) || !in_table(materials_)) return false;
-    if constexpr (requires { index_.is_consistent(size()); }) return index_.is_consistent(size());
+    static_assert(detail::SelfCheckingAcceleratorCheck<Index>::passed);
+    if constexpr (SelfCheckingAccelerator<Index>) return index_.is_consistent(size());
     return true;
   }
 
@@ -141,7 +150,7 @@ class TriangleMesh {
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Test<Rays, Hits> test{*this, rays, nearest};
-    if constexpr (requires { index_.closest(rays, test, nearest); }) {
+    if constexpr (detail::Searches<Index, Rays, Test<Rays, Hits>, Hits>) {
       index_.closest(rays, test, nearest);
     } else {
       const RayBundle bundle = bundle_of(rays, nearest.limit_of(0));

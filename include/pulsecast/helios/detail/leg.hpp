@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -39,10 +40,10 @@ struct SurveyPath {
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     return std::visit(
         [&](const auto& p) noexcept {
-          if constexpr (requires { p->at(t); })
-            return p->at(start + t);
-          else
+          if constexpr (Trajectory<std::remove_cvref_t<decltype(p)>>)
             return p.at(start + t);
+          else
+            return p->at(start + t);
         },
         path);
   }

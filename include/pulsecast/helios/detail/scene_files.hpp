@@ -32,6 +32,15 @@ namespace pulsecast::helios {
 
 namespace detail {
 
+template <class Source>
+concept WithMaterial = requires(Source source) {
+  source.material;
+};
+template <class Source>
+concept WithLeafAngles = requires(Source source) {
+  source.leaf_angles;
+};
+
 class SceneFiles {
  public:
   void add(const PartSource& source) {
@@ -39,8 +48,8 @@ class SceneFiles {
         [this](const auto& s) {
           for (const std::filesystem::path& file : s.files)
             if (add(file) && std::is_same_v<decltype(s), const ObjSource&>) add_materials(file);
-          if constexpr (requires { s.material; }) add_material(s.material.file);
-          if constexpr (requires { s.leaf_angles; }) add(s.leaf_angles);
+          if constexpr (WithMaterial<decltype(s)>) add_material(s.material.file);
+          if constexpr (WithLeafAngles<decltype(s)>) add(s.leaf_angles);
         },
         source);
   }

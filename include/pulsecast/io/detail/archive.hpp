@@ -20,7 +20,9 @@
 #include <variant>
 #include <vector>
 
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/digest.hpp>
 #include <pulsecast/io/output_file.hpp>
 
@@ -280,8 +282,9 @@ class ArchiveReader {
 
   template <class T>
   static void check(const T& object) {
-    if constexpr (requires { object.is_consistent(); }) require(object.is_consistent());
-    if constexpr (requires { object.validate(); }) object.validate();
+    static_assert(pulsecast::detail::ConsistencyCheckingCheck<T>::passed && pulsecast::detail::ValidatingCheck<T>::passed);
+    if constexpr (SelfChecking<T>) require(object.is_consistent());
+    if constexpr (Validated<T>) object.validate();
   }
 
   struct Shared {

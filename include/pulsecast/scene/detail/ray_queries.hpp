@@ -18,11 +18,23 @@
 /// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an `AnyHit` or a `HitBuffer`.
 namespace pulsecast::detail {
 
+/// Shape that takes such rays and hits.
+template <class Shape, class Rays, class Hits>
+concept Intersects = requires(const Shape& shape, const Rays& rays, Hits& hits) {
+  shape.closest(rays, hits);
+};
+
+/// Shape with a surface where a single ray meets it.
+template <class Shape>
+concept SurfacedBySingleRay = requires(const Shape& shape, const BundleOfOne& ray) {
+  shape.surface(PrimitiveIndex{}, ray, std::size_t{});
+};
+
 /// Offers the hits of a shape with a bundle or a single ray. A shape that takes neither single rays nor such hits is asked for the closest
 /// hit of a bundle.
 template <class Shape, class Rays, class Hits>
 void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
-  if constexpr (requires { shape.closest(rays, hits); }) {
+  if constexpr (Intersects<Shape, Rays, Hits>) {
     shape.closest(rays, hits);
   } else if constexpr (std::is_same_v<Hits, HitBuffer>) {
     hits.offer_chain(rays, [&shape](const BundleOfOne& from, ClosestHit& next) noexcept { offer_hits(shape, from, next); });
@@ -38,7 +50,7 @@ void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
 /// Surface of a shape's primitive where a single ray meets it.
 template <class Shape>
 [[nodiscard]] Surface surface_of(const Shape& shape, PrimitiveIndex primitive, const BundleOfOne& ray) noexcept {
-  if constexpr (requires { shape.surface(primitive, ray, 0); })
+  if constexpr (SurfacedBySingleRay<Shape>)
     return shape.surface(primitive, ray, 0);
   else
     return shape.surface(primitive, bundle_of(ray, std::numeric_limits<double>::infinity()), 0);
