@@ -16,6 +16,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/stage_arguments.hpp>
 #include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/transport/illumination.hpp>
 
@@ -76,9 +77,9 @@ class Survey {
         seed_(seed) {
     require_within("Survey::receivers (number)", static_cast<double>(receivers_.size()), 1, max_emitters, "");
     for (Unit& unit : receivers_) {
-      validate(unit.footprint);
-      validate(unit.receiver);
-      validate(unit.detector);
+      validate_in_place(unit.footprint);
+      validate_in_place(unit.receiver);
+      validate_in_place(unit.detector);
       require_whole_beam(unit.footprint);
     }
     require_alike();
@@ -192,13 +193,6 @@ class Survey {
     std::uint32_t beam;  // index of its subrays, which it shares with emitters of equal beams
   };
 
-  /// Validates and normalizes settings in place. Compiles faster than assigning `validated` ones.
-  template <class Settings>
-  static void validate(Settings& settings) {
-    if constexpr (requires { settings.validate(); }) settings.validate();
-    if constexpr (Normalizable<Settings>) settings.normalize();
-  }
-
   /// Refuses a footprint whose shares do not sum to the whole beam.
   static void require_whole_beam(const Pattern& footprint) {
     double sum = 0;
@@ -221,17 +215,15 @@ class Survey {
   }
 
   static double interval_of(const Unit& unit) noexcept {
-    if constexpr (requires { unit.detector.sample_interval(); })
-      return unit.detector.sample_interval();
-    else
-      return 0;
+    if constexpr (SamplesWaveforms<Instrument>) return unit.detector.sample_interval();
+    return 0;
   }
 
   /// Adds a valid emitter to the `earlier` ones. Throws a `SettingError` if it has no receiver, or if the detector refuses its laser.
   void add_emitter(const Emitter& emitter, std::span<const Emitter> earlier) {
     require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
     const Unit& unit = receivers_[emitter.receiver];
-    if constexpr (requires { unit.detector.validate(emitter.laser); }) unit.detector.validate(emitter.laser);
+    if constexpr (ValidatesLaser<Instrument>) unit.detector.validate(emitter.laser);
     const auto alike = std::find_if(earlier.begin(), earlier.end(), [&](const Emitter& other) {
       return other.receiver == emitter.receiver && SubrayDirections::equal(other, emitter);
     });
@@ -249,7 +241,8 @@ class Survey {
       }
   }
 
-  static constexpr bool recorded = requires { requires bool{Pattern::recorded}; };
+  static_assert(detail::SurveyMembers<Pattern, Instrument>::checked);
+  static constexpr bool recorded = RecordsSubrays<Pattern>;
 
   [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
                                       Workspace& w) const noexcept {
@@ -285,6 +278,13 @@ class Survey {
   std::uint64_t seed_;
   std::shared_ptr<const void> identity_{new char};  // compiles faster than make_shared
 };
+
+template <class Source, class Pattern, class Map, class Instrument>  // mistaken arguments
+requires(!detail::Surveyable<Source, Pattern, Map, Instrument>) Survey(Source, Pattern, Map&&, Receiver, Instrument, std::uint64_t = 0)
+->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;
+template <class Source, class Pattern, class Map, class Instrument>
+requires(detail::Temporary<Map>) Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, Map&&, std::uint64_t = 0)
+->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;
 
 }  // namespace pulsecast
 

@@ -33,10 +33,11 @@ includes_of_higher_layers() {
     may["base"] = "version"
     may["geometry"] = may["pulse"] = may["echo"] = "base"
     may["concepts"] = words
-    may["accel"] = may["scanner"] = may["deflector"] = may["platform"] = may["detector"] = may["cloud"] = words " concepts"
+    may["accel"] = may["scanner"] = may["detector"] = may["cloud"] = may["stage_arguments"] = words " concepts"
+    may["deflector"] = may["platform"] = words " concepts stage_arguments"
     may["scene"] = words " concepts accel"
     may["transport"] = words " concepts scanner detector"
-    may["survey"] = may["scene"] " scene scanner deflector platform detector transport cloud"
+    may["survey"] = may["scene"] " scene scanner deflector platform detector transport cloud stage_arguments"
     may["run"] = may["survey"] " survey"
     may["pulsecast"] = may["io"] = may["run"] " run version"
     may["helios"] = may["mpi"] = may["page"] = may["python"] = may["io"] " io"
@@ -77,6 +78,8 @@ rule 'the library never prints and never exits' found '#include <iostream>|std::
 rule 'random numbers come from base/random.hpp only' found '#include <random>|\<s?rand *\('
 rule 'lines and numbers are read from text by base/text.hpp only' found 'from_chars|\<(sto(d|f|i|u?ll?)|strto[a-z]+|ato[fil]|getline) *\(|xEF.xBB' 'base/text\.hpp'
 rule 'concepts, never enable_if' found 'enable_if'
+rule 'an optional member has a concept of its own' found \
+     'if constexpr \((.*[ (!])?requires *[({]|constexpr bool [a-z_]+ = requires|requires requires|requires \{ requires' 'survey\.hpp'
 
 # The single header keeps the guards of the headers that it holds, and so goes with all others in either order.
 without_guard() {

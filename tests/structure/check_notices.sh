@@ -58,6 +58,10 @@ text_rule='lines and numbers are read from text by base/text.hpp only'
 notices "$text_rule" "echo 'inline double f() { return std::stod(\"1\"); }' >> include/pulsecast/io/las.hpp"
 notices "$text_rule" "echo 'inline const char* mark = \"\\xEF\\xBB\\xBF\";' >> include/pulsecast/io/las.hpp"
 notices 'concepts, never enable_if' "echo 'template <class T, class = std::enable_if_t<true>> struct A;' >> include/pulsecast/echo.hpp"
+hook='an optional member has a concept of its own'
+notices "$hook" "echo 'void f(const auto& a) { if constexpr (requires { a.soon(); }) a.soon(); }' >> include/pulsecast/echo.hpp"
+notices "$hook" "echo 'template <class T> constexpr bool soon = requires(T a) { a.soon(); };' >> include/pulsecast/echo.hpp"
+notices "$hook" "echo 'template <class T> requires requires(T a) { a.soon(); } void f(T);' >> include/pulsecast/echo.hpp"
 guard='a header has the include guard of its path'
 notices "$guard" 'sed -i "s/PULSECAST_ECHO_HPP/PULSECAST_PULSE_HPP/" include/pulsecast/echo.hpp'
 notices "$guard" 'sed -i "/^#endif/d" include/pulsecast/echo.hpp'

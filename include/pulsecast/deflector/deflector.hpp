@@ -9,6 +9,7 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/stage_arguments.hpp>
 
 namespace pulsecast {
 
@@ -16,9 +17,11 @@ namespace pulsecast {
 /// `Deflector{RotatingHead{...}, Deflector{PolygonMirror{...}, Scanner{...}}}`.
 // clang-format off
 template <class Moving, class Source>
-requires (Optic<Moving> && BeamSource<Source>) || (Head<Moving> && InstrumentSource<Source>)
+requires detail::Deflectable<Moving, Source>
 class Deflector {
   // clang-format on
+  static_assert(detail::GatedCheck<Moving>::passed);
+
  public:
   /// Throws a `SettingError` if the settings of `moving` or `source` are invalid.
   Deflector(Moving moving, Source source) : moving_(validated(std::move(moving))), source_(validated(std::move(source))) {}
@@ -30,10 +33,8 @@ class Deflector {
   [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept {
     const auto inner = source_.pulse(i);
     if (!inner) return std::nullopt;
-    if constexpr (requires { moving_.open(inner->tick); }) {
-      static_assert(Gated<Moving>, "open(Tick) must be const and noexcept, and give a bool");
+    if constexpr (Gated<Moving>)
       if (!moving_.open(inner->tick)) return std::nullopt;
-    }
     const auto pose = moving_.at(inner->tick);
     PULSECAST_ASSERT(pose.rigid() || !pose.finite());  // a run reports NaN
     return std::optional<Pulse<frame::Instrument>>(std::in_place, pose, *inner);
@@ -48,6 +49,10 @@ class Deflector {
   Moving moving_;
   Source source_;
 };
+
+template <class Moving, class Source>  // mistaken arguments
+requires(!detail::Deflectable<Moving, Source>) Deflector(Moving, Source)
+->Deflector<typename detail::DeflectorArguments<Moving, Source>::First, Source>;
 
 }  // namespace pulsecast
 

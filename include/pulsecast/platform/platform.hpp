@@ -11,6 +11,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/stage_arguments.hpp>
 
 namespace pulsecast {
 
@@ -74,6 +75,12 @@ class Platform {
   Mount mount_;
   Source source_;
 };
+
+template <class Path, class Source>  // mistaken arguments
+Platform(Path, Source)->Platform<typename detail::PlatformArguments<Path, Source, false>::First, Source>;
+template <class Path, class Source>
+requires(!Trajectory<Path> || !InstrumentSource<Source>) Platform(Path, Mount, Source)
+->Platform<typename detail::PlatformArguments<Path, Source, true>::First, Source>;
 
 }  // namespace pulsecast
 

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_STAGE_ARGUMENTS_HPP
+#define PULSECAST_STAGE_ARGUMENTS_HPP
+
+#include <type_traits>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/concepts.hpp>
+
+/// Arguments of `Deflector`, `Platform` and `Survey`. Deduction guides that take all others name the mistake, by static assertions.
+// clang-format off
+// version 14 breaks up compound requirements
+namespace pulsecast::detail {
+
+/// Optic or head before a source that it deflects.
+template <class Moving, class Source>
+concept Deflectable = (Optic<Moving> && BeamSource<Source>) || (Head<Moving> && InstrumentSource<Source>);
+
+/// Forwarded argument that is a temporary: one that is not is a reference.
+template <class T>
+concept Temporary = !std::is_lvalue_reference_v<T>;
+
+/// Source, footprint, forwarded map and detector of a survey.
+template <class Source, class Pattern, class Map, class Instrument>
+concept Surveyable =
+    WorldSource<Source> && Footprint<Pattern> && !Temporary<Map> && Target<std::remove_cvref_t<Map>> && Detector<Instrument>;
+
+template <class M>
+concept PosedAnyhow = requires(M m, Tick t) { m.at(t); };
+template <class M>
+concept PosedConst = !PosedAnyhow<M> || requires(const M m, Tick t) { m.at(t); };
+template <class M>
+concept PosedNoexcept = !PosedAnyhow<M> || requires(const M m, Tick t) { { m.at(t) } noexcept; };
+
+/// Own optic, head or trajectory.
+template <class M>
+struct MotionArgument {
+  static_assert(PosedConst<M>, "at(Tick) of an optic, head or trajectory must be const");
+  static_assert(!PosedConst<M> || PosedNoexcept<M>, "at(Tick) of an optic, head or trajectory must be noexcept");
+};
+
+template <class Moving, class Source>
+struct DeflectorArguments : MotionArgument<Moving> {
+  static_assert(!Deflectable<Source, Moving>, "Deflector{optic, source}: the arguments are swapped");
+  static_assert(Deflectable<Moving, Source>,
+                "Deflector{optic, source} takes an optic and a Scanner, or a head and a Deflector; of your own: static_assert(Optic<T>)");
+  using First = Moving;
+};
+
+template <class Path, class Source, bool mounted>
+struct PlatformArguments : MotionArgument<Path> {
+  static_assert(!BeamSource<Source>,
+                "Platform{trajectory, mount, source}: a bare Scanner needs a deflector: Deflector{FixedBeam{}, scanner}");
+  static_assert(mounted, "Platform{trajectory, mount, source}: the mount is missing: Mount{}");
+  static_assert(Trajectory<Path> && InstrumentSource<Source>,
+                "Platform{trajectory, mount, source} takes a Trajectory and a Deflector; of your own: static_assert(Trajectory<T>)");
+  using First = Path;
+};
+
+template <class Source, class Pattern, class Map, class Instrument>
+struct SurveyArguments {
+  static_assert(!Temporary<Map>, "Survey: the map is a temporary; name it, as it must outlive the survey");
+  static_assert(WorldSource<Source>, "Survey: the source must be a Platform, or joined ones; of your own: static_assert(WorldSource<T>)");
+  static_assert(Footprint<Pattern>, "Survey: the second argument must be a Footprint; of your own: static_assert(Footprint<T>)");
+  static_assert(Target<std::remove_cvref_t<Map>>, "Survey: the map must be a Target; of your own: static_assert(Target<T>)");
+  static_assert(Detector<Instrument>, "Survey: the detector must be a Detector; of your own: static_assert(Detector<T>)");
+  using First = Source;
+};
+
+/// Optional members of the stages of a survey.
+template <class Pattern, class Instrument>
+struct SurveyMembers {
+  static constexpr bool checked =
+      RecordedConstantCheck<Pattern>::passed && SamplesWaveformsCheck<Instrument>::passed && ValidatesLaserCheck<Instrument>::passed;
+};
+
+}  // namespace pulsecast::detail
+
+#endif

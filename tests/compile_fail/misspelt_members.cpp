@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+// error: GatedCheck<OwnOptic
+// error: it must be: bool open.Tick. const noexcept
+// error: ValidatingCheck<OwnMirror
+// error: it must be: void validate.. const
+// error: NormalizableCheck<OwnTrajectory
+// error: it must be: void normalize.. noexcept
+// error: DrawsByLegCheck<OwnSource
+// error: it must be: void draw_for_leg.std::uint32_t.
+// error: RecordedConstantCheck<OwnFootprint
+// error: it must be: static constexpr bool recorded = true
+// error: SamplesWaveformsCheck<OwnDetector
+// error: it must be: double sample_interval.. const noexcept
+// error: ValidatesLaserCheck<OtherDetector
+// error: it must be: void validate.const Laser&. const
+// error: MomentWidthMeasureCheck<OwnWidth
+// error: it must be: double width.const WaveformMoments&. const noexcept
+// error: TruncatedWidthMeasureCheck<OwnWidth
+// error: it must be: double min_share.. const noexcept
+// error: FlatConstantCheck<OwnShape
+// error: it must be: static constexpr bool flat = true
+// error: PrefetchesPrimitivesCheck<OwnTest
+// error: it must be: void prefetch.std::span<const PrimitiveIndex>. const noexcept
+// error: SelfCheckingAcceleratorCheck<OwnIndex
+// error: it must be: bool is_consistent.std::size_t. const
+// error: IdentifiedSurveyCheck<OwnSurvey
+// error: it must be: std::shared_ptr<const void> identity.. const noexcept
+// error: ConsistencyCheckingCheck<OwnTable
+// error: it must be: bool is_consistent.. const
+//
+// Each stage checks the optional members that it uses. tests/concepts.cpp has the near names of each.
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/detector/analytic_waveform.hpp>
+#include <pulsecast/detector/first_hit.hpp>
+#include <pulsecast/io/detail/archive.hpp>
+#include <pulsecast/platform/legs.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/run.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+#include <pulsecast/scene/scene.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
+
+#include "../support/archetypes.hpp"
+
+#ifdef SHOULD_NOT_COMPILE
+#define NAME(right, wrong) wrong
+#else
+#define NAME(right, wrong) right
+#endif
+
+using namespace pulsecast;
+using namespace pulsecast::support;
+
+struct OwnOptic : LeastOptic {
+  bool open(Tick) const NAME(noexcept, ) { return true; }
+};
+struct OwnMirror : LeastOptic {
+  void NAME(validate, check)() const {}
+};
+struct OwnTrajectory : LeastTrajectory {
+  void NAME(normalize, normalise)() noexcept {}
+};
+struct OwnSource : LeastSource<frame::World> {
+  void NAME(draw_for_leg, draw_leg)(std::uint32_t) {}
+};
+struct OwnFootprint : LeastFootprint {
+  static constexpr NAME(bool, int) recorded = true;
+};
+struct OwnDetector : LeastDetector {
+  double NAME(sample_interval, sampling_interval)() const noexcept { return 1; }
+};
+struct OtherDetector : LeastDetector {
+  void NAME(validate, validate_laser)(const Laser&) const {}
+};
+struct OwnWidth {
+  double width(std::span<const double>, double) const noexcept { return 1; }
+  double width(const WaveformMoments&) const NAME(noexcept, ) { return 1; }
+  double NAME(min_share, least_share)() const noexcept { return 0.5; }
+};
+struct OwnShape : LeastGeometry {
+  static constexpr bool NAME(flat, is_flat) = true;
+};
+struct OwnTest {
+  void operator()(std::span<const PrimitiveIndex>) const noexcept {}
+  void NAME(prefetch, soon)(std::span<const PrimitiveIndex>) const noexcept {}
+};
+struct OwnIndex : LeastAccelerator {
+  using LeastAccelerator::LeastAccelerator;
+  bool NAME(is_consistent, sound)(std::size_t) const { return true; }
+};
+struct OwnSurvey : Survey<LeastSource<frame::World>, LeastFootprint, LeastRayTarget, LeastDetector> {
+  using Survey::Survey;
+  std::shared_ptr<const void> identity() const NAME(noexcept, ) { return nullptr; }
+};
+struct OwnTable {
+  template <class Archive>
+  void archive(Archive&) {}
+  bool is_consistent() NAME(const, ) { return true; }
+};
+
+int main() {
+  const Deflector device{OwnOptic{}, Scanner{}};
+  const Deflector other{OwnMirror{}, Scanner{}};
+  const Platform platform{OwnTrajectory{}, Mount{}, device};
+  const Legs legs{std::vector<OwnSource>(2)};
+  const LeastRayTarget map;
+  const LeastSource<frame::World> source;
+  const Survey recording{source, OwnFootprint{}, map, Receiver{}, LeastDetector{}};
+  const Survey sampling{source, LeastFootprint{}, map, Receiver{}, OwnDetector{}};
+  const Survey validating{source, LeastFootprint{}, map, Receiver{}, OtherDetector{}};
+  const AnalyticWaveform<OwnWidth> detector;
+  (void)tail_of(OwnWidth{});
+  const Scene<OwnShape> scene(std::vector<Scene<OwnShape>::Part>{});
+  const RayBundle rays;
+  ClosestHits nearest(rays);
+  Bvh<>(std::span<const Box>{}).closest(rays, OwnTest{}, nearest);
+  (void)TriangleMesh<OwnIndex>(MeshData{}).is_consistent();
+  run(OwnSurvey({}, {}, map, Receiver{}, {}), {}, [](const EchoBatch&) {});
+  OwnTable table;
+  io::ArchiveReader({}, nullptr)(table);
+}
