@@ -61,6 +61,25 @@ TEST_CASE("what must lie within an interval may lie on its ends") {
   CHECK(refusal([] { require_within("Material::reflectance", 1.5, 0, 1, ""); }) == "Material::reflectance is 1.5, but must be from 0 to 1");
 }
 
+TEST_CASE("an angle may be a turn to either side") {
+  const double turn = 360 * (3.14159265358979323846 / 180);
+  for (const double good : {0.0, turn, -turn}) CHECK_NOTHROW(require_angle("a", good));
+  for (const double bad : {6.29, -6.29, infinity, -infinity, nan_value}) CHECK_THROWS_AS(require_angle("a", bad), SettingError);
+}
+
+TEST_CASE("a message asks about the unit where the value lets one guess it") {
+  CHECK(refusal([] { require_angle("a", -90); }) == "a is -90 rad, but must be from -2 pi to 2 pi: given in degrees?");
+  CHECK(refusal([] { require_within("a", 45, 0, 1, "rad"); }) == "a is 45 rad, but must be from 0 to 1: given in degrees?");
+  CHECK(refusal([] { require_within("a", 2, 0, 1, "rad"); }) == "a is 2 rad, but must be from 0 to 1");
+  CHECK(refusal([] { require_within("a", 45, 0, 1, "m"); }) == "a is 45 m, but must be from 0 to 1");
+  CHECK(refusal([] { require_angle("a", nan_value); }) == "a is nan rad, but must be from -2 pi to 2 pi");
+  CHECK(refusal([] { require_within("a", 1e-3, 1, 2, "Hz"); }) == "a is 0.001 Hz, but must be from 1 to 2: a period?");
+  CHECK(refusal([] { require_within("a", 3, 1, 2, "Hz"); }) == "a is 3 Hz, but must be from 1 to 2");
+  CHECK(refusal([] { require_rate("a", -1e-3); }) == "a is -0.001 Hz, but must be greater than 0 and at most 1e12");
+}
+
+static_assert(Validated<Asks> && !Validated<AsksNothing> && !Normalizable<Asks>);
+
 TEST_CASE("settings that have a say are asked, and others pass as they are") {
   CHECK(validated(Asks{2}).value == 2);
   CHECK_THROWS_AS((void)validated(Asks{-2}), SettingError);

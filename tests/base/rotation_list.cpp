@@ -53,7 +53,7 @@ TEST_CASE("turns about moving axes are those about fixed axes in reverse, and th
     support::Generator any(seed);
     std::vector<AxisAngle> turns;
     for (std::uint64_t n = any.whole(8); turns.size() < n;)
-      turns.push_back({any.log_uniform(1e-3, 1e3) * any.unit(), any.uniform(-10, 10)});
+      turns.push_back({any.log_uniform(1e-3, 1e3) * any.unit(), any.uniform(-2 * pi, 2 * pi)});
     const Rotation moving = intrinsic(turns);
     std::reverse(turns.begin(), turns.end());
     CHECK(same(moving, extrinsic(turns)));

@@ -57,6 +57,7 @@ TEST_CASE("pulse rates") {
     row(quantity, name + std::string(", 100 000 pulses through a table of 7 entries: how many by a wrong one"), 0, other_entry, 0);
   }
   refused(quantity, "0 Hz", [] { Scanner{.pulse_rate = 0}.validate(); });
+  refused(quantity, "10 us for a rate", [] { Scanner{.pulse_rate = 1e-5}.validate(); });
   refused(quantity, "1e13 Hz", [] { Scanner{.pulse_rate = 1e13}.validate(); });
 }
 

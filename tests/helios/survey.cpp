@@ -248,6 +248,32 @@ TEST_CASE("a multicopter that hovers before, between and after ways looks along 
   CHECK(length(paths[1].path.at(Tick::of_seconds(paths[1].duration)).direction(axis::forward) - axis::forward) < 1e-6);
 }
 
+TEST_CASE("documents may give angles of many turns") {
+  const auto directions = [](double more) {
+    SurveySettings s = survey_of(PlatformKind::multicopter, {{0, 0, 40}, {0, 0, 40}, {40, 0, 40}, {40, 40, 40}}, 5);
+    s.legs[0].platform.yaw_at_departure = radians(30) + more;
+    s.legs[2].platform.yaw_at_departure = radians(-40) - more;
+    s.legs[0].duration_max = 1;
+    s.scanner.channels[0].beam_origin.rotation.turns = {{Axis::z, radians(20) + more}};
+    s.platform.mount.rotation.turns = {{Axis::x, radians(-90) - more}, {Axis::z, radians(10) + more}};
+    for (LegSettings& leg : s.legs) leg.scanner.head_start = leg.scanner.head_stop = radians(50) + more;
+    const CompiledSurvey compiled = compile_survey(s, flat);
+    std::vector<Vec3> all;
+    for (PulseIndex i = 0; i < compiled.source.size(); i += 10) all.push_back(compiled.source.pulse(i).value().direction());
+    return all;
+  };
+  const std::vector<Vec3> right = directions(0);
+  REQUIRE(right.size() > 1000);
+  for (const double turns : {1, -3, 9}) {
+    CAPTURE(turns);
+    const std::vector<Vec3> same = directions(turns * 2 * pi);
+    REQUIRE(same.size() == right.size());
+    double apart = 0;
+    for (std::size_t i = 0; i < same.size(); ++i) apart = std::max(apart, length(same[i] - right[i]));
+    CHECK(apart < 1e-9);
+  }
+}
+
 TEST_CASE("a flight of smooth turns goes from place to place, however often its ways cross") {
   std::vector<Vec3> places;
   support::Generator any(1);

@@ -45,7 +45,7 @@ TEST_CASE("every place of the area lies in the swath of a line, and neighbours o
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     CAPTURE(seed);
     support::Generator any(seed);
-    BlockFlight block{.area = any.box(1e6, 10, 3000), .heading = any.uniform(-7, 7)};
+    BlockFlight block{.area = any.box(1e6, 10, 3000), .heading = any.uniform(-2 * pi, 2 * pi)};
     block.swath = any.log_uniform(20, 2000);
     block.overlap = any.uniform(0, 0.9);
     const auto lines = plan_block_flight(block);

@@ -76,8 +76,8 @@ MulticopterSettings random_settings(Generator& random) {
                         .yaw_rate = random.log_uniform(0.05, 5),
                         .turn = random.coin() ? MulticopterTurn::smooth : MulticopterTurn::stop_and_turn,
                         .turn_distance = random.log_uniform(0.01, 100)};
-  if (random.coin()) s.departure_heading = random.uniform(-7, 7);
-  if (random.coin()) s.arrival_heading = random.uniform(-7, 7);
+  if (random.coin()) s.departure_heading = random.uniform(-2 * pi, 2 * pi);
+  if (random.coin()) s.arrival_heading = random.uniform(-2 * pi, 2 * pi);
   return s;
 }
 

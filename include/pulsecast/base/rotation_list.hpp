@@ -17,7 +17,7 @@ struct AxisAngle {
 
   void validate() const {
     require_positive("AxisAngle::axis (length)", length(axis), "");
-    require_finite("AxisAngle::angle", angle, "rad");
+    require_angle("AxisAngle::angle", angle);
   }
 };
 

@@ -28,7 +28,7 @@ struct PatternTable {
     require_within("PatternTable::entries (number)", static_cast<double>(entries.size()), 1, 1e9, "");
     require_rate("PatternTable::entries_per_second", entries_per_second);
     for (const BeamAngles& e : entries) {
-      require_finite("BeamAngles::azimuth", e.azimuth, "rad");
+      require_angle("BeamAngles::azimuth", e.azimuth);
       require_within("BeamAngles::elevation", e.elevation, -pi / 2, pi / 2, "rad");
     }
   }

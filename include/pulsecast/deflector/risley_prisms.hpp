@@ -19,7 +19,7 @@ struct Prism {
   double wedge = pi / 10;          ///< angle between the faces [rad]
   double turns_per_second = 100;   ///< rotation rate, positive from up to the right as seen along forward; magnitude at most 1e12 [Hz]
   double refractive_index = 1.51;  ///< refractive index of the glass at the laser's wavelength
-  double start = 0;                ///< rotation at the survey's start, from -1e6 to 1e6 [rad]
+  double start = 0;                ///< rotation at the survey's start, from -2 pi to 2 pi [rad]
   bool inclined_exit = false;      ///< true if the beam leaves through the inclined face, false if it enters there
 };
 
@@ -46,7 +46,7 @@ struct RisleyPrisms {
       require_within("Prism::wedge", p.wedge, 0, 1.5, "rad");
       require_within("Prism::turns_per_second", p.turns_per_second, -1e12, 1e12, "Hz");
       require_within("Prism::refractive_index", p.refractive_index, 0.5, 10, "");
-      require_within("Prism::start", p.start, -1e6, 1e6, "rad");
+      require_angle("Prism::start", p.start);
     }
     require_within("RisleyPrisms::surrounding_index", surrounding_index, 0.5, 10, "");
     require_positive("RisleyPrisms::incident (length)", length(incident), "");

@@ -11,12 +11,12 @@ namespace pulsecast {
 /// Head that rotates a whole instrument at a constant rate.
 struct RotatingHead {
   double rate = 2 * pi;  ///< angular rate, positive to the left about an upward axis; from -1e12 to 1e12, rounded as turns a second [rad/s]
-  double start = 0;      ///< angle at the survey's start, from -1e6 to 1e6 [rad]
+  double start = 0;      ///< angle at the survey's start, from -2 pi to 2 pi [rad]
   Vec3 axis = axis::up;  ///< axis of rotation, of any length but zero
 
   void validate() const {
     require_within("RotatingHead::rate", rate, -1e12, 1e12, "rad/s");
-    require_within("RotatingHead::start", start, -1e6, 1e6, "rad");
+    require_angle("RotatingHead::start", start);
     require_positive("RotatingHead::axis (length)", length(axis), "");
   }
 

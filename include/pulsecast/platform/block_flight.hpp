@@ -31,7 +31,7 @@ struct BlockFlight {
     require_finite("BlockFlight::altitude", altitude, "m");
     require_positive("BlockFlight::swath", swath, "m");
     require_within("BlockFlight::overlap", overlap, 0, 0.99, "");
-    require_finite("BlockFlight::heading", heading, "rad");
+    require_angle("BlockFlight::heading", heading);
     require_positive("BlockFlight::speed", speed, "m/s");
     require_finite("BlockFlight::run_in", run_in, "m");
   }

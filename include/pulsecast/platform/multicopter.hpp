@@ -54,8 +54,8 @@ struct MulticopterSettings {
     require_within("MulticopterSettings::bank_max", bank_max, 1e-3, 1.5, "rad");
     require_within("MulticopterSettings::yaw_rate", yaw_rate, 1e-3, 1e3, "rad/s");
     require_within("MulticopterSettings::turn_distance", turn_distance, 1e-3, 1e9, "m");
-    if (departure_heading) require_within("MulticopterSettings::departure_heading", *departure_heading, -100, 100, "rad");
-    if (arrival_heading) require_within("MulticopterSettings::arrival_heading", *arrival_heading, -100, 100, "rad");
+    if (departure_heading) require_angle("MulticopterSettings::departure_heading", *departure_heading);
+    if (arrival_heading) require_angle("MulticopterSettings::arrival_heading", *arrival_heading);
   }
 };
 

@@ -33,11 +33,11 @@ struct PoseErrors {
 
   void validate() const {
     require_not_negative("PoseErrors::position_noise", position_noise, "m");
-    require_not_negative("PoseErrors::attitude_noise", attitude_noise, "rad");
+    require_within("PoseErrors::attitude_noise", attitude_noise, 0, max_angle, "rad");
     require_not_negative("PoseErrors::position_drift", position_drift, "m");
-    require_not_negative("PoseErrors::attitude_drift", attitude_drift, "rad");
+    require_within("PoseErrors::attitude_drift", attitude_drift, 0, max_angle, "rad");
     require_positive("PoseErrors::drift_time", drift_time, "s");
-    require_not_negative("PoseErrors::angular_jitter", angular_jitter, "rad");
+    require_within("PoseErrors::angular_jitter", angular_jitter, 0, max_angle, "rad");
     require_finite("PoseErrors::lever_arm_error (length)", length(lever_arm_error), "m");
     require_rotation("PoseErrors::boresight_error", boresight_error);
   }

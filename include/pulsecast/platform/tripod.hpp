@@ -18,7 +18,7 @@ struct Tripod {
     require_finite("Tripod::position (x)", position.x, "m");
     require_finite("Tripod::position (y)", position.y, "m");
     require_finite("Tripod::position (z)", position.z, "m");
-    require_finite("Tripod::heading", heading, "rad");
+    require_angle("Tripod::heading", heading);
   }
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick) const noexcept { return {level(heading), position}; }

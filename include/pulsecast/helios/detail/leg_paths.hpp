@@ -4,6 +4,7 @@
 #define PULSECAST_HELIOS_DETAIL_LEG_PATHS_HPP
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -154,10 +155,10 @@ class LegPaths {
     return k + 1 < places_.size() ? heading_of(places_[k + 1] - places_[k], otherwise) : otherwise;
   }
 
-  /// Heading of a multicopter at the start of a leg [rad].
+  /// Heading of a multicopter at the start of a leg, within a turn [rad].
   [[nodiscard]] double departure_of(std::size_t k, double otherwise) const {
     const std::optional<double>& yaw = survey_.legs[k].platform.yaw_at_departure;
-    return yaw ? -*yaw : otherwise;
+    return !yaw ? otherwise : std::fabs(*yaw) > max_angle ? std::remainder(-*yaw, 2 * pi) : -*yaw;
   }
 
   /// Plans one flight for each run of legs that the multicopter flies without a stop.

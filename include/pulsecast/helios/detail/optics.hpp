@@ -32,6 +32,12 @@
 /// Converts the instrument of a survey document to stages of the library.
 namespace pulsecast::helios {
 
+/// Optic with a deflection angle, upward [rad].
+template <class O>
+concept TellsAngle = requires(const O optic, Tick t) {
+  static_cast<double>(optic.angle(t));
+};
+
 /// Beam path of one channel: an optic of any kind, mounted in an instrument that a head turns. One type for all optics, so that a program
 /// with scanners from files compiles one pipeline.
 struct SurveyOptic {
@@ -48,13 +54,14 @@ struct SurveyOptic {
 
   void validate() const {
     std::visit([](const auto& o) { o.validate(); }, optic);
-    head.validate();
+    RotatingHead{.rate = head.rate, .axis = head.axis}.validate();
+    require_within("RotatingHead::start", head.start, -1e6, 1e6, "rad");  // many turns in some documents
   }
 
   [[nodiscard]] bool open(Tick t) const noexcept {
     return std::visit(
         [&](const auto& o) noexcept {
-          if constexpr (requires { o.open(t); })
+          if constexpr (Gated<decltype(o)>)
             return o.open(t + ahead);
           else
             return true;
@@ -84,7 +91,7 @@ struct SurveyOptic {
   [[nodiscard]] double deflection(Tick t) const noexcept {
     return std::visit(
         [&](const auto& o) noexcept -> double {
-          if constexpr (requires { o.angle(t); })
+          if constexpr (TellsAngle<decltype(o)>)
             return o.angle(t + ahead);
           else
             return 0;

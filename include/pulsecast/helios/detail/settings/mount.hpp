@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
-#include <pulsecast/base/rotation_list.hpp>
+#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
 namespace pulsecast::helios {
@@ -41,10 +41,16 @@ struct RotationList {
 
   /// Product of all rotations.
   [[nodiscard]] Rotation rotation() const {
-    std::vector<AxisAngle> all;
-    for (const AxisTurn& turn : turns)
-      all.push_back({turn.axis == Axis::x ? axis::right : turn.axis == Axis::y ? axis::forward : axis::up, turn.angle});
-    return local ? intrinsic(all) : extrinsic(all);
+    Rotation all = no_rotation;  // as `extrinsic` and `intrinsic` do, but documents may have many turns
+    for (const AxisTurn& turn : turns) {
+      require_finite("angle_deg", degrees(turn.angle), "deg");
+      const Rotation next = rotation_about(turn.axis == Axis::x   ? axis::right
+                                           : turn.axis == Axis::y ? axis::forward
+                                                                  : axis::up,
+                                           turn.angle);
+      all = local ? all * next : next * all;
+    }
+    return normalize(all);
   }
 
   bool operator==(const RotationList&) const = default;

@@ -33,7 +33,7 @@ struct ImageSettings {
   void validate() const {
     require_within("ImageSettings::width", width, 1, 4096, "px");
     require_within("ImageSettings::height", height, 1, 4096, "px");
-    require_finite("ImageSettings::azimuth", azimuth, "rad");
+    require_angle("ImageSettings::azimuth", azimuth);
     require_within("ImageSettings::elevation", elevation, -pi / 2, pi / 2, "rad");
     require_within("ImageSettings::field_of_view", field_of_view, eye ? radians(1) : 0, radians(120), "rad");
     if (eye) require_finite("ImageSettings::eye (length)", length(*eye), "m");

@@ -37,7 +37,7 @@ struct AngleConvention {
   double zero_heading = 0;  ///< heading of the body at zero angles, clockwise from north [rad]
 
   void validate() const {
-    require_finite("AngleConvention::zero_heading", zero_heading, "rad");
+    require_angle("AngleConvention::zero_heading", zero_heading);
     constexpr double rounding = 1e-9;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t next = (i + 1) % 3;
