@@ -108,7 +108,7 @@ TEST_CASE("a body may orbit without turning, or turn otherwise than it orbits") 
   CHECK(length(moved(cabin, 1, own + Vec3{1, 2, 3}, own) - Vec3{5 + 1, 2, -10 + 3}) < 1e-14);
   const PartMotion moon(SteadyMotion{.rate = pi / 2, .centre = Vec3{}, .spin = Vec3{pi, 0, 0}});
   CHECK(length(moved(moon, 1, own + Vec3{1, 2, 3}, own) - Vec3{1, 10 - 2, 5 - 3}) < 1e-14);
-  const Box swept = cabin.swept(std::array<Vec3, 1>{own}, own, {0, 0}, {60, 0});
+  const Box swept = cabin.swept({own, own}, {}, {0, 0}, {60, 0});
   CHECK(max_norm(swept.max) < length(own) + 1e-5);
 }
 
@@ -295,7 +295,7 @@ TEST_CASE("what a body sweeps is inside of the box, whatever it does and however
     const double span = any.log_uniform(1e-4, any.coin() ? 1 : 300);
     CAPTURE(from);
     CAPTURE(span);
-    const Box swept = motion.swept(corners, box.centre(), Tick::of_seconds(from), Tick::of_seconds(from + span));
+    const Box swept = motion.swept(box, {}, Tick::of_seconds(from), Tick::of_seconds(from + span));
     Box passed;
     for (int k = 0; k < 200; ++k) {
       const double t = k == 0 ? from : k == 1 ? from + span : any.uniform(from, from + span);
@@ -324,8 +324,7 @@ TEST_CASE("what a body sweeps on a polygon of many turns and steps is inside of 
                                           {.velocity = middle - rotation_about(axis::up, turn) * middle, .duration = 1}}}},
                             0);
     const Vec3 start = middle + rotation_about(axis::up, all / 2) * Vec3{0, 100, 0};
-    const std::array<Vec3, 1> body{start};
-    const Box swept = motion.swept(body, start, {0, 0}, {2 * passes, 0});
+    const Box swept = motion.swept({start, start}, {}, {0, 0}, {2 * passes, 0});
     Box passed;
     for (int k = 0; k <= 40 * passes; ++k) passed.extend(moved(motion, 0.05 * k, start, start));
     Box both = swept;
@@ -336,17 +335,16 @@ TEST_CASE("what a body sweeps on a polygon of many turns and steps is inside of 
 
 TEST_CASE("the box that is swept is as large as it has to be where that is plain") {
   const Box box{{-1, -2, -3}, {1, 2, 3}};
-  const auto corners = detail::corners(box);
-  const Box rest = PartMotion(SteadyMotion{}).swept(corners, {}, {0, 0}, {1000, 0});
+  const Box rest = PartMotion(SteadyMotion{}).swept(box, {}, {0, 0}, {1000, 0});
   CHECK(length(rest.max - box.max) < 1e-5);
-  const Box way = PartMotion(SteadyMotion{.velocity = {3, 0, 0}}).swept(corners, {}, {10, 0}, {12, 0});
+  const Box way = PartMotion(SteadyMotion{.velocity = {3, 0, 0}}).swept(box, {}, {10, 0}, {12, 0});
   CHECK(length(way.min - Vec3{29, -2, -3}) < 1e-5);
   CHECK(length(way.max - Vec3{37, 2, 3}) < 1e-5);
   const double radius = length(box.max);
-  const Box spin = PartMotion(SteadyMotion{.rate = 10}).swept(corners, {}, {0, 0}, {1000, 0});
+  const Box spin = PartMotion(SteadyMotion{.rate = 10}).swept(box, {}, {0, 0}, {1000, 0});
   CHECK(max_norm(spin.max) < radius + 1e-5);
   const PartMotion there_and_back({{.motions = {{.velocity = {3, 0, 0}, .duration = 1}, {.velocity = {-3, 0, 0}, .duration = 1}}}}, 0);
-  const Box year = there_and_back.swept(corners, {}, {0, 0}, {31'536'000, 0});
+  const Box year = there_and_back.swept(box, {}, {0, 0}, {31'536'000, 0});
   CHECK(year.max.x < 3 + radius + 1e-5);
   CHECK(year.min.x > -radius - 1e-5);
 }
@@ -359,7 +357,7 @@ TEST_CASE("what a body sweeps after very many short motions is inside of the box
       back{.motions = {{.velocity = -axis::right, .duration = 1}}};
   const Vec3 start{10, 0, 0};
   const auto swept = [&](const PartMotion& motion, double seconds) {
-    return motion.swept(std::array{start}, start, {}, Tick::of_seconds(seconds));
+    return motion.swept({start, start}, {}, {}, Tick::of_seconds(seconds));
   };
   CHECK(swept(PartMotion({steps}), 5.005).max.x > 15.0049);
   CHECK(swept(PartMotion({rests, turn}), 1.4).min.x < -9.999);

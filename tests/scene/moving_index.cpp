@@ -29,7 +29,8 @@ struct Cube {
 };
 
 MovingIndex index_of(const std::vector<Cube>& cubes, const MovingIndexSettings& time) {
-  return {cubes.size(), time, [&](PrimitiveIndex i, const Tick& from, const Tick& to) { return cubes[i].swept(from, to); }};
+  return {cubes.size(), time, [&](PrimitiveIndex i, const Tick& from, const Tick& to) { return cubes[i].swept(from, to); },
+          [](PrimitiveIndex) { return 1.0; }};
 }
 
 /// The cubes that are offered to a ray straight down at a place and time.
@@ -89,13 +90,14 @@ TEST_CASE("no speed makes the index larger than it may be") {
 TEST_CASE("windows overlap, so that no rounding of a time leaves it between two") {
   const Cube cube{{0, 0, 0}, {10, 0, 0}};
   std::vector<Tick> starts, ends;  // of the windows, as the index asks for them at last
-  const MovingIndex index(1, {1e9, 1e9 + 64}, [&](PrimitiveIndex, const Tick& from, const Tick& to) {
+  const auto swept = [&](PrimitiveIndex, const Tick& from, const Tick& to) {
     if (from < to) {
       starts.push_back(from);
       ends.push_back(to);
     }
     return cube.swept(from, to);
-  });
+  };
+  const MovingIndex index(1, {1e9, 1e9 + 64}, swept, [](PrimitiveIndex) { return 1.0; });
   const auto first = static_cast<std::size_t>(std::min_element(starts.begin() + 20, starts.end()) - starts.begin());
   CHECK(starts.size() - first >= 64);
   for (std::size_t w = first + 1; w < starts.size(); ++w) CHECK(starts[w] < ends[w - 1]);

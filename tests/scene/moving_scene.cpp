@@ -189,6 +189,21 @@ TEST_CASE("what moves is no ground") {
   CHECK(Discs({car}, {.to = 1}).bounds().min.z == support::relative(1, 1e-5));
 }
 
+TEST_CASE("a part that rests in the pose of its motion costs one box, however long the time") {
+  const auto resting = std::make_shared<const PartMotion>(std::vector<TimedPose>{{0, {5, 0, 1}, no_rotation}});
+  std::vector<Disc> parts;
+  for (ObjectId k = 0; k < 100; ++k) parts.push_back(disc({.translation = {0, 3.0 * k, 0}}, k, resting));
+  const Discs hour(parts, {0, 3600}, 1);
+  CHECK(hour.memory() == Discs(parts, {0, 1}).memory());
+  for (const double seconds : {-1.0, 0.0, 7.5, 3600.0, 1e6}) {
+    CAPTURE(seconds);
+    const auto hit = hour.closest_hit({.origin = {5, 30, 10}, .direction = {0, 0, -1}, .tick = Tick::of_seconds(seconds)});
+    REQUIRE(hit.has_value());
+    CHECK(hit->part == 10);
+    CHECK(hit->range == 9);
+  }
+}
+
 TEST_CASE("the memory of a moving scene counts its boxes, and motions once") {
   const auto motion = moving({.velocity = {10, 0, 0}});
   std::vector<Disc> parts;

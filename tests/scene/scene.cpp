@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -392,6 +393,8 @@ TEST_CASE("placements of another number or out of range are refused") {
                        SettingError);
   const std::array<Similarity, 1> flat{Similarity{.scale = 0}};
   CHECK_THROWS_AS(static_cast<void>(scene.with_placements(flat)), SettingError);
+  const std::array<Similarity, 1> coarse{Similarity{.rotation = Rotation{1.0005, 0, 0, 0}}};
+  CHECK(length(scene.with_placements(coarse).parts()[0].placement.rotation) == doctest::Approx(1).epsilon(1e-12));
 }
 
 TEST_CASE("parts are added and removed, and share their geometry") {
@@ -400,10 +403,50 @@ TEST_CASE("parts are added and removed, and share their geometry") {
   const Ray down{{0, 0, 10}, {0, 0, -1}};
   const Scene<LeastGeometry> fuller = scene.with_parts(more);
   CHECK(fuller.parts().size() == 3);
+  CHECK(fuller.parts()[0].object == 1);
+  CHECK(fuller.parts()[2].object == 3);
   CHECK(fuller.parts()[0].geometry == scene.parts()[0].geometry);
   CHECK(ask(fuller, down).object == 3);
   const Scene<LeastGeometry> emptier = fuller.without([](const Disc& part) { return part.object >= 2; });
   CHECK(emptier.parts().size() == 1);
   CHECK(ask(emptier, down).object == 1);
   CHECK(scene.without([](const Disc&) { return true; }).parts().empty());
+}
+
+TEST_CASE("the user's threads build the index of a scene, which is the same on any") {
+  /// Executor that counts its calls.
+  struct Counting {
+    int calls = 0;
+    unsigned threads() const { return 2; }
+    void for_each(std::size_t count, const IndexTask& task) {
+      ++calls;
+      while (count-- > 0) task(count);
+    }
+  } executor;
+  const auto calls = [&] { return std::exchange(executor.calls, 0); };
+  support::Generator any(11);
+  std::vector<Disc> discs;
+  std::vector<Similarity> placements;
+  for (ObjectId k = 0; k < 10'000; ++k) {
+    discs.push_back(disc({.translation = any.point(200)}, k));
+    placements.push_back({.translation = any.point(200)});
+  }
+  const Scene<LeastGeometry> alone(discs, 1), shared(discs, executor);
+  CHECK(calls() > 0);
+  const Scene<LeastGeometry> placed = shared.with_placements(placements, executor);
+  CHECK(calls() > 0);  // the index is made anew
+  const Scene<LeastGeometry> again = shared.with_placements(placements, Scene<LeastGeometry>({}), executor);
+  CHECK(calls() > 0);
+  const Scene<LeastGeometry> fuller = shared.with_parts(std::span(discs).first(1), executor);
+  CHECK(calls() > 0);
+  const Scene<LeastGeometry> fewer = shared.without([](const Disc& part) { return part.object == 0; }, executor);
+  CHECK(calls() > 0);
+  CHECK(alone.memory() == shared.memory());
+  const Scene<LeastGeometry> placed_alone = alone.with_placements(placements, 1);
+  for (int k = 0; k < 500; ++k) {
+    const Ray ray{any.point(200), any.unit()};
+    REQUIRE(ask(shared, ray).range == ask(alone, ray).range);
+    REQUIRE(ask(placed, ray).range == ask(placed_alone, ray).range);
+    REQUIRE(ask(again, ray).range == ask(placed_alone, ray).range);
+  }
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
+#include <pulsecast/base/parallel.hpp>
 
 namespace pulsecast {
 
@@ -65,13 +66,14 @@ class BvhRefit {
     return finish(topology.data(), order, depth, bounds, box_of, to);
   }
 
-  /// Sets `to` to a tree over `boxes` [m], of one primitive a leaf: a refit `from`, a tree over as many boxes, or a new one.
-  void update(const Bvh<Real>& from, const BvhRefit& state, std::span<const Box> boxes, Bvh<Real>& to) {
+  /// Sets `to` to a tree over `boxes` [m], of one primitive a leaf: a refit `from`, a tree over as many boxes, or a new one, built
+  /// by `workers`.
+  void update(const Bvh<Real>& from, const BvhRefit& state, std::span<const Box> boxes, Bvh<Real>& to, const Workers& workers = {}) {
     Box bounds;
     for (const Box& box : boxes) bounds.extend(box);  // an empty box changes nothing
     const auto box_of = [&](std::span<const PrimitiveIndex> primitives) noexcept { return boxes[primitives[0]]; };
     if (refit(from, state, bounds, box_of, to)) return;
-    to = Bvh<Real>(boxes, 0, 1);
+    to = Bvh<Real>(boxes, workers, 1);
     nodes_ = {};
   }
 

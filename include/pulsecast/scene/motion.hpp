@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +20,7 @@
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/scene/detail/motion_sweep.hpp>
 #include <pulsecast/scene/detail/motion_timeline.hpp>
+#include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/screw.hpp>
 
 namespace pulsecast {
@@ -160,16 +160,16 @@ class PartMotion {
     return detail::velocity_at(place, centre) + place.piece->attitude.rate * cross(place.piece->attitude.axis, point - reference_ - centre);
   }
 
-  /// Box that holds all points passed by the hull of the given points, as placed [m], between two times. Tight for small rotations and few
-  /// changes of motion in this time, loose otherwise.
-  [[nodiscard]] Box swept(std::span<const Vec3> points, const Vec3& own_centre, const Tick& from, const Tick& to) const noexcept {
-    const Vec3 centre = from_origin_ ? Vec3{} : own_centre, start = centre - reference_;
-    double radius = 0;
-    for (const Vec3& p : points) radius = std::max(radius, length(p - centre));
-    Box box = detail::swept_box(timeline_, points, centre, start, from, to, radius);
-    box.min = box.min + reference_;
-    box.max = box.max + reference_;
-    return detail::grown(box, 1e-12 * (max_norm(box.min) + max_norm(box.max)) + 1e-7 * radius);  // above rounding
+  /// Box that holds all points passed by a box between two times [m]; `box` and `placement` as of a part, with its centre there as the
+  /// body's own. Tight for small rotations and few changes of motion in this time, loose otherwise. Empty for an empty box.
+  [[nodiscard]] Box swept(const Box& box, const Similarity& placement, const Tick& from, const Tick& to) const noexcept {
+    if (box.empty()) return {};
+    const Vec3 middle = placement.point(box.centre()), centre = from_origin_ ? Vec3{} : middle;
+    const detail::SweptBody body{centre - reference_, middle - centre, placement.rotation, 0.5 * placement.scale * box.size()};
+    Box swept = detail::swept_box(timeline_, body, from, to);
+    swept.min = swept.min + reference_;
+    swept.max = swept.max + reference_;
+    return detail::grown(swept, 1e-12 * (max_norm(swept.min) + max_norm(swept.max)) + 1e-7 * body.radius());  // above rounding
   }
 
  private:

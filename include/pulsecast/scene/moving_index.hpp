@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <pulsecast/accel/bvh.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
 
 namespace pulsecast {
@@ -35,14 +36,19 @@ struct MovingIndexSettings {
 /// are lengthened. Outside of the time span all bodies are tested: slow but correct.
 class MovingIndex {
  public:
-  /// `swept(i, from, to)` returns the box [m] that body i sweeps between two ticks, for i < `things`.
-  /// @throws SettingError for a time span out of range
-  template <class Swept>
-  MovingIndex(std::size_t things, const MovingIndexSettings& time, const Swept& swept)
+  /// `swept(i, from, to)` returns the box [m] that body i sweeps between two ticks, and `size(i)` about its greatest side at rest [m], for
+  /// i < `things`. Both are called by the caller's thread; `workers` build the trees. @throws SettingError for a time span out of range
+  template <class Swept, class Size>
+  MovingIndex(std::size_t things, const MovingIndexSettings& time, const Swept& swept, const Size& size, const Workers& workers = {})
       : time_(validated(time)), span_(time.to - time.from) {
     std::array<std::vector<PrimitiveIndex>, max_level + 1> at_level;
-    for (std::size_t i = 0; i < things; ++i) at_level[level_of(i, swept)].push_back(static_cast<PrimitiveIndex>(i));
-    for (std::size_t level = max_level; level > 0 && boxes(at_level) > time.boxes_max; --level) {
+    std::vector<Box> whole(things), boxes;  // in the window of all the time, the only one of most bodies; in one window
+    for (std::size_t i = 0; i < things; ++i) {
+      const auto thing = static_cast<PrimitiveIndex>(i);
+      whole[i] = box_in(thing, 0, 1, swept);
+      at_level[level_of(thing, size(thing), whole[i], swept)].push_back(thing);
+    }
+    for (std::size_t level = max_level; level > 0 && boxes_held(at_level) > time.boxes_max; --level) {
       at_level[level - 1].insert(at_level[level - 1].end(), at_level[level].begin(), at_level[level].end());
       at_level[level].clear();
     }
@@ -52,10 +58,11 @@ class MovingIndex {
       Level& made = levels_.back();
       const std::size_t windows = std::size_t{1} << level;
       made.windows.reserve(windows);
-      std::vector<Box> boxes(made.things.size());
+      boxes.resize(made.things.size());
       for (std::size_t w = 0; w < windows; ++w) {
-        for (std::size_t k = 0; k < boxes.size(); ++k) boxes[k] = box_in(made.things[k], w, windows, swept);
-        made.windows.emplace_back(boxes);
+        for (std::size_t k = 0; k < boxes.size(); ++k)
+          boxes[k] = level == 0 ? whole[made.things[k]] : box_in(made.things[k], w, windows, swept);
+        made.windows.emplace_back(boxes, workers);
         bounds_.extend(made.windows.back().bounds());
       }
     }
@@ -103,7 +110,7 @@ class MovingIndex {
   };
 
   /// Number of boxes held; each tree counts as three more.
-  static std::size_t boxes(const std::array<std::vector<PrimitiveIndex>, max_level + 1>& at_level) noexcept {
+  static std::size_t boxes_held(const std::array<std::vector<PrimitiveIndex>, max_level + 1>& at_level) noexcept {
     std::size_t sum = 0;
     for (std::size_t level = 0; level <= max_level; ++level)
       if (!at_level[level].empty()) sum += (at_level[level].size() + 3) << level;
@@ -118,13 +125,14 @@ class MovingIndex {
     return swept(i, Tick::of_seconds(start - overlap), Tick::of_seconds(start + width + overlap));
   }
 
-  /// First level in whose windows a body moves at most about its own size, judged by samples. Affects speed only.
+  /// First level in whose windows a body moves at most about its own size, judged by samples; it is of this size [m] at first, and `whole`
+  /// is its box of all the time. Affects speed only.
   template <class Swept>
-  std::size_t level_of(std::size_t i, const Swept& swept) const {
+  std::size_t level_of(PrimitiveIndex thing, double size, const Box& whole, const Swept& swept) const {
     constexpr std::size_t max_samples = 8;
     constexpr double small = 0.5;  // a smaller body gains nothing from a tight box [m]
-    const auto thing = static_cast<PrimitiveIndex>(i);
-    for (std::size_t level = 0; level < max_level; ++level) {
+    if (max_norm(whole.size()) <= 2 * std::max(small, size)) return 0;
+    for (std::size_t level = 1; level < max_level; ++level) {
       const std::size_t windows = std::size_t{1} << level, samples = std::min(windows, max_samples);
       double moving = 0, still = 0;
       for (std::size_t k = 0; k < samples; ++k) {

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_SCENE_MOVING_SCENE_HPP
 #define PULSECAST_SCENE_MOVING_SCENE_HPP
 
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -30,11 +29,13 @@ class MovingScene {
   using Part = pulsecast::Part<Shapes...>;
 
   /// `time` should span the survey and little more: a longer time has longer windows. Hits at other times are the same, but all moving
-  /// parts are tested. @throws SettingError as `Scene` and `MovingIndexSettings`
-  MovingScene(std::vector<Part> parts, const MovingIndexSettings& time)
-      : scene_(std::move(parts), Scene<Shapes...>::Motions::left_out),
+  /// parts are tested. `workers` build the indices. @throws SettingError as `Scene` and `MovingIndexSettings`
+  MovingScene(std::vector<Part> parts, const MovingIndexSettings& time, const Workers& workers = {})
+      : scene_(std::move(parts), Scene<Shapes...>::Motions::left_out, workers),
         movers_(movers(scene_.parts())),
-        index_(movers_.size(), time, [this](PrimitiveIndex i, const Tick& from, const Tick& to) { return swept(movers_[i], from, to); }) {
+        index_(
+            movers_.size(), time, [this](PrimitiveIndex i, const Tick& from, const Tick& to) { return swept(movers_[i], from, to); },
+            [this](PrimitiveIndex i) { return size(movers_[i]); }, workers) {
     bounds_ = scene_.bounds();
     bounds_.extend(index_.bounds());
   }
@@ -131,11 +132,12 @@ class MovingScene {
 
   Box swept(const Mover& mover, const Tick& from, const Tick& to) const noexcept {
     const Part& part = parts()[mover.part];
-    const Box box = bounds_of(part);
-    if (box.empty()) return box;
-    std::array<Vec3, 8> corners = detail::corners(box);
-    for (Vec3& corner : corners) corner = part.placement.point(corner);
-    return part.motion->swept(corners, mover.centre, from, to);
+    return part.motion->swept(bounds_of(part), part.placement, from, to);
+  }
+
+  double size(const Mover& mover) const noexcept {
+    const Part& part = parts()[mover.part];
+    return max_norm(detail::placed_box(part.placement, bounds_of(part)).size());
   }
 
   Similarity moved(const Mover& mover, const Tick& tick) const noexcept {

@@ -94,16 +94,21 @@ struct Similarity {
 
 namespace detail {
 
-/// Box around a placed box [m], from its centre and half sides; as `Similarity::box` up to rounding. Empty for an empty box.
+/// Half sides of the box around a turned box of these half sides, in axes `turn` [m].
 /// Source: Arvo 1990, Transforming axis-aligned bounding boxes, Graphics Gems.
+[[nodiscard]] inline Vec3 reach_of(const Matrix3& turn, const Vec3& half) noexcept {
+  const auto reach = [&](int k) noexcept {
+    return std::fabs(turn[0][k]) * half.x + std::fabs(turn[1][k]) * half.y + std::fabs(turn[2][k]) * half.z;
+  };
+  return {reach(0), reach(1), reach(2)};
+}
+
+/// Box around a placed box [m], from its centre and half sides; as `Similarity::box` up to rounding. Empty for an empty box.
 [[nodiscard]] inline Box placed_box(const Similarity& placement, const Box& box) noexcept {
   if (box.empty()) return {};
   const Matrix3 turn = matrix_of(placement.rotation);
-  const Vec3 centre = placement.scale * box.centre(), half = 0.5 * placement.scale * box.size();
-  const auto size = [&](int k) noexcept {
-    return std::fabs(turn[0][k]) * half.x + std::fabs(turn[1][k]) * half.y + std::fabs(turn[2][k]) * half.z;
-  };
-  const Vec3 middle = turn * centre + placement.translation, reach{size(0), size(1), size(2)};
+  const Vec3 middle = turn * (placement.scale * box.centre()) + placement.translation;
+  const Vec3 reach = reach_of(turn, 0.5 * placement.scale * box.size());
   return {middle - reach, middle + reach};
 }
 

@@ -18,6 +18,7 @@
 
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/accel/refit.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/scene/detail/ray_queries.hpp>
 #include <pulsecast/scene/part.hpp>
@@ -37,17 +38,18 @@ class Scene {
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
+  /// `workers` build the index over the parts; the scene is the same for any.
   /// @throws SettingError for a moving part, a missing geometry, a table of too few materials, or a placement out of range
-  explicit Scene(std::vector<Part> parts) : Scene(std::move(parts), Motions::refused) {}
+  explicit Scene(std::vector<Part> parts, const Workers& workers = {}) : Scene(std::move(parts), Motions::refused, workers) {}
 
   /// Scene of the same parts at other placements, one per part. Shares all geometry. The index over the parts is refitted, and made anew
   /// where it would be too slow; hits are those of a scene made of these parts. @throws SettingError for another number of placements, or
   /// one out of range
-  [[nodiscard]] Scene with_placements(std::span<const Similarity> placements) const {
-    return with_placements(placements, Scene(std::vector<Part>()));
+  [[nodiscard]] Scene with_placements(std::span<const Similarity> placements, const Workers& workers = {}) const {
+    return with_placements(placements, Scene(std::vector<Part>()), workers);
   }
   /// As above, in the memory of a scene that is no longer used: a loop over two scenes allocates nothing after its second tick.
-  [[nodiscard]] Scene with_placements(std::span<const Similarity> placements, Scene&& unused) const {
+  [[nodiscard]] Scene with_placements(std::span<const Similarity> placements, Scene&& unused, const Workers& workers = {}) const {
     const auto count = static_cast<double>(parts_.size());
     require_within("Scene::with_placements (number)", static_cast<double>(placements.size()), count, count, "");
     unused.parts_ = parts_;
@@ -58,24 +60,24 @@ class Scene {
       const auto bounds = [](const auto& shape) -> const Box& { return shape->bounds(); };
       unused.boxes_[i] = detail::placed_box(part.placement, visit_shape(bounds, part.geometry));
     }
-    unused.refit_.update(index_, refit_, unused.boxes_, unused.index_);
+    unused.refit_.update(index_, refit_, unused.boxes_, unused.index_, workers);
     unused.alone_ = alone_;
     return std::move(unused);
   }
 
   /// Scene with more parts, after those of this one. Shares all geometry. @throws SettingError as the constructor
-  [[nodiscard]] Scene with_parts(std::span<const Part> more) const {
+  [[nodiscard]] Scene with_parts(std::span<const Part> more, const Workers& workers = {}) const {
     std::vector<Part> all = parts_;
     all.insert(all.end(), more.begin(), more.end());
-    return Scene(std::move(all));
+    return Scene(std::move(all), workers);
   }
   /// Scene without the parts for which `leaves(part)` is true. Shares all geometry.
   template <std::predicate<const Part&> Leaves>
-  [[nodiscard]] Scene without(const Leaves& leaves) const {
+  [[nodiscard]] Scene without(const Leaves& leaves, const Workers& workers = {}) const {
     std::vector<Part> all;
     for (const Part& part : parts_)
       if (!leaves(part)) all.push_back(part);
-    return Scene(std::move(all));
+    return Scene(std::move(all), workers);
   }
 
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
@@ -145,7 +147,8 @@ class Scene {
   enum class Motions : std::uint8_t { refused, left_out };
 
   /// Refuses moving parts, or leaves them out of the index.
-  Scene(std::vector<Part> parts, Motions motions) : parts_(placed(std::move(parts))), index_(boxes(parts_, motions), 0, 1) {
+  Scene(std::vector<Part> parts, Motions motions, const Workers& workers)
+      : parts_(placed(std::move(parts))), index_(boxes(parts_, motions), workers, 1) {
     alone_ = parts_.size() == 1 && !parts_[0].motion;
   }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/unit_rotation.hpp>
@@ -54,32 +53,72 @@ inline constexpr double wide_turn = 2;
   return grown(axis, radius);
 }
 
-/// Extends a box by the paths of the points, from a place in a piece to its time `end`, `span` seconds later.
-inline void extend_by_piece(Box& box, std::span<const Vec3> points, const Vec3& centre, const Vec3& start, const MotionPlace& place,
-                            const Tick& end, double span) noexcept {
-  const BodyState a = state_at(place, start), b = state_at({place.before, place.piece, end}, start);
-  const MotionPiece& piece = *place.piece;
-  const Vec3 middle = piece.about_itself ? a.centre : piece.centre + piece.velocity * place.time.seconds();
-  const double angle = std::fabs(piece.spins ? piece.orbit.rate : piece.attitude.rate) * span;
-  double radius = 0, own_radius = 0;  // radius about the middle; and about the body's own centre
-  Box ends;
-  const auto extend_ends = [&](const Vec3& first, const Vec3& last) {
-    radius = std::max(radius, length(first - middle));
-    ends.extend(first);
-    ends.extend(last);
-  };
-  if (piece.spins) extend_ends(a.centre, b.centre);
-  for (const Vec3& p : points)
-    if (piece.spins)
-      own_radius = std::max(own_radius, length(p - centre));
-    else
-      extend_ends(a.centre + a.attitude * (p - centre), b.centre + b.attitude * (p - centre));
-  if (angle > wide_turn) {
-    ends = Box{};
-    ends.extend(middle);
-    ends.extend(middle + piece.velocity * span);
+/// Box of a body as placed, in any attitude.
+struct SweptBody {
+  Vec3 start;         ///< own centre, relative to the reference [m]
+  Vec3 offset;        ///< from the own centre to the middle of the box [m]
+  Rotation rotation;  ///< unit
+  Vec3 half;          ///< half sides [m]
+
+  /// Radius of a ball about the own centre that holds the body [m].
+  [[nodiscard]] double radius() const noexcept { return length(offset) + length(half); }
+  /// Greatest distance of a corner from a point, for the middle of the box at `middle` from it, and these axes of the box [m].
+  [[nodiscard]] double corner_distance(const Vec3& middle, const Matrix3& axes) const noexcept {
+    double mixed = 0;  // the corner in the octant of `middle`
+    for (int k = 0; k < 3; ++k) mixed += std::fabs(dot(middle, axes[k])) * half[k];
+    return std::sqrt(dot(middle, middle) + dot(half, half) + 2 * mixed);
   }
-  box.extend(grown(ends, own_radius + (angle > wide_turn ? radius : bulge(radius, angle))));
+};
+
+/// A body in a state: the middle of its box, and the axes.
+struct SweptState {
+  Vec3 middle;  ///< relative to the reference [m]
+  Matrix3 axes;
+
+  SweptState(const SweptBody& body, const BodyState& state) noexcept
+      : middle(state.centre + state.attitude * body.offset), axes(matrix_of(state.attitude * body.rotation)) {}
+  [[nodiscard]] Box box(const SweptBody& body) const noexcept {
+    const Vec3 reach = reach_of(axes, body.half);
+    return {middle - reach, middle + reach};
+  }
+};
+
+/// Extends a box by the path of a body that turns otherwise than it orbits, as that of a ball; else as `extend_by_piece`.
+inline void extend_by_ball(Box& box, const SweptBody& body, const MotionPlace& place, const Tick& end, double span) noexcept {
+  const MotionPiece& piece = *place.piece;
+  const Vec3 first = state_at(place, body.start).centre, middle = piece.centre + piece.velocity * place.time.seconds();
+  const double angle = std::fabs(piece.orbit.rate) * span, radius = length(first - middle);
+  const bool wide = angle > wide_turn;
+  Box way;
+  way.extend(wide ? middle : first);
+  way.extend(wide ? middle + piece.velocity * span : state_at({place.before, place.piece, end}, body.start).centre);
+  box.extend(grown(way, body.radius() + (wide ? radius : bulge(radius, angle))));
+}
+
+/// Extends a box by the path of a body, from a place in a piece to its time `end`, `span` seconds later.
+inline void extend_by_piece(Box& box, const SweptBody& body, const MotionPlace& place, const Tick& end, double span) noexcept {
+  const MotionPiece& piece = *place.piece;
+  if (piece.spins) return extend_by_ball(box, body, place, end, span);
+  const BodyState state = state_at(place, body.start);
+  const SweptState first(body, state);
+  const Vec3 way = piece.velocity * span;
+  const double angle = std::fabs(piece.attitude.rate) * span;
+  Box ends = first.box(body);
+  if (angle == 0) {
+    box.extend(ends);
+    box.extend(Box{ends.min + way, ends.max + way});
+    return;
+  }
+  const Vec3 centre = piece.about_itself ? state.centre : piece.centre + piece.velocity * place.time.seconds();
+  const double radius = body.corner_distance(first.middle - centre, first.axes);
+  if (angle > wide_turn) {
+    ends = Box{centre, centre};
+    ends.extend(centre + way);
+    box.extend(grown(ends, radius));
+    return;
+  }
+  ends.extend(SweptState(body, state_at({place.before, place.piece, end}, body.start)).box(body));
+  box.extend(grown(ends, bulge(radius, angle)));
 }
 
 /// Extends a box by passes `first` to `last` of a run, for a body whose own centre is in `own` at the start or at that of a cycle.
@@ -133,10 +172,8 @@ inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own
   return box;
 }
 
-/// Box that holds all points, relative to the reference [m], passed by the hull of points between two times. The body is about `centre` as
-/// placed, `start` relative to the reference; the points are as placed, within `radius` of it.
-[[nodiscard]] inline Box swept_box(const MotionTimeline& motion, std::span<const Vec3> points, const Vec3& centre, const Vec3& start,
-                                   const Tick& from, const Tick& to, double radius) noexcept {
+/// Box that holds all points, relative to the reference [m], that a body passes between two times.
+[[nodiscard]] inline Box swept_box(const MotionTimeline& motion, const SweptBody& body, const Tick& from, const Tick& to) noexcept {
   constexpr int max_pieces = 32;  // pieces bounded one by one; affects only the size of the box
   Box box;
   Tick tick = std::max(from, Tick{});
@@ -146,11 +183,11 @@ inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own
     const double rest = std::max(0.0, since(tick, to).seconds());
     const double span = std::min(rest, std::max(0.0, place.piece->duration - place.time.seconds()));
     const Tick end = place.time + Tick::of_seconds(span);
-    extend_by_piece(box, points, centre, start, place, end, span);
+    extend_by_piece(box, body, place, end, span);
     if (!(span < rest)) break;
     tick = tick + Tick::of_seconds(std::max(span, 1e-12));
   }
-  if (pieces == max_pieces) box.extend(grown(rough_path_box(motion, start, tick, to), radius));
+  if (pieces == max_pieces) box.extend(grown(rough_path_box(motion, body.start, tick, to), body.radius()));
   return box;
 }
 
