@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/base/parallel.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <concepts>
+#include <condition_variable>
 #include <cstddef>
+#include <mutex>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -13,7 +18,7 @@
 using namespace pulsecast;
 
 TEST_CASE("zero threads are those of the machine, any other number is itself") {
-  CHECK(thread_count(0) >= 1);
+  CHECK(thread_count(0) == std::max(1U, std::thread::hardware_concurrency()));
   CHECK(thread_count(1) == 1);
   CHECK(thread_count(17) == 17);
   CHECK(thread_count(max_threads) == max_threads);
@@ -37,6 +42,52 @@ TEST_CASE("every index is done once, on any number of threads") {
       for_each_index(count, threads, [&](std::size_t i) { ++done[i]; });
       for (const std::atomic<int>& times : done) CHECK(times == 1);
     }
+}
+
+namespace {
+
+/// Place where each of several threads waits for all.
+class Meeting {
+ public:
+  explicit Meeting(std::size_t all) : all_(all) {}
+
+  void wait() {
+    std::unique_lock lock(mutex_);
+    ++here_;
+    arrived_.notify_all();
+    arrived_.wait(lock, [this] { return here_ == all_; });
+  }
+
+ private:
+  std::size_t all_, here_ = 0;
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+};
+
+}  // namespace
+
+TEST_CASE("as many threads as are asked for work at the same time") {
+  Meeting meeting(3);
+  std::atomic<int> done = 0;
+  for_each_index(3, 3, [&](std::size_t) {
+    meeting.wait();
+    ++done;
+  });
+  CHECK(done == 3);
+}
+
+TEST_CASE("of several exceptions at the same time one comes out") {
+  Meeting meeting(3);
+  std::string said;
+  try {
+    for_each_index(3, 3, [&](std::size_t i) {
+      meeting.wait();
+      throw std::runtime_error(std::to_string(i));
+    });
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  CHECK((said == "0" || said == "1" || said == "2"));
 }
 
 TEST_CASE("what a task throws comes out, and what has not begun is left out") {
@@ -65,6 +116,15 @@ struct Reverse {
   }
 };
 
+/// Executor that names any number of threads.
+struct Boast {
+  unsigned number;
+  unsigned threads() const { return number; }
+  void for_each(std::size_t count, const IndexTask& task) const {
+    while (count-- > 0) task(count);
+  }
+};
+
 struct WithoutThreads {
   void for_each(std::size_t, const IndexTask&) const {}
 };
@@ -87,6 +147,9 @@ TEST_CASE("workers are a number of threads, those of an executor, or some of the
   CHECK(Workers(executor, 0).count() == 3);
   CHECK(Workers(executor, 2).count() == 2);
   CHECK(Workers({}, 2).count() == 2);
+  const Boast none{0}, many{max_threads + 1};
+  CHECK(Workers(none).count() == 1);
+  CHECK(Workers(many).count() == max_threads);
   CHECK_FALSE(Workers(7).executor());
   CHECK(Workers(executor).executor());
   CHECK(ExecutorRef().memory() == nullptr);

@@ -40,6 +40,18 @@ TEST_CASE("a scratch memory gives back what was left, by type, each object once"
   CHECK(memory.take<Other>() == nullptr);
 }
 
+TEST_CASE("an object is found behind any others, which stay") {
+  int alive = 0;
+  ScratchMemory memory;
+  memory.give_back(std::make_unique<Number>());
+  for (int k = 0; k < 2; ++k) memory.give_back(std::make_unique<Other>());
+  memory.give_back(std::make_unique<Counted>(alive));
+  CHECK(memory.take<Number>() != nullptr);
+  CHECK(memory.take<Counted>() != nullptr);
+  for (int k = 0; k < 2; ++k) CHECK(memory.take<Other>() != nullptr);
+  CHECK(memory.take<Other>() == nullptr);
+}
+
 TEST_CASE("a scratch memory deletes its objects when it is cleared and at its end") {
   int alive = 0;
   {

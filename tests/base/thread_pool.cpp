@@ -2,20 +2,33 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/base/thread_pool.hpp>
 
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <condition_variable>
 #include <cstddef>
+#include <fstream>
+#include <latch>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 #include <doctest/doctest.h>
+
+// sanitizers need address space of their own, and no threads in a child
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define PULSECAST_TEST_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define PULSECAST_TEST_SANITIZED
+#endif
+#endif
 
 using namespace pulsecast;
 
@@ -73,6 +86,36 @@ TEST_CASE("calls of a pool may be nested, and come from several threads") {
   CHECK(done == 3 * 10 * 10 * 5);
 }
 
+TEST_CASE("a thread of the pool takes up an older call while all of a newer one is begun") {
+  ThreadPool pool(2);  // one thread beside the callers'
+  std::latch both_in_first(2), second_begun(1), third_begun(1), first_over(1), second_over(1);
+  const std::jthread first([&] {
+    pool.for_each(2, [&](std::size_t) {
+      both_in_first.arrive_and_wait();
+      first_over.wait();
+    });
+  });
+  both_in_first.wait();
+  const std::jthread second([&] {
+    pool.for_each(2, [&](std::size_t i) {
+      if (i == 1) return second_over.count_down();
+      second_begun.count_down();
+      second_over.wait();
+    });
+  });
+  second_begun.wait();
+  const std::jthread third([&] {
+    pool.for_each(2, [&](std::size_t i) {
+      if (i == 0) return;
+      third_begun.count_down();
+      second_over.wait();
+    });
+  });
+  third_begun.wait();
+  first_over.count_down();
+  second_over.wait();
+}
+
 TEST_CASE("what a task throws comes out of a pool, which goes on") {
   ThreadPool pool(4);
   const auto task = [](std::size_t i) {
@@ -87,22 +130,83 @@ TEST_CASE("what a task throws comes out of a pool, which goes on") {
   }
 }
 
+TEST_CASE("a pool lends its memory to runs") {
+  ThreadPool pool(2);
+  CHECK(ExecutorRef(pool).memory() == &pool.memory());
+}
+
+namespace {
+
+/// Forks; true if the child's work says so. A child that hangs ends after a minute.
+template <class Work>
+bool forked_off(const Work& work) {
+  const pid_t child = fork();
+  if (child < 0) return false;
+  if (child == 0) {
+    alarm(60);
+    _exit(work() ? 0 : 1);
+  }
+  int status = -1;
+  return waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace
+
 TEST_CASE("a process that is forked off works with a copy of the pool, and destroys it") {
   auto pool = std::make_unique<ThreadPool>(4);
   std::atomic<int> done = 0;
   pool->for_each(100, [&](std::size_t) { ++done; });
-  const pid_t child = fork();
-  REQUIRE(child >= 0);
-  if (child == 0) {
-    alarm(60);  // ends a child that hangs
-    pool->for_each(100, [&](std::size_t) { ++done; });
-    pool.reset();
-    _exit(done == 200 ? 0 : 1);
+  for (int k = 0; k < 20; ++k) {  // threads that have begun to wait, too
+    const bool worked = forked_off([&] {
+      pool->for_each(100, [&](std::size_t) { ++done; });
+      pool.reset();
+      return done == 200;
+    });
+    REQUIRE(worked);
   }
-  int status = -1;
-  REQUIRE(waitpid(child, &status, 0) == child);
-  CHECK(WIFEXITED(status));
-  CHECK(WEXITSTATUS(status) == 0);
   pool->for_each(100, [&](std::size_t) { ++done; });
   CHECK(done == 200);
 }
+
+TEST_CASE("a process may be forked off while the pool works") {
+  ThreadPool pool(4);
+  std::atomic<bool> over = false;
+  const std::jthread busy([&] {
+    while (!over) pool.for_each(4, [](std::size_t) {});
+  });
+  bool worked = true;
+  for (int k = 0; k < 100 && worked; ++k)  // in some of the children the pool is locked for ever
+    worked = forked_off([&] {
+      std::atomic<int> done = 0;
+      pool.for_each(100, [&](std::size_t) { ++done; });
+      return done == 100;
+    });
+  over = true;
+  CHECK(worked);
+}
+
+#if !defined(PULSECAST_TEST_SANITIZED)
+TEST_CASE("without memory for all threads no pool is made, and a loop does with those that there are") {
+  const auto without_memory = [] {
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t most = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (rlim_t{64} << 20);
+    const rlimit limit{most, most};
+    return pages > 0 && setrlimit(RLIMIT_AS, &limit) == 0;
+  };
+  CHECK(forked_off([&] {
+    std::atomic<int> done = 0;
+    if (without_memory()) for_each_index(1000, max_threads, [&](std::size_t) { ++done; });
+    return done == 1000;
+  }));
+  CHECK(forked_off([&] {
+    bool made = true;
+    if (without_memory()) try {
+        const ThreadPool pool(max_threads);
+      } catch (const std::system_error&) {
+        made = false;
+      }
+    return !made;
+  }));
+}
+#endif

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/scene/layered.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -73,6 +75,30 @@ TEST_CASE("of layers the nearest hit is met, whichever comes first") {
     CHECK(world.bounds().min == Vec3{-1, -1, 0});
     CHECK(world.bounds().max == Vec3{1.5, 1, 2});
   }
+}
+
+namespace {
+
+/// Keeps the far end that it is asked for; is met nowhere.
+struct FarEnd {
+  mutable double far = 0;
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+    far = rays.far;
+    std::fill_n(hits.begin(), rays.size, Hit{});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("no layer is traced beyond the far end, nor beyond the hits of those before it") {
+  const Discs none({}), floor({disc({}, 1)});
+  const FarEnd last;
+  const Layered world{none, floor, last};
+  const Ray near{.origin = {0, 0, 10}, .direction = -axis::up, .far = 5}, far{.origin = {0, 0, 10}, .direction = -axis::up, .far = 50};
+  CHECK_FALSE(ask(world, near).met());
+  CHECK(last.far == 5);
+  CHECK(ask(world, far).range == 10);
+  CHECK(last.far == 10);
 }
 
 TEST_CASE("at equal range the first layer is met") {
