@@ -85,7 +85,7 @@ class Survey {
     require_alike();
     const std::vector<Emitter> emitters = source_.emitters();
     require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), size() > 0 ? 1 : 0, max_emitters, "");
-    for (std::size_t e = 0; e < emitters.size(); ++e) add_emitter(validated(emitters[e]), {emitters.data(), e});
+    for (const Emitter& emitter : emitters) add_emitter(validated(emitter));
   }
 
   Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would dangle
@@ -189,8 +189,8 @@ class Survey {
   /// Constants of an emitter, computed once for all pulses.
   struct EmitterConstants {
     Emitter emitter;
-    LinkBudget budget;   // link budget of its laser and receiver
-    std::uint32_t beam;  // index of its subrays, which it shares with emitters of equal beams
+    LinkBudget budget;      // link budget of its laser and receiver
+    SubrayDirections beam;  // subrays, shared with emitters of equal beams
   };
 
   /// Refuses a footprint whose shares do not sum to the whole beam.
@@ -219,17 +219,16 @@ class Survey {
     return 0;
   }
 
-  /// Adds a valid emitter to the `earlier` ones. Throws a `SettingError` if it has no receiver, or if the detector refuses its laser.
-  void add_emitter(const Emitter& emitter, std::span<const Emitter> earlier) {
+  /// Adds a valid emitter. Throws a `SettingError` if it has no receiver, or if the detector refuses its laser.
+  void add_emitter(const Emitter& emitter) {
     require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
     const Unit& unit = receivers_[emitter.receiver];
     if constexpr (ValidatesLaser<Instrument>) unit.detector.validate(emitter.laser);
-    const auto alike = std::find_if(earlier.begin(), earlier.end(), [&](const Emitter& other) {
-      return other.receiver == emitter.receiver && SubrayDirections::equal(other, emitter);
-    });
-    const std::size_t beam = alike == earlier.end() ? beams_.size() : emitters_[static_cast<std::size_t>(alike - earlier.begin())].beam;
-    if (beam == beams_.size()) beams_.emplace_back(unit.footprint, emitter);
-    emitters_.push_back({emitter, LinkBudget(unit.receiver, emitter.laser), static_cast<std::uint32_t>(beam)});
+    const EmitterConstants* alike = emitters_.data();
+    const EmitterConstants* const none = alike + emitters_.size();
+    while (alike != none && !(alike->emitter.receiver == emitter.receiver && SubrayDirections::equal(alike->emitter, emitter))) ++alike;
+    emitters_.push_back(
+        {emitter, LinkBudget(unit.receiver, emitter.laser), alike == none ? SubrayDirections(unit.footprint, emitter) : alike->beam});
   }
 
   /// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are renumbered in order.
@@ -251,7 +250,7 @@ class Survey {
                              i,
                              seed_,
                              constants.emitter,
-                             beams_[constants.beam],
+                             constants.beam,
                              unit.footprint.size(),
                              constants.budget,
                              w.white_target,
@@ -274,7 +273,6 @@ class Survey {
   Light transport_;
   std::vector<Unit> receivers_;
   std::vector<EmitterConstants> emitters_;  // by number
-  std::vector<SubrayDirections> beams_;     // distinct beams of the emitters
   std::uint64_t seed_;
   std::shared_ptr<const void> identity_{new char};  // compiles faster than make_shared
 };

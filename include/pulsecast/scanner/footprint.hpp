@@ -181,29 +181,22 @@ static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
   return at_waist - direction * (laser.waist_range / direction.y) + Vec3{0, laser.waist_range, 0};
 }
 
-/// Subrays of an emitter's beam, in the beam's frame. Columns of numbers are padded to whole SIMD vectors.
-struct SubrayDirections {
-  std::vector<double> x, y, z;  ///< components of the unit directions
-  std::vector<double> shares;   ///< shares of the energy
-  std::vector<Vec3> exits;      ///< exit points; empty for a beam from a point [m]
+/// Subrays of an emitter's beam, in the beam's frame. Columns are padded to whole SIMD vectors. Copies share their memory.
+class SubrayDirections {
+ public:
+  const double *x, *y, *z;  ///< components of the unit directions
+  const double* shares;     ///< shares of the energy
+  const Vec3* exits;        ///< exit points; null for a beam from a point [m]
 
   /// Takes a valid footprint and emitter.
   template <Footprint Pattern>
-  SubrayDirections(const Pattern& footprint, const Emitter& emitter)
-      : x(footprint.size() + RayBundle::lanes), y(x), z(x), shares(x), exits(emitter.laser.from_a_point() ? 0 : footprint.size()) {
-    for (std::size_t j = 0; j < footprint.size(); ++j) {
-      const Vec2 offset = emitter.footprint_scale * footprint.offset(j);
-      const Vec3 direction = subray_direction(offset, emitter.laser.divergence);
-      x[j] = direction.x;
-      y[j] = direction.y;
-      z[j] = direction.z;
-      shares[j] = footprint.share(j);
-      if (!exits.empty()) exits[j] = subray_exit(offset, emitter.laser);
-    }
+  SubrayDirections(const Pattern& footprint, const Emitter& emitter) : SubrayDirections(footprint.size(), emitter.laser) {
+    for (std::size_t j = 0; j < footprint.size(); ++j)
+      set(j, emitter.footprint_scale * footprint.offset(j), footprint.share(j), emitter.laser);
   }
 
   /// True if the beam leaves through a point.
-  [[nodiscard]] bool from_a_point() const noexcept { return exits.empty(); }
+  [[nodiscard]] bool from_a_point() const noexcept { return !exits; }
 
   /// True if two emitters with the same footprint have equal subrays.
   [[nodiscard]] static bool equal(const Emitter& a, const Emitter& b) noexcept {
@@ -223,6 +216,30 @@ struct SubrayDirections {
     }
     rays.pad();
   }
+
+ private:
+  SubrayDirections(std::size_t size, const Laser& laser)
+      : padded_(size + RayBundle::lanes), columns_(4 * padded_), exits_(laser.from_a_point() ? 0 : size) {
+    std::fill(columns_.begin(), columns_.end(), 0.0);
+    x = columns_.data();
+    y = x + padded_;
+    z = y + padded_;
+    shares = z + padded_;
+    exits = exits_.data();
+  }
+
+  void set(std::size_t j, const Vec2& offset, double share, const Laser& laser) noexcept {
+    const Vec3 direction = subray_direction(offset, laser.divergence);
+    columns_[j] = direction.x;
+    columns_[padded_ + j] = direction.y;
+    columns_[2 * padded_ + j] = direction.z;
+    columns_[3 * padded_ + j] = share;
+    if (exits) exits_[j] = subray_exit(offset, laser);
+  }
+
+  std::size_t padded_;
+  SharedBuffer<double> columns_;
+  SharedBuffer<Vec3> exits_;
 };
 
 }  // namespace pulsecast

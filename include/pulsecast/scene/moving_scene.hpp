@@ -8,7 +8,6 @@
 #include <optional>
 #include <span>
 #include <type_traits>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -47,13 +46,12 @@ class MovingScene {
 
   /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
-    std::size_t bytes = scene_.memory() + index_.memory() + movers_.capacity() * sizeof(Mover);
-    std::unordered_set<const void*> counted;
+    detail::SharedMemorySum motions;
     for (const Mover& mover : movers_) {
       const PartMotion* motion = parts()[mover.part].motion.get();
-      bytes += counted.insert(motion).second ? motion->memory() : 0;
+      motions.add(motion, motion->memory());
     }
-    return bytes;
+    return scene_.memory() + index_.memory() + movers_.capacity() * sizeof(Mover) + motions.sum();
   }
 
   /// Placement of a part at a time.

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_SCENE_PART_HPP
 #define PULSECAST_SCENE_PART_HPP
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -34,6 +35,22 @@ namespace detail {
 [[nodiscard]] inline std::size_t heap_bytes(const std::string& text) noexcept {
   return text.capacity() > std::string().capacity() ? text.capacity() + 1 : 0;
 }
+
+/// Memory of objects, of which shared ones count once [byte].
+class SharedMemorySum {
+ public:
+  void add(const void* object, std::size_t bytes) { objects_.emplace_back(object, bytes); }
+  [[nodiscard]] std::size_t sum() {
+    std::sort(objects_.begin(), objects_.end());
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+      if (i == 0 || objects_[i].first != objects_[i - 1].first) bytes += objects_[i].second;
+    return bytes;
+  }
+
+ private:
+  std::vector<std::pair<const void*, std::size_t>> objects_{};
+};
 
 }  // namespace detail
 

@@ -12,7 +12,6 @@
 #include <optional>
 #include <span>
 #include <type_traits>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -87,18 +86,18 @@ class Scene {
   /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
     std::size_t bytes = index_.memory() + parts_.capacity() * sizeof(Part) + boxes_.capacity() * sizeof(Box) + refit_.memory();
-    std::unordered_set<const void*> counted;
+    detail::SharedMemorySum shared;
     for (const Part& part : parts_) {
       bytes += detail::heap_bytes(part.name);
-      visit_shape([&](const auto& shape) { bytes += counted.insert(shape.get()).second ? shape->memory() : 0; }, part.geometry);
-      if (!counted.insert(part.materials.get()).second) continue;
-      bytes += sizeof(*part.materials) + part.materials->capacity() * sizeof(Material);
+      visit_shape([&](const auto& shape) { shared.add(shape.get(), shape->memory()); }, part.geometry);
+      std::size_t table = sizeof(*part.materials) + part.materials->capacity() * sizeof(Material);
       for (const Material& material : *part.materials) {
-        bytes += detail::heap_bytes(material.name);
-        if (material.spectrum && counted.insert(material.spectrum.get()).second) bytes += material.spectrum->memory();
+        table += detail::heap_bytes(material.name);
+        if (material.spectrum) shared.add(material.spectrum.get(), material.spectrum->memory());
       }
+      shared.add(part.materials.get(), table);
     }
-    return bytes;
+    return bytes + shared.sum();
   }
 
   /// Nearest hit of each ray of the bundle, one per ray. Ties between parts go to the first in the list.
