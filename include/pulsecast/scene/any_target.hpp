@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_SCENE_ANY_TARGET_HPP
+#define PULSECAST_SCENE_ANY_TARGET_HPP
+
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/scene/layered.hpp>
+#include <pulsecast/scene/ray_hit.hpp>
+
+namespace pulsecast {
+
+namespace detail {
+struct VisitsHits {
+  void operator()(const RayHit&) const noexcept {}
+};
+}  // namespace detail
+
+/// Scan target that answers queries by single rays, as `Scene` does.
+template <class T>
+concept AnswersRays = requires(const T t, const Ray& ray, const RayHit& hit, double range, detail::VisitsHits& visitor) {
+  { t.closest_hit(ray) }
+  noexcept->std::same_as<std::optional<RayHit>>;
+  { t.occluded(ray, range) }
+  noexcept->std::same_as<bool>;
+  { t.all_hits(ray, visitor) }
+  noexcept->std::same_as<std::size_t>;
+  { t.surface(hit, ray) }
+  noexcept->std::same_as<SurfacePoint>;
+};
+
+/// Scan target of one of several types, for maps chosen at run time: `AnyTarget<Scene<HeightField>, MovingScene<TriangleMesh<>>>`. Holds
+/// its target by value, and must outlive the survey as any map must. `AnyTarget<Layered<Map>, ...>` refers to a map instead, as `Layered`
+/// does.
+template <Target First, Target... Others>
+class AnyTarget {
+ public:
+  /// Takes a target of one of the types.
+  template <class Map>
+  requires std::constructible_from<std::variant<First, Others...>, Map> AnyTarget(Map target)
+      : target_(std::move(target)) {}  // NOLINT(google-explicit-constructor): implicit by purpose
+
+  /// Nearest hit of each ray of the bundle, as of the target.
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+    std::visit([&](const auto& target) noexcept { Layered<std::remove_cvref_t<decltype(target)>>(target).closest(rays, hits); }, target_);
+  }
+
+  /// Closest hit of a ray; empty for a miss. This query and the next three exist if all types have them.
+  [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept requires(AnswersRays<First>&&...&& AnswersRays<Others>) {
+    return std::visit([&](const auto& target) noexcept { return target.closest_hit(ray); }, target_);
+  }
+  /// True if the ray meets anything beyond `ray.near`, up to a range [m] and to `ray.far`.
+  [[nodiscard]] bool occluded(const Ray& ray, double range = std::numeric_limits<double>::infinity()) const noexcept
+      requires(AnswersRays<First>&&...&& AnswersRays<Others>) {
+    return std::visit([&](const auto& target) noexcept { return target.occluded(ray, range); }, target_);
+  }
+  /// Calls `visitor(hit)` with every `RayHit` of a ray, as `Scene::all_hits`. Returns the number of calls.
+  template <class Visitor>
+  requires(AnswersRays<First>&&...&& AnswersRays<Others>) std::size_t all_hits(const Ray& ray, Visitor&& visitor)
+  const noexcept(std::is_nothrow_invocable_v<Visitor&, const RayHit&>) {
+    return std::visit([&](const auto& target) { return target.all_hits(ray, visitor); }, target_);
+  }
+  /// Surface at a hit of the same ray, in the world.
+  [[nodiscard]] SurfacePoint surface(const RayHit& hit, const Ray& ray) const noexcept
+      requires(AnswersRays<First>&&...&& AnswersRays<Others>) {
+    return std::visit([&](const auto& target) noexcept { return target.surface(hit, ray); }, target_);
+  }
+
+  /// Bounds of the target [m].
+  [[nodiscard]] Box bounds() const noexcept requires(requires(const First& f, const Others&... o) {
+    f.bounds();
+    (o.bounds(), ...);
+  }) {
+    return std::visit([](const auto& target) noexcept -> Box { return target.bounds(); }, target_);
+  }
+
+  /// Height of the highest ground of the target at a place [m]; empty if there is none.
+  [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept requires(requires(const First& f, const Others&... o) {
+    f.ground_height(at);
+    (o.ground_height(at), ...);
+  }) {
+    return std::visit([&](const auto& target) noexcept { return target.ground_height(at); }, target_);
+  }
+
+ private:
+  std::variant<First, Others...> target_;
+};
+
+}  // namespace pulsecast
+
+#endif
