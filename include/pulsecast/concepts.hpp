@@ -74,6 +74,16 @@ concept DrawsByLeg = requires(S& s, std::uint32_t leg) {
 PULSECAST_OPTIONAL_MEMBER(DrawsByLeg, "void draw_for_leg(std::uint32_t)", draw_for_leg, (std::uint32_t{}), draw_leg, draw_by_leg,
                           draw_of_leg, set_leg)
 
+/// Instrument that measures its beams with errors, as `helios::Instrument`. `measured(i, t)` is the beam of pulse i, fired at t, as the
+/// instrument reports it, or empty if exact. A platform computes the reported pose from it.
+/// Law: pure; a wrapper of an instrument passes it on, as it does the pulse.
+template <class S>
+concept MeasuresBeam = requires(const S s, PulseIndex i, Tick t) {
+  { s.measured(i, t) } noexcept -> std::same_as<std::optional<Pose<frame::Beam, frame::Instrument>>>;
+};
+PULSECAST_OPTIONAL_MEMBER(MeasuresBeam, "std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex, Tick) const noexcept",
+                          measured, (PulseIndex{}, Tick{}), measured_beam, measured_pose, reported, reported_beam)
+
 /// Leaf test of an accelerator that loads primitives into the cache ahead of their test.
 template <class T>
 concept PrefetchesPrimitives = requires(const T& test, std::span<const PrimitiveIndex> primitives) {
@@ -111,8 +121,8 @@ PULSECAST_OPTIONAL_MEMBER(ListensConstant, "static constexpr bool listens_always
 /// Detector that reads `Reflection::velocity`. It needs a transport that `TracesVelocity`, and a `VelocityTarget`.
 template <class D>
 concept ReadsVelocity = detail::VelocityConstant<D> && D::reads_velocity;
-PULSECAST_OPTIONAL_MEMBER(VelocityConstant, "static constexpr bool reads_velocity = true", reads_velocity, , needs_velocity, velocity,
-                          uses_velocity, reads_velocities)
+PULSECAST_OPTIONAL_MEMBER(VelocityConstant, "static constexpr bool reads_velocity = true", reads_velocity, , needs_velocity, reads_velocities,
+                          uses_velocity, with_velocity)
 
 struct WaveformMoments;
 

@@ -72,7 +72,8 @@ struct SurveyArguments {
 template <class Pattern, class Instrument>
 struct SurveyMembers {
   static constexpr bool checked =
-      RecordedConstantCheck<Pattern>::passed && SamplesWaveformsCheck<Instrument>::passed && ValidatesLaserCheck<Instrument>::passed;
+      RecordedConstantCheck<Pattern>::passed && SamplesWaveformsCheck<Instrument>::passed && ValidatesLaserCheck<Instrument>::passed &&
+      ListensConstantCheck<Instrument>::passed && VelocityConstantCheck<Instrument>::passed;
 };
 
 }  // namespace pulsecast::detail

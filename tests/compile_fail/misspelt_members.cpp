@@ -14,6 +14,12 @@
 // error: it must be: double sample_interval.. const noexcept
 // error: ValidatesLaserCheck<OtherDetector
 // error: it must be: void validate.const Laser&. const
+// error: ListensConstantCheck<ListeningDetector
+// error: it must be: static constexpr bool listens_always = true
+// error: VelocityConstantCheck<SpeedDetector
+// error: it must be: static constexpr bool reads_velocity = true
+// error: MeasuresBeamCheck<OwnInstrument
+// error: it must be: std::optional<Pose<frame::Beam, frame::Instrument>> measured.PulseIndex, Tick. const noexcept
 // error: MomentWidthMeasureCheck<OwnWidth
 // error: it must be: double width.const WaveformMoments&. const noexcept
 // error: TruncatedWidthMeasureCheck<OwnWidth
@@ -36,6 +42,7 @@
 #include <pulsecast/io/detail/archive.hpp>
 #include <pulsecast/platform/legs.hpp>
 #include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/run.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 #include <pulsecast/scene/scene.hpp>
@@ -73,6 +80,15 @@ struct OwnDetector : LeastDetector {
 struct OtherDetector : LeastDetector {
   void NAME(validate, validate_laser)(const Laser&) const {}
 };
+struct ListeningDetector : LeastDetector {
+  static constexpr bool NAME(listens_always, always_listens) = true;
+};
+struct SpeedDetector : LeastDetector {
+  static constexpr NAME(bool, int) reads_velocity = NAME(false, 1);
+};
+struct OwnInstrument : LeastSource<frame::Instrument> {
+  std::optional<Pose<frame::Beam, frame::Instrument>> NAME(measured, measured_beam)(PulseIndex, Tick) const noexcept { return std::nullopt; }
+};
 struct OwnWidth {
   double width(std::span<const double>, double) const noexcept { return 1; }
   double width(const WaveformMoments&) const NAME(noexcept, ) { return 1; }
@@ -109,6 +125,9 @@ int main() {
   const Survey recording{source, OwnFootprint{}, map, Receiver{}, LeastDetector{}};
   const Survey sampling{source, LeastFootprint{}, map, Receiver{}, OwnDetector{}};
   const Survey validating{source, LeastFootprint{}, map, Receiver{}, OtherDetector{}};
+  const Survey listening{source, LeastFootprint{}, map, Receiver{}, ListeningDetector{}};
+  const Survey fast{source, LeastFootprint{}, map, Receiver{}, SpeedDetector{}};
+  const Platform measuring{Tripod{}, Mount{}, OwnInstrument{}};
   const AnalyticWaveform<OwnWidth> detector;
   (void)tail_of(OwnWidth{});
   const Scene<OwnShape> scene(std::vector<Scene<OwnShape>::Part>{});

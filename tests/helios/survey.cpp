@@ -501,6 +501,22 @@ TEST_CASE("noise of the platform is reported alone, as the settings say, and can
   CHECK(length(turned.source.pulse(0)->reported->direction(axis::forward) + axis::right) < 1e-12);
 }
 
+TEST_CASE("no two legs have the same noise") {
+  SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}});
+  for (LegSettings& leg : s.legs) leg.duration_max = 1;
+  s.platform.position_noise[0] = s.platform.attitude_noise[2] = NoiseSettings{.deviation = 0.1, .lifespan = 100'000};  // as a drift
+  const CompiledSurvey compiled = compile_survey(s, flat, {.seed = 4});
+  const auto drawn = [&](std::size_t leg, PulseIndex i) {
+    const auto p = compiled.source.pulse(compiled.legs[leg].first + i);
+    return std::pair(p->reported->position.x, p->reported->direction(axis::forward).x);
+  };
+  for (std::size_t leg = 0; leg < 3; ++leg) {
+    CHECK(drawn(leg, 0) == drawn(leg, 400));
+    CHECK(drawn(leg, 0).first != drawn((leg + 1) % 3, 0).first);
+    CHECK(drawn(leg, 0).second != drawn((leg + 1) % 3, 0).second);
+  }
+}
+
 TEST_CASE("legs are beside where they should be by chance, alike for the same seed, or exact") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{}});
   s.legs[0].duration_max = 1;

@@ -40,6 +40,14 @@ class Deflector {
     return std::optional<Pulse<frame::Instrument>>(std::in_place, pose, *inner);
   }
 
+  /// As the concept MeasuresBeam requires: the measured beam, turned by the head.
+  [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i,
+                                                                             Tick t) const noexcept requires MeasuresBeam<Source> {
+    const auto inner = source_.measured(i, t);
+    if (!inner) return std::nullopt;
+    return moving_.at(t) * *inner;
+  }
+
   /// Optic or head.
   [[nodiscard]] const Moving& moving() const noexcept { return moving_; }
   /// Deflected source.

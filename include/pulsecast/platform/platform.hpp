@@ -33,6 +33,8 @@ struct Mount {
 /// Pulse source of an instrument carried through the world. The lever arm turns with the body.
 template <Trajectory Path, InstrumentSource Source>
 class Platform {
+  static_assert(detail::MeasuresBeamCheck<Source>::passed);
+
  public:
   /// @throws SettingError for settings out of range
   Platform(Path path, Mount mount, Source source)
@@ -45,7 +47,13 @@ class Platform {
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     const auto inner = source_.pulse(i);
     if (!inner) return std::nullopt;
-    return placed(*inner);
+    if constexpr (MeasuresBeam<Source>) {
+      auto out = placed(*inner);
+      if (const auto beam = source_.measured(i, inner->tick)) out->reported = instrument_at(inner->tick) * *beam;
+      return out;
+    } else {
+      return placed(*inner);
+    }
   }
 
   /// Pulse of the instrument, transformed into the world. Never empty; optional so that `pulse` returns it without a copy.

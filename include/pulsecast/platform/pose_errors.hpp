@@ -78,7 +78,9 @@ class WithPoseErrors {
     auto out = truth_.placed(jittered(*inner, i));
     const Pose<frame::Instrument, frame::Body> calibrated{truth_.mount().boresight * errors_.boresight_error,
                                                           truth_.mount().lever_arm + errors_.lever_arm_error};
-    out->reported = reported(inner->tick) * calibrated * inner->pose;
+    auto beam = inner->pose;
+    if constexpr (MeasuresBeam<Source>) beam = truth_.source().measured(i, inner->tick).value_or(beam);
+    out->reported = reported(inner->tick) * calibrated * beam;
     return out;
   }
 

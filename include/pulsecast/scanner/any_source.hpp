@@ -4,6 +4,7 @@
 #define PULSECAST_SCANNER_ANY_SOURCE_HPP
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -35,6 +36,18 @@ class AnySource {
   }
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const First&>().pulse(i)) {
     return std::visit([i](const auto& s) noexcept { return s.pulse(i); }, source_);
+  }
+  /// As the concept MeasuresBeam requires.
+  [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i,
+                                                                             Tick t) const noexcept requires MeasuresBeam<First> ||
+      (MeasuresBeam<Others> || ...) {
+    const auto beam = [&]<class Source>(const Source& s) noexcept -> std::optional<Pose<frame::Beam, frame::Instrument>> {
+      if constexpr (MeasuresBeam<Source>)
+        return s.measured(i, t);
+      else
+        return std::nullopt;
+    };
+    return std::visit(beam, source_);
   }
   /// As the concept DrawsByLeg requires.
   void draw_for_leg(std::uint32_t leg) requires DrawsByLeg<First> ||(DrawsByLeg<Others> || ...) {

@@ -64,6 +64,11 @@ class Channels {
     return p;
   }
 
+  /// As the concept MeasuresBeam requires.
+  [[nodiscard]] auto measured(PulseIndex i, Tick t) const noexcept requires MeasuresBeam<Source> {
+    return channels_[i % channels_.size()].measured(i / channels_.size(), t);
+  }
+
   /// Channels in the order of firing.
   [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }
 

@@ -17,7 +17,7 @@
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/helios/instrument.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
@@ -25,7 +25,6 @@
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/platform/waypoints.hpp>
-#include <pulsecast/scanner/channels.hpp>
 
 /// Pulses of one leg of a survey, for any platform and scanner.
 namespace pulsecast::helios {
@@ -78,12 +77,12 @@ struct SurveyNoise {
   }
 };
 
-/// One leg of a survey: channels that fire together, on one platform. Where optics or platform err, it reports poses as documents define
-/// them: optics by formulas of their deflection, platforms by noise of each slot, which `PoseErrors` has not.
+/// One leg of a survey: an instrument on a platform. Where the platform errs, it reports poses as documents define them: by noise of each
+/// slot, which `PoseErrors` has not.
 class SurveyLeg {
  public:
-  SurveyLeg(SurveyPath path, const Mount& mount, std::vector<SurveyChannel> channels, SurveyNoise noise)
-      : truth_(std::move(path), mount, Channels(std::move(channels))), noise_(std::move(noise)), noisy_(!noise_.none()) {}
+  SurveyLeg(SurveyPath path, const Mount& mount, Instrument instrument, SurveyNoise noise)
+      : truth_(std::move(path), mount, std::move(instrument)), noise_(std::move(noise)), noisy_(!noise_.none()) {}
 
   [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
@@ -91,12 +90,8 @@ class SurveyLeg {
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
     auto out = truth_.pulse(i);
-    if (!out) return out;
-    const std::size_t channels = truth_.source().channels().size();
-    const SurveyOptic& optic = truth_.source().channels()[i % channels].moving();
-    if (optic.errs()) out->reported = truth_.instrument_at(out->tick) * optic.reported(out->tick);
-    if (noisy_) {
-      const PulseIndex slot = i / channels;
+    if (out && noisy_) {
+      const PulseIndex slot = i / truth_.source().channels();
       const Vec3 turn = noise_.draw(noise_.attitude, slot, Purpose::attitude_noise);
       if (!out->reported) out->reported = out->pose;
       out->reported->position += noise_.draw(noise_.position, slot, Purpose::position_noise);
@@ -109,7 +104,7 @@ class SurveyLeg {
   [[nodiscard]] const SurveyPath& path() const noexcept { return truth_.trajectory(); }
 
  private:
-  Platform<SurveyPath, Channels<SurveyChannel>> truth_;
+  Platform<SurveyPath, Instrument> truth_;
   SurveyNoise noise_;
   bool noisy_;
 };

@@ -73,12 +73,8 @@ class WaveformLimits {
 
   /// Scanner with the smallest bin size in all channels, as a batch has one sample interval.
   [[nodiscard]] ScannerSettings sampled_alike(ScannerSettings scanner, std::vector<std::string>& warnings) const {
-    double finest = scanner.channels.front().waveform.bin_size, coarsest = finest;
-    for (const ChannelSettings& c : scanner.channels) {
-      finest = std::min(finest, c.waveform.bin_size);
-      coarsest = std::max(coarsest, c.waveform.bin_size);
-    }
-    if (coarsest > finest)
+    double finest = finest_bin(scanner);
+    if (std::any_of(scanner.channels.begin(), scanner.channels.end(), [&](const auto& c) { return c.waveform.bin_size > finest; }))
       warnings.push_back("scanner '" + scanner.id + "': its channels have bins of different size; all are sampled by the smallest");
     if (las_) finest = las_bins(finest, warnings);
     for (ChannelSettings& c : scanner.channels) c.waveform.bin_size = finest;
@@ -244,17 +240,14 @@ class LoadedSimulation final : public Simulation {
   void connect(const ScannerSettings& scanner, bool ideal, std::vector<std::string>& odd) {
     const Vec3 size = scene_->bounds().empty() ? Vec3{} : scene_->bounds().size();
     const bool waveforms = settings_.waveforms && !ideal, noisy = settings_.waveform_noise && !ideal;
-    const auto receiver = [&](const ChannelSettings& channel) -> ReceiverUnit<RingFootprint, FullWaveform<Width>> {
+    const auto receiver = [&](const ChannelSettings& channel) {
       const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
       WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0);
       limits_.limit_record(waveform, odd);
-      ReceiverNoise noise;
-      if (noisy) noise.deviation = 0.25 * channel.received_power_min;
-      return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings))), survey_receiver(channel),
-              FullWaveform<Width>(waveform, {}, noise)};
+      return survey_receiver_unit<Width>(channel, waveform, noisy);
     };
     using Pipeline = Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, FullWaveform<Width>>;
-    std::vector<ReceiverUnit<RingFootprint, FullWaveform<Width>>> units = ReceiverGroups(survey_.scanner).units(scanner, receiver);
+    auto units = ReceiverGroups(survey_.scanner).units(scanner, receiver);
     pipeline_ = std::make_unique<SurveyOf<Pipeline>>(Pipeline(compiled_->source, std::move(units), *scene_, seed_));
   }
 

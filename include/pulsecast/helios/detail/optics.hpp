@@ -247,6 +247,13 @@ inline void require_finite(const char* field, const Formula& error, const std::p
 
 }  // namespace detail
 
+/// Pulse rate of a leg; by default the scanner's first [Hz]. Throws a `SettingError` if there is none.
+[[nodiscard]] inline double pulse_rate_of(const ScannerSettings& scanner, const LegScannerSettings& leg) {
+  const double rate = leg.pulse_rate > 0 || scanner.pulse_rates.empty() ? leg.pulse_rate : scanner.pulse_rates.front();
+  require_positive("pulseFreq_hz", rate, "Hz");
+  return rate;
+}
+
 /// Turning rate of the head in a leg, within the limits of the device [rad/s].
 [[nodiscard]] inline double head_rate(const ChannelSettings& channel, const LegScannerSettings& leg) noexcept {
   return std::clamp(leg.head_speed, -channel.head_speed_max, channel.head_speed_max);

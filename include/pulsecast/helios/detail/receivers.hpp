@@ -6,9 +6,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
+#include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/settings.hpp>
+#include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/survey.hpp>
 
 /// Receivers of a scanner's channels.
 namespace pulsecast::helios {
@@ -44,6 +49,23 @@ struct ReceiverGroups {
     return all;
   }
 };
+
+/// Smallest bins of the channels: all are sampled by them, as a batch has one sample interval [s].
+[[nodiscard]] inline double finest_bin(const ScannerSettings& scanner) {
+  double finest = std::numeric_limits<double>::infinity();
+  for (const ChannelSettings& channel : scanner.channels) finest = std::min(finest, channel.waveform.bin_size);
+  return finest;
+}
+
+/// Receiver of a channel for `Survey`. Noise is a quarter of the least power of an echo.
+template <EchoWidth Width>
+[[nodiscard]] ReceiverUnit<RingFootprint, FullWaveform<Width>> survey_receiver_unit(const ChannelSettings& channel,
+                                                                                    const WaveformSettings& waveform, bool noisy) {
+  ReceiverNoise noise;
+  if (noisy) noise.deviation = 0.25 * channel.received_power_min;
+  return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings))), survey_receiver(channel),
+          FullWaveform<Width>(waveform, {}, noise)};
+}
 
 }  // namespace pulsecast::helios
 

@@ -15,7 +15,7 @@
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/leg_paths.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
-#include <pulsecast/helios/detail/receivers.hpp>
+#include <pulsecast/helios/instrument.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/platform/legs.hpp>
@@ -36,7 +36,6 @@ class SurveyCompiler {
     if (survey_.scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
     survey_.scanner.validate();
     survey_.platform.validate();
-    const ReceiverGroups receivers(survey_.scanner);
     std::vector<Leg<SurveyLeg>> legs;
     std::vector<CompiledSurvey::Leg> compiled;
     std::vector<std::string> warnings = paths_.warnings();
@@ -47,7 +46,7 @@ class SurveyCompiler {
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
       paths_.of_leg(k, [&] { leg.validate(); });
-      const double rate = paths_.of_leg(k, [&] { return rate_of(leg); });
+      const double rate = paths_.of_leg(k, [&] { return pulse_rate_of(survey_.scanner, leg.scanner); });
       const double duration = duration_of(k), way = paths_[k].duration;
       if (way > 0 && duration > 1.1 * way && leg.scanner.active)
         warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + brief(way) + " s, and stays for " +
@@ -57,27 +56,20 @@ class SurveyCompiler {
       const double interval = leg.scanner.active ? leg.scanner.trajectory_interval : 0;
       if (interval > 0)
         require_within(paths_.leg_name(k) + ": trajectoryTimeInterval_s (records)", duration / interval, 0, max_records, "");
-      const auto slots = static_cast<PulseIndex>(std::max(0.0, std::ceil(duration * rate - 1e-6)));
       if (!leg.scanner.active || teleports(leg)) optic_time = 0;
-      std::vector<SurveyChannel> channels;
-      for (std::size_t c = 0; c < survey_.scanner.channels.size(); ++c)
-        channels.push_back(paths_.of_leg(k, [&] {
-          const ChannelSettings& channel = survey_.scanner.channels[c];
-          return SurveyChannel(
-              slots > 0 ? optic(channel, leg.scanner, rate, optic_time) : SurveyOptic{},  // without slots, it is never called
-              Scanner{
-                  .pulse_rate = rate, .pulses = slots, .laser = survey_laser(channel, leg.scanner), .receiver = receivers.of_channel[c]});
-        }));
-      const Tick time = Tick::of(slots, rate);
+      const Mount mount{.lever_arm = survey_.platform.mount.position, .boresight = survey_.platform.mount.rotation.rotation()};
+      Instrument instrument = paths_.of_leg(k, [&] {
+        return Instrument(survey_.scanner, leg.scanner, duration, {mount.boresight, optic_time});
+      });
+      const Tick time = instrument.duration();
       if (leg.scanner.active) optic_time += time.seconds();
       SurveyNoise noise{.seed = options_.seed + 0x9e3779b97f4a7c15U * (k + 1)};
       if (options_.platform_noise) {
         noise.position = survey_.platform.position_noise;
         noise.attitude = survey_.platform.attitude_noise;
       }
-      const Mount mount{.lever_arm = survey_.platform.mount.position, .boresight = survey_.platform.mount.rotation.rotation()};
       legs.push_back(
-          {SurveyLeg(paths_[k].path, mount, std::move(channels), std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
+          {SurveyLeg(paths_[k].path, mount, std::move(instrument), std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
       const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
       compiled.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size;
@@ -96,21 +88,9 @@ class SurveyCompiler {
   /// Time for messages, rounded to the millisecond.
   [[nodiscard]] static std::string brief(double seconds) { return pulsecast::detail::to_text(std::round(seconds * 1e3) / 1e3); }
 
-  [[nodiscard]] double rate_of(const LegSettings& leg) const {
-    double rate = leg.scanner.pulse_rate;
-    if (!(rate > 0) && !survey_.scanner.pulse_rates.empty()) rate = survey_.scanner.pulse_rates.front();
-    require_positive("pulseFreq_hz", rate, "Hz");
-    return rate;
-  }
-
   /// Strip number of the leg's pulses: index of the first leg of the strip.
   [[nodiscard]] static std::uint16_t strip_of(std::size_t k, const LegSettings& leg, std::unordered_map<std::string, std::size_t>& first) {
     return static_cast<std::uint16_t>(leg.strip ? first.try_emplace(*leg.strip, k).first->second : k);
-  }
-
-  SurveyOptic optic(const ChannelSettings& channel, const LegScannerSettings& leg, double rate, double active) const {
-    if (leg.active) return survey_optic(channel, leg, rate, survey_.platform.mount.rotation.rotation(), {active});
-    return {};  // unused
   }
 
   /// Duration of a leg: until the platform has arrived and the head has turned, but at most `duration_max` [s].

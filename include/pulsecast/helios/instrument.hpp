@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_HELIOS_INSTRUMENT_HPP
+#define PULSECAST_HELIOS_INSTRUMENT_HPP
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/compiled.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/helios/detail/receivers.hpp>
+#include <pulsecast/helios/settings.hpp>
+#include <pulsecast/scanner/channels.hpp>
+#include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/survey.hpp>
+
+/// Scanners of documents as stages of the library, for platforms, maps and surveys of one's own.
+namespace pulsecast::helios {
+
+/// State of an instrument beside its settings.
+struct InstrumentOptions {
+  Rotation boresight = no_rotation;  ///< that of its `Mount`: the beam origins are along the axes of the body
+  double optic_time = 0;             ///< running time of the optic before, for a scan that continues another [s]
+};
+
+/// Scanner of a document, as `read_assets` returns it, with the settings of a leg: all of its channels, which fire together, with their
+/// optics, head and error formulas. Put it on any trajectory: `Platform{trajectory, mount, Instrument{scanner, settings, 60}}`. XML surveys
+/// consist of it, too. `settings.active` is for `Leg::active`; without it, only size, duration and emitters have a meaning.
+class Instrument {
+ public:
+  /// `duration` is rounded up to whole slots; the head does not end it [s]. @throws SettingError with the attribute at fault
+  Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings, double duration, const InstrumentOptions& options = {});
+
+  [[nodiscard]] PulseIndex size() const noexcept { return channels_.size(); }
+  [[nodiscard]] Tick duration() const noexcept { return channels_.duration(); }
+  /// Emitter of each channel. Its receiver is an index into `receivers_of` the same scanner.
+  [[nodiscard]] std::vector<Emitter> emitters() const { return channels_.emitters(); }
+
+  [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept { return channels_.pulse(i); }
+
+  /// Beam of pulse i, fired at t, without the errors of deflection and head, and shifted by that of the range; empty without such errors.
+  [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
+    const SurveyOptic& optic = channels_.channels()[i % channels()].moving();
+    if (!optic.errs()) return std::nullopt;
+    return optic.reported(t);
+  }
+
+  /// Number of channels: of n, slot i is slot `i / n` of channel `i % n`.
+  [[nodiscard]] std::size_t channels() const noexcept { return channels_.channels().size(); }
+
+ private:
+  Channels<SurveyChannel> channels_;
+};
+
+static_assert(InstrumentSource<Instrument> && MeasuresBeam<Instrument>);
+
+/// Options of the receivers of a scanner.
+struct ReceiverOptions {
+  double record_length = 0;  ///< length of the waveforms that are kept; 0: none [s]
+  bool noise = false;        ///< adds noise: a quarter of the least power of an echo, as its standard deviation
+};
+
+/// Receivers of a scanner for `Survey`, each distinct one of its channels once: footprint, aperture and detector. All sample waveforms by
+/// the smallest bins of the channels. Throws a `SettingError`, or a `std::invalid_argument` if a noise formula is invalid.
+template <EchoWidth Width = NoWidth>
+[[nodiscard]] std::vector<ReceiverUnit<RingFootprint, FullWaveform<Width>>> receivers_of(const ScannerSettings& scanner,
+                                                                                         const ReceiverOptions& options = {}) {
+  const double bin = finest_bin(scanner);
+  return ReceiverGroups(scanner).units(scanner, [&](const ChannelSettings& channel) {
+    WaveformSettings waveform = survey_waveform(channel, options.record_length);
+    waveform.sample_interval = bin;
+    return survey_receiver_unit<Width>(channel, waveform, options.noise);
+  });
+}
+
+}  // namespace pulsecast::helios
+
+#if PULSECAST_DEFINITIONS
+#include <pulsecast/helios/detail/instrument_channels.hpp>
+#endif
+
+#endif
