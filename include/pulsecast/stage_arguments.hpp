@@ -68,6 +68,12 @@ struct SurveyArguments {
   using First = Source;
 };
 
+template <class Source, class Pattern, class Map, class Light, class Instrument>
+struct TransportArguments : SurveyArguments<Source, Pattern, Map, Instrument> {
+  static_assert(Transport<Light, std::remove_cvref_t<Map>>,
+                "Survey: the fourth argument must be a Transport for this map; of your own: static_assert(Transport<T, Map>)");
+};
+
 /// Optional members of the stages of a survey.
 template <class Pattern, class Instrument>
 struct SurveyMembers {

@@ -280,6 +280,11 @@ class Survey {
 template <class Source, class Pattern, class Map, class Instrument>  // mistaken arguments
 requires(!detail::Surveyable<Source, Pattern, Map, Instrument>) Survey(Source, Pattern, Map&&, Receiver, Instrument, std::uint64_t = 0)
 ->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;
+template <class Source, class Pattern, class Map, class Light, class Instrument>
+requires(!detail::Surveyable<Source, Pattern, Map, Instrument> || !Transport<Light, std::remove_cvref_t<Map>>)
+    Survey(Source, Pattern, Map&&, Light, Receiver, Instrument, std::uint64_t = 0)
+->Survey<typename detail::TransportArguments<Source, Pattern, Map, Light, Instrument>::First, Pattern, std::remove_cvref_t<Map>, Instrument,
+         Light>;
 template <class Source, class Pattern, class Map, class Instrument>
 requires(detail::Temporary<Map>) Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, Map&&, std::uint64_t = 0)
 ->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;

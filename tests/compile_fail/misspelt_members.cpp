@@ -87,7 +87,9 @@ struct SpeedDetector : LeastDetector {
   static constexpr NAME(bool, int) reads_velocity = NAME(false, 1);
 };
 struct OwnInstrument : LeastSource<frame::Instrument> {
-  std::optional<Pose<frame::Beam, frame::Instrument>> NAME(measured, measured_beam)(PulseIndex, Tick) const noexcept { return std::nullopt; }
+  std::optional<Pose<frame::Beam, frame::Instrument>> NAME(measured, measured_beam)(PulseIndex, Tick) const noexcept {
+    return std::nullopt;
+  }
 };
 struct OwnWidth {
   double width(std::span<const double>, double) const noexcept { return 1; }

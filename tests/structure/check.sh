@@ -32,7 +32,8 @@ includes_of_higher_layers() {
     words = "base geometry pulse echo"
     may["base"] = "version"
     may["geometry"] = may["pulse"] = may["echo"] = "base"
-    may["concepts"] = words
+    may["refinements"] = words
+     may["concepts"] = words " refinements"
     may["accel"] = may["scanner"] = may["detector"] = may["cloud"] = may["stage_arguments"] = words " concepts"
     may["deflector"] = may["platform"] = words " concepts stage_arguments"
     may["scene"] = words " concepts accel"
@@ -79,7 +80,7 @@ rule 'random numbers come from base/random.hpp only' found '#include <random>|\<
 rule 'lines and numbers are read from text by base/text.hpp only' found 'from_chars|\<(sto(d|f|i|u?ll?)|strto[a-z]+|ato[fil]|getline) *\(|xEF.xBB' 'base/text\.hpp'
 rule 'concepts, never enable_if' found 'enable_if'
 rule 'an optional member has a concept of its own' found \
-     'if constexpr \((.*[ (!])?requires *[({]|constexpr bool [a-z_]+ = requires|requires requires|requires \{ requires' 'survey\.hpp'
+     'if constexpr \((.*[ (!])?requires *[({]|constexpr bool [a-z_]+ = requires|requires requires|requires \{ requires'
 
 # The single header keeps the guards of the headers that it holds, and so goes with all others in either order.
 without_guard() {

@@ -45,6 +45,7 @@ function say(what) {
 # Collapses what is in brackets, from the innermost on, then looks at each statement.
 function report(    before, rest, group, n, i, pieces, piece) {
   gsub(/->/, ".", text)
+  gsub(/PULSECAST_OPTIONAL_MEMBER\([^;]*\)\n/, "", text)  # whose arguments hold a call's arguments
   gsub(/\/\*[^*]*\*\//, "", text)
   gsub(/template </, "template<", text)
   gsub(/<>/, "", text)

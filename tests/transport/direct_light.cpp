@@ -143,9 +143,8 @@ TEST_CASE("each term of the ledger is that of its own subrays") {
 TEST_CASE("a transport of one's own may give two reflections a subray") {
   CHECK(support::transport_laws(Foil{}, Shells{}, poses_from({}, 4, 100), {.range_max = 100}) == "");
   const support::LeastRayTarget wall;  // 20 m below
-  const Platform source{
-      Tripod{.position = {0, 0, 20}}, Mount{},
-      Deflector{FixedBeam{rotation_about(axis::right, -90_deg)}, Scanner{.pulses = 1, .laser = {.divergence = 1e-6}}}};
+  const Platform source{Tripod{.position = {0, 0, 20}}, Mount{},
+                        Deflector{FixedBeam{rotation_about(axis::right, -90_deg)}, Scanner{.pulses = 1, .laser = {.divergence = 1e-6}}}};
   const Receiver clear{.visibility = std::numeric_limits<double>::infinity()};
   const Survey survey{source, RingFootprint{3}, wall, Foil{}, clear, FullWaveform{}};
   auto w = survey.workspace();

@@ -38,9 +38,7 @@ struct DetectorAdaptor {
   void normalize() noexcept requires Normalizable<Inner> { inner.normalize(); }
 
   /// Sample spacing of waveforms [s].
-  [[nodiscard]] double sample_interval() const noexcept requires SamplesWaveforms<Inner> {
-    return inner.sample_interval();
-  }
+  [[nodiscard]] double sample_interval() const noexcept requires SamplesWaveforms<Inner> { return inner.sample_interval(); }
 
   /// Scratch memory of the detector inside.
   [[nodiscard]] auto workspace(std::size_t reflections) const { return inner.workspace(reflections); }

@@ -26,6 +26,7 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/helios/detail/formula.hpp>
+#include <pulsecast/helios/detail/leg_rates.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
@@ -246,28 +247,6 @@ inline void require_finite(const char* field, const Formula& error, const std::p
 }
 
 }  // namespace detail
-
-/// Pulse rate of a leg; by default the scanner's first [Hz]. Throws a `SettingError` if there is none.
-[[nodiscard]] inline double pulse_rate_of(const ScannerSettings& scanner, const LegScannerSettings& leg) {
-  const double rate = leg.pulse_rate > 0 || scanner.pulse_rates.empty() ? leg.pulse_rate : scanner.pulse_rates.front();
-  require_positive("pulseFreq_hz", rate, "Hz");
-  return rate;
-}
-
-/// Turning rate of the head in a leg, within the limits of the device [rad/s].
-[[nodiscard]] inline double head_rate(const ChannelSettings& channel, const LegScannerSettings& leg) noexcept {
-  return std::clamp(leg.head_speed, -channel.head_speed_max, channel.head_speed_max);
-}
-
-/// True if the head turns away from its stop angle.
-[[nodiscard]] inline bool turns_away(const LegScannerSettings& leg) noexcept {
-  return (leg.head_speed > 0 && leg.head_stop < leg.head_start) || (leg.head_speed < 0 && leg.head_stop > leg.head_start);
-}
-
-/// True if a leg waits for a head that does not turn.
-[[nodiscard]] inline bool head_never_stops(const ChannelSettings& channel, const LegSettings& leg) noexcept {
-  return !leg.duration_max && head_rate(channel, leg.scanner) == 0 && leg.scanner.head_stop != leg.scanner.head_start;
-}
 
 /// Optic of a channel in a leg. Documents give the beam origin along the axes of the platform, like that of the mount: the two add up.
 /// `boresight` (rotation of the instrument on the body) does not turn it; heading and head do. Throws a `SettingError` with the attribute

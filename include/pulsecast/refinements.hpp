@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_REFINEMENTS_HPP
+#define PULSECAST_REFINEMENTS_HPP
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/optional_member.hpp>
+#include <pulsecast/base/tick.hpp>
+#include <pulsecast/geometry/bundle.hpp>
+#include <pulsecast/pulse.hpp>
+
+/// Contract, continued: optional members, a refinement of a concept in concepts.hpp each. The stage or class that uses the member refuses one
+/// of another form, or of a name that is near, by a static assertion. `Validated`, `ValidatesLaser` and `Normalizable`, for settings of all
+/// kinds, are in base/require.hpp.
+// clang-format off
+// version 14 breaks up compound requirements
+namespace pulsecast {
+
+namespace detail {
+template <class G>
+concept FlatConstant = requires {
+  requires std::same_as<decltype(G::flat), const bool>;
+  typename std::bool_constant<G::flat>;
+};
+template <class F>
+concept RecordedConstant = requires {
+  requires std::same_as<decltype(F::recorded), const bool>;
+  typename std::bool_constant<F::recorded>;
+};
+template <class D>
+concept ListensConstant = requires {
+  requires std::same_as<decltype(D::listens_always), const bool>;
+  typename std::bool_constant<D::listens_always>;
+};
+template <class D>
+concept VelocityConstant = requires {
+  requires std::same_as<decltype(D::reads_velocity), const bool>;
+  typename std::bool_constant<D::reads_velocity>;
+};
+}  // namespace detail
+
+/// Optic or head that transmits light at some times only.
+/// Law: as for `Motion`.
+template <class M>
+concept Gated = requires(const M m, Tick t) {
+  { m.open(t) } noexcept -> std::same_as<bool>;
+};
+PULSECAST_OPTIONAL_MEMBER(Gated, "bool open(Tick) const noexcept", open, (Tick{}), is_open, opened, gate, transmits)
+
+/// Source with random errors, as `WithPoseErrors`. `Legs` passes each of its legs its place in the list, so that their draws are
+/// independent.
+/// Law: place 0 changes nothing.
+template <class S>
+concept DrawsByLeg = requires(S& s, std::uint32_t leg) {
+  { s.draw_for_leg(leg) } -> std::same_as<void>;
+};
+PULSECAST_OPTIONAL_MEMBER(DrawsByLeg, "void draw_for_leg(std::uint32_t)", draw_for_leg, (std::uint32_t{}), draw_leg, draw_by_leg,
+                          draw_of_leg, set_leg)
+
+/// Instrument that measures its beams with errors, as `helios::Instrument`. `measured(i, t)` is the beam of pulse i, fired at t, as the
+/// instrument reports it, or empty if exact. A platform computes the reported pose from it.
+/// Law: pure; a wrapper of an instrument passes it on, as it does the pulse.
+template <class S>
+concept MeasuresBeam = requires(const S s, PulseIndex i, Tick t) {
+  { s.measured(i, t) } noexcept -> std::same_as<std::optional<Pose<frame::Beam, frame::Instrument>>>;
+};
+PULSECAST_OPTIONAL_MEMBER(MeasuresBeam, "std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex, Tick) const noexcept",
+                          measured, (PulseIndex{}, {}), measured_beam, measured_pose, reported, reported_beam)
+
+/// Leaf test of an accelerator that loads primitives into the cache ahead of their test.
+template <class T>
+concept PrefetchesPrimitives = requires(const T& test, std::span<const PrimitiveIndex> primitives) {
+  { test.prefetch(primitives) } noexcept -> std::same_as<void>;
+};
+PULSECAST_OPTIONAL_MEMBER(PrefetchesPrimitives, "void prefetch(std::span<const PrimitiveIndex>) const noexcept", prefetch,
+                          (std::span<const PrimitiveIndex>{}), soon, pre_fetch, prefetch_primitives, announce)
+
+/// Geometry whose primitives have the same surface at all their points: `surface` is called once for all hits of one.
+template <class G>
+concept FlatGeometry = detail::FlatConstant<G> && G::flat;
+PULSECAST_OPTIONAL_MEMBER(FlatConstant, "static constexpr bool flat = true", flat, , is_flat, planar, is_planar, flat_surface)
+
+/// Footprint whose subrays are all passed to the sinks, as those of `WithSubrayRecord`.
+template <class F>
+concept RecordsSubrays = detail::RecordedConstant<F> && F::recorded;
+PULSECAST_OPTIONAL_MEMBER(RecordedConstant, "static constexpr bool recorded = true", recorded, , is_recorded, record, records,
+                          records_subrays)
+
+/// Detector that samples waveforms, every so many seconds [s].
+template <class D>
+concept SamplesWaveforms = requires(const D detector) {
+  { detector.sample_interval() } noexcept -> std::same_as<double>;
+};
+PULSECAST_OPTIONAL_MEMBER(SamplesWaveforms, "double sample_interval() const noexcept", sample_interval, (), sampling_interval,
+                          sample_spacing,
+                          sample_time, sampling_period)
+
+/// Detector that is asked for every pulse sent, also if no light returned. Others are asked for pulses with reflections only.
+template <class D>
+concept ListensAlways = detail::ListensConstant<D> && D::listens_always;
+PULSECAST_OPTIONAL_MEMBER(ListensConstant, "static constexpr bool listens_always = true", listens_always, , always_listens, listens,
+                          listen_always, always_on)
+
+/// Detector that reads `Reflection::velocity`. It needs a transport that `TracesVelocity`, and a `VelocityTarget`.
+template <class D>
+concept ReadsVelocity = detail::VelocityConstant<D> && D::reads_velocity;
+PULSECAST_OPTIONAL_MEMBER(VelocityConstant, "static constexpr bool reads_velocity = true", reads_velocity, , needs_velocity, reads_velocities,
+                          uses_velocity, with_velocity)
+
+struct WaveformMoments;
+
+/// Measure of width that is exact from moments, without samples: a width in time, in the unit of the moments.
+template <class W>
+concept MomentWidthMeasure = requires(const W w, const WaveformMoments& moments) {
+  { w.width(moments) } noexcept -> std::same_as<double>;
+};
+PULSECAST_OPTIONAL_MEMBER(MomentWidthMeasure, "double width(const WaveformMoments&) const noexcept", width_of_moments,
+                          (std::declval<const WaveformMoments&>()), width, moment_width, width_by_moments, width_from_moments)
+
+/// Measure of width that needs no samples below a share of the highest one, so that the tail of a waveform need not be sampled.
+template <class W>
+concept TruncatedWidthMeasure = requires(const W w) {
+  { w.min_share() } noexcept -> std::same_as<double>;
+};
+PULSECAST_OPTIONAL_MEMBER(TruncatedWidthMeasure, "double min_share() const noexcept", min_share, (), least_share, share_min, minimum_share,
+                          min_fraction)
+
+/// Data structure that checks itself after it was read from a file: true if all indices in its arrays are in bounds.
+template <class T>
+concept SelfChecking = requires(const T& t) {
+  { t.is_consistent() } -> std::same_as<bool>;
+};
+
+/// Accelerator that checks itself after it was read from a file: true if it is one of so many primitives.
+template <class A>
+concept SelfCheckingAccelerator = requires(const A& a, std::size_t primitives) {
+  { a.is_consistent(primitives) } -> std::same_as<bool>;
+};
+
+namespace detail {
+template <class T>
+concept ConsistencyChecking = SelfChecking<T> || SelfCheckingAccelerator<T>;
+}  // namespace detail
+PULSECAST_OPTIONAL_MEMBER(ConsistencyChecking, "bool is_consistent() const", is_consistent, (), sound, consistent, check_consistency,
+                          is_valid)
+PULSECAST_OPTIONAL_MEMBER(SelfCheckingAccelerator, "bool is_consistent(std::size_t) const", is_consistent, (std::size_t{}), sound,
+                          consistent, check_consistency, is_valid)
+
+/// Survey that can be told from others, so that an executor may keep its workspaces from one run to the next.
+/// Law: two surveys of one type share an identity, which is not null, only if each may use the other's workspaces.
+template <class S>
+concept IdentifiedSurvey = requires(const S& s) {
+  { s.identity() } noexcept -> std::convertible_to<std::shared_ptr<const void>>;
+};
+PULSECAST_OPTIONAL_MEMBER(IdentifiedSurvey, "std::shared_ptr<const void> identity() const noexcept", identity, (), get_identity, identify,
+                          identifier, workspace_identity)
+
+}  // namespace pulsecast
+
+#endif

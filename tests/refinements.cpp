@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/refinements.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <pulsecast/base/require.hpp>
+
+#include "support/archetypes.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::support;
+
+// Each optional member is refused under a near name, and in another form.
+namespace {
+
+#define MISSPELT(Model, name, ...) \
+  struct Model##_by_##name {       \
+    __VA_ARGS__;                   \
+  };                               \
+  static_assert(!detail::Model##OrAbsent<Model##_by_##name>, #name)
+
+MISSPELT(Validating, check, void check() const);
+MISSPELT(Validating, verify, void verify() const);
+MISSPELT(Validating, is_valid, bool is_valid() const);
+MISSPELT(Validating, validate_settings, void validate_settings() const);
+MISSPELT(Validating, result, bool validate() const);
+MISSPELT(Validating, changing, void validate());
+MISSPELT(Validating, argument, void validate(int) const);
+MISSPELT(ValidatesLaser, validate_laser, void validate_laser(const Laser&) const);
+MISSPELT(ValidatesLaser, check, void check(const Laser&) const);
+MISSPELT(ValidatesLaser, check_laser, void check_laser(Laser) const);
+MISSPELT(ValidatesLaser, validate_for, void validate_for(const Laser&) const);
+MISSPELT(ValidatesLaser, overload, void validate() const; bool validate(const Laser&) const);
+MISSPELT(Normalizable, normalise, void normalise() noexcept);
+MISSPELT(Normalizable, normalized, void normalized() const);
+MISSPELT(Normalizable, normalised, void normalised() const);
+MISSPELT(Normalizable, make_unit, void make_unit());
+MISSPELT(Normalizable, throwing, void normalize());
+MISSPELT(Normalizable, copying, Normalizable_by_throwing normalize() const noexcept);
+MISSPELT(Gated, is_open, bool is_open(Tick) const noexcept);
+MISSPELT(Gated, opened, bool opened(Tick) const noexcept);
+MISSPELT(Gated, gate, bool gate(Tick) const noexcept);
+MISSPELT(Gated, transmits, bool transmits(Tick) const noexcept);
+MISSPELT(Gated, seconds, bool open(const Vec3&) const noexcept);
+MISSPELT(Gated, number, int open(Tick) const noexcept);
+MISSPELT(DrawsByLeg, draw_leg, void draw_leg(std::uint32_t));
+MISSPELT(DrawsByLeg, draw_by_leg, void draw_by_leg(std::uint32_t));
+MISSPELT(DrawsByLeg, draw_of_leg, void draw_of_leg(std::uint32_t));
+MISSPELT(DrawsByLeg, set_leg, void set_leg(std::uint32_t));
+MISSPELT(DrawsByLeg, nothing, void draw_for_leg());
+MISSPELT(PrefetchesPrimitives, soon, void soon(std::span<const PrimitiveIndex>) const noexcept);
+MISSPELT(PrefetchesPrimitives, pre_fetch, void pre_fetch(std::span<const PrimitiveIndex>) const noexcept);
+MISSPELT(PrefetchesPrimitives, prefetch_primitives, void prefetch_primitives(std::span<const PrimitiveIndex>) const noexcept);
+MISSPELT(PrefetchesPrimitives, announce, void announce(std::span<const PrimitiveIndex>) const noexcept);
+MISSPELT(PrefetchesPrimitives, index, void prefetch(const PrimitiveIndex*) const noexcept);
+MISSPELT(FlatConstant, is_flat, static constexpr bool is_flat = true);
+MISSPELT(FlatConstant, planar, static constexpr bool planar = true);
+MISSPELT(FlatConstant, is_planar, bool is_planar = true);
+MISSPELT(FlatConstant, flat_surface, static constexpr bool flat_surface = true);
+MISSPELT(
+    FlatConstant, function, static constexpr bool flat() { return true; });
+MISSPELT(FlatConstant, variable, bool flat = true);
+MISSPELT(RecordedConstant, is_recorded, static constexpr bool is_recorded = true);
+MISSPELT(RecordedConstant, record, static constexpr bool record = true);
+MISSPELT(RecordedConstant, records, static constexpr bool records = true);
+MISSPELT(RecordedConstant, records_subrays, static constexpr bool records_subrays = true);
+MISSPELT(RecordedConstant, member, const bool recorded = true);
+MISSPELT(SamplesWaveforms, sampling_interval, double sampling_interval() const noexcept);
+MISSPELT(SamplesWaveforms, sample_spacing, double sample_spacing() const noexcept);
+MISSPELT(SamplesWaveforms, sample_time, double sample_time() const noexcept);
+MISSPELT(SamplesWaveforms, sampling_period, double sampling_period() const noexcept);
+MISSPELT(SamplesWaveforms, data, double sample_interval = 1);
+MISSPELT(ListensConstant, always_listens, static constexpr bool always_listens = true);
+MISSPELT(ListensConstant, listens, static constexpr bool listens = true);
+MISSPELT(ListensConstant, listen_always, static constexpr bool listen_always = true);
+MISSPELT(ListensConstant, always_on, bool always_on = true);
+MISSPELT(ListensConstant, number, static constexpr int listens_always = 1);
+MISSPELT(VelocityConstant, needs_velocity, static constexpr bool needs_velocity = true);
+MISSPELT(VelocityConstant, reads_velocities, static constexpr bool reads_velocities = true);
+MISSPELT(VelocityConstant, uses_velocity, static constexpr bool uses_velocity = true);
+MISSPELT(VelocityConstant, with_velocity, static constexpr bool with_velocity = true);
+MISSPELT(VelocityConstant, variable, bool reads_velocity = true);
+MISSPELT(MeasuresBeam, measured_beam, Pose<frame::Beam, frame::Instrument> measured_beam(PulseIndex, Tick) const noexcept);
+MISSPELT(MeasuresBeam, measured_pose, Pose<frame::Beam, frame::Instrument> measured_pose(PulseIndex, Tick) const noexcept);
+MISSPELT(MeasuresBeam, reported, Pose<frame::Beam, frame::Instrument> reported(PulseIndex, Tick) const noexcept);
+MISSPELT(MeasuresBeam, reported_beam, Pose<frame::Beam, frame::Instrument> reported_beam(PulseIndex, Tick) const noexcept);
+MISSPELT(MeasuresBeam, always, Pose<frame::Beam, frame::Instrument> measured(PulseIndex, Tick) const noexcept);
+MISSPELT(MomentWidthMeasure, moment_width, double moment_width(const WaveformMoments&) const noexcept);
+MISSPELT(MomentWidthMeasure, width_by_moments, double width_by_moments(const WaveformMoments&) const noexcept);
+MISSPELT(MomentWidthMeasure, width_from_moments, double width_from_moments(const WaveformMoments&) const noexcept);
+MISSPELT(MomentWidthMeasure, width_of_moments, double width_of_moments(const WaveformMoments&) const noexcept);
+MISSPELT(MomentWidthMeasure, single, float width(const WaveformMoments&) const noexcept);
+MISSPELT(TruncatedWidthMeasure, least_share, double least_share() const noexcept);
+MISSPELT(TruncatedWidthMeasure, share_min, double share_min() const noexcept);
+MISSPELT(TruncatedWidthMeasure, minimum_share, double minimum_share() const noexcept);
+MISSPELT(TruncatedWidthMeasure, min_fraction, double min_fraction() const noexcept);
+MISSPELT(TruncatedWidthMeasure, throwing, double min_share() const);
+MISSPELT(ConsistencyChecking, sound, bool sound() const);
+MISSPELT(ConsistencyChecking, consistent, bool consistent() const);
+MISSPELT(ConsistencyChecking, check_consistency, void check_consistency() const);
+MISSPELT(ConsistencyChecking, is_valid, bool is_valid() const);
+MISSPELT(ConsistencyChecking, changing, bool is_consistent());
+MISSPELT(SelfCheckingAccelerator, sound, bool sound(std::size_t) const);
+MISSPELT(SelfCheckingAccelerator, consistent, bool consistent(std::size_t) const);
+MISSPELT(SelfCheckingAccelerator, check_consistency, bool check_consistency(std::size_t) const);
+MISSPELT(SelfCheckingAccelerator, is_valid, bool is_valid(std::size_t) const);
+MISSPELT(SelfCheckingAccelerator, nothing, bool is_consistent() const);
+MISSPELT(IdentifiedSurvey, get_identity, std::shared_ptr<const void> get_identity() const noexcept);
+MISSPELT(IdentifiedSurvey, identify, std::shared_ptr<const void> identify() const noexcept);
+MISSPELT(IdentifiedSurvey, identifier, std::uint64_t identifier() const noexcept);
+MISSPELT(IdentifiedSurvey, workspace_identity, std::shared_ptr<const void> workspace_identity() const noexcept);
+MISSPELT(IdentifiedSurvey, number, int identity() const noexcept);
+
+struct FlatOne : LeastGeometry {
+  static constexpr bool flat = true;
+};
+struct CurvedOne : LeastGeometry {
+  static constexpr bool flat = false;
+};
+static_assert(FlatGeometry<FlatOne> && !FlatGeometry<CurvedOne> && !FlatGeometry<LeastGeometry>);
+static_assert(detail::FlatConstantCheck<FlatOne>::passed && detail::FlatConstantCheck<CurvedOne>::passed);
+static_assert(detail::FlatConstantCheck<LeastGeometry>::passed && detail::RecordedConstantCheck<LeastFootprint>::passed);
+struct RecordedOne : LeastFootprint {
+  static constexpr bool recorded = true;
+};
+static_assert(RecordsSubrays<RecordedOne> && !RecordsSubrays<LeastFootprint>);
+struct ListeningOne : LeastDetector {
+  static constexpr bool listens_always = true;
+};
+struct DeafOne : LeastDetector {
+  static constexpr bool listens_always = false;
+};
+static_assert(ListensAlways<ListeningOne> && !ListensAlways<DeafOne> && !ListensAlways<LeastDetector>);
+static_assert(detail::ListensConstantCheck<DeafOne>::passed && detail::VelocityConstantCheck<LeastDetector>::passed);
+
+}  // namespace
