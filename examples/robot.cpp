@@ -47,7 +47,7 @@ static_assert(Trajectory<Drive>);
 /// Scan as columns of numbers, for the robot's program.
 struct Scan {
   std::vector<std::array<float, 3>> points;  ///< in the frame of the robot at the scan's start: x right, y forward, z up [m]
-  std::vector<std::uint8_t> rings;           ///< beam number, from 0 at the bottom
+  std::vector<std::uint16_t> rings;          ///< beam number, from 0 at the bottom
   std::vector<float> time_offsets;           ///< since the scan's start [s]
   std::vector<float> intensities;            ///< 1 for a white surface
 

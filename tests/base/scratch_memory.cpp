@@ -18,6 +18,9 @@ struct Counted : ScratchItem {
 
 struct Number : ScratchItem {
   int value = 0;
+  Number() = default;
+  explicit Number(int least) : value(least) {}
+  [[nodiscard]] bool fits(int least) const { return value >= least; }
 };
 
 struct Other : ScratchItem {};
@@ -67,16 +70,23 @@ TEST_CASE("a scratch memory deletes its objects when it is cleared and at its en
 
 TEST_CASE("an object is borrowed from a scratch memory, or is the call's own") {
   ScratchMemory memory;
-  const Number* kept = nullptr;
   {
-    const Borrowed<Number> first(&memory), second(&memory);
+    const Borrowed<Number> first(&memory, 3), second(&memory, 3);
     CHECK(&*first != &*second);
     first->value = 7;
     second->value = 7;
-    kept = &*first;
   }
-  const Borrowed<Number> again(&memory), own(nullptr);
+  const Borrowed<Number> again(&memory, 5), own(nullptr, 5);
   CHECK(again->value == 7);
-  CHECK(own->value == 0);
-  CHECK(kept != nullptr);
+  CHECK(own->value == 5);
+}
+
+TEST_CASE("an object that does not fit gives way to a new one, which is kept in its place") {
+  ScratchMemory memory;
+  memory.give_back(std::make_unique<Number>(4));
+  CHECK(Borrowed<Number>(&memory, 4)->value == 4);
+  CHECK(Borrowed<Number>(&memory, 6)->value == 6);
+  CHECK(Borrowed<Number>(&memory, 5)->value == 6);
+  CHECK(memory.take<Number>() != nullptr);
+  CHECK(memory.take<Number>() == nullptr);
 }

@@ -225,7 +225,7 @@ class SubrayDirections {
     y = x + padded_;
     z = y + padded_;
     shares = z + padded_;
-    exits = exits_.data();
+    exits = exits_.empty() ? nullptr : exits_.data();
   }
 
   void set(std::size_t j, const Vec2& offset, double share, const Laser& laser) noexcept {
