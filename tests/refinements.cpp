@@ -9,6 +9,8 @@
 
 #include <pulsecast/base/require.hpp>
 
+#include <doctest/doctest.h>
+
 #include "support/archetypes.hpp"
 
 using namespace pulsecast;
@@ -115,26 +117,44 @@ MISSPELT(IdentifiedSurvey, identifier, std::uint64_t identifier() const noexcept
 MISSPELT(IdentifiedSurvey, workspace_identity, std::shared_ptr<const void> workspace_identity() const noexcept);
 MISSPELT(IdentifiedSurvey, number, int identity() const noexcept);
 
-struct FlatOne : LeastGeometry {
-  static constexpr bool flat = true;
+template <bool value>
+struct Shape : LeastGeometry {
+  static constexpr bool flat = value;
 };
-struct CurvedOne : LeastGeometry {
-  static constexpr bool flat = false;
+template <bool value>
+struct Pattern : LeastFootprint {
+  static constexpr bool recorded = value;
 };
-static_assert(FlatGeometry<FlatOne> && !FlatGeometry<CurvedOne> && !FlatGeometry<LeastGeometry>);
-static_assert(detail::FlatConstantCheck<FlatOne>::passed && detail::FlatConstantCheck<CurvedOne>::passed);
-static_assert(detail::FlatConstantCheck<LeastGeometry>::passed && detail::RecordedConstantCheck<LeastFootprint>::passed);
-struct RecordedOne : LeastFootprint {
-  static constexpr bool recorded = true;
+template <bool value>
+struct Listener : LeastDetector {
+  static constexpr bool listens_always = value;
 };
-static_assert(RecordsSubrays<RecordedOne> && !RecordsSubrays<LeastFootprint>);
-struct ListeningOne : LeastDetector {
-  static constexpr bool listens_always = true;
+template <bool value>
+struct Speedometer : LeastDetector {
+  static constexpr bool reads_velocity = value;
 };
-struct DeafOne : LeastDetector {
-  static constexpr bool listens_always = false;
-};
-static_assert(ListensAlways<ListeningOne> && !ListensAlways<DeafOne> && !ListensAlways<LeastDetector>);
-static_assert(detail::ListensConstantCheck<DeafOne>::passed && detail::VelocityConstantCheck<LeastDetector>::passed);
 
 }  // namespace
+
+TEST_CASE("a constant that is false is as one that is absent, and both pass the checks") {
+  CHECK(FlatGeometry<Shape<true>>);
+  CHECK_FALSE(FlatGeometry<Shape<false>>);
+  CHECK_FALSE(FlatGeometry<LeastGeometry>);
+  CHECK(RecordsSubrays<Pattern<true>>);
+  CHECK_FALSE(RecordsSubrays<Pattern<false>>);
+  CHECK_FALSE(RecordsSubrays<LeastFootprint>);
+  CHECK(ListensAlways<Listener<true>>);
+  CHECK_FALSE(ListensAlways<Listener<false>>);
+  CHECK_FALSE(ListensAlways<LeastDetector>);
+  CHECK(ReadsVelocity<Speedometer<true>>);
+  CHECK_FALSE(ReadsVelocity<Speedometer<false>>);
+  CHECK_FALSE(ReadsVelocity<LeastDetector>);
+  CHECK(detail::FlatConstantCheck<Shape<false>>::passed);
+  CHECK(detail::FlatConstantCheck<LeastGeometry>::passed);
+  CHECK(detail::RecordedConstantCheck<Pattern<false>>::passed);
+  CHECK(detail::RecordedConstantCheck<LeastFootprint>::passed);
+  CHECK(detail::ListensConstantCheck<Listener<false>>::passed);
+  CHECK(detail::ListensConstantCheck<LeastDetector>::passed);
+  CHECK(detail::VelocityConstantCheck<Speedometer<false>>::passed);
+  CHECK(detail::VelocityConstantCheck<LeastDetector>::passed);
+}
