@@ -125,7 +125,7 @@ extern "C" {
 [[gnu::noinline]] void update_movers_keyed(std::vector<Movers::Part> parts, Movers& to) { to = Movers(std::move(parts), {.to = 0.1}, 1); }
 [[gnu::noinline]] void update_movers_windows(std::vector<Movers::Part> parts, Movers& to) { to = Movers(std::move(parts), {.to = 10}, 1); }
 
-[[gnu::noinline]] void update_mesh(DeformingMesh& mesh, const std::vector<Vec3>& vertices) { mesh.refit(vertices); }
+[[gnu::noinline]] void update_mesh(DeformingMesh& mesh, const std::vector<Vec3>& vertices) { mesh.refit(vertices, 1); }
 
 [[gnu::noinline]] double update_trace_movers(const Movers& movers, double seconds) { return sum_of_ranges(movers, 500, seconds); }
 [[gnu::noinline]] double update_trace_windows(const Movers& movers, double seconds) { return sum_of_ranges(movers, 500, seconds); }
@@ -167,8 +167,8 @@ int main() {
   sum += update_trace_windows(windows, 10);
 
   DeformingMesh mesh(sea(), 1);
-  mesh.refit(waves(0.1));
-  mesh.refit(waves(0.2));
+  mesh.refit(waves(0.1), 1);
+  mesh.refit(waves(0.2), 1);
   update_mesh(mesh, waves(0.3));
   sum += sum_of_ranges(World({{.geometry = mesh.mesh()}}), cells);
   std::printf("%zu parts, %zu movers, %zu triangles; sum %g\n", part_count, first.size(), mesh.mesh()->size(), sum);

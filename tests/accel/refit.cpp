@@ -136,3 +136,66 @@ TEST_CASE("boxes out of reach are refused") {
   CHECK_THROWS_WITH_AS(refit.update(tree, none, far, to), "Accelerator::boxes is 2e+18 m, but must be within 1e18 m of the origin",
                        SettingError);
 }
+
+TEST_CASE_TEMPLATE("a ray along a side of a box meets it, far from the origin, and however small the box is in the world", Real, float,
+                   double) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    CAPTURE(seed);
+    Generator any(seed);
+    const double reach = any.log_uniform(1, 1e5);
+    const Vec3 place = any.point(1e6);
+    std::vector<Box> boxes = boxes_of(any, 1 + any.whole(seed % 2 ? 8 : 300), reach);
+    for (Box& box : boxes) box = {place + box.min, place + box.max};
+    const Bvh<Real> tree(boxes, 1, 1);
+    Bvh<Real> to(std::vector<Box>(), 1, 1);
+    BvhRefit<Real> refit, none;
+    boxes = shifted(boxes, any, 1e-3 * reach);
+    Box bounds;
+    for (const Box& box : boxes) bounds.extend(box);
+    const auto box_of = [&](std::span<const PrimitiveIndex> some) { return boxes[some[0]]; };
+    REQUIRE(refit.refit(tree, none, bounds, box_of, to));
+    for (int k = 0; k < 200; ++k) {
+      const auto aimed = static_cast<PrimitiveIndex>(any.whole(boxes.size()));
+      const Box& box = boxes[aimed];
+      Vec3 from, along{};
+      for (int axis = 0; axis < 3; ++axis) from[axis] = any.coin() ? box.min[axis] : box.max[axis];
+      const auto axis = static_cast<int>(any.whole(3));
+      along[axis] = any.coin() ? 1 : -1;
+      from[axis] -= 3 * reach * along[axis];
+      const std::vector<PrimitiveIndex> found = offered(to, bundle_of({from, along}));
+      REQUIRE(std::binary_search(found.begin(), found.end(), aimed));
+    }
+  }
+}
+
+TEST_CASE("a copy of a refitted tree stays as it is when its memory is asked for again") {
+  Generator any(3);
+  const std::vector<Box> boxes = boxes_of(any, 100, 10);
+  const Bvh<float> tree(boxes, 1, 1);
+  Bvh<float> to(std::vector<Box>(), 1, 1);
+  BvhRefit<float> refit, none;
+  refit.update(tree, none, boxes, to);
+  const Bvh<float> copy = to;
+  std::vector<Box> away = boxes;
+  for (Box& box : away) box = {box.min + Vec3{50, 0, 0}, box.max + Vec3{50, 20, 0}};
+  const double cost = BvhRefit<float>::cost(copy);
+  refit.update(tree, none, away, to);
+  CHECK(BvhRefit<float>::cost(copy) == cost);
+}
+
+TEST_CASE("a tree made anew is the measure of the refits after it") {
+  Generator any(4);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 1000; ++i) boxes.push_back(any.box(100, 1e-3, 2e-3));
+  const Bvh<float> tree(boxes, 1, 1);
+  Bvh<float> large(std::vector<Box>(), 1, 1), moved = large;
+  BvhRefit<float> first, second, none;
+  for (Box& box : boxes) box = {box.min, box.max + Vec3{40, 40, 40}};  // no order is as cheap as before
+  first.update(tree, none, boxes, large);
+  REQUIRE(BvhRefit<float>::cost(large) > BvhRefit<float>::max_growth * BvhRefit<float>::cost(tree));
+  boxes = shifted(boxes, any, 1);
+  second.update(large, first, boxes, moved);
+  CHECK(std::equal(large.order().begin(), large.order().end(), moved.order().begin()));
+  const Bvh<float> anew(boxes, 1, 1);
+  CHECK_FALSE(std::equal(large.order().begin(), large.order().end(), anew.order().begin()));
+}

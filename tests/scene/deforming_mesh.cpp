@@ -16,6 +16,7 @@
 #include <doctest/doctest.h>
 
 #include "support/allocations.hpp"
+#include "support/counting_executor.hpp"
 #include "support/generators.hpp"
 #include "support/scenes.hpp"
 
@@ -172,4 +173,34 @@ TEST_CASE("vertices of another number, or out of range, are refused, and the mes
   }
   vertices = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {nan, 9, 9}};  // in no triangle
   CHECK(mesh.refit(vertices)->triangle(0).a.z == 1);
+}
+
+TEST_CASE("copies of meshes stay as they are, whatever is refitted") {
+  MeshData data = support::icosphere(3);
+  const MeshData first = data;
+  Generator any(6);
+  DeformingMesh mesh(data, 1);
+  std::vector<MeshData> steps;
+  std::vector<Mesh> copies;
+  for (int step = 0; step < 6; ++step) {
+    for (std::size_t i = 0; i < data.vertices.size(); ++i) data.vertices[i] = first.vertices[i] + Vec3{3.0 * step, 0, 0};
+    steps.push_back(data);
+    copies.push_back(*mesh.refit(data.vertices));
+  }
+  for (std::size_t step = 0; step < steps.size(); ++step) require_same(copies[step], steps[step], any, 10);
+}
+
+TEST_CASE("the user's threads build a mesh, at first and anew, which is the same on any") {
+  support::CountingExecutor executor;
+  Generator any(7);
+  MeshData data = support::soup(any, 10'000, 10);
+  DeformingMesh mesh(data, executor);
+  CHECK(executor.calls() > 0);
+  require_same(*mesh.mesh(), data, any, 10);
+  mesh.refit(data.vertices, executor);
+  CHECK(executor.calls() == 0);
+  for (Vec3& vertex : data.vertices) vertex = any.point(100);  // torn apart
+  mesh.refit(data.vertices, executor);
+  CHECK(executor.calls() > 0);
+  require_same(*mesh.mesh(), data, any, 100);
 }

@@ -25,6 +25,7 @@
 #include <pulsecast/survey.hpp>
 
 #include "support/archetypes.hpp"
+#include "support/counting_executor.hpp"
 #include "support/generators.hpp"
 #include "support/relative.hpp"
 
@@ -255,5 +256,27 @@ TEST_CASE("every point of a survey lies on what it met, where that was at its ow
     CAPTURE(object);
     CHECK(met[object] > 100);
     CHECK(worst[object] < 1e-9);
+  }
+}
+
+TEST_CASE("the user's threads build both indices of a moving scene, which is the same on any") {
+  for (const bool moves : {false, true}) {
+    CAPTURE(moves);
+    support::CountingExecutor executor;
+    support::Generator any(12);
+    std::vector<Disc> discs;
+    for (ObjectId k = 0; k < 10'000; ++k)
+      discs.push_back(disc({.scale = 5, .translation = any.point(200)}, k, moves ? moving({.velocity = any.point(1)}) : nullptr));
+    const Discs alone(discs, {.to = 1}, 1), shared(discs, {.to = 1}, executor);
+    CHECK(executor.calls() > 0);
+    int met = 0;
+    for (int k = 0; k < 500; ++k) {
+      const Ray ray{any.point(200), any.unit()};
+      const Hit hit = ask(alone, ray, {0, 0.5}), other = ask(shared, ray, {0, 0.5});
+      REQUIRE(other.range == hit.range);
+      REQUIRE(other.object == hit.object);
+      met += hit.met();
+    }
+    CHECK(met > 100);
   }
 }

@@ -17,6 +17,7 @@
 
 #include "support/allocations.hpp"
 #include "support/archetypes.hpp"
+#include "support/counting_executor.hpp"
 #include "support/generators.hpp"
 #include "support/relative.hpp"
 
@@ -414,16 +415,7 @@ TEST_CASE("parts are added and removed, and share their geometry") {
 }
 
 TEST_CASE("the user's threads build the index of a scene, which is the same on any") {
-  /// Executor that counts its calls.
-  struct Counting {
-    int calls = 0;
-    unsigned threads() const { return 2; }
-    void for_each(std::size_t count, const IndexTask& task) {
-      ++calls;
-      while (count-- > 0) task(count);
-    }
-  } executor;
-  const auto calls = [&] { return std::exchange(executor.calls, 0); };
+  support::CountingExecutor executor;
   support::Generator any(11);
   std::vector<Disc> discs;
   std::vector<Similarity> placements;
@@ -432,15 +424,15 @@ TEST_CASE("the user's threads build the index of a scene, which is the same on a
     placements.push_back({.translation = any.point(200)});
   }
   const Scene<LeastGeometry> alone(discs, 1), shared(discs, executor);
-  CHECK(calls() > 0);
+  CHECK(executor.calls() > 0);
   const Scene<LeastGeometry> placed = shared.with_placements(placements, executor);
-  CHECK(calls() > 0);  // the index is made anew
+  CHECK(executor.calls() > 0);  // the index is made anew
   const Scene<LeastGeometry> again = shared.with_placements(placements, Scene<LeastGeometry>({}), executor);
-  CHECK(calls() > 0);
+  CHECK(executor.calls() > 0);
   const Scene<LeastGeometry> fuller = shared.with_parts(std::span(discs).first(1), executor);
-  CHECK(calls() > 0);
+  CHECK(executor.calls() > 0);
   const Scene<LeastGeometry> fewer = shared.without([](const Disc& part) { return part.object == 0; }, executor);
-  CHECK(calls() > 0);
+  CHECK(executor.calls() > 0);
   CHECK(alone.memory() == shared.memory());
   const Scene<LeastGeometry> placed_alone = alone.with_placements(placements, 1);
   for (int k = 0; k < 500; ++k) {

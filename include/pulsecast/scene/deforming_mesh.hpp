@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <pulsecast/accel/refit.hpp>
+#include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
@@ -29,19 +30,18 @@ class DeformingMesh {
   /// Type of the meshes.
   using Mesh = TriangleMesh<>;
 
-  /// `threads` of the builds; 0 as in `thread_count`. @throws SettingError as `TriangleMesh`
-  explicit DeformingMesh(const MeshData& data, unsigned threads = 0)
-      : materials_(data.materials), vertices_(data.vertices.size()), threads_(threads) {
-    build(data);
+  /// `workers` build the index; the mesh is the same for any. @throws SettingError as `TriangleMesh`
+  explicit DeformingMesh(const MeshData& data, const Workers& workers = {}) : materials_(data.materials), vertices_(data.vertices.size()) {
+    build(data, workers);
   }
 
   /// Mesh with the vertices last set.
   [[nodiscard]] std::shared_ptr<const Mesh> mesh() const noexcept { return frames_[now_].mesh; }
 
   /// Moves the vertices to new positions [m], by number as in `MeshData`, and returns the mesh. Writes into the memory of the mesh before
-  /// the current one, if no one else holds it. @throws SettingError for another number of vertices, or a vertex in use that is not within
-  /// 1e18 m of the origin; the current mesh then stays
-  std::shared_ptr<const Mesh> refit(std::span<const Vec3> vertices) {
+  /// the current one, if no one else holds it. `workers` build an index anew; a refit takes the caller's thread. @throws SettingError for
+  /// another number of vertices, or a vertex in use that is not within 1e18 m of the origin; the current mesh then stays
+  std::shared_ptr<const Mesh> refit(std::span<const Vec3> vertices, const Workers& workers = {}) {
     const auto count = static_cast<double>(vertices_);
     require_within("DeformingMesh::vertices (number)", static_cast<double>(vertices.size()), count, count, "");
     const Frame& now = frames_[now_];
@@ -73,7 +73,7 @@ class DeformingMesh {
     if (next.refit.refit(now.mesh->index_, now.refit, bounds, box_of, next.mesh->index_))
       now_ = 1 - now_;
     else
-      build(data(vertices));
+      build(data(vertices), workers);
     return mesh();
   }
 
@@ -96,8 +96,8 @@ class DeformingMesh {
 
   /// Builds the index over new data, and numbers the corners of each block by vertex. A `TriangleMesh` merges vertices at the same place,
   /// which may part here.
-  void build(const MeshData& data) {
-    auto mesh = std::make_shared<Mesh>(data, threads_);
+  void build(const MeshData& data, const Workers& workers) {
+    auto mesh = std::make_shared<Mesh>(data, workers);
     const auto order = mesh->index_.order();
     constexpr std::uint32_t none = 0xFFFFFFFF;
     struct Last {
@@ -144,7 +144,6 @@ class DeformingMesh {
 
   std::vector<std::uint32_t> materials_;
   std::size_t vertices_;                ///< number of vertices
-  unsigned threads_;                    ///< threads of a build
   std::vector<std::uint32_t> sources_;  ///< vertex of each corner of the blocks
   std::array<Frame, 2> frames_;
   std::size_t now_ = 0;  ///< frame of the current mesh
