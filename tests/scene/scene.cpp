@@ -388,6 +388,19 @@ TEST_CASE("a scene is placed anew beside a copy that is still used, and into its
   CHECK(ask(copy, down).range == 10);
 }
 
+TEST_CASE("a scene placed in the memory of another one has nothing of the other's parts") {
+  const std::array<Similarity, 2> apart{Similarity{}, {.translation = {10, 0, 0}}};
+  const Scene<LeastGeometry> scene({disc({}, 1), disc({}, 2)});
+  const std::vector<std::vector<Disc>> others{{}, {disc({}, 7)}, {disc({}, 8), disc({}, 9)}, {disc(), disc(), disc()}};
+  for (const std::vector<Disc>& other : others) {
+    CAPTURE(other.size());
+    const Scene<LeastGeometry> placed = scene.with_placements(apart, Scene<LeastGeometry>(other));
+    CHECK(placed.parts().size() == 2);
+    CHECK(ask(placed, {{0, 0, 10}, {0, 0, -1}}).object == 1);
+    CHECK(ask(placed, {{10, 0, 10}, {0, 0, -1}}).object == 2);
+  }
+}
+
 TEST_CASE("placements of another number or out of range are refused") {
   const Scene<LeastGeometry> scene({disc()});
   CHECK_THROWS_WITH_AS(static_cast<void>(scene.with_placements({})), "Scene::with_placements (number) is 0, but must be from 1 to 1",
