@@ -5,6 +5,7 @@
 # - Functions that a concept or convention explains once for all of its models are given that explanation.
 # - A unit literal is named by its unit.
 # - Links of the README to other files, which the reference does not have, become their text.
+# - Checks of optional members, which a macro defines, are left out.
 # - A comment after several variables of one declaration is given to each of them.
 BEGIN {
   says["validate"] = "Refuses settings outside of their limits. Errors: `SettingError`."
@@ -14,7 +15,8 @@ BEGIN {
   says["bounds"] = "Smallest box around all that can be met [m]."
   of["at"] = "Motion"; of["open"] = "Gated"; of["pulse"] = of["duration"] = "PulseSource"; of["share"] = of["offset"] = "Footprint"
   of["closest"] = "Target, and as the concept Geometry,"; of["surface"] = of["material_count"] = "Geometry"; of["order"] = "Accelerator"
-  of["workspace"] = of["detect"] = "Detector"; of["width"] = "EchoWidth"
+  of["workspace"] = of["detect"] = "Detector"; of["width"] = "EchoWidth"; of["emitters"] = "PulseSource"
+  of["reflections_per_subray"] = of["trace"] = "Transport"; of["measured"] = "MeasuresBeam"
   for (name in of) says[name] = "As the concept " of[name] " requires."
   says["size"] = "Number of elements."
   says["data"] = says["begin"] = "Pointer to the first element."
@@ -43,6 +45,12 @@ FILENAME ~ /\.md$/ {
     $0 = substr($0, 1, RLENGTH - 1) substr($0, RLENGTH + 1, start - RLENGTH - 1) substr($0, start + length_of_link)
   }
   print
+  next
+}
+/^PULSECAST_OPTIONAL_MEMBER\(/ { hidden = 1 }
+hidden {
+  if (/\)$/) hidden = 0
+  print ""
   next
 }
 function with(text, line) {

@@ -95,7 +95,9 @@ class Survey {
 
   /// Scratch memory of one worker.
   struct Workspace {
+    /// Workspace of a detector.
     using OfDetector = decltype(std::declval<const Instrument&>().workspace(0));
+    /// Workspace of the transport.
     using OfTransport = decltype(std::declval<const Light&>().workspace(0));
 
     OfTransport transport;                ///< workspace of the transport
@@ -277,14 +279,17 @@ class Survey {
   std::shared_ptr<const void> identity_{new char};  // compiles faster than make_shared
 };
 
-template <class Source, class Pattern, class Map, class Instrument>  // mistaken arguments
+/// Names the mistake in the arguments.
+template <class Source, class Pattern, class Map, class Instrument>
 requires(!detail::Surveyable<Source, Pattern, Map, Instrument>) Survey(Source, Pattern, Map&&, Receiver, Instrument, std::uint64_t = 0)
 ->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;
+/// As above.
 template <class Source, class Pattern, class Map, class Light, class Instrument>
 requires(!detail::Surveyable<Source, Pattern, Map, Instrument> || !Transport<Light, std::remove_cvref_t<Map>>)
     Survey(Source, Pattern, Map&&, Light, Receiver, Instrument, std::uint64_t = 0)
 ->Survey<typename detail::TransportArguments<Source, Pattern, Map, Light, Instrument>::First, Pattern, std::remove_cvref_t<Map>, Instrument,
          Light>;
+/// As above.
 template <class Source, class Pattern, class Map, class Instrument>
 requires(detail::Temporary<Map>) Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, Map&&, std::uint64_t = 0)
 ->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;

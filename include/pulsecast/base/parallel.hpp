@@ -27,6 +27,7 @@ inline constexpr unsigned max_threads = 1024;  ///< upper limit of a setting for
 /// Reference to a function of an index. Refers to the function, which must outlive it.
 class IndexTask {
  public:
+  /// Refers to a function.
   template <class Task>
   requires(!std::same_as<Task, IndexTask> && requires(const Task& task, std::size_t i) { task(i); }) IndexTask(const Task& task)
   noexcept : task_(&task), call_([](const void* t, std::size_t i) { (*static_cast<const Task*>(t))(i); }) {}
@@ -61,13 +62,16 @@ concept MemoryKeepingExecutor = Executor<E> && requires(E& e) {
 class ExecutorRef {
  public:
   ExecutorRef() = default;
+  /// Refers to an executor.
   template <Executor E>
   requires(!std::same_as<std::remove_const_t<E>, ExecutorRef>) ExecutorRef(E& executor)
   noexcept : executor_(const_cast<std::remove_const_t<E>*>(&executor)), functions_(&functions<E>) {}
 
   /// False without an executor; the other functions then must not be called.
   explicit operator bool() const noexcept { return executor_ != nullptr; }
+  /// Threads that a call may use, the caller's included.
   [[nodiscard]] unsigned threads() const { return functions_->threads(executor_); }
+  /// Calls task(i) once for each i below `count`.
   void for_each(std::size_t count, const IndexTask& task) const { functions_->for_each(executor_, count, task); }
   /// Memory kept between calls; null if the executor keeps none.
   [[nodiscard]] ScratchMemory* memory() const { return executor_ ? functions_->memory(executor_) : nullptr; }
@@ -109,6 +113,7 @@ class Workers {
     if (threads_ == 0 && executor_) return std::clamp(executor_.threads(), 1U, max_threads);
     return thread_count(threads_);
   }
+  /// Executor, if one was given.
   [[nodiscard]] const ExecutorRef& executor() const noexcept { return executor_; }
 
  private:

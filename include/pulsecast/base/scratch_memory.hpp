@@ -81,7 +81,9 @@ class Borrowed {
     if (memory_) memory_->give_back(std::move(item_));
   }
 
+  /// The object.
   [[nodiscard]] T& operator*() const noexcept { return *item_; }
+  /// Member of the object.
   [[nodiscard]] T* operator->() const noexcept { return item_.get(); }
 
  private:

@@ -58,7 +58,8 @@ class Deflector {
   Source source_;
 };
 
-template <class Moving, class Source>  // mistaken arguments
+/// Names the mistake in the arguments.
+template <class Moving, class Source>
 requires(!detail::Deflectable<Moving, Source>) Deflector(Moving, Source)
 ->Deflector<typename detail::DeflectorArguments<Moving, Source>::First, Source>;
 

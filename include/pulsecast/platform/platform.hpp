@@ -84,8 +84,10 @@ class Platform {
   Source source_;
 };
 
-template <class Path, class Source>  // mistaken arguments
-Platform(Path, Source)->Platform<typename detail::PlatformArguments<Path, Source, false>::First, Source>;
+/// Names the mistake in the arguments.
+template <class Path, class Source>
+Platform(Path, Source) -> Platform<typename detail::PlatformArguments<Path, Source, false>::First, Source>;
+/// As above.
 template <class Path, class Source>
 requires(!Trajectory<Path> || !InstrumentSource<Source>) Platform(Path, Mount, Source)
 ->Platform<typename detail::PlatformArguments<Path, Source, true>::First, Source>;

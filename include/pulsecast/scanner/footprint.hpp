@@ -184,9 +184,11 @@ static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 /// Subrays of an emitter's beam, in the beam's frame. Columns are padded to whole SIMD vectors. Copies share their memory.
 class SubrayDirections {
  public:
-  const double *x, *y, *z;  ///< components of the unit directions
-  const double* shares;     ///< shares of the energy
-  const Vec3* exits;        ///< exit points; null for a beam from a point [m]
+  const double* x;       ///< components of the unit directions to the right
+  const double* y;       ///< components forward
+  const double* z;       ///< components up
+  const double* shares;  ///< shares of the energy
+  const Vec3* exits;     ///< exit points; null for a beam from a point [m]
 
   /// Takes a valid footprint and emitter.
   template <Footprint Pattern>
