@@ -6,13 +6,7 @@
 # those of one. Needs g++ and valgrind. Usage: emitters.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-"${CXX:-g++}" -std=c++20 -O2 -DNDEBUG -Iinclude bench/emitters.cpp -o "$folder/emitters" -pthread
-valgrind --tool=callgrind --callgrind-out-file="$folder/out" --toggle-collect='emitters_*' "$folder/emitters" > "$folder/said" 2>&1 ||
-  { cat "$folder/said" >&2; exit 1; }
-callgrind_annotate --inclusive=yes --threshold=100 "$folder/out" |
-  sed -nE 's/^ *([0-9,]+) .*:emitters_([a-z]+)( .*|$)/\2 \1/p' | tr -d , |
+bash bench/count.sh emitters emitters |
   awk '{ count[$1] = $2 / 2000 }
        END {
          mean = (count["narrow"] + count["wide"]) / 2

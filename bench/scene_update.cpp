@@ -3,8 +3,7 @@
 
 // Cost of a world that changes, in instructions: 10,000 parts placed anew, 10,000 movers of each kind of motion made (1,000 where
 // they need windows of time), a mesh refitted. What is counted happens in the functions `update_*`, on one thread:
-//   valgrind --tool=callgrind --toggle-collect='update_*' bench_scene_update
-//   callgrind_annotate --inclusive=yes callgrind.out.* | grep update_
+//   bash bench/count.sh scene_update update
 // Prints the counts to divide by, and a sum over what was found.
 
 #include <array>

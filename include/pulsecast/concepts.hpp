@@ -135,6 +135,15 @@ concept RayTarget = requires(const T t, const Ray& ray) {
 template <class T>
 concept Target = BundleTarget<T> || RayTarget<T>;
 
+/// Nearest hit in a target of each ray of a bundle. Sets one hit per ray, of infinite range for a miss.
+template <Target Map>
+void find_hits(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexcept {
+  if constexpr (BundleTarget<Map>)
+    map.closest(rays, hits);
+  else
+    for (std::size_t j = 0; j < rays.size; ++j) hits[j] = map.closest_hit(rays.ray(j)).value_or(Hit{});
+}
+
 /// Map that knows how its surfaces move, as `MovingScene`: queries by a ray give the surface at the hit, with its velocity [m/s].
 template <class T>
 concept VelocityTarget = Target<T> && requires(const T t, const Ray& ray) {

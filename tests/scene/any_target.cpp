@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <pulsecast/scene/height_field.hpp>
+#include <pulsecast/scene/layered.hpp>
 #include <pulsecast/scene/motion.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/scene.hpp>

@@ -13,7 +13,6 @@
 #include <variant>
 
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/scene/layered.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 
 namespace pulsecast {
@@ -50,7 +49,7 @@ class AnyTarget {
 
   /// Nearest hit of each ray of the bundle, as of the target.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    std::visit([&](const auto& target) noexcept { Layered<std::remove_cvref_t<decltype(target)>>(target).closest(rays, hits); }, target_);
+    std::visit([&](const auto& target) noexcept { find_hits(target, rays, hits); }, target_);
   }
 
   /// Closest hit of a ray; empty for a miss. This query and the next three exist if all types have them.

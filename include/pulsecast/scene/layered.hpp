@@ -31,7 +31,7 @@ class Layered {
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
     std::apply(
         [&](const First* first, const Others*... others) noexcept {
-          intersect(*first, rays, hits);
+          find_hits(*first, rays, hits);
           (add(*others, rays, hits), ...);
         },
         targets_);
@@ -61,14 +61,6 @@ class Layered {
   }
 
  private:
-  template <class Map>
-  static void intersect(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexcept {
-    if constexpr (BundleTarget<Map>)
-      map.closest(rays, hits);
-    else
-      for (std::size_t j = 0; j < rays.size; ++j) hits[j] = map.closest_hit(rays.ray(j)).value_or(Hit{});
-  }
-
   /// Replaces the hits beyond those of a target, which is traced no farther than the farthest of them.
   template <class Map>
   static void add(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexcept {
@@ -77,7 +69,7 @@ class Layered {
     for (std::size_t j = 0; j < rays.size; ++j) farthest = std::max(farthest, hits[j].range);
     shortened.far = std::min(rays.far, farthest);
     std::array<Hit, RayBundle::capacity> others;
-    intersect(map, shortened, others);
+    find_hits(map, shortened, others);
     for (std::size_t j = 0; j < rays.size; ++j)
       if (!std::isnan(hits[j].range) && !(others[j].range >= hits[j].range)) hits[j] = others[j];
   }

@@ -49,7 +49,7 @@ struct DirectLight {
       rays.size = std::min(from_a_point ? RayBundle::capacity : 1, light.subrays - first);
       if (!from_a_point) rays.origin = light.pulse.origin() + world_from_beam * beam.exits[first];
       beam.to_world(world_from_beam, first, rays);
-      intersect(map, rays, w.hits);
+      find_hits(map, rays, w.hits);
       received_power(light, first, rays.size, w, power);
       if (!light.record.empty()) record(light, first, rays.size, w, power);
       for (std::size_t j = 0; j < rays.size; ++j) {
@@ -90,14 +90,6 @@ struct DirectLight {
   }
 
  private:
-  template <class Map>
-  static void intersect(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexcept {
-    if constexpr (BundleTarget<Map>)
-      map.closest(rays, hits);
-    else
-      for (std::size_t j = 0; j < rays.size; ++j) hits[j] = map.closest_hit(rays.ray(j)).value_or(Hit{});
-  }
-
   /// Power received from the hits of a bundle, without the range gate [W]. Undefined for misses.
   [[gnu::always_inline]] static void received_power(const Illumination& light, std::size_t first, std::size_t size, const Workspace& w,
                                                     RayBundle::Column& power) noexcept {
