@@ -28,6 +28,7 @@
 #include "support/counting_executor.hpp"
 #include "support/generators.hpp"
 #include "support/relative.hpp"
+#include "support/scenes.hpp"
 
 using namespace pulsecast;
 using support::LeastGeometry;
@@ -64,27 +65,6 @@ MeshData cube() {
                     {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 3, 7}, {1, 7, 5}};
   return data;
 }
-
-/// The unit ball about the origin.
-class Ball {
- public:
-  const Box& bounds() const noexcept { return bounds_; }
-  std::size_t memory() const noexcept { return 0; }
-  std::size_t material_count() const noexcept { return 1; }
-  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
-    for (std::size_t j = 0; j < rays.size; ++j) {
-      const double a = rays.direction_length * rays.direction_length, b = dot(rays.origin, rays.direction(j));
-      const double root = b * b - a * (dot(rays.origin, rays.origin) - 1), range = (-b - std::sqrt(root)) / a;
-      if (root >= 0 && range > rays.near && range <= rays.far) nearest.offer(j, range, 0);
-    }
-  }
-  Surface surface(PrimitiveIndex, const RayBundle&, std::size_t) const noexcept { return {}; }
-
- private:
-  Box bounds_{{-1, -1, -1}, {1, 1, 1}};
-};
-
-static_assert(Geometry<Ball>);
 
 /// A motion of any kind.
 std::shared_ptr<const PartMotion> any_motion(support::Generator& any) {
@@ -221,10 +201,10 @@ TEST_CASE("every point of a survey lies on what it met, where that was at its ow
   // Around a tripod, a ball orbits, a cube spins while it drifts, and a floor rises.
   const double orbit = 1.3, spin = 2.1, climb = 0.5;
   const Vec3 drift{0.7, 0.4, 0}, start{-8, -6, 0};
-  const auto ball = std::make_shared<const Ball>();
+  const auto ball = std::make_shared<const support::UnitBall>();
   const auto box = std::make_shared<const Mesh>(cube());
   const auto floor = std::make_shared<const LeastGeometry>();
-  const MovingScene<Ball, Mesh, LeastGeometry> scene(
+  const MovingScene<support::UnitBall, Mesh, LeastGeometry> scene(
       {{.geometry = ball, .placement = {.translation = {10, 0, 0}}, .object = 1, .motion = moving({.rate = orbit, .centre = Vec3{}})},
        {.geometry = box, .placement = {.translation = start}, .object = 2, .motion = moving({.velocity = drift, .rate = spin})},
        {.geometry = floor,

@@ -38,31 +38,6 @@ MeshData half_square() {
   return {.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, .triangles = {{0, 1, 2}}, .texture = {{{Vec2{0, 0}, {1, 0}, {0, 4}}}}};
 }
 
-/// The unit ball about the origin, met at both sides; it takes bundles only.
-class Ball {
- public:
-  const Box& bounds() const noexcept { return bounds_; }
-  std::size_t memory() const noexcept { return 0; }
-  std::size_t material_count() const noexcept { return 1; }
-  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
-    for (std::size_t j = 0; j < rays.size; ++j) {
-      const double a = rays.direction_length * rays.direction_length, b = dot(rays.origin, rays.direction(j));
-      const double root = b * b - a * (dot(rays.origin, rays.origin) - 1);
-      if (!(root >= 0)) continue;
-      for (const double range : {(-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a})
-        if (range > rays.near && range <= rays.far) nearest.offer(j, range, 0);
-    }
-  }
-  Surface surface(PrimitiveIndex, const RayBundle& rays, std::size_t j) const noexcept {
-    ClosestHits nearest(rays);
-    closest(rays, nearest);
-    return {normalize(rays.origin + nearest.range[j] * rays.direction(j)), 0};
-  }
-
- private:
-  Box bounds_{{-1, -1, -1}, {1, 1, 1}};
-};
-
 VoxelData cells_in_a_row(std::initializer_list<std::uint32_t> along_x) {
   VoxelData data;
   for (const std::uint32_t x : along_x) data.cells.push_back({x, 0, 0});
@@ -265,7 +240,8 @@ TEST_CASE("a ray through voxels meets each where it enters, and the last of a ro
 }
 
 TEST_CASE("a shape of one's own that takes bundles only is asked from each hit on") {
-  const Scene<Ball> scene({{.geometry = std::make_shared<const Ball>(), .placement = {.scale = 2, .translation = {0, 10, 0}}}});
+  const Scene<support::UnitBall> scene(
+      {{.geometry = std::make_shared<const support::UnitBall>(), .placement = {.scale = 2, .translation = {0, 10, 0}}}});
   const Ray ahead{.origin = {0, 0, 0}, .direction = axis::forward};
   const auto hits = all(scene, ahead);
   REQUIRE(hits.size() == 2);

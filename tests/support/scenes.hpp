@@ -24,6 +24,32 @@
 /// Scenes of triangles, well-behaved and degenerate, and rays that look for trouble in them.
 namespace pulsecast::support {
 
+/// The unit ball about the origin, met at both sides; it takes bundles only.
+class UnitBall {
+ public:
+  const Box& bounds() const noexcept { return bounds_; }
+  std::size_t memory() const noexcept { return 0; }
+  std::size_t material_count() const noexcept { return 1; }
+  void closest(const RayBundle& rays, ClosestHits& nearest) const noexcept {
+    for (std::size_t j = 0; j < rays.size; ++j) {
+      const double a = rays.direction_length * rays.direction_length, b = dot(rays.origin, rays.direction(j));
+      const double root = b * b - a * (dot(rays.origin, rays.origin) - 1);
+      if (!(root >= 0)) continue;
+      for (const double range : {(-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a})
+        if (range > rays.near && range <= rays.far) nearest.offer(j, range, 0);
+    }
+  }
+  Surface surface(PrimitiveIndex, const RayBundle& rays, std::size_t j) const noexcept {
+    ClosestHits nearest(rays);
+    closest(rays, nearest);
+    return {normalize(rays.origin + nearest.range[j] * rays.direction(j)), 0};
+  }
+
+ private:
+  Box bounds_{{-1, -1, -1}, {1, 1, 1}};
+};
+static_assert(Geometry<UnitBall>);
+
 using Corners = std::array<std::uint32_t, 3>;
 
 inline void add_triangle(MeshData& mesh, const Triangle& t) {
