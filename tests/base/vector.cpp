@@ -3,6 +3,7 @@
 #include <pulsecast/base/vector.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <doctest/doctest.h>
@@ -74,4 +75,15 @@ TEST_CASE("min, max and the largest magnitude go by coordinate") {
   CHECK(max({1, 5, -3}, {2, 4, -4}) == Vec3{2, 5, -3});
   CHECK(max_norm({1, -5, 3}) == 5);
   CHECK(max_norm({0, 0, -2}) == 2);
+}
+
+TEST_CASE("a rotation is found again in its matrix") {
+  const std::uint64_t seed = 11;
+  CAPTURE(seed);
+  support::Generator random(seed);
+  for (int i = 0; i < 1000; ++i) {
+    const Rotation rotation = random.rotation(), again = rotation_of(matrix_of(rotation));
+    CHECK(std::fabs(dot(rotation, again)) == doctest::Approx(1).epsilon(1e-15));  // q and -q are the same rotation
+    CHECK(length(again) == doctest::Approx(1).epsilon(1e-15));
+  }
 }

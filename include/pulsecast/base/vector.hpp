@@ -49,6 +49,8 @@ inline const Rotation no_rotation{1, 0, 0, 0};  ///< identity rotation
 using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
 /// Matrix of a unit quaternion.
 [[nodiscard]] inline Matrix3 matrix_of(const Rotation& rotation) noexcept { return glm::mat3_cast(rotation); }
+/// Rotation of a matrix; unit if the columns are unit and at right angles.
+[[nodiscard]] inline Rotation rotation_of(const Matrix3& matrix) noexcept { return glm::quat_cast(matrix); }
 
 /// True if no component is infinite or NaN.
 [[nodiscard]] inline bool finite(const Vec3& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }

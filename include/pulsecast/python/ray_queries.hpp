@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -19,9 +20,12 @@
 
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/unit_rotation.hpp>
+#include <pulsecast/base/vector.hpp>
 #include <pulsecast/python/detail/exceptions.hpp>
 #include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
+#include <pulsecast/scene/run_batch.hpp>
 
 /// Ray queries of scenes for Python: arrays of rays in, arrays of hits out.
 ///
@@ -184,7 +188,42 @@ template <class World>
   return all;
 }
 
-/// Adds the methods `closest_hits`, `all_hits` and `occluded` to a class of scenes, as `Scene` and `MovingScene`.
+/// Poses of a sensor in the world: shape (n, 4, 4), homogeneous transforms from the sensor's frame.
+/// @throws SettingError for an array of another shape, or a pose that is no rotation and translation (to 1e-6)
+[[nodiscard]] inline std::vector<Pose<frame::Instrument, frame::World>> sensor_poses(const NumberArray& array) {
+  if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4)
+    throw SettingError("poses (dimensions)", static_cast<double>(array.ndim()), "", "shape (n, 4, 4)");
+  std::vector<Pose<frame::Instrument, frame::World>> poses;
+  poses.reserve(static_cast<std::size_t>(array.shape(0)));
+  for (pybind11::ssize_t p = 0; p < array.shape(0); ++p) {
+    const double* const m = array.data(p);  // row by row
+    Matrix3 turn(0);                        // its columns are the sensor's axes
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column) turn[column][row] = m[4 * row + column];
+    double error = std::fabs(m[12]) + std::fabs(m[13]) + std::fabs(m[14]) + std::fabs(m[15] - 1);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) error += std::fabs(dot(turn[a], turn[b]) - (a == b ? 1 : 0));
+    error += length(cross(turn[0], turn[1]) - turn[2]);  // 2 for a mirror image
+    if (!(error <= 1e-5)) throw SettingError("poses: pose " + std::to_string(p) + " (error)", error, "", "a rotation and a translation");
+    poses.push_back({unit(rotation_of(turn)), {m[3], m[7], m[11]}});
+  }
+  return poses;
+}
+
+/// Ranges of equal sensors at many poses: shape (poses, rays), as `pulsecast::run_batch` gives them.
+template <class World>
+[[nodiscard]] pybind11::array_t<float> run_batch(const World& scene, const NumberArray& poses, const RayTable& rays, unsigned threads) {
+  const auto at = sensor_poses(poses);
+  std::vector<Ray> beams(rays.size());
+  for (std::size_t i = 0; i < beams.size(); ++i) beams[i] = rays[i];
+  pybind11::array_t<float> ranges({poses.shape(0), static_cast<pybind11::ssize_t>(beams.size())});
+  const std::span<float> out(ranges.mutable_data(), static_cast<std::size_t>(ranges.size()));
+  const pybind11::gil_scoped_release free;
+  pulsecast::run_batch(scene, at, beams, out, threads);
+  return ranges;
+}
+
+/// Adds the methods `closest_hits`, `all_hits`, `occluded` and `run_batch` to a class of scenes, as `Scene` and `MovingScene`.
 template <class Class>
 Class& bind_ray_queries(Class&& bound) {
   namespace py = pybind11;
@@ -219,6 +258,17 @@ Class& bind_ray_queries(Class&& bound) {
   add(
       "occluded", [](const World& s, const RayTable& r, unsigned t) { return python::occluded(s, r, t); },
       "Boolean array: True for each ray that meets anything.");
+  bound.def(
+      "run_batch",
+      [](const World& scene, const NumberArray& poses, NumberArray rays, std::optional<NumberArray> directions, double near, double far,
+         NumberArray time, std::uint64_t seed, unsigned threads) {
+        return python::run_batch(scene, poses, RayTable(std::move(rays), std::move(directions), std::move(time), near, far, seed), threads);
+      },
+      py::arg("poses"), py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
+      py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0, py::arg("threads") = 0,
+      "Array of float32, shape (n, m): range of each of m rays of a sensor at each of n poses [m]; infinite without a hit. poses: shape "
+      "(n, 4, 4), homogeneous transforms from the sensor's frame to the world; rays, directions: in the sensor's frame; else as "
+      "`closest_hits`. seed: with the index in the array, the key of leaves met at random.");
   return bound;
 }
 

@@ -244,6 +244,27 @@ def test_rays_are_answered_alike_by_any_number_of_threads():
     assert len(scene.closest_hits(np.empty((0, 6)))) == len(scene.all_hits(np.empty((0, 6)))) == 0
 
 
+def test_a_sensor_at_many_poses_measures_ranges():
+    scene = pulsecast.RaycastingScene([pulsecast.Mesh(*SQUARE)])
+    poses = np.tile(np.eye(4), (3, 1, 1))
+    poses[:, 2, 3] = [1, 2, 3]  # height
+    poses[2, :3, :3] = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]  # forward is up, up is backward
+    ranges = scene.run_batch(poses, np.zeros((2, 3)), [[0, 0, -1], [0, -3, -4]])
+    assert ranges.dtype == np.float32 and ranges.shape == (3, 2)
+    assert np.allclose(ranges, [[1, 1.25], [2, 2.5], [np.inf, 5]])
+    rays = np.random.default_rng(2).normal(size=(5000, 6))
+    one, two = (scene.run_batch(poses, rays, threads=n) for n in (1, 2))
+    assert one.tobytes() == two.tobytes()
+    moved = [np.hstack([rays[:, :3] @ p[:3, :3].T + p[:3, 3], rays[:, 3:] @ p[:3, :3].T]) for p in poses]
+    assert np.allclose(one, [scene.closest_hits(r)["range"] for r in moved], rtol=1e-6)
+    assert scene.run_batch(poses, np.empty((0, 6))).shape == (3, 0) and scene.run_batch(np.empty((0, 4, 4)), rays).shape == (0, 5000)
+    for wrong, field in ((np.eye(4), "poses"), (2 * poses, "poses: pose 0"), (poses * np.diag([1, -1, 1, 1]), "poses: pose 0"),
+                         (np.full((1, 4, 4), math.nan), "poses: pose 0")):
+        with pytest.raises(pulsecast.SettingError) as error:
+            scene.run_batch(wrong, rays)
+        assert field in error.value.field
+
+
 @pytest.mark.parametrize(("asked", "field"), [
     ({"rays": np.zeros((2, 5))}, "rays rays"), ({"rays": np.zeros(6)}, "rays rays"),
     ({"rays": np.zeros((2, 3)), "directions": np.zeros((3, 3))}, "rays directions"),
