@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -22,17 +21,10 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/scratch_memory.hpp>
+#include <pulsecast/progress.hpp>
 #include <pulsecast/survey.hpp>
 
 namespace pulsecast {
-
-/// Progress of a run.
-struct Progress {
-  PulseIndex done = 0;       ///< pulse slots delivered to the sinks
-  PulseIndex total = 0;      ///< pulse slots in the run
-  std::uint64_t echoes = 0;  ///< echoes delivered to the sinks
-  double seconds = 0;        ///< time since the start of the run [s]
-};
 
 /// Slots of a survey in a run.
 struct RunSlots {
@@ -49,7 +41,7 @@ struct RunOptions {
   PulseIndex first = 0;                                     ///< first slot
   PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< one past the last slot, at most the survey's size
   PulseIndex stride = 1;                                    ///< step between slots, greater than 1 for a preview
-  std::function<void(const Progress&)> progress{};          ///< called after every batch, one call at a time, on any thread
+  ProgressCallback progress{};                              ///< called after every batch, one call at a time, on any thread
   std::stop_token stop{};                                   ///< ends the run early; results delivered so far are complete
 
   void validate() const {
