@@ -61,8 +61,13 @@ class Survey {
       : Survey(std::move(source), std::move(footprint), map, Light{}, std::move(receiver), std::move(detector), seed) {}
   /// As above, with a transport other than `DirectLight`.
   Survey(Source source, Pattern footprint, const Map& map, Light transport, Receiver receiver, Instrument detector, std::uint64_t seed = 0)
-      : Survey(std::move(source), std::vector<Unit>(1, {std::move(footprint), std::move(receiver), std::move(detector)}), map,
-               std::move(transport), seed) {}
+      : source_(validated(std::move(source))),
+        map_(&map),
+        transport_(validated(std::move(transport))),
+        receivers_(1, {std::move(footprint), std::move(receiver), std::move(detector)}),
+        seed_(seed) {
+    prepare();
+  }
 
   /// Survey with a receiver for each group of emitters. Sample intervals must be equal, and numbers of subrays if they are recorded.
   /// @throws SettingError as above, or for an emitter without a receiver
@@ -75,17 +80,7 @@ class Survey {
         transport_(validated(std::move(transport))),
         receivers_(std::move(receivers)),
         seed_(seed) {
-    require_within("Survey::receivers (number)", static_cast<double>(receivers_.size()), 1, max_emitters, "");
-    for (Unit& unit : receivers_) {
-      validate_in_place(unit.footprint);
-      validate_in_place(unit.receiver);
-      validate_in_place(unit.detector);
-      require_whole_beam(unit.footprint);
-    }
-    require_alike();
-    const std::vector<Emitter> emitters = source_.emitters();
-    require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), size() > 0 ? 1 : 0, max_emitters, "");
-    for (const Emitter& emitter : emitters) add_emitter(validated(emitter));
+    prepare();
   }
 
   Survey(Source, Pattern, const Map&&, Receiver, Instrument, std::uint64_t = 0) = delete;  // a temporary map would dangle
@@ -221,16 +216,36 @@ class Survey {
     return 0;
   }
 
-  /// Adds a valid emitter. Throws a `SettingError` if it has no receiver, or if the detector refuses its laser.
-  void add_emitter(const Emitter& emitter) {
+  /// Validates the receivers and emitters, and computes what depends on them alone.
+  void prepare() {
+    require_within("Survey::receivers (number)", static_cast<double>(receivers_.size()), 1, max_emitters, "");
+    for (Unit& unit : receivers_) {
+      validate_in_place(unit.footprint);
+      validate_in_place(unit.receiver);
+      validate_in_place(unit.detector);
+      require_whole_beam(unit.footprint);
+    }
+    require_alike();
+    const std::vector<Emitter> emitters = source_.emitters();
+    require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), size() > 0 ? 1 : 0, max_emitters, "");
+    const std::shared_ptr<EmitterConstants[]> constants(new EmitterConstants[emitters.size()]);
+    EmitterConstants* next = constants.get();
+    for (const Emitter& emitter : emitters) set(next++, validated(emitter), constants.get());
+    emitters_ = {constants.get(), emitters.size()};
+    identity_ = constants;
+  }
+
+  /// Computes the constants of a valid emitter; those from `first` on are known. Throws a `SettingError` if it has no receiver, or if the
+  /// detector refuses its laser.
+  void set(EmitterConstants* constants, const Emitter& emitter, const EmitterConstants* first) const {
     require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
     const Unit& unit = receivers_[emitter.receiver];
     if constexpr (ValidatesLaser<Instrument>) unit.detector.validate(emitter.laser);
-    const EmitterConstants* alike = emitters_.data();
-    const EmitterConstants* const none = alike + emitters_.size();
-    while (alike != none && !(alike->emitter.receiver == emitter.receiver && SubrayDirections::equal(alike->emitter, emitter))) ++alike;
-    emitters_.push_back(
-        {emitter, LinkBudget(unit.receiver, emitter.laser), alike == none ? SubrayDirections(unit.footprint, emitter) : alike->beam});
+    const EmitterConstants* alike = first;
+    while (alike != constants && !(alike->emitter.receiver == emitter.receiver && SubrayDirections::equal(alike->emitter, emitter)))
+      ++alike;
+    *constants = {emitter, LinkBudget(unit.receiver, emitter.laser),
+                  alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam};
   }
 
   /// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are renumbered in order.
@@ -274,9 +289,9 @@ class Survey {
   const Map* map_;
   Light transport_;
   std::vector<Unit> receivers_;
-  std::vector<EmitterConstants> emitters_;  // by number
   std::uint64_t seed_;
-  std::shared_ptr<const void> identity_{new char};  // compiles faster than make_shared
+  std::span<const EmitterConstants> emitters_{};  // by number
+  std::shared_ptr<const void> identity_{};        // owner of the constants, shared with copies
 };
 
 /// Names the mistake in the arguments.

@@ -96,6 +96,8 @@ struct Receiver {
 /// on the axis collects sin^2 of half its subtended angle of the Lambertian scatter: D^2 / (4 R^2 + D^2) in place of D^2 / (4 R^2).
 class LinkBudget {
  public:
+  /// Budget of no power.
+  LinkBudget() = default;
   /// Takes valid settings.
   LinkBudget(const Receiver& receiver, const Laser& laser) noexcept
       : gain_(laser.peak_power * receiver.diameter * receiver.diameter * receiver.efficiency / 4),
@@ -118,9 +120,9 @@ class LinkBudget {
     return gain_ * share * backscatter / (range * range + near_) * exponential(Number(both_ways_ * range));
   }
 
-  double gain_;       ///< received power times squared range, from a white surface in vacuum [W m^2]
-  double near_;       ///< square of half the aperture's diameter [m^2]
-  double both_ways_;  ///< slope of the logarithm of the power over range [1/m]
+  double gain_ = 0;       ///< received power times squared range, from a white surface in vacuum [W m^2]
+  double near_ = 0;       ///< square of half the aperture's diameter [m^2]
+  double both_ways_ = 0;  ///< slope of the logarithm of the power over range [1/m]
 };
 
 /// Power received from a white Lambertian target facing the beam, of one link budget. Keeps the last result: the echo of a single ray has

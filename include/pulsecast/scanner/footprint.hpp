@@ -184,12 +184,14 @@ static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 /// Subrays of an emitter's beam, in the beam's frame. Columns are padded to whole SIMD vectors. Copies share their memory.
 class SubrayDirections {
  public:
-  const double* x;       ///< components of the unit directions to the right
-  const double* y;       ///< components forward
-  const double* z;       ///< components up
-  const double* shares;  ///< shares of the energy
-  const Vec3* exits;     ///< exit points; null for a beam from a point [m]
+  const double* x = nullptr;       ///< components of the unit directions to the right
+  const double* y = nullptr;       ///< components forward
+  const double* z = nullptr;       ///< components up
+  const double* shares = nullptr;  ///< shares of the energy
+  const Vec3* exits = nullptr;     ///< exit points; null for a beam from a point [m]
 
+  /// Beam without subrays.
+  SubrayDirections() = default;
   /// Takes a valid footprint and emitter.
   template <Footprint Pattern>
   SubrayDirections(const Pattern& footprint, const Emitter& emitter) : SubrayDirections(footprint.size(), emitter.laser) {
@@ -239,7 +241,7 @@ class SubrayDirections {
     if (exits) exits_[j] = subray_exit(offset, laser);
   }
 
-  std::size_t padded_;
+  std::size_t padded_ = 0;
   SharedBuffer<double> columns_;
   SharedBuffer<Vec3> exits_;
 };
