@@ -19,9 +19,9 @@
 #include <vector>
 
 #include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/progress.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/scratch_memory.hpp>
-#include <pulsecast/progress.hpp>
 #include <pulsecast/survey.hpp>
 
 namespace pulsecast {

@@ -144,6 +144,26 @@ TEST_CASE("a buffer holds the closest hits in order, each once, and continues af
   }
 }
 
+TEST_CASE("a shape whose hits are random is asked from the ray's beginning, also when a full buffer continues") {
+  Ray ray;
+  ray.near = 2;
+  BundleOfOne asked(ray);
+  HitBuffer buffer(2, 100);
+  for (std::size_t k = 0; k < HitBuffer::capacity; ++k) buffer.offer(0, 3 + static_cast<double>(k), 1);
+  asked.near = buffer.continue_after();
+  REQUIRE(asked.near > 30);
+  double from = 0, to = 0;
+  buffer.offer_first(asked, [&](const BundleOfOne& sent, ClosestHit& first) {
+    from = sent.near;
+    to = first.range;
+    first.offer(0, 50, 7);
+  });
+  CHECK(from == 2);
+  CHECK(to == 100);
+  REQUIRE(buffer.hits().size() == 1);
+  CHECK(buffer.hits()[0] == HitBuffer::Entry{50, 7});
+}
+
 TEST_CASE("a search for any hit ends at the first, and counts none beyond its range") {
   AnyHit any(5);
   any.offer(0, 6, 1);

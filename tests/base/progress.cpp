@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/progress.hpp>
+#include <pulsecast/base/progress.hpp>
 
 #include <concepts>
 #include <functional>

@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#ifndef PULSECAST_PROGRESS_HPP
-#define PULSECAST_PROGRESS_HPP
+#ifndef PULSECAST_BASE_PROGRESS_HPP
+#define PULSECAST_BASE_PROGRESS_HPP
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <type_traits>
 #include <utility>
 
-#include <pulsecast/pulse.hpp>
+#include <pulsecast/base/tick.hpp>
 
 namespace pulsecast {
 
@@ -30,7 +31,7 @@ class ProgressCallback {
   template <class Function>
   requires(!std::same_as<Function, ProgressCallback> && std::is_invocable_v<Function&, const Progress&>)
       ProgressCallback(Function function) {
-    if constexpr (!std::is_empty_v<Function> && requires { function == nullptr; })
+    if constexpr (std::is_convertible_v<std::nullptr_t, Function>)
       if (function == nullptr) return;
     function_ = std::shared_ptr<void>(new Function(std::move(function)));
     call_ = [](void* f, const Progress& progress) { (*static_cast<Function*>(f))(progress); };
