@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
         helios::make_simulation(document.survey, {.seed = line.seed, .assets = assets, .threads = line.threads});
     io::LasWriter las(line.output / "cloud.las", {.gps_time = io::GpsTime::week});
     const RunOptions options{.threads = line.threads, .progress = ProgressLine{}};
-    const RunSummary summary = simulation->run(options, [&](const EchoBatch& batch) { las(batch); });
+    const RunSummary summary = simulation->run(options, las);
     las.close();
     for (const std::string& warning : simulation->warnings()) std::cerr << "note: " << warning << '\n';
     print(summary);

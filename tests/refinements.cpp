@@ -111,6 +111,16 @@ MISSPELT(SelfCheckingAccelerator, consistent, bool consistent(std::size_t) const
 MISSPELT(SelfCheckingAccelerator, check_consistency, bool check_consistency(std::size_t) const);
 MISSPELT(SelfCheckingAccelerator, is_valid, bool is_valid(std::size_t) const);
 MISSPELT(SelfCheckingAccelerator, nothing, bool is_consistent() const);
+MISSPELT(MissesCones, misses, bool misses(const RayCone&) const noexcept);
+MISSPELT(MissesCones, miss_cone, bool miss_cone(const RayCone&) const noexcept);
+MISSPELT(MissesCones, cone_misses, bool cone_misses(RayCone) const noexcept);
+MISSPELT(MissesCones, misses_all, bool misses_all(const RayCone&) const noexcept);
+MISSPELT(MissesCones, throwing, bool misses_cone(const RayCone&) const);
+MISSPELT(ChoosesShots, reads_empty, bool reads_empty() const noexcept);
+MISSPELT(ChoosesShots, reads_misses, bool reads_misses() const noexcept);
+MISSPELT(ChoosesShots, wants_empty_shots, bool wants_empty_shots() const noexcept);
+MISSPELT(ChoosesShots, wants_misses, bool wants_misses() const noexcept);
+MISSPELT(ChoosesShots, constant, static constexpr bool reads_empty_shots = true);
 MISSPELT(IdentifiedSurvey, get_identity, std::shared_ptr<const void> get_identity() const noexcept);
 MISSPELT(IdentifiedSurvey, identify, std::shared_ptr<const void> identify() const noexcept);
 MISSPELT(IdentifiedSurvey, identifier, std::uint64_t identifier() const noexcept);

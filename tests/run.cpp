@@ -661,3 +661,33 @@ TEST_CASE("the outcome of a pulse tells its error") {
   CHECK(broken(9, w).error == PulseError::none);
   CHECK(broken(10, w).error == PulseError::map);
 }
+
+namespace {
+
+/// Keeps the shots that it gets, and says whether it reads empty ones.
+struct ShotsOf {
+  bool empty_shots;
+  std::vector<Shot> shots{};
+  bool reads_empty_shots() const noexcept { return empty_shots; }
+  void operator()(const EchoBatch& batch) { shots.insert(shots.end(), batch.shots.begin(), batch.shots.end()); }
+};
+static_assert(ChoosesShots<ShotsOf> && ChoosesShots<Cloud> && !ChoosesShots<support::LeastSink>);
+
+}  // namespace
+
+TEST_CASE("shots without an echo are left out of a run whose sinks do not read them, and counted all the same") {
+  const auto survey = small_survey();
+  ShotsOf all{true}, beside{false}, few{false};
+  Cloud cloud, expected;
+  const RunSummary with = run(survey, {.threads = 2}, beside, all, expected), without = run(survey, {.threads = 2}, few, cloud);
+  CHECK(all.shots.size() == with.pulses());
+  CHECK(beside.shots.size() == with.pulses());  // another sink of the run reads them
+  CHECK(few.shots.size() < all.shots.size());
+  std::erase_if(all.shots, [](const Shot& s) { return s.echoes == 0 && s.samples == 0; });
+  REQUIRE(all.shots.size() == few.shots.size());
+  for (std::size_t k = 0; k < few.shots.size(); ++k) REQUIRE(few.shots[k].index == all.shots[k].index);
+  CHECK(cloud.points == expected.points);
+  CHECK(with.fates == without.fates);
+  CHECK(with.energy == without.energy);
+  CHECK(with.echoes == without.echoes);
+}

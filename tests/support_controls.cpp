@@ -187,6 +187,17 @@ std::string transport_flaw_found(Flaw flaw) {
   return transport_laws(FlawedTransport{flaw}, LeastRayTarget{}, downwards, {.range_min = 1, .range_max = 100});
 }
 
+// ---------------------------------------------------------------------------------------------------------------- bad maps
+
+/// A plane that every cone is said to miss.
+struct UnseenPlane : LeastBundleTarget {
+  bool misses_cone(const RayCone&) const noexcept { return true; }
+};
+/// The same, seen by every cone that does not look up from above it.
+struct SeenPlane : LeastBundleTarget {
+  bool misses_cone(const RayCone& cone) const noexcept { return cone.origin.z > 0 && cone.direction.z > cone.spread; }
+};
+
 // ------------------------------------------------------------------------------------------------------------ bad callers
 
 /// Two shots with three echoes, kept alive for as long as a batch is needed.
@@ -345,6 +356,13 @@ TEST_CASE("footprints that keep the law pass, and those that break it do not") {
   CHECK(names(footprint_laws(Two{1.5, -0.5}), "share of subray 1"));
   CHECK(names(footprint_laws(Two{0.5, std::nan("")}), "share of subray 1"));
   CHECK(names(footprint_laws(Two{0.5, 0.5, {std::nan(""), 0}}), "offset"));
+}
+
+TEST_CASE("a map that says too often that a cone meets nothing breaks the law of cones") {
+  std::size_t missed = 0;
+  CHECK(cone_laws(SeenPlane{}, cones_from(5, 1, 1000), missed) == "");
+  CHECK(missed > 100);
+  CHECK(names(cone_laws(UnseenPlane{}, cones_from(5, 1, 1000), missed), "said to meet nothing"));
 }
 
 TEST_CASE("transports that keep the law pass, and those that break it do not") {

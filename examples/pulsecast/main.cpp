@@ -438,8 +438,7 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
   PulseIndex stride = std::max<PulseIndex>(1, slots / enough);
   if (stride > 1) stride |= 1;  // odd, to be out of step with the channels
   Picture picture(path);
-  const RunSummary summary =
-      simulation.run({.threads = options.threads, .stride = stride}, [&](const EchoBatch& batch) { picture(batch); });
+  const RunSummary summary = simulation.run({.threads = options.threads, .stride = stride}, picture);
   picture.close();
   if (!options.quiet)
     std::cout << "1 pulse in " << stride << " of " << slots << ", " << summary.echoes << " points: " << path.string() << '\n';

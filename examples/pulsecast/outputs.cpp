@@ -93,6 +93,8 @@ void LegFiles::operator()(const EchoBatch& batch) {
   if (inside_->pulses) (*inside_->pulses)(batch);
 }
 
+bool LegFiles::reads_empty_shots() const noexcept { return inside_->pulses.has_value(); }
+
 void LegFiles::add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) {
   if (interval > 0) inside_->trajectory.add(leg.path(), start, leg.duration(), interval);
 }

@@ -35,6 +35,7 @@ class LegFiles {
   LegFiles& operator=(const LegFiles&) = delete;
 
   void operator()(const pulsecast::EchoBatch& batch);
+  [[nodiscard]] bool reads_empty_shots() const noexcept;  ///< as the concept ChoosesShots describes
   void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval);
   void close();
 
@@ -51,6 +52,7 @@ class Picture {
   Picture(const Picture&) = delete;
   Picture& operator=(const Picture&) = delete;
   void operator()(const pulsecast::EchoBatch& batch);
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
   void close();
 
  private:

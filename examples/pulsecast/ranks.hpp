@@ -18,7 +18,7 @@
 class LegRun {
  public:
   virtual ~LegRun() = default;
-  std::function<void(const pulsecast::EchoBatch&)> watch{};  ///< receives the echoes written; with one process only
+  std::function<void(const pulsecast::EchoBatch&)> watch{};  ///< receives the shots with echoes; with one process only
   virtual void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval) = 0;
   virtual pulsecast::RunSummary run(const pulsecast::helios::Simulation& simulation, const pulsecast::RunOptions& options) = 0;
   virtual void close() = 0;

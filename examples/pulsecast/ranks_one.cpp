@@ -22,12 +22,12 @@ class OneLegRun final : public LegRun {
             const std::vector<std::string>& channels)
       : files_(folder, prefix, options, start_time, channels) {}
   void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override { files_.add_trajectory(leg, start, interval); }
-  RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override {
-    return simulation.run(options, [this](const EchoBatch& batch) {
-      files_(batch);
-      if (watch) watch(batch);
-    });
+  RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override { return simulation.run(options, *this); }
+  void operator()(const EchoBatch& batch) {
+    files_(batch);
+    if (watch) watch(batch);
   }
+  [[nodiscard]] bool reads_empty_shots() const noexcept { return files_.reads_empty_shots(); }  ///< as the concept ChoosesShots describes
   void close() override { files_.close(); }
 
  private:

@@ -29,6 +29,8 @@ struct Cloud {
       }
   }
 
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+
   [[nodiscard]] std::size_t size() const noexcept { return points.size(); }
 };
 

@@ -144,6 +144,16 @@ void find_hits(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexc
     for (std::size_t j = 0; j < rays.size; ++j) hits[j] = map.closest_hit(rays.ray(j)).value_or(Hit{});
 }
 
+namespace detail {
+/// True only if a target that `MissesCones` says so of a cone of rays.
+template <Target Map>
+[[nodiscard]] bool misses_cone(const Map& map, const RayCone& cone) noexcept {
+  static_assert(MissesConesCheck<Map>::passed);
+  if constexpr (MissesCones<Map>) return map.misses_cone(cone);
+  return false;
+}
+}  // namespace detail
+
 /// Map that knows how its surfaces move, as `MovingScene`: queries by a ray give the surface at the hit, with its velocity [m/s].
 template <class T>
 concept VelocityTarget = Target<T> && requires(const T t, const Ray& ray) {
@@ -261,6 +271,7 @@ concept PulseSurvey = requires(const S& s, PulseIndex i, decltype(s.workspace())
 };
 
 /// Receiver of results: a writer, a cloud in memory, a lambda.
+/// Not required: a choice of shots, as of one that `ChoosesShots`.
 /// Law of the caller: batches come in ascending pulse order, one call at a time.
 template <class S>
 concept EchoSink = std::invocable<S&, const EchoBatch&>;

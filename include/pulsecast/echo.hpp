@@ -40,7 +40,8 @@ struct Echo {
   std::uint8_t number = 1;           ///< return number, from 1 in order of `range`
 };
 
-/// Fate of a pulse slot. A sink sees all pulses, with or without echoes: blocked slots are counted, not passed on.
+/// Fate of a pulse slot. A sink sees all pulses, with or without echoes, unless it `ChoosesShots`. Blocked slots are counted, not passed
+/// on.
 enum class Fate : std::uint8_t {
   returned,         ///< at least one echo
   blocked,          ///< the optic let no pulse out
@@ -118,7 +119,7 @@ struct SubrayHit : Hit {
 
 /// Consecutive pulses and their returns, in pulse order. The spans are valid during the call of the sink.
 struct EchoBatch {
-  std::span<const Shot> shots;           ///< pulses emitted, in ascending order of slots
+  std::span<const Shot> shots;           ///< pulses emitted, in ascending order of slots; empty ones only if a sink reads them
   std::span<const Echo> echoes;          ///< contiguous per shot, sorted by reported range
   std::span<const float> samples;        ///< waveforms: received power [W]
   double sample_interval = 0;            ///< sample spacing of the waveforms [s]

@@ -14,11 +14,12 @@
 #include <pulsecast/base/optional_member.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/geometry/bundle.hpp>
+#include <pulsecast/geometry/ray_cone.hpp>
 #include <pulsecast/pulse.hpp>
 
-/// Contract, continued: optional members, a refinement of a concept in concepts.hpp each. The stage or class that uses the member refuses one
-/// of another form, or of a name that is near, by a static assertion. `Validated`, `ValidatesLaser` and `Normalizable`, for settings of all
-/// kinds, are in base/require.hpp.
+/// Contract, continued: optional members, a refinement of a concept in concepts.hpp each. The stage or class that uses the member refuses
+/// one of another form, or of a name that is near, by a static assertion. `Validated`, `ValidatesLaser` and `Normalizable`, for settings of
+/// all kinds, are in base/require.hpp.
 // clang-format off
 // version 14 breaks up compound requirements
 namespace pulsecast {
@@ -81,6 +82,16 @@ concept PrefetchesPrimitives = requires(const T& test, std::span<const Primitive
 };
 PULSECAST_OPTIONAL_MEMBER(PrefetchesPrimitives, "void prefetch(std::span<const PrimitiveIndex>) const noexcept", prefetch,
                           (std::span<const PrimitiveIndex>{}), soon, pre_fetch, prefetch_primitives, announce)
+
+/// Target, shape or accelerator that tells of a cone of rays, at little cost, that none meets anything, so that they need not be made. It
+/// need not look further than its bounds and the upper levels of its trees.
+/// Law: pure; true only if every ray in the cone misses at the cone's tick, and so it stays for any near and far ends of the rays.
+template <class T>
+concept MissesCones = requires(const T target, const RayCone& cone) {
+  { target.misses_cone(cone) } noexcept -> std::same_as<bool>;
+};
+PULSECAST_OPTIONAL_MEMBER(MissesCones, "bool misses_cone(const RayCone&) const noexcept", misses_cone, (RayCone{}), misses, miss_cone,
+                          cone_misses, misses_all)
 
 /// Geometry whose primitives have the same surface at all their points: `surface` is called once for all hits of one.
 template <class G>
@@ -152,6 +163,16 @@ PULSECAST_OPTIONAL_MEMBER(ConsistencyChecking, "bool is_consistent() const", is_
                           is_valid)
 PULSECAST_OPTIONAL_MEMBER(SelfCheckingAccelerator, "bool is_consistent(std::size_t) const", is_consistent, (std::size_t{}), sound,
                           consistent, check_consistency, is_valid)
+
+/// Sink that says whether it reads shots that give nothing: no echo, waveform or recorded subray. They are left out of the batches if no
+/// sink of the run reads them. A sink without this member gets all shots.
+/// Law: the same answer during a run.
+template <class S>
+concept ChoosesShots = requires(const S& sink) {
+  { sink.reads_empty_shots() } noexcept -> std::same_as<bool>;
+};
+PULSECAST_OPTIONAL_MEMBER(ChoosesShots, "bool reads_empty_shots() const noexcept", reads_empty_shots, (), reads_empty, reads_misses,
+                          wants_empty_shots, wants_misses)
 
 /// Survey that can be told from others, so that an executor may keep its workspaces from one run to the next.
 /// Law: two surveys of one type share an identity, which is not null, only if each may use the other's workspaces.

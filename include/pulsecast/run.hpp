@@ -103,11 +103,13 @@ struct ResultBuffer {
     counts = {};
   }
 
-  /// Appends the result of a slot.
-  void append(const Outcome& outcome) {
+  /// Appends the result of a slot. A shot without echo, waveform and subrays is only counted, unless `empty_shots`.
+  void append(const Outcome& outcome, bool empty_shots = true) {
     ++counts.slots;
     ++counts.fates[static_cast<std::size_t>(outcome.shot.fate)];
     if (outcome.shot.fate == Fate::blocked) return;
+    counts.energy.add(outcome.energy);
+    if (!empty_shots && outcome.echoes.empty() && outcome.waveform.empty() && outcome.subrays.empty()) return;
     Shot& shot = shots.emplace_back(outcome.shot);
     shot.first_echo = static_cast<std::uint32_t>(echoes.size());
     shot.echoes = static_cast<std::uint32_t>(outcome.echoes.size());
@@ -120,7 +122,6 @@ struct ResultBuffer {
     }
     for (const SubrayHit& subray : outcome.subrays) subrays.push_back(subray);
     counts.echoes += outcome.echoes.size();
-    counts.energy.add(outcome.energy);
   }
 
   /// Batch for the sinks; valid until this buffer changes.
@@ -143,10 +144,10 @@ struct ResultChunk : ResultBuffer {
   Shot wrong{};                         ///< that slot
 
   /// Appends the result of a slot, or notes its error.
-  void add(const Outcome& outcome) {
+  void add(const Outcome& outcome, bool empty_shots) {
     error = outcome.error;
     if (error == PulseError::none)
-      append(outcome);
+      append(outcome, empty_shots);
     else
       wrong = outcome.shot;
   }
@@ -259,6 +260,14 @@ class ReorderBuffer {
   std::condition_variable moved_;
 };
 
+/// True unless a sink says that it reads no empty shots.
+template <class Sink>
+[[nodiscard]] bool reads_empty_shots(const Sink& sink) noexcept {
+  static_assert(ChoosesShotsCheck<Sink>::passed);
+  if constexpr (ChoosesShots<Sink>) return sink.reads_empty_shots();
+  return true;
+}
+
 /// Reports a pulse with an error.
 [[noreturn]] inline void throw_pulse_error(PulseError error, const Shot& shot) {
   const std::string pulse = joined({"pulse ", std::to_string(shot.index), " at ", to_text(shot.tick.seconds()), " s"});
@@ -284,6 +293,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   const auto began = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
 
+  const bool empty_shots = (detail::reads_empty_shots(sinks) || ...);
   detail::ReorderBuffer buffer(options.executor.memory(), chunks, workers, options.stop);
   RunSummary summary;
   const auto deliver = [&](const detail::ResultChunk& chunk) {
@@ -300,7 +310,8 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
       const Borrowed<detail::WorkspaceMemory<Survey>> memory(options.executor.memory(), survey);
       for (; chunk; chunk = buffer.next()) {
         const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots.count);
-        for (PulseIndex n = from; n < to && chunk->error == PulseError::none; ++n) chunk->add(survey(slots[n], memory->workspace));
+        for (PulseIndex n = from; n < to && chunk->error == PulseError::none; ++n)
+          chunk->add(survey(slots[n], memory->workspace), empty_shots);
         buffer.finish(*chunk, deliver);
       }
     } catch (...) {

@@ -5,6 +5,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "support/scenes.hpp"
@@ -98,4 +102,32 @@ TEST_CASE_TEMPLATE("an archive whose nodes are no tree of 64 levels at most, or 
       nodes.back().children = static_cast<std::uint32_t>(count);
     }));
   CHECK_FALSE(is_sound(1, [](auto& nodes) { ++nodes[0].primitives; }));
+}
+
+TEST_CASE_TEMPLATE("a cone that misses a Bvh comes near none of its boxes, and one between distant boxes misses it", Real, float, double) {
+  std::size_t missed = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Box> boxes;
+    for (std::uint64_t k = any.whole(300); k < 301; ++k) boxes.push_back(any.box(10, 1e-4, 0.5));
+    const Bvh<Real> tree(boxes);
+    for (int k = 0; k < 20; ++k) {
+      const RayCone cone{.origin = any.point(20), .direction = any.unit(), .spread = any.log_uniform(1e-5, 0.1)};
+      if (!tree.misses_cone(cone)) continue;
+      ++missed;
+      const RayBundle rays = any.cone(cone.origin, cone.direction, 2 * std::asin(cone.spread / 2), RayBundle::capacity);
+      for (const Box& box : boxes)
+        for (std::size_t j = 0; j < rays.size; ++j)
+          REQUIRE(RayCone{rays.origin, rays.direction(j)}.passes({box.min + 1e-5, box.max - 1e-5}));
+    }
+  }
+  CHECK(missed > 500);
+  std::vector<Box> corners;
+  for (int i = 0; i < 100; ++i)
+    for (const double at : {0.0, 100.0}) corners.push_back({{at, at, 0.01 * i}, {at + 1, at + 1, 0.01 * i + 1}});
+  const Bvh<Real> apart(corners);
+  CHECK(apart.misses_cone({.origin = {50, -1, 0.5}, .spread = 0.01}));
+  CHECK_FALSE(apart.misses_cone({.origin = {0.5, -1, 0.5}, .spread = 0.01}));
+  CHECK(Bvh<Real>(std::span<const Box>{}).misses_cone({}));
 }

@@ -32,6 +32,11 @@
 // error: it must be: bool is_consistent.std::size_t. const
 // error: IdentifiedSurveyCheck<OwnSurvey
 // error: it must be: std::shared_ptr<const void> identity.. const noexcept
+// error: MissesConesCheck<OwnMap
+// error: MissesConesCheck<WideShape
+// error: it must be: bool misses_cone.const RayCone&. const noexcept
+// error: ChoosesShotsCheck<OwnSink
+// error: it must be: bool reads_empty_shots.. const noexcept
 // error: ConsistencyCheckingCheck<OwnTable
 // error: it must be: bool is_consistent.. const
 //
@@ -111,6 +116,15 @@ struct OwnSurvey : Survey<LeastSource<frame::World>, LeastFootprint, LeastRayTar
   using Survey::Survey;
   std::shared_ptr<const void> identity() const NAME(noexcept, ) { return nullptr; }
 };
+struct OwnMap : LeastRayTarget {
+  bool NAME(misses_cone, misses)(const RayCone&) const noexcept { return false; }
+};
+struct WideShape : LeastGeometry {
+  bool misses_cone(const RayCone&) const NAME(noexcept, ) { return false; }
+};
+struct OwnSink : LeastSink {
+  bool NAME(reads_empty_shots, reads_misses)() const noexcept { return false; }
+};
 struct OwnTable {
   template <class Archive>
   void archive(Archive&) {}
@@ -138,6 +152,9 @@ int main() {
   Bvh<>(std::span<const Box>{}).closest(rays, OwnTest{}, nearest);
   (void)TriangleMesh<OwnIndex>(MeshData{}).is_consistent();
   run(OwnSurvey({}, {}, map, Receiver{}, {}), {}, [](const EchoBatch&) {});
+  const OwnMap own;
+  run(Survey{source, LeastFootprint{}, own, Receiver{}, LeastDetector{}}, {}, OwnSink{});
+  (void)Scene<WideShape>(std::vector<Scene<WideShape>::Part>{}).misses_cone({});
   OwnTable table;
   io::ArchiveReader({}, nullptr)(table);
 }

@@ -21,6 +21,7 @@
 
 #include "support/archetypes.hpp"
 #include "support/generators.hpp"
+#include "support/laws.hpp"
 #include "support/scenes.hpp"
 
 using namespace pulsecast;
@@ -160,4 +161,17 @@ TEST_CASE("another map is assigned at run time, and a layer of one map refers to
   CHECK(ask(map, bundle_of(down)).range == 3);
   map = Plane{};
   CHECK(ask(map, bundle_of(down)).range == 10);
+}
+
+TEST_CASE("a cone misses the map that is held, unless that cannot tell") {
+  Generator random(9);
+  const Meshes still({{.geometry = random_mesh(random)}});
+  const Map map(still);
+  std::size_t missed = 0;
+  for (const RayCone& cone : support::cones_from(50, 4, 1000)) {
+    CHECK(map.misses_cone(cone) == still.misses_cone(cone));
+    if (map.misses_cone(cone)) ++missed;
+    CHECK_FALSE(MapOrOwn(Plane{}).misses_cone(cone));
+  }
+  CHECK(missed > 100);
 }

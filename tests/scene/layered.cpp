@@ -19,6 +19,7 @@
 
 #include "support/archetypes.hpp"
 #include "support/generators.hpp"
+#include "support/laws.hpp"
 
 using namespace pulsecast;
 using support::LeastGeometry;
@@ -159,4 +160,18 @@ TEST_CASE("layers meet what one scene of all their parts meets") {
       }
     }
   }
+}
+
+TEST_CASE("a cone misses layers if it misses each, and none that cannot tell") {
+  const Discs low({disc({}, 1)}), high({disc({.translation = {0.5, 0, 2}}, 2)});
+  const support::LeastRayTarget own;
+  const RayCone up{.origin = {0, 0, 3}, .direction = axis::up, .spread = 0.1},
+      between{.origin = {0, 0, 1}, .direction = axis::up, .spread = 0.1};
+  CHECK(Layered{low, high}.misses_cone(up));
+  CHECK(Layered{low}.misses_cone(between));
+  CHECK_FALSE(Layered{low, high}.misses_cone(between));
+  CHECK_FALSE(Layered{high, own}.misses_cone(up));
+  std::size_t missed = 0;
+  CHECK(support::cone_laws(Layered{low, high}, support::cones_from(10, 3, 3000), missed) == "");
+  CHECK(missed > 1000);
 }

@@ -27,6 +27,7 @@
 #include "support/archetypes.hpp"
 #include "support/counting_executor.hpp"
 #include "support/generators.hpp"
+#include "support/laws.hpp"
 #include "support/relative.hpp"
 #include "support/scenes.hpp"
 
@@ -259,4 +260,37 @@ TEST_CASE("the user's threads build both indices of a moving scene, which is the
     }
     CHECK(met > 100);
   }
+}
+
+TEST_CASE("no ray meets anything at the tick of a cone that is said to meet nothing") {
+  const auto mesh = std::make_shared<const Mesh>(cube());
+  std::size_t missed = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Part<Mesh>> parts;
+    for (std::uint64_t k = any.whole(6); k < 8; ++k) {
+      Part<Mesh> part{.geometry = mesh, .placement = {any.rotation(), any.log_uniform(0.2, 2), any.point(15)}};
+      if (seed % 3 == 0 || any.coin()) part.motion = any_motion(any);
+      parts.push_back(part);
+    }
+    const MovingScene<Mesh> scene(parts, {0, 8});  // the cones' times go on to 12 s
+    CHECK(support::cone_laws(scene, support::cones_from(30, seed, 1000), missed) == "");
+  }
+  CHECK(missed > 10000);
+}
+
+TEST_CASE("a cone meets a part while it passes, and outside of the time it may meet any") {
+  const auto mesh = std::make_shared<const Mesh>(cube());
+  const MovingScene<Mesh> scene({{.geometry = mesh, .placement = {.translation = {-50, 0, 0}}, .motion = moving({.velocity = {10, 0, 0}})}},
+                                {0, 10});
+  RayCone cone{.origin = {0, -20, 0}, .spread = 1e-3};
+  for (const double seconds : {0.0, 2.0, 4.0, 6.0, 8.0}) {
+    cone.tick = Tick::of_seconds(seconds);
+    CHECK(scene.misses_cone(cone));
+  }
+  cone.tick = Tick::of_seconds(5);
+  CHECK_FALSE(scene.misses_cone(cone));
+  cone.tick = Tick::of_seconds(11);
+  CHECK_FALSE(scene.misses_cone(cone));
 }

@@ -19,7 +19,9 @@
 #include "support/archetypes.hpp"
 #include "support/counting_executor.hpp"
 #include "support/generators.hpp"
+#include "support/laws.hpp"
 #include "support/relative.hpp"
+#include "support/scenes.hpp"
 
 using namespace pulsecast;
 using support::LeastGeometry;
@@ -454,4 +456,43 @@ TEST_CASE("the user's threads build the index of a scene, which is the same on a
     REQUIRE(ask(placed, ray).range == ask(placed_alone, ray).range);
     REQUIRE(ask(again, ray).range == ask(placed_alone, ray).range);
   }
+}
+
+namespace {
+using Mesh = TriangleMesh<>;
+}  // namespace
+
+TEST_CASE("no ray meets anything of a cone that is said to meet nothing, and of most that meet nothing it is said") {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const auto mesh = std::make_shared<const Mesh>(support::soup(any, 60, 3));
+    const Similarity placed{any.rotation(), any.log_uniform(0.3, 3), any.point(5)};
+    const Scene<Mesh> alone({{.geometry = mesh}}), turned({{.geometry = mesh, .placement = placed}});
+    std::vector<Part<Mesh, LeastGeometry>> parts{{.geometry = mesh, .placement = placed}};
+    for (int k = 0; k < 20; ++k)
+      parts.push_back({.geometry = std::make_shared<const LeastGeometry>(), .placement = {any.rotation(), 1, any.point(40)}});
+    const Scene<Mesh, LeastGeometry> several(parts);
+    std::size_t of_one = 0, of_turned = 0, of_several = 0;
+    CHECK(support::cone_laws(alone, support::cones_from(20, seed, 2000), of_one) == "");
+    CHECK(support::cone_laws(turned, support::cones_from(20, seed, 2000), of_turned) == "");
+    CHECK(support::cone_laws(several, support::cones_from(60, seed, 2000), of_several) == "");
+    CHECK(of_one > 1000);
+    CHECK(of_turned > 500);
+    CHECK(of_several > 700);
+  }
+}
+
+TEST_CASE("a cone between the parts of a scene, or between the branches of its only mesh, meets nothing") {
+  MeshData posts;  // two at the ends of a square, whose bounds are the square
+  for (const double at : {0.0, 10.0}) support::add_triangle(posts, {{at, at, 0}, {at + 0.1, at, 0}, {at, at, 9}});
+  for (int k = 1; k < 40; ++k) support::add_triangle(posts, {{0, 0.01 * k, 0}, {0.1, 0.01 * k, 0}, {0, 0.01 * k, 9}});
+  const auto mesh = std::make_shared<const Mesh>(posts);
+  const RayCone across{.origin = {10, -1, 4}, .direction = normalize(Vec3{-1, 1, 0}), .spread = 1e-3};
+  REQUIRE_FALSE(across.passes(mesh->bounds()));
+  CHECK(Scene<Mesh>({{.geometry = mesh}}).misses_cone(across));
+  const RayCone along{.origin = {10.02, 20, 1}, .direction = -axis::forward, .spread = 1e-3};
+  CHECK_FALSE(Scene<Mesh>({{.geometry = mesh}}).misses_cone(along));
+  const Scene<Mesh> two({{.geometry = mesh}, {.geometry = mesh, .placement = {.translation = {30, 0, 0}}}});
+  CHECK(two.misses_cone({.origin = {20, -5, 4}, .direction = axis::forward, .spread = 1e-2}));
 }

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -21,6 +24,7 @@
 
 #include "support/checksum.hpp"
 #include "support/detect.hpp"
+#include "support/generators.hpp"
 
 /// The laws of `concepts.hpp` that a compiler cannot check. Each function names the first law that it finds broken, and returns an empty
 /// string if all are kept: `CHECK(support::motion_laws(mirror, ticks) == "");`
@@ -254,6 +258,38 @@ template <class T, class Map>
       return detail::sentence("pulse ", k, ": a used workspace, or no record, gives another answer");
   }
   return {};
+}
+
+/// Laws of a target that `MissesCones`: of a cone that is said to meet nothing, no ray meets anything, whatever its ends. Counts the cones
+/// of which that is said.
+template <class T>
+requires(Target<T>&& MissesCones<T>) [[nodiscard]] std::string
+    cone_laws(const T& target, std::span<const RayCone> cones, std::size_t& missed) {
+  Generator any(cones.size());
+  for (std::size_t k = 0; k < cones.size(); ++k) {
+    const RayCone& cone = cones[k];
+    if (!target.misses_cone(cone)) continue;
+    ++missed;
+    for (const double share : {1.0, 0.5}) {
+      RayBundle rays = any.cone(cone.origin, cone.direction, 2 * std::asin(std::min(1.0, share * cone.spread / 2)), RayBundle::capacity);
+      rays.tick = cone.tick;
+      std::array<Hit, RayBundle::capacity> hits;
+      find_hits(target, rays, hits);
+      for (std::size_t j = 0; j < rays.size; ++j)
+        if (hits[j].met())
+          return detail::sentence("cone ", k, ": said to meet nothing, but ray ", j, " meets something at ", hits[j].range);
+    }
+  }
+  return {};
+}
+
+/// Cones from within reach of the origin, of any width.
+[[nodiscard]] inline std::vector<RayCone> cones_from(double reach, std::uint64_t seed, std::size_t count) {
+  Generator any(seed);
+  std::vector<RayCone> cones;
+  for (std::size_t k = 0; k < count; ++k)
+    cones.push_back({any.point(reach), any.unit(), any.log_uniform(1e-5, 0.5), Tick::of_seconds(any.uniform(0, 12))});
+  return cones;
 }
 
 /// Echoes ascend in range and are numbered from 1; none is stronger than all that came back together; the answer does not depend on what

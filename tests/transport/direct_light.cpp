@@ -3,10 +3,12 @@
 #include <pulsecast/transport/direct_light.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -14,6 +16,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/fixed_beam.hpp>
+#include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/detector/first_hit.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/platform/platform.hpp>
@@ -232,4 +235,92 @@ TEST_CASE("each subray of a spinning plate has the velocity of its place") {
       CHECK(seen[j].kind == ReflectionKind::surface);
     }
   }
+}
+
+namespace {
+
+/// A scene, and the number of times that it was asked for hits.
+struct Asked {
+  const Scene<Mesh>& scene;
+  std::size_t& times;
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+    ++times;
+    scene.closest(rays, hits);
+  }
+};
+/// The same, with its answers about cones.
+struct AskedFirst : Asked {
+  bool misses_cone(const RayCone& cone) const noexcept { return scene.misses_cone(cone); }
+};
+static_assert(!MissesCones<Asked> && MissesCones<AskedFirst>);
+
+/// A mirror that sweeps around, past a plate that fills a tenth of the turn.
+auto sweep(PulseIndex pulses, const Laser& laser) {
+  return Platform{
+      Tripod{}, Mount{},
+      Deflector{PolygonMirror{.lines_per_second = 10, .sweep = 180_deg}, Scanner{.pulse_rate = 2000, .pulses = pulses, .laser = laser}}};
+}
+
+const Scene<Mesh>& a_plate() {
+  static const Scene<Mesh> scene(
+      {{.geometry = std::make_shared<const Mesh>(
+            MeshData{.vertices = {{-3, 8, -2}, {3, 8, -2}, {3, 8, 2}, {-3, 8, 2}}, .triangles = {{0, 1, 2}, {0, 2, 3}}})}});
+  return scene;
+}
+
+bool same(const Outcome& a, const Outcome& b) {
+  if (a.shot.fate != b.shot.fate || !(a.energy == b.energy) || a.error != b.error || a.echoes.size() != b.echoes.size()) return false;
+  for (std::size_t k = 0; k < a.echoes.size(); ++k)
+    if (!support::detail::same(a.echoes[k], b.echoes[k])) return false;
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("pulses beside a scene give the same, whether their cones are tested or their subrays traced") {
+  for (const std::size_t subrays : {2U, 19U, 100U}) {
+    CAPTURE(subrays);
+    std::size_t plainly = 0, asked = 0;
+    const Asked plain{a_plate(), plainly};
+    const AskedFirst first{{a_plate(), asked}};
+    const Survey all{sweep(2000, {.divergence = 0.1}), SunflowerFootprint(subrays), plain, Receiver{}, FullWaveform{}};
+    const Survey few{sweep(2000, {.divergence = 0.1}), SunflowerFootprint(subrays), first, Receiver{}, FullWaveform{}};
+    auto v = all.workspace();
+    auto w = few.workspace();
+    std::size_t returned = 0, missed = 0;
+    for (PulseIndex i = 0; i < all.size(); ++i) {
+      const PulseIndex slot = i < 1000 ? i : 7 * i % all.size();  // in order, then not
+      const Outcome expected = all(slot, v), outcome = few(slot, w);
+      CAPTURE(slot);
+      REQUIRE(same(outcome, expected));
+      returned += expected.shot.fate == Fate::returned ? 1 : 0;
+      missed += expected.shot.fate == Fate::missed ? 1 : 0;
+    }
+    CHECK(returned > 20);
+    CHECK(missed > 500);
+    CHECK(asked < plainly / 4);  // pulses that follow a miss are not traced
+    CHECK(asked >= returned);
+  }
+}
+
+TEST_CASE("subrays that are recorded, those of a beam that leaves no point, and single rays are traced") {
+  std::size_t asked = 0;
+  const AskedFirst map{{a_plate(), asked}};
+  const Survey recorded{sweep(500, {}), WithSubrayRecord{SunflowerFootprint(3)}, map, Receiver{}, FirstHit{}};
+  const Survey single{sweep(500, {}), SunflowerFootprint(1), map, Receiver{}, FirstHit{}};
+  const Survey wide{sweep(500, {.waist_diameter = 0.5}), SunflowerFootprint(2), map, Receiver{}, FirstHit{}};
+  auto v = recorded.workspace();
+  auto u = single.workspace();
+  auto w = wide.workspace();
+  std::size_t sent = 0;
+  for (PulseIndex i = 0; i < 500; ++i) {
+    const Outcome one = recorded(i, v), other = wide(i, w), alone = single(i, u);
+    if (one.shot.fate == Fate::blocked) continue;
+    sent += 4;  // one bundle, one ray, and two of different exits
+    REQUIRE(one.subrays.size() == 3);
+    if (one.shot.fate == Fate::missed) CHECK_FALSE(one.subrays[2].met());
+    CHECK(other.shot.fate != Fate::blocked);
+    CHECK(alone.shot.fate != Fate::blocked);
+  }
+  CHECK(asked == sent);
 }

@@ -95,6 +95,28 @@ class Bvh {
       descend(BundleInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
   }
 
+  /// True only if no ray of a cone comes near a primitive, as of one that `MissesCones`. Opens few nodes: a cone between the leaves deep in
+  /// the tree gets false.
+  [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
+    if (nodes_.empty() || cone.passes(bounds_)) return true;
+    constexpr std::size_t max_opened = 16;
+    const BundleInterval<Real> interval(cone, bounds_, centre_);
+    std::array<std::uint32_t, (places - 1) * max_opened + 1> waiting;
+    waiting[0] = 0;
+    std::size_t count = 1;
+    for (std::size_t opened = 0; count > 0; ++opened) {
+      if (opened == max_opened) return false;
+      const Node& node = nodes_[waiting[--count]];
+      std::array<Real, places> entries;
+      for (unsigned met = interval.inside(node.boxes, std::numeric_limits<Real>::max(), entries); met != 0; met &= met - 1) {
+        const auto place = static_cast<std::size_t>(std::countr_zero(met));
+        if (node.size(place) > 0) return false;
+        waiting[count++] = node.first(place);
+      }
+    }
+    return true;
+  }
+
  private:
   friend class BvhRefit<Real>;
   using BinaryTree = detail::BinarySahTree<Real>;
@@ -265,7 +287,7 @@ class Bvh {
   std::size_t depth_ = 0;
 };
 
-static_assert(Accelerator<Bvh<float>>);
+static_assert(Accelerator<Bvh<float>> && MissesCones<Bvh<float>>);
 
 }  // namespace pulsecast
 

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_HELIOS_SIMULATION_HPP
 #define PULSECAST_HELIOS_SIMULATION_HPP
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +11,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
@@ -78,6 +81,30 @@ class Simulation {
     unsigned threads = 0;                         ///< threads that build the scene; 0: all
   };
 
+  /// Sink of a run: any `EchoSink`. One that is passed by reference must outlive the run.
+  class Sink {
+   public:
+    /// Hands on what the sink says about empty shots, if it `ChoosesShots`.
+    template <EchoSink Any>
+    requires(!std::same_as<std::remove_cvref_t<Any>, Sink>) Sink(Any&& sink)  // NOLINT(google-explicit-constructor): implicit by purpose
+        : empty_shots_(pulsecast::detail::reads_empty_shots(sink)), take_(held(std::forward<Any>(sink))) {}
+
+    void operator()(const EchoBatch& batch) const { take_(batch); }
+    [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }  ///< as the concept ChoosesShots describes
+
+   private:
+    template <class Any>
+    static decltype(auto) held(Any&& sink) {
+      if constexpr (std::is_lvalue_reference_v<Any>)
+        return std::ref(sink);
+      else
+        return std::move(sink);
+    }
+
+    bool empty_shots_;
+    std::function<void(const EchoBatch&)> take_;
+  };
+
   /// Size of a loaded scene.
   struct Scene {
     Vec3 least{}, most{};                              ///< corners of the bounding box, in the world [m]
@@ -103,7 +130,7 @@ class Simulation {
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;  ///< warnings of scene, legs and receivers, each once
 
   /// Simulates the pulses as `pulsecast::run` does. The sink gets the echoes in the order of their pulses.
-  virtual RunSummary run(const RunOptions& options, const std::function<void(const EchoBatch&)>& sink) const = 0;
+  virtual RunSummary run(const RunOptions& options, const Sink& sink) const = 0;
 
   /// Replaces the receivers. Scene and legs remain.
   virtual void receive(const Receiving& how) = 0;

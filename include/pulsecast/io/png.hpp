@@ -184,6 +184,8 @@ class ImageWriter {
       }
   }
 
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+
   /// Draws and writes the picture; the file does not exist before. Throws a `FileError`.
   void close() {
     ImageSettings settings = settings_;

@@ -44,6 +44,7 @@ class XyzWriter {
     }
   }
 
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
   void close() { text_.close(); }
 
  private:
@@ -118,6 +119,7 @@ class SubrayTextWriter {
     }
   }
 
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
   void close() { text_.close(); }
 
  private:
@@ -156,6 +158,7 @@ class WaveformTextWriter {
     }
   }
 
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
   void close() { text_.close(); }
 
  private:

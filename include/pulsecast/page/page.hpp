@@ -146,6 +146,7 @@ class PageWriter {
       : settings_(validated(settings)), survey_(std::move(survey)), file_(std::move(path)), sample_(settings.points_max) {}
 
   void operator()(const EchoBatch& batch) { sample_(batch); }
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
   /// Description of the survey; may be changed until the file is closed.
   [[nodiscard]] PageSurvey& survey() noexcept { return survey_; }

@@ -89,6 +89,7 @@ class PageServer {
     const std::lock_guard lock(mutex_);
     sample_(batch);
   }
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
   /// Sets the progress shown.
   void tell(const Progress& progress) {

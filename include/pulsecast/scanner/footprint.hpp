@@ -189,6 +189,8 @@ class SubrayDirections {
   const double* z = nullptr;       ///< components up
   const double* shares = nullptr;  ///< shares of the energy
   const Vec3* exits = nullptr;     ///< exit points; null for a beam from a point [m]
+  double spread = 0;               ///< greatest distance of a unit direction from the beam's axis
+  double share_sum = 0;            ///< sum of the shares, in order
 
   /// Beam without subrays.
   SubrayDirections() = default;
@@ -238,6 +240,8 @@ class SubrayDirections {
     columns_[padded_ + j] = direction.y;
     columns_[2 * padded_ + j] = direction.z;
     columns_[3 * padded_ + j] = share;
+    spread = std::max(spread, length(direction - axis::forward));
+    share_sum += share;
     if (exits) exits_[j] = subray_exit(offset, laser);
   }
 

@@ -52,6 +52,11 @@ class AnyTarget {
     std::visit([&](const auto& target) noexcept { find_hits(target, rays, hits); }, target_);
   }
 
+  /// True only if no ray of a cone meets anything, as of the target; false of a target that cannot tell.
+  [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
+    return std::visit([&](const auto& target) noexcept { return detail::misses_cone(target, cone); }, target_);
+  }
+
   /// Closest hit of a ray; empty for a miss. This query and the next three exist if all types have them.
   [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept requires(AnswersRays<First>&&...&& AnswersRays<Others>) {
     return std::visit([&](const auto& target) noexcept { return target.closest_hit(ray); }, target_);

@@ -37,6 +37,11 @@ class Layered {
         targets_);
   }
 
+  /// True only if no ray of a cone meets anything in any target.
+  [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
+    return std::apply([&](const auto*... targets) noexcept { return (detail::misses_cone(*targets, cone) && ...); }, targets_);
+  }
+
   /// Bounds of all targets [m].
   [[nodiscard]] Box bounds() const noexcept requires(requires(const First& f, const Others&... o) {
     f.bounds();

@@ -85,19 +85,24 @@ class MovingIndex {
   /// Calls `test(i)` for each body that a bundle or a `BundleOfOne` may meet at its tick before its nearest hits.
   template <class Rays, class Test, class Hits>
   void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
-    const double share = (rays.tick.seconds() - time_.from) / span_;
+    const double share = share_at(rays.tick);
     if (!(share >= 0 && share <= 1)) {
       for (std::size_t i = 0; i < all_; ++i) test(static_cast<PrimitiveIndex>(i));
       return;
     }
     for (const Level& level : levels_) {
-      const std::size_t windows = level.windows.size();
-      const auto window = static_cast<std::size_t>(share * static_cast<double>(windows));
       const auto test_found = [&](std::span<const PrimitiveIndex> found) noexcept {
         for (const PrimitiveIndex k : found) test(level.things[k]);
       };
-      level.windows[std::min(window, windows - 1)].closest(rays, test_found, nearest);
+      level.window_at(share).closest(rays, test_found, nearest);
     }
+  }
+
+  /// True only if no ray of a cone comes near a body at its tick, as of one that `MissesCones`.
+  [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
+    const double share = share_at(cone.tick);
+    const auto passed = [&](const Level& level) noexcept { return level.window_at(share).misses_cone(cone); };
+    return share >= 0 && share <= 1 && std::all_of(levels_.begin(), levels_.end(), passed);
   }
 
  private:
@@ -107,7 +112,16 @@ class MovingIndex {
   struct Level {
     std::vector<PrimitiveIndex> things;
     std::vector<Bvh<float>> windows;
+
+    /// Window at a share of the time span, from 0 to 1.
+    [[nodiscard]] const Bvh<float>& window_at(double share) const noexcept {
+      const auto window = static_cast<std::size_t>(share * static_cast<double>(windows.size()));
+      return windows[std::min(window, windows.size() - 1)];
+    }
   };
+
+  /// Share of the time span that is over at a tick.
+  [[nodiscard]] double share_at(const Tick& tick) const noexcept { return (tick.seconds() - time_.from) / span_; }
 
   /// Number of boxes held; each tree counts as three more.
   static std::size_t boxes_held(const std::array<std::vector<PrimitiveIndex>, max_level + 1>& at_level) noexcept {

@@ -68,6 +68,11 @@ class MovingScene {
     scene_.describe(rays, nearest, hits, [&](std::size_t part) noexcept { return placement(part, rays.tick); });
   }
 
+  /// True only if no ray of a cone meets anything at its tick, as of `Scene`.
+  [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
+    return (movers_.size() == parts().size() || scene_.misses_cone(cone)) && (movers_.empty() || index_.misses_cone(cone));
+  }
+
   /// Closest hit of a ray at its tick, as of `Scene`.
   [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept { return detail::closest_hit(ray, searcher()); }
 

@@ -105,6 +105,18 @@ class Scene {
     describe(rays, nearest(rays), hits, [&](std::size_t part) noexcept -> const Similarity& { return parts_[part].placement; });
   }
 
+  /// True only if no ray of a cone meets anything, as of a target that `MissesCones`.
+  [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
+    if (!alone_) return index_.misses_cone(cone);
+    if (cone.passes(bounds())) return true;
+    const auto upper_levels = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept {
+      static_assert(detail::MissesConesCheck<Shape>::passed);
+      if constexpr (MissesCones<Shape>) return parts_[0].placement.identity() && shape->misses_cone(cone);
+      return false;
+    };
+    return visit_shape(upper_levels, parts_[0].geometry);
+  }
+
   /// Closest hit of a ray; empty for a miss. The same as of `closest`, for a ray alone.
   [[nodiscard]] std::optional<RayHit> closest_hit(const Ray& ray) const noexcept { return detail::closest_hit(ray, searcher()); }
 

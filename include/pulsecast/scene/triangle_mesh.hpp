@@ -163,6 +163,9 @@ class TriangleMesh {
     }
   }
 
+  /// True only if no ray of a cone comes near a triangle.
+  [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept requires MissesCones<Index> { return index_.misses_cone(cone); }
+
   /// Texture coordinates where the corners have these weights; empty without a column of them.
   [[nodiscard]] std::optional<Vec2> texture(PrimitiveIndex i, const Vec3& weights) const noexcept {
     if (texture_.empty()) return std::nullopt;

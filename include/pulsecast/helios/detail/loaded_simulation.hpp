@@ -160,9 +160,7 @@ class LoadedSimulation final : public Simulation {
     return out;
   }
 
-  RunSummary run(const RunOptions& options, const std::function<void(const EchoBatch&)>& sink) const override {
-    return pulsecast::run(*pipeline_, options, sink);
-  }
+  RunSummary run(const RunOptions& options, const Sink& sink) const override { return pulsecast::run(*pipeline_, options, sink); }
 
   void receive(const Receiving& how) override {
     std::vector<std::string> odd;

@@ -86,6 +86,8 @@ class LasFileWriter {
     }
   }
 
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+
   /// Offset of `Records` in the file, and size of the waveform file so far [byte].
   [[nodiscard]] std::uint64_t records_at() const noexcept { return records_at_; }
   [[nodiscard]] std::uint64_t packets_at() const noexcept { return packets_ ? packets_->position() : 0; }

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_GEOMETRY_RAY_CONE_HPP
+#define PULSECAST_GEOMETRY_RAY_CONE_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <pulsecast/base/tick.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/geometry/box.hpp>
+
+namespace pulsecast {
+
+/// Cone around rays from one origin, such as the subrays of a pulse, so that all can be tested before one is made.
+struct RayCone {
+  Vec3 origin{};                   ///< origin of the rays [m]
+  Vec3 direction = axis::forward;  ///< unit vector along the cone's axis
+  double spread = 0;               ///< bound of the distance from `direction` to any ray's unit direction
+  Tick tick{};                     ///< time, for parts that move
+
+  static constexpr double near = 0;                                                         ///< as in `BundleOrigin` [m]
+  [[nodiscard]] double least_along(int k) const noexcept { return direction[k] - spread; }  ///< minimum of component k of the directions
+  [[nodiscard]] double most_along(int k) const noexcept { return direction[k] + spread; }   ///< maximum of component k of the directions
+
+  /// True only if no ray comes near a box: nearer than a millionth of its distance and size, which covers the rounding of primitive tests.
+  /// False if anything is NaN, and for infinite boxes. Separating axes, with the directions as an interval about the axis.
+  /// Source: Gottschalk, Lin & Manocha 1996, sec. 5.
+  [[nodiscard]] bool passes(const Box& box) const noexcept {
+    constexpr double rounding = 128 * std::numeric_limits<double>::epsilon();
+    const Vec3 half = 0.5 * box.size(), from = origin - box.centre();
+    const double scale = std::max(max_norm(origin), std::max(max_norm(box.min), max_norm(box.max)));
+    const double margin = 1e-6 * (max_norm(from) + max_norm(half)) + rounding * scale, aside = spread + rounding;
+    double reach[3], away[3], fastest[3];  // half sides of the box, distance from its centre, and speed, along each axis
+    for (int k = 0; k < 3; ++k) {
+      reach[k] = half[k] + margin;
+      away[k] = std::fabs(from[k]);
+      fastest[k] = std::fabs(direction[k]) + aside;
+      if (away[k] > reach[k] && (from[k] > 0 ? direction[k] : -direction[k]) > aside) return true;  // beside the box, and leaves it
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      const double offset = std::fabs(from[i] * direction[j] - from[j] * direction[i]);
+      if (offset > reach[i] * fastest[j] + reach[j] * fastest[i] + aside * (away[i] + away[j])) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace pulsecast
+
+#endif
