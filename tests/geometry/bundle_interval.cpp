@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -42,6 +43,36 @@ Stretch stretch(const Box& box, const Vec3& origin, const Vec3& direction) {
 template <class Real>
 bool holds(const typename BundleInterval<Real>::Span& span, long double range) {
   return static_cast<long double>(span.entry) <= range && range <= static_cast<long double>(span.exit);
+}
+
+/// Boxes that an interval meets up to a limit.
+template <class Real>
+struct Met {
+  unsigned found;
+  std::array<Real, 8> entries;
+};
+template <class Real>
+Met<Real> met_by(const BundleInterval<Real>& interval, const QuantizedBox8<Real>& boxes, Real limit) {
+  Met<Real> met;
+  met.found = interval.inside(boxes, limit, met.entries);
+  return met;
+}
+/// As above, by the keys, which must have room for a tag, and order as ranges do.
+template <class Real>
+Met<Real> met_by(const RayInterval<Real>& interval, const QuantizedBox8<Real>& boxes, Real limit) {
+  using Interval = RayInterval<Real>;
+  Met<Real> met;
+  typename Interval::Keys keys;
+  met.found = interval.inside(boxes, limit, keys);
+  for (std::size_t i = 0; i < 8; ++i) {
+    met.entries[i] = std::bit_cast<Real>(keys[i]);
+    if ((met.found >> i & 1U) == 0) continue;
+    CHECK((keys[i] & 7) == 0);
+    CHECK((keys[i] | 7) <= Interval::last_key(limit));
+    for (std::size_t k = 0; k < i; ++k)
+      if ((met.found >> k & 1U) != 0) CHECK((met.entries[i] < met.entries[k]) == (keys[i] < keys[k]));
+  }
+  return met;
 }
 
 RayBundle random_rays(Generator& random, const Vec3& origin, const Vec3& aim) {
@@ -173,8 +204,7 @@ TEST_CASE_TEMPLATE("no compact box that any ray of a bundle meets is passed over
     if (random.coin()) rays = bundle_of({origin, direction});
     if (random.coin()) rays.near = length(aim - origin) * random.uniform(0, 1.1);
     const auto check = [&](const auto& interval) {
-      std::array<Real, 8> entries;
-      const unsigned found = interval.inside(compact, std::numeric_limits<Real>::max(), entries);
+      const auto [found, entries] = met_by(interval, compact, std::numeric_limits<Real>::max());
       for (std::size_t i = 0; i < 8; ++i) {
         spared += (found >> i & 1U) != 0 ? 0 : 1;
         for (std::size_t j = 0; j < rays.size; ++j) {
@@ -216,9 +246,8 @@ TEST_CASE("a ray that begins in a small box of a large grid finds it") {
   boxes.add({{-128, -32, -32}, {0, 32, 32}});
   const RayBundle rays =
       bundle_of({{-0.015, 0, 0}, axis::right, 0.01});  // leaves at 0.015 m; at the corner of the grid, that is lost in rounding
-  std::array<float, 8> entries;
-  CHECK(BundleInterval<float>(rays, bounds, {}).inside(boxes, 100, entries) == 1);
-  CHECK(RayInterval<float>(rays, bounds, {}).inside(boxes, 100, entries) == 1);
+  CHECK(met_by(BundleInterval<float>(rays, bounds, {}), boxes, 100.0F).found == 1);
+  CHECK(met_by(RayInterval<float>(rays, bounds, {}), boxes, 100.0F).found == 1);
 }
 
 TEST_CASE_TEMPLATE("the range at which a triangle is met is inside the span of its box, however it is seen", Real, float, double) {
@@ -272,11 +301,12 @@ TEST_CASE_TEMPLATE("rays that are not numbers do not hide what the others meet, 
   QuantizedBox8<Real> boxes;
   boxes.begin(around);
   boxes.add(around);
-  std::array<Real, 8> entries;
-  const auto found = [&](const Ray& ray) { return RayInterval<Real>(bundle_of(ray), box, {}).inside(boxes, 100, entries); };
+  const auto found = [&](const Ray& ray) { return met_by(RayInterval<Real>(bundle_of(ray), box, {}), boxes, Real{100}).found; };
   CHECK(found({{}, axis::forward}) == 1);
   CHECK(found({{}, {0, 1, nan}}) == 0);
   CHECK(found({{nan, 0, 0}, axis::forward}) == 0);
+  CHECK(found({{}, {-0.0, 1, -0.0}}) == 1);
+  CHECK(found({{}, axis::forward, -0.0}) == 1);
 }
 
 TEST_CASE_TEMPLATE("an empty box is never met", Real, float, double) {

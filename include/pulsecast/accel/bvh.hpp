@@ -88,9 +88,9 @@ class Bvh {
   void closest(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
     if (nodes_.empty()) return;
     if constexpr (Rays::capacity == 1)
-      descend(RayInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
+      descend_alone(rays, test, nearest);
     else if (rays.size == 1)
-      descend(RayInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
+      descend_alone(rays, test, nearest);
     else
       descend(BundleInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
   }
@@ -177,6 +177,61 @@ class Bvh {
           if (stack_size == 0) return;
           next = stack[--stack_size];
         } while (next.entry > limit);
+      }
+      node = &nodes_[next.first];
+    }
+  }
+
+  /// Child of a node, to be visited by a single ray: first primitive of a leaf, or index of a node. The key has the size of a leaf as its
+  /// tag, or 0.
+  struct Child {
+    typename RayInterval<Real>::Key key;
+    std::uint32_t first;
+  };
+
+  /// As `descend`, for a single ray.
+  template <class Rays, class Test, class Hits>
+  void descend_alone(const Rays& rays, const Test& test, Hits& nearest) const noexcept {
+    using Interval = RayInterval<Real>;
+    const auto size_of = [](typename Interval::Key key) noexcept { return static_cast<std::uint32_t>(key & 7); };
+    const Interval interval(rays, bounds_, centre_);
+    const Node* node = nodes_.data();
+    std::array<Child, (places - 1) * detail::max_depth + 1> stack;
+    Child* top = stack.data();
+    Real limit = interval.limit(rays, nearest);
+    for (;;) {
+      typename Interval::Keys keys;
+      unsigned met = interval.inside(node->boxes, limit, keys);
+      const auto take_first = [&]() noexcept -> Child {
+        const auto place = static_cast<std::size_t>(std::countr_zero(met));
+        met &= met - 1;
+        return {keys[place] | static_cast<int>(node->size(place)), node->first(place)};
+      };
+      Child next{0, 0};
+      bool found = met != 0;
+      if (found) {  // nearest child next; the others on the stack, nearest on top
+        next = take_first();
+        const Child* const bottom = top;
+        while (met != 0) {
+          Child other = take_first();
+          if (other.key < next.key) std::swap(other, next);
+          prefetch_entry({0, other.first, size_of(other.key)}, test);
+          Child* place = top++;
+          for (; place != bottom && place[-1].key < other.key; --place) *place = place[-1];
+          *place = other;
+        }
+      }
+      for (;; found = false) {
+        if (!found) {
+          do {
+            if (top == stack.data()) return;
+            next = *--top;
+          } while (next.key > Interval::last_key(limit));
+        }
+        const std::uint32_t size = size_of(next.key);
+        if (size == 0) break;
+        test(std::span<const PrimitiveIndex>(primitives_.data() + next.first, size));
+        limit = interval.limit(rays, nearest);
       }
       node = &nodes_[next.first];
     }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include <pulsecast/base/arithmetic.hpp>
@@ -179,14 +180,18 @@ struct Vec4 {
     return made([&](std::size_t i) { return a.parts[i] / b.parts[i]; });
   }
   friend Vec4 magnitude(const Vec4& a) noexcept {
-    return made([&](std::size_t i) { return a.parts[i] < 0 ? -a.parts[i] : a.parts[i]; });
+    return made([&](std::size_t i) { return Part(Bits(a.parts[i]) & ~sign_bit); });
   }
-  /// Lane-wise sign: -1 if negative, else 1.
+  /// Lane-wise sign: -1 if the sign bit is set, else 1.
   friend Vec4 sense(const Vec4& a) noexcept {
-    return made([&](std::size_t i) { return a.parts[i] < 0 ? Part{} - 1 : Part{} + 1; });
+    return made([&](std::size_t i) { return Part((Bits(a.parts[i]) & sign_bit) | Bits(Part{} + 1)); });
   }
 
  private:
+  using Word = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
+  using Bits = Vec<Word, 4 / count>;
+  static constexpr Word sign_bit = Word{1} << (8 * sizeof(Real) - 1);
+
   template <class Do>
   static void each(const Do& act) noexcept {
     for (std::size_t i = 0; i < count; ++i) act(i);

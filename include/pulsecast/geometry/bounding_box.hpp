@@ -116,6 +116,18 @@ struct QuantizedBox8 {
     ++count;
   }
 
+  /// Steps of the grid along the axes [m]; the last lane is of no use.
+  [[nodiscard]] simd::Vec4<Real> step4() const noexcept {
+#if defined(__AVX2__)  // shifts by lane
+    if constexpr (sizeof(Real) == 4) {
+      using Words = simd::Vec<std::uint32_t, 4>;
+      static_assert(offsetof(QuantizedBox8, count) == offsetof(QuantizedBox8, exponent) + 3);
+      const Words exponents = Words{} + simd::load<std::uint32_t>(exponent[0]);
+      return simd::load<simd::Vec4<Real>>(exponents << Words{23, 15, 7, 0} & 0x7F800000U);
+    }
+#endif
+    return {step(0), step(1), step(2)};
+  }
   /// Step of the grid along an axis [m].
   [[nodiscard]] Real step(std::size_t k) const noexcept {
     if constexpr (sizeof(Real) == 4)
