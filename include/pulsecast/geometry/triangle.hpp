@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include <pulsecast/base/simd.hpp>
@@ -48,38 +49,41 @@ struct Triangle {
   }
 };
 
+/// Corners of a triangle that lie elsewhere [m]: a packet fetches each coordinate to where it is used.
+struct TriangleRef {
+  const Vec3 &a, &b, &c;  ///< corners [m]
+};
+
 /// Triangles tested together, one a lane; idle lanes repeat the last one.
 struct TrianglePacket {
   /// One corner of each triangle.
   struct Corner {
     simd::Doubles x, y, z;  ///< coordinates [m]
   };
-  Corner a, b, c;                                           ///< corners of the triangles
-  std::array<PrimitiveIndex, simd::lane_count> primitives;  ///< number of the triangle in each lane
-  std::size_t size;                                         ///< lanes in use, at least one
+  Corner a, b, c;  ///< corners of the triangles
 
-  /// `triangle_of(n)` returns the triangle of the n-th of these primitives.
+  /// Of so many triangles, at least one; `triangle_of(n)` returns the `Triangle` or `TriangleRef` of the n-th.
+  // always inlined, so that a test reads its operands from registers
   template <class TriangleOf>
-  TrianglePacket(std::span<const PrimitiveIndex> of, const TriangleOf& triangle_of) noexcept : size(of.size()) {
-    const auto in_use = [&](std::size_t lane) noexcept { return std::min(lane, size - 1); };
-    for (std::size_t lane = 0; lane < simd::lane_count; ++lane) primitives[lane] = of[in_use(lane)];
+  [[gnu::always_inline]] TrianglePacket(std::size_t size, const TriangleOf& triangle_of) noexcept {
     const auto triangles = [&]<std::size_t... lane>(std::index_sequence<lane...>) noexcept {
-      return std::array{triangle_of(in_use(lane))...};
+      return std::array{triangle_of(std::min(lane, size - 1))...};
     }
     (std::make_index_sequence<simd::lane_count>());
-    const auto corner = [&](Vec3 Triangle::*which) noexcept {
+    const auto corner = [&](const auto& of_triangle) noexcept {
       const auto coordinate = [&](double Vec3::*axis) noexcept {
-        return simd::generate([&](std::size_t lane) { return triangles[lane].*which.*axis; });
+        return simd::generate([&](std::size_t lane) { return of_triangle(triangles[lane]).*axis; });
       };
       return Corner{coordinate(&Vec3::x), coordinate(&Vec3::y), coordinate(&Vec3::z)};
     };
-    a = corner(&Triangle::a);
-    b = corner(&Triangle::b);
-    c = corner(&Triangle::c);
+    a = corner([](const auto& triangle) noexcept -> const Vec3& { return triangle.a; });
+    b = corner([](const auto& triangle) noexcept -> const Vec3& { return triangle.b; });
+    c = corner([](const auto& triangle) noexcept -> const Vec3& { return triangle.c; });
   }
 };
 
-/// Intersects triangles with every ray of a bundle, or with a `BundleOfOne`: the deciding test, always in double precision.
+/// Intersects the triangles of these primitives with every ray of a bundle, or with a `BundleOfOne`: the deciding test, always in double
+/// precision.
 ///
 /// A ray is inside if it is on the same side of the three planes through the origin and an edge. The planes depend on the bundle alone, so
 /// a ray costs three dot products, and none where the whole bundle passes a plane on one side.
@@ -92,7 +96,8 @@ struct TrianglePacket {
 /// Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin 2007; interval inside the box:
 /// Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
 template <class Rays, class Hits>
-[[gnu::noinline]] void intersect(const TrianglePacket& triangles, const Rays& rays, Hits& nearest) noexcept {
+[[gnu::noinline]] void intersect(const TrianglePacket& triangles, std::span<const PrimitiveIndex> primitives, const Rays& rays,
+                                 Hits& nearest) noexcept {
   static_assert(RayBundle::lanes % simd::lane_count == 0);
   constexpr bool single = Rays::capacity == 1;  // a lane a triangle, not a lane a ray
   constexpr double unit = std::numeric_limits<double>::epsilon();
@@ -142,7 +147,7 @@ template <class Rays, class Hits>
     may_meet = ((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
                ((least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt));
   }
-  unsigned candidates = simd::bits(may_meet) & ((1U << triangles.size) - 1);
+  unsigned candidates = simd::bits(may_meet) & ((1U << primitives.size()) - 1);
   if (candidates == 0) return;
 
   // planes and boxes of the triangles, the boxes widened by the roundings of a hit
@@ -166,10 +171,11 @@ template <class Rays, class Hits>
 
   // interval inside the box; a zero direction is made so small that walls it never reaches lie at infinity
   const simd::Doubles outside = simd::Doubles{} - std::numeric_limits<double>::infinity();
-  const auto between_walls = [](simd::Doubles& entry, simd::Doubles& exit, const auto& direction, const auto& low,
-                                const auto& high) noexcept {
-    const simd::Doubles tiny = simd::Doubles{} + 1e-300;
-    const simd::Doubles per = 1 / (direction * direction > 0 ? direction : tiny);
+  const auto per_metre = [](const auto& direction) noexcept {
+    const auto tiny = std::remove_cvref_t<decltype(direction)>{} + 1e-300;
+    return 1 / (direction * direction > 0 ? direction : tiny);
+  };
+  const auto between_walls = [](simd::Doubles& entry, simd::Doubles& exit, const auto& per, const auto& low, const auto& high) noexcept {
     const simd::Doubles to_low = low * per, to_high = high * per;
     entry = simd::max(simd::min(to_low, to_high), entry);
     exit = simd::min(simd::max(to_low, to_high), exit);
@@ -183,19 +189,19 @@ template <class Rays, class Hits>
     const simd::Doubles x = simd::Doubles{} + d.x, y = simd::Doubles{} + d.y, z = simd::Doubles{} + d.z;
     const simd::Doubles slope = x * normals.x + y * normals.y + z * normals.z;
     simd::Doubles entry = outside, exit = -outside;
-    between_walls(entry, exit, x, simd::Doubles(lowest.x - margin), simd::Doubles(highest.x + margin));
-    between_walls(entry, exit, y, simd::Doubles(lowest.y - margin), simd::Doubles(highest.y + margin));
-    between_walls(entry, exit, z, simd::Doubles(lowest.z - margin), simd::Doubles(highest.z + margin));
+    between_walls(entry, exit, per_metre(d.x), simd::Doubles(lowest.x - margin), simd::Doubles(highest.x + margin));
+    between_walls(entry, exit, per_metre(d.y), simd::Doubles(lowest.y - margin), simd::Doubles(highest.y + margin));
+    between_walls(entry, exit, per_metre(d.z), simd::Doubles(lowest.z - margin), simd::Doubles(highest.z + margin));
     const simd::Doubles at = clamped(offsets / slope, entry, exit);
     const simd::Mask hit = between_edges & (slope * slope > grazing) & (entry <= exit) & (at > rays.near);
     for (candidates &= simd::bits(hit); candidates != 0; candidates &= candidates - 1) {
       const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
-      nearest.offer(0, at[t], triangles.primitives[t]);
+      nearest.offer(0, at[t], primitives[t]);
     }
   } else {
     for (; candidates != 0; candidates &= candidates - 1) {
       const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
-      const PrimitiveIndex primitive = triangles.primitives[t];
+      const PrimitiveIndex primitive = primitives[t];
       for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
         const simd::Doubles x = simd::load<simd::Doubles>(rays.x[j]), y = simd::load<simd::Doubles>(rays.y[j]),
                             z = simd::load<simd::Doubles>(rays.z[j]);
@@ -211,9 +217,9 @@ template <class Rays, class Hits>
         const simd::Mask inside = between & (slope * slope > grazing[t]);
 
         simd::Doubles entry = outside, exit = -outside;
-        between_walls(entry, exit, x, lowest.x[t] - margin[t], highest.x[t] + margin[t]);
-        between_walls(entry, exit, y, lowest.y[t] - margin[t], highest.y[t] + margin[t]);
-        between_walls(entry, exit, z, lowest.z[t] - margin[t], highest.z[t] + margin[t]);
+        between_walls(entry, exit, per_metre(x), lowest.x[t] - margin[t], highest.x[t] + margin[t]);
+        between_walls(entry, exit, per_metre(y), lowest.y[t] - margin[t], highest.y[t] + margin[t]);
+        between_walls(entry, exit, per_metre(z), lowest.z[t] - margin[t], highest.z[t] + margin[t]);
         const simd::Doubles at = clamped(offsets[t] / slope, entry, exit);
 
         const simd::Doubles best = simd::load<simd::Doubles>(nearest.range[j]);
@@ -239,7 +245,8 @@ template <class TriangleOf, class Rays, class Hits>
 void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const Rays& rays, Hits& nearest) noexcept {
   for (std::size_t first = 0; first < primitives.size(); first += simd::lane_count) {
     const std::size_t count = std::min(simd::lane_count, primitives.size() - first);
-    intersect({primitives.subspan(first, count), [&](std::size_t n) noexcept { return triangle_of(first + n); }}, rays, nearest);
+    const TrianglePacket triangles(count, [&](std::size_t n) noexcept { return triangle_of(first + n); });
+    intersect(triangles, primitives.subspan(first, count), rays, nearest);
     if constexpr (EndsEarly<Hits>)
       if (nearest.done()) return;
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -21,7 +20,9 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/geometry/line_test.hpp>
 #include <pulsecast/geometry/triangle.hpp>
+#include <pulsecast/scene/detail/corner_table.hpp>
 
 namespace pulsecast {
 
@@ -149,7 +150,7 @@ class TriangleMesh {
   /// For a bundle or a `BundleOfOne`, which an accelerator that takes bundles only gets as one.
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
-    const Test<Rays, Hits> test{*this, rays, nearest};
+    const Test<Rays, Hits> test(*this, rays, nearest);
     if constexpr (detail::Searches<Index, Rays, Test<Rays, Hits>, Hits>) {
       index_.closest(rays, test, nearest);
     } else {
@@ -185,20 +186,57 @@ class TriangleMesh {
  private:
   friend class DeformingMesh;
 
+  using Corners = std::array<std::uint16_t, 3>;  ///< vertex indices of a triangle in its block
+  static_assert(3 * detail::chunk_size < 0xFFFF);
+
+  /// Corners of the block of a triangle.
+  [[nodiscard]] const Vec3* block_corners(std::size_t place) const noexcept {
+    return corners_.data() + first_corners_[place / detail::chunk_size];
+  }
+  [[nodiscard]] static TriangleRef triangle_in(const Vec3* corners, const Corners& triangle) noexcept {
+    return {corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
+  }
+
   /// Leaf test and prefetch of the index.
   template <class Rays, class Hits>
   struct Test {
     const TriangleMesh& mesh;
     const Rays& rays;
     Hits& nearest;
+    LineTest line;  ///< of a single ray
+
+    Test(const TriangleMesh& of, const Rays& by, Hits& found) noexcept
+        : mesh(of), rays(by), nearest(found), line(alone() ? LineTest(by, of.bounds()) : LineTest()) {}
+
+    [[nodiscard]] bool alone() const noexcept {
+      if constexpr (Rays::capacity == 1)
+        return true;
+      else
+        return rays.size == 1;
+    }
 
     void operator()(std::span<const PrimitiveIndex> primitives) const noexcept {
-      const std::size_t place = place_of(primitives);
-      const auto triangle_of = [&](std::size_t n) noexcept { return mesh.triangle_at(place + n); };
-      intersect(primitives, triangle_of, rays, nearest);
+      const std::size_t place = place_of(primitives), room = alone() ? simd::lane_count : primitives.size();
+      if (primitives.size() - 1 >= std::min(room, detail::chunk_size - place % detail::chunk_size)) [[unlikely]]
+        return in_pieces(primitives, room);  // or none
+      const Vec3* const corners = mesh.block_corners(place);
+      const Corners* const triangles = mesh.triangles_.data() + place;
+      const auto triangle_of = [&](std::size_t n) noexcept { return TriangleMesh::triangle_in(corners, triangles[n]); };
+      if (!alone()) return intersect(primitives, triangle_of, rays, nearest);
+      const TrianglePacket packet(primitives.size(), triangle_of);
+      if (line.may_meet(packet)) intersect(packet, primitives, rays, nearest);
+    }
+    /// Tests up to `room` primitives of one block at a time.
+    [[gnu::noinline]] void in_pieces(std::span<const PrimitiveIndex> primitives, std::size_t room) const noexcept {
+      while (!primitives.empty()) {
+        const std::size_t count = std::min({primitives.size(), room, detail::chunk_size - place_of(primitives) % detail::chunk_size});
+        (*this)(primitives.first(count));
+        if constexpr (EndsEarly<Hits>)
+          if (nearest.done()) return;
+        primitives = primitives.subspan(count);
+      }
     }
     void prefetch(std::span<const PrimitiveIndex> primitives) const noexcept {
-      pulsecast::prefetch(primitives.data());
       pulsecast::prefetch(mesh.triangles_.data() + place_of(primitives));
     }
 
@@ -208,9 +246,8 @@ class TriangleMesh {
   };
 
   [[nodiscard]] Triangle triangle_at(std::size_t place) const noexcept {
-    const Vec3* const corners = corners_.data() + first_corners_[place / detail::chunk_size];
-    const auto& triangle = triangles_[place];
-    return {corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
+    const TriangleRef triangle = triangle_in(block_corners(place), triangles_[place]);
+    return {triangle.a, triangle.b, triangle.c};
   }
 
   /// Boxes of the triangles, computed on access.
@@ -252,42 +289,6 @@ class TriangleMesh {
     return all;
   }
 
-  using Corners = std::array<std::uint16_t, 3>;  ///< vertex indices of a triangle in its block
-  static_assert(3 * detail::chunk_size < 0xFFFF);
-
-  /// Hash table of the unique corners of a block.
-  class CornerTable {
-   public:
-    explicit CornerTable(std::size_t triangles) : places_(std::bit_ceil(4 * triangles)) {
-      std::fill(places_.begin(), places_.end(), nowhere);
-      corners_.reserve(triangles);
-    }
-
-    [[nodiscard]] std::uint16_t number_of(const Vec3& corner) {
-      const auto bits = std::bit_cast<Bits>(corner);
-      // multiplicative hashing. Source: Knuth 1998, sec. 6.4
-      std::uint64_t hash = 0;
-      for (const std::uint64_t word : bits) hash = (hash ^ hash >> 32 ^ word) * 0x9E3779B97F4A7C15;
-      for (std::size_t i = hash >> 32;; ++i) {
-        std::uint16_t& place = places_[i & (places_.size() - 1)];
-        if (place == nowhere) {
-          place = static_cast<std::uint16_t>(corners_.size());
-          corners_.push_back(corner);
-        }
-        if (std::bit_cast<Bits>(corners_[place]) == bits) return place;
-      }
-    }
-
-    [[nodiscard]] std::vector<Vec3> corners() && noexcept { return std::move(corners_); }
-
-   private:
-    using Bits = std::array<std::uint64_t, 3>;
-    static constexpr std::uint16_t nowhere = 0xFFFF;
-
-    SharedBuffer<std::uint16_t> places_;
-    std::vector<Vec3> corners_;
-  };
-
   /// Stores triangles and corners in the index's order, block by block.
   void arrange(const MeshData& data, Workers workers) {
     const auto order = index_.order();
@@ -297,7 +298,7 @@ class TriangleMesh {
     const SharedBuffer<Corners> triangles(order.size());
     std::vector<std::vector<Vec3>> parts(detail::chunk_count(order.size()));
     detail::for_each_chunk(order.size(), workers, [&](std::size_t block, std::size_t begin, std::size_t end) {
-      CornerTable table(end - begin);
+      detail::CornerTable table(end - begin);
       for (std::size_t place = begin; place < end; ++place) {
         places[order[place]] = static_cast<std::uint32_t>(place);
         const auto& corners = data.triangles[order[place]];
