@@ -60,7 +60,7 @@ class Scene {
       unused.boxes_[i] = detail::placed_box(part.placement, visit_shape(bounds, part.geometry));
     }
     unused.refit_.update(index_, refit_, unused.boxes_, unused.index_, workers);
-    unused.alone_ = alone_;
+    unused.note_single_part();
     return std::move(unused);
   }
 
@@ -160,7 +160,12 @@ class Scene {
   /// Refuses moving parts, or leaves them out of the index.
   Scene(std::vector<Part> parts, Motions motions, const Workers& workers)
       : parts_(placed(std::move(parts))), index_(boxes(parts_, motions), workers, 1) {
+    note_single_part();
+  }
+
+  void note_single_part() noexcept {
     alone_ = parts_.size() == 1 && !parts_[0].motion;
+    in_place_ = alone_ && parts_[0].placement.identity();
   }
 
   static std::vector<Part> placed(std::vector<Part> parts) {
@@ -197,7 +202,9 @@ class Scene {
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
       for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, hits);
     };
-    if (alone_)
+    if (in_place_)
+      closest_in(0, rays, hits);
+    else if (alone_)
       closest_in(0, parts_[0].placement, rays, hits);  // shapes test their own bounds
     else
       index_.closest(rays, test, hits);
@@ -216,11 +223,13 @@ class Scene {
 
   template <class Rays, class Hits>
   void closest_in(std::size_t part, const Similarity& placement, const Rays& rays, Hits& nearest) const noexcept {
+    placement.identity() ? closest_in(part, rays, nearest) : closest_in(part, placement.to_local(rays), nearest);
+  }
+  /// `local` are rays in the frame of the part.
+  template <class Rays, class Hits>
+  void closest_in(std::size_t part, const Rays& local, Hits& nearest) const noexcept {
     nearest.part = std::uint64_t{part} << 32;
-    const auto closest = [&](const Rays& local) noexcept {
-      visit_shape([&](const auto& shape) noexcept { detail::offer_hits(*shape, local, nearest); }, parts_[part].geometry);
-    };
-    placement.identity() ? closest(rays) : closest(placement.to_local(rays));
+    visit_shape([&](const auto& shape) noexcept { detail::offer_hits(*shape, local, nearest); }, parts_[part].geometry);
   }
 
   /// Surface data of a primitive, for the hits on it.
@@ -280,6 +289,7 @@ class Scene {
   std::vector<Part> parts_;
   Bvh<float> index_;
   bool alone_ = false;      ///< true for a single part, static
+  bool in_place_ = false;   ///< true for such a part without a placement
   std::vector<Box> boxes_;  ///< box of each part of a scene made by `with_placements`
   BvhRefit<float> refit_;
 };
