@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
@@ -140,6 +141,13 @@ class Bundles {
     return rays;
   }
 
+  /// The first ray of bundle i, alone.
+  [[nodiscard]] BundleOfOne ray(std::size_t i) const noexcept {
+    const BundleOrigin& from = origins_[i];
+    const double* const d = directions_.data() + first_[i];
+    return BundleOfOne(Ray{.origin = from.origin, .direction = {d[0], d[from.size], d[2 * from.size]}, .near = from.near});
+  }
+
   /// Some of them, from everywhere among them.
   [[nodiscard]] Bundles sample(std::size_t count) const {
     Bundles some;
@@ -198,6 +206,18 @@ double sum_of_ranges(const Shape& shape, const Bundles& all) noexcept {
   return sum;
 }
 
+/// As above, each bundle's first ray alone.
+template <class Shape>
+double sum_of_single_ranges(const Shape& shape, const Bundles& all) noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    ClosestHit nearest(std::numeric_limits<double>::infinity());
+    shape.closest(all.ray(i), nearest);
+    sum += nearest.met(0) ? nearest.range : 0;
+  }
+  return sum;
+}
+
 /// What every ray of some bundles meets: range, and number of the primitive.
 struct Answer {
   double range;
@@ -212,6 +232,17 @@ template <class Shape>
     ClosestHits nearest(rays);
     shape.closest(rays, nearest);
     for (std::size_t j = 0; j < rays.size; ++j) found.push_back({nearest.range[j], nearest.id[j]});
+  }
+  return found;
+}
+/// As above, each bundle's first ray alone.
+template <class Shape>
+[[nodiscard]] std::vector<Answer> single_answers(const Shape& shape, const Bundles& all) {
+  std::vector<Answer> found;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    ClosestHit nearest(std::numeric_limits<double>::infinity());
+    shape.closest(all.ray(i), nearest);
+    found.push_back({nearest.range, nearest.id});
   }
   return found;
 }

@@ -5,8 +5,9 @@
 // on the same rays, by turns in the same run. A row is printed only once the accelerator has given the same answers as `Linear`, bit by
 // bit, on a sample; of Embree it is printed how many of its ranges agree.
 //
-// Rows are named scene/subrays/accelerator: `--only '*/19/Bvh<float>' --only '*/19/Embree*'`. An OBJ file in metres, if one is given, is
-// scanned as a scene of its own. A beam's ratio is to the best of Embree's rows; a single ray's, to the best of `rtcIntersect1`.
+// Rows are named scene/subrays/accelerator, with `alone` for a `BundleOfOne` in place of a bundle: `--only '*/19/Bvh<float>' --only
+// '*/19/Embree*'`. An OBJ file in metres, if one is given, is scanned as a scene of its own. A beam's ratio is to the best of Embree's
+// rows; a single ray's, to the best of `rtcIntersect1`.
 
 #include <cmath>
 #include <cstddef>
@@ -41,12 +42,20 @@ struct Subject {
   std::string name;
   std::function<double(const Bundles&)> trace;
   std::function<std::vector<Answer>(const Bundles&)> answers;
+  bool single = false;  ///< takes single rays only
 };
 
 template <class Shape>
 Subject subject(const std::string& name, std::shared_ptr<const Shape> shape) {
   return {name, [shape](const Bundles& all) { return sum_of_ranges(*shape, all); },
           [shape](const Bundles& all) { return bench::answers(*shape, all); }};
+}
+
+/// The same shape, asked by single rays.
+template <class Shape>
+Subject single_subject(const std::string& name, std::shared_ptr<const Shape> shape) {
+  return {name, [shape](const Bundles& all) { return sum_of_single_ranges(*shape, all); },
+          [shape](const Bundles& all) { return single_answers(*shape, all); }, true};
 }
 
 struct Course {
@@ -121,6 +130,8 @@ class Races {
  public:
   Races(Report& report, const Course& course) : report_(report), course_(course), groups_(groups(course)) {
     add<Bvh<float>>("Bvh<float>");
+    if (wanted("Bvh<float> alone"))
+      subjects_.push_back(single_subject("Bvh<float> alone", std::make_shared<const TriangleMesh<>>(course_.mesh)));
     add<Bvh<double>>("Bvh<double>");
     add<KdTree<float>>("KdTree<float>");
     add<KdTree<double>>("KdTree<double>");
@@ -169,7 +180,7 @@ class Races {
     [[maybe_unused]] const Subject* checked = nullptr;
     for (const Subject& subject : subjects_) {
       const std::string name = group.name + "/" + subject.name;
-      if (!report_.wanted(name)) continue;
+      if (!report_.wanted(name) || (subject.single && group.subrays > 1)) continue;
       check(group, subject, expected, some);
       checked = &subject;
       names.push_back(name);
