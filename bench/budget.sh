@@ -73,6 +73,7 @@ awk -v levels="$levels" '
   FNR == NR && $1 == "limit" { limit = $2; limits++; next }
   FNR == NR && /^#/ { next }
   FNR == NR { record[$1] = $0; next }
+  { counted[$1] = $0 }
   {
     if (!($1 in record)) { print $1 ": not on record"; above = 1; next }
     split(record[$1], recorded, " ")
@@ -85,6 +86,10 @@ awk -v levels="$levels" '
     }
   }
   END {
+    split(counted["glossy_surfaces"], glossy, " ")
+    split(counted["matt_surfaces"], matt, " ")
+    for (i = 1; i in level; ++i)
+      if (matt[i + 1] > 0) printf "glossy over matt %-8s %.3f\n", level[i], glossy[i + 1] / matt[i + 1]
     for (part in record) { print part ": on record, but not counted"; above = 1 }
     if (limits != 1) { print "bench/budget.txt has no limit"; above = 1 }
     exit above

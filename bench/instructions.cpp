@@ -86,6 +86,11 @@ extern "C" {
   return sum;
 }
 
+/// The survey of Lambertian surfaces that `budget_glossy_surfaces` makes of glossy ones.
+[[gnu::noinline]] double budget_matt_surfaces(const Scene<Mesh>& hills) {
+  return sum_of_echoes(Survey{airplane(3'000), SunflowerFootprint{19}, hills, Receiver{}, FullWaveform{}});
+}
+
 /// The survey of surfaces with a glossy lobe.
 [[gnu::noinline]] double budget_glossy_surfaces(const Scene<Mesh>& hills) {
   return sum_of_echoes(Survey{airplane(3'000), SunflowerFootprint{19}, hills, Receiver{}, FullWaveform{}});
@@ -108,6 +113,7 @@ int main() {
       MeshData{.vertices = {{-500, -500, 0}, {500, -500, 0}, {500, 500, 0}, {-500, 500, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
   std::printf("simple_scene %.9g\n", budget_simple_scene(scene_of(plane, {})));
   std::printf("single_rays %.9g\n", budget_single_rays(town, rays_of_a_robot(6'000)));
+  std::printf("matt_surfaces %.9g\n", budget_matt_surfaces(scene_of(ground, {})));
   const Material glossy{.scattering = Scattering::phong, .specular_share = 0.5, .specular_exponent = 10};
   std::printf("glossy_surfaces %.9g\n", budget_glossy_surfaces(scene_of(ground, glossy)));
 }

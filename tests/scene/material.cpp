@@ -41,6 +41,44 @@ TEST_CASE("a surface by Phong's law has a glossy lobe about the mirror direction
   CHECK(m.backscatter(0, nir) == 0);
 }
 
+TEST_CASE("rays of a bundle see the glossy lobes that single rays see, beside surfaces without, and beside nothing") {
+  const Material glossy{.scattering = Scattering::phong, .specular_share = 0.4, .specular_exponent = 30}, matt{.reflectance = 0.3};
+  const Material dull{.reflectance = 0.9, .scattering = Scattering::phong, .specular_share = 0.7, .specular_exponent = 2.5};
+  const auto strip = [](double x, const Material& material) {
+    return Part<TriangleMesh<Linear<>>>{
+        .geometry = std::make_shared<const TriangleMesh<Linear<>>>(
+            MeshData{.vertices = {{x, -9, 0}, {x + 1, -9, 0}, {x + 1, 9, 0}, {x, 9, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}}),
+        .materials = material_table({material})};
+  };
+  const Scene<TriangleMesh<Linear<>>> scene({strip(0, glossy), strip(1, matt), strip(2, dull), strip(4, glossy)});
+  for (std::size_t size = 2; size <= RayBundle::capacity; ++size) {
+    RayBundle rays;
+    rays.origin = {2.5, 0, 2};
+    rays.size = size;
+    for (std::size_t j = 0; j < size; ++j) {
+      const double aside = -2.49 + 4.98 * static_cast<double>(j) / static_cast<double>(size - 1), length = std::hypot(aside, 2);
+      rays.set_direction(j, {aside / length, 0, -2 / length});
+    }
+    rays.pad();
+    std::vector<Hit> hits(size);
+    scene.closest(rays, hits);
+    for (std::size_t j = 0; j < size; ++j) {
+      CAPTURE(size);
+      CAPTURE(j);
+      const double x = 2.5 + 2 * rays.x[j] / -rays.z[j];
+      if (x > 3 && x < 4) {
+        REQUIRE(!hits[j].met());
+        continue;
+      }
+      const Material& material = x < 1 || x > 4 ? glossy : x < 2 ? matt : dull;
+      const double c = hits[j].cos_incidence, lobe = std::pow(std::fmax(2 * c * c - 1, 0), material.specular_exponent);
+      const double share = material.scattering == Scattering::phong ? material.specular_share : 0;
+      REQUIRE(hits[j].backscatter == support::relative(material.reflectance * ((1 - share) * c + share * lobe), 1e-13));
+      REQUIRE(hits[j].backscatter == material.backscatter(c, nir));
+    }
+  }
+}
+
 TEST_CASE("Phong's law without a glossy share is Lambert's") {
   const Material phong{.reflectance = 0.5, .scattering = Scattering::phong, .specular_share = 0}, lambert{.reflectance = 0.5};
   for (double cosine = 0; cosine <= 1; cosine += 0.05) CHECK(phong.backscatter(cosine, nir) == lambert.backscatter(cosine, nir));

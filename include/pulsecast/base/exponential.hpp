@@ -10,6 +10,9 @@
 
 #include <pulsecast/base/simd.hpp>
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // of vectors wider than a register
+
 namespace pulsecast {
 
 /// Exponential function e^x of a number or of all lanes of a vector; 0 for x below -708. Relative error at most 4e-16 for |x| up to 708.
@@ -34,5 +37,7 @@ requires std::same_as<Number, double> || std::same_as<Number, simd::Vec<double, 
 }
 
 }  // namespace pulsecast
+
+#pragma GCC diagnostic pop
 
 #endif

@@ -14,10 +14,12 @@
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/simd.hpp>
 
-/// Elementary functions of a number or of all lanes of a vector. A lane does not depend on the others, nor on their number: it has the bits
-/// that the plain number gives. Bits agree between instruction sets while products and sums are not contracted (`-ffp-contract=off`);
-/// with contraction the errors below hold, but the last bits differ. Tables and branches by lane are absent. Errors are in units in the
-/// last place of the result (ulp). All are inlined, as vectors wider than a register have no stable calling convention.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // of vectors wider than a register: all functions are inlined, so that none is passed
+
+/// Elementary functions of a number or of all lanes of a vector, without tables and branches by lane. Without contraction of products and
+/// sums (`-ffp-contract=off`), a lane has the bits that the plain number gives, whatever the number of lanes and the instruction set. With
+/// contraction the errors below hold, but the last bits differ. Errors are in units in the last place of the result (ulp).
 namespace pulsecast::simd {
 
 namespace detail {
@@ -194,23 +196,31 @@ template <class V>
   return x == x ? (y == y ? detail::with_sign(angle, y) : nan) : nan;
 }
 
-/// Natural logarithm; error at most 1 ulp. -infinity for +-0; NaN below 0. Source: fdlibm e_log.c.
+namespace detail {
+/// Natural logarithm of positive, normal, finite numbers; error at most 1 ulp. Source: fdlibm e_log.c.
 template <class V>
-[[nodiscard, gnu::always_inline]] inline V log(const V& x) noexcept {
-  using Ids = detail::Integers<V>;
-  constexpr double least = std::numeric_limits<double>::min(), infinity = std::numeric_limits<double>::infinity();
+[[nodiscard, gnu::always_inline]] inline V log_of_normal(const V& x) noexcept {
   constexpr std::int64_t one = 0x3ff0000000000000, root_half = 0x3fe6a09e00000000, fraction = 0x000fffffffffffff;
-  const V zero{};
-  const auto subnormal = x < least;
-  const Ids shifted = detail::bits_of(subnormal ? V(x * 0x1p54) : x) + (one - root_half);
-  const V exponent = std::bit_cast<V>(static_cast<Ids>(((shifted >> 52) & 0xfff) | 0x4330000000000000)) - (0x1p52 + 1023);
-  const V k = subnormal ? exponent - 54.0 : exponent;
-  const V f = std::bit_cast<V>(static_cast<Ids>((shifted & fraction) + root_half)) - 1.0;
+  const Integers<V> shifted = bits_of(x) + (one - root_half);
+  const V k = std::bit_cast<V>(static_cast<Integers<V>>(((shifted >> 52) & 0xfff) | 0x4330000000000000)) - (0x1p52 + 1023);
+  const V f = std::bit_cast<V>(static_cast<Integers<V>>((shifted & fraction) + root_half)) - 1.0;
   const V s = f / (2.0 + f), z = s * s, w = z * z, half_square = 0.5 * f * f;
   const V r =
       w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)) +
       z * (6.666666666666735130e-01 + w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
-  const V value = k * 6.93147180369123816490e-01 - ((half_square - (s * (half_square + r) + k * 1.90821492927058770002e-10)) - f);
+  return k * 6.93147180369123816490e-01 - ((half_square - (s * (half_square + r) + k * 1.90821492927058770002e-10)) - f);
+}
+}  // namespace detail
+
+/// Natural logarithm; error at most 1 ulp. -infinity for +-0; NaN below 0. Source: as of `log_of_normal`.
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V log(const V& x) noexcept {
+  constexpr double least = std::numeric_limits<double>::min(), infinity = std::numeric_limits<double>::infinity();
+  constexpr double binades = 54 * 6.93147180559945309417e-01;
+  const V zero{};
+  const auto subnormal = x < least;
+  const V scaled = detail::log_of_normal(subnormal ? V(x * 0x1p54) : x);
+  const V value = subnormal ? scaled - binades : scaled;
   const V edge = x == infinity ? x : (x == 0.0 ? zero - infinity : zero + std::numeric_limits<double>::quiet_NaN());
   return x > 0.0 ? (x < infinity ? value : edge) : edge;
 }
@@ -266,5 +276,7 @@ template <class V>
 }
 
 }  // namespace pulsecast::simd
+
+#pragma GCC diagnostic pop
 
 #endif

@@ -3,12 +3,14 @@
 #ifndef PULSECAST_SCENE_MATERIAL_HPP
 #define PULSECAST_SCENE_MATERIAL_HPP
 
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
 
+#include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/simd.hpp>
+#include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
 namespace pulsecast {
@@ -29,10 +31,20 @@ struct Backscatter {
 
   /// Backscatter towards the source at a cosine of incidence in [0, 1].
   [[nodiscard]] double operator()(double cos_incidence) const noexcept {
-    const double rough = cosine * cos_incidence + even;
-    if (lobe == 0) return reflectance * rough;
-    const double cos_to_mirror = 2 * cos_incidence * cos_incidence - 1;
-    return reflectance * (rough + (cos_to_mirror > 0 ? lobe * std::pow(cos_to_mirror, exponent) : 0));
+    if (lobe == 0) return reflectance * rough(cos_incidence);
+    const simd::Doubles none{};  // a register for one number, so that a bundle gives the same bits
+    return reflectance * (rough(cos_incidence) + specular(none + cos_incidence, none + lobe, none + exponent)[0]);
+  }
+
+  /// Angular law of the shares without the lobe.
+  [[nodiscard]] double rough(double cos_incidence) const noexcept { return cosine * cos_incidence + even; }
+
+  /// Angular law of the lobes, by lane. Error at most 1e-14 of `lobe`.
+  [[nodiscard]] static simd::Doubles specular(const simd::Doubles& cos_incidence, const simd::Doubles& lobe,
+                                              const simd::Doubles& exponent) noexcept {
+    const simd::Doubles cos_to_mirror = 2 * cos_incidence * cos_incidence - 1;
+    const simd::Doubles power = exponential(simd::Doubles(exponent * simd::detail::log_of_normal(cos_to_mirror)));
+    return cos_to_mirror > 0 ? lobe * power : simd::Doubles{};
   }
 };
 

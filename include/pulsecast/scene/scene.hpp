@@ -20,6 +20,7 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/scene/detail/ray_queries.hpp>
+#include <pulsecast/scene/detail/specular_lobes.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 
@@ -262,6 +263,7 @@ class Scene {
     // neighbouring rays often meet the same part and primitive: the sample is reused
     std::uint64_t known = ClosestHits::none;
     SurfaceSample sample;
+    detail::SpecularLobes lobes;
     constexpr std::size_t nothing = std::size_t(-1);
     std::size_t at = nothing;  // part of the frame of `local`
     const RayBundle* local = &rays;
@@ -282,8 +284,11 @@ class Scene {
       }
       const double projection = std::fabs(dot(sample.normal, local->direction(j)));
       const double cosine = projection > 1 ? 1 : projection > sample.min_cosine ? projection : sample.min_cosine;
-      hits[j] = {nearest.range[j], cosine, sample.backscatter(cosine), sample.object, sample.classification};
+      const Backscatter& law = sample.backscatter;
+      hits[j] = {nearest.range[j], cosine, law.reflectance * law.rough(cosine), sample.object, sample.classification};
+      if (law.lobe != 0) lobes.note(j, rays, law, hits[j]);
     }
+    lobes.add_to(hits, rays.size);
   }
 
   std::vector<Part> parts_;
