@@ -6,12 +6,26 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
+#include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/deflector/rotating_head.hpp>
+#include <pulsecast/platform/legs.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/pose_errors.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/any_source.hpp>
+#include <pulsecast/scanner/channels.hpp>
+#include <pulsecast/scanner/scanner.hpp>
 
 #include <doctest/doctest.h>
 
 #include "support/archetypes.hpp"
+#include "support/generators.hpp"
+#include "support/laws.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::support;
@@ -23,7 +37,7 @@ namespace {
   struct Model##_by_##name {       \
     __VA_ARGS__;                   \
   };                               \
-  static_assert(!detail::Model##OrAbsent<Model##_by_##name>, #name)
+  static_assert(!pulsecast::detail::Model##OrAbsent<Model##_by_##name>, #name)
 
 MISSPELT(Validating, check, void check() const);
 MISSPELT(Validating, verify, void verify() const);
@@ -49,6 +63,21 @@ MISSPELT(Gated, gate, bool gate(Tick) const noexcept);
 MISSPELT(Gated, transmits, bool transmits(Tick) const noexcept);
 MISSPELT(Gated, seconds, bool open(const Vec3&) const noexcept);
 MISSPELT(Gated, number, int open(Tick) const noexcept);
+MISSPELT(ForeseesOpening, next_opening, Tick next_opening(Tick) const noexcept);
+MISSPELT(ForeseesOpening, opens_next, Tick opens_next(Tick) const noexcept);
+MISSPELT(ForeseesOpening, opens_at, Tick opens_at(Tick) const noexcept);
+MISSPELT(ForeseesOpening, open_after, Tick open_after(Tick) const noexcept);
+MISSPELT(ForeseesOpening, seconds, double next_open(Tick) const noexcept);
+MISSPELT(FindsSlots, slot_at, PulseIndex slot_at(Tick) const noexcept);
+MISSPELT(FindsSlots, slot_after, PulseIndex slot_after(Tick) const noexcept);
+MISSPELT(FindsSlots, first_slot, PulseIndex first_slot(Tick) const noexcept);
+MISSPELT(FindsSlots, slot_of, PulseIndex slot_of(Tick) const noexcept);
+MISSPELT(FindsSlots, throwing, PulseIndex slot_from(Tick) const);
+MISSPELT(SkipsBlocked, next_slot, PulseIndex next_slot(PulseIndex) const noexcept);
+MISSPELT(SkipsBlocked, pulse_after, PulseIndex pulse_after(PulseIndex) const noexcept);
+MISSPELT(SkipsBlocked, skip_blocked, PulseIndex skip_blocked(PulseIndex) const noexcept);
+MISSPELT(SkipsBlocked, next_open, PulseIndex next_open(PulseIndex) const noexcept);
+MISSPELT(SkipsBlocked, changing, PulseIndex next_pulse(PulseIndex) noexcept);
 MISSPELT(DrawsByLeg, draw_leg, void draw_leg(std::uint32_t));
 MISSPELT(DrawsByLeg, draw_by_leg, void draw_by_leg(std::uint32_t));
 MISSPELT(DrawsByLeg, draw_of_leg, void draw_of_leg(std::uint32_t));
@@ -146,6 +175,38 @@ struct Speedometer : LeastDetector {
 
 }  // namespace
 
+TEST_CASE("every stage passes over blocked slots, and over no other") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    Generator any(seed);
+    const auto deflected = [&] {
+      const double low = any.uniform(-pi / 3, pi / 3);
+      return Deflector{RotatingHead{}, Deflector{PolygonMirror{.sweep = pi / 3, .angle_min = low, .angle_max = any.uniform(low, pi / 2)},
+                                                 Scanner{.pulses = 20'000}}};
+    };
+    using Mirror = decltype(deflected());
+    using Fixed = Deflector<FixedBeam, Scanner>;
+    std::vector<AnySource<Mirror, Fixed>> sources;
+    for (std::uint64_t k = any.whole(4) + 1; k > 0; --k) sources.emplace_back(deflected());
+    if (seed % 5 == 0) sources.emplace_back(Fixed{FixedBeam{}, Scanner{.pulses = 20'000}});
+    const Channels channels{sources};
+    CHECK(source_laws(channels) == "");
+    const Legs legs{std::vector<Leg<decltype(WithPoseErrors{Platform{Tripod{}, Mount{}, channels}, PoseErrors{}})>>{
+        {WithPoseErrors{Platform{Tripod{}, Mount{}, channels}, PoseErrors{}}},
+        {WithPoseErrors{Platform{Tripod{}, Mount{}, channels}, PoseErrors{}}}}};
+    CHECK(source_laws(legs) == "");
+    PulseIndex pulses = 0, found = 0, visits = 0;
+    for (PulseIndex i = 0; i < legs.size(); ++i) pulses += legs.pulse(i).has_value();
+    for (PulseIndex i = 0; i < legs.size(); ++visits) {
+      const bool open = legs.pulse(i++).has_value();
+      found += open;
+      if (!open && i < legs.size()) i = legs.next_pulse(i);
+    }
+    CHECK(found == pulses);
+    CHECK(visits < 2 * pulses + legs.size() / 50);  // of channels that open at different times, a blocked slot may follow each pulse
+  }
+}
+
 TEST_CASE("a constant that is false is as one that is absent, and both pass the checks") {
   CHECK(FlatGeometry<Shape<true>>);
   CHECK_FALSE(FlatGeometry<Shape<false>>);
@@ -159,12 +220,12 @@ TEST_CASE("a constant that is false is as one that is absent, and both pass the 
   CHECK(ReadsVelocity<Speedometer<true>>);
   CHECK_FALSE(ReadsVelocity<Speedometer<false>>);
   CHECK_FALSE(ReadsVelocity<LeastDetector>);
-  CHECK(detail::FlatConstantCheck<Shape<false>>::passed);
-  CHECK(detail::FlatConstantCheck<LeastGeometry>::passed);
-  CHECK(detail::RecordedConstantCheck<Pattern<false>>::passed);
-  CHECK(detail::RecordedConstantCheck<LeastFootprint>::passed);
-  CHECK(detail::ListensConstantCheck<Listener<false>>::passed);
-  CHECK(detail::ListensConstantCheck<LeastDetector>::passed);
-  CHECK(detail::VelocityConstantCheck<Speedometer<false>>::passed);
-  CHECK(detail::VelocityConstantCheck<LeastDetector>::passed);
+  CHECK(pulsecast::detail::FlatConstantCheck<Shape<false>>::passed);
+  CHECK(pulsecast::detail::FlatConstantCheck<LeastGeometry>::passed);
+  CHECK(pulsecast::detail::RecordedConstantCheck<Pattern<false>>::passed);
+  CHECK(pulsecast::detail::RecordedConstantCheck<LeastFootprint>::passed);
+  CHECK(pulsecast::detail::ListensConstantCheck<Listener<false>>::passed);
+  CHECK(pulsecast::detail::ListensConstantCheck<LeastDetector>::passed);
+  CHECK(pulsecast::detail::VelocityConstantCheck<Speedometer<false>>::passed);
+  CHECK(pulsecast::detail::VelocityConstantCheck<LeastDetector>::passed);
 }

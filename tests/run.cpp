@@ -199,6 +199,39 @@ TEST_CASE("a run hands out what the survey says of each pulse, and nothing for b
   CHECK(double_echoes > 0);
 }
 
+/// Every thousandth slot has a pulse, and the source knows which.
+struct Drips : Rain {
+  std::atomic<PulseIndex>* visits;
+  std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+    ++*visits;
+    return i % 1000 == 999 ? Rain::pulse(i) : std::nullopt;
+  }
+  PulseIndex next_pulse(PulseIndex i) const noexcept { return std::min(pulses, i / 1000 * 1000 + 999); }
+};
+static_assert(WorldSource<Drips> && SkipsBlocked<Drips>);
+
+TEST_CASE("a run counts the blocked slots that a survey passes over, and visits few of them") {
+  std::atomic<PulseIndex> visits = 0;
+  const Survey survey{Drips{{.pulses = 1'000'500}, &visits}, SingleRay{}, steps, Receiver{}, FirstHit{}};
+  for (const RunOptions& options : {RunOptions{}, RunOptions{.first = 777, .end = 900'001, .stride = 7}, RunOptions{.stride = 5000}}) {
+    CAPTURE(options.stride);
+    visits = 0;
+    PulseIndex shots = 0;
+    const RunSummary summary = run(survey, options, [&](const EchoBatch& batch) {
+      shots += batch.shots.size();
+      for (const Shot& shot : batch.shots) CHECK(shot.index % 1000 == 999);
+    });
+    const RunSlots slots = options.slots(survey.size());
+    PulseIndex pulses = 0;
+    for (PulseIndex n = 0; n < slots.count; ++n) pulses += slots[n] % 1000 == 999;
+    CHECK(summary.complete);
+    CHECK(summary.slots == slots.count);
+    CHECK(shots == pulses);
+    CHECK(summary.pulses() == pulses);
+    if (options.stride < 1000) CHECK(visits < 5000);
+  }
+}
+
 TEST_CASE("a part of the pulses gives the part of the result") {
   const auto survey = small_survey();
   Cloud whole, middle, preview;

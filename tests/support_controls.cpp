@@ -61,6 +61,18 @@ struct ThreadDiffers {
   BeamPose at(Tick) const noexcept { return {no_rotation, {std::this_thread::get_id() == maker ? 0.0 : 1.0, 0, 0}}; }
 };
 
+struct OpensEarly : LeastOptic {
+  bool open(Tick t) const noexcept { return t.fraction < 0.5; }
+  Tick next_open(Tick t) const noexcept { return {t.second + 2, 0}; }
+};
+struct OpensInThePast : OpensEarly {
+  Tick next_open(Tick t) const noexcept { return {t.second - 1, 0}; }
+};
+struct Skips : LeastSource<frame::Beam> {
+  PulseIndex by;
+  explicit Skips(int slots) : by(static_cast<PulseIndex>(slots)) {}
+  PulseIndex next_pulse(PulseIndex i) const noexcept { return i + by; }
+};
 struct NotUnit {
   BeamPose at(Tick t) const noexcept { return {Rotation{1 + 1e-9 * t.seconds(), 0, 0, 0}, {}}; }
 };
@@ -317,6 +329,8 @@ TEST_CASE("motions that keep the law pass, and those that break it do not") {
   CHECK(names(motion_laws(CopyDiffers{}, ticks), "copy"));
   CHECK(names(motion_laws(ThreadDiffers{}, ticks), "threads"));
   CHECK(names(motion_laws(FlickeringGate{}, std::span(ticks).first(3)), "gate"));
+  CHECK(names(motion_laws(OpensEarly{}, ticks), "open before its opening"));
+  CHECK(names(motion_laws(OpensInThePast{}, ticks), "is before it"));
   CHECK(names(motion_laws(NotUnit{}, ticks), "not rigid"));
   CHECK(names(motion_laws(NotFinite{}, ticks), "not rigid"));
 }
@@ -335,6 +349,8 @@ TEST_CASE("sources that keep the law pass, and those that break it do not") {
   static int asked = 0;
   CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->pose.position.x = 1e-9 * ++asked; })), "differs"));
   CHECK(names(source_laws(Hurried{}), "duration"));
+  CHECK(names(source_laws(Skips{+2}), "is skipped"));
+  CHECK(names(source_laws(Skips{-1}), "the next pulse after 0 is"));
 }
 
 TEST_CASE("wrappers that keep the law pass, and those that break it do not") {

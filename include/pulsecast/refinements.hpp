@@ -55,6 +55,33 @@ concept Gated = requires(const M m, Tick t) {
 };
 PULSECAST_OPTIONAL_MEMBER(Gated, "bool open(Tick) const noexcept", open, (Tick{}), is_open, opened, gate, transmits)
 
+/// Gated optic or head that foresees its opening, as `PolygonMirror`, so that a run passes over slots without a visit.
+/// Law: `open` is false from t up to, but not at, `next_open(t)`, which is not before t. It may be early, and is t if nothing is foreseen.
+template <class M>
+concept ForeseesOpening = requires(const M m, Tick t) {
+  { m.next_open(t) } noexcept -> std::same_as<Tick>;
+};
+PULSECAST_OPTIONAL_MEMBER(ForeseesOpening, "Tick next_open(Tick) const noexcept", next_open, (Tick{}), next_opening, opens_next, opens_at,
+                          open_after)
+
+/// Source that finds slots by time, as `Scanner`.
+/// Law: all slots before `slot_from(t)` are at times before t; it may be early, and is at most `size()`.
+template <class S>
+concept FindsSlots = requires(const S s, Tick t) {
+  { s.slot_from(t) } noexcept -> std::same_as<PulseIndex>;
+};
+PULSECAST_OPTIONAL_MEMBER(FindsSlots, "PulseIndex slot_from(Tick) const noexcept", slot_from, (Tick{}), slot_at, slot_after, first_slot,
+                          slot_of)
+
+/// Source or survey that passes over blocked slots. `run` asks it after each blocked slot, and counts those between without a visit.
+/// Law: for i below `size()`, all slots from i up to, but not at, `next_pulse(i)` are blocked; it is at least i and at most `size()`.
+template <class S>
+concept SkipsBlocked = requires(const S& s, PulseIndex i) {
+  { s.next_pulse(i) } noexcept -> std::same_as<PulseIndex>;
+};
+PULSECAST_OPTIONAL_MEMBER(SkipsBlocked, "PulseIndex next_pulse(PulseIndex) const noexcept", next_pulse, (PulseIndex{}), next_slot,
+                          pulse_after, skip_blocked, next_open)
+
 /// Source with random errors, as `WithPoseErrors`. `Legs` passes each of its legs its place in the list, so that their draws are
 /// independent.
 /// Law: place 0 changes nothing.

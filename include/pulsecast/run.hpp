@@ -32,6 +32,9 @@ struct RunSlots {
 
   /// Slot number `n` of the run.
   [[nodiscard]] PulseIndex operator[](PulseIndex n) const noexcept { return first + n * stride; }
+
+  /// Number of the first slot of the run that is not before slot `i`, which is not before `first`.
+  [[nodiscard]] PulseIndex number_from(PulseIndex i) const noexcept { return (i - first) / stride + ((i - first) % stride > 0 ? 1 : 0); }
 };
 
 /// Options of a run.
@@ -122,6 +125,12 @@ struct ResultBuffer {
     }
     for (const SubrayHit& subray : outcome.subrays) subrays.push_back(subray);
     counts.echoes += outcome.echoes.size();
+  }
+
+  /// Counts blocked slots.
+  void append_blocked(PulseIndex slots) noexcept {
+    counts.slots += slots;
+    counts.fates[static_cast<std::size_t>(Fate::blocked)] += slots;
   }
 
   /// Batch for the sinks; valid until this buffer changes.
@@ -268,6 +277,23 @@ template <class Sink>
   return true;
 }
 
+/// Simulates the slots of a run from number `n` up to `end` into a chunk, with or without empty shots, or up to the first error.
+template <class Survey, class Workspace>
+void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIndex end, Workspace& workspace, bool empty_shots,
+              ResultChunk& chunk) {
+  static_assert(detail::SkipsBlockedCheck<Survey>::passed);
+  while (n < end && chunk.error == PulseError::none) {
+    const Outcome outcome = survey(slots[n++], workspace);
+    chunk.add(outcome, empty_shots);
+    if constexpr (SkipsBlocked<Survey>)
+      if (outcome.shot.fate == Fate::blocked && n < end) {
+        const PulseIndex next = std::min(end, slots.number_from(survey.next_pulse(slots[n])));
+        chunk.append_blocked(next - n);
+        n = next;
+      }
+  }
+}
+
 /// Reports a pulse with an error.
 [[noreturn]] inline void throw_pulse_error(PulseError error, const Shot& shot) {
   const std::string pulse = joined({"pulse ", std::to_string(shot.index), " at ", to_text(shot.tick.seconds()), " s"});
@@ -310,8 +336,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
       const Borrowed<detail::WorkspaceMemory<Survey>> memory(options.executor.memory(), survey);
       for (; chunk; chunk = buffer.next()) {
         const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots.count);
-        for (PulseIndex n = from; n < to && chunk->error == PulseError::none; ++n)
-          chunk->add(survey(slots[n], memory->workspace), empty_shots);
+        detail::simulate(survey, slots, from, to, memory->workspace, empty_shots, *chunk);
         buffer.finish(*chunk, deliver);
       }
     } catch (...) {

@@ -51,6 +51,7 @@ struct ReceiverUnit {
 /// of threads. Refers to the map, which must outlive it.
 template <WorldSource Source, Footprint Pattern, Target Map, Detector Instrument, Transport<Map> Light = DirectLight>
 class Survey {
+  static_assert(detail::SkipsBlockedCheck<Source>::passed);
   static_assert(!ReadsVelocity<Instrument> || TracesVelocity<Light, Map>,
                 "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as DirectLight has");
 
@@ -131,6 +132,9 @@ class Survey {
 
   /// Token that this survey shares with its copies alone: they may use each other's workspaces.
   [[nodiscard]] const std::shared_ptr<const void>& identity() const noexcept { return identity_; }
+
+  /// As the concept SkipsBlocked requires.
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> { return source_.next_pulse(i); }
 
   /// Simulates pulse i.
   [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {

@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/deflector/polygon_mirror.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/scanner/scanner.hpp>
 
 #include <doctest/doctest.h>
 
@@ -48,6 +52,52 @@ TEST_CASE("a polygon mirror's gate lets through the part of each line that it is
     open += mirror.open(t);
   }
   CHECK(std::abs(open - 120000 * 65 / 120) <= 100);  // the pulses at the very ends of the gate round either way
+}
+
+TEST_CASE("a polygon mirror foresees the moment at which the beam enters its gate") {
+  const PolygonMirror mirror{.lines_per_second = 100, .sweep = 60_deg, .angle_min = -30_deg, .angle_max = 45_deg};
+  const auto opens = [](const PolygonMirror& m, Tick t) { return m.next_open(t).seconds(); };
+  CHECK(opens(mirror, {0, 0}) == support::relative(0.0025, 1e-9));
+  CHECK(opens(mirror, {0, 0.004}) == 0.004);
+  CHECK(opens(mirror, {0, 0.009}) == support::relative(0.0125, 1e-9));
+  CHECK(opens({.lines_per_second = 100, .sweep = 60_deg, .angle_max = 0}, {5, 0.009}) == support::relative(5.01, 1e-12));
+}
+
+TEST_CASE("no slot before that of the foreseen opening is open, and few after it are closed") {
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    PolygonMirror mirror{.lines_per_second = any.log_uniform(1e-3, 1e6), .sweep = any.uniform(0, pi)};
+    mirror.angle_min = any.uniform(-1.2, 1) * mirror.sweep;
+    mirror.angle_max = any.uniform(mirror.angle_min, 1.2 * mirror.sweep);
+    if (any.coin()) mirror.sweep = pi / static_cast<double>(1 + any.whole(8));  // slots on the ends of lines
+    mirror.angle_min = std::clamp(mirror.angle_min, -pi, pi);
+    mirror.angle_max = std::clamp(mirror.angle_max, mirror.angle_min, pi);
+    const double rate = any.coin() ? mirror.lines_per_second * static_cast<double>(2 + any.whole(3000)) : any.log_uniform(1, 1e9);
+    const double fit = std::clamp(rate, 1.0, 1e12);
+    const Deflector device{mirror, Scanner{.pulse_rate = fit, .pulses = PulseIndex{1} << 48, .delay = any.uniform() * 0.9 / fit}};
+    for (int k = 0; k < 20; ++k) {
+      const PulseIndex i = any.whole(PulseIndex{1} << (8 + any.whole(39)));
+      CAPTURE(i);
+      const PulseIndex next = device.next_pulse(i);
+      REQUIRE(next >= i);
+      for (PulseIndex j = 0; j < 200 && i + j < next; ++j) {
+        REQUIRE(!device.pulse(i + j));
+        REQUIRE(!device.pulse(next - 1 - j));
+      }
+      const double lines_per_slot = mirror.lines_per_second / fit, share = 0.5 * (mirror.angle_max - mirror.angle_min) / mirror.sweep;
+      const bool opens = std::fabs(mirror.angle_min) < 0.99 * mirror.sweep && share > 0.01;  // for many slots of each line
+      if (opens && lines_per_slot < 1e-3 && next < device.size()) CHECK((device.pulse(next) || device.pulse(next + 1)));
+    }
+  }
+}
+
+TEST_CASE("a mirror that never opens is passed over line by line, however slow it turns") {
+  const PolygonMirror closed{.lines_per_second = 100, .sweep = 0, .angle_min = 1_deg, .angle_max = 2_deg};
+  CHECK(closed.next_open({0, 0.001}).seconds() == support::relative(0.011, 1e-9));
+  const PolygonMirror stands{.lines_per_second = 1e-300, .sweep = 60_deg, .angle_min = 0, .angle_max = 45_deg};
+  CHECK(stands.next_open({0, 0.5}) == Tick{1'000'000'000'000'000, 0.5});
+  CHECK(Deflector{stands, Scanner{.pulses = 1000}}.next_pulse(3) == 1000);
 }
 
 TEST_CASE("a polygon mirror without a gate is always open") {

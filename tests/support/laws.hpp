@@ -124,6 +124,16 @@ template <class M>
     const auto open = [&](const M& m, std::size_t k) { return m.open(ticks[k]) ? 1.0 : 0.0; };
     if (auto broken = detail::purity_laws(motion, ticks.size(), open); !broken.empty()) return "gate: " + broken;
   }
+  if constexpr (ForeseesOpening<M>)
+    for (const Tick& t : ticks) {
+      const Tick opens = motion.next_open(t);
+      if (opens < t) return detail::sentence("the next opening after ", t.seconds(), " s is before it");
+      const double wait = static_cast<double>(opens.second - t.second) + (opens.fraction - t.fraction);
+      for (const double share : {0.0, 0.1, 0.5, 0.9, 0.999999}) {
+        const Tick within = t + Tick::of_seconds(share * wait);
+        if (within < opens && motion.open(within)) return detail::sentence("the gate is open before its opening after ", t.seconds(), " s");
+      }
+    }
   for (const Tick& t : ticks)
     if (!detail::rigid(motion.at(t))) return detail::sentence("the pose at ", t.seconds(), " s is not rigid");
   return {};
@@ -162,6 +172,13 @@ template <class S>
     if (!first) first = pulse->tick;
     last = pulse->tick;
   }
+  if constexpr (SkipsBlocked<S>)
+    for (const PulseIndex i : slots) {
+      const PulseIndex next = source.next_pulse(i);
+      if (next < i || next > size) return detail::sentence("the next pulse after ", i, " is ", next);
+      for (PulseIndex k = 0; k < 32 && i + k < next; ++k)  // the first, and the last
+        if (source.pulse(i + k) || source.pulse(next - 1 - k)) return detail::sentence("a pulse between ", i, " and ", next, " is skipped");
+    }
   if (last && source.duration().seconds() < last->seconds() - first->seconds()) return "pulses leave after the source's duration";
   return {};
 }

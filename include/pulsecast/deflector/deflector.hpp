@@ -3,6 +3,7 @@
 #ifndef PULSECAST_DEFLECTOR_DEFLECTOR_HPP
 #define PULSECAST_DEFLECTOR_DEFLECTOR_HPP
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -20,7 +21,10 @@ template <class Moving, class Source>
 requires detail::Deflectable<Moving, Source>
 class Deflector {
   // clang-format on
-  static_assert(detail::GatedCheck<Moving>::passed);
+  static_assert(detail::GatedCheck<Moving>::passed && detail::ForeseesOpeningCheck<Moving>::passed);
+  static_assert(detail::FindsSlotsCheck<Source>::passed && detail::SkipsBlockedCheck<Source>::passed);
+  static_assert(Gated<Moving> || !ForeseesOpening<Moving>, "Deflector: an optic with next_open(Tick) needs open(Tick), too");
+  static constexpr bool foresees = ForeseesOpening<Moving> && FindsSlots<Source>;
 
  public:
   /// Throws a `SettingError` if the settings of `moving` or `source` are invalid.
@@ -38,6 +42,18 @@ class Deflector {
     const auto pose = moving_.at(inner->tick);
     PULSECAST_ASSERT(pose.rigid() || !pose.finite());  // a run reports NaN
     return std::optional<Pulse<frame::Instrument>>(std::in_place, pose, *inner);
+  }
+
+  /// As the concept FindsSlots requires.
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<Source> { return source_.slot_from(t); }
+
+  /// As the concept SkipsBlocked requires.
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires foresees || SkipsBlocked<Source> {
+    if constexpr (SkipsBlocked<Source>) i = source_.next_pulse(i);
+    if constexpr (foresees)
+      if (const auto inner = i < size() ? source_.pulse(i) : std::nullopt)
+        if (const Tick opens = moving_.next_open(inner->tick); opens > inner->tick) return std::max(i, source_.slot_from(opens));
+    return i;
   }
 
   /// As the concept MeasuresBeam requires: the measured beam, turned by the head.

@@ -49,6 +49,18 @@ struct PolygonMirror {
     return a >= angle_min && a <= angle_max;
   }
 
+  /// As the concept ForeseesOpening requires: the moment at which the beam enters the gate, some rounding errors early.
+  [[nodiscard]] Tick next_open(Tick t) const noexcept {
+    if (open(t)) return t;
+    const double begin = 0.5 * (angle_min / sweep + 1);  // phase at which the gate begins, unless it is there from the start [cycles]
+    const double phase = t.phase(lines_per_second);
+    const double left = angle(t) < angle_min ? begin - phase : 1 - phase + (begin > 0 ? begin : 0);
+    const double rounding = 0x1p-48 * (1 + lines_per_second);  // 16 units in the last place of a phase, and of a fraction of a second
+    const double wait = left < 2 ? left - rounding : 1 - rounding;
+    const double longest = 1e15 * lines_per_second;  // [cycles]: no survey is longer than 1e15 s
+    return wait > 0 ? t + Tick::of_seconds((wait < longest ? wait : longest) / lines_per_second) : t;
+  }
+
   /// The line of a tilted facet lies on a cone, at a constant angle to the plane.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     const Pose<frame::Beam, frame::Instrument> level = aimed_above(angle(t));
@@ -57,7 +69,7 @@ struct PolygonMirror {
   }
 };
 
-static_assert(Optic<PolygonMirror> && Gated<PolygonMirror>);
+static_assert(Optic<PolygonMirror> && Gated<PolygonMirror> && ForeseesOpening<PolygonMirror>);
 
 }  // namespace pulsecast
 

@@ -43,6 +43,9 @@ class Instrument {
 
   [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept { return channels_.pulse(i); }
 
+  /// As the concept SkipsBlocked requires.
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
+
   /// Beam of pulse i, fired at t, without the errors of deflection and head, and shifted by that of the range; empty without such errors.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
     const SurveyOptic& optic = channels_.channels()[i % channels()].moving();
@@ -57,7 +60,7 @@ class Instrument {
   Channels<SurveyChannel> channels_;
 };
 
-static_assert(InstrumentSource<Instrument> && MeasuresBeam<Instrument>);
+static_assert(InstrumentSource<Instrument> && MeasuresBeam<Instrument> && SkipsBlocked<Instrument>);
 
 /// Options of the receivers of a scanner.
 struct ReceiverOptions {

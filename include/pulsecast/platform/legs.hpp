@@ -70,6 +70,12 @@ class Legs {
     return p;
   }
 
+  /// As the concept SkipsBlocked requires.
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<P> {
+    const std::size_t k = leg_of(i);
+    return starts_[k].pulse + legs_[k].next_pulse(i - starts_[k].pulse);
+  }
+
   /// Platforms of the legs, in order.
   [[nodiscard]] const std::vector<P>& legs() const noexcept { return legs_; }
 

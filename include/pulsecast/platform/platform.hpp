@@ -33,7 +33,7 @@ struct Mount {
 /// Pulse source of an instrument carried through the world. The lever arm turns with the body.
 template <Trajectory Path, InstrumentSource Source>
 class Platform {
-  static_assert(detail::MeasuresBeamCheck<Source>::passed);
+  static_assert(detail::MeasuresBeamCheck<Source>::passed && detail::SkipsBlockedCheck<Source>::passed);
 
  public:
   /// @throws SettingError for settings out of range
@@ -55,6 +55,9 @@ class Platform {
       return placed(*inner);
     }
   }
+
+  /// As the concept SkipsBlocked requires.
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> { return source_.next_pulse(i); }
 
   /// Pulse of the instrument, transformed into the world. Never empty; optional so that `pulse` returns it without a copy.
   [[nodiscard]] std::optional<Pulse<frame::World>> placed(const Pulse<frame::Instrument>& inner) const noexcept {

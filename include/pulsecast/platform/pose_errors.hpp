@@ -63,6 +63,9 @@ class WithPoseErrors {
   /// Platform without errors.
   [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }
 
+  /// As the concept SkipsBlocked requires.
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> { return truth_.next_pulse(i); }
+
   /// Reported pose of the body.
   [[nodiscard]] Pose<frame::Body, frame::World> reported(Tick t) const noexcept {
     const Pose<frame::Body, frame::World> world_from_body = truth_.trajectory().at(t);

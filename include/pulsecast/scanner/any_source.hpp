@@ -37,6 +37,16 @@ class AnySource {
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const First&>().pulse(i)) {
     return std::visit([i](const auto& s) noexcept { return s.pulse(i); }, source_);
   }
+  /// As the concept SkipsBlocked requires.
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<First> ||(SkipsBlocked<Others> || ...) {
+    const auto skip = [i]<class Source>(const Source& s) noexcept -> PulseIndex {
+      if constexpr (SkipsBlocked<Source>)
+        return s.next_pulse(i);
+      else
+        return i;
+    };
+    return std::visit(skip, source_);
+  }
   /// As the concept MeasuresBeam requires.
   [[nodiscard]] std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i,
                                                                              Tick t) const noexcept requires MeasuresBeam<First> ||

@@ -64,6 +64,15 @@ class Channels {
     return p;
   }
 
+  /// As the concept SkipsBlocked requires.
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
+    const PulseIndex n = channels_.size(), most = size();
+    PulseIndex next = most;
+    for (PulseIndex slot = i; slot < std::min(most, i + n) && slot < next; ++slot)  // the next slot of each channel
+      next = std::min(next, channels_[slot % n].next_pulse(slot / n) * n + slot % n);
+    return std::min(next, most);
+  }
+
   /// As the concept MeasuresBeam requires.
   [[nodiscard]] auto measured(PulseIndex i, Tick t) const noexcept requires MeasuresBeam<Source> {
     return channels_[i % channels_.size()].measured(i / channels_.size(), t);

@@ -36,15 +36,25 @@ struct Scanner {
 
   [[nodiscard]] std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept {
     std::optional<Pulse<frame::Beam>> p(std::in_place);
-    p->tick = Tick::of(i, pulse_rate) + Tick::of_seconds(delay);
+    p->tick = tick(i);
     return p;
   }
 
+  /// As the concept FindsSlots requires: the first slot at or after a time.
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept {
+    const double periods = (t.seconds() - delay) * pulse_rate * (1 - 0x1p-50);  // rounded down
+    if (!(periods > 0)) return 0;
+    if (periods >= static_cast<double>(pulses)) return pulses;
+    const auto before = static_cast<PulseIndex>(periods);
+    return tick(before) < t ? before + 1 : before;
+  }
+
  private:
+  [[nodiscard]] Tick tick(PulseIndex i) const noexcept { return Tick::of(i, pulse_rate) + Tick::of_seconds(delay); }
   [[nodiscard]] Emitter emitter() const noexcept { return {laser, footprint_scale, receiver}; }
 };
 
-static_assert(BeamSource<Scanner>);
+static_assert(BeamSource<Scanner> && FindsSlots<Scanner>);
 
 }  // namespace pulsecast
 

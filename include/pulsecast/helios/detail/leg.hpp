@@ -101,6 +101,9 @@ class SurveyLeg {
     return out;
   }
 
+  /// As the concept SkipsBlocked requires.
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return truth_.next_pulse(i); }
+
   [[nodiscard]] const SurveyPath& path() const noexcept { return truth_.trajectory(); }
 
  private:
@@ -109,7 +112,7 @@ class SurveyLeg {
   bool noisy_;
 };
 
-static_assert(WorldSource<SurveyLeg>);
+static_assert(WorldSource<SurveyLeg> && SkipsBlocked<SurveyLeg>);
 
 }  // namespace pulsecast::helios
 

@@ -70,6 +70,20 @@ struct SurveyOptic {
         optic);
   }
 
+  /// As the concept ForeseesOpening requires.
+  [[nodiscard]] Tick next_open(Tick t) const noexcept {
+    const Tick now = t + ahead;
+    const Tick opens = std::visit(
+        [&](const auto& o) noexcept {
+          if constexpr (ForeseesOpening<decltype(o)>)
+            return o.next_open(now);
+          else
+            return now;
+        },
+        optic);
+    return t + Tick::of_seconds(static_cast<double>(opens.second - now.second) + (opens.fraction - now.fraction));
+  }
+
   /// True pose of the beam, with the errors of deflection and head.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
     if (!deflection_error && !head_error) return exact(t);
@@ -110,7 +124,7 @@ struct SurveyOptic {
   }
 };
 
-static_assert(Optic<SurveyOptic> && Gated<SurveyOptic>);
+static_assert(Optic<SurveyOptic> && Gated<SurveyOptic> && ForeseesOpening<SurveyOptic>);
 
 /// One channel in one leg.
 using SurveyChannel = Deflector<SurveyOptic, Scanner>;
