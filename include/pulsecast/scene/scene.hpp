@@ -284,9 +284,10 @@ class Scene {
       }
       const double projection = std::fabs(dot(sample.normal, local->direction(j)));
       const double cosine = projection > 1 ? 1 : projection > sample.min_cosine ? projection : sample.min_cosine;
-      const Backscatter& law = sample.backscatter;
+      const Backscatter law = sample.backscatter;
       hits[j] = {nearest.range[j], cosine, law.reflectance * law.rough(cosine), sample.object, sample.classification};
-      if (law.lobe != 0) lobes.note(j, rays, law, hits[j]);
+      if (law.lobe != 0) [[unlikely]]
+        lobes.note(j, rays, law, hits[j]);
     }
     lobes.add_to(hits, rays.size);
   }
