@@ -29,11 +29,12 @@ class AnySurvey {
   [[nodiscard]] virtual std::size_t subrays() const noexcept = 0;
   [[nodiscard]] virtual std::size_t recorded_subrays() const noexcept = 0;
   [[nodiscard]] virtual double sample_interval() const noexcept = 0;
+  [[nodiscard]] virtual PulseIndex next_pulse(PulseIndex i) const noexcept = 0;
   [[nodiscard]] virtual Outcome operator()(PulseIndex i, Workspace& w) const noexcept = 0;
 };
 
 /// Wraps a `Survey` of one kind as an `AnySurvey`.
-template <class Survey>
+template <SkipsBlocked Survey>
 class SurveyOf final : public AnySurvey {
  public:
   explicit SurveyOf(Survey survey) : survey_(std::move(survey)) {}
@@ -42,6 +43,7 @@ class SurveyOf final : public AnySurvey {
   [[nodiscard]] std::size_t subrays() const noexcept override { return survey_.subrays(); }
   [[nodiscard]] std::size_t recorded_subrays() const noexcept override { return survey_.recorded_subrays(); }
   [[nodiscard]] double sample_interval() const noexcept override { return survey_.sample_interval(); }
+  [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept override { return survey_.next_pulse(i); }
   [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept override { return survey_(i, static_cast<Own&>(*w).own); }
 
  private:
