@@ -14,6 +14,8 @@
 
 using namespace pulsecast;
 
+#pragma GCC diagnostic ignored "-Wpsabi"  // of vectors wider than a register: all that return some are inlined
+
 namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity(), not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double least = std::numeric_limits<double>::denorm_min(), tiny = std::numeric_limits<double>::min();

@@ -275,7 +275,7 @@ TEST_CASE("what is left of a raster in the middle of nothing is met, however wid
       const double pixel = random.uniform(0.5, 1), start = 0.5 * length * pixel;
       const Raster raster =
           tall ? raster_of(2, length, rough, {0.5, start}, {0.9, pixel}) : raster_of(length, 2, rough, {-start, 0.5}, {pixel, 0.9});
-      const detail::RasterGrid grid = raster.grid();
+      const pulsecast::detail::RasterGrid grid = raster.grid();
       const std::vector<float> heights = raster.heights;
       const HeightField field(raster);
       std::size_t met = 0, lost = 0;
@@ -296,7 +296,7 @@ TEST_CASE("what is left of a raster in the middle of nothing is met, however wid
         ClosestHits nearest(rays);
         for (std::uint32_t c = first; c < last; ++c)
           for (const int which : {0, 1})
-            intersect(detail::RasterCell(grid, heights.data(), tall ? 0 : c, tall ? c : 0).triangle(grid, which),
+            intersect(pulsecast::detail::RasterCell(grid, heights.data(), tall ? 0 : c, tall ? c : 0).triangle(grid, which),
                       2 * c + static_cast<PrimitiveIndex>(which), rays, nearest);
         if (!nearest.met(0)) continue;
         ++met;
