@@ -51,7 +51,9 @@ struct Triangle {
 
 /// Corners of a triangle that lie elsewhere [m]: a packet fetches each coordinate to where it is used.
 struct TriangleRef {
-  const Vec3 &a, &b, &c;  ///< corners [m]
+  const Vec3& a;  ///< first corner [m]
+  const Vec3& b;  ///< second corner [m]
+  const Vec3& c;  ///< third corner [m]
 };
 
 /// Triangles tested together, one a lane; idle lanes repeat the last one.
