@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -200,10 +201,12 @@ namespace detail {
 /// Natural logarithm of positive, normal, finite numbers; error at most 1 ulp. Source: fdlibm e_log.c.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V log_of_normal(const V& x) noexcept {
-  constexpr std::int64_t one = 0x3ff0000000000000, root_half = 0x3fe6a09e00000000, fraction = 0x000fffffffffffff;
-  const Integers<V> shifted = bits_of(x) + (one - root_half);
-  const V k = std::bit_cast<V>(static_cast<Integers<V>>(((shifted >> 52) & 0xfff) | 0x4330000000000000)) - (0x1p52 + 1023);
-  const V f = std::bit_cast<V>(static_cast<Integers<V>>((shifted & fraction) + root_half)) - 1.0;
+  using Lanes = Vec<std::uint64_t, sizeof(V) / sizeof(double)>;
+  using Bits = std::conditional_t<std::same_as<V, double>, std::uint64_t, Lanes>;  // unsigned: those of a NaN may overflow
+  constexpr std::uint64_t one = 0x3ff0000000000000, root_half = 0x3fe6a09e00000000, fraction = 0x000fffffffffffff;
+  const Bits shifted = std::bit_cast<Bits>(x) + (one - root_half);
+  const V k = std::bit_cast<V>(static_cast<Bits>(((shifted >> 52) & 0xfff) | 0x4330000000000000)) - (0x1p52 + 1023);
+  const V f = std::bit_cast<V>(static_cast<Bits>((shifted & fraction) + root_half)) - 1.0;
   const V s = f / (2.0 + f), z = s * s, w = z * z, half_square = 0.5 * f * f;
   const V r =
       w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)) +
