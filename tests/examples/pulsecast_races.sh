@@ -30,11 +30,24 @@ sums() { (cd "$1" && find . -name '.2*' -prune -o -type f -printf '%f ' -exec md
 
 . "$tests/whole_runs.sh"
 
+# True if the first process holds the lock of a folder.
+at_work() { [ -n "$(find raced -mindepth 2 -name .lock -path '*/2*' -size +0 -exec grep -l "^$first " {} + 2> /dev/null)" ]; }
+
+# Stops the first process at work. False if it came to its end instead.
+stop_first() {
+  kill -STOP "$first" 2> /dev/null
+  local state=
+  until [[ $state == [TZX] ]]; do
+    state=$(sed 's/.*) //; s/ .*//' "/proc/$first/stat" 2> /dev/null) && [ -n "$state" ] || return 1
+  done
+  [ "$state" = T ] && at_work
+}
+
 # Starts the first process, and waits until it is at work in its folder for a random while. False if it has ended by then.
 start_first() { # start_first [OPTION...]
   "$program" "${options[@]}" --output raced --format "$format" "$@" &
   first=$!
-  until [ -n "$(find raced -mindepth 2 -name .lock -path '*/2*' -size +0 -exec grep -l "^$first " {} + 2> /dev/null)" ]; do
+  until at_work; do
     kill -0 $first 2> /dev/null || break
     sleep 0.002
   done
@@ -80,7 +93,11 @@ for ((race = 0; race < races; ++tries)); do
       continue
     fi
   fi
-  [ "$kind" = alone ] || kill -STOP "$first"
+  if [ "$kind" != alone ] && ! stop_first; then
+    kill -CONT "$first" 2> /dev/null
+    wait "$first"
+    continue
+  fi
 
   if [ "$kind" = second_killed ]; then
     "$program" "${options[@]}" --output raced --format "$format" --resume 2> messages &
