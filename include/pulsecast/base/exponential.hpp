@@ -15,14 +15,19 @@
 
 namespace pulsecast {
 
+namespace simd::detail {
+/// Bits of a number, or of the lanes of a vector of numbers. Unsigned: sums may overflow in lanes that are not used.
+template <class V>
+using Bits = std::conditional_t<std::same_as<V, double>, std::uint64_t, Vec<std::uint64_t, sizeof(V) / sizeof(double)>>;
+}  // namespace simd::detail
+
 /// Exponential function e^x of a number or of all lanes of a vector; 0 for x below -708. Relative error at most 4e-16 for |x| up to 708.
 /// Source: Cody & Waite 1980: x = n ln 2 + r, with ln 2 in two parts; Taylor series for r, with a remainder of 4e-18.
 template <class Number>
 requires std::same_as<Number, double> || std::same_as<Number, simd::Vec<double, 2>> || std::same_as<Number, simd::Vec<double, 4>> ||
     std::same_as<Number, simd::Vec<double, 8>>
 [[nodiscard]] inline Number exponential(const Number& x) noexcept {
-  using Lanes = simd::Vec<std::uint64_t, sizeof(Number) / sizeof(std::uint64_t)>;
-  using Bits = std::conditional_t<std::same_as<Number, double>, std::uint64_t, Lanes>;
+  using Bits = simd::detail::Bits<Number>;
   constexpr double per_ln2 = 1.4426950408889634, ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
   constexpr double whole = 0x1.8p52;  // adding it drops the fraction and leaves n in the lowest bits
   constexpr double least = -708;

@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -24,32 +23,20 @@
 namespace pulsecast::simd {
 
 namespace detail {
-/// Signed 64-bit integers, as many as the numbers of V.
 template <class V>
-struct IntegersOf {
-  using type = Vec<std::int64_t, sizeof(V) / sizeof(double)>;
-};
-template <>
-struct IntegersOf<double> {
-  using type = std::int64_t;
-};
-template <class V>
-using Integers = typename IntegersOf<V>::type;
-
-template <class V>
-[[nodiscard, gnu::always_inline]] inline Integers<V> bits_of(const V& x) noexcept {
-  return std::bit_cast<Integers<V>>(x);
+[[nodiscard, gnu::always_inline]] inline Bits<V> bits_of(const V& x) noexcept {
+  return std::bit_cast<Bits<V>>(x);
 }
-inline constexpr std::int64_t sign_bit = std::numeric_limits<std::int64_t>::min();
+inline constexpr std::uint64_t sign_bit = std::uint64_t{1} << 63;
 
 /// `x` with the sign of `sign`.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V with_sign(const V& x, const V& sign) noexcept {
-  return std::bit_cast<V>(static_cast<Integers<V>>((bits_of(x) & ~sign_bit) | (bits_of(sign) & sign_bit)));
+  return std::bit_cast<V>(static_cast<Bits<V>>((bits_of(x) & ~sign_bit) | (bits_of(sign) & sign_bit)));
 }
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V magnitude(const V& x) noexcept {
-  return std::bit_cast<V>(static_cast<Integers<V>>(bits_of(x) & ~sign_bit));
+  return std::bit_cast<V>(static_cast<Bits<V>>(bits_of(x) & ~sign_bit));
 }
 /// True if a comparison holds in any lane.
 [[nodiscard]] inline bool any(bool mask) noexcept { return mask; }
@@ -67,7 +54,7 @@ inline constexpr double greatest_angle = 1e6;
 template <class V>
 struct Reduced {
   V high, low;
-  Integers<V> quarters;  ///< exact in the two lowest bits
+  Bits<V> quarters;  ///< exact in the two lowest bits
 };
 /// Source: Cody & Waite 1980, and fdlibm e_rem_pio2.c for pi/2 in three parts; two-sum of Knuth, TAOCP vol. 2, 4.2.2.
 template <class V>
@@ -137,12 +124,11 @@ template <class V>
   const detail::Reduced<V> angle = detail::reduced(x);
   const V sine = detail::short_sine(angle.high, angle.low), cosine = detail::short_cosine(angle.high, angle.low);
   const auto odd = (angle.quarters & 1) != 0;
-  const detail::Integers<V> sine_sign = (angle.quarters & 2) << 62, cosine_sign = ((angle.quarters + 1) & 2) << 62;
+  const detail::Bits<V> sine_sign = (angle.quarters & 2) << 62, cosine_sign = ((angle.quarters + 1) & 2) << 62;
   const V sine_or = odd ? cosine : sine, cosine_or = odd ? sine : cosine;
   const V size = detail::magnitude(x);
-  const V turned = std::bit_cast<V>(static_cast<detail::Integers<V>>(detail::bits_of(sine_or) ^ sine_sign));
-  SineCosine<V> both{size < 0x1p-27 ? x : turned,
-                     std::bit_cast<V>(static_cast<detail::Integers<V>>(detail::bits_of(cosine_or) ^ cosine_sign))};
+  const V turned = std::bit_cast<V>(static_cast<detail::Bits<V>>(detail::bits_of(sine_or) ^ sine_sign));
+  SineCosine<V> both{size < 0x1p-27 ? x : turned, std::bit_cast<V>(static_cast<detail::Bits<V>>(detail::bits_of(cosine_or) ^ cosine_sign))};
   if (detail::any(size > detail::greatest_angle)) [[unlikely]] {
     SineCosine<V> all = both;  // copies, so that the others stay in registers
     const V angles = x;
@@ -191,7 +177,7 @@ template <class V>
   const V from_up = right - back, from_up_low = ((right - from_up) - back) + (right_low - back_low);
   const V flat = steep ? from_up : back, flat_low = steep ? from_up_low : back_low, flat_part = steep ? V(-part) : part;
   const V turned = 2 * right - flat, turned_low = ((2 * right - turned) - flat) + (2 * right_low - flat_low);
-  const auto behind = detail::bits_of(x) < 0;
+  const auto behind = (detail::bits_of(x) & detail::sign_bit) != 0;
   const V angle = (behind ? turned : flat) + ((behind ? turned_low : flat_low) + (behind ? V(-flat_part) : flat_part));
   const V nan = x + y;
   return x == x ? (y == y ? detail::with_sign(angle, y) : nan) : nan;
@@ -201,12 +187,10 @@ namespace detail {
 /// Natural logarithm of positive, normal, finite numbers; error at most 1 ulp. Source: fdlibm e_log.c.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V log_of_normal(const V& x) noexcept {
-  using Lanes = Vec<std::uint64_t, sizeof(V) / sizeof(double)>;
-  using Bits = std::conditional_t<std::same_as<V, double>, std::uint64_t, Lanes>;  // unsigned: those of a NaN may overflow
   constexpr std::uint64_t one = 0x3ff0000000000000, root_half = 0x3fe6a09e00000000, fraction = 0x000fffffffffffff;
-  const Bits shifted = std::bit_cast<Bits>(x) + (one - root_half);
-  const V k = std::bit_cast<V>(static_cast<Bits>(((shifted >> 52) & 0xfff) | 0x4330000000000000)) - (0x1p52 + 1023);
-  const V f = std::bit_cast<V>(static_cast<Bits>((shifted & fraction) + root_half)) - 1.0;
+  const Bits<V> shifted = bits_of(x) + (one - root_half);
+  const V k = std::bit_cast<V>(static_cast<Bits<V>>(((shifted >> 52) & 0xfff) | 0x4330000000000000)) - (0x1p52 + 1023);
+  const V f = std::bit_cast<V>(static_cast<Bits<V>>((shifted & fraction) + root_half)) - 1.0;
   const V s = f / (2.0 + f), z = s * s, w = z * z, half_square = 0.5 * f * f;
   const V r =
       w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)) +
