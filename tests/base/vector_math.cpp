@@ -150,6 +150,22 @@ TEST_CASE("powers err by at most 4 + 2 |ln(result)| ulp") {
   }
 }
 
+TEST_CASE("whole powers err by at most as many ulp as their exponent, and are those of each lane") {
+  for (std::uint64_t seed = 0; seed < 10000; ++seed) {
+    support::Generator any(seed);
+    const double base = any.uniform(0, 1.2), other = any.uniform(0, 1.2);
+    for (unsigned exponent = 0; exponent <= 64; ++exponent) {
+      CAPTURE(seed);
+      CAPTURE(exponent);
+      const double power = simd::whole_power(base, exponent);
+      const long double expected = std::pow(static_cast<long double>(base), static_cast<long double>(exponent));
+      if (expected > 1e-300L) REQUIRE(ulps(power, expected) <= exponent);
+      const simd::Vec<double, 2> both = simd::whole_power(simd::Vec<double, 2>{other, base}, exponent);
+      REQUIRE(same_bits(both[1], power));
+    }
+  }
+}
+
 TEST_CASE("powers of zero and infinity, and to zero and infinity, are those of the C library") {
   const double bases[] = {0.0, 0.5, 1, 2, infinity, not_a_number},
                exponents[] = {0.0, -0.0, 1, -1, 2000, -2000, infinity, -infinity, not_a_number};

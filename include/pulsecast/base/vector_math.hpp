@@ -222,6 +222,17 @@ template <class V>
   return exponent == 0.0 ? zero + 1.0 : (base == 1.0 ? zero + 1.0 : value);
 }
 
+/// base^exponent by squaring, with the same bits for a number and for a lane; 1 for the exponent 0. Error at most `exponent` ulp.
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V whole_power(V base, unsigned exponent) noexcept {
+  V power = V{} + 1.0;
+  for (; exponent != 0; exponent >>= 1) {
+    if ((exponent & 1) != 0) power *= base;
+    base *= base;
+  }
+  return power;
+}
+
 /// Nearest whole numbers, the even one of two; the sign of a zero is kept.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V round(const V& x) noexcept {

@@ -31,20 +31,20 @@ struct Backscatter {
 
   /// Backscatter towards the source at a cosine of incidence in [0, 1].
   [[nodiscard]] double operator()(double cos_incidence) const noexcept {
-    if (lobe == 0) return reflectance * rough(cos_incidence);
-    const simd::Doubles none{};  // a register for one number, so that a bundle gives the same bits
-    return reflectance * (rough(cos_incidence) + specular(none + cos_incidence, none + lobe, none + exponent)[0]);
+    return lobe == 0 ? reflectance * rough(cos_incidence) : glossy(simd::Doubles{} + cos_incidence)[0];
   }
 
   /// Angular law of the shares without the lobe.
   [[nodiscard]] double rough(double cos_incidence) const noexcept { return cosine * cos_incidence + even; }
 
-  /// Angular law of the lobes, by lane. Error at most 1e-14 of `lobe`.
-  [[nodiscard]] static simd::Doubles specular(const simd::Doubles& cos_incidence, const simd::Doubles& lobe,
-                                              const simd::Doubles& exponent) noexcept {
+  /// Backscatter with the lobe, by lane. Error of the lobe at most 1e-14 of `lobe`.
+  [[nodiscard]] simd::Doubles glossy(const simd::Doubles& cos_incidence) const noexcept {
     const simd::Doubles cos_to_mirror = 2 * cos_incidence * cos_incidence - 1;
-    const simd::Doubles power = exponential(simd::Doubles(exponent * simd::detail::log_of_normal(cos_to_mirror)));
-    return cos_to_mirror > 0 ? lobe * power : simd::Doubles{};
+    const simd::Doubles power = exponent <= 64 && exponent == static_cast<unsigned>(exponent)
+                                    ? simd::whole_power(cos_to_mirror, static_cast<unsigned>(exponent))
+                                    : exponential(simd::Doubles(exponent * simd::detail::log_of_normal(cos_to_mirror)));
+    const simd::Doubles specular = cos_to_mirror > 0 ? lobe * power : simd::Doubles{};
+    return reflectance * (cosine * cos_incidence + even + specular);
   }
 };
 
