@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Time of a pulse of 19 subrays on one plane, from the slot to the echo in a LAS file [ns]: an airplane over level ground, `FullWaveform` with
-// true-range timing. Rows are named sink/threads. The file is written to the system's folder for temporary files, and removed.
+// Time of a pulse of 19 subrays on one plane, from the slot to the echo in a LAS file [ns]: an airplane over level ground, `FullWaveform`
+// with true-range timing. Rows are named sink/threads. The file is written to the system's folder for temporary files, and removed.
 
 #include <cstddef>
 #include <filesystem>
@@ -33,7 +33,8 @@ int main(int count, char** words) {
   std::vector<std::function<void()>> works;
   for (const unsigned threads : {1U, 2U}) {
     names.push_back("none/" + std::to_string(threads));
-    works.emplace_back([&survey, threads] { run(survey, {.threads = threads}, [](const EchoBatch& batch) { keep(batch.echoes.size()); }); });
+    works.emplace_back(
+        [&survey, threads] { run(survey, {.threads = threads}, [](const EchoBatch& batch) { keep(batch.echoes.size()); }); });
     names.push_back("LAS/" + std::to_string(threads));
     works.emplace_back([&survey, &file, threads] {
       pulsecast::io::LasWriter writer(file, {});

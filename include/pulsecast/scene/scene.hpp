@@ -259,57 +259,38 @@ class Scene {
   /// `placement_of(i)` returns the placement of part i.
   template <class PlacementOf>
   void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of) const noexcept {
-    // neighbouring rays often meet the same part and primitive: the sample is reused
-    std::uint64_t known = ClosestHits::none;
-    SurfaceSample sample;
     constexpr std::size_t nothing = std::size_t(-1);
     std::size_t at = nothing;  // part of the frame of `local`
     const RayBundle* local = &rays;
     RayBundle turned;
-    for (std::size_t j = 0; j < rays.size; ++j) {
-      if (!nearest.met(j)) {
-        hits[j] = Hit{};
+    for (std::size_t first = 0, end = 0; first < rays.size; first = end) {
+      end = first + 1;
+      if (!nearest.met(first)) {
+        hits[first] = Hit{};
         continue;
       }
-      if (nearest.id[j] != known) {
-        if (at != nearest.part_of(j)) {
-          at = nearest.part_of(j);
-          const Similarity& placement = placement_of(at);
-          local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
-        }
-        sample = this->sample_surface(parts_[at], nearest.primitive_of(j), *local, j);
-        known = sample.flat ? nearest.id[j] : ClosestHits::none;
-        if (sample.backscatter.lobe != 0) [[unlikely]] {
-          const SurfaceSample copy = sample;  // the address of `sample` itself would keep it in memory for all surfaces
-          j = describe_glossy(*local, nearest, hits, copy, j);
-          continue;
-        }
+      if (at != nearest.part_of(first)) {
+        at = nearest.part_of(first);
+        const Similarity& placement = placement_of(at);
+        local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
       }
-      const double projection = std::fabs(dot(sample.normal, local->direction(j)));
-      const double cosine = projection > 1 ? 1 : projection > sample.min_cosine ? projection : sample.min_cosine;
+      const SurfaceSample sample = this->sample_surface(parts_[at], nearest.primitive_of(first), *local, first);
+      while (end < rays.size && nearest.id[end] == nearest.id[first] && sample.flat)
+        ++end;  // neighbouring rays often meet the same primitive
       const Backscatter law = sample.backscatter;
-      hits[j] = {nearest.range[j], cosine, law.reflectance * law.rough(cosine), sample.object, sample.classification};
-    }
-  }
-
-  /// Describes the hits of ray `first` and of those after it on the same surface, which has a lobe. Returns the last of them.
-  /// Not inlined, as surfaces without a lobe would pay for its registers.
-  [[gnu::noinline]] static std::size_t describe_glossy(const RayBundle& local, const ClosestHits& nearest, std::span<Hit> hits,
-                                                       const SurfaceSample& sample, std::size_t first) noexcept {
-    std::size_t last = first;
-    while (last + 1 < local.size && sample.flat && nearest.id[last + 1] == nearest.id[first]) ++last;
-    constexpr std::size_t lanes = simd::lane_count;
-    for (std::size_t j = first - first % lanes; j <= last; j += lanes) {
-      const auto column = [&](const RayBundle::Column& all) { return simd::load<simd::Doubles>(all[j]); };
-      const Vec3& n = sample.normal;
-      const simd::Doubles projections = simd::detail::magnitude(column(local.x) * n.x + column(local.y) * n.y + column(local.z) * n.z);
       const simd::Doubles one = simd::Doubles{} + 1.0, least = simd::Doubles{} + sample.min_cosine;
-      const simd::Doubles cosines = simd::max(simd::min(projections, one), least);
-      const simd::Doubles values = sample.backscatter.glossy(cosines);
-      for (std::size_t lane = j < first ? first - j : 0; lane < std::min(lanes, last + 1 - j); ++lane)
-        hits[j + lane] = {nearest.range[j + lane], cosines[lane], values[lane], sample.object, sample.classification};
+      for (std::size_t j = first - first % simd::lane_count; j < end; j += simd::lane_count) {
+        const auto column = [&](const RayBundle::Column& all) { return simd::load<simd::Doubles>(all[j]); };
+        const Vec3& n = sample.normal;
+        const simd::Doubles projections = simd::detail::magnitude(column(local->x) * n.x + column(local->y) * n.y + column(local->z) * n.z);
+        const simd::Doubles cosines = simd::max(simd::min(projections, one), least);
+        simd::Doubles values = law.reflectance * (law.cosine * cosines + law.even);
+        if (law.lobe != 0) [[unlikely]]
+          values = law.glossy(cosines);
+        for (std::size_t k = std::max(j, first); k < std::min(j + simd::lane_count, end); ++k)
+          hits[k] = {nearest.range[k], cosines[k - j], values[k - j], sample.object, sample.classification};
+      }
     }
-    return last;
   }
 
   std::vector<Part> parts_;
