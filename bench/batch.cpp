@@ -1,34 +1,42 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Batches of poses: 4,096 sensors of 2,000 rays each in a street of some 50,000 triangles. Prints the median time of a batch on all
-// threads.
+// Many rays at once in a street of some 50,000 triangles: batches of poses, on all threads, and `closest_hits` beside single rays, on one.
+// Rows of batches are named after rays by channels and columns; `differ` counts hits that are not the same.
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstddef>
-#include <cstdio>
-#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scene/closest_hits.hpp>
 #include <pulsecast/scene/run_batch.hpp>
 
+#include "report.hpp"
 #include "scenes.hpp"
 
 using namespace bench;
 
 namespace {
 
-/// 16 rays from 15° below to 15° above the horizon, at each of 125 azimuths.
-std::vector<Ray> lidar() {
+/// Rays of a spinning head, column by column, over a height of `fan` about the horizon.
+std::vector<Ray> lidar(int channels, int columns, double fan) {
   std::vector<Ray> rays;
-  for (int column = 0; column < 125; ++column)
-    for (int channel = 0; channel < 16; ++channel) {
-      const Rotation turn = rotation_about(axis::up, 2 * pi * column / 125) * rotation_about(axis::right, 2_deg * (channel - 7.5));
-      rays.push_back({.direction = turn * axis::forward});
+  for (int column = 0; column < columns; ++column)
+    for (int channel = 0; channel < channels; ++channel) {
+      const double up = fan * (static_cast<double>(channel) / (channels - 1) - 0.5);
+      rays.push_back({.direction = rotation_about(axis::up, 2 * pi * column / columns) * rotation_about(axis::right, up) * axis::forward});
     }
+  return rays;
+}
+
+/// Rays of a camera, line by line.
+std::vector<Ray> camera(int width, int height, double pixel) {
+  std::vector<Ray> rays;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) rays.push_back({.direction = normalize(Vec3{pixel * (x - width / 2), 1, pixel * (y - height / 2)})});
   return rays;
 }
 
@@ -45,20 +53,47 @@ std::vector<Pose<frame::Instrument, frame::World>> places(std::size_t count) {
 
 }  // namespace
 
-int main() {
+int main(int count, char** words) {
+  Report report("batch", count, words);
   const street::Scene scene = street::scene(1);
-  const std::vector<Ray> rays = lidar();
-  const auto poses = places(4096);
-  std::vector<float> ranges(poses.size() * rays.size());
-  std::vector<double> seconds;
-  for (int round = 0; round < 5; ++round) {
-    const auto began = std::chrono::steady_clock::now();
-    run_batch(scene, poses, rays, ranges);
-    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+
+  struct Sensor {
+    std::string name;
+    std::vector<Ray> rays;
+    std::size_t poses;
+  };
+  const std::vector<Sensor> sensors{{"16 x 125", lidar(16, 125, 30_deg), 4096}, {"32 x 1,024", lidar(32, 1024, 40_deg), 64}};
+  std::vector<float> ranges;
+  report.heading("batches");
+  for (const Sensor& sensor : sensors) {
+    if (!report.wanted(sensor.name)) continue;
+    const auto poses = places(sensor.poses);
+    ranges.resize(poses.size() * sensor.rays.size());
+    const std::vector<Times> times = report.by_turns({[&] { run_batch(scene, poses, sensor.rays, ranges); }}, wall_seconds);
+    const double seconds = median(times[0]);
+    report.row(sensor.name, {{"seconds", seconds},
+                             {"scans/s", static_cast<double>(sensor.poses) / seconds},
+                             {"Mrays/s", static_cast<double>(ranges.size()) / seconds / 1e6}});
   }
-  std::sort(seconds.begin(), seconds.end());
-  const auto met = std::count_if(ranges.begin(), ranges.end(), [](float range) { return std::isfinite(range); });
-  std::printf("%zu poses of %zu rays: %.2f s, %.2f million rays a second on %u threads; %.1f %% meet something\n", poses.size(),
-              rays.size(), seconds[2], static_cast<double>(ranges.size()) / seconds[2] / 1e6, thread_count(0),
-              100 * static_cast<double>(met) / static_cast<double>(ranges.size()));
+
+  report.heading("many rays beside single rays");
+  const std::vector<Sensor> streams{
+      sensors[0], sensors[1], {"64 x 2,048", lidar(64, 2048, 30_deg), 1}, {"camera", camera(640, 480, 2.5e-3), 1}};
+  for (const Sensor& sensor : streams) {
+    const std::string name = sensor.name + " stream";
+    if (!report.wanted(name)) continue;
+    std::vector<Ray> rays = sensor.rays;
+    for (Ray& ray : rays) ray.origin = places(64)[10].position;
+    std::vector<std::optional<RayHit>> alone(rays.size()), together(rays.size());
+    const std::vector<Times> times = report.by_turns(
+        {[&] { std::transform(rays.begin(), rays.end(), alone.begin(), [&](const Ray& ray) { return scene.closest_hit(ray); }); },
+         [&] { closest_hits<street::Scene>(scene, rays, together); }});
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) differ += alone[i] == together[i] ? 0U : 1U;
+    const double per_ray = 1e9 / static_cast<double>(rays.size());
+    report.row(name, {{"alone ns", per_ray * median(times[0])},
+                      {"stream ns", per_ray * median(times[1])},
+                      {"faster", speed_ratio(times[1], times[0])},
+                      {"differ", static_cast<double>(differ)}});
+  }
 }

@@ -211,6 +211,7 @@ TEST_CASE("a constant that is false is as one that is absent, and both pass the 
   CHECK(FlatGeometry<Shape<true>>);
   CHECK_FALSE(FlatGeometry<Shape<false>>);
   CHECK_FALSE(FlatGeometry<LeastGeometry>);
+  CHECK_FALSE(KeylessGeometry<LeastGeometry>);
   CHECK(RecordsSubrays<Pattern<true>>);
   CHECK_FALSE(RecordsSubrays<Pattern<false>>);
   CHECK_FALSE(RecordsSubrays<LeastFootprint>);

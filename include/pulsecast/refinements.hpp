@@ -30,6 +30,11 @@ concept FlatConstant = requires {
   requires std::same_as<decltype(G::flat), const bool>;
   typename std::bool_constant<G::flat>;
 };
+template <class G>
+concept KeylessConstant = requires {
+  requires std::same_as<decltype(G::keyless), const bool>;
+  typename std::bool_constant<G::keyless>;
+};
 template <class F>
 concept RecordedConstant = requires {
   requires std::same_as<decltype(F::recorded), const bool>;
@@ -124,6 +129,11 @@ PULSECAST_OPTIONAL_MEMBER(MissesCones, "bool misses_cone(const RayCone&) const n
 template <class G>
 concept FlatGeometry = detail::FlatConstant<G> && G::flat;
 PULSECAST_OPTIONAL_MEMBER(FlatConstant, "static constexpr bool flat = true", flat, , is_flat, planar, is_planar, flat_surface)
+
+/// Geometry whose hits do not depend on the key of the rays, that is on seed, pulse and subray: nothing is drawn at random.
+template <class G>
+concept KeylessGeometry = detail::KeylessConstant<G> && G::keyless;
+PULSECAST_OPTIONAL_MEMBER(KeylessConstant, "static constexpr bool keyless = true", keyless, , is_keyless, without_key, no_key, key_less)
 
 /// Footprint whose subrays are all passed to the sinks, as those of `WithSubrayRecord`.
 template <class F>

@@ -24,6 +24,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/python/detail/exceptions.hpp>
 #include <pulsecast/python/detail/rows.hpp>
+#include <pulsecast/scene/closest_hits.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 #include <pulsecast/scene/run_batch.hpp>
 
@@ -151,10 +152,13 @@ template <class World>
   pybind11::array_t<HitRow> rows(static_cast<pybind11::ssize_t>(rays.size()));
   HitRow* const out = rows.mutable_data();
   for_each_block(rays.size(), threads, [&](std::size_t, std::size_t first, std::size_t end) {
+    std::vector<Ray> some;
+    for (std::size_t i = first; i < end; ++i) some.push_back(rays[i]);
+    std::vector<ClosestHitOf<World>> hits(some.size());
+    pulsecast::closest_hits<World>(scene, some, hits);
     for (std::size_t i = first; i < end; ++i) {
-      const Ray ray = rays[i];
-      const auto hit = scene.closest_hit(ray);
-      out[i] = hit ? hit_row(scene, *hit, ray) : HitRow{};
+      const auto& hit = hits[i - first];
+      out[i] = hit ? hit_row(scene, *hit, some[i - first]) : HitRow{};
       out[i].ray = static_cast<std::int64_t>(i);
     }
   });

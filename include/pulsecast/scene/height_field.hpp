@@ -31,7 +31,8 @@ namespace pulsecast {
 /// Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic).
 class HeightField {
  public:
-  static constexpr bool flat = true;  ///< as the concept FlatGeometry describes
+  static constexpr bool flat = true;     ///< as the concept FlatGeometry describes
+  static constexpr bool keyless = true;  ///< as the concept KeylessGeometry describes
 
   /// `workers`: threads of the build. @throws SettingError as `Raster::validate`
   explicit HeightField(Raster raster, const Workers& workers = {}) {

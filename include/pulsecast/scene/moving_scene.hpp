@@ -24,6 +24,8 @@ namespace pulsecast {
 template <Geometry... Shapes>
 class MovingScene {
  public:
+  static constexpr bool timeless = false;  ///< hits depend on the tick of a ray
+
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
@@ -43,6 +45,8 @@ class MovingScene {
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
   /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return scene_.parts(); }
+  /// As `Scene::keyless`.
+  [[nodiscard]] bool keyless() const noexcept { return scene_.keyless(); }
 
   /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
@@ -67,6 +71,9 @@ class MovingScene {
     search(rays, nearest);
     scene_.describe(rays, nearest, hits, [&](std::size_t part) noexcept { return placement(part, rays.tick); });
   }
+
+  /// Offers the hits of the rays of a bundle at its tick, as of `Scene`.
+  void closest(const RayBundle& rays, ClosestHits& hits) const noexcept { search(rays, hits); }
 
   /// True only if no ray of a cone meets anything at its tick, as of `Scene`.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {

@@ -4,7 +4,7 @@
 #define PULSECAST_SCENE_RUN_BATCH_HPP
 
 #include <algorithm>
-#include <concepts>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -16,15 +16,9 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/ray.hpp>
+#include <pulsecast/scene/closest_hits.hpp>
 
 namespace pulsecast {
-
-/// World that gives the range of a ray's closest hit, as `Scene` and `MovingScene` do.
-template <class World>
-concept GivesRanges = requires(const World world, const Ray& ray) {
-  { world.closest_hit(ray)->range }
-  noexcept->std::convertible_to<double>;
-};
 
 /// Rays of a sensor in its own frame, one for each slot of a source: from the pulse's origin along its direction, at its tick. A blocked
 /// slot has a ray whose `far` is 0, which meets nothing.
@@ -54,22 +48,24 @@ void run_batch(const World& world, std::span<const Pose<frame::Instrument, frame
     if (!poses[p].rigid())
       throw SettingError("run_batch: pose " + std::to_string(p) + " (length of its quaternion)", length(poses[p].rotation), "",
                          "1, with a finite position");
-  constexpr std::size_t block = 4096;  // rays of a task: a fraction of a millisecond
-  const std::size_t blocks = (ranges.size() + block - 1) / block;
-  for_each_index(blocks, workers, [&](std::size_t b) {
-    const std::size_t end = std::min(ranges.size(), (b + 1) * block);
-    for (std::size_t k = b * block; k < end;) {
+  constexpr std::size_t block = 512;  // rays of a task: a tenth of a millisecond
+  for_each_index((ranges.size() + block - 1) / block, workers, [&](std::size_t b) {
+    std::array<Ray, block> asked_rays;
+    std::array<ClosestHitOf<World>, block> hits;
+    const std::size_t first = b * block, count = std::min(ranges.size() - first, block);
+    for (std::size_t k = first; k < first + count;) {
       const std::size_t p = k / rays.size();
       const Matrix3 turn = matrix_of(poses[p].rotation);
-      for (const Ray& in_sensor : rays.subspan(k % rays.size(), std::min(end - k, (p + 1) * rays.size() - k))) {
-        Ray ray = in_sensor;
+      for (const Ray& in_sensor : rays.subspan(k % rays.size(), std::min(first + count - k, (p + 1) * rays.size() - k))) {
+        Ray& ray = asked_rays[k - first] = in_sensor;
         ray.origin = turn * in_sensor.origin + poses[p].position;
         ray.direction = turn * in_sensor.direction;
-        ray.pulse = k;
-        const auto hit = world.closest_hit(ray);
-        ranges[k++] = hit ? static_cast<float>(hit->range) : std::numeric_limits<float>::infinity();
+        ray.pulse = k++;
       }
     }
+    closest_hits<World>(world, std::span(asked_rays).first(count), hits);
+    for (std::size_t j = 0; j < count; ++j)
+      ranges[first + j] = hits[j] ? static_cast<float>(hits[j]->range) : std::numeric_limits<float>::infinity();
   });
 }
 

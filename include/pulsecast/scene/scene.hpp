@@ -31,9 +31,11 @@ namespace pulsecast {
 /// a survey (leaves fall, a car is gone), make one scene each from the same geometries.
 template <Geometry... Shapes>
 class Scene {
-  static_assert((detail::FlatConstantCheck<Shapes>::passed && ...));
+  static_assert((detail::FlatConstantCheck<Shapes>::passed && ...) && (detail::KeylessConstantCheck<Shapes>::passed && ...));
 
  public:
+  static constexpr bool timeless = true;  ///< no hit depends on the tick of a ray
+
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
 
@@ -60,7 +62,7 @@ class Scene {
       unused.boxes_[i] = detail::placed_box(part.placement, visit_shape(bounds, part.geometry));
     }
     unused.refit_.update(index_, refit_, unused.boxes_, unused.index_, workers);
-    unused.note_single_part();
+    unused.note_parts();
     return std::move(unused);
   }
 
@@ -82,6 +84,8 @@ class Scene {
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   /// Parts, as given.
   [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
+  /// True if no hit depends on the key of a ray, as of parts that are a `KeylessGeometry`.
+  [[nodiscard]] bool keyless() const noexcept { return keyless_; }
 
   /// Memory held; shared data counts once [byte].
   [[nodiscard]] std::size_t memory() const {
@@ -104,6 +108,9 @@ class Scene {
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
     describe(rays, nearest(rays), hits, [&](std::size_t part) noexcept -> const Similarity& { return parts_[part].placement; });
   }
+
+  /// Offers the hits of the rays of a bundle to `hits`, by part and primitive.
+  void closest(const RayBundle& rays, ClosestHits& hits) const noexcept { search(rays, hits); }
 
   /// True only if no ray of a cone meets anything, as of a target that `MissesCones`.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
@@ -160,12 +167,14 @@ class Scene {
   /// Refuses moving parts, or leaves them out of the index.
   Scene(std::vector<Part> parts, Motions motions, const Workers& workers)
       : parts_(placed(std::move(parts))), index_(boxes(parts_, motions), workers, 1) {
-    note_single_part();
+    note_parts();
   }
 
-  void note_single_part() noexcept {
+  void note_parts() noexcept {
     alone_ = parts_.size() == 1 && !parts_[0].motion;
     in_place_ = alone_ && parts_[0].placement.identity();
+    const auto keyless = []<class Shape>(const std::shared_ptr<const Shape>&) noexcept { return KeylessGeometry<Shape>; };
+    keyless_ = std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) { return visit_shape(keyless, part.geometry); });
   }
 
   static std::vector<Part> placed(std::vector<Part> parts) {
@@ -297,6 +306,7 @@ class Scene {
   Bvh<float> index_;
   bool alone_ = false;      ///< true for a single part, static
   bool in_place_ = false;   ///< true for such a part without a placement
+  bool keyless_ = false;
   std::vector<Box> boxes_;  ///< box of each part of a scene made by `with_placements`
   BvhRefit<float> refit_;
 };

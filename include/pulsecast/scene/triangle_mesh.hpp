@@ -98,7 +98,8 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 template <Accelerator Index = Bvh<float>>
 class TriangleMesh {
  public:
-  static constexpr bool flat = true;  ///< as the concept FlatGeometry describes
+  static constexpr bool flat = true;     ///< as the concept FlatGeometry describes
+  static constexpr bool keyless = true;  ///< as the concept KeylessGeometry describes
 
   /// `workers`: threads of the build. @throws SettingError as `MeshData::validate`, or for coordinates beyond 1e18 m
   explicit TriangleMesh(MeshData data, const Workers& workers = {}) : index_(built(data, workers)) {

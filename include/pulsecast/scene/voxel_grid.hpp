@@ -255,6 +255,8 @@ struct TransmissiveVoxels {
 template <class Filling = OpaqueVoxels>
 class VoxelGrid {
  public:
+  static constexpr bool keyless = !std::same_as<Filling, TransmissiveVoxels>;  ///< as the concept KeylessGeometry describes
+
   explicit VoxelGrid(DeserializeTag tag) : index_(tag), columns_(tag) {}
 
   /// @throws SettingError as `VoxelData::validate` and `VoxelIndex`, or for a column that the filling lacks
