@@ -5,6 +5,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "support/scenes.hpp"
@@ -27,6 +29,32 @@ TEST_CASE_TEMPLATE("every primitive stands in a leaf of a KdTree, and in four on
   CHECK(sum <= 4 * boxes.size());
   CHECK(tree.depth() <= 64);
   CHECK(tree.memory() >= boxes.size() * sizeof(PrimitiveIndex));
+}
+
+TEST_CASE_TEMPLATE("a KdTree has the same bytes on any number of threads, and of boxes that are made as they are asked for", Real, float,
+                   double) {
+  Generator random(51);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 40'000; ++i) boxes.push_back(random.box(100, 1e-3, 1));  // several chunks, and several subtrees
+  struct Made {
+    const std::vector<Box>& all;
+    [[nodiscard]] std::size_t size() const noexcept { return all.size(); }
+    [[nodiscard]] Box operator[](std::size_t i) const noexcept { return all[i]; }
+  };
+  const auto bytes_of = [](KdTree<Real> tree) {
+    std::vector<std::byte> bytes;
+    const auto add = [&](const auto& member) {
+      if constexpr (requires { member.memory(); }) {
+        const auto all = std::as_bytes(std::span(member.data(), member.size()));
+        bytes.insert(bytes.end(), all.begin(), all.end());
+      }
+    };
+    auto each = [&](const auto&... members) { (add(members), ...); };
+    tree.archive(each);
+    return bytes;
+  };
+  const auto alone = bytes_of(KdTree<Real>(boxes, 1));
+  for (const unsigned threads : {2U, 5U}) CHECK(bytes_of(KdTree<Real>(Made{boxes}, threads)) == alone);
 }
 
 TEST_CASE_TEMPLATE("a KdTree of primitives that all stand at one point is one leaf", Real, float, double) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -168,6 +169,21 @@ MeshData torn_ground(std::uint32_t squares) {
   return data;
 }
 
+/// Bytes of the arrays of a mesh beside its index.
+template <class Mesh>
+std::vector<std::byte> bytes_of(Mesh mesh) {
+  std::vector<std::byte> bytes;
+  const auto add = [&](const auto& member) {
+    if constexpr (requires { member.data(); }) {
+      const auto all = std::as_bytes(std::span(member.data(), member.size()));
+      bytes.insert(bytes.end(), all.begin(), all.end());
+    }
+  };
+  auto each = [&](const auto&... members) { (add(members), ...); };
+  mesh.archive(each);
+  return bytes;
+}
+
 bool same_bits(const Triangle& a, const Triangle& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 }  // namespace
@@ -186,6 +202,7 @@ TEST_CASE_TEMPLATE("triangles of a mesh of several blocks keep their numbers and
       different += same_bits(mesh.triangle(static_cast<PrimitiveIndex>(i)), data.triangle(i)) ? 0 : 1;
     CHECK(different == 0);
     CHECK(mesh.is_consistent());
+    CHECK(bytes_of(mesh) == bytes_of(Mesh(data, 1)));
   }
 }
 

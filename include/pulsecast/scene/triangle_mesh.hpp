@@ -291,17 +291,20 @@ class TriangleMesh {
   }
 
   /// Stores triangles and corners in the index's order, block by block.
-  void arrange(const MeshData& data, Workers workers) {
+  void arrange(const MeshData& data, const Workers& workers) {
     const auto order = index_.order();
-    if (order.size() > data.triangles.size()) workers = 1;  // a triangle may be in several blocks: the last one wins
+    const bool once = order.size() == data.triangles.size();  // else a triangle may be in several blocks: the last one wins
     const SharedBuffer<std::uint32_t> places(data.triangles.size());
-    if (order.size() < places.size()) std::fill(places.begin(), places.end(), 0);  // triangles left out of the index are never hit
+    if (!once) {
+      std::fill(places.begin(), places.end(), 0);  // triangles left out of the index are never hit
+      for (std::size_t place = 0; place < order.size(); ++place) places[order[place]] = static_cast<std::uint32_t>(place);
+    }
     const SharedBuffer<Corners> triangles(order.size());
     std::vector<std::vector<Vec3>> parts(detail::chunk_count(order.size()));
     detail::for_each_chunk(order.size(), workers, [&](std::size_t block, std::size_t begin, std::size_t end) {
       detail::CornerTable table(end - begin);
       for (std::size_t place = begin; place < end; ++place) {
-        places[order[place]] = static_cast<std::uint32_t>(place);
+        if (once) places[order[place]] = static_cast<std::uint32_t>(place);
         const auto& corners = data.triangles[order[place]];
         for (std::size_t k = 0; k < 3; ++k) triangles[place][k] = table.number_of(data.vertices[corners[k]]);
       }
