@@ -67,9 +67,7 @@ class SharedLegRun final : public LegRun {
   RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override {
     std::vector<MpiOutput*> outputs;
     for (const auto& output : outputs_) outputs.push_back(output.get());
-    const auto simulate = [&](const RunOptions& part, const std::function<void(const EchoBatch&)>& sink) {
-      return simulation.run(part, sink);
-    };
+    const auto simulate = [&](const RunOptions& part, const mpi::MpiPartSink& sink) { return simulation.run(part, sink); };
     return mpi::run_parts(group_, options.end, options, simulate, outputs);
   }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/mpi/run.hpp>
 
+#include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 #include <stop_token>
 #include <vector>
@@ -9,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/cloud.hpp>
+#include <pulsecast/io/text_files.hpp>
 
 #include "support/mpi_showers.hpp"
 
@@ -44,6 +47,51 @@ TEST_CASE("sinks of the first process get all, in pulse order") {
   if (!mpi_group().first()) return;
   CHECK(told.back().done == alone.slots);
   CHECK(told.back().total == alone.slots);
+}
+
+TEST_CASE("shots without echoes reach no process if no sink of a run reads them") {
+  struct OfChoice {
+    bool empty_shots;
+    std::uint64_t empty = 0, echoes = 0;
+    void operator()(const EchoBatch& batch) {
+      for (const Shot& shot : batch.shots) (shot.echoes > 0 ? echoes : empty) += std::max(1U, shot.echoes);
+    }
+    [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots; }
+  };
+  const Showers survey{50'000};
+  for (const bool one : {false, true})
+    for (const bool other : {false, true}) {
+      CAPTURE(one);
+      CAPTURE(other);
+      OfChoice first{one}, second{other};
+      const RunSummary summary = run(mpi_group(), survey, {.threads = 2}, first, second);
+      CHECK(summary.count(Fate::missed) > 10'000);
+      if (!mpi_group().first()) continue;
+      for (const OfChoice& sink : {first, second}) {
+        CHECK(sink.empty == (one || other ? summary.count(Fate::missed) : 0));
+        CHECK(sink.echoes == summary.echoes);
+      }
+    }
+  std::vector<MpiOutput*> outputs;
+  for (const bool rows_of_pulses : {false, true}) {
+    const support::SharedFolder folder;
+    using Settings = io::TextFileSettings;
+    MpiLas points(mpi_group(), folder / "points.las", {});
+    MpiRows<io::XyzWriter, Settings> lines(mpi_group(), folder / "points.xyz", {});
+    MpiRows<io::PulseTextWriter, Settings> pulses(mpi_group(), folder / "pulses.txt", {});
+    outputs = {&points, &lines};
+    if (rows_of_pulses) outputs.push_back(&pulses);
+    std::uint64_t read = 0, unread = 0;
+    const MpiSimulate simulate = [&](const RunOptions& part, const MpiPartSink& sink) {
+      ++(sink.reads_empty_shots() ? read : unread);
+      return pulsecast::run(survey, part, sink);
+    };
+    run_parts(mpi_group(), survey.size(), {.threads = 1}, simulate, outputs);
+    CHECK((rows_of_pulses ? unread : read) == 0);
+    points.close();
+    lines.close();
+    pulses.close();
+  }
 }
 
 TEST_CASE("a pose that is not finite ends a run, as an exception of a sink does") {

@@ -39,6 +39,8 @@ class MpiLasPiece final : public MpiPiece {
     if (packets_) packets_.emplace(io::OutputFile(path_, packet_bytes_));
   }
 
+  [[nodiscard]] bool reads_empty_shots() const noexcept override { return false; }
+
   void operator()(const EchoBatch& batch) override {
     const std::size_t size = encoder_.layout().record();
     for (const Shot& shot : batch.shots) {

@@ -13,6 +13,7 @@
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
+#include <pulsecast/run.hpp>
 
 namespace pulsecast::mpi {
 
@@ -52,6 +53,7 @@ class MpiRows final : public MpiOutput {
       writer.emplace(io::OutputFile(path, bytes), settings);
     }
     void operator()(const EchoBatch& batch) override { (*writer)(batch); }
+    [[nodiscard]] bool reads_empty_shots() const noexcept override { return pulsecast::detail::reads_empty_shots(*writer); }
     [[nodiscard]] MpiExtent extent() override {
       writer->close();
       MpiExtent extent;

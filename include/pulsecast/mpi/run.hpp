@@ -37,8 +37,21 @@
 /// All functions are collective: every process calls them. An exception on one process must end all: see `MpiSession`.
 namespace pulsecast::mpi {
 
+/// Sink of part of a survey on one process.
+class MpiPartSink {
+ public:
+  MpiPartSink(std::function<void(const EchoBatch&)> take, bool empty_shots) : take_(std::move(take)), empty_shots_(empty_shots) {}
+
+  void operator()(const EchoBatch& batch) const { take_(batch); }
+  [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }  ///< as the concept ChoosesShots describes
+
+ private:
+  std::function<void(const EchoBatch&)> take_;
+  bool empty_shots_;
+};
+
 /// Simulation of part of a survey, as by `run(survey, options, sink)`.
-using MpiSimulate = std::function<RunSummary(const RunOptions& options, const std::function<void(const EchoBatch&)>& sink)>;
+using MpiSimulate = std::function<RunSummary(const RunOptions& options, const MpiPartSink& sink)>;
 
 namespace detail {
 
@@ -155,7 +168,9 @@ class MpiRun {
                     .stride = slots_.stride};
     part.progress = [this](const Progress&) { serve(); };
     std::vector<Shot> shots;
-    const RunSummary summary = simulate_(part, [&](const EchoBatch& batch) {
+    const bool empty_shots =
+        std::any_of(held.pieces.begin(), held.pieces.end(), [](const auto& piece) { return piece->reads_empty_shots(); });
+    const auto take = [&](const EchoBatch& batch) {
       for (std::size_t k = 0; k < outputs_.size(); ++k) {
         EchoBatch some = batch;
         if (const auto channel = outputs_[k]->channel) {
@@ -166,7 +181,8 @@ class MpiRun {
         }
         (*held.pieces[k])(some);
       }
-    });
+    };
+    const RunSummary summary = simulate_(part, MpiPartSink(take, empty_shots));
     own_.add(summary);
     MpiCost cost{summary.slots, summary.echoes, 0, summary.seconds};
     MpiMessage extents;
@@ -204,8 +220,9 @@ class MpiRun {
 /// Output that feeds a sink of the first process with the results of all.
 template <class Sink>
 [[nodiscard]] std::unique_ptr<MpiOutput> mpi_output(MpiGroup& group, Sink& sink) {
+  const bool empty_shots = group.channel().from_first(pulsecast::detail::reads_empty_shots(sink));
   return std::make_unique<MpiStream<MpiBatchWriter>>(
-      group, [](io::OutputFile piece) { return MpiBatchWriter(std::move(piece)); },
+      group, [empty_shots](io::OutputFile piece) { return MpiBatchWriter(std::move(piece), empty_shots); },
       [&sink](MpiMessage bytes) { for_each_batch(std::move(bytes), sink); }, [] {});
 }
 
@@ -224,7 +241,7 @@ template <class S>
 concept MpiSink = std::is_base_of_v<MpiOutput, std::remove_reference_t<S>> || EchoSink<S>;
 
 /// Simulates the pulses of a survey, made alike on all processes. A sink is an `MpiOutput`, written by all, or any `EchoSink`, called on
-/// the first process only, with batches in pulse order. Every process gets the summary of all.
+/// the first process only, with batches in pulse order, whose choice of shots counts for all. Every process gets the summary of all.
 template <PulseSurvey Survey, MpiSink... Sinks>
 RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   std::vector<MpiOutput*> outputs;
@@ -237,9 +254,7 @@ RunSummary run(MpiGroup& group, const Survey& survey, const RunOptions& options,
     }
   };
   (take(sinks), ...);
-  const MpiSimulate simulate = [&](const RunOptions& part, const std::function<void(const EchoBatch&)>& sink) {
-    return pulsecast::run(survey, part, sink);
-  };
+  const MpiSimulate simulate = [&](const RunOptions& part, const MpiPartSink& sink) { return pulsecast::run(survey, part, sink); };
   const RunSummary summary = run_parts(group, survey.size(), options, simulate, outputs);
   for (const auto& output : own) output->close();
   return summary;

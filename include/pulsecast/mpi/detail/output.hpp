@@ -80,7 +80,8 @@ class MpiPiece {
   virtual ~MpiPiece() = default;
   /// Resets the piece, keeping its memory.
   virtual void clear() = 0;
-  virtual void operator()(const EchoBatch& batch) = 0;  ///< adds a batch, in pulse order
+  virtual void operator()(const EchoBatch& batch) = 0;                            ///< adds a batch, in pulse order
+  [[nodiscard]] virtual bool reads_empty_shots() const noexcept { return true; }  ///< as the concept ChoosesShots describes
   /// Size of the piece, after the last batch.
   [[nodiscard]] virtual MpiExtent extent() = 0;
   [[nodiscard]] virtual std::size_t memory() const noexcept = 0;  ///< [byte]

@@ -17,13 +17,17 @@
 #include <pulsecast/echo.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
+#include <pulsecast/run.hpp>
 
 namespace pulsecast::mpi {
 
 /// Writes batches in their memory layout, for `for_each_batch` in another process of the same program.
 class MpiBatchWriter {
  public:
-  explicit MpiBatchWriter(io::OutputFile file) : file_(std::move(file)) {}
+  /// `empty_shots`: as `reads_empty_shots()` of the sink.
+  explicit MpiBatchWriter(io::OutputFile file, bool empty_shots = true) : file_(std::move(file)), empty_shots_(empty_shots) {}
+
+  [[nodiscard]] bool reads_empty_shots() const noexcept { return empty_shots_; }  ///< as the concept ChoosesShots describes
 
   void operator()(const EchoBatch& batch) {
     const Head head{batch.shots.size(), batch.echoes.size(), batch.samples.size(), batch.subrays.size(), batch.sample_interval};
@@ -42,6 +46,7 @@ class MpiBatchWriter {
 
  private:
   io::OutputFile file_;
+  bool empty_shots_;
 };
 
 /// Calls a sink with each batch of a message from `MpiBatchWriter`.
@@ -117,6 +122,7 @@ class MpiStream final : public MpiOutput {
       writer.emplace(make(io::OutputFile("piece", bytes)));
     }
     void operator()(const EchoBatch& batch) override { (*writer)(batch); }
+    [[nodiscard]] bool reads_empty_shots() const noexcept override { return pulsecast::detail::reads_empty_shots(*writer); }
     [[nodiscard]] MpiExtent extent() override {
       writer->close();
       return {};
