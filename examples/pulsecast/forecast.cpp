@@ -60,6 +60,7 @@ class Allowance {
 struct Census {
   std::array<double, kinds> slots{};  ///< number of slots in the survey, by kind
   Estimate points{};
+  double empty = 0;                                    ///< pulses of the survey without a point
   std::array<std::vector<PulseIndex>, kinds> found{};  ///< sampled slots in order
   std::uint64_t sampled = 0;
 };
@@ -102,6 +103,7 @@ Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned th
     if (census.sampled > 0) differences += (echoes - before) * (echoes - before);
     before = echoes;
     sum += echoes;
+    if (kind != blocked && counts[i]->echoes == 0) ++census.empty;
     ++census.sampled;
     ++of_kind[kind];
     census.found[kind].push_back(places[i]);
@@ -109,6 +111,7 @@ Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned th
   if (census.sampled == 0) return census;
   const double n = static_cast<double>(census.sampled), all = static_cast<double>(size), per_slot = all / n;
   for (std::size_t k = 0; k < kinds; ++k) census.slots[k] = of_kind[k] * per_slot;
+  census.empty *= per_slot;
   const double deviation = n < 2 ? 0 : per_slot * std::sqrt((1 - n / all) * n * differences / (2 * (n - 1)));
   const double value = sum * per_slot;
   // Upper limit after n trials without success: 3 in n. Source: Hanley & Lippman-Hand 1983.
@@ -198,7 +201,7 @@ struct Writing {
     double seconds = 0, bytes = 0;  ///< [s], [byte]
   };
   Cost point{};   ///< including its attributes
-  Cost empty{};   ///< pulse without a point
+  Cost empty{};   ///< pulse without a point; nothing if no sink reads it
   Cost leg{};     ///< set of files, without points
   Cost record{};  ///< record of a trajectory
 };
@@ -216,6 +219,12 @@ struct TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 };
 
+/// True if the files of a leg have a place for pulses without points.
+bool writes_empty_shots(const Options& options) {
+  const TemporaryFolder folder;
+  return LegFiles(folder.path, "leg", options, 0, {}).reads_empty_shots();
+}
+
 /// Pulses of a sample with echoes, or those without.
 Sample only(const Sample& sample, bool with_echoes) {
   Sample some;
@@ -229,11 +238,12 @@ Sample only(const Sample& sample, bool with_echoes) {
 
 Writing measure_writing(std::span<const Sample> samples, const CompiledSurvey& compiled, const Options& options) {
   const auto processor = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+  const double start_time = compiled.clock_start.value_or(302'400);  // half a GPS week, whose seconds have as many digits as most
   // `what` returns its time of preparation [s], which does not count.
   const auto write = [&](const auto& what) {
     const TemporaryFolder folder;
     const double start = processor();
-    LegFiles files(folder.path, "leg", options, 0, {});
+    LegFiles files(folder.path, "leg", options, start_time, {});
     const double readying = what(files);
     files.close();
     Writing::Cost cost{processor() - start - readying, 0};
@@ -407,11 +417,14 @@ class Forecaster {
     constexpr std::uint64_t max_rounds = 48;
     std::vector<Sample> samples;
     std::vector<Kind> begin_at;
+    const bool empty_shots = writes_empty_shots(options_);
     const Allowance allowance(1.0, workers_);
     for (std::uint64_t round = 0; round < max_rounds && (round == 0 || allowance.left()); ++round)
       for (const Kind kind : {met, missed, blocked}) {
         const std::uint64_t each = kind == met ? 16 : 4;
-        for (Sample& sample : simulation_.sample(blocks(kind, round * each, (round + 1) * each, 128, 896), threads_)) {
+        std::vector<SampleBlock> some = blocks(kind, round * each, (round + 1) * each, 128, 896);
+        for (SampleBlock& block : some) block.empty_shots = empty_shots;
+        for (Sample& sample : simulation_.sample(some, threads_)) {
           samples.push_back(std::move(sample));
           begin_at.push_back(kind);
         }
@@ -520,14 +533,13 @@ class Forecaster {
 
   /// Estimates time, memory and files from the measurements.
   void entire(Forecast& f, double computing) const {
-    const double repetitions = simulation_.runs(), legs = files_of(compiled_), records = records_of(compiled_),
-                 shots = census_.slots[met] + census_.slots[missed];
+    const double repetitions = simulation_.runs(), legs = files_of(compiled_), records = records_of(compiled_);
     const auto bytes = [&](double points, double unsure) {
-      return repetitions * (unsure * (points * writing_.point.bytes + std::max(0.0, shots - points) * writing_.empty.bytes) +
-                            legs * writing_.leg.bytes + records * writing_.record.bytes);
+      return repetitions * (unsure * (points * writing_.point.bytes + census_.empty * writing_.empty.bytes) + legs * writing_.leg.bytes +
+                            records * writing_.record.bytes);
     };
     const auto seconds = [&](double points, double unsure) {
-      const double writing = points * writing_.point.seconds + std::max(0.0, shots - points) * writing_.empty.seconds;
+      const double writing = points * writing_.point.seconds + census_.empty * writing_.empty.seconds;
       const double alone = legs * writing_.leg.seconds + records * writing_.record.seconds;
       // One thread writes at a time, while the others compute.
       return repetitions * (loading_ + unsure * (alone + std::max(writing, (computing + writing) / workers_)));

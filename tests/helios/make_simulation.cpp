@@ -97,6 +97,21 @@ TEST_CASE("samples and counts are those of a run") {
   }
 }
 
+TEST_CASE("a sample counts shots without echoes, and keeps them where they are read") {
+  const auto simulation = make_simulation(survey(), {.seed = 3, .meshes = {plane()}});
+  Simulation::Mesh above = plane();
+  for (Vec3& vertex : above.data.vertices) vertex.z = 2 * height;
+  const auto nothing = make_simulation(survey(), {.seed = 3, .meshes = {above}});
+  for (const bool empty_shots : {true, false}) {
+    const std::vector<SampleBlock> blocks{{0, 10, 200, empty_shots}};
+    const Sample met = simulation->sample(blocks, 1)[0], missed = nothing->sample(blocks, 1)[0];
+    CHECK(met.shots.size() == 190);
+    CHECK(missed.shots.size() == (empty_shots ? 190 : 0));
+    CHECK(missed.counts.slots == 190);
+    CHECK(missed.counts.count(Fate::missed) == 190);
+  }
+}
+
 TEST_CASE("ideal receivers take the noise away, and those of the survey bring it back") {
   SurveySettings s = survey();
   s.scanner.channels[0].accuracy = 1;

@@ -37,6 +37,7 @@ struct Receiving {
 /// Consecutive slots of a sample. Slots before `from` are simulated to warm the caches, but do not count.
 struct SampleBlock {
   PulseIndex first = 0, from = 0, end = 0;  ///< first slot, first that counts, one past the last
+  bool empty_shots = true;                  ///< false: shots without echoes are counted, not kept, as in a run whose sinks read none
 };
 
 /// Results of the counted slots of a block.

@@ -183,10 +183,10 @@ class LoadedSimulation final : public Simulation {
         const SampleBlock& block = blocks[k];
         Sample& sample = all[k];
         room.clear();
-        for (PulseIndex i = block.first; i < block.from; ++i) room.append(survey(i, workspace));
+        for (PulseIndex i = block.first; i < block.from; ++i) room.append(survey(i, workspace), block.empty_shots);
         room.clear();
         const double start = processor_seconds();
-        for (PulseIndex i = block.from; i < block.end; ++i) room.append(survey(i, workspace));
+        for (PulseIndex i = block.from; i < block.end; ++i) room.append(survey(i, workspace), block.empty_shots);
         sample.seconds = processor_seconds() - start;
         sample.sample_interval = survey.sample_interval();
         static_cast<ResultBuffer&>(sample) = room;
