@@ -8,7 +8,7 @@
 
 #include <pulsecast/echo.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Point cloud in memory: a sink that keeps every echo, column by column.
 struct Cloud {
@@ -34,6 +34,6 @@ struct Cloud {
   [[nodiscard]] std::size_t size() const noexcept { return points.size(); }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

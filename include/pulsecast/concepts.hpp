@@ -23,7 +23,7 @@
 /// in refinements.hpp. The laws that a compiler cannot check are tested by `tests/support/laws.hpp`.
 // clang-format off
 // version 14 breaks up compound requirements
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 // ---------------------------------------------------------------------------------------------------------------- motions
 

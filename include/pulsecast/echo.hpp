@@ -11,7 +11,7 @@
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// User's number of an object of the scene.
 using ObjectId = std::uint32_t;
@@ -140,6 +140,6 @@ struct EchoBatch {
 /// Position of an echo in the world [m].
 [[nodiscard]] inline Vec3 point_of(const Shot& shot, const Echo& echo) noexcept { return shot.origin + shot.direction * echo.range; }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

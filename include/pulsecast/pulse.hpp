@@ -12,7 +12,7 @@
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/units.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Beam divergence: full angles at 1/e^2 of the peak irradiance [rad]; one number for a round beam.
 struct Divergence {
@@ -115,6 +115,6 @@ struct Pulse : detail::PulseOnPlatform<Frame> {
   [[nodiscard]] Vec3 direction() const noexcept { return pose.rotation * axis::forward; }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -22,7 +22,7 @@
 /// all kinds, are in base/require.hpp.
 // clang-format off
 // version 14 breaks up compound requirements
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 template <class G>

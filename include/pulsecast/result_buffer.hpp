@@ -11,7 +11,7 @@
 
 #include <pulsecast/survey.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Totals of a run.
 struct RunSummary {
@@ -93,6 +93,6 @@ struct ResultBuffer {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -24,7 +24,7 @@
 #include <pulsecast/result_buffer.hpp>
 #include <pulsecast/survey.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Slots of a survey in a run.
 struct RunSlots {
@@ -278,6 +278,6 @@ requires(!PulseSurvey<Survey> || !(EchoSink<Sinks> && ...)) RunSummary run(const
   return {};
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -11,7 +11,7 @@
 /// Arguments of `Deflector`, `Platform` and `Survey`. Deduction guides that take all others name the mistake, by static assertions.
 // clang-format off
 // version 14 breaks up compound requirements
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Optic or head before a source that it deflects.
 template <class Moving, class Source>

@@ -20,7 +20,7 @@
 #include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/transport/illumination.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Error of a pulse that makes its results worthless: NaN from a user's own type. `run` throws it.
 enum class PulseError : std::uint8_t {
@@ -313,6 +313,6 @@ template <class Source, class Pattern, class Map, class Instrument>
 requires(detail::Temporary<Map>) Survey(Source, std::vector<ReceiverUnit<Pattern, Instrument>>, Map&&, std::uint64_t = 0)
 ->Survey<typename detail::SurveyArguments<Source, Pattern, Map, Instrument>::First, Pattern, Map, Instrument>;
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -18,7 +18,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/simd.hpp>
 
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Binary SAH tree with one primitive per leaf, and the dynamic program that collapses it into an 8-wide tree of least SAH cost. Leaves of
 /// the wide tree hold up to `leaf_size` primitives. Reorders the primitives to the order of the leaves.
@@ -340,6 +340,6 @@ class BinarySahTree {
   std::uint32_t root_ = 0;
 };
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

@@ -20,7 +20,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 template <std::floating_point Real>
 class BvhRefit;
@@ -344,6 +344,6 @@ class Bvh {
 
 static_assert(Accelerator<Bvh<float>> && MissesCones<Bvh<float>>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -17,7 +17,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Kd-tree split by the surface-area heuristic at the edges of 32 slices per axis. A primitive is in every leaf that its box reaches: at
 /// most four leaves on average.
@@ -150,6 +150,6 @@ class KdTree {
 
 static_assert(Accelerator<KdTree<float>>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

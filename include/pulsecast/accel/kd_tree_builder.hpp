@@ -18,7 +18,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/simd.hpp>
 
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Build of a kd-tree: large nodes level by level, in chunks of their primitives, then the subtrees below, both on all threads. Nodes and
 /// leaves are in depth-first order, lower children first, for any number of threads. `Node`: a node of 16 bytes, as `KdTree` has it.
@@ -344,6 +344,6 @@ class KdTreeBuilder {
   SharedArray<PrimitiveIndex> order_;
 };
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

@@ -14,7 +14,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Accelerator without a search structure: tests every primitive. Oracle for the other accelerators, and efficient for a handful of
 /// primitives.
@@ -58,6 +58,6 @@ class Linear {
 
 static_assert(Accelerator<Linear<float>>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/accel/bvh.hpp>
 #include <pulsecast/base/parallel.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Trees over primitives that move, in reused memory. `refit` keeps the topology of a tree and recomputes its boxes; `update` builds the
 /// tree anew where that would be too slow. Quality is the SAH cost of the boxes. Hits do not depend on it.
@@ -154,6 +154,6 @@ class BvhRefit {
   std::vector<GrowingBox> around_;  ///< box of each node
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -22,7 +22,7 @@
 /// Shared parts of the SAH builders. The cost of a node is the expected number of tests for a ray that meets it. The probability that a
 /// ray through a box meets a box inside is the ratio of their surface areas.
 /// Source: Goldsmith & Salmon 1987; MacDonald & Booth 1990. Binned: Wald 2007; Shevtsov, Soupikov & Kapustin 2007.
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Cost of a primitive test, in traversal steps. Affects speed only.
 inline constexpr double test_cost = 2;
@@ -258,6 +258,6 @@ struct BuildInput {
 /// Levels of halving down to single parts.
 [[nodiscard]] inline std::size_t levels_of_halving(std::size_t parts) noexcept { return parts < 2 ? 0 : std::bit_width(parts - 1); }
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_BASE_COMPILED_HPP
 #define PULSECAST_BASE_COMPILED_HPP
 
+#include <pulsecast/base/namespace.hpp>
 #include <pulsecast/version.hpp>
 
 /// Switch between headers alone and `pulsecast::compiled`, a library with the definitions of readers and of XML surveys. The target defines
@@ -20,7 +21,7 @@
 #define PULSECAST_INLINE inline
 #endif
 
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Version as a number: `0.1.1` is 101.
 [[nodiscard]] consteval unsigned version_number() {
@@ -36,14 +37,14 @@ namespace pulsecast::detail {
   }
 }
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #if defined(PULSECAST_COMPILED)
 #include <cstddef>
 
 #include <pulsecast/base/simd.hpp>
 
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Marks a build of the library by what a program must have in common with it, as sizes or code in headers depend on it. A program of
 /// another build does not link, for want of this function.
@@ -71,7 +72,7 @@ namespace {
     &compiled_library_of_this_build<version_number(), simd::register_bytes, has_fma, has_checked_containers>;
 }
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 #endif
 
 #endif

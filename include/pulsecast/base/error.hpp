@@ -11,7 +11,9 @@
 #include <string_view>
 #include <utility>
 
-namespace pulsecast {
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 /// Shortest decimal text of a number that reads back the same.
@@ -85,6 +87,6 @@ class FileError : public std::runtime_error {
   std::string path_, place_, problem_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

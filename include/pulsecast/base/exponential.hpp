@@ -13,7 +13,7 @@
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"  // of vectors wider than a register
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 namespace simd::detail {
 /// Bits of a number, or of the lanes of a vector of numbers. Unsigned: sums may overflow in lanes that are not used.
@@ -41,7 +41,7 @@ requires std::same_as<Number, double> || std::same_as<Number, simd::Vec<double, 
   return x < least ? Number{} : series * power_of_two;
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #pragma GCC diagnostic pop
 

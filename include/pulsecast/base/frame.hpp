@@ -7,7 +7,7 @@
 
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Frames of reference. All are right-handed, in metres, with x right, y forward, z up.
 namespace frame {
@@ -65,6 +65,6 @@ struct TimedPose {
 /// Converts axes x forward, y left, z up (ROS REP 103) to x right, y forward, z up.
 [[nodiscard]] inline Vec3 from_forward_left_up(const Vec3& v) noexcept { return {-v.y, v.x, v.z}; }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -14,7 +14,7 @@
 
 #include <pulsecast/base/require.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 inline constexpr unsigned max_threads = 1024;  ///< upper limit of a setting for threads
 
@@ -179,6 +179,6 @@ inline void for_each_index(std::size_t count, const Workers& workers, const Inde
   loop.rethrow();
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

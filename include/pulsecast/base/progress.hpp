@@ -12,7 +12,7 @@
 
 #include <pulsecast/base/tick.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Progress of a run.
 struct Progress {
@@ -46,6 +46,6 @@ class ProgressCallback {
   void (*call_)(void*, const Progress&) = nullptr;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

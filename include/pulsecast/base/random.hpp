@@ -9,7 +9,7 @@
 
 #include <pulsecast/base/tick.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Purpose of a random number; numbers for different purposes are independent. Results depend on the values, so they never change and new
 /// ones come last. Values 128 to 255 are free for user models: `Purpose{128}`.
@@ -106,6 +106,6 @@ template <class... Lower>
 /// Draw from the standard normal distribution by inversion: the same with every standard library.
 [[nodiscard]] inline double normal(const RandomKey& key) noexcept { return normal_quantile(uniform(key)); }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

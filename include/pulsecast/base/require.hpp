@@ -15,7 +15,7 @@
 /// Asserts a condition that only a bug of the caller can break; checked in debug builds, on the hot path too.
 #define PULSECAST_ASSERT(condition) assert(condition)
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Limit of angles [rad]: one turn, and room for rounding.
 inline constexpr double max_angle = 6.2831854;
@@ -113,6 +113,6 @@ template <class Settings>
   return settings;
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

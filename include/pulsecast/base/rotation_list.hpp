@@ -8,7 +8,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Right-handed rotation by an angle about an axis.
 struct AxisAngle {
@@ -43,6 +43,6 @@ struct AxisAngle {
   return normalize(all);
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -7,7 +7,9 @@
 #include <mutex>
 #include <utility>
 
-namespace pulsecast {
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE {
 
 /// Base of objects that a `ScratchMemory` keeps.
 class ScratchItem {
@@ -91,6 +93,6 @@ class Borrowed {
   std::unique_ptr<T> item_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

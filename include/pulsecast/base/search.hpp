@@ -5,7 +5,9 @@
 
 #include <cstddef>
 
-namespace pulsecast::detail {
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Index of the first of `count` elements for which `before(i)` is false, by binary search. Requires a partition: true, then false.
 /// Compiles in a fraction of the time of std::lower_bound.
@@ -44,6 +46,6 @@ template <class Table, class Entry>
   return i == k ? a.*value : a.*value + (b.*value - a.*value) * (x - a.*key) / (b.*key - a.*key);
 }
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

@@ -15,9 +15,11 @@
 
 #if defined(__linux__)
 #include <sys/mman.h>
+
+#include <pulsecast/base/namespace.hpp>
 #endif
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
@@ -119,6 +121,6 @@ struct DeserializeTag {
   explicit DeserializeTag() = default;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

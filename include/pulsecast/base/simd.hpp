@@ -10,10 +10,11 @@
 #include <utility>
 
 #include <pulsecast/base/arithmetic.hpp>
+#include <pulsecast/base/namespace.hpp>
 
 /// SIMD registers as vector types of the compiler, with their operators. A comparison gives a `Mask` with all bits set in the lanes where
 /// it holds; `mask ? a : b` selects by lane.
-namespace pulsecast::simd {
+namespace PULSECAST_NAMESPACE::simd {
 
 /// Size of a SIMD register [byte].
 #if defined(__AVX__)  // 32 with AVX-512, too: of eight lanes, a single ray would use one
@@ -247,9 +248,9 @@ template <class M>
   return set;
 }
 
-}  // namespace pulsecast::simd
+}  // namespace PULSECAST_NAMESPACE::simd
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Prefetches an object into the cache.
 template <class T>
@@ -257,6 +258,6 @@ inline void prefetch(const T* object) noexcept {
   for (std::size_t byte = 0; byte < sizeof(T); byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + byte);
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/base/text.hpp>
 
 /// Known names in place of a misspelt one, for messages.
-namespace pulsecast::text {
+namespace PULSECAST_NAMESPACE::text {
 
 /// Number of insertions, deletions, changes and swaps of neighbours that turn one word into the other; case is ignored. Source: optimal
 /// string alignment distance, Damerau 1964.
@@ -64,6 +64,6 @@ struct NearestName {
   return "; known names: " + list + (known.size() > max_listed ? ", ..." : "");
 }
 
-}  // namespace pulsecast::text
+}  // namespace PULSECAST_NAMESPACE::text
 
 #endif

@@ -16,7 +16,7 @@
 #include <pulsecast/base/error.hpp>
 
 /// Lines, words and numbers of text. Letters are those of ASCII; the locale has no influence.
-namespace pulsecast::text {
+namespace PULSECAST_NAMESPACE::text {
 
 inline constexpr std::string_view blanks = " \t";  ///< blank and tab
 
@@ -105,6 +105,6 @@ template <class Number>
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-}  // namespace pulsecast::text
+}  // namespace PULSECAST_NAMESPACE::text
 
 #endif

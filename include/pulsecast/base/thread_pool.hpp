@@ -17,7 +17,7 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/scratch_memory.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Threads that are kept from call to call, with the memory of runs: the executor of this library. The caller of `for_each` works, too, and
 /// waits for its own tasks only, so that calls may be nested. Several threads may use a pool at once. It must outlive its calls.
@@ -138,6 +138,6 @@ class ThreadPool {
 
 static_assert(MemoryKeepingExecutor<ThreadPool>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

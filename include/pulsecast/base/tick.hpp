@@ -8,8 +8,9 @@
 #include <cstdint>
 
 #include <pulsecast/base/arithmetic.hpp>
+#include <pulsecast/base/namespace.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Number of a pulse slot in its source, from 0.
 using PulseIndex = std::uint64_t;
@@ -66,6 +67,6 @@ struct Tick {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -11,7 +11,7 @@
 #include <pulsecast/base/vector.hpp>
 
 /// Rotations in settings. In single precision, or with few decimals, they are unit up to rounding only.
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Throws a `SettingError` unless the norm of a rotation is within 1e-3 of 1.
 inline void require_rotation(std::string_view field, const Rotation& rotation) {
@@ -24,6 +24,6 @@ inline void require_rotation(std::string_view field, const Rotation& rotation) {
   return std::fabs(length(rotation) - 1) <= 1e-9 ? rotation : normalize(rotation);
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -5,8 +5,10 @@
 
 #include <numbers>
 
+#include <pulsecast/base/namespace.hpp>
+
 /// Literals that give SI units and radians: `100_kHz`, `0.3_mrad`, `20_deg`.
-namespace pulsecast::literals {
+namespace PULSECAST_NAMESPACE::literals {
 
 // clang-format off
 consteval double operator""_m(long double v)    { return static_cast<double>(v); }
@@ -50,9 +52,9 @@ consteval double operator""_mW(unsigned long long v)   { return static_cast<doub
 consteval double operator""_nW(unsigned long long v)   { return static_cast<double>(v * 1e-9L); }
 // clang-format on
 
-}  // namespace pulsecast::literals
+}  // namespace PULSECAST_NAMESPACE::literals
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Speed of light in vacuum [m/s]. Source: SI, exact by definition of the metre (17th CGPM, 1983).
 inline constexpr double speed_of_light = 299792458.0;
@@ -63,6 +65,6 @@ inline constexpr double speed_of_light = 299792458.0;
 /// Converts radians to degrees, as in files and user output.
 [[nodiscard]] constexpr double degrees(double angle) noexcept { return angle * (180.0 / std::numbers::pi); }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

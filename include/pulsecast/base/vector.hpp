@@ -16,9 +16,10 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <pulsecast/base/arithmetic.hpp>
+#include <pulsecast/base/namespace.hpp>
 
 /// Vectors and rotations. GLM is named in this header only.
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 // Packed, whatever alignment a program selects for GLM; constexpr only where GLM is.
 using Vec2 = glm::vec<2, double, glm::packed_highp>;  ///< vector in two dimensions
@@ -72,6 +73,6 @@ using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
   return xy > m.z ? xy : m.z;
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -20,7 +20,7 @@
 /// Elementary functions of a number or of all lanes of a vector, without tables and branches by lane. Without contraction of products and
 /// sums (`-ffp-contract=off`), a lane has the bits that the plain number gives, whatever the number of lanes and the instruction set. With
 /// contraction the errors below hold, but the last bits differ. Errors are in units in the last place of the result (ulp).
-namespace pulsecast::simd {
+namespace PULSECAST_NAMESPACE::simd {
 
 namespace detail {
 template <class V>
@@ -273,7 +273,7 @@ template <class V>
   }
 }
 
-}  // namespace pulsecast::simd
+}  // namespace PULSECAST_NAMESPACE::simd
 
 #pragma GCC diagnostic pop
 

@@ -8,7 +8,7 @@
 #include <pulsecast/base/frame.hpp>
 
 /// Beam poses from angles or directions, for optics.
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Pose of a beam at an elevation [rad]: rotated from forward towards up, about the right axis.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_above(double angle) noexcept {
@@ -29,6 +29,6 @@ namespace pulsecast {
   return {normalize(Rotation{w, z, 0, -x}), {}};
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

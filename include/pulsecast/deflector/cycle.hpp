@@ -8,7 +8,7 @@
 
 #include <pulsecast/base/tick.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Index, from 0, of the current step in a cycle of n steps at a constant rate [Hz].
 /// A time between two steps takes the nearer one, so at the pulse rate every pulse takes one step in spite of rounding.
@@ -18,6 +18,6 @@ namespace pulsecast {
   return step < n ? step : 0;
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -12,7 +12,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/stage_arguments.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Deflects the pulses of a laser by a moving optic, or rotates a whole instrument by a head:
 /// `Deflector{RotatingHead{...}, Deflector{PolygonMirror{...}, Scanner{...}}}`.
@@ -79,6 +79,6 @@ template <class Moving, class Source>
 requires(!detail::Deflectable<Moving, Source>) Deflector(Moving, Source)
 ->Deflector<typename detail::DeflectorArguments<Moving, Source>::First, Source>;
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

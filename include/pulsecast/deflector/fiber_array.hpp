@@ -11,7 +11,7 @@
 #include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/deflector/cycle.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Row of fibres in the plane of forward and up. They are lit in turn from -half_angle to +half_angle, ends included, and repeat.
 struct FiberArray {
@@ -38,6 +38,6 @@ struct FiberArray {
 
 static_assert(Optic<FiberArray>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -8,7 +8,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Laser fixed in its housing: an emitter of a device of many, or a rangefinder. `FixedBeam{aimed_at(azimuth, elevation)}`.
 struct FixedBeam {
@@ -25,6 +25,6 @@ struct FixedBeam {
 
 static_assert(Optic<FixedBeam>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -10,7 +10,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Motion of an oscillating mirror from one end to the other.
 enum class Swing : std::uint8_t {
@@ -49,6 +49,6 @@ struct OscillatingMirror {
 
 static_assert(Optic<OscillatingMirror>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

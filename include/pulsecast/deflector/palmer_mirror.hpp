@@ -10,7 +10,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Nutating mirror: the beam describes a cone about forward once a turn, from up over right. A second half angle makes the cone elliptical.
 /// The deviation from forward is the first half angle times the cosine upwards, and the second times the sine to the right.
@@ -36,6 +36,6 @@ struct PalmerMirror {
 
 static_assert(Optic<PalmerMirror>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

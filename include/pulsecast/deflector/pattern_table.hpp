@@ -11,7 +11,7 @@
 #include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/deflector/cycle.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Direction of a beam as two angles.
 struct BeamAngles {
@@ -44,6 +44,6 @@ struct PatternTable {
 
 static_assert(Optic<PatternTable>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

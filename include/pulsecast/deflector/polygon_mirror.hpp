@@ -11,7 +11,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Rotating polygon mirror: each facet sweeps the beam once from low to high in the plane of forward and up, then the next one takes over.
 /// The beam's angle above forward runs from -sweep to +sweep. Pulses outside the gate are blocked.
@@ -71,6 +71,6 @@ struct PolygonMirror {
 
 static_assert(Optic<PolygonMirror> && Gated<PolygonMirror> && ForeseesOpening<PolygonMirror>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -11,7 +11,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/deflector/aim.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Glass wedge that rotates about forward. One face is normal to forward, the other inclined. Unrotated, its thick end, towards which it
 /// bends the beam, is below.
@@ -75,6 +75,6 @@ struct RisleyPrisms {
 
 static_assert(Optic<RisleyPrisms> && Gated<RisleyPrisms>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -6,7 +6,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Head that rotates a whole instrument at a constant rate.
 struct RotatingHead {
@@ -27,6 +27,6 @@ struct RotatingHead {
 
 static_assert(Head<RotatingHead>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

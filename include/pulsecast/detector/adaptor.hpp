@@ -8,7 +8,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Base of detectors around another one, `inner`. It hands on whatever a derived detector does not define itself, so that none of the
 /// optional members is lost:
@@ -50,6 +50,6 @@ struct DetectorAdaptor {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

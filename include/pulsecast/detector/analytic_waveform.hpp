@@ -24,7 +24,7 @@
 #include <pulsecast/detector/single_peak_group.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Sum of the pulse shapes of all reflections whose leading edges have passed, in closed form until the next edge.
 ///
@@ -247,6 +247,6 @@ class AnalyticWaveform {
 
 static_assert(Detector<AnalyticWaveform<>> && Detector<AnalyticWaveform<MomentWidth>>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -13,7 +13,7 @@
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Moments of a section of waveform about a reference time: integrals of power, of power times time, and of power times time squared.
 struct WaveformMoments {
@@ -77,6 +77,6 @@ template <EchoWidth Width>
   return width.width(samples, interval);
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -7,7 +7,7 @@
 
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Detector of the nearest reflection at its exact range, without a waveform: for robotics and visibility.
 struct FirstHit {
@@ -38,6 +38,6 @@ struct FirstHit {
 
 static_assert(Detector<FirstHit>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

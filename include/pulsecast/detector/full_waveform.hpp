@@ -26,7 +26,7 @@
 #include <pulsecast/detector/single_peak_group.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Digitising detector: samples the sum of the pulse shapes of all reflections and finds its peaks. Their heights and times are
 /// interpolated between samples.
@@ -234,6 +234,6 @@ class FullWaveform {
 
 static_assert(Detector<FullWaveform<>>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Gaussian amplitude exp(-(i - position)^2 / (2 width^2)) over sample indices i.
 struct Gaussian {
@@ -165,6 +165,6 @@ struct GaussianFit {
 
 static_assert(EchoWidth<GaussianFit>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

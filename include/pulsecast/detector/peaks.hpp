@@ -15,7 +15,7 @@
 #include <pulsecast/detector/pulse_sum.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Peak of a waveform between its two valleys. Times are two-way.
 struct Peak {
@@ -100,6 +100,6 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
   return echo;
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -8,7 +8,7 @@
 
 #include <pulsecast/base/exponential.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge at t = 0, scaled to a peak of 1 at 2 tau.
 /// Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5, with tau = full width at half maximum / 3.5.
@@ -35,6 +35,6 @@ struct PulseShape {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

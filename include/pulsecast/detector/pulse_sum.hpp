@@ -14,7 +14,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Arrival time of the peak of a reflection's pulse, since emission [s].
 [[nodiscard]] inline double arrival(const Reflection& r) noexcept { return 2 * r.range / speed_of_light; }
@@ -98,6 +98,6 @@ class SampledSum {
   double zeroth_ = 0, first_ = 0, second_ = 0;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

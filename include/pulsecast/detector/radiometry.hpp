@@ -16,7 +16,7 @@
 #include <pulsecast/echo.hpp>
 #include <pulsecast/pulse.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Atmospheric extinction coefficient [1/m] for a wavelength [m] and a visibility [m]; 0 for an infinite visibility.
 /// Source: Kruse, McGlauchlin & McQuistan 1962: 3.91/V (lambda / 0.55 um)^-q per km, V in km.
@@ -144,6 +144,6 @@ class WhiteTarget {
   double power_ = 0;                                         ///< [W]
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

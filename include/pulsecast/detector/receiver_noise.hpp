@@ -11,7 +11,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/pulse.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Receiver noise and background light, none by default. Samples are independent.
 struct ReceiverNoise {
@@ -39,6 +39,6 @@ struct ReceiverNoise {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -18,7 +18,7 @@
 #include <pulsecast/detector/pulse_sum.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Sum of the pulse shapes of reflections within 2 tau: the last leading edge arrives before the first pulse has peaked. All pulses rise
 /// until then, so the sum has a single peak. Reflections are in any order.
@@ -143,6 +143,6 @@ class SinglePeakGroup {
   double zeroth_ = 0, first_ = 0, second_ = 0;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

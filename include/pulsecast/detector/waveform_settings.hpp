@@ -9,7 +9,7 @@
 
 #include <pulsecast/base/require.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Point of an echo that defines its range.
 enum class EchoTiming : std::uint8_t {
@@ -74,6 +74,6 @@ struct WaveformSettings {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -16,7 +16,7 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/box.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 /// Next greater number after finite r, as of std::nextafter, but without a call.
@@ -141,6 +141,6 @@ struct QuantizedBox8 {
   static constexpr int min_exponent = -126;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

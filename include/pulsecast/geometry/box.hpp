@@ -7,7 +7,7 @@
 
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Axis-aligned box between two corners [m]; empty by default, so that the first extension sets it.
 struct Box {
@@ -43,6 +43,6 @@ struct Box {
   friend bool operator==(const Box&, const Box&) = default;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/geometry/ray.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Number of a primitive in its geometry.
 using PrimitiveIndex = std::uint32_t;
@@ -185,6 +185,6 @@ concept HitsOf = requires(H& hits, const Rays& rays, std::size_t j, double at, P
   { hits.limit(rays) } -> std::same_as<double>;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -19,7 +19,7 @@
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Conservative test of a whole bundle against boxes and planes, by interval arithmetic. If any ray meets a primitive in double precision,
 /// the bundle meets every box around that primitive, and the range is inside the box's span.
@@ -284,6 +284,6 @@ class RayInterval {
   std::size_t entry_wall_[3];  ///< byte in the boxes of the walls where they are entered; the opposite ones are `wall_bytes` apart
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

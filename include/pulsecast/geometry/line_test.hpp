@@ -10,7 +10,7 @@
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Conservative test of triangles against the line through a single ray, in a third of the operations of `intersect`, which decides about
 /// those that are left.
@@ -59,6 +59,6 @@ class LineTest {
   double doubt_;  ///< volume below which a side is in doubt [m^3, or m^2 times the unit of directions]
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -9,7 +9,7 @@
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Ray with the interval of distances that counts, its time, and the key of its random numbers.
 struct Ray {
@@ -23,6 +23,6 @@ struct Ray {
   std::uint32_t subray = 0;                              ///< number among the subrays of its pulse
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

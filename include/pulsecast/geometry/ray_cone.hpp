@@ -11,7 +11,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Cone around rays from one origin, such as the subrays of a pulse, so that all can be tested before one is made.
 struct RayCone {
@@ -48,6 +48,6 @@ struct RayCone {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -17,7 +17,7 @@
 
 /// A single ray in flight, and what it may look for: its closest hit, any hit, all hits. Accelerators and shapes take them through the same
 /// templates as a `RayBundle` and its `ClosestHits`; the hit is the same to the last bit.
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Bundle of one ray without its columns: 104 bytes, 128 with its `ClosestHit`. The hits hold the far end; there is no wavelength.
 struct BundleOfOne {
@@ -205,6 +205,6 @@ class HitBuffer {
   std::array<Entry, capacity> hits_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

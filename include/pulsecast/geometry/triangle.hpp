@@ -19,7 +19,7 @@
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Triangle with corners a, b, c [m]; both sides count.
 struct Triangle {
@@ -261,6 +261,6 @@ void intersect(const Triangle& triangle, PrimitiveIndex primitive, const Rays& r
       std::span(&primitive, 1), [&](std::size_t) noexcept { return triangle; }, rays, nearest);
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

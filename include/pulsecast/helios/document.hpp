@@ -10,7 +10,7 @@
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Search folders and purpose of reading a document.
 struct XmlOptions {
@@ -51,7 +51,7 @@ void write_survey(const std::filesystem::path& path, const SurveySettings& surve
 void write_assets(const std::filesystem::path& path, const AssetDocument& assets);
 [[nodiscard]] std::string xml_text(const AssetDocument& assets);  ///< text of that document
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/helios/detail/xml/survey_documents.hpp>

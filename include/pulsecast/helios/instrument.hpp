@@ -20,7 +20,7 @@
 #include <pulsecast/survey.hpp>
 
 /// Scanners of documents as stages of the library, for platforms, maps and surveys of one's own.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// State of an instrument beside its settings.
 struct InstrumentOptions {
@@ -81,7 +81,7 @@ template <EchoWidth Width = NoWidth>
   });
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/helios/detail/instrument_channels.hpp>

@@ -13,7 +13,7 @@
 #include <pulsecast/helios/simulation.hpp>
 
 /// Loading of surveys. Compilation is slow, unless `pulsecast::compiled` is linked: include it in one source file of a program.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Parts of a scene and the warnings from building it.
 struct BuiltParts {
@@ -29,7 +29,7 @@ using PartProvider = std::function<BuiltParts(int run, const std::function<Built
 [[nodiscard]] std::unique_ptr<Simulation> make_simulation(const SurveySettings& survey, const Simulation::Settings& settings = {},
                                                           const PartProvider& provider = {});
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/helios/detail/loaded_simulation.hpp>

@@ -22,7 +22,7 @@
 #include <pulsecast/scene/voxel_grid.hpp>
 
 /// Converts the scene of a survey document to parts of the library.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Part with any shape of the document format.
 using SurveyPart = Part<HeightField, TriangleMesh<>, VoxelGrid<OpaqueVoxels>, VoxelGrid<ScaledVoxels>, VoxelGrid<TransmissiveVoxels>>;
@@ -93,7 +93,7 @@ class SceneBuilder {
   std::set<std::string> warned_;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/helios/detail/scene_builder.hpp>

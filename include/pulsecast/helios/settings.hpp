@@ -18,7 +18,7 @@
 /// Settings of a survey document, as plain structs in SI units and radians. A program may change them before it builds the survey.
 /// Templates, references and inheritance are resolved: each struct is complete. The comment of a member names its attribute or element. A 0
 /// may mean a default or none; `validate` refuses negative values there.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Random offset of the start of legs: `legRandomOffset`.
 struct LegOffsetSettings {
@@ -64,6 +64,6 @@ struct SurveySettings {
   return survey.scanner.pulse_rates.empty() ? 100e3 : survey.scanner.pulse_rates.front();
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

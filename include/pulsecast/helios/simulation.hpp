@@ -23,7 +23,7 @@
 #include <pulsecast/scene/triangle_mesh.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Receiver settings that trade accuracy for speed, for all channels. Default: those of the survey.
 struct Receiving {
@@ -144,7 +144,7 @@ class Simulation {
 /// Checks legs and scanner, without loading the scene. Throws a `SettingError` or `FileError`; returns warnings.
 [[nodiscard]] std::vector<std::string> check_without_scene(const SurveySettings& survey, const std::vector<std::string>& leg_places = {});
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/helios/detail/check_without_scene.hpp>

@@ -15,7 +15,7 @@
 #include <pulsecast/platform/legs.hpp>
 
 /// Compilation of survey settings to pulses.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Runnable survey, with data of its legs.
 struct CompiledSurvey {
@@ -40,7 +40,7 @@ struct CompiledSurvey {
 [[nodiscard]] CompiledSurvey compile_survey(const SurveySettings& survey, const GroundHeight& ground,
                                             const SurveyBuildOptions& options = {});
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/helios/detail/survey_compiler.hpp>

@@ -12,7 +12,7 @@
 
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Linear red, green and blue, 1 for the maximum of a screen; sums and multiples are meaningful.
 using Colour = Vec3;
@@ -92,6 +92,6 @@ inline constexpr std::array<Srgb, 7> okabe_ito{
   return classification < standard.size() ? standard[classification] : other;
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

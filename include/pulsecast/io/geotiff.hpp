@@ -13,7 +13,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/scene/raster.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Settings for GeoTIFF files.
 struct GeoTiffSettings {
@@ -45,7 +45,7 @@ struct GeoTiff {
 /// EPSG code of the projected reference system of a file, if any; reads no heights. Throws as `read_geotiff`.
 [[nodiscard]] std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path);
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/io/detail/geotiff/reader.hpp>

@@ -16,7 +16,7 @@
 
 #include <pulsecast/io/output_file.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of gzip compression.
 struct GzipSettings {
@@ -75,6 +75,6 @@ class GzipEncoder final : public OutputEncoder {
   return OutputFile(std::move(path), std::make_unique<detail::GzipEncoder>(validated(settings).level));
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -26,7 +26,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// File read from beginning to end in blocks, as bytes or as lines; memory is independent of its size.
 class InputFile {
@@ -175,6 +175,6 @@ class MappedFile {
   std::span<const std::byte> bytes_;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/io/detail/las/writer.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -61,6 +61,6 @@ class LasWriter : public detail::LasFileWriter<detail::LasRecords> {
 };
 static_assert(EchoSink<LasWriter>);
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -25,7 +25,7 @@
 #include <pulsecast/io/detail/laz/integers.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -180,6 +180,6 @@ class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
 };
 static_assert(EchoSink<LazWriter>);
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

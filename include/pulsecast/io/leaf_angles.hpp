@@ -8,7 +8,7 @@
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/scene/leaf_angles.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Reads a table of leaf projections: rows of `x, y, z, G`, a unit direction and its G, in any order, without a header; `#` begins a
 /// comment. Leaves face all azimuths and both sides alike, so only the angle to the vertical counts; equal angles need equal G. Gaps
@@ -18,7 +18,7 @@ namespace pulsecast::io {
 /// its further division by 2 pi is not repeated. Throws a `FileError` with path and line at the first error, or for a gap.
 [[nodiscard]] LeafAngles read_leaf_angles(const std::filesystem::path& path);
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/io/detail/leaf_angle_reader.hpp>

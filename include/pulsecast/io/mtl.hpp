@@ -14,7 +14,7 @@
 #include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/scene/material.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Content of MTL files.
 struct MaterialLibrary {
@@ -33,7 +33,7 @@ struct MaterialLibrary {
   return {.name = std::move(name), .scattering = Scattering::direction_independent};
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/io/detail/obj/mtl_reader.hpp>

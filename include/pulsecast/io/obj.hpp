@@ -13,7 +13,7 @@
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Vertical axis of a file.
 enum class UpAxis : std::uint8_t {
@@ -41,7 +41,7 @@ struct ObjModel {
 /// and are accurate to some units in the last place.
 [[nodiscard]] ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings = {}, const Workers& workers = {});
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/io/detail/obj/reader.hpp>

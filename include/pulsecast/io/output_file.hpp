@@ -24,7 +24,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Locks an open file exclusively until it is closed or the program ends; false if locked already. True where the file system has no locks.
 [[nodiscard]] inline bool lock_alone(int file) noexcept {
@@ -251,6 +251,6 @@ class OutputFile {
   std::uint64_t position_ = 0;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -25,7 +25,7 @@
 #include <pulsecast/io/detail/png/settings.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -238,6 +238,6 @@ class ImageWriter {
 
 static_assert(EchoSink<ImageWriter>);
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

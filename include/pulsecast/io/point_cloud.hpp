@@ -16,7 +16,7 @@
 #include <pulsecast/io/detail/text/point_columns.hpp>
 #include <pulsecast/scene/voxel_data.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Source of the normals of voxels.
 enum class VoxelNormals : std::uint8_t {
@@ -73,7 +73,7 @@ struct PointCloud {
   return read_point_cloud(std::vector{path}, settings);
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/io/detail/point_cloud_reader.hpp>

@@ -38,7 +38,7 @@
 /// checksum guards against accidents; forgery is detected as far as a shape has `is_consistent`.
 /// Limits: a mapped file must not be written to. Caches are replaced as a whole, which leaves mapped ones intact; but programs that start
 /// at the same time should not make the same cache.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Geometry that can be kept in a cache. One function names all its members, in the same order for writing and reading. All its arrays are
 /// `SharedArray`, so that they can stay in the file:
@@ -260,6 +260,6 @@ CachedScene<S> cached_scene(const std::filesystem::path& path, const SceneSource
   return made;
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -13,7 +13,7 @@
 #include <pulsecast/io/detail/spectra.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Unit of reflectance in a file.
 enum class ReflectanceScale : std::uint8_t { fraction, percent };
@@ -38,7 +38,7 @@ struct SpectrumFile {
 /// warning. Throws a `FileError` if there is no spectrum at all.
 [[nodiscard]] SpectralLibrary read_spectral_library(const std::filesystem::path& path);
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/io/detail/spectrum_reader.hpp>

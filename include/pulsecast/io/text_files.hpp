@@ -13,7 +13,7 @@
 #include <pulsecast/io/output_file.hpp>
 
 /// Text files of points, pulses, subrays and waveforms.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of a text file.
 struct TextFileSettings {
@@ -176,6 +176,6 @@ class WaveformTextWriter {
 };
 static_assert(EchoSink<WaveformTextWriter>);
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -22,7 +22,7 @@
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Settings of a trajectory file.
 struct TrajectoryFileSettings {
@@ -160,6 +160,6 @@ inline void write_trajectory(const std::filesystem::path& path, std::span<const 
   file.commit();
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

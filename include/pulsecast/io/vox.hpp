@@ -14,7 +14,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/scene/voxel_data.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Use of the voxels of a file.
 enum class VoxelUse : std::uint8_t {
@@ -55,7 +55,7 @@ struct VoxelFile {
 /// Source of the format and of the three uses: AMAPVox (Vincent et al. 2017); Weiser et al. 2021, opaque voxel-based tree models.
 [[nodiscard]] VoxelFile read_voxel_file(const std::filesystem::path& path, const VoxelFileSettings& settings = {});
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/io/detail/voxel_file_reader.hpp>

@@ -20,7 +20,7 @@
 #include <pulsecast/mpi/detail/file.hpp>
 #include <pulsecast/mpi/detail/output.hpp>
 
-namespace pulsecast::mpi {
+namespace PULSECAST_NAMESPACE::mpi {
 
 namespace detail {
 
@@ -168,6 +168,6 @@ class MpiLas final : public MpiOutput {
   Vec3 first_{};
 };
 
-}  // namespace pulsecast::mpi
+}  // namespace PULSECAST_NAMESPACE::mpi
 
 #endif

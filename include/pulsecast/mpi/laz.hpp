@@ -22,7 +22,7 @@
 #include <pulsecast/mpi/detail/output.hpp>
 #include <pulsecast/mpi/las.hpp>
 
-namespace pulsecast::mpi {
+namespace PULSECAST_NAMESPACE::mpi {
 
 /// LAZ file written by all processes; its bytes equal those of `LazWriter`. The process with the first point of a chunk compresses it on
 /// its threads; others send their part of that chunk. The first process sums up the sizes of chunks.
@@ -201,6 +201,6 @@ class MpiLaz final : public MpiOutput {
   bool all_told_ = false;
 };
 
-}  // namespace pulsecast::mpi
+}  // namespace PULSECAST_NAMESPACE::mpi
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/mpi/detail/output.hpp>
 #include <pulsecast/run.hpp>
 
-namespace pulsecast::mpi {
+namespace PULSECAST_NAMESPACE::mpi {
 
 /// File of text rows, written by all processes. `Writer` must write the same for batches one by one as for all at once, as do `XyzWriter`,
 /// `PulseTextWriter` and `WaveformTextWriter`.
@@ -74,6 +74,6 @@ class MpiRows final : public MpiOutput {
   std::uint64_t size_ = 0;               // end of the rows placed [byte]
 };
 
-}  // namespace pulsecast::mpi
+}  // namespace PULSECAST_NAMESPACE::mpi
 
 #endif

@@ -35,7 +35,7 @@
 ///
 /// The first process hands out blocks of pulses on request, and simulates, too. Results equal those of one process, byte for byte.
 /// All functions are collective: every process calls them. An exception on one process must end all: see `MpiSession`.
-namespace pulsecast::mpi {
+namespace PULSECAST_NAMESPACE::mpi {
 
 /// Sink of part of a survey on one process.
 class MpiPartSink {
@@ -269,6 +269,6 @@ requires(!PulseSurvey<Survey> || !(MpiSink<Sinks> && ...)) RunSummary run(MpiGro
   return {};
 }
 
-}  // namespace pulsecast::mpi
+}  // namespace PULSECAST_NAMESPACE::mpi
 
 #endif

@@ -29,7 +29,7 @@
 #endif
 #include <pulsecast/page/detail/assets.hpp>
 
-namespace pulsecast::page {
+namespace PULSECAST_NAMESPACE::page {
 
 /// Path of the instrument in a leg. A path of one place is a set-up.
 struct PageLeg {
@@ -164,6 +164,6 @@ class PageWriter {
 };
 static_assert(EchoSink<PageWriter>);
 
-}  // namespace pulsecast::page
+}  // namespace PULSECAST_NAMESPACE::page
 
 #endif

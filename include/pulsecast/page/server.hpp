@@ -30,7 +30,7 @@
 #include <pulsecast/page/page.hpp>
 #include <pulsecast/run.hpp>
 
-namespace pulsecast::page {
+namespace PULSECAST_NAMESPACE::page {
 
 /// Sink that shows the growing cloud: the page of `PageWriter` with progress and a stop button, at an address of this machine only.
 ///
@@ -192,6 +192,6 @@ class PageServer {
 };
 static_assert(EchoSink<PageServer>);
 
-}  // namespace pulsecast::page
+}  // namespace PULSECAST_NAMESPACE::page
 
 #endif

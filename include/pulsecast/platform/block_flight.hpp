@@ -13,7 +13,7 @@
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/platform/straight_line.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Parallel flight lines over an area, flown in alternating directions.
 struct BlockFlight {
@@ -61,6 +61,6 @@ struct BlockFlight {
   return all;
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

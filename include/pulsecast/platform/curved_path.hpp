@@ -12,7 +12,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/platform/heading.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Position and heading of a vehicle on the map.
 struct Stance {
@@ -76,6 +76,6 @@ struct PathPiece {
   return path;
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -21,7 +21,7 @@
 #include <pulsecast/platform/piecewise_cubic.hpp>
 #include <pulsecast/platform/speed_profile.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Limits and dimensions of a ground vehicle.
 struct GroundVehicleSettings {
@@ -219,6 +219,6 @@ namespace detail {
   return {std::move(sections), std::move(driven), now};
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -7,7 +7,7 @@
 
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Heading of a direction: clockwise from north, in [-pi, pi]; `otherwise` if the direction is vertical or zero [rad].
 [[nodiscard]] inline double heading_of(const Vec3& direction, double otherwise = 0) noexcept {
@@ -17,6 +17,6 @@ namespace pulsecast {
 /// Attitude of a level body with a compass heading, clockwise from north [rad].
 [[nodiscard]] inline Rotation level(double heading) noexcept { return rotation_about(axis::up, -heading); }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -14,7 +14,7 @@
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Pass of a platform. An inactive leg takes its time, as a turn between two strips, but has no slots.
 template <WorldSource P>
@@ -117,6 +117,6 @@ class Legs {
   Start end_{};
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -18,7 +18,7 @@
 #include <pulsecast/platform/piecewise_cubic.hpp>
 #include <pulsecast/platform/speed_profile.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Standard acceleration of gravity [m/s^2]. Source: 3rd CGPM, 1901.
 inline constexpr double standard_gravity = 9.80665;
@@ -261,6 +261,6 @@ struct FlightLegs {
   return std::move(plan).flight(numbers);
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

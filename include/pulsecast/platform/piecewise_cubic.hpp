@@ -10,7 +10,7 @@
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/tick.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Time interval of constant jerk. `V` is a number or a vector, here in metres.
 template <class V>
@@ -61,6 +61,6 @@ class PiecewiseCubic {
   std::vector<Timed> pieces_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -13,7 +13,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/stage_arguments.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Mounting of an instrument on its platform.
 struct Mount {
@@ -95,6 +95,6 @@ template <class Path, class Source>
 requires(!Trajectory<Path> || !InstrumentSource<Source>) Platform(Path, Mount, Source)
 ->Platform<typename detail::PlatformArguments<Path, Source, true>::First, Source>;
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -17,7 +17,7 @@
 #include <pulsecast/base/unit_rotation.hpp>
 #include <pulsecast/platform/platform.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Errors of reported position and attitude, zero by default: standard deviations along or about each axis of the body.
 struct PoseErrors {
@@ -153,6 +153,6 @@ class WithPoseErrors {
   std::vector<Drift> drift_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

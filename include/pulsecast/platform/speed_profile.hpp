@@ -12,7 +12,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/platform/piecewise_cubic.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Limits of a motion along a line.
 struct SpeedLimits {
@@ -105,6 +105,6 @@ inline void settle_speeds(std::span<double> joints, std::span<const PathSection>
   }
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

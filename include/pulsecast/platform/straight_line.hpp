@@ -7,7 +7,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Straight motion at constant speed, at rest after its end. The body is level and looks along the path, or north if vertical or empty.
 struct StraightLine {
@@ -34,6 +34,6 @@ struct StraightLine {
 
 static_assert(Trajectory<StraightLine>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Limits of a flight at a height above the ground.
 struct TerrainFollowing {
@@ -63,6 +63,6 @@ struct TerrainFollowing {
   return Waypoints(at_constant_speed(positions, line.speed));
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

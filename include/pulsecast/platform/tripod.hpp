@@ -7,7 +7,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Static trajectory, level.
 struct Tripod {
@@ -26,6 +26,6 @@ struct Tripod {
 
 static_assert(Trajectory<Tripod>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -18,7 +18,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Interpolation of positions between two waypoints.
 enum class Interpolation : std::uint8_t {
@@ -150,6 +150,6 @@ static_assert(Trajectory<Waypoints>);
   return with_headings(std::move(points));
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -31,7 +31,7 @@
 ///     }
 ///
 /// A run releases the GIL; Ctrl-C ends it, and results up to then are complete.
-namespace pulsecast::python {
+namespace PULSECAST_NAMESPACE::python {
 
 /// Echo as a row of a NumPy array, named as in point clouds. Numbers for calculation are signed, as NumPy makes fractions of unsigned ones.
 struct PointRow {
@@ -68,10 +68,10 @@ struct PulseRow {
   std::uint8_t spare[3]{};                       ///< zeros outside the array
 };
 
-}  // namespace pulsecast::python
+}  // namespace PULSECAST_NAMESPACE::python
 
 // hidden, as pybind11's own names, so that modules of different builds can coexist
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
 /// Names of the values of `Fate`, in order.
@@ -318,9 +318,9 @@ void bind_run(Class& bound, const Runner& runner) {
 }
 
 }  // namespace gnu::visibility("hidden")]]python
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
-namespace pulsecast::python {
+namespace PULSECAST_NAMESPACE::python {
 
 /// Adds a class of surveys, with all it needs, to a module. Constructors are up to the caller, by `.def(pybind11::init(...))`; a survey
 /// that refers to a scene held by Python needs `pybind11::keep_alive`.
@@ -336,6 +336,6 @@ pybind11::class_<Survey, std::shared_ptr<Survey>> bind_survey(pybind11::module_&
   return bound;
 }
 
-}  // namespace pulsecast::python
+}  // namespace PULSECAST_NAMESPACE::python
 
 #endif

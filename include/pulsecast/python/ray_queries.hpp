@@ -33,7 +33,7 @@
 ///     pulsecast::python::bind_ray_queries(pybind11::class_<OwnScene>(m, "OwnScene").def(...));
 ///
 /// A call releases the GIL and uses several threads. Its results do not depend on their number.
-namespace pulsecast::python {
+namespace PULSECAST_NAMESPACE::python {
 
 /// Hit of a ray as a row of a NumPy array. A miss has an infinite range, and -1 as part and primitive.
 struct HitRow {
@@ -54,10 +54,10 @@ struct HitRow {
   static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 };
 
-}  // namespace pulsecast::python
+}  // namespace PULSECAST_NAMESPACE::python
 
 // hidden, as pybind11's own names, so that modules of different builds can coexist
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
 /// Array of numbers in rows, as Python passes it.
@@ -277,6 +277,6 @@ Class& bind_ray_queries(Class&& bound) {
 }
 
 }  // namespace gnu::visibility("hidden")]]python
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

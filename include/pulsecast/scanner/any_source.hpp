@@ -12,7 +12,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Pulse source of one of several types, for uses that require a single type. One is platforms of different kinds in `Legs`. Another is
 /// emitters of one device behind different optics:
@@ -71,6 +71,6 @@ class AnySource {
   std::variant<First, Others...> source_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -10,7 +10,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/pulse.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Semi-axes of a beam at 1/e^2 of its peak irradiance, across and up, at a range [m].
 /// Source: ISO 11146-1:2005, d^2 = d0^2 + theta^2 (z - z0)^2.
@@ -53,6 +53,6 @@ struct BeamExit {
   return laser;
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

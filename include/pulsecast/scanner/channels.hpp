@@ -14,7 +14,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 template <class S>
@@ -109,6 +109,6 @@ class Channels {
   std::vector<std::uint16_t> first_emitter_;  // of each channel, in the table of all
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

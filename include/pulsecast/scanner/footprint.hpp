@@ -16,7 +16,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Single ray on the beam's axis, for sensors whose footprint does not matter.
 struct SingleRay {
@@ -250,6 +250,6 @@ class SubrayDirections {
   SharedBuffer<Vec3> exits_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

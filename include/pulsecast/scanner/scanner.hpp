@@ -10,7 +10,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Pulsed laser at a constant rate: the innermost stage of every pipeline.
 struct Scanner {
@@ -56,6 +56,6 @@ struct Scanner {
 
 static_assert(BeamSource<Scanner> && FindsSlots<Scanner>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 struct VisitsHits {
@@ -98,6 +98,6 @@ class AnyTarget {
   std::variant<First, Others...> target_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

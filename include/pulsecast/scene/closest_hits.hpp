@@ -20,7 +20,7 @@
 
 // clang-format off
 // version 14 breaks up compound requirements
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// World that gives the range of a ray's closest hit, as `Scene` and `MovingScene` do.
 template <class W>
@@ -114,6 +114,6 @@ void closest_hits(const World& world, std::span<const Ray> rays, std::span<Close
   for (; first < rays.size(); ++first) hits[first] = world.closest_hit(rays[first]);
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -19,7 +19,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Mesh whose vertices move: a sail, a swaying tree, a water surface. `refit` makes a `TriangleMesh` of the same triangles with other
 /// vertices: it keeps the topology of the index, recomputes its boxes, and builds it anew where their SAH cost exceeds
@@ -149,6 +149,6 @@ class DeformingMesh {
   std::size_t now_ = 0;  ///< frame of the current mesh
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -22,7 +22,7 @@
 #include <pulsecast/scene/detail/height_pyramid.hpp>
 #include <pulsecast/scene/raster.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell. Two-sided. The two
 /// triangles of cell i, row by row, are primitives 2 i and 2 i + 1.
@@ -342,6 +342,6 @@ class HeightField {
 
 static_assert(Geometry<HeightField>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

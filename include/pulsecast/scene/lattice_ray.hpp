@@ -11,7 +11,7 @@
 
 #include <pulsecast/geometry/bundle.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Cell of a lattice, along x, y and z.
 using LatticeCell = std::array<std::int32_t, 3>;
@@ -97,6 +97,6 @@ class LatticeRay {
   bool valid_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -14,7 +14,7 @@
 
 #include <pulsecast/concepts.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Several targets as one: `Layered world{still, moving}`. A ray meets the nearest hit of all; ties go to the first target. Refers to its
 /// targets, which must outlive it. A target assigned anew, as by `Scene::with_placements`, is met as it then is.
@@ -82,6 +82,6 @@ class Layered {
   std::tuple<const First*, const Others*...> targets_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -16,7 +16,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Mean projection of leaves at one zenith angle.
 struct LeafProjection {
@@ -170,6 +170,6 @@ class LeafAngles {
   SharedArray<LeafProjection> table_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

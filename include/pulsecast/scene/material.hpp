@@ -13,7 +13,7 @@
 #include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Angular law of the light that a surface scatters back to its source.
 enum class Scattering : std::uint8_t {
@@ -96,6 +96,6 @@ struct Material {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -23,7 +23,7 @@
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/screw.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Rigid motion at constant rates in the world: a velocity, and a rotation about an axis through a centre that moves along. A helix if the
 /// velocity is along the axis; rest if both are zero.
@@ -265,6 +265,6 @@ class PartMotion {
   bool from_origin_ = false;  ///< true for timed poses: rotation about the world's origin, not the body's own centre
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -17,7 +17,7 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Time span and size limit of an index of moving bodies.
 struct MovingIndexSettings {
@@ -167,6 +167,6 @@ class MovingIndex {
   Box bounds_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

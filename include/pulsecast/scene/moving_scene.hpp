@@ -16,7 +16,7 @@
 #include <pulsecast/scene/moving_index.hpp>
 #include <pulsecast/scene/scene.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Scene with moving parts: `MovingScene<TriangleMesh<>> scene(parts, {.to = 60})`. Each pulse meets every part at its pose of the pulse's
 /// tick; a motion applies on top of the placement. Parts without a motion cost as much as in a `Scene`. Programs with `Scene` only contain
@@ -162,6 +162,6 @@ class MovingScene {
   Box bounds_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

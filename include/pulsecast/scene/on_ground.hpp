@@ -14,7 +14,7 @@
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/part.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Point of a part placed at the height of the ground. Points of a part are the corners of its triangles, or of its box if it has none.
 enum class GroundPlacement : std::uint8_t {
@@ -102,6 +102,6 @@ template <Geometry... Shapes>
   return part;
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

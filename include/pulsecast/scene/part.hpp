@@ -19,7 +19,7 @@
 #include <pulsecast/geometry/single_ray.hpp>
 #include <pulsecast/scene/material.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 class PartMotion;
 
@@ -181,6 +181,6 @@ struct Part {
   std::shared_ptr<const PartMotion> motion{};      ///< motion on top of its placement; empty if static; for a `MovingScene`
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

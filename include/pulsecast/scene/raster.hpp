@@ -17,7 +17,7 @@
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
@@ -127,6 +127,6 @@ struct Raster {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

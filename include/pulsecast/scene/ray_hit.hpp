@@ -13,7 +13,7 @@
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/material.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Geometry whose primitives are triangles: hits on it have barycentric weights.
 template <class G>
@@ -53,6 +53,6 @@ struct SurfacePoint {
   std::uint16_t classification = 0;    ///< ASPRS class of the material
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

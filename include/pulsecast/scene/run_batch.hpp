@@ -18,7 +18,7 @@
 #include <pulsecast/geometry/ray.hpp>
 #include <pulsecast/scene/closest_hits.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Rays of a sensor in its own frame, one for each slot of a source: from the pulse's origin along its direction, at its tick. A blocked
 /// slot has a ray whose `far` is 0, which meets nothing.
@@ -69,6 +69,6 @@ void run_batch(const World& world, std::span<const Pose<frame::Instrument, frame
   });
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

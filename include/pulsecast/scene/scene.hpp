@@ -23,7 +23,7 @@
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Static parts of the given kinds of geometry, without code for other kinds: `Scene<TriangleMesh<>>`. `MovingScene` moves parts.
 ///
@@ -304,13 +304,13 @@ class Scene {
 
   std::vector<Part> parts_;
   Bvh<float> index_;
-  bool alone_ = false;      ///< true for a single part, static
-  bool in_place_ = false;   ///< true for such a part without a placement
+  bool alone_ = false;     ///< true for a single part, static
+  bool in_place_ = false;  ///< true for such a part without a placement
   bool keyless_ = false;
   std::vector<Box> boxes_;  ///< box of each part of a scene made by `with_placements`
   BvhRefit<float> refit_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -10,7 +10,7 @@
 #include <pulsecast/base/vector.hpp>
 
 /// Repeated rigid motions in closed form.
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Duration from one tick to a later one.
 [[nodiscard]] inline Tick since(const Tick& start, const Tick& tick) noexcept {
@@ -78,6 +78,6 @@ struct RotationParts {
   return {rotation_about(turn.axis, multiple(turn.angle, n)), static_cast<double>(n) * along + sum};
 }
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

@@ -13,7 +13,7 @@
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Reflectance at one wavelength.
 struct SpectralSample {
@@ -66,6 +66,6 @@ class Spectrum {
   SharedArray<SpectralSample> samples_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -24,7 +24,7 @@
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/detail/corner_table.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Vertices and triangles of a mesh. Texture coordinates are kept in single precision; they may jump at an edge, as in OBJ files.
 struct MeshData {
@@ -338,6 +338,6 @@ class TriangleMesh {
 
 static_assert(Geometry<TriangleMesh<>>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

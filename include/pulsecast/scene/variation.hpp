@@ -16,7 +16,7 @@
 #include <pulsecast/scene/material.hpp>
 
 /// Variation of surfaces: variants of a material, for the primitives of one shape, or for its copies with a table of materials each.
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Variants of a material, named "leaf 1", "leaf 2" and so on. Shifts the reflectance of each, or its whole spectrum, by a uniform random
 /// amount between minus and plus `range`, and clips it to [0, 1]. The same seed gives the same variants; `variants`
@@ -60,6 +60,6 @@ namespace pulsecast {
   return all;
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

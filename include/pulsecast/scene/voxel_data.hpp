@@ -15,7 +15,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Data of a voxel grid: the occupied cells of a lattice of cubes, in any order, without duplicates. The columns below `cells` have one
 /// entry per cell, or none.
@@ -85,6 +85,6 @@ struct VoxelData {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -27,7 +27,7 @@
 #include <pulsecast/scene/voxel_data.hpp>
 #include <pulsecast/scene/voxel_index.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Surface direction of a voxel.
 enum class Incidence : std::uint8_t {
@@ -334,6 +334,6 @@ class VoxelGrid {
 
 static_assert(Geometry<VoxelGrid<OpaqueVoxels>> && Geometry<VoxelGrid<ScaledVoxels>> && Geometry<VoxelGrid<TransmissiveVoxels>>);
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -18,7 +18,7 @@
 #include <pulsecast/scene/detail/voxel_keys.hpp>
 #include <pulsecast/scene/lattice_ray.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 struct VoxelData;
 namespace detail {
@@ -184,6 +184,6 @@ class VoxelIndex {
   SharedArray<std::uint64_t> pyramid_;
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -14,7 +14,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/transport/illumination.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Transport of light that each subray's first surface scatters straight back. The rest of the light is not followed.
 struct DirectLight {
@@ -167,6 +167,6 @@ struct DirectLight {
   }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -12,7 +12,7 @@
 #include <pulsecast/pulse.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 /// Light of one pulse, as a `Transport` takes it. Valid during the call.
 struct Illumination {
@@ -33,6 +33,6 @@ struct Illumination {
   [[nodiscard]] const Pose<frame::Beam, frame::World>& reported() const noexcept { return pulse.reported ? *pulse.reported : pulse.pose; }
 };
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

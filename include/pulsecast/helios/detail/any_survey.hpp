@@ -10,7 +10,7 @@
 #include <pulsecast/pulse.hpp>
 #include <pulsecast/survey.hpp>
 
-namespace pulsecast::helios::detail {
+namespace PULSECAST_NAMESPACE::helios::detail {
 
 /// Type-erased survey of any receiver: code that runs or samples it compiles once, and the pipeline of each kind in one place.
 class AnySurvey {
@@ -54,6 +54,6 @@ class SurveyOf final : public AnySurvey {
   Survey survey_;
 };
 
-}  // namespace pulsecast::helios::detail
+}  // namespace PULSECAST_NAMESPACE::helios::detail
 
 #endif

@@ -12,7 +12,9 @@
 #include <system_error>
 #include <vector>
 
-namespace pulsecast::helios {
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Files found under a name, or the reason why there are none.
 struct AssetMatch {
@@ -147,6 +149,6 @@ class AssetSearch {
   std::vector<std::filesystem::path> folders_;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

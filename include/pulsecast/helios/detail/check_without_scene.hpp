@@ -16,7 +16,7 @@
 #include <pulsecast/scanner/footprint.hpp>
 
 /// Checks of a survey that need no scene.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettings& survey, const std::vector<std::string>& leg_places) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
@@ -29,6 +29,6 @@ PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettin
   return warnings;
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -16,7 +16,7 @@
 
 #include <pulsecast/base/text.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Formula of one variable, as in `0.01*sin(2*t)`: numbers, `pi`, `e`, the variable, `+ - * / ^`, parentheses and functions. Operators have
 /// their usual precedence; all are left-associative. Functions: `exp ln sqrt abs cos sin tan acos asin atan cosh sinh tanh atan2(y, x)`.
@@ -204,6 +204,6 @@ class Formula {
   std::vector<Step> steps_;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -16,7 +16,7 @@
 #include <pulsecast/helios/settings.hpp>
 
 /// Channels of a scanner in a leg.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
@@ -49,6 +49,6 @@ PULSECAST_INLINE Instrument::Instrument(const ScannerSettings& scanner, const Le
                                         const InstrumentOptions& options)
     : channels_(detail::instrument_channels(scanner, settings, duration, options)) {}
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -27,7 +27,7 @@
 #include <pulsecast/platform/waypoints.hpp>
 
 /// Pulses of one leg of a survey, for any platform and scanner.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Path of any platform from a start time on. Legs of one plan share it.
 struct SurveyPath {
@@ -114,6 +114,6 @@ class SurveyLeg {
 
 static_assert(WorldSource<SurveyLeg> && SkipsBlocked<SurveyLeg>);
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

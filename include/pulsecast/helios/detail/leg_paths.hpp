@@ -31,7 +31,7 @@
 #include <pulsecast/platform/waypoints.hpp>
 
 /// Paths of the legs of a survey document.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Path and duration of a leg.
 struct LegPath {
@@ -313,6 +313,6 @@ class LegPaths {
   std::vector<std::string> warnings_;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -8,7 +8,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Pulse rate of a leg; by default the scanner's first [Hz]. Throws a `SettingError` if there is none.
 [[nodiscard]] inline double pulse_rate_of(const ScannerSettings& scanner, const LegScannerSettings& leg) {
@@ -32,6 +32,6 @@ namespace pulsecast::helios {
   return !leg.duration_max && head_rate(channel, leg.scanner) == 0 && leg.scanner.head_stop != leg.scanner.head_start;
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -38,7 +38,7 @@
 #include <pulsecast/survey.hpp>
 
 /// Surveys with their scenes, ready to run.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
@@ -269,6 +269,6 @@ PULSECAST_INLINE std::unique_ptr<Simulation> make_simulation(const SurveySetting
   return std::make_unique<detail::LoadedSimulation>(survey, settings, provider);
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -13,7 +13,7 @@
 #include <pulsecast/helios/settings.hpp>
 
 /// Rigid motions of a survey document.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Proper or improper rigid motion: each point p goes to `position + sign * rotation * p`.
 struct MotionStep {
@@ -85,6 +85,6 @@ struct MotionSteps {
   return "";
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

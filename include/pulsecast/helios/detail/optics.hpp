@@ -31,7 +31,7 @@
 #include <pulsecast/scanner/scanner.hpp>
 
 /// Converts the instrument of a survey document to stages of the library.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Optic with a deflection angle, upward [rad].
 template <class O>
@@ -345,6 +345,6 @@ namespace detail {
   return out;
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

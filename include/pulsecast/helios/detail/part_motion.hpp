@@ -16,7 +16,7 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 
-namespace pulsecast::helios::detail {
+namespace PULSECAST_NAMESPACE::helios::detail {
 
 /// Motion at constant rates that equals all motions of a sequence, once per `step` [s].
 [[nodiscard]] inline SteadyMotion steady_of(const PartSettings& part, const MotionSequenceSettings& sequence, const Vec3& scene_centre,
@@ -54,6 +54,6 @@ namespace pulsecast::helios::detail {
   return std::make_shared<const PartMotion>(sequences, again);
 }
 
-}  // namespace pulsecast::helios::detail
+}  // namespace PULSECAST_NAMESPACE::helios::detail
 
 #endif

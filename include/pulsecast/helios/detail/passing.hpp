@@ -15,7 +15,7 @@
 #include <pulsecast/platform/multicopter.hpp>
 
 /// Times at which a planned path passes its waypoints.
-namespace pulsecast::helios::detail {
+namespace PULSECAST_NAMESPACE::helios::detail {
 
 /// Time after `from` at which a plan is horizontally nearest to waypoint `number` at `place` [s].
 template <class Plan>
@@ -68,6 +68,6 @@ template <class Plan>
   return from;
 }
 
-}  // namespace pulsecast::helios::detail
+}  // namespace PULSECAST_NAMESPACE::helios::detail
 
 #endif

@@ -16,7 +16,7 @@
 #include <pulsecast/survey.hpp>
 
 /// Receivers of a scanner's channels.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// True if two channels have equal receivers; their lasers may differ.
 [[nodiscard]] inline bool same_receiver(const ChannelSettings& a, const ChannelSettings& b) {
@@ -67,6 +67,6 @@ template <EchoWidth Width>
           FullWaveform<Width>(waveform, {}, noise)};
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

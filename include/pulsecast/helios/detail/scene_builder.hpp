@@ -33,7 +33,7 @@
 #include <pulsecast/scene/voxel_grid.hpp>
 
 /// Conversion of the scene of a survey document to parts of the library.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 PULSECAST_INLINE int SceneBuilder::runs() const {
   int most = 1;
@@ -295,6 +295,6 @@ PULSECAST_INLINE double SceneBuilder::step_of(const PartSettings& part) const {
   return settings_.dynamic_step * part.dynamic_step / options_.pulse_rate;
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -18,7 +18,7 @@
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Files of a scene in all runs, each once: those in its settings and the material files of OBJ files. Missing files are left out; the
 /// builder of the scene reports them.
@@ -143,6 +143,6 @@ inline bool has_ground(const SceneSettings& scene) {
   return std::any_of(files.materials().begin(), files.materials().end(), detail::declares_ground);
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -22,7 +22,7 @@
 #include <pulsecast/platform/platform.hpp>
 
 /// Compilation of survey settings to pulses.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
@@ -133,6 +133,6 @@ PULSECAST_INLINE CompiledSurvey compile_survey(const SurveySettings& survey, con
   return detail::SurveyCompiler(survey, paths, options).compile();
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

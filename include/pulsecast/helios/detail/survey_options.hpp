@@ -11,7 +11,7 @@
 
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Options for compiling a survey to pulses.
 struct SurveyBuildOptions {
@@ -24,6 +24,6 @@ struct SurveyBuildOptions {
 /// Height of the ground at a place [m], none where there is no ground.
 using GroundHeight = std::function<std::optional<double>(const Vec2&)>;
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -12,7 +12,7 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/trajectory.hpp>
 
-namespace pulsecast::helios::detail {
+namespace PULSECAST_NAMESPACE::helios::detail {
 
 inline void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format) {
   std::vector<std::pair<int, const char*>> columns{{t.columns->time, "t"}, {t.columns->x, "x"}, {t.columns->y, "y"}, {t.columns->z, "z"}};
@@ -41,6 +41,6 @@ inline void columns_of(const TrajectorySettings& t, io::TrajectoryFormat& format
   return format;
 }
 
-}  // namespace pulsecast::helios::detail
+}  // namespace PULSECAST_NAMESPACE::helios::detail
 
 #endif

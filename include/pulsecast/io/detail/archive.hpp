@@ -27,7 +27,7 @@
 #include <pulsecast/io/output_file.hpp>
 
 /// Serialization of objects as bytes whose arrays are used in place. For one program on one machine: arrays keep their memory layout.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Archive of other types, or inconsistent.
 class ArchiveError : public std::runtime_error {
@@ -298,6 +298,6 @@ class ArchiveReader {
   std::vector<Shared> shared_;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -12,7 +12,9 @@
 #include <utility>
 #include <vector>
 
-namespace pulsecast::io {
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
 
 /// Numbering of the cells of a lattice in the order of first occurrence; 12 bytes a cell, and 8 to 16 more for look-up.
 class CellNumbers {
@@ -63,6 +65,6 @@ class CellNumbers {
   std::vector<std::uint32_t> slots_;  // cell numbers; a power of two of slots, at most half of them taken
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

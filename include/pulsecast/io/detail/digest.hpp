@@ -20,7 +20,7 @@
 
 #include <pulsecast/base/error.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// 128-bit hash of bytes; not safe against deliberate collisions.
 struct Fingerprint {
@@ -110,6 +110,6 @@ class Digest {
   return digest.value();
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -22,7 +22,7 @@
 #include <pulsecast/scene/leaf_angles.hpp>
 
 /// Reading of leaf projections.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -86,6 +86,6 @@ PULSECAST_INLINE LeafAngles read_leaf_angles(const std::filesystem::path& path) 
   return LeafAngles::table(std::move(result));
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

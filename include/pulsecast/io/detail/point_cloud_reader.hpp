@@ -29,7 +29,7 @@
 #include <pulsecast/scene/voxel_data.hpp>
 
 /// Reading of point clouds.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -271,6 +271,6 @@ PULSECAST_INLINE PointCloud read_point_cloud(const std::vector<std::filesystem::
   return detail::PointCloudReader(paths, settings).result();
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -11,7 +11,7 @@
 
 #include <pulsecast/scene/spectrum.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Spectra by name.
 struct SpectralLibrary {
@@ -21,6 +21,6 @@ struct SpectralLibrary {
   std::vector<double> wavelengths{};  ///< of the lasers, if known: materials whose spectra do not reach them cause a warning [m]
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

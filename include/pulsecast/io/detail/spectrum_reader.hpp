@@ -23,7 +23,7 @@
 #include <pulsecast/scene/spectrum.hpp>
 
 /// Reading of spectra.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -238,6 +238,6 @@ PULSECAST_INLINE SpectralLibrary read_spectral_library(const std::filesystem::pa
   return library;
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -26,7 +26,7 @@
 #include <pulsecast/scene/voxel_data.hpp>
 
 /// Reading of voxel files.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -263,6 +263,6 @@ PULSECAST_INLINE VoxelFile read_voxel_file(const std::filesystem::path& path, co
   return detail::VoxelFileReader(path, settings).read();
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast::mpi {
+namespace PULSECAST_NAMESPACE::mpi {
 
 /// Consecutive pulse slots of a run, simulated by one process.
 struct MpiBlock {
@@ -109,6 +109,6 @@ class MpiBlockScheduler {
   MpiCost cost_;
 };
 
-}  // namespace pulsecast::mpi
+}  // namespace PULSECAST_NAMESPACE::mpi
 
 #endif

@@ -22,7 +22,7 @@
 
 #include <pulsecast/base/require.hpp>
 
-namespace pulsecast::mpi {
+namespace PULSECAST_NAMESPACE::mpi {
 
 /// MPI environment: the first object of a program, and the last to go. Destruction by an exception aborts all processes, as the others
 /// would wait for ever; messages to the user must come before. Throws a `SettingError` if MPI lacks MPI_THREAD_SERIALIZED.
@@ -216,6 +216,6 @@ class MpiMessage {
   std::size_t at_ = 0;
 };
 
-}  // namespace pulsecast::mpi
+}  // namespace PULSECAST_NAMESPACE::mpi
 
 #endif

@@ -18,7 +18,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-namespace pulsecast::mpi {
+namespace PULSECAST_NAMESPACE::mpi {
 
 /// Temporary file of an `OutputFile` of the first process, which others write in disjoint ranges. Opened at the first write. Throws a
 /// `FileError` that names the final path.
@@ -62,6 +62,6 @@ class MpiFile {
   int file_ = -1;
 };
 
-}  // namespace pulsecast::mpi
+}  // namespace PULSECAST_NAMESPACE::mpi
 
 #endif

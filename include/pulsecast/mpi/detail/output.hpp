@@ -18,7 +18,7 @@
 #include <pulsecast/mpi/detail/blocks.hpp>
 #include <pulsecast/mpi/detail/channel.hpp>
 
-namespace pulsecast::mpi {
+namespace PULSECAST_NAMESPACE::mpi {
 
 class MpiOutput;
 
@@ -164,6 +164,6 @@ inline bool MpiGroup::serve() {
   });
 }
 
-}  // namespace pulsecast::mpi
+}  // namespace PULSECAST_NAMESPACE::mpi
 
 #endif

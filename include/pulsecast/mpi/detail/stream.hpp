@@ -19,7 +19,7 @@
 #include <pulsecast/mpi/detail/output.hpp>
 #include <pulsecast/run.hpp>
 
-namespace pulsecast::mpi {
+namespace PULSECAST_NAMESPACE::mpi {
 
 /// Writes batches in their memory layout, for `for_each_batch` in another process of the same program.
 class MpiBatchWriter {
@@ -141,6 +141,6 @@ class MpiStream final : public MpiOutput {
   std::map<std::uint64_t, MpiMessage> waiting_;
 };
 
-}  // namespace pulsecast::mpi
+}  // namespace PULSECAST_NAMESPACE::mpi
 
 #endif

@@ -24,7 +24,7 @@
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/sample.hpp>
 
-namespace pulsecast::page {
+namespace PULSECAST_NAMESPACE::page {
 
 /// Settings for the encoding of points.
 struct PageColumnSettings {
@@ -262,6 +262,6 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
   return out;
 }
 
-}  // namespace pulsecast::page
+}  // namespace PULSECAST_NAMESPACE::page
 
 #endif

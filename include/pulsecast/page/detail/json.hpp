@@ -12,7 +12,7 @@
 
 #include <pulsecast/base/error.hpp>
 
-namespace pulsecast::page::detail {
+namespace PULSECAST_NAMESPACE::page::detail {
 
 /// JSON writer, token by token; it sets the commas. Source: RFC 8259.
 ///
@@ -101,6 +101,6 @@ class JsonWriter {
   std::string text_;
 };
 
-}  // namespace pulsecast::page::detail
+}  // namespace PULSECAST_NAMESPACE::page::detail
 
 #endif

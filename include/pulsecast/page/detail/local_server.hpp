@@ -21,7 +21,9 @@
 
 #include <httplib.h>
 
-namespace pulsecast::page {
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE::page {
 
 /// Limits of a `LocalServer` that protect the program's memory, descriptors and time from clients.
 struct LocalServerLimits {
@@ -201,6 +203,6 @@ class LocalServer final : public httplib::Server {
   std::thread thread_{};
 };
 
-}  // namespace pulsecast::page
+}  // namespace PULSECAST_NAMESPACE::page
 
 #endif

@@ -16,7 +16,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/echo.hpp>
 
-namespace pulsecast::page {
+namespace PULSECAST_NAMESPACE::page {
 
 /// Point of a page: an echo with attributes of its shot.
 struct PagePoint {
@@ -110,6 +110,6 @@ class PageSample {
 };
 static_assert(EchoSink<PageSample>);
 
-}  // namespace pulsecast::page
+}  // namespace PULSECAST_NAMESPACE::page
 
 #endif

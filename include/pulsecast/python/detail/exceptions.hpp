@@ -12,7 +12,7 @@
 #include <pulsecast/base/error.hpp>
 
 // hidden, as pybind11's own names, so that modules of different builds can coexist
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
 /// Exception class shared by all modules, created by the first that asks.
@@ -63,6 +63,6 @@ inline void bind_exceptions(pybind11::module_& m) {
 }
 
 }  // namespace gnu::visibility("hidden")]]python
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

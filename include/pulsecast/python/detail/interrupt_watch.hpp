@@ -8,8 +8,10 @@
 #include <atomic>
 #include <csignal>
 
+#include <pulsecast/base/namespace.hpp>
+
 // hidden, as pybind11's own names, so that modules of different builds can coexist
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
 /// Records Ctrl-C during its life, where Python would notice it only later: on the main thread, which alone gets signals, and only if
@@ -43,6 +45,6 @@ class InterruptWatch {
 };
 
 }  // namespace gnu::visibility("hidden")]]python
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -14,8 +14,10 @@
 #include <type_traits>
 #include <utility>
 
+#include <pulsecast/base/namespace.hpp>
+
 // hidden, as pybind11's own names, so that modules of different builds can coexist
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
 /// Rows that become a NumPy array in place. Growth avoids copies as far as the C library can: a large array never takes twice its memory.
@@ -58,6 +60,6 @@ class Rows {
 };
 
 }  // namespace gnu::visibility("hidden")]]python
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

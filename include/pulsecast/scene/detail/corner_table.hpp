@@ -14,7 +14,7 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Hash table of the unique corners of a block.
 class CornerTable {
@@ -49,6 +49,6 @@ class CornerTable {
   std::vector<Vec3> corners_;
 };
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/scene/raster.hpp>
 
 /// Min-max pyramid of the heights of a raster: its layout and its construction.
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Rectangle of cells or nodes, ends included.
 struct CellRectangle {
@@ -151,6 +151,6 @@ struct HeightPyramid {
   }
 };
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

@@ -11,7 +11,7 @@
 #include <pulsecast/scene/detail/voxel_keys.hpp>
 #include <pulsecast/scene/lattice_ray.hpp>
 
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// State of a ray's traversal of a lattice, cell by cell or in leaps over empty cubes.
 struct LatticeWalker {
@@ -110,6 +110,6 @@ struct LatticeWalker {
   }
 };
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

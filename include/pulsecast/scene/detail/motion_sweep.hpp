@@ -16,7 +16,7 @@
 #include <pulsecast/scene/screw.hpp>
 
 /// Boxes around all that a body passes on its timeline.
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 [[nodiscard]] inline Box grown(const Box& b, double by) noexcept { return {b.min - Vec3(by), b.max + Vec3(by)}; }
 
@@ -191,6 +191,6 @@ inline void extend_by_run(Box& box, const MotionTimeline& motion, const Box& own
   return box;
 }
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

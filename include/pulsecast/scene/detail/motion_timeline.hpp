@@ -15,7 +15,7 @@
 #include <pulsecast/scene/screw.hpp>
 
 /// Motion of a body as a list of steady pieces, in closed form over time.
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Accumulated change of a body: its rotation, and the rigid motion of its own centre. The two differ after rotation about its own centre.
 struct Change {
@@ -160,6 +160,6 @@ struct MotionTimeline {
   }
 };
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

@@ -16,7 +16,7 @@
 #include <pulsecast/scene/ray_hit.hpp>
 
 /// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an `AnyHit` or a `HitBuffer`.
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Shape that takes such rays and hits.
 template <class Shape, class Rays, class Hits>
@@ -115,6 +115,6 @@ template <class Part>
   return point;
 }
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

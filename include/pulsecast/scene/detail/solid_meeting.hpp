@@ -10,7 +10,7 @@
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/scene/lattice_ray.hpp>
 
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Intersection of a ray's walk with solid cubes, equal to that with a mesh of them without walls between two. A ray that begins inside a
 /// cube meets its far side, or the cube that touches it there.
@@ -60,6 +60,6 @@ class SolidMeeting {
   return normal;
 }
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

@@ -14,7 +14,7 @@
 #include <pulsecast/base/vector.hpp>
 
 /// Columns of a voxel grid: numbers for each voxel, in the order of the index.
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Three numbers from -1 to 1, each within 5e-7; -1, 0 and 1 are exact.
 class PackedVector {
@@ -47,6 +47,6 @@ template <class To, class From>
   return kept;
 }
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

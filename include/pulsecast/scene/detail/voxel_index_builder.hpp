@@ -18,7 +18,7 @@
 #include <pulsecast/scene/voxel_data.hpp>
 #include <pulsecast/scene/voxel_index.hpp>
 
-namespace pulsecast {
+namespace PULSECAST_NAMESPACE {
 
 namespace detail {
 
@@ -205,6 +205,6 @@ inline VoxelIndex::VoxelIndex(const VoxelData& data, std::vector<std::uint32_t>&
   detail::VoxelIndexBuilder(*this).build(data, order);
 }
 
-}  // namespace pulsecast
+}  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -10,7 +10,7 @@
 #include <pulsecast/scene/lattice_ray.hpp>
 
 /// Keys, bits and hash slots of the cells of a lattice.
-namespace pulsecast::detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Greatest extent of a lattice along an axis [cells].
 inline constexpr std::uint32_t max_lattice_extent = 1U << 21;
@@ -63,6 +63,6 @@ struct VoxelLevel {
   }
 };
 
-}  // namespace pulsecast::detail
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

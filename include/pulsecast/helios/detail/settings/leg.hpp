@@ -13,7 +13,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Column of each quantity, from 0.
 struct TrajectoryIndices {
@@ -104,6 +104,6 @@ struct LegSettings {
   return is_above && here.on_ground == next.on_ground && (here.on_ground || here.position.z == next.position.z);
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -12,7 +12,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
@@ -64,6 +64,6 @@ struct MountSettings {
   bool operator==(const MountSettings&) const = default;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -11,7 +11,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Kind of platform: `type` of `<platform>`.
 enum class PlatformKind : std::uint8_t {
@@ -79,6 +79,6 @@ struct PlatformSettings {
   bool operator==(const PlatformSettings&) const = default;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Oscillating mirror: `optics="oscillating"`.
 struct OscillatingOptic {
@@ -144,6 +144,6 @@ struct ScannerSettings {
   bool operator==(const ScannerSettings&) const = default;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

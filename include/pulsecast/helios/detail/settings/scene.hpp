@@ -16,7 +16,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Materials of geometry files without any.
 struct MaterialSource {
@@ -225,6 +225,6 @@ struct SceneSettings {
   bool operator==(const SceneSettings&) const = default;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -18,7 +18,7 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Position in an XML file; line 0 means the whole file.
 struct XmlPlace {
@@ -247,6 +247,6 @@ class XmlDocument {
   pugi::xml_node root_;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

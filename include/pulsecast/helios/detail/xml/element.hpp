@@ -30,7 +30,7 @@
 
 /// Reading and writing of elements by one description: a function `fields(io, settings)` that names attributes and children in turn.
 /// `XmlInput` reads them, `XmlOutput` writes them. A missing attribute keeps its value, so that inheritance is reading twice.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Reads an element. `params` of a filter (`<param key value>`) are read like attributes. Requested names are known; `finish` reports the
 /// others.
@@ -341,6 +341,6 @@ class XmlInput {
   bool params_, takes_text_ = false;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -13,7 +13,7 @@
 
 /// Descriptions of all elements, here and in the headers that include this one: attributes with units and limits, and children. The format
 /// is that of HELIOS++.
-namespace pulsecast::helios::xml {
+namespace PULSECAST_NAMESPACE::helios::xml {
 
 /// Settings that are read into or written from.
 template <class Io, class Settings>
@@ -69,6 +69,6 @@ void fields(Io& io, Of<Io, MountSettings>& mount) {
   fields(io, mount.rotation);
 }
 
-}  // namespace pulsecast::helios::xml
+}  // namespace PULSECAST_NAMESPACE::helios::xml
 
 #endif

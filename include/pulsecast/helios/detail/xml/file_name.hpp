@@ -9,7 +9,7 @@
 #include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 
-namespace pulsecast::helios::detail {
+namespace PULSECAST_NAMESPACE::helios::detail {
 
 /// True if a character is forbidden in a file name.
 [[nodiscard]] inline bool fits_no_name(unsigned char c) { return c == '/' || c == '\\' || c < ' ' || c == 0x7f; }
@@ -22,6 +22,6 @@ inline void fit_for_name(const XmlInput& io, const char* name, std::string& text
   io.warn(name, given + " is taken as " + text::quoted(text) + ": expected no slashes and no control characters in a part of a file name");
 }
 
-}  // namespace pulsecast::helios::detail
+}  // namespace PULSECAST_NAMESPACE::helios::detail
 
 #endif

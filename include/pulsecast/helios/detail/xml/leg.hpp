@@ -13,7 +13,7 @@
 #include <pulsecast/helios/settings.hpp>
 
 /// `<platformSettings>` and `<scannerSettings>` of a leg.
-namespace pulsecast::helios::xml {
+namespace PULSECAST_NAMESPACE::helios::xml {
 
 template <class Io>
 void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
@@ -98,6 +98,6 @@ void fields(Io& io, Of<Io, LegScannerSettings>& scanner) {
   io.number("opticsWarmupPhase_s", scanner.warm_up, units::second, 0, 1e5);
 }
 
-}  // namespace pulsecast::helios::xml
+}  // namespace PULSECAST_NAMESPACE::helios::xml
 
 #endif

@@ -19,7 +19,7 @@
 #include <pulsecast/helios/detail/xml/library.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Checks the legs of a survey against its scanner and platform. Faults: legs that never end, give no pulse, or exceed the device.
 class LegChecks {
@@ -170,6 +170,6 @@ class LegChecks {
   mutable std::optional<bool> has_ground_{};
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -22,7 +22,7 @@
 #include <pulsecast/helios/detail/xml/library.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-namespace pulsecast::helios::detail {
+namespace PULSECAST_NAMESPACE::helios::detail {
 
 /// Reads the legs of a survey, after its scanner and platform.
 class LegReader {
@@ -184,6 +184,6 @@ class LegReader {
   SurveySettings& survey_;
 };
 
-}  // namespace pulsecast::helios::detail
+}  // namespace PULSECAST_NAMESPACE::helios::detail
 
 #endif

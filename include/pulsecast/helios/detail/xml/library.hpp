@@ -21,7 +21,7 @@
 #include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Document of a survey or of assets, with its elements by id. Search order of its files: the assets folders, the folder of the survey, its
 /// own folder.
@@ -145,6 +145,6 @@ class XmlLibrary {
   std::unordered_map<std::string, std::unique_ptr<XmlLibraryDocument>> documents_;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

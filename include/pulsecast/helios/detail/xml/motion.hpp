@@ -14,7 +14,7 @@
 #include <pulsecast/helios/settings.hpp>
 
 /// `<dmotion>` and its children.
-namespace pulsecast::helios::xml {
+namespace PULSECAST_NAMESPACE::helios::xml {
 
 /// True if a motion's axis or normal has a direction.
 [[nodiscard]] inline bool has_direction(const Vec3& v) { return length(v) > 1e-9; }
@@ -128,6 +128,6 @@ void fields(Io& io, Of<Io, MotionSequenceSettings>& sequence) {
       io.report().fault(io.place(), "<dmotion id=" + text::quoted(sequence.id) + "> is not supported: expected " + problem);
 }
 
-}  // namespace pulsecast::helios::xml
+}  // namespace PULSECAST_NAMESPACE::helios::xml
 
 #endif

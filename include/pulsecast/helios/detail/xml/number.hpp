@@ -19,7 +19,7 @@
 #include <pulsecast/base/vector.hpp>
 
 /// Numbers and units in documents.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Unit of documents: SI value = number * `factor` / `divisor`.
 struct XmlUnit {
@@ -84,6 +84,6 @@ inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 
   return found;
 }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -17,7 +17,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
 
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 /// Words with their values.
 template <class Value>
@@ -99,6 +99,6 @@ class XmlOutput {
   bool params_;
 };
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -11,7 +11,7 @@
 #include <pulsecast/helios/settings.hpp>
 
 /// `<platform>` and its children.
-namespace pulsecast::helios::xml {
+namespace PULSECAST_NAMESPACE::helios::xml {
 
 template <class Io>
 void fields(Io& io, Of<Io, NoiseSettings>& noise) {
@@ -82,6 +82,6 @@ void fields(Io& io, Of<Io, PlatformSettings>& platform) {
                     "has no effect: paths are planned by speed and acceleration");
 }
 
-}  // namespace pulsecast::helios::xml
+}  // namespace PULSECAST_NAMESPACE::helios::xml
 
 #endif

@@ -22,7 +22,7 @@
 #include <pulsecast/helios/settings.hpp>
 
 /// `<scanner>` and its children.
-namespace pulsecast::helios::xml {
+namespace PULSECAST_NAMESPACE::helios::xml {
 
 template <class Io>
 void fields(Io& io, Of<Io, FullWaveformSettings>& waveform) {
@@ -269,6 +269,6 @@ void fields(Io& io, Of<Io, ScannerSettings>& scanner) {
   }
 }
 
-}  // namespace pulsecast::helios::xml
+}  // namespace PULSECAST_NAMESPACE::helios::xml
 
 #endif

@@ -24,7 +24,7 @@
 #include <pulsecast/helios/settings.hpp>
 
 /// `<scene>`, its parts, and their placing filters.
-namespace pulsecast::helios::xml {
+namespace PULSECAST_NAMESPACE::helios::xml {
 
 /// Writes the filters of a part or swap.
 inline void filters(XmlOutput& io, const PartSource* source, const TransformSettings& transform) {
@@ -199,6 +199,6 @@ inline void fields(XmlOutput& io, const SceneSettings& scene) {
   });
 }
 
-}  // namespace pulsecast::helios::xml
+}  // namespace PULSECAST_NAMESPACE::helios::xml
 
 #endif

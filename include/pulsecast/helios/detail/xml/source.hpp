@@ -17,7 +17,7 @@
 #include <pulsecast/helios/settings.hpp>
 
 /// Filters that load the geometry of a part.
-namespace pulsecast::helios::xml {
+namespace PULSECAST_NAMESPACE::helios::xml {
 
 template <class Io>
 void fields(Io& io, Of<Io, MaterialSource>& material) {
@@ -109,6 +109,6 @@ void fields(Io& io, Of<Io, VoxelSource>& source) {
   io.file("ladlut", source.leaf_angles);
 }
 
-}  // namespace pulsecast::helios::xml
+}  // namespace PULSECAST_NAMESPACE::helios::xml
 
 #endif

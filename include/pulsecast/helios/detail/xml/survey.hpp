@@ -30,7 +30,7 @@
 #include <pulsecast/helios/detail/xml/scene.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-namespace pulsecast::helios::detail {
+namespace PULSECAST_NAMESPACE::helios::detail {
 
 /// Reads one survey.
 class SurveyReader {
@@ -231,6 +231,6 @@ class SurveyReader {
   std::string place_;
 };
 
-}  // namespace pulsecast::helios::detail
+}  // namespace PULSECAST_NAMESPACE::helios::detail
 
 #endif

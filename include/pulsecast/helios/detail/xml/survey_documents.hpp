@@ -12,7 +12,7 @@
 #include <pulsecast/helios/settings.hpp>
 
 /// Reading and writing of survey documents.
-namespace pulsecast::helios {
+namespace PULSECAST_NAMESPACE::helios {
 
 namespace detail {
 
@@ -58,6 +58,6 @@ PULSECAST_INLINE void write_assets(const std::filesystem::path& path, const Asse
 
 PULSECAST_INLINE std::string xml_text(const AssetDocument& assets) { return detail::document_of(assets).text(); }
 
-}  // namespace pulsecast::helios
+}  // namespace PULSECAST_NAMESPACE::helios
 
 #endif

@@ -18,7 +18,7 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-namespace pulsecast::helios::detail {
+namespace PULSECAST_NAMESPACE::helios::detail {
 
 /// Writes a document with one root element.
 class DocumentWriter {
@@ -101,6 +101,6 @@ inline DocumentWriter document_of(const SurveySettings& survey) {
   return document;
 }
 
-}  // namespace pulsecast::helios::detail
+}  // namespace PULSECAST_NAMESPACE::helios::detail
 
 #endif

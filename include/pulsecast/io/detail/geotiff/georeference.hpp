@@ -16,7 +16,7 @@
 #include <pulsecast/io/detail/geotiff/tiff_file.hpp>
 #include <pulsecast/scene/raster.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Tags and keys by number. Source: OGC GeoTIFF 1.1, annex B and 7.1; GDAL manual.
 namespace geotiff {
@@ -101,6 +101,6 @@ struct RasterCorner {
   return raster;
 }
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -13,7 +13,7 @@
 #include <pulsecast/io/detail/geotiff/tiff_file.hpp>
 #include <pulsecast/scene/raster.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Layout of the samples of a raster: in strips as wide as the raster, or in tiles.
 struct RasterLayout {
@@ -81,6 +81,6 @@ struct RasterLayout {
   }
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

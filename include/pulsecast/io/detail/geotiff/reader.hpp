@@ -28,7 +28,7 @@
 #include <pulsecast/scene/raster.hpp>
 
 /// Reading of GeoTIFF files.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -179,6 +179,6 @@ PULSECAST_INLINE std::optional<std::uint16_t> read_geotiff_epsg(const std::files
   return detail::projected_epsg(file);
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

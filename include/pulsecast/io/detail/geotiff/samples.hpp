@@ -9,7 +9,9 @@
 #include <limits>
 #include <type_traits>
 
-namespace pulsecast::io::detail {
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Half-precision number as its bits.
 enum class Half : std::uint16_t {};
@@ -47,6 +49,6 @@ template <class Sample>
   return value == missing;
 }
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -21,7 +21,7 @@
 
 #include <pulsecast/io/input_file.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// First image of a TIFF file, opened by libtiff, with the file's errors and warnings.
 class TiffFile {
@@ -104,6 +104,6 @@ class TiffFile {
   Handle tiff_;
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

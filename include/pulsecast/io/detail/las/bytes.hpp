@@ -11,8 +11,10 @@
 #include <cstring>
 #include <string_view>
 
+#include <pulsecast/base/namespace.hpp>
+
 /// Byte layout of LAS files. Source of every offset: ASPRS LAS Specification 1.4 R15, or 1.0 where named.
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "LAS files are little-endian, and are written as the numbers lie in memory");
 
@@ -45,6 +47,6 @@ inline constexpr std::size_t las_vlr_header_size = 54;  ///< [byte]
   return h;
 }
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -24,7 +24,7 @@
 #include <pulsecast/io/detail/las/packets.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Level of a ratio of powers [dB]; -200 or more, also for zero.
 [[nodiscard]] inline float las_level(double ratio) noexcept { return static_cast<float>(ratio > 1e-20 ? 10 * std::log10(ratio) : -200.0); }
@@ -211,6 +211,6 @@ class LasEncoder {
   LasTally tally_;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

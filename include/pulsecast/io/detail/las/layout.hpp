@@ -10,7 +10,7 @@
 
 #include <pulsecast/io/detail/las/settings.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Extra value of each point, behind the standard ones.
 struct LasExtra {
@@ -59,6 +59,6 @@ struct LasLayout {
   std::uint32_t max_returns, max_class;  ///< limits of return numbers and classes
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

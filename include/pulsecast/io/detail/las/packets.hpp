@@ -19,7 +19,7 @@
 #include <pulsecast/io/detail/las/bytes.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Place of a point's waveform; all zero without one.
 struct LasPacket {
@@ -154,6 +154,6 @@ class LasPackets {
   std::vector<std::uint16_t> raw_;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -19,7 +19,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/input_file.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Reader of the points of a LAS file, versions 1.0 to 1.4, point formats 0 to 10. Points marked as withheld (deleted) are skipped. Sizes
 /// in the header are checked against the file's size; bounds in it are ignored.
@@ -153,6 +153,6 @@ class LasPoints {
   std::string_view record_;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -11,7 +11,7 @@
 
 #include <pulsecast/base/error.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Well-known text of a UTM system on WGS 84, ETRS89 or NAD83; empty for other codes, whose definitions fill a register of thousands.
 /// Source: EPSG registry; OGC 01-009 (Coordinate Transformation Services), 7.
@@ -55,6 +55,6 @@ namespace pulsecast::io::detail {
   return {1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, epsg, 3076, 0, 1, 9001};
 }
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -11,7 +11,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Version and point format of a LAS file.
 enum class LasFormat : std::uint8_t {
@@ -66,6 +66,6 @@ struct LasSettings {
   }
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -27,7 +27,7 @@
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/version.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Reads back records of `record` bytes from offset `begin` on: `task(at, bytes)` gets blocks of whole records.
 template <class Task>
@@ -244,6 +244,6 @@ class LasFileWriter {
   std::uint64_t descriptors_at_ = 0, points_at_ = 0, records_at_ = 0;  // offsets in the file [byte]
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

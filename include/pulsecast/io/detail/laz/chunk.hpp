@@ -18,7 +18,7 @@
 #include <pulsecast/io/detail/laz/point.hpp>
 #include <pulsecast/io/detail/laz/time.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Compressor of a chunk of points of format 6 with extra bytes, as LASzip from its version 3 on. Each attribute is a layer, left out if
 /// constant. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4 (native extension), specification document; files of it, items POINT14 and
@@ -289,6 +289,6 @@ class LazChunk {
   std::vector<Step> steps_;
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -16,7 +16,7 @@
 
 /// Arithmetic coder of LAZ. Source of the algorithm: Said 2004, Introduction to Arithmetic Coding - Theory and Practice, 2.2 and 3;
 /// of the constants: Isenburg 2013, LASzip: lossless compression of lidar data, and the LAZ files that LASzip writes.
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Adaptive frequency model of some symbols. Updates of the shares become rarer while coding.
 template <std::size_t Capacity = 256>
@@ -146,6 +146,6 @@ class LazEncoder {
   std::size_t size_ = 0;
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -11,7 +11,7 @@
 
 #include <pulsecast/io/detail/laz/coder.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Coder of integers as corrections to a prediction. First comes the bit length of the correction, by a model for each context, then its
 /// rank among corrections of that length, with its highest eight bits modelled. Source: Isenburg 2013, LASzip, 4 (Entropy coding).
@@ -52,6 +52,6 @@ class LazIntegers {
   std::vector<LazModel<>> corrections_;  // by length, from 1
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

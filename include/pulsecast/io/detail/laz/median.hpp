@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <utility>
 
-namespace pulsecast::io::detail {
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Running median of five numbers, zeros at first. A new number replaces the greatest until one is not below the median. From then on it
 /// replaces the least until one is not above the median. Source: Isenburg 2013, LASzip, 4.1 (median of five).
@@ -34,6 +36,6 @@ class LazMedian {
   bool drop_greatest_ = true;
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <cstring>
 
-namespace pulsecast::io::detail {
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::endian::native == std::endian::little, "LAZ files are little-endian, and numbers are taken as they lie in memory");
 
@@ -50,6 +52,6 @@ struct LazPoint {
   std::int64_t time = 0;  ///< bit pattern of the double
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -11,7 +11,7 @@
 #include <pulsecast/io/detail/laz/coder.hpp>
 #include <pulsecast/io/detail/laz/integers.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Coder of times, as the 64-bit integers of their bit patterns, as continuations of one of four series, each with its last time and usual
 /// step. Source: Isenburg 2013, LASzip, 4 (GPSTIME11), and files of version 3.
@@ -102,6 +102,6 @@ class LazTimes {
   std::size_t series_ = 0, newest_ = 0;
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -25,7 +25,7 @@
 #include <pulsecast/scene/material.hpp>
 
 /// Reading of MTL files.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -134,6 +134,6 @@ PULSECAST_INLINE MaterialLibrary read_mtl(const std::filesystem::path& path, con
   return detail::MtlReader(detail::StatementFile(path), spectra).read();
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

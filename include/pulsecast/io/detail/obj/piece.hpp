@@ -24,7 +24,7 @@
 #include <pulsecast/io/detail/obj/polygon.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Statements of part of an OBJ file, evaluated as far as they do not depend on earlier parts.
 class ObjPiece : private StatementBuffer {
@@ -212,6 +212,6 @@ class ObjPiece : private StatementBuffer {
   std::vector<Vec3> positions_;         ///< positions of those
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -12,7 +12,7 @@
 
 #include <pulsecast/base/vector.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 inline constexpr std::size_t max_polygon_corners = 4096;  ///< upper limit; triangulation takes quadratic time
 
@@ -74,6 +74,6 @@ inline constexpr std::size_t max_polygon_corners = 4096;  ///< upper limit; tria
   return triangles;
 }
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -27,7 +27,7 @@
 #include <pulsecast/scene/triangle_mesh.hpp>
 
 /// Reading of OBJ files.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
@@ -177,6 +177,6 @@ PULSECAST_INLINE ObjModel read_obj(const std::filesystem::path& path, const ObjS
   return detail::ObjReader(path, settings, workers).read();
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -23,7 +23,7 @@
 #include <pulsecast/scene/material.hpp>
 
 /// Statements of OBJ and MTL files.
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 static_assert(std::same_as<tinyobj::real_t, double>, "define TINYOBJLOADER_USE_DOUBLE and link libtinyobjloader_double");
 
@@ -185,6 +185,6 @@ class StatementBuffer : public std::streambuf {
   bool open_ = false;
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/png/settings.hpp>
 
-namespace pulsecast::io::detail {
+namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Point of a picture.
 struct ImagePoint {
@@ -102,6 +102,6 @@ class Camera {
   Vec2 shift_{};
 };
 
-}  // namespace pulsecast::io::detail
+}  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

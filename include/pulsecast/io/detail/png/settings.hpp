@@ -12,7 +12,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/colour.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Meaning of a point's colour.
 enum class ColourBy : std::uint8_t { height, intensity, object, classification, return_number };
@@ -42,6 +42,6 @@ struct ImageSettings {
   }
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -11,7 +11,7 @@
 
 #include <pulsecast/base/text.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Splitter of rows into cells.
 class RowCells {
@@ -54,6 +54,6 @@ class RowCells {
   std::vector<std::string_view> cells_;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -17,7 +17,7 @@
 #include <pulsecast/io/detail/text/row.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Text table under construction, row by row. The file may be a compressing one: see `gzip_file`.
 class TextOutput {
@@ -79,6 +79,6 @@ class TextOutput {
   std::uint64_t rows_ = 0;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/io/detail/text/cells.hpp>
 #include <pulsecast/io/input_file.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Columns of a text file of points, counted from 0.
 struct PointColumns {
@@ -39,6 +39,6 @@ struct PointColumns {
   }
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

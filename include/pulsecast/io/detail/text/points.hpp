@@ -19,7 +19,7 @@
 #include <pulsecast/io/detail/text/point_columns.hpp>
 #include <pulsecast/io/input_file.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are skipped. Default separators are semicolons
 /// if the first row has any, else commas, else blanks. Blanks and tabs around a cell are ignored; as separators, several count as one. The
@@ -106,6 +106,6 @@ class TextPoints {
   bool begun_ = false, cut_ = false;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

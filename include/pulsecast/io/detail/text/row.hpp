@@ -15,7 +15,7 @@
 
 #include <pulsecast/base/error.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Row of a text table: numbers with a separator between, a blank by default, independent of the locale.
 class TextRow {
@@ -92,6 +92,6 @@ class TextRow {
   bool ended_ = false;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -15,7 +15,7 @@
 #include <pulsecast/io/detail/text/cells.hpp>
 #include <pulsecast/io/input_file.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Lines with the same defect.
 struct Oddity {
@@ -90,6 +90,6 @@ class TextTable {
   std::vector<std::string_view> unquoted_;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

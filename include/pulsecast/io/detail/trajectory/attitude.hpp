@@ -13,7 +13,7 @@
 #include <pulsecast/base/vector.hpp>
 
 /// Conventions of attitudes in files: angles, their axes and order, and the axes of quaternions and positions.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Three angles of an attitude, to be interpreted by an `AngleConvention`.
 struct RollPitchYaw {
@@ -148,6 +148,6 @@ struct Axes {
   }
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

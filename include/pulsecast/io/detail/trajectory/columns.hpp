@@ -20,7 +20,7 @@
 #include <pulsecast/base/units.hpp>
 
 /// Columns of trajectory files: names and units.
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Content of a column of a trajectory file.
 enum class Quantity : std::uint8_t { time, x, y, z, east, north, up, down, roll, pitch, yaw, qx, qy, qz, qw };
@@ -189,6 +189,6 @@ class TrajectoryColumns {
   std::optional<std::size_t> culprit_;
 };
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

@@ -13,7 +13,7 @@
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/detail/trajectory/columns.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Place of the column names in a trajectory file.
 enum class ColumnNames : std::uint8_t {
@@ -82,6 +82,6 @@ struct TrajectoryFormat {
           .axes = {.body = BodyAxes::forward_left_up}};
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif

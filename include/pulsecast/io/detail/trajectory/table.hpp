@@ -20,7 +20,7 @@
 #include <pulsecast/io/detail/trajectory/format.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
-namespace pulsecast::io {
+namespace PULSECAST_NAMESPACE::io {
 
 /// Part of a trajectory, on the clock of its file. Ends between two poses are interpolated as by `Waypoints`. A window that begins at a
 /// jump begins after it; one that ends there ends before it.
@@ -286,6 +286,6 @@ inline TrajectoryTable read_trajectory(const std::filesystem::path& path, const 
   return detail::TrajectoryReader(path, format).read(window);
 }
 
-}  // namespace pulsecast::io
+}  // namespace PULSECAST_NAMESPACE::io
 
 #endif
