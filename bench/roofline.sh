@@ -21,6 +21,7 @@ for survey in tree street hills; do
 done
 "$folder/roofline" "$@" > "$folder/times"
 sed -n 's/^\(machine\|compiler\|flags\): */\1: /p' "$folder/times"
+sed -n '/^peak/,/^surveys/ s/^  *\(.*[^ ]\) \+\([0-9.]\+\) *$/peak, \1 a ns: \2/p' "$folder/times"
 printf '| survey | instructions | float operations | double operations | bytes into the first level | bytes from beyond the second | ns, perfect | ns, measured |\n'
 printf '|---|---|---|---|---|---|---|---|\n'
 for survey in tree street hills; do
