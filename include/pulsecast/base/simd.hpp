@@ -100,11 +100,13 @@ template <class V>
   return a > b ? a : b;
 }
 
-/// Sum of all lanes, added in order.
-[[nodiscard]] inline double sum(const Doubles& v) noexcept {
-  double all = 0;
-  for (std::size_t lane = 0; lane < lane_count; ++lane) all += v[lane];
-  return all;
+/// Numbers that a sum over a column adds up side by side, in one register or two: the same for every instruction set, so that sums are.
+inline constexpr std::size_t sum_stride = 4;
+static_assert(sum_stride % lane_count == 0);
+
+/// Adds all lanes to a sum, in order.
+inline void add_lanes(double& sum, const Doubles& v) noexcept {
+  for (std::size_t lane = 0; lane < lane_count; ++lane) sum += v[lane];
 }
 
 /// Minimum of all lanes. A NaN is ignored, except in the first lane.

@@ -4,6 +4,7 @@
 #define PULSECAST_DETECTOR_GAUSSIAN_FIT_HPP
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -117,38 +118,42 @@ struct GaussianFit {
   };
 
   static Equations equations(std::span<const double> samples, const Gaussian& g) noexcept {
-    // exp(-x^2/2) at every lane_count-th sample: each step multiplies by a ratio, and the ratio by a constant
-    const double h = 1 / g.width, step = simd::lane_count * h;
-    simd::Doubles x = (simd::generate([](std::size_t lane) { return static_cast<double>(lane); }) - g.position) * h;
-    const simd::Doubles growth = -step * (x + 0.5 * step), none = simd::Doubles{} + std::numeric_limits<double>::infinity();
-    simd::Doubles value = exponential(simd::Doubles(-0.5 * x * x)), ratio = growth < 700 ? exponential(growth) : none;
-    const double decay = exponential(-step * step);
+    // exp(-x^2/2) at every sum_stride-th sample: each step multiplies by a ratio, and the ratio by a constant
+    const double h = 1 / g.width, step = simd::sum_stride * h, decay = exponential(-step * step);
     // the derivatives are value, value x k and value x^2 k, with k = amplitude / width: sums over powers of x suffice
-    simd::Doubles s0{}, s1{}, s2{}, s3{}, s4{}, r0{}, r1{}, r2{}, squares{};
-    for (std::size_t i = 0; i < samples.size(); i += simd::lane_count) {
-      simd::Doubles y{};
-      if (i + simd::lane_count <= samples.size())
-        simd::fill(y, samples[i]);
-      else
-        for (std::size_t k = i; k < samples.size(); ++k) y[k - i] = samples[k];
-      const simd::Doubles residual = y - g.amplitude * value, weighted = y * value, xx = x * x;
-      const simd::Doubles s = weighted * value, r = weighted * residual, sx = s * x, sxx = s * xx;
-      s0 += s;
-      s1 += sx;
-      s2 += sxx;
-      s3 += sx * xx;
-      s4 += sxx * xx;
-      r0 += r;
-      r1 += r * x;
-      r2 += r * xx;
-      squares += y * residual * residual;
-      x += step;
-      value *= ratio;
-      ratio *= decay;
+    std::array<double, 9> sums{};
+    for (std::size_t part = 0; part < simd::sum_stride; part += simd::lane_count) {
+      simd::Doubles x = (simd::generate([&](std::size_t lane) { return static_cast<double>(part + lane); }) - g.position) * h;
+      const simd::Doubles growth = -step * (x + 0.5 * step), none = simd::Doubles{} + std::numeric_limits<double>::infinity();
+      simd::Doubles value = exponential(simd::Doubles(-0.5 * x * x)), ratio = growth < 700 ? exponential(growth) : none;
+      simd::Doubles s0{}, s1{}, s2{}, s3{}, s4{}, r0{}, r1{}, r2{}, squares{};
+      for (std::size_t i = part; i < samples.size(); i += simd::sum_stride) {
+        simd::Doubles y{};
+        if (i + simd::lane_count <= samples.size())
+          simd::fill(y, samples[i]);
+        else
+          for (std::size_t k = i; k < samples.size(); ++k) y[k - i] = samples[k];
+        const simd::Doubles residual = y - g.amplitude * value, weighted = y * value, xx = x * x;
+        const simd::Doubles s = weighted * value, r = weighted * residual, sx = s * x, sxx = s * xx;
+        s0 += s;
+        s1 += sx;
+        s2 += sxx;
+        s3 += sx * xx;
+        s4 += sxx * xx;
+        r0 += r;
+        r1 += r * x;
+        r2 += r * xx;
+        squares += y * residual * residual;
+        x += step;
+        value *= ratio;
+        ratio *= decay;
+      }
+      std::size_t k = 0;
+      for (const simd::Doubles* v : {&s0, &s1, &s2, &s3, &s4, &r0, &r1, &r2, &squares}) simd::add_lanes(sums[k++], *v);
     }
     const double k = g.amplitude * h;
-    return {simd::sum(s0),         simd::sum(s1) * k, simd::sum(s2) * k, simd::sum(s2) * k * k, simd::sum(s3) * k * k,
-            simd::sum(s4) * k * k, simd::sum(r0),     simd::sum(r1) * k, simd::sum(r2) * k,     simd::sum(squares)};
+    const auto& [s0, s1, s2, s3, s4, r0, r1, r2, squares] = sums;
+    return {s0, s1 * k, s2 * k, s2 * k * k, s3 * k * k, s4 * k * k, r0, r1 * k, r2 * k, squares};
   }
 
   /// Step from the damped normal equations, by Cholesky decomposition; not finite if they are singular.

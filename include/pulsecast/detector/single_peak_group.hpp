@@ -61,22 +61,27 @@ class SinglePeakGroup {
       ages_[j] = 0;
       weights_[j] = 0;
     }
-    simd::Doubles power{}, before{}, zeroth{}, first{}, second{};
-    for (std::size_t j = 0; j < n; j += simd::lane_count) {
-      const simd::Doubles distance = simd::load<simd::Doubles>(ages_[j]), p = simd::load<simd::Doubles>(weights_[j]);
-      const simd::Doubles age = distance * per_metre, weight = p * exponential(simd::Doubles(-age));
-      power += p;
-      before += p * distance;
-      zeroth += weight;
-      first += weight * age;
-      second += weight * age * age;
-      simd::store(age, ages_[j]);
-      simd::store(weight, weights_[j]);
+    double all_power = 0, all_before = 0;
+    for (std::size_t part = 0; part < simd::sum_stride; part += simd::lane_count) {
+      simd::Doubles power{}, before{}, zeroth{}, first{}, second{};
+      for (std::size_t j = part; j < n; j += simd::sum_stride) {
+        const simd::Doubles distance = simd::load<simd::Doubles>(ages_[j]), p = simd::load<simd::Doubles>(weights_[j]);
+        const simd::Doubles age = distance * per_metre, weight = p * exponential(simd::Doubles(-age));
+        power += p;
+        before += p * distance;
+        zeroth += weight;
+        first += weight * age;
+        second += weight * age * age;
+        simd::store(age, ages_[j]);
+        simd::store(weight, weights_[j]);
+      }
+      simd::add_lanes(all_power, power);
+      simd::add_lanes(all_before, before);
+      simd::add_lanes(zeroth_, zeroth);
+      simd::add_lanes(first_, first);
+      simd::add_lanes(second_, second);
     }
-    zeroth_ = simd::sum(zeroth);
-    first_ = simd::sum(first);
-    second_ = simd::sum(second);
-    mean_range_ = farthest - simd::sum(before) / simd::sum(power);
+    mean_range_ = farthest - all_before / all_power;
   }
 
   /// True if the reflections form such a group.

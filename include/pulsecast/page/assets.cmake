@@ -74,7 +74,9 @@ set(header "// SPDX-FileCopyrightText: 2026 the pulsecast contributors
 
 #include <string_view>
 
-namespace pulsecast::page::detail {
+#include <pulsecast/base/namespace.hpp>
+
+namespace PULSECAST_NAMESPACE::page::detail {
 
 /// The page around its survey and its points, each part in pieces of less than 16 kB.
 ")
@@ -83,7 +85,7 @@ append_literals(html_before_survey "${before}")
 split_at("@points@")
 append_literals(html_before_points "${before}")
 append_literals(html_after_points "${page}\n")
-string(APPEND header "\n}  // namespace pulsecast::page::detail\n\n#endif\n")
+string(APPEND header "\n}  // namespace PULSECAST_NAMESPACE::page::detail\n\n#endif\n")
 
 # A header that stays the same keeps its time, so that nothing is compiled again.
 set(old)

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <pulsecast/detector/gaussian_fit.hpp>
+#include <pulsecast/pulsecast.hpp>
+
+/// The same survey from files that are compiled with other flags, in one program.
+namespace pulsecast::support {
+
+/// Answer of a file: what must be equal, and what must not.
+struct AnswerOfFile {
+  std::vector<double> numbers;  ///< of all echoes
+  const void* function;         ///< address of a function that the library's headers define
+};
+
+[[nodiscard]] AnswerOfFile answer_of_avx2();
+
+namespace {
+
+/// Answer of the file that includes this one. The namespace has no name, so that each file has a function of its own.
+[[nodiscard, maybe_unused]] AnswerOfFile answer_of_this_file() {
+  using Mesh = TriangleMesh<>;
+  using Intersect = void(const TrianglePacket&, std::span<const PrimitiveIndex>, const RayBundle&, ClosestHits&) noexcept;
+  MeshData ridge;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    const double x = 2.0 * i - 60, height = 3 * (i % 7) + 0.25 * (i % 3);
+    ridge.vertices.insert(ridge.vertices.end(), {{x, -80, height}, {x, 80, 0.5 * height}});
+    if (i > 0) ridge.triangles.insert(ridge.triangles.end(), {{2 * i - 2, 2 * i, 2 * i - 1}, {2 * i - 1, 2 * i, 2 * i + 1}});
+  }
+  const Material glossy{.scattering = Scattering::phong, .specular_share = 0.4, .specular_exponent = 12.5};
+  const Scene<Mesh> scene({{.geometry = std::make_shared<const Mesh>(ridge), .materials = material_table({glossy})}});
+  const Laser laser{.wavelength = 1.064e-6, .peak_power = 50, .pulse_length = 4e-9, .divergence = 5e-3};
+  const Platform airplane{StraightLine{.from = {-40, 0, 100}, .to = {40, 3, 101}, .speed = 30},
+                          Mount{.boresight = rotation_about(axis::right, -1.4)},
+                          Deflector{OscillatingMirror{.cycles_per_second = 20, .half_angle = 0.3},
+                                    Scanner{.pulse_rate = 1000, .pulses = 2000, .laser = laser}}};
+  AnswerOfFile answer{{}, reinterpret_cast<const void*>(static_cast<Intersect*>(&intersect<RayBundle, ClosestHits>))};
+  const Survey survey{airplane, SunflowerFootprint{19}, scene, Receiver{}, FullWaveform{WaveformSettings{}, GaussianFit{}}};
+  run(survey, {.threads = 1}, [&](const EchoBatch& batch) {
+    for (const Echo& echo : batch.echoes)
+      answer.numbers.insert(answer.numbers.end(), {echo.range, echo.amplitude, echo.width, echo.reflectance, echo.cos_incidence});
+  });
+  return answer;
+}
+
+}  // namespace
+}  // namespace pulsecast::support
