@@ -30,6 +30,7 @@
 #include <pulsecast/version.hpp>
 
 #include "../summary.hpp"
+#include "entry.hpp"
 #include "forecast_report.hpp"
 #include "loading.hpp"
 #include "notes.hpp"
@@ -485,7 +486,7 @@ int work(const Options& options, Ranks& ranks) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int pulsecast_main(int argc, char** argv) {
   std::unique_ptr<Ranks> ranks;
   std::optional<Options> options;
   try {

@@ -22,6 +22,9 @@
 
 namespace {
 
+#define QUOTED_WORD(word) #word
+#define QUOTED(macro) QUOTED_WORD(macro)
+
 namespace fs = std::filesystem;
 namespace text = pulsecast::text;
 
@@ -102,7 +105,7 @@ class CommandLine {
  public:
   CommandLine() {
     app_.get_formatter()->column_width(46);
-    app_.set_version_flag("--version", std::string("pulsecast ") + PULSECAST_VERSION);
+    app_.set_version_flag("--version", std::string("pulsecast ") + PULSECAST_VERSION + ", instructions: " QUOTED(PULSECAST_INSTRUCTIONS));
     app_.option_defaults()->ignore_case();
     add_inputs();
     add_las();

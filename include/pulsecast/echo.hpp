@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 
+#include <pulsecast/base/scan_angle.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/vector.hpp>
 
@@ -100,7 +101,7 @@ struct Shot {
   Tick tick{};                     ///< emission time, since the survey's start
   Vec3 origin{};                   ///< exit of the beam, in the world [m]
   Vec3 direction{};                ///< unit vector, in the world
-  double scan_angle = 0;           ///< as in `Pulse` [rad]
+  ScanAngle scan_angle{};          ///< as in `Pulse` [rad]
   std::uint16_t leg = 0;           ///< number of the leg, from 0
   std::uint16_t channel = 0;       ///< number of the emitter in its device, from 0
   Fate fate = Fate::missed;        ///< fate of the slot

@@ -9,6 +9,7 @@
 
 #include <pulsecast/base/frame.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/scan_angle.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/units.hpp>
 
@@ -89,8 +90,8 @@ struct PulseOnPlatform {};
 template <>
 struct PulseOnPlatform<frame::World> {
   std::optional<Pose<frame::Beam, frame::World>> reported{};  ///< pose as known to the instrument; empty if exact
-  double scan_angle = 0;  ///< angle about the body's forward axis: 0 down, positive to the right, in [-pi, pi] [rad]
-  std::uint16_t leg = 0;  ///< number of its leg or strip, from 0
+  ScanAngle scan_angle{};                                     ///< angle of the beam about the body's forward axis, a number [rad]
+  std::uint16_t leg = 0;                                      ///< number of its leg or strip, from 0
 };
 
 }  // namespace detail

@@ -7,15 +7,16 @@
 /// compiled for different processors: their functions have different names, so that the linker never takes one for another.
 /// `pulsecast::Scene` names that of the file's own flags.
 #if defined(__AVX512F__)
-#define PULSECAST_NAMESPACE pulsecast::inline avx512
+#define PULSECAST_INSTRUCTIONS avx512
 #elif defined(__AVX2__)
-#define PULSECAST_NAMESPACE pulsecast::inline avx2
+#define PULSECAST_INSTRUCTIONS avx2
 #elif defined(__AVX__)
-#define PULSECAST_NAMESPACE pulsecast::inline avx
+#define PULSECAST_INSTRUCTIONS avx
 #elif defined(__SSE4_1__)
-#define PULSECAST_NAMESPACE pulsecast::inline sse4
+#define PULSECAST_INSTRUCTIONS sse4
 #else
-#define PULSECAST_NAMESPACE pulsecast::inline baseline
+#define PULSECAST_INSTRUCTIONS baseline
 #endif
+#define PULSECAST_NAMESPACE pulsecast::inline PULSECAST_INSTRUCTIONS
 
 #endif

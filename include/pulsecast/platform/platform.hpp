@@ -3,7 +3,6 @@
 #ifndef PULSECAST_PLATFORM_PLATFORM_HPP
 #define PULSECAST_PLATFORM_PLATFORM_HPP
 
-#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -63,7 +62,7 @@ class Platform {
   [[nodiscard]] std::optional<Pulse<frame::World>> placed(const Pulse<frame::Instrument>& inner) const noexcept {
     std::optional<Pulse<frame::World>> out(std::in_place, instrument_at(inner.tick), inner);
     const Vec3 on_body = mount_.boresight * inner.direction();
-    out->scan_angle = std::atan2(on_body.x, -on_body.z);
+    out->scan_angle = {on_body.x, -on_body.z};
     return out;
   }
 
