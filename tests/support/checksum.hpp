@@ -63,7 +63,7 @@ class Checksum {
       add(s.tick);
       add(s.origin);
       add(s.direction);
-      add(s.scan_angle);
+      add(double(s.scan_angle));
       add(s.leg);
       add(s.channel);
       add(s.fate);
