@@ -35,6 +35,7 @@ concept PulseForm = std::copyable<F> && requires(const F form, double time, doub
 struct GammaPulse {
   double divisor = 3.394680670846503;  ///< full width at half maximum by tau: the exact one; the literature says 3.5
 
+  /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double length) const noexcept { return PulseShape(length, divisor)(time); }
   [[nodiscard]] double begin(double length) const noexcept { return -PulseShape::peak * length / divisor; }
   [[nodiscard]] double end(double length) const noexcept { return 30 * length / divisor; }  // 1e-10 of the peak is left
@@ -42,6 +43,7 @@ struct GammaPulse {
 
 /// Gaussian pulse.
 struct GaussianPulse {
+  /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double length) const noexcept {
     const double halves = 2 * time / length;
     return exponential(-std::numbers::ln2 * halves * halves);
@@ -52,6 +54,7 @@ struct GaussianPulse {
 
 /// Constant power; its peak is its middle.
 struct RectangularPulse {
+  /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double length) const noexcept { return std::fabs(time) <= 0.5 * length ? 1 : 0; }
   [[nodiscard]] double begin(double length) const noexcept { return -0.5 * length; }
   [[nodiscard]] double end(double length) const noexcept { return 0.5 * length; }
@@ -81,6 +84,7 @@ class MeasuredPulse {
     for (PulseSample& sample : samples_) sample = {sample.time - peak.time, sample.power / peak.power};
   }
 
+  /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double) const noexcept {
     const std::size_t after = detail::first_not(samples_.size(), [&](std::size_t i) noexcept { return samples_[i].time <= time; });
     if (after == 0 || after == samples_.size()) return after > 0 && time == samples_.back().time ? samples_.back().power : 0;

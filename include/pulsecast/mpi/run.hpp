@@ -40,6 +40,7 @@ namespace PULSECAST_NAMESPACE::mpi {
 /// Sink of part of a survey on one process.
 class MpiPartSink {
  public:
+  /// Takes a function of batches, and whether it reads shots without echoes.
   MpiPartSink(std::function<void(const EchoBatch&)> take, bool empty_shots) : take_(std::move(take)), empty_shots_(empty_shots) {}
 
   void operator()(const EchoBatch& batch) const { take_(batch); }
