@@ -12,7 +12,8 @@
 #include "report.hpp"
 
 // Time of slots without tracing, one thread: a run of nothing but blocked slots, and pulses made by a mirror on a head, and by prisms.
-// `bench_source PART` does one part alone, a million slots, for counts of instructions: blocked, head, prisms.
+// `bench_source PART` does one part alone, a million slots, for counts of instructions: blocked, head, prisms, and the
+// latter two asked one by one: head_alone, prisms_alone.
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -41,11 +42,28 @@ std::uint64_t run_blocked() {
   return run(Survey{on_tripod(blind_mirror), SingleRay{}, nothing, Receiver{}, FirstHit{}}, {.threads = 1}).count(Fate::blocked);
 }
 
+/// One, after the compiler had to make the whole pulse.
+std::uint64_t used(const Pulse<frame::World>& pulse) {
+  asm volatile("" : : "m"(pulse));
+  return 1;
+}
+
 template <class Source>
 std::uint64_t make_pulses(const Source& source) {
   std::uint64_t made = 0;
+  for (PulseIndex i = 0; i < slots; i += simd::lane_count) {
+    const auto pulses = source.pulse_lanes(i, simd::lane_count);
+    for (std::size_t lane = 0; lane < pulses.size; ++lane)
+      if (const auto pulse = pulses[lane]) made += used(*pulse);
+  }
+  return made;
+}
+
+template <class Source>
+std::uint64_t make_one_by_one(const Source& source) {
+  std::uint64_t made = 0;
   for (PulseIndex i = 0; i < slots; ++i)
-    if (const auto pulse = source.pulse(i)) made += pulse->pose.rotation.w < 2;
+    if (const auto pulse = source.pulse(i)) made += used(*pulse);
   return made;
 }
 
@@ -64,4 +82,6 @@ int main(int argc, char** argv) {
   row("blocked", "a blocked slot, mean over a sweep, in a run", [] { return run_blocked(); });
   row("head", "a pulse made by a mirror on a head", [] { return make_pulses(on_tripod(open_mirror)); });
   row("prisms", "a pulse made by two prisms on a head", [] { return make_pulses(on_tripod(prisms)); });
+  row("head_alone", "a pulse made by a mirror on a head, alone", [] { return make_one_by_one(on_tripod(open_mirror)); });
+  row("prisms_alone", "a pulse made by two prisms on a head, alone", [] { return make_one_by_one(on_tripod(prisms)); });
 }

@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/fixed_beam.hpp>
@@ -68,6 +70,24 @@ MISSPELT(ForeseesOpening, opens_next, Tick opens_next(Tick) const noexcept);
 MISSPELT(ForeseesOpening, opens_at, Tick opens_at(Tick) const noexcept);
 MISSPELT(ForeseesOpening, open_after, Tick open_after(Tick) const noexcept);
 MISSPELT(ForeseesOpening, seconds, double next_open(Tick) const noexcept);
+using BeamLanes = PoseLanes<frame::Beam, frame::Instrument>;
+#define POSES_AS(name)                                          \
+  Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept; \
+  simd::Mask name(const TickLanes&, BeamLanes&) const noexcept
+MISSPELT(MovesInLanes, at_lanes, POSES_AS(at_lanes));
+MISSPELT(MovesInLanes, pose_lanes, POSES_AS(pose_lanes));
+MISSPELT(MovesInLanes, lanes, POSES_AS(lanes));
+MISSPELT(MovesInLanes, poses_at, POSES_AS(poses_at));
+MISSPELT(MovesInLanes, tick, simd::Mask poses(Tick, BeamLanes&) const noexcept);
+#define PULSES_AS(name)                                               \
+  std::optional<Pulse<frame::Beam>> pulse(PulseIndex) const noexcept; \
+  PulseLanes<frame::Beam> name(PulseIndex, std::size_t) const noexcept
+MISSPELT(MakesLanes, pulses_in_lanes, PULSES_AS(pulses_in_lanes));
+MISSPELT(MakesLanes, lanes, PULSES_AS(lanes));
+MISSPELT(MakesLanes, pulses, PULSES_AS(pulses));
+MISSPELT(MakesLanes, lanes_of, PULSES_AS(lanes_of));
+MISSPELT(MakesLanes, throwing, std::optional<Pulse<frame::Beam>> pulse(PulseIndex) const noexcept;
+         PulseLanes<frame::Beam> pulse_lanes(PulseIndex, std::size_t) const);
 MISSPELT(FindsSlots, slot_at, PulseIndex slot_at(Tick) const noexcept);
 MISSPELT(FindsSlots, slot_after, PulseIndex slot_after(Tick) const noexcept);
 MISSPELT(FindsSlots, first_slot, PulseIndex first_slot(Tick) const noexcept);

@@ -73,6 +73,26 @@ struct Skips : LeastSource<frame::Beam> {
   explicit Skips(int slots) : by(static_cast<PulseIndex>(slots)) {}
   PulseIndex next_pulse(PulseIndex i) const noexcept { return i + by; }
 };
+struct MixesLanes : LeastOptic {
+  simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& beams) const noexcept {
+    beams.position.x = simd::Doubles{} + 1e-9 * t.fraction[1];
+    return all_lanes();
+  }
+};
+struct ClosesLanes : LeastOptic {
+  simd::Mask poses(const TickLanes&, PoseLanes<frame::Beam, frame::Instrument>& beams) const noexcept {
+    beams = {};
+    return first_lanes(1);
+  }
+};
+struct MakesOthers : LeastSource<frame::Beam> {
+  PulseLanes<frame::Beam> pulse_lanes(PulseIndex i, std::size_t) const noexcept {
+    return PulseLanes<frame::Beam>(LeastSource<frame::Beam>::pulse(i + i / 3));
+  }
+};
+struct MakesNone : LeastSource<frame::Beam> {
+  PulseLanes<frame::Beam> pulse_lanes(PulseIndex, std::size_t) const noexcept { return {}; }
+};
 struct NotUnit {
   BeamPose at(Tick t) const noexcept { return {Rotation{1 + 1e-9 * t.seconds(), 0, 0, 0}, {}}; }
 };
@@ -331,6 +351,8 @@ TEST_CASE("motions that keep the law pass, and those that break it do not") {
   CHECK(names(motion_laws(FlickeringGate{}, std::span(ticks).first(3)), "gate"));
   CHECK(names(motion_laws(OpensEarly{}, ticks), "open before its opening"));
   CHECK(names(motion_laws(OpensInThePast{}, ticks), "is before it"));
+  CHECK(names(motion_laws(MixesLanes{}, ticks), "the pose in lane 0 differs"));
+  CHECK(names(motion_laws(ClosesLanes{}, ticks), "the gate in lane 1 differs"));
   CHECK(names(motion_laws(NotUnit{}, ticks), "not rigid"));
   CHECK(names(motion_laws(NotFinite{}, ticks), "not rigid"));
 }
@@ -349,6 +371,8 @@ TEST_CASE("sources that keep the law pass, and those that break it do not") {
   static int asked = 0;
   CHECK(names(source_laws(Changed([](PulseIndex, BeamPulse& p) noexcept { p->pose.position.x = 1e-9 * ++asked; })), "differs"));
   CHECK(names(source_laws(Hurried{}), "duration"));
+  CHECK(names(source_laws(MakesOthers{}), "differs in lanes"));
+  CHECK(names(source_laws(MakesNone{}), "0 are made"));
   CHECK(names(source_laws(Skips{+2}), "is skipped"));
   CHECK(names(source_laws(Skips{-1}), "the next pulse after 0 is"));
 }

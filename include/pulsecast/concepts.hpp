@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/geometry/box.hpp>
@@ -76,6 +77,34 @@ template <class S>
 concept InstrumentSource = PulseSource<S, frame::Instrument>;  ///< as `Deflector<...>`
 template <class S>
 concept WorldSource = PulseSource<S, frame::World>;  ///< as `Platform<...>`
+
+/// Poses of a motion at the ticks of the lanes in `asked`; returns the lanes of these where it is open. A motion that does not move in lanes
+/// is asked tick by tick.
+template <class M>
+simd::Mask find_poses(const M& motion, const TickLanes& ticks, simd::Mask asked, detail::PosesOf<M>& poses) noexcept {
+  static_assert(detail::MovesInLanesCheck<M>::passed);
+  if constexpr (MovesInLanes<M>) {
+    return asked & motion.poses(ticks, poses);
+  } else {
+    for (std::size_t lane = 0; lane < simd::lane_count; ++lane) {
+      if (asked[lane] == 0) continue;
+      const Tick t = ticks[lane];
+      if constexpr (Gated<M>) asked[lane] = motion.open(t) ? -1 : 0;
+      if (asked[lane] != 0) poses.set(lane, motion.at(t));
+    }
+    return asked;
+  }
+}
+
+/// Pulses of a source from slot i on, at most `count`: of one slot, if the source does not make lanes.
+template <class S>
+[[nodiscard]] detail::PulsesOf<S> find_pulses(const S& source, PulseIndex i, std::size_t count) noexcept {
+  static_assert(detail::MakesLanesCheck<S>::passed);
+  if constexpr (MakesLanes<S>)
+    return source.pulse_lanes(i, count);
+  else
+    return detail::PulsesOf<S>(source.pulse(i));
+}
 
 // -------------------------------------------------------------------------------------------------------------- the scene
 

@@ -3,13 +3,18 @@
 #ifndef PULSECAST_PULSE_HPP
 #define PULSECAST_PULSE_HPP
 
+#include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/scan_angle.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/units.hpp>
 
@@ -114,6 +119,75 @@ struct Pulse : detail::PulseOnPlatform<Frame> {
   [[nodiscard]] const Vec3& origin() const noexcept { return pose.position; }
   /// Unit vector along the beam.
   [[nodiscard]] Vec3 direction() const noexcept { return pose.rotation * axis::forward; }
+};
+
+namespace detail {
+
+/// Data of pulses in lanes that no stage before the platform knows.
+template <class Frame>
+struct LanesOnPlatform {};
+
+template <>
+struct LanesOnPlatform<frame::World> {
+  simd::Mask reports{};                                  ///< lanes whose `reported` is not empty
+  PoseLanes<frame::Beam, frame::World> reported{};       ///< as in `Pulse`
+  std::array<ScanAngle, simd::lane_count> scan_angle{};  ///< as in `Pulse` [rad]
+  std::uint16_t leg = 0;                                 ///< as in `Pulse`, of all lanes
+};
+
+}  // namespace detail
+
+/// Pulses of consecutive slots, one in each lane of a register, in a frame.
+template <class Frame>
+struct PulseLanes : detail::LanesOnPlatform<Frame> {
+  std::size_t size = 0;                                   ///< number of slots, from the first lane on
+  simd::Mask sent{};                                      ///< lanes with a pulse; the others are blocked, or beyond the slots
+  TickLanes tick{};                                       ///< emission times, since the survey's start
+  PoseLanes<frame::Beam, Frame> pose{};                   ///< poses at the exit
+  std::array<std::uint16_t, simd::lane_count> emitter{};  ///< as in `Pulse`
+
+  PulseLanes() = default;
+
+  /// Transforms the pulses into the frame around their own.
+  template <class Inner>
+  PulseLanes(const PoseLanes<Inner, Frame>& outer_from_inner, const PulseLanes<Inner>& p) noexcept
+      : size(p.size), sent(p.sent), tick(p.tick), pose(outer_from_inner * p.pose), emitter(p.emitter) {}
+
+  /// Pulse of a lane; empty if it is blocked.
+  [[nodiscard]] std::optional<Pulse<Frame>> operator[](std::size_t lane) const noexcept {
+    std::optional<Pulse<Frame>> p;
+    if (sent[lane] == 0) return p;
+    p.emplace();
+    p->tick = tick[lane];
+    p->pose = pose[lane];
+    p->emitter = emitter[lane];
+    if constexpr (std::is_same_v<Frame, frame::World>) {
+      if (this->reports[lane] != 0) p->reported = this->reported[lane];
+      p->scan_angle = this->scan_angle[lane];
+      p->leg = this->leg;
+    }
+    return p;
+  }
+
+  /// Pulse of a source of one's own as a register of one slot.
+  explicit PulseLanes(const std::optional<Pulse<Frame>>& p) noexcept : size(1) {
+    if (!p) return;
+    sent[0] = -1;
+    tick.set(0, p->tick);
+    pose.set(0, p->pose);
+    emitter[0] = p->emitter;
+    if constexpr (std::is_same_v<Frame, frame::World>) {
+      if (p->reported) this->report(0, *p->reported);
+      this->scan_angle[0] = p->scan_angle;
+      this->leg = p->leg;
+    }
+  }
+
+  /// Sets the pose of a lane as known to the instrument.
+  void report(std::size_t lane, const Pose<frame::Beam, frame::World>& p) noexcept requires std::same_as<Frame, frame::World> {
+    this->reports[lane] = -1;
+    this->reported.set(lane, p);
+  }
 };
 
 }  // namespace PULSECAST_NAMESPACE

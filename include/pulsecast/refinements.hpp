@@ -9,9 +9,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/optional_member.hpp>
+#include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/ray_cone.hpp>
@@ -68,6 +71,41 @@ concept ForeseesOpening = requires(const M m, Tick t) {
 };
 PULSECAST_OPTIONAL_MEMBER(ForeseesOpening, "Tick next_open(Tick) const noexcept", next_open, (Tick{}), next_opening, opens_next, opens_at,
                           open_after)
+
+namespace detail {
+template <class P>
+struct InLanes;
+template <class From, class To>
+struct InLanes<Pose<From, To>> { using type = PoseLanes<From, To>; };
+template <class Frame>
+struct InLanes<std::optional<Pulse<Frame>>> { using type = PulseLanes<Frame>; };
+/// `PoseLanes` of a motion.
+template <class M>
+using PosesOf = typename InLanes<decltype(std::declval<const M&>().at(Tick{}))>::type;
+/// `PulseLanes` of a source.
+template <class S>
+using PulsesOf = typename InLanes<decltype(std::declval<const S&>().pulse(PulseIndex{}))>::type;
+}  // namespace detail
+
+/// Motion that answers for a register of ticks at once, as `PolygonMirror`. It sets the poses, and returns the lanes at whose ticks it is
+/// open: all, unless it is `Gated`. Poses of the other lanes have no meaning.
+/// Law: a lane has the pose that `at` gives for its tick, bit for bit, whatever is in the other lanes, and is set where `open` is true.
+template <class M>
+concept MovesInLanes = requires(const M m, const TickLanes& ticks, detail::PosesOf<M>& poses) {
+  { m.poses(ticks, poses) } noexcept -> std::same_as<simd::Mask>;
+};
+PULSECAST_OPTIONAL_MEMBER(MovesInLanes, "simd::Mask poses(const TickLanes&, PoseLanes<From, To>&) const noexcept", poses,
+                          (TickLanes{}, std::declval<detail::PosesOf<T>&>()), at_lanes, pose_lanes, lanes, poses_at)
+
+/// Source that makes the pulses of a register at once, as `Scanner`: from 1 to `count` slots from i on, where `count` is at least 1 and at
+/// most `simd::lane_count`, and the slots are below `size()`.
+/// Law: slot i + k is `pulse(i + k)`, bit for bit.
+template <class S>
+concept MakesLanes = requires(const S s, PulseIndex i, std::size_t count) {
+  { s.pulse_lanes(i, count) } noexcept -> std::same_as<detail::PulsesOf<S>>;
+};
+PULSECAST_OPTIONAL_MEMBER(MakesLanes, "PulseLanes<Frame> pulse_lanes(PulseIndex, std::size_t) const noexcept", pulse_lanes,
+                          (PulseIndex{}, std::size_t{}), pulses_in_lanes, lanes, pulses, lanes_of)
 
 /// Source that finds slots by time, as `Scanner`.
 /// Law: all slots before `slot_from(t)` are at times before t; it may be early, and is at most `size()`.

@@ -100,6 +100,8 @@ class Survey {
     std::vector<Reflection> reflections;  ///< reflections of a pulse, with room for all
     std::vector<SubrayHit> subrays;       ///< all of a pulse, if recorded
     std::vector<OfDetector> detectors;    ///< workspace of each receiver's detector
+    PulseLanes<frame::World> pulses{};    ///< pulses made last
+    PulseIndex first = 0;                 ///< slot of the first of them
     std::uint16_t emitter = 0;            ///< emitter of the last pulse
     WhiteTarget white_target{};           ///< white target of that emitter
   };
@@ -140,7 +142,7 @@ class Survey {
   [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
     Outcome out;
     out.shot.index = i;
-    const auto pulse = source_.pulse(i);
+    const auto pulse = pulse_of(i, w);
     if (!pulse) {
       out.shot.fate = Fate::blocked;
       return out;
@@ -259,6 +261,19 @@ class Survey {
         std::swap(echoes[e - 1], echoes[e]);
         std::swap(echoes[e - 1].number, echoes[e].number);
       }
+  }
+
+  /// Pulse of slot i. Slots in order are made by the register; one that follows no other, alone.
+  [[nodiscard]] std::optional<Pulse<frame::World>> pulse_of(PulseIndex i, Workspace& w) const noexcept {
+    const PulseIndex end = w.first + w.pulses.size;
+    if (i < w.first || i >= end) {
+      const bool in_order =
+          i == end || (i > end && w.pulses.size > 0 && w.pulses.sent[w.pulses.size - 1] == 0);  // blocked slots are skipped
+      const PulseIndex left = source_.size() - i;
+      w.pulses = find_pulses(source_, i, in_order ? (left < simd::lane_count ? left : simd::lane_count) : 1);
+      w.first = i;
+    }
+    return w.pulses[i - w.first];
   }
 
   static_assert(detail::SurveyMembers<Pattern, Instrument>::checked);

@@ -115,7 +115,29 @@ template <class Model, class Answer>
 
 }  // namespace detail
 
-/// Same tick, same pose and same gate, bit for bit: forwards, backwards, twice, from a copy, from two threads; the rotation is unit.
+/// A motion in lanes has in each lane the pose and the gate that it has at the lane's tick alone, whatever the other lanes are.
+template <class M>
+[[nodiscard]] std::string lane_laws(const M& motion, std::span<const Tick> ticks) {
+  if constexpr (MovesInLanes<M>)
+    for (std::size_t k = 0; k < ticks.size(); ++k) {
+      TickLanes together;
+      const auto tick_of = [&](std::size_t lane) { return ticks[(k + 7 * lane) % ticks.size()]; };
+      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) together.set(lane, tick_of(lane));
+      pulsecast::detail::PosesOf<M> poses;
+      const simd::Mask open = motion.poses(together, poses);
+      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) {
+        bool is_open = true;
+        if constexpr (Gated<M>) is_open = motion.open(tick_of(lane));
+        if (is_open != (open[lane] != 0)) return detail::sentence("the gate in lane ", lane, " differs at ", tick_of(lane).seconds(), " s");
+        if (is_open && !detail::same(poses[lane], motion.at(tick_of(lane))))
+          return detail::sentence("the pose in lane ", lane, " differs at ", tick_of(lane).seconds(), " s");
+      }
+    }
+  return {};
+}
+
+/// Same tick, same pose and same gate, bit for bit: forwards, backwards, twice, from a copy, from two threads, in lanes; the rotation is
+/// unit.
 template <class M>
 [[nodiscard]] std::string motion_laws(const M& motion, std::span<const Tick> ticks) {
   if (auto broken = detail::purity_laws(motion, ticks.size(), [&](const M& m, std::size_t k) { return m.at(ticks[k]); }); !broken.empty())
@@ -124,6 +146,7 @@ template <class M>
     const auto open = [&](const M& m, std::size_t k) { return m.open(ticks[k]) ? 1.0 : 0.0; };
     if (auto broken = detail::purity_laws(motion, ticks.size(), open); !broken.empty()) return "gate: " + broken;
   }
+  if (auto broken = lane_laws(motion, ticks); !broken.empty()) return broken;
   if constexpr (ForeseesOpening<M>)
     for (const Tick& t : ticks) {
       const Tick opens = motion.next_open(t);
@@ -172,6 +195,16 @@ template <class S>
     if (!first) first = pulse->tick;
     last = pulse->tick;
   }
+  if constexpr (MakesLanes<S>)
+    for (const PulseIndex i : slots)
+      for (std::size_t count = 1; count <= simd::lane_count && i + count <= size; ++count) {
+        const auto pulses = source.pulse_lanes(i, count);
+        if (pulses.size < 1 || pulses.size > count)
+          return detail::sentence("of ", count, " slots from ", i, " on, ", pulses.size, " are made");
+        for (std::size_t lane = 0; lane < pulses.size; ++lane)
+          if (!detail::same(pulses[lane], source.pulse(i + lane)))
+            return detail::sentence("pulse ", i + lane, " differs in lanes from ", i);
+      }
   if constexpr (SkipsBlocked<S>)
     for (const PulseIndex i : slots) {
       const PulseIndex next = source.next_pulse(i);

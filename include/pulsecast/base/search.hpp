@@ -29,6 +29,7 @@ template <class Before>
 /// Indices of the elements of a table before and behind a place; twice the outermost one where the place is beyond it.
 struct Neighbours {
   std::size_t before, behind;
+  friend bool operator==(const Neighbours&, const Neighbours&) = default;
 };
 
 /// Neighbours of a place in a table of `count` elements, at least one. `before(i)` is true for all elements before the place.

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include <pulsecast/base/frame.hpp>
+#include <pulsecast/base/lanes.hpp>
+#include <pulsecast/base/vector_math.hpp>
 
 /// Beam poses from angles or directions, for optics.
 namespace PULSECAST_NAMESPACE {
@@ -13,6 +15,11 @@ namespace PULSECAST_NAMESPACE {
 /// Pose of a beam at an elevation [rad]: rotated from forward towards up, about the right axis.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_above(double angle) noexcept {
   return {Rotation{std::cos(0.5 * angle), std::sin(0.5 * angle), 0, 0}, {}};
+}
+
+/// Poses of beams at elevations [rad], as above.
+[[nodiscard]] inline PoseLanes<frame::Beam, frame::Instrument> aimed_above(const simd::Doubles& angle) noexcept {
+  return PoseLanes<frame::Beam, frame::Instrument>{RotationLanes::about(axis::right, angle)};
 }
 
 /// Pose of a beam from `origin` [m]: elevated, then turned from forward to the right by the azimuth [rad]. Its right axis stays level.
@@ -27,6 +34,17 @@ namespace PULSECAST_NAMESPACE {
   if (y < 0 && aside_squared < 1e-300) return {Rotation{0, 0, 0, 1}, {}};  // straight back: about up
   const double w = y < 0 ? aside_squared / (1 - y) : 1 + y;  // 1 + y in both cases; near -1 only the first form does not cancel
   return {normalize(Rotation{w, z, 0, -x}), {}};
+}
+
+/// Poses of beams along unit directions, as above.
+[[nodiscard]] inline PoseLanes<frame::Beam, frame::Instrument> aimed_along(const Vec3Lanes& direction) noexcept {
+  const simd::Doubles &x = direction.x, &y = direction.y, &z = direction.z, zero{};
+  const simd::Doubles aside_squared = x * x + z * z;
+  const auto behind = y < 0.0, straight_back = behind & (aside_squared < 1e-300);
+  const simd::Doubles w = behind ? aside_squared / (1.0 - y) : 1.0 + y;
+  const RotationLanes shortest = normalize(RotationLanes{straight_back ? zero + 1.0 : w, z, zero, -x});
+  return PoseLanes<frame::Beam, frame::Instrument>{
+      RotationLanes{straight_back ? zero : shortest.w, straight_back ? zero : shortest.x, zero, straight_back ? zero + 1.0 : shortest.z}};
 }
 
 }  // namespace PULSECAST_NAMESPACE

@@ -4,6 +4,7 @@
 #define PULSECAST_DEFLECTOR_DEFLECTOR_HPP
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -34,14 +35,17 @@ class Deflector {
   [[nodiscard]] Tick duration() const noexcept { return source_.duration(); }
   [[nodiscard]] std::vector<Emitter> emitters() const { return source_.emitters(); }
 
-  [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept {
-    const auto inner = source_.pulse(i);
-    if (!inner) return std::nullopt;
-    if constexpr (Gated<Moving>)
-      if (!moving_.open(inner->tick)) return std::nullopt;
-    const auto pose = moving_.at(inner->tick);
-    PULSECAST_ASSERT(pose.rigid() || !pose.finite());  // a run reports NaN
-    return std::optional<Pulse<frame::Instrument>>(std::in_place, pose, *inner);
+  [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
+
+  /// As the concept MakesLanes requires.
+  [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
+    const auto inner = find_pulses(source_, i, count);
+    detail::PosesOf<Moving> poses;
+    const simd::Mask open = find_poses(moving_, inner.tick, inner.sent, poses);
+    PULSECAST_ASSERT(rigid_lanes(poses, open));
+    PulseLanes<frame::Instrument> out(poses, inner);
+    out.sent = open;
+    return out;
   }
 
   /// As the concept FindsSlots requires.

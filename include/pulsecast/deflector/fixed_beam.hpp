@@ -21,9 +21,15 @@ struct FixedBeam {
   void normalize() noexcept { pose.rotation = unit(pose.rotation); }
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept { return pose; }
+
+  /// As the concept MovesInLanes requires.
+  simd::Mask poses(const TickLanes&, PoseLanes<frame::Beam, frame::Instrument>& at) const noexcept {
+    at = PoseLanes(pose);
+    return all_lanes();
+  }
 };
 
-static_assert(Optic<FixedBeam>);
+static_assert(Optic<FixedBeam> && MovesInLanes<FixedBeam>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_OSCILLATING_MIRROR_HPP
 #define PULSECAST_DEFLECTOR_OSCILLATING_MIRROR_HPP
 
-#include <cmath>
 #include <cstdint>
 
 #include <pulsecast/base/require.hpp>
@@ -32,22 +31,32 @@ struct OscillatingMirror {
   }
 
   /// Elevation of the beam above forward [rad].
-  [[nodiscard]] double angle(Tick t) const noexcept {
-    const double phase = t.phase(cycles_per_second);
-    if (swing == Swing::sine) return -half_angle * std::cos(2 * pi * phase);
-    const double turn = turning_time * cycles_per_second;  // [cycles]
-    const double rate = 4 * half_angle / (1 - turn);  // between turning points, so that the parabolas end at the half angle [rad/cycle]
-    const double after = phase < 0.5 ? phase : 1 - phase;  // since the lower end; the second half mirrors the first [cycles]
-    const double before = 0.5 - after;                     // until the upper end [cycles]
-    if (after < 0.5 * turn) return -half_angle + rate * after * after / turn;
-    if (before < 0.5 * turn) return half_angle - rate * before * before / turn;
-    return rate * (after - 0.25);
+  [[nodiscard]] double angle(Tick t) const noexcept { return angles(TickLanes(t))[0]; }
+
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
+    return pose_in_lanes<frame::Beam, frame::Instrument>(*this, t);
   }
 
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return aimed_above(angle(t)); }
+  /// As the concept MovesInLanes requires.
+  simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
+    poses = aimed_above(angles(t));
+    return all_lanes();
+  }
+
+ private:
+  [[nodiscard]] simd::Doubles angles(const TickLanes& t) const noexcept {
+    const simd::Doubles phase = t.phase(cycles_per_second);
+    if (swing == Swing::sine) return -half_angle * simd::cos(simd::Doubles(2 * pi * phase));
+    const double turn = turning_time * cycles_per_second;  // [cycles]
+    const double rate = 4 * half_angle / (1 - turn);  // between turning points, so that the parabolas end at the half angle [rad/cycle]
+    const simd::Doubles after = phase < 0.5 ? phase : 1.0 - phase;  // since the lower end; the second half mirrors the first [cycles]
+    const simd::Doubles before = 0.5 - after;                       // until the upper end [cycles]
+    const simd::Doubles lower = rate * after * after / turn - half_angle, upper = half_angle - rate * before * before / turn;
+    return after < 0.5 * turn ? lower : (before < 0.5 * turn ? upper : rate * (after - 0.25));
+  }
 };
 
-static_assert(Optic<OscillatingMirror>);
+static_assert(Optic<OscillatingMirror> && MovesInLanes<OscillatingMirror>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_PALMER_MIRROR_HPP
 #define PULSECAST_DEFLECTOR_PALMER_MIRROR_HPP
 
-#include <cmath>
 #include <optional>
 
 #include <pulsecast/base/require.hpp>
@@ -26,15 +25,22 @@ struct PalmerMirror {
   }
 
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
-    const double turn = 2 * pi * t.phase(turns_per_second);
-    const double across = half_angle_across.value_or(half_angle) * std::sin(turn), upwards = half_angle * std::cos(turn);
-    const double off = std::hypot(across, upwards);  // angle from forward [rad]
-    const double aside = off > 0 ? std::sin(off) / off : 1;
-    return aimed_along({aside * across, std::cos(off), aside * upwards});
+    return pose_in_lanes<frame::Beam, frame::Instrument>(*this, t);
+  }
+
+  /// As the concept MovesInLanes requires.
+  simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
+    const auto turn = simd::sincos(simd::Doubles(2 * pi * t.phase(turns_per_second)));
+    const simd::Doubles across = half_angle_across.value_or(half_angle) * turn.sin, upwards = half_angle * turn.cos;
+    const simd::Doubles off = simd::sqrt(simd::Doubles(across * across + upwards * upwards));  // angle from forward [rad]
+    const auto tilt = simd::sincos(off);
+    const simd::Doubles aside = off > 0.0 ? tilt.sin / off : simd::Doubles{} + 1.0;
+    poses = aimed_along(Vec3Lanes{aside * across, tilt.cos, aside * upwards});
+    return all_lanes();
   }
 };
 
-static_assert(Optic<PalmerMirror>);
+static_assert(Optic<PalmerMirror> && MovesInLanes<PalmerMirror>);
 
 }  // namespace PULSECAST_NAMESPACE
 

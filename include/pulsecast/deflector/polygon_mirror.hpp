@@ -32,7 +32,7 @@ struct PolygonMirror {
   }
 
   /// Elevation of the beam above forward [rad].
-  [[nodiscard]] double angle(Tick t) const noexcept { return sweep * (2 * t.phase(lines_per_second) - 1); }
+  [[nodiscard]] double angle(Tick t) const noexcept { return angles(TickLanes(t))[0]; }
 
   /// Index of the current facet: below the number of tilts, or 0 without tilts.
   [[nodiscard]] std::size_t facet(Tick t) const noexcept {
@@ -44,10 +44,7 @@ struct PolygonMirror {
   }
 
   /// True if the beam is inside the gate.
-  [[nodiscard]] bool open(Tick t) const noexcept {
-    const double a = angle(t);
-    return a >= angle_min && a <= angle_max;
-  }
+  [[nodiscard]] bool open(Tick t) const noexcept { return gate(angles(TickLanes(t)))[0] != 0; }
 
   /// As the concept ForeseesOpening requires: the moment at which the beam enters the gate, some rounding errors early.
   [[nodiscard]] Tick next_open(Tick t) const noexcept {
@@ -63,13 +60,27 @@ struct PolygonMirror {
 
   /// The line of a tilted facet lies on a cone, at a constant angle to the plane.
   [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
-    const Pose<frame::Beam, frame::Instrument> level = aimed_above(angle(t));
-    if (facet_tilts.empty()) return level;
-    return {level.rotation * aimed_at(facet_tilts[facet(t)], 0).rotation, {}};
+    return pose_in_lanes<frame::Beam, frame::Instrument>(*this, t);
   }
+
+  /// As the concept MovesInLanes requires.
+  simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
+    const simd::Doubles angle = angles(t);
+    poses = aimed_above(angle);
+    if (!facet_tilts.empty()) {
+      RotationLanes tilts;
+      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) tilts.set(lane, aimed_at(facet_tilts[facet(t[lane])], 0).rotation);
+      poses.rotation = poses.rotation * tilts;
+    }
+    return gate(angle);
+  }
+
+ private:
+  [[nodiscard]] simd::Doubles angles(const TickLanes& t) const noexcept { return sweep * (2.0 * t.phase(lines_per_second) - 1.0); }
+  [[nodiscard]] simd::Mask gate(const simd::Doubles& angle) const noexcept { return (angle >= angle_min) & (angle <= angle_max); }
 };
 
-static_assert(Optic<PolygonMirror> && Gated<PolygonMirror> && ForeseesOpening<PolygonMirror>);
+static_assert(Optic<PolygonMirror> && ForeseesOpening<PolygonMirror> && MovesInLanes<PolygonMirror>);
 
 }  // namespace PULSECAST_NAMESPACE
 

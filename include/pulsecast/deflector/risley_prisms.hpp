@@ -3,7 +3,6 @@
 #ifndef PULSECAST_DEFLECTOR_RISLEY_PRISMS_HPP
 #define PULSECAST_DEFLECTOR_RISLEY_PRISMS_HPP
 
-#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -23,14 +22,22 @@ struct Prism {
   bool inclined_exit = false;      ///< true if the beam leaves through the inclined face, false if it enters there
 };
 
-/// Unit direction of a refracted ray by Snell's law; empty at total reflection, or if the ray does not come from the front of the face.
-/// `direction` and `normal` are unit, the normal on the front; `ratio` is the refractive index before the face divided by that behind it.
-/// Source: Born & Wolf 1999, sec. 1.5.1, in vector form.
+/// Refracts unit directions in lanes by Snell's law; returns the lanes without total reflection, whose rays come from the front of the
+/// face. `normal` is unit, on the front; `ratio` is the refractive index before the face divided by that behind it. Source: Born & Wolf
+/// 1999, sec. 1.5.1, in vector form.
+inline simd::Mask refract(Vec3Lanes& direction, const Vec3Lanes& normal, double ratio) noexcept {
+  const simd::Doubles zero{}, ratios = zero + ratio, cosine = -dot(direction, normal);
+  const simd::Doubles sine_squared = ratios * ratios * (1.0 - cosine * cosine);
+  const simd::Mask passes = (cosine > zero) & (sine_squared <= 1.0);
+  direction = normalize(ratios * direction + (ratios * cosine - simd::sqrt(simd::Doubles(1.0 - sine_squared))) * normal);
+  return passes;
+}
+
+/// Unit direction of one refracted ray, as above; empty where `refract` does not return its lane.
 [[nodiscard]] inline std::optional<Vec3> refracted(const Vec3& direction, const Vec3& normal, double ratio) noexcept {
-  const double cosine = -dot(direction, normal);
-  const double sine_squared = ratio * ratio * (1 - cosine * cosine);
-  if (!(cosine > 0 && sine_squared <= 1)) return std::nullopt;
-  return normalize(ratio * direction + (ratio * cosine - std::sqrt(1 - sine_squared)) * normal);
+  Vec3Lanes light(direction);
+  if (refract(light, Vec3Lanes(normal), ratio)[0] == 0) return std::nullopt;
+  return light[0];
 }
 
 /// Risley prisms: wedges in series, each rotating at its own rate, draw a rosette. Totally reflected light is blocked. The wedges bend the
@@ -54,26 +61,47 @@ struct RisleyPrisms {
 
   /// Unit direction of the beam behind the last wedge; empty at total reflection.
   [[nodiscard]] std::optional<Vec3> direction(Tick t) const noexcept {
-    std::optional<Vec3> light = normalize(incident);
-    for (const Prism& p : prisms) {
-      const double turn = p.start + 2 * pi * t.phase(p.turns_per_second);
-      const double aside = p.inclined_exit ? -std::sin(p.wedge) : std::sin(p.wedge);
-      const Vec3 square = -axis::forward, inclined{std::sin(turn) * aside, -std::cos(p.wedge), std::cos(turn) * aside};
-      const double ratio = surrounding_index / p.refractive_index;
-      light = refracted(*light, p.inclined_exit ? square : inclined, ratio);
-      if (light) light = refracted(*light, p.inclined_exit ? inclined : square, 1 / ratio);
-      if (!light) return std::nullopt;
-    }
-    return light;
+    Vec3Lanes light;
+    if (directions(TickLanes(t), light)[0] == 0) return std::nullopt;
+    return light[0];
   }
 
   /// True if the beam gets through all wedges.
   [[nodiscard]] bool open(Tick t) const noexcept { return direction(t).has_value(); }
 
-  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept { return aimed_along(direction(t).value_or(axis::forward)); }
+  /// Forward at total reflection.
+  [[nodiscard]] Pose<frame::Beam, frame::Instrument> at(Tick t) const noexcept {
+    return pose_in_lanes<frame::Beam, frame::Instrument>(*this, t);
+  }
+
+  /// As the concept MovesInLanes requires.
+  simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& poses) const noexcept {
+    Vec3Lanes light;
+    const simd::Mask passes = directions(t, light);
+    const simd::Doubles zero{}, one = zero + 1.0;
+    poses = aimed_along(Vec3Lanes{passes ? light.x : zero, passes ? light.y : one, passes ? light.z : zero});
+    return passes;
+  }
+
+ private:
+  /// Unit directions behind the last wedge; returns the lanes without total reflection.
+  simd::Mask directions(const TickLanes& t, Vec3Lanes& light) const noexcept {
+    simd::Mask passes = all_lanes();
+    light = Vec3Lanes(normalize(incident));
+    for (const Prism& p : prisms) {
+      const auto turn = simd::sincos(simd::Doubles(p.start + 2 * pi * t.phase(p.turns_per_second)));
+      const auto wedge = simd::sincos(p.wedge);
+      const double aside = p.inclined_exit ? -wedge.sin : wedge.sin;
+      const Vec3Lanes square(-axis::forward), inclined{turn.sin * aside, simd::Doubles{} - wedge.cos, turn.cos * aside};
+      const double ratio = surrounding_index / p.refractive_index;
+      passes &= refract(light, p.inclined_exit ? square : inclined, ratio);
+      passes &= refract(light, p.inclined_exit ? inclined : square, 1 / ratio);
+    }
+    return passes;
+  }
 };
 
-static_assert(Optic<RisleyPrisms> && Gated<RisleyPrisms>);
+static_assert(Optic<RisleyPrisms> && Gated<RisleyPrisms> && MovesInLanes<RisleyPrisms>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -21,11 +21,18 @@ struct RotatingHead {
   }
 
   [[nodiscard]] Pose<frame::Instrument, frame::Instrument> at(Tick t) const noexcept {
-    return {rotation_about(axis, start + 2 * pi * t.phase(rate / (2 * pi))), {}};
+    return pose_in_lanes<frame::Instrument, frame::Instrument>(*this, t);
+  }
+
+  /// As the concept MovesInLanes requires.
+  simd::Mask poses(const TickLanes& t, PoseLanes<frame::Instrument, frame::Instrument>& poses) const noexcept {
+    const simd::Doubles angle = start + 2 * pi * t.phase(rate / (2 * pi));
+    poses = PoseLanes<frame::Instrument, frame::Instrument>{RotationLanes::about(pulsecast::normalize(axis), angle)};
+    return all_lanes();
   }
 };
 
-static_assert(Head<RotatingHead>);
+static_assert(Head<RotatingHead> && MovesInLanes<RotatingHead>);
 
 }  // namespace PULSECAST_NAMESPACE
 

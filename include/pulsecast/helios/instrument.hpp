@@ -43,6 +43,11 @@ class Instrument {
 
   [[nodiscard]] std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept { return channels_.pulse(i); }
 
+  /// As the concept MakesLanes requires.
+  [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
+    return channels_.pulse_lanes(i, count);
+  }
+
   /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 

@@ -59,14 +59,16 @@ class Legs {
   /// Emitters of the legs that have slots.
   [[nodiscard]] std::vector<Emitter> emitters() const { return emitters_; }
 
-  [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+  [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
+
+  /// As the concept MakesLanes requires.
+  [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const std::size_t k = leg_of(i);
-    auto p = legs_[k].pulse(i - starts_[k].pulse);
-    if (p) {
-      p->tick = starts_[k].tick + p->tick;
-      p->leg = starts_[k].number;
-      p->emitter = static_cast<std::uint16_t>(starts_[k].first_emitter + p->emitter);
-    }
+    const PulseIndex slot = i - starts_[k].pulse, left = legs_[k].size() - slot;
+    auto p = find_pulses(legs_[k], slot, left < count ? left : count);
+    p.tick = p.tick + starts_[k].tick;
+    p.leg = starts_[k].number;
+    for (std::uint16_t& emitter : p.emitter) emitter = static_cast<std::uint16_t>(starts_[k].first_emitter + emitter);
     return p;
   }
 

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_PLATFORM_PLATFORM_HPP
 #define PULSECAST_PLATFORM_PLATFORM_HPP
 
+#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -43,26 +44,31 @@ class Platform {
   [[nodiscard]] Tick duration() const noexcept { return source_.duration(); }
   [[nodiscard]] std::vector<Emitter> emitters() const { return source_.emitters(); }
 
-  [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
-    const auto inner = source_.pulse(i);
-    if (!inner) return std::nullopt;
-    if constexpr (MeasuresBeam<Source>) {
-      auto out = placed(*inner);
-      if (const auto beam = source_.measured(i, inner->tick)) out->reported = instrument_at(inner->tick) * *beam;
-      return out;
-    } else {
-      return placed(*inner);
-    }
+  [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
+
+  /// As the concept MakesLanes requires.
+  [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
+    const auto inner = find_pulses(source_, i, count);
+    auto out = placed(inner);
+    if constexpr (MeasuresBeam<Source>)
+      for (std::size_t lane = 0; lane < inner.size; ++lane)
+        if (inner.sent[lane] != 0)
+          if (const auto beam = source_.measured(i + lane, inner.tick[lane])) out.report(lane, instrument_at(inner.tick[lane]) * *beam);
+    return out;
   }
 
   /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> { return source_.next_pulse(i); }
 
-  /// Pulse of the instrument, transformed into the world. Never empty; optional so that `pulse` returns it without a copy.
-  [[nodiscard]] std::optional<Pulse<frame::World>> placed(const Pulse<frame::Instrument>& inner) const noexcept {
-    std::optional<Pulse<frame::World>> out(std::in_place, instrument_at(inner.tick), inner);
-    const Vec3 on_body = mount_.boresight * inner.direction();
-    out->scan_angle = {on_body.x, -on_body.z};
+  /// Pulses of the instrument, transformed into the world.
+  [[nodiscard]] PulseLanes<frame::World> placed(const PulseLanes<frame::Instrument>& inner) const noexcept {
+    PoseLanes<frame::Body, frame::World> world_from_body;
+    [[maybe_unused]] const simd::Mask moved = find_poses(path_, inner.tick, inner.sent, world_from_body);
+    PULSECAST_ASSERT(rigid_lanes(world_from_body, moved));
+    const PoseLanes body_from_instrument(mount_.pose());
+    PulseLanes<frame::World> out(world_from_body * body_from_instrument, inner);
+    const Vec3Lanes on_body = body_from_instrument.rotation * (inner.pose.rotation * Vec3Lanes(axis::forward));
+    for (std::size_t lane = 0; lane < simd::lane_count; ++lane) out.scan_angle[lane] = {on_body.x[lane], -on_body.z[lane]};
     return out;
   }
 

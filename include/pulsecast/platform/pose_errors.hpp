@@ -75,15 +75,21 @@ class WithPoseErrors {
     return world_from_body * Pose<frame::Body, frame::Body>{turned_by(attitude), position};
   }
 
-  [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
-    const auto inner = truth_.source().pulse(i);
-    if (!inner) return std::nullopt;
-    auto out = truth_.placed(jittered(*inner, i));
+  [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
+
+  /// As the concept MakesLanes requires.
+  [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
+    const auto inner = find_pulses(truth_.source(), i, count);
+    auto out = truth_.placed(jittered(inner, i));
     const Pose<frame::Instrument, frame::Body> calibrated{truth_.mount().boresight * errors_.boresight_error,
                                                           truth_.mount().lever_arm + errors_.lever_arm_error};
-    auto beam = inner->pose;
-    if constexpr (MeasuresBeam<Source>) beam = truth_.source().measured(i, inner->tick).value_or(beam);
-    out->reported = reported(inner->tick) * calibrated * beam;
+    for (std::size_t lane = 0; lane < inner.size; ++lane) {
+      if (inner.sent[lane] == 0) continue;
+      const Tick t = inner.tick[lane];
+      auto beam = inner.pose[lane];
+      if constexpr (MeasuresBeam<Source>) beam = truth_.source().measured(i + lane, t).value_or(beam);
+      out.report(lane, reported(t) * calibrated * beam);
+    }
     return out;
   }
 
@@ -112,11 +118,13 @@ class WithPoseErrors {
     return deviation * normals(std::bit_cast<std::uint64_t>(t.fraction), purpose, static_cast<std::uint32_t>(t.second));
   }
 
-  Pulse<frame::Instrument> jittered(Pulse<frame::Instrument> p, PulseIndex i) const noexcept {
+  PulseLanes<frame::Instrument> jittered(PulseLanes<frame::Instrument> p, PulseIndex i) const noexcept {
     if (errors_.angular_jitter == 0) return p;
-    const double aside = errors_.angular_jitter * drawn(i, 0, Purpose::angular_jitter);
-    const double upwards = errors_.angular_jitter * drawn(i, 1, Purpose::angular_jitter);
-    p.pose.rotation = p.pose.rotation * rotation_about(axis::up, -aside) * rotation_about(axis::right, upwards);
+    for (std::size_t lane = 0; lane < p.size; ++lane) {
+      const double aside = errors_.angular_jitter * drawn(i + lane, 0, Purpose::angular_jitter);
+      const double upwards = errors_.angular_jitter * drawn(i + lane, 1, Purpose::angular_jitter);
+      p.pose.rotation.set(lane, p.pose.rotation[lane] * rotation_about(axis::up, -aside) * rotation_about(axis::right, upwards));
+    }
     return p;
   }
 

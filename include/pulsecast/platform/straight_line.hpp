@@ -25,14 +25,22 @@ struct StraightLine {
   /// Arrival time, and so the duration of a scan of the whole line.
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(length(to - from) / speed); }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes<frame::Body, frame::World>(*this, t); }
+
+  /// As the concept MovesInLanes requires.
+  simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const Vec3 path = to - from;
-    const double gone = speed * t.seconds(), whole = length(path);
-    return {level(heading_of(path)), gone < whole ? from + path * (gone / whole) : to};
+    const double whole = length(path);
+    const simd::Doubles gone = speed * t.seconds(), share = gone / whole;
+    const auto on_the_way = gone < whole;
+    const auto between = [&](double a, double way, double b) { return on_the_way ? a + way * share : simd::Doubles{} + b; };
+    poses.rotation = RotationLanes(level(heading_of(path)));
+    poses.position = {between(from.x, path.x, to.x), between(from.y, path.y, to.y), between(from.z, path.z, to.z)};
+    return all_lanes();
   }
 };
 
-static_assert(Trajectory<StraightLine>);
+static_assert(Trajectory<StraightLine> && MovesInLanes<StraightLine>);
 
 }  // namespace PULSECAST_NAMESPACE
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,23 +56,61 @@ class Waypoints {
   /// Waypoints, as given, with unit rotations.
   [[nodiscard]] const std::vector<TimedPose>& points() const noexcept { return points_; }
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick tick) const noexcept {
-    const double t = tick.seconds();
-    const auto [i, k] = detail::neighbours(points_.size(), [&](std::size_t n) noexcept { return !(t < points_[n].time); });
-    const TimedPose &a = points_[i], &b = points_[k];
-    if (i == k) return {a.rotation, a.position};
-    // relative to the waypoint the time keeps the exactness of its fraction of a second
-    const double since = (static_cast<double>(tick.second) - a.time) + tick.fraction;
-    const double interval = b.time - a.time, s = since / interval;
-    const Vec3 path = b.position - a.position;
-    const Rotation rotation = normalize(slerp(a.rotation, b.rotation, s));
-    if (velocities_.empty()) return {rotation, a.position + s * path};
-    // source: cubic Hermite polynomial in powers of s
-    const Vec3 leaving = interval * velocities_[i], arriving = interval * velocities_[k];
-    return {rotation, a.position + s * (leaving + s * (3.0 * path - 2.0 * leaving - arriving + s * (leaving + arriving - 2.0 * path)))};
+  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes<frame::Body, frame::World>(*this, t); }
+
+  /// As the concept MovesInLanes requires.
+  simd::Mask poses(const TickLanes& ticks, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
+    const simd::Doubles t = ticks.seconds();
+    const auto about = neighbours_of(t[0]);
+    bool together = true;  // between the same waypoints
+    for (std::size_t lane = 1; lane < simd::lane_count && together; ++lane) together = t[lane] == t[0] || neighbours_of(t[lane]) == about;
+    if (together)
+      find_poses(about, ticks, poses);
+    else
+      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) poses.set(lane, at(ticks[lane]));
+    return all_lanes();
   }
 
  private:
+  [[nodiscard]] detail::Neighbours neighbours_of(double t) const noexcept {
+    return detail::neighbours(points_.size(), [&](std::size_t n) noexcept { return !(t < points_[n].time); });
+  }
+
+  /// Poses at times between two waypoints.
+  void find_poses(const detail::Neighbours& about, const TickLanes& ticks, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
+    const TimedPose &a = points_[about.before], &b = points_[about.behind];
+    poses = PoseLanes(Pose<frame::Body, frame::World>{a.rotation, a.position});
+    if (about.before == about.behind) return;
+    // relative to the waypoint the time keeps the exactness of its fraction of a second
+    const simd::Doubles since = (ticks.second - a.time) + ticks.fraction;
+    const double interval = b.time - a.time;
+    const simd::Doubles s = since / interval;
+    poses.rotation = interpolated(a.rotation, b.rotation, s);
+    const Vec3 path = b.position - a.position;
+    if (velocities_.empty()) {
+      poses.position = poses.position + s * Vec3Lanes(path);
+      return;
+    }
+    // source: cubic Hermite polynomial in powers of s
+    const Vec3 leaving = interval * velocities_[about.before], arriving = interval * velocities_[about.behind];
+    const Vec3Lanes square(3.0 * path - 2.0 * leaving - arriving), cube(leaving + arriving - 2.0 * path);
+    poses.position = poses.position + s * (Vec3Lanes(leaving) + s * (square + s * cube));
+  }
+
+  /// Rotations between two, at a constant rate by the smaller angle. Source: Shoemake 1985, Animating rotation with quaternion curves.
+  [[nodiscard]] static RotationLanes interpolated(const Rotation& from, const Rotation& to, const simd::Doubles& share) noexcept {
+    const double cosine = dot(from, to), along = std::fabs(cosine);
+    simd::Doubles of_from = 1.0 - share, of_to = share;
+    if (along <= 1 - std::numeric_limits<double>::epsilon()) {
+      const double angle = std::acos(along), sine = std::sin(angle);
+      of_from = simd::sin(simd::Doubles(of_from * angle)) / sine;
+      of_to = simd::sin(simd::Doubles(share * angle)) / sine;
+    }
+    if (cosine < 0) of_to = -of_to;
+    return normalize(RotationLanes{of_from * from.w + of_to * to.w, of_from * from.x + of_to * to.x, of_from * from.y + of_to * to.y,
+                                   of_from * from.z + of_to * to.z});
+  }
+
   void find_velocities() {
     velocities_.assign(points_.size(), Vec3{});
     for (std::size_t first = 0, last = 0; first < points_.size(); first = ++last) {
@@ -104,7 +143,7 @@ class Waypoints {
   std::vector<Vec3> velocities_;  ///< at each waypoint [m/s]; empty for linear interpolation
 };
 
-static_assert(Trajectory<Waypoints>);
+static_assert(Trajectory<Waypoints> && MovesInLanes<Waypoints>);
 
 /// Copies poses with level attitudes along the path: at a bend halfway between the directions in and out; at a reversal the direction in.
 /// At rest or in vertical motion the last heading is kept, or else the next one taken; without horizontal motion, north. A repeated

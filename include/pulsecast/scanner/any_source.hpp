@@ -3,6 +3,7 @@
 #ifndef PULSECAST_SCANNER_ANY_SOURCE_HPP
 #define PULSECAST_SCANNER_ANY_SOURCE_HPP
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -36,6 +37,10 @@ class AnySource {
   }
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const First&>().pulse(i)) {
     return std::visit([i](const auto& s) noexcept { return s.pulse(i); }, source_);
+  }
+  /// As the concept MakesLanes requires.
+  [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
+    return std::visit([=](const auto& s) noexcept { return find_pulses(s, i, count); }, source_);
   }
   /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<First> ||(SkipsBlocked<Others> || ...) {

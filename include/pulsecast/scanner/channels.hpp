@@ -57,10 +57,13 @@ class Channels {
     return all;
   }
 
-  [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const Source&>().pulse(i)) {
-    const std::size_t k = i % channels_.size();
-    auto p = channels_[k].pulse(i / channels_.size());
-    if (p) p->emitter = static_cast<std::uint16_t>(first_emitter_[k] + p->emitter);
+  [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const Source&>().pulse(i)) { return pulse_lanes(i, 1)[0]; }
+
+  /// As the concept MakesLanes requires: of several channels, one slot.
+  [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
+    const std::size_t n = channels_.size(), k = i % n;
+    auto p = find_pulses(channels_[k], i / n, n == 1 ? count : 1);
+    for (std::uint16_t& emitter : p.emitter) emitter = static_cast<std::uint16_t>(first_emitter_[k] + emitter);
     return p;
   }
 

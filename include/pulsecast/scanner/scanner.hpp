@@ -34,9 +34,14 @@ struct Scanner {
   [[nodiscard]] Tick duration() const noexcept { return Tick::of(pulses, pulse_rate); }
   [[nodiscard]] std::vector<Emitter> emitters() const { return {emitter()}; }
 
-  [[nodiscard]] std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept {
-    std::optional<Pulse<frame::Beam>> p(std::in_place);
-    p->tick = tick(i);
+  [[nodiscard]] std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
+
+  /// As the concept MakesLanes requires.
+  [[nodiscard]] PulseLanes<frame::Beam> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
+    PulseLanes<frame::Beam> p;
+    p.size = count;
+    p.sent = first_lanes(count);
+    p.tick = TickLanes::of(i, pulse_rate) + Tick::of_seconds(delay);
     return p;
   }
 
@@ -54,7 +59,7 @@ struct Scanner {
   [[nodiscard]] Emitter emitter() const noexcept { return {laser, footprint_scale, receiver}; }
 };
 
-static_assert(BeamSource<Scanner> && FindsSlots<Scanner>);
+static_assert(BeamSource<Scanner> && FindsSlots<Scanner> && MakesLanes<Scanner>);
 
 }  // namespace PULSECAST_NAMESPACE
 

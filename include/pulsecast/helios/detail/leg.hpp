@@ -46,6 +46,17 @@ struct SurveyPath {
         },
         path);
   }
+
+  /// As the concept MovesInLanes requires.
+  simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
+    const auto find = [&](const auto& p) noexcept {
+      if constexpr (Trajectory<std::remove_cvref_t<decltype(p)>>)
+        return find_poses(p, t + start, all_lanes(), poses);
+      else
+        return find_poses(*p, t + start, all_lanes(), poses);
+    };
+    return std::visit(find, path);
+  }
 };
 
 static_assert(Trajectory<SurveyPath>);
@@ -88,15 +99,20 @@ class SurveyLeg {
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
   [[nodiscard]] std::vector<Emitter> emitters() const { return truth_.emitters(); }
 
-  [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
-    auto out = truth_.pulse(i);
-    if (out && noisy_) {
-      const PulseIndex slot = i / truth_.source().channels();
+  [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
+
+  /// As the concept MakesLanes requires.
+  [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
+    auto out = truth_.pulse_lanes(i, count);
+    for (std::size_t lane = 0; noisy_ && lane < out.size; ++lane) {
+      if (out.sent[lane] == 0) continue;
+      const PulseIndex slot = (i + lane) / truth_.source().channels();
       const Vec3 turn = noise_.draw(noise_.attitude, slot, Purpose::attitude_noise);
-      if (!out->reported) out->reported = out->pose;
-      out->reported->position += noise_.draw(noise_.position, slot, Purpose::position_noise);
-      out->reported->rotation = out->reported->rotation * rotation_about(axis::right, turn.x) * rotation_about(axis::forward, turn.y) *
-                                rotation_about(axis::up, turn.z);
+      auto reported = out.reports[lane] != 0 ? out.reported[lane] : out.pose[lane];
+      reported.position += noise_.draw(noise_.position, slot, Purpose::position_noise);
+      reported.rotation = reported.rotation * rotation_about(axis::right, turn.x) * rotation_about(axis::forward, turn.y) *
+                          rotation_about(axis::up, turn.z);
+      out.report(lane, reported);
     }
     return out;
   }
