@@ -96,14 +96,14 @@ simd::Mask find_poses(const M& motion, const TickLanes& ticks, simd::Mask asked,
   }
 }
 
-/// Pulses of a source from slot i on, at most `count`: of one slot, if the source does not make lanes.
+/// Pulses of a source from slot i on, as the concept MakesLanes requires: of one slot, if the source does not.
 template <class S>
 [[nodiscard]] detail::PulsesOf<S> find_pulses(const S& source, PulseIndex i, std::size_t count) noexcept {
   static_assert(detail::MakesLanesCheck<S>::passed);
-  if constexpr (MakesLanes<S>)
-    return source.pulse_lanes(i, count);
-  else
-    return detail::PulsesOf<S>(source.pulse(i));
+  if constexpr (MakesLanes<S>) return source.pulse_lanes(i, count);
+  detail::PulsesOf<S> one;
+  one.push_back(source.pulse(i));
+  return one;
 }
 
 // -------------------------------------------------------------------------------------------------------------- the scene

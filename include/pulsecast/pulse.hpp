@@ -132,7 +132,7 @@ struct LanesOnPlatform<frame::World> {
   simd::Mask reports{};                                  ///< lanes whose `reported` is not empty
   PoseLanes<frame::Beam, frame::World> reported{};       ///< as in `Pulse`
   std::array<ScanAngle, simd::lane_count> scan_angle{};  ///< as in `Pulse` [rad]
-  std::uint16_t leg = 0;                                 ///< as in `Pulse`, of all lanes
+  std::array<std::uint16_t, simd::lane_count> leg{};     ///< as in `Pulse`
 };
 
 }  // namespace detail
@@ -164,22 +164,23 @@ struct PulseLanes : detail::LanesOnPlatform<Frame> {
     if constexpr (std::is_same_v<Frame, frame::World>) {
       if (this->reports[lane] != 0) p->reported = this->reported[lane];
       p->scan_angle = this->scan_angle[lane];
-      p->leg = this->leg;
+      p->leg = this->leg[lane];
     }
     return p;
   }
 
-  /// Pulse of a source of one's own as a register of one slot.
-  explicit PulseLanes(const std::optional<Pulse<Frame>>& p) noexcept : size(1) {
+  /// Appends the next slot, of which there are less than `simd::lane_count`.
+  void push_back(const std::optional<Pulse<Frame>>& p) noexcept {
+    const std::size_t lane = size++;
     if (!p) return;
-    sent[0] = -1;
-    tick.set(0, p->tick);
-    pose.set(0, p->pose);
-    emitter[0] = p->emitter;
+    sent[lane] = -1;
+    tick.set(lane, p->tick);
+    pose.set(lane, p->pose);
+    emitter[lane] = p->emitter;
     if constexpr (std::is_same_v<Frame, frame::World>) {
-      if (p->reported) this->report(0, *p->reported);
-      this->scan_angle[0] = p->scan_angle;
-      this->leg = p->leg;
+      if (p->reported) this->report(lane, *p->reported);
+      this->scan_angle[lane] = p->scan_angle;
+      this->leg[lane] = p->leg;
     }
   }
 

@@ -67,7 +67,7 @@ class Legs {
     const PulseIndex slot = i - starts_[k].pulse, left = legs_[k].size() - slot;
     auto p = find_pulses(legs_[k], slot, left < count ? left : count);
     p.tick = p.tick + starts_[k].tick;
-    p.leg = starts_[k].number;
+    p.leg.fill(starts_[k].number);
     for (std::uint16_t& emitter : p.emitter) emitter = static_cast<std::uint16_t>(starts_[k].first_emitter + emitter);
     return p;
   }

@@ -59,12 +59,16 @@ class Channels {
 
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const Source&>().pulse(i)) { return pulse_lanes(i, 1)[0]; }
 
-  /// As the concept MakesLanes requires: of several channels, one slot.
+  /// As the concept MakesLanes requires.
   [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
-    const std::size_t n = channels_.size(), k = i % n;
-    auto p = find_pulses(channels_[k], i / n, n == 1 ? count : 1);
-    for (std::uint16_t& emitter : p.emitter) emitter = static_cast<std::uint16_t>(first_emitter_[k] + emitter);
-    return p;
+    const std::size_t n = channels_.size();
+    if (n == 1) return find_pulses(channels_[0], i, count);
+    detail::PulsesOf<Source> all;
+    for (; all.size < count; ++i) {
+      all.push_back(find_pulses(channels_[i % n], i / n, 1)[0]);
+      all.emitter[all.size - 1] = static_cast<std::uint16_t>(all.emitter[all.size - 1] + first_emitter_[i % n]);
+    }
+    return all;
   }
 
   /// As the concept SkipsBlocked requires.
