@@ -87,7 +87,9 @@ struct ClosesLanes : LeastOptic {
 };
 struct MakesOthers : LeastSource<frame::Beam> {
   PulseLanes<frame::Beam> pulse_lanes(PulseIndex i, std::size_t) const noexcept {
-    return PulseLanes<frame::Beam>(LeastSource<frame::Beam>::pulse(i + i / 3));
+    PulseLanes<frame::Beam> other;
+    other.push_back(LeastSource<frame::Beam>::pulse(i + i / 3));
+    return other;
   }
 };
 struct MakesNone : LeastSource<frame::Beam> {

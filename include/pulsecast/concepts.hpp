@@ -78,12 +78,12 @@ concept InstrumentSource = PulseSource<S, frame::Instrument>;  ///< as `Deflecto
 template <class S>
 concept WorldSource = PulseSource<S, frame::World>;  ///< as `Platform<...>`
 
-/// Poses of a motion at the ticks of the lanes in `asked`; returns the lanes of these where it is open. A motion that does not move in lanes
-/// is asked tick by tick.
+/// Poses of a motion at the ticks of the lanes in `asked`; returns the lanes of these where it is open. A motion that does not move in lanes,
+/// or that replaces the `at` of one, is asked tick by tick.
 template <class M>
 simd::Mask find_poses(const M& motion, const TickLanes& ticks, simd::Mask asked, detail::PosesOf<M>& poses) noexcept {
   static_assert(detail::MovesInLanesCheck<M>::passed);
-  if constexpr (MovesInLanes<M>) {
+  if constexpr (MovesInLanes<M> && detail::LanesOfItsPoses<M>) {
     return asked & motion.poses(ticks, poses);
   } else {
     for (std::size_t lane = 0; lane < simd::lane_count; ++lane) {
@@ -96,11 +96,12 @@ simd::Mask find_poses(const M& motion, const TickLanes& ticks, simd::Mask asked,
   }
 }
 
-/// Pulses of a source from slot i on, as the concept MakesLanes requires: of one slot, if the source does not.
+/// Pulses of a source from slot i on, as the concept MakesLanes requires: of one slot, if the source does not, or replaces
+/// the `pulse` of one that does.
 template <class S>
 [[nodiscard]] detail::PulsesOf<S> find_pulses(const S& source, PulseIndex i, std::size_t count) noexcept {
   static_assert(detail::MakesLanesCheck<S>::passed);
-  if constexpr (MakesLanes<S>) return source.pulse_lanes(i, count);
+  if constexpr (MakesLanes<S> && detail::LanesOfItsPulses<S>) return source.pulse_lanes(i, count);
   detail::PulsesOf<S> one;
   one.push_back(source.pulse(i));
   return one;

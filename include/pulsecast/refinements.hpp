@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include <pulsecast/base/frame.hpp>
@@ -79,6 +80,18 @@ template <class From, class To>
 struct InLanes<Pose<From, To>> { using type = PoseLanes<From, To>; };
 template <class Frame>
 struct InLanes<std::optional<Pulse<Frame>>> { using type = PulseLanes<Frame>; };
+template <class C, class Result, class... Arguments>
+std::type_identity<C> declared_in(Result (C::*)(Arguments...) const noexcept);
+/// Source whose `pulse_lanes` goes with its `pulse`: not one that inherits both and replaces one.
+template <class S>
+concept LanesOfItsPulses = requires {
+  requires std::same_as<decltype(declared_in(&S::pulse)), decltype(declared_in(&S::pulse_lanes))>;
+};
+/// Motion whose `poses` goes with its `at`.
+template <class M>
+concept LanesOfItsPoses = requires {
+  requires std::same_as<decltype(declared_in(&M::at)), decltype(declared_in(&M::poses))>;
+};
 /// `PoseLanes` of a motion.
 template <class M>
 using PosesOf = typename InLanes<decltype(std::declval<const M&>().at(Tick{}))>::type;

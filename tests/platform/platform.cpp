@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/platform/tripod.hpp>
@@ -146,4 +147,20 @@ TEST_CASE("a platform asks its mount and its trajectory whether they can be") {
   const support::LeastSource<frame::Instrument> source;
   CHECK_THROWS_AS((Platform{Tripod{}, Mount{.boresight = Rotation{2, 0, 0, 0}}, source}), SettingError);
   CHECK_THROWS_AS((Platform{Asks{}, Mount{}, source}), SettingError);
+}
+
+TEST_CASE("a motion or source that replaces a member of the library's is asked by that member") {
+  struct Leaning : Tripod {
+    Pose<frame::Body, frame::World> at(Tick) const noexcept { return {rotation_about(axis::forward, 0.5), {1, 2, 3}}; }
+  };
+  struct Late : Scanner {
+    std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept {
+      auto p = Scanner::pulse(i);
+      p->tick = p->tick + Tick{5, 0};
+      return p;
+    }
+  };
+  const Platform leaning{Leaning{}, Mount{}, Deflector{FixedBeam{}, Late{{.pulses = 10}}}};
+  CHECK(leaning.pulse(3)->origin() == Vec3{1, 2, 3});
+  CHECK(leaning.pulse(3)->tick == Tick::of(3, 100e3) + Tick{5, 0});
 }

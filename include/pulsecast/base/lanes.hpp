@@ -15,6 +15,8 @@
 /// pose in all lanes has, so that a motion's pose does not depend on what is computed beside it.
 namespace PULSECAST_NAMESPACE {
 
+/// One number in all lanes, with its sign if it is zero.
+[[nodiscard]] inline simd::Doubles in_all_lanes(double x) noexcept { return x - simd::Doubles{}; }
 /// Mask of all lanes.
 [[nodiscard]] inline simd::Mask all_lanes() noexcept { return simd::Mask{} - 1; }
 /// Mask of the first n lanes.
@@ -50,8 +52,7 @@ struct TickLanes {
   /// Of whole and fractional parts.
   TickLanes(const simd::Doubles& whole, const simd::Doubles& part) noexcept : second(whole), fraction(part) {}
   /// One time in all lanes.
-  explicit TickLanes(const Tick& t) noexcept
-      : second(simd::Doubles{} + static_cast<double>(t.second)), fraction(simd::Doubles{} + t.fraction) {}
+  explicit TickLanes(const Tick& t) noexcept : second(in_all_lanes(static_cast<double>(t.second))), fraction(in_all_lanes(t.fraction)) {}
 
   /// Begins of the slots from i on of a source of constant rate [Hz], as `Tick::of`.
   [[nodiscard]] static TickLanes of(PulseIndex i, double rate) noexcept {
@@ -108,7 +109,7 @@ struct Vec3Lanes {
   /// Of components.
   Vec3Lanes(const simd::Doubles& x_, const simd::Doubles& y_, const simd::Doubles& z_) noexcept : x(x_), y(y_), z(z_) {}
   /// One vector in all lanes.
-  explicit Vec3Lanes(const Vec3& v) noexcept : x(simd::Doubles{} + v.x), y(simd::Doubles{} + v.y), z(simd::Doubles{} + v.z) {}
+  explicit Vec3Lanes(const Vec3& v) noexcept : x(in_all_lanes(v.x)), y(in_all_lanes(v.y)), z(in_all_lanes(v.z)) {}
 
   [[nodiscard]] Vec3 operator[](std::size_t lane) const noexcept { return {x[lane], y[lane], z[lane]}; }
   /// Sets the vector of a lane.
@@ -129,7 +130,7 @@ struct Vec3Lanes {
 
 /// Rotations, one in each lane: unit quaternions.
 struct RotationLanes {
-  simd::Doubles w = simd::Doubles{} + 1.0, x{}, y{}, z{};
+  simd::Doubles w = in_all_lanes(1), x{}, y{}, z{};
 
   RotationLanes() = default;
   /// Of components.
@@ -137,7 +138,7 @@ struct RotationLanes {
       : w(w_), x(x_), y(y_), z(z_) {}
   /// One rotation in all lanes.
   explicit RotationLanes(const Rotation& r) noexcept
-      : w(simd::Doubles{} + r.w), x(simd::Doubles{} + r.x), y(simd::Doubles{} + r.y), z(simd::Doubles{} + r.z) {}
+      : w(in_all_lanes(r.w)), x(in_all_lanes(r.x)), y(in_all_lanes(r.y)), z(in_all_lanes(r.z)) {}
   /// About a unit axis, by an angle [rad].
   [[nodiscard]] static RotationLanes about(const Vec3& axis, const simd::Doubles& angle) noexcept {
     const auto half = simd::sincos(simd::Doubles(0.5 * angle));

@@ -186,11 +186,11 @@ TEST_CASE("mechanical errors move the beam, and not what is reported of it") {
   c.errors = {};
   c.errors.head = "0.1";
   const SurveyOptic head = survey_optic(c, {.scan_frequency = 20}, rate);
-  CHECK(length(head.at(t).direction(axis::forward) - rotation_about(axis::up, 0.1) * head.exact(t).direction(axis::forward)) < 1e-12);
+  CHECK(length(head.at(t).direction(axis::forward) - rotation_about(axis::up, 0.1) * head.reported(t).direction(axis::forward)) < 1e-12);
   c.errors = {.head = "THETA", .head_zero_threshold = 0.2};
   const SurveyOptic kept_off = survey_optic(c, {.scan_frequency = 20}, rate);
   for (const PulseIndex slot : {PulseIndex{10}, PulseIndex{100}}) {
-    const Vec3 exact = kept_off.exact(Tick::of(slot, rate)).direction(axis::forward);
+    const Vec3 exact = kept_off.reported(Tick::of(slot, rate)).direction(axis::forward);
     const Vec3 turned = rotation_about(axis::up, slot == 10 ? 0.2 : radians(24)) * exact;
     CHECK(length(kept_off.at(Tick::of(slot, rate)).direction(axis::forward) - turned) < 1e-12);
   }
