@@ -32,7 +32,9 @@ TEST_CASE("slots and phases in lanes are those of a tick, to the last bit") {
   support::Generator any(seed);
   CAPTURE(seed);
   for (int k = 0; k < 20'000; ++k) {
-    const auto [i, rate] = drawn(any, k);
+    const Slot slot = drawn(any, k);
+    const PulseIndex i = slot.i;
+    const double rate = slot.rate;
     const double frequency = (k % 5 == 0 ? -1 : 1) * any.log_uniform(1e-6, 1e12);
     const TickLanes ticks = TickLanes::of(i, rate), later = ticks + Tick{3, 0.75};
     const simd::Doubles phases = ticks.phase(frequency), seconds = ticks.seconds();

@@ -27,8 +27,8 @@ struct StraightLine {
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept { return pose_in_lanes<frame::Body, frame::World>(*this, t); }
 
-  /// As the concept MovesInLanes requires.
-  simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
+  /// As the concept MovesInLanes requires. One copy of the code, where compilers may contract products and sums in different ways.
+  [[gnu::noinline]] simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const Vec3 path = to - from;
     const double whole = length(path);
     const simd::Doubles gone = speed * t.seconds(), share = gone / whole;
