@@ -125,6 +125,11 @@ MISSPELT(SamplesWaveforms, sample_spacing, double sample_spacing() const noexcep
 MISSPELT(SamplesWaveforms, sample_time, double sample_time() const noexcept);
 MISSPELT(SamplesWaveforms, sampling_period, double sampling_period() const noexcept);
 MISSPELT(SamplesWaveforms, data, double sample_interval = 1);
+MISSPELT(PreparesForLasers, prepare_for, void prepare_for(const Laser&));
+MISSPELT(PreparesForLasers, prepare_laser, void prepare_laser(const Laser&));
+MISSPELT(PreparesForLasers, set_laser, void set_laser(const Laser&));
+MISSPELT(PreparesForLasers, configure, void configure(const Laser&));
+MISSPELT(PreparesForLasers, result, bool prepare(const Laser&));
 MISSPELT(ListensConstant, always_listens, static constexpr bool always_listens = true);
 MISSPELT(ListensConstant, listens, static constexpr bool listens = true);
 MISSPELT(ListensConstant, listen_always, static constexpr bool listen_always = true);

@@ -201,6 +201,14 @@ PULSECAST_OPTIONAL_MEMBER(SamplesWaveforms, "double sample_interval() const noex
                           sample_spacing,
                           sample_time, sampling_period)
 
+/// Detector that is told of each laser that it will hear, before the first pulse, as one with tables by pulse length.
+template <class D>
+concept PreparesForLasers = requires(D& detector, const Laser& laser) {
+  { detector.prepare(laser) } -> std::same_as<void>;
+};
+PULSECAST_OPTIONAL_MEMBER(PreparesForLasers, "void prepare(const Laser&)", prepare, (std::declval<const Laser&>()), prepare_for,
+                          prepare_laser, set_laser, configure)
+
 /// Detector that is asked for every pulse sent, also if no light returned. Others are asked for pulses with reflections only.
 template <class D>
 concept ListensAlways = detail::ListensConstant<D> && D::listens_always;

@@ -79,7 +79,7 @@ template <class Pattern, class Instrument>
 struct SurveyMembers {
   static constexpr bool checked =
       RecordedConstantCheck<Pattern>::passed && SamplesWaveformsCheck<Instrument>::passed && ValidatesLaserCheck<Instrument>::passed &&
-      ListensConstantCheck<Instrument>::passed && VelocityConstantCheck<Instrument>::passed;
+      ListensConstantCheck<Instrument>::passed && PreparesForLasersCheck<Instrument>::passed && VelocityConstantCheck<Instrument>::passed;
 };
 
 }  // namespace pulsecast::detail

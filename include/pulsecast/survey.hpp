@@ -243,10 +243,11 @@ class Survey {
 
   /// Computes the constants of a valid emitter; those from `first` on are known. Throws a `SettingError` if it has no receiver, or if the
   /// detector refuses its laser.
-  void set(EmitterConstants* constants, const Emitter& emitter, const EmitterConstants* first) const {
+  void set(EmitterConstants* constants, const Emitter& emitter, const EmitterConstants* first) {
     require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
-    const Unit& unit = receivers_[emitter.receiver];
+    Unit& unit = receivers_[emitter.receiver];
     if constexpr (ValidatesLaser<Instrument>) unit.detector.validate(emitter.laser);
+    if constexpr (PreparesForLasers<Instrument>) unit.detector.prepare(emitter.laser);
     const EmitterConstants* alike = first;
     while (alike != constants && !(alike->emitter.receiver == emitter.receiver && SubrayDirections::equal(alike->emitter, emitter)))
       ++alike;

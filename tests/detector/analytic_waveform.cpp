@@ -62,7 +62,7 @@ const WaveformSettings all_peaks{.threshold = 0, .window = 0, .returns_max = 255
 }  // namespace
 
 TEST_CASE("one hit gives one echo, exact to rounding, wherever it is") {
-  for (const EchoTiming timing : {EchoTiming::energy, EchoTiming::peak}) {
+  for (const EchoTiming timing : {EchoTiming::true_range, EchoTiming::peak}) {
     const AnalyticWaveform<MomentWidth> detector(WaveformSettings{.timing = timing});
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
       CAPTURE(seed);
@@ -158,7 +158,7 @@ TEST_CASE("the echo of a group, found directly, is what the pass over its edges 
     reflections.push_back({reflections.front().range, 0, 77, 7});
     return std::pair(directly, echoes_of(detector, reflections));
   };
-  for (const EchoTiming timing : {EchoTiming::energy, EchoTiming::peak}) {
+  for (const EchoTiming timing : {EchoTiming::true_range, EchoTiming::peak}) {
     const AnalyticWaveform<MomentWidth> detector(WaveformSettings{.timing = timing});
     for (std::uint64_t seed = 0; seed < 4000; ++seed) {
       CAPTURE(seed);
@@ -177,7 +177,7 @@ TEST_CASE("the echo of a group, found directly, is what the pass over its edges 
       const Echo &a = found[0], &b = expected[0];
       // Of the last edge, whose two-way time is rounded, comes as much as the time has digits.
       const double rounding = 1e-15 * start, near = 1e-9 + rounding / metres_per_tau;
-      REQUIRE(std::fabs(a.range - b.range) < (timing == EchoTiming::energy ? 0 : 1e-7 * metres_per_tau) + 4 * rounding + 1e-14);
+      REQUIRE(std::fabs(a.range - b.range) < (timing == EchoTiming::true_range ? 0 : 1e-7 * metres_per_tau) + 4 * rounding + 1e-14);
       REQUIRE(a.amplitude == support::relative(b.amplitude, near));
       REQUIRE(a.width == support::relative(b.width, near));
       REQUIRE(a.number == 1);

@@ -184,7 +184,7 @@ TEST_CASE("reflections close to one another, of which the echo is found directly
     }
     WaveformSettings settings{.sample_interval = any.log_uniform(0.05e-9, 2e-9),
                               .threshold = any.log_uniform(1e-9, 1e-6),
-                              .timing = any.coin() ? EchoTiming::energy : EchoTiming::peak};
+                              .timing = any.coin() ? EchoTiming::true_range : EchoTiming::peak};
     const auto directly = echoes_of(FullWaveform(settings), reflections);
     settings.record_length = 100e-9;  // what is kept has to be sampled
     const auto by_samples = echoes_of(FullWaveform(settings), reflections);

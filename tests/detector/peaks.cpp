@@ -17,7 +17,7 @@ namespace {
 std::vector<Peak> kept(const WaveformSettings& s, const std::vector<Peak>& all) {
   std::vector<Peak> peaks;
   peaks.reserve(all.size());
-  for (const Peak& p : all) merge_or_append({p.time, p.height, p.time - 0.5, p.time + 0.5}, s.separation, peaks);
+  for (const Peak& p : all) merge_or_append({p.time, p.height, p.time - 0.5, p.time + 0.5}, s.separation, s.prominence, peaks);
   keep_echoes(s, peaks);
   return peaks;
 }
@@ -66,7 +66,7 @@ TEST_CASE("peaks for which there is no room are lost") {
   std::vector<Peak> peaks;
   peaks.reserve(2);
   const std::size_t room = peaks.capacity();
-  for (std::size_t k = 0; k < room + 3; ++k) CHECK_FALSE(merge_or_append({.time = static_cast<double>(k), .height = 1}, 0, peaks));
+  for (std::size_t k = 0; k < room + 3; ++k) CHECK_FALSE(merge_or_append({.time = static_cast<double>(k), .height = 1}, 0, 0, peaks));
   CHECK(peaks.size() == room);
   CHECK(peaks.capacity() == room);
 }
@@ -90,13 +90,27 @@ TEST_CASE("windows are kept to by all that stay, whatever there is") {
   }
 }
 
+TEST_CASE("the higher of two peaks stays, with its mark, if the lower rises too little above the valley") {
+  std::vector<Peak> peaks;
+  peaks.reserve(4);
+  CHECK(!merge_or_append({.time = 1, .height = 5, .begin = 0, .end = 2, .before = 0, .after = 4, .mark = 0.9}, 0, 2, peaks));
+  CHECK(merge_or_append({.time = 3, .height = 7, .begin = 2, .end = 4, .before = 4, .after = 1, .mark = 2.9}, 0, 2, peaks));
+  CHECK(!merge_or_append({.time = 6, .height = 4, .begin = 4, .end = 8, .before = 1, .after = 0, .mark = 5.9}, 0, 2, peaks));
+  REQUIRE(peaks.size() == 2);
+  CHECK(peaks[0].mark == 2.9);
+  CHECK(peaks[0].begin == 0);
+  CHECK(peaks[0].end == 4);
+  CHECK(peaks[0].after == 1);
+  CHECK(peaks[1].mark == 5.9);
+}
+
 TEST_CASE("an echo is made of the reflections between its valleys, and has the labels of the strongest at its peak") {
   const PulseShape shape(3.5e-9);  // tau is 1 ns
   const double metre = 2 / speed_of_light;
   const std::vector<Reflection> reflections{
       {10, 9, 1, 1, {}, 0.1}, {20, 1, 2, 2, {}, 0.2}, {20.1, 3, 3, 3, {}, 0.3}, {21, 2, 4, 4, {}, 0.4}};
-  const Peak peak{.time = 20.15 * metre, .height = 3.5, .begin = 19 * metre, .end = 20.9 * metre, .width = 7};
-  const Echo e = echo_of(peak, reflections, shape, EchoTiming::energy, 2);
+  const Peak peak{.time = 20.15 * metre, .height = 3.5, .begin = 19 * metre, .end = 20.9 * metre, .mark = 20.15 * metre, .width = 7};
+  const Echo e = echo_of(peak, reflections, shape, EchoTiming::true_range, 2);
   CHECK(e.range == support::relative(20.075, 1e-12));
   CHECK(e.amplitude == 3.5);
   CHECK(e.width == 7);
@@ -106,8 +120,8 @@ TEST_CASE("an echo is made of the reflections between its valleys, and has the l
   CHECK(e.number == 2);
   CHECK(echo_of(peak, reflections, shape, EchoTiming::peak, 2).range == support::relative(20.15, 1e-12));
   // a peak of noise alone is nobody's
-  const Echo nobody = echo_of({.time = 15 * metre, .begin = 14.9 * metre, .end = 15.1 * metre}, std::span(reflections).subspan(1), shape,
-                              EchoTiming::energy, 1);
+  const Echo nobody = echo_of({.time = 15 * metre, .begin = 14.9 * metre, .end = 15.1 * metre, .mark = 15 * metre},
+                              std::span(reflections).subspan(1), shape, EchoTiming::true_range, 1);
   CHECK(nobody.range == support::relative(15, 1e-12));
   CHECK(nobody.object == 0);
 }

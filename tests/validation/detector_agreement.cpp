@@ -79,9 +79,9 @@ Scene<TriangleMesh<>> tree() {
 }  // namespace
 
 TEST_CASE("two detectors on planes") {
-  for (const EchoTiming timing : {EchoTiming::energy, EchoTiming::peak}) {
+  for (const EchoTiming timing : {EchoTiming::true_range, EchoTiming::peak}) {
     const std::string text = std::string("AnalyticWaveform against FullWaveform, 2000 planes, timed by ") +
-                             (timing == EchoTiming::energy ? "energy" : "peak") + ": ";
+                             (timing == EchoTiming::true_range ? "energy" : "peak") + ": ";
     const Difference d = on_planes(timing);
     row(Kind::second_implementation, text + "largest difference in range [bins]", 0, d.range, 0.1);
     row(Kind::second_implementation, text + "largest difference in amplitude [%]", 0, 100 * d.amplitude, 1);

@@ -34,6 +34,8 @@ struct DetectorAdaptor {
   void validate(const Laser& laser) const {
     if constexpr (ValidatesLaser<Inner>) inner.validate(laser);
   }
+  /// Prepares the detector inside for the pulses of a laser. @throws SettingError as that does
+  void prepare(const Laser& laser) requires PreparesForLasers<Inner> { inner.prepare(laser); }
   /// Normalizes the detector inside.
   void normalize() noexcept requires Normalizable<Inner> { inner.normalize(); }
 

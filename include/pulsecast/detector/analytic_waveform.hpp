@@ -83,9 +83,13 @@ class EdgeAgeMoments {
 template <EchoWidth Width = NoWidth>
 class AnalyticWaveform {
  public:
-  /// @throws SettingError for settings out of range
+  /// @throws SettingError for settings out of range, a prominence, or a timing that is read from samples
   explicit AnalyticWaveform(WaveformSettings settings = {}, Width width = {})
-      : s_(validated(settings)), width_(validated(std::move(width))) {}
+      : s_(validated(settings)), width_(validated(std::move(width))) {
+    require_within("AnalyticWaveform: WaveformSettings::prominence", s_.prominence, 0, 0, "W");
+    if (s_.timing > EchoTiming::peak)
+      throw SettingError("AnalyticWaveform: WaveformSettings::timing", static_cast<double>(s_.timing), "", "true_range or peak");
+  }
 
   /// Settings, as validated.
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
@@ -187,7 +191,7 @@ class AnalyticWaveform {
     const auto finish = [&](double end) {
       peak.end = end;
       if (!met || peak.height < s_.threshold) return;
-      if (!merge_or_append(peak, min_separation, w.peaks)) last = {};
+      if (!merge_or_append(peak, min_separation, 0, w.peaks)) last = {};
       last.add(m, (peak.begin - w.peaks.back().begin) / shape.tau);
       if constexpr (by_moments) w.peaks.back().width = shape.tau * width_.width(last);
     };
@@ -214,7 +218,7 @@ class AnalyticWaveform {
         const double ahead = ages.can_turn() ? std::fmax(ages.until_peak(), 0) : 0;
         EdgeAgeMoments then = ages;
         then.advance(ahead);
-        peak.time = edge + (x + ahead) * shape.tau;
+        peak.time = peak.mark = edge + (x + ahead) * shape.tau;
         peak.height = then.power();
         met = true;
         rising = false;

@@ -8,42 +8,60 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/peaks.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
 #include <pulsecast/detector/receiver_noise.hpp>
+#include <pulsecast/detector/sample_window.hpp>
 #include <pulsecast/detector/single_peak_group.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Digitising detector: samples the sum of the pulse shapes of all reflections and finds its peaks. Their heights and times are
-/// interpolated between samples.
+/// What turns the light at an aperture into samples: a policy of `FullWaveform`. `samples` begins with a pulse's reflections, sorted by
+/// range, and gives them section by section, as `IdealSamples`. It is told of each laser before the first pulse by `prepare`.
+template <class R>
+concept WaveformReceiver = std::copyable<R> &&
+    requires(R& any, const R r, const Laser& laser, const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
+             double width_tail, typename R::Workspace& w, bool& more) {
+  any.prepare(laser, s);
+  { r.workspace() } -> std::same_as<typename R::Workspace>;
+  { r.samples(s, heard, reflections, width_tail, w).begin_section() }
+  noexcept->std::same_as<bool>;
+  { r.samples(s, heard, reflections, width_tail, w).power(more) }
+  noexcept->std::same_as<double>;
+  { R::listens_always } -> std::convertible_to<bool>;
+};
+
+/// Digitising detector: samples what a receiver makes of all reflections, and finds the peaks. Their heights and times are interpolated
+/// between samples. The receiver is ideal by default, and adds the pulse shapes of all reflections; a `BandLimitedReceiver` is as real
+/// ones are.
 ///
-/// With noise, the receiver records from the first reflection on, for the record's length and as long as reflections arrive, and detects
-/// false echoes. The threshold applies to the samples themselves. Amplitudes and widths are relative to the mean background. Echoes are
-/// timed by their peaks, since noisy samples do not tell the reflections apart. The record includes the background.
+/// With the independent noise of `ReceiverNoise`, the receiver records from the first reflection on, for the record's length and as long
+/// as reflections arrive, and detects false echoes. The threshold applies to the samples themselves. Echoes are then timed by their peaks
+/// in place of true ranges. Amplitudes and widths are relative to the mean background, which the record includes.
 ///
-/// Limits: a single echo's peak errs by 0.03 mm for an interval of 1/16 of the pulse length, and by 0.5 mm at 1/8. At 1/4 it errs by 10 mm,
-/// and its amplitude by 2 %. Pulses shorter than one interval or longer than 10,000 are refused. At most 4096 noise peaks per pulse are
-/// considered.
-template <EchoWidth Width = NoWidth>
+/// Limits, of an ideal receiver: a single echo's peak errs by 0.03 mm for an interval of 1/16 of the pulse length, and by 0.5 mm at 1/8. At
+/// 1/4 it errs by 10 mm, and its amplitude by 2 %. Pulses shorter than one interval or longer than 10,000 are refused. At most 4096 noise
+/// peaks per pulse are considered.
+template <EchoWidth Width = NoWidth, WaveformReceiver Receiver = ReceiverNoise>
 class FullWaveform {
  public:
   /// @throws SettingError for settings out of range
-  explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, ReceiverNoise noise = {})
-      : s_(validated(settings)), width_(validated(std::move(width))), noise_(validated(noise)) {}
+  explicit FullWaveform(WaveformSettings settings = {}, Width width = {}, Receiver receiver = {})
+      : s_(validated(settings)), width_(validated(std::move(width))), receiver_(validated(std::move(receiver))) {}
+
+  static constexpr bool listens_always = Receiver::listens_always;  ///< as of the receiver
 
   /// Settings, as validated.
   [[nodiscard]] const WaveformSettings& settings() const noexcept { return s_; }
@@ -51,6 +69,15 @@ class FullWaveform {
 
   /// Refuses pulses that the samples do not resolve, or that exceed the sample window. @throws SettingError
   void validate(const Laser& laser) const { s_.require_sampled(laser.pulse_length, WaveformSettings::max_samples); }
+
+  /// Prepares for the pulses of a laser: the receiver, and the correction of echo times. @throws SettingError as `validate`
+  void prepare(const Laser& laser) {
+    validate(laser);
+    receiver_.prepare(laser, s_);
+    const auto known = [&](const Correction& c) { return c.pulse_length == laser.pulse_length; };
+    if (!reads_samples() || std::any_of(corrections_.begin(), corrections_.end(), known)) return;
+    corrections_.push_back(correction_for(laser));
+  }
 
   /// Width of a laser's outgoing pulse, by the measure of its echoes [s]. @throws SettingError as `validate`
   [[nodiscard]] double pulse_width(const Laser& laser) const {
@@ -60,87 +87,136 @@ class FullWaveform {
 
   /// Scratch memory of one worker.
   struct Workspace {
-    std::vector<double> samples;       ///< current window [W]
-    std::vector<Peak> peaks;           ///< peaks of the current pulse
-    std::vector<Echo> echoes;          ///< echoes of the current pulse
-    std::vector<float> record;         ///< samples of the kept waveform [W]
-    SinglePeakGroup::Workspace group;  ///< ages and weights
+    SampleWindow<Width> window;               ///< current samples [W]
+    std::vector<Peak> peaks;                  ///< peaks of the current pulse
+    std::vector<Echo> echoes;                 ///< echoes of the current pulse
+    std::vector<float> record;                ///< samples of the kept waveform [W]
+    SinglePeakGroup::Workspace group;         ///< ages and weights
+    typename Receiver::Workspace receiver{};  ///< of the receiver
   };
 
-  /// Scratch memory for pulses of up to `reflections` reflections.
+  /// Scratch memory for pulses of up to `reflections` reflections, of lasers that were prepared.
   [[nodiscard]] Workspace workspace(std::size_t reflections) const {
-    Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(reflections)};
-    w.samples.reserve(window_samples);
-    w.peaks.reserve(noise_.none() ? reflections : std::max(reflections, max_peaks));
+    Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(reflections), receiver_.workspace()};
+    w.peaks.reserve(std::max(reflections, max_peaks));
     w.echoes.reserve(std::min(w.peaks.capacity(), s_.returns_max));
     w.record.reserve(s_.record_capacity());
     return w;
   }
 
-  /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted. Noise is drawn per
-  /// sample from the seed and pulse of `heard.key`.
+  /// Sorts the reflections by range. Drops those without power, and those too far away for their samples to be counted. Noise is drawn from
+  /// the seed and pulse of `heard.key`.
   [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
     const Laser& laser = heard.emitter.laser;
-    const std::span<Reflection> all = heard.reflections;
     w.peaks.clear();
     w.echoes.clear();
     w.record.clear();
-    const PulseShape shape(laser.pulse_length, s_.shape_divisor);
-    if (std::same_as<Width, NoWidth> && s_.record_length == 0 && noise_.none()) {
-      const SinglePeakGroup group(all, shape, s_.sample_interval, w.group);
-      if (group.one() && detect(group, shape, w.echoes)) return {w.echoes, {}, 0};
-    }
-    const std::span<const Reflection> reflections = in_order_of_range(all, s_.sample_interval);
-    if (reflections.empty()) return {};
-    const bool noisy = !noise_.none();
-    const double deviation = noisy ? noise_.deviation_of_sample(laser.wavelength, s_.sample_interval) : 0;
-    const auto record_size = static_cast<double>(s_.record_capacity());
-    const double died_away = SampledSum::negligible * shape.tau;
-    const bool to_the_end = noisy || record_size > 0;
-    const double tail = to_the_end ? died_away : std::fmax(3 * s_.sample_interval, tail_of(width_) * shape.tau);
-    const auto first_sample = [&](std::size_t r) { return SampledSum::first_sample(reflections[r], shape, s_.sample_interval); };
-    const double record_start = first_sample(0);
-    const double min_separation = s_.min_separation(laser.pulse_length);
-
-    RandomKey key = heard.key;
-    key.purpose = Purpose::receiver_noise;
-    for (std::size_t next = 0; next < reflections.size();) {
-      SampledSum sum(reflections, shape, s_.sample_interval, next, first_sample(next));
-      w.samples.clear();
-      for (bool going_on = true; going_on;) {
-        const double n = sum.sample(), t = sum.time();
-        double power = sum.power();
-        next = sum.next();
-        if (noisy) {
-          const auto number = static_cast<std::uint64_t>(n - record_start);
-          key.subray = static_cast<std::uint32_t>(number);
-          key.part = static_cast<std::uint32_t>(number >> 32);
-          power += deviation * normal(key);
-        }
-        w.samples.push_back(power);
-        keep(n - record_start, power + noise_.background, w.record);
-        const bool silent = next > 0 && t > sum.last_peak() + tail;
-        const bool listening = noisy && n - record_start < record_size;
-        going_on = !silent || listening || (next < reflections.size() && first_sample(next) <= n + died_away / s_.sample_interval);
-        if (going_on && w.samples.size() == window_samples) {
-          const std::size_t cut = last_valley(w.samples);  // a cut between two echoes
-          find_peaks(n, cut, min_separation, w);
-          w.samples.erase(w.samples.begin(), w.samples.begin() + static_cast<std::ptrdiff_t>(cut - 2));
-        }
-        if (!going_on) find_peaks(n, w.samples.size() - 2, min_separation, w);
+    if constexpr (ideal)
+      if (std::same_as<Width, NoWidth> && s_.record_length == 0 && receiver_.none() && s_.timing <= EchoTiming::peak) {
+        const PulseShape shape(laser.pulse_length, s_.shape_divisor);
+        const SinglePeakGroup group(heard.reflections, shape, s_.sample_interval, w.group);
+        if (group.one() && detect(group, shape, w.echoes)) return {w.echoes, {}, 0};
+      }
+    if constexpr (!ideal && std::same_as<Width, NoWidth>)
+      if (s_.record_length == 0 && s_.timing == EchoTiming::peak)
+        if (const auto only = receiver_.only_peak(s_, heard)) return detection_of(*only, laser, w.echoes);
+    const std::span<const Reflection> reflections = in_order_of_range(heard.reflections, s_.sample_interval);
+    auto samples = receiver_.samples(s_, heard, reflections, tail_of(width_), w.receiver);
+    const typename SampleWindow<Width>::Search search{s_, width_, s_.min_separation(laser.pulse_length), samples.delay(),
+                                                      samples.independent_noise()};
+    while (samples.begin_section()) {
+      w.window.clear();
+      for (bool more = true; more;) {
+        const double n = samples.number(), power = samples.power(more);
+        keep(n - samples.start(), power + samples.background(), w.record);
+        w.window.take(n, power, more, search, w.peaks);
       }
     }
-    keep_echoes(s_, w.peaks);
-    for (const Peak& peak : w.peaks) {
-      const Echo echo = echo_of(peak, reflections, shape, noisy ? EchoTiming::peak : s_.timing, w.echoes.size() + 1);
-      w.echoes.push_back(echo);
+    if constexpr (listens_always) {  // the samples before and behind the gate complete the pulses at its ends
+      const double half = 0.25 * speed_of_light * laser.pulse_length;
+      std::erase_if(w.peaks, [&](const Peak& peak) {
+        const double range = 0.5 * speed_of_light * peak.time;
+        return range < heard.gate.near - half || range > heard.gate.far + half;
+      });
     }
-    return {w.echoes, w.record, record_start * s_.sample_interval};
+    keep_echoes(s_, w.peaks);
+    const EchoTiming timing = samples.independent_noise() && s_.timing == EchoTiming::true_range ? EchoTiming::peak : s_.timing;
+    const Correction* correction = find_correction(laser);
+    for (Peak& peak : w.peaks) {
+      if (correction) peak.mark = correction->arrival(peak.mark, s_.sample_interval);
+      w.echoes.push_back(echo_of(peak, reflections, samples.shape(), timing, w.echoes.size() + 1));
+    }
+    return {w.echoes, w.record, samples.start() * s_.sample_interval};
   }
 
  private:
-  static constexpr std::size_t window_samples = 262144;  ///< capacity of the sample window: the longest pulse until it has decayed
-  static constexpr std::size_t max_peaks = 4096;         ///< peaks of noise
+  static constexpr bool ideal = std::same_as<Receiver, ReceiverNoise>;
+  static constexpr std::size_t max_peaks = 4096;  ///< peaks of noise
+
+  /// Time of the echo of a flat target less its arrival, by the place of the arrival between two samples.
+  struct Correction {
+    static constexpr std::size_t places = 16;
+    double pulse_length = 0;                ///< full width at half maximum [s]
+    std::array<double, places + 1> time{};  ///< at evenly spaced places [s]
+
+    /// Arrival of the flat target that would have an echo at this time [s].
+    [[nodiscard]] double arrival(double mark, double interval) const noexcept {
+      double arrival = mark;
+      for (int step = 0; step < 4; ++step) {
+        const double place = (arrival / interval - std::floor(arrival / interval)) * places;
+        const auto i = std::min(static_cast<std::size_t>(place), places - 1);
+        arrival = mark - (time[i] + (place - static_cast<double>(i)) * (time[i + 1] - time[i]));
+      }
+      return arrival;
+    }
+  };
+
+  /// True for echo times that need a correction: those of samples, but not of an ideal receiver's peak.
+  [[nodiscard]] bool reads_samples() const noexcept {
+    return s_.timing != EchoTiming::true_range && !(ideal && s_.timing == EchoTiming::peak);
+  }
+
+  [[nodiscard]] const Correction* find_correction(const Laser& laser) const noexcept {
+    for (const Correction& c : corrections_)
+      if (c.pulse_length == laser.pulse_length) return &c;
+    return nullptr;
+  }
+
+  /// Correction for a laser, from echoes without noise whose peaks are ten times the threshold.
+  [[nodiscard]] Correction correction_for(const Laser& laser) const {
+    FullWaveform quiet = *this;
+    if constexpr (ideal)
+      quiet.receiver_ = {};
+    else
+      quiet.receiver_.silence();
+    quiet.s_.record_length = 0;
+    quiet.s_.threshold = s_.threshold > 0 ? s_.threshold : 1;
+    Workspace w = quiet.workspace(1);
+    const Emitter emitter{.laser = laser};
+    const double first = (8192 + std::floor(100 * laser.pulse_length / s_.sample_interval)) * s_.sample_interval;
+    Correction c{.pulse_length = laser.pulse_length};
+    for (std::size_t k = 0; k <= Correction::places; ++k) {
+      const double arrival = first + static_cast<double>(k) / Correction::places * s_.sample_interval;
+      Reflection reflection{.range = 0.5 * speed_of_light * arrival, .power = 10 * quiet.s_.threshold};
+      const Detection d = quiet.detect({.emitter = emitter, .reflections = {&reflection, 1}}, w);
+      if (!d.echoes.empty()) c.time[k] = 2 * d.echoes[0].range / speed_of_light - arrival;
+    }
+    return c;
+  }
+
+  /// The only echo of a pulse, if it reaches the threshold.
+  template <class Only>
+  [[nodiscard]] Detection detection_of(const Only& only, const Laser& laser, std::vector<Echo>& echoes) const noexcept {
+    if (only.height < s_.threshold) return {};
+    const Correction* correction = find_correction(laser);
+    const double time = correction ? correction->arrival(only.time, s_.sample_interval) : only.time;
+    echoes.push_back({.range = 0.5 * speed_of_light * time,
+                      .amplitude = only.height,
+                      .cos_incidence = only.strongest->cos_incidence,
+                      .object = only.strongest->object,
+                      .classification = only.strongest->classification});
+    return {echoes, {}, 0};
+  }
 
   /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its peak. False if these
   /// reach back before the last edge.
@@ -167,69 +243,10 @@ class FullWaveform {
     record.back() = static_cast<float>(power);
   }
 
-  /// End of the last complete echo; two samples before the end if there is no valley.
-  static std::size_t last_valley(const std::vector<double>& y) noexcept {
-    for (std::size_t i = y.size() - 2; i > 4; --i)
-      if (y[i] < y[i - 1] && y[i] <= y[i + 1]) return i;
-    return y.size() - 2;
-  }
-
-  /// Appends every peak before index `end` of the window, whose last sample has the number `last`.
-  void find_peaks(double last, std::size_t end, double min_separation, Workspace& w) const noexcept {
-    const std::vector<double>& y = w.samples;
-    const double start = last - static_cast<double>(y.size() - 1);
-    const auto time = [&](std::size_t i) { return (start + static_cast<double>(i)) * s_.sample_interval; };
-    const auto valley = [&](std::size_t i) {
-      const bool turns = i >= 2 && i + 2 < y.size() && y[i] < y[i - 1] && y[i] <= y[i + 1];
-      if (!turns) return time(i);
-      const std::array<double, 5> below{-y[i - 2], -y[i - 1], -y[i], -y[i + 1], -y[i + 2]};
-      return time(i) + vertex(&below[2]).offset * s_.sample_interval;
-    };
-    std::size_t entered = w.peaks.size();
-    for (std::size_t i = 2; i < end; ++i) {
-      if (!(y[i] > y[i - 1] && y[i] >= y[i + 1])) continue;
-      const auto [offset, height] = vertex(&y[i]);
-      if ((noise_.none() ? height : y[i]) < s_.threshold) continue;
-      std::size_t from = i, to = i;
-      while (from > 0 && y[from - 1] < y[from]) --from;
-      while (to + 1 < y.size() && y[to + 1] < y[to]) ++to;
-      merge_or_append({.time = time(i) + offset * s_.sample_interval, .height = height, .begin = valley(from), .end = valley(to)},
-                      min_separation, w.peaks);
-    }
-    if constexpr (!std::same_as<Width, NoWidth>) {
-      for (; entered < w.peaks.size(); ++entered) {
-        Peak& peak = w.peaks[entered];
-        if (is_dominated(entered, s_, w.peaks)) continue;
-        const auto from = static_cast<std::size_t>(std::lround(peak.begin / s_.sample_interval - start));
-        const auto to = static_cast<std::size_t>(std::lround(peak.end / s_.sample_interval - start));
-        peak.width = width_.width(std::span(y).subspan(from, to - from + 1), s_.sample_interval);
-      }
-    }
-  }
-
-  struct Vertex {
-    double offset, height;  ///< offset from the middle sample [samples]; power [W]
-  };
-
-  /// Maximum of the quartic through five samples about a peak, by Newton's method from the vertex of the parabola through the middle three.
-  /// Returns that vertex where the quartic has no maximum, as in noise.
-  static Vertex vertex(const double* y) noexcept {
-    const double c1 = (8 * (y[1] - y[-1]) - (y[2] - y[-2])) / 12, c2 = (16 * (y[1] + y[-1]) - (y[2] + y[-2]) - 30 * y[0]) / 24;
-    const double c3 = ((y[2] - y[-2]) - 2 * (y[1] - y[-1])) / 12, c4 = ((y[2] + y[-2]) - 4 * (y[1] + y[-1]) + 6 * y[0]) / 24;
-    const double middle = 0.5 * (y[-1] - y[1]) / (y[-1] - 2 * y[0] + y[1]);
-    double x = middle;
-    for (int step = 0; step < 3; ++step) {
-      const double slope = c1 + x * (2 * c2 + x * (3 * c3 + x * 4 * c4)), bend = 2 * c2 + x * (6 * c3 + x * 12 * c4);
-      if (!(bend < 0)) break;
-      x = std::clamp(x - slope / bend, -1.0, 1.0);
-    }
-    const double height = y[0] + x * (c1 + x * (c2 + x * (c3 + x * c4)));
-    return height >= y[0] ? Vertex{x, height} : Vertex{middle, y[0] + 0.25 * middle * (y[1] - y[-1])};
-  }
-
   WaveformSettings s_;
   Width width_;
-  ReceiverNoise noise_;
+  Receiver receiver_;
+  std::vector<Correction> corrections_;  ///< of the lasers that were prepared
 };
 
 static_assert(Detector<FullWaveform<>>);

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_DETECTOR_PEAKS_HPP
 #define PULSECAST_DETECTOR_PEAKS_HPP
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,7 +12,6 @@
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
 #include <pulsecast/detector/waveform_settings.hpp>
 
@@ -23,21 +23,29 @@ struct Peak {
   double height = 0;       ///< power at the maximum [W]
   double begin = 0;        ///< time of the valley before it [s]
   double end = 0;          ///< time of the valley after it [s]
+  double before = 0;       ///< power in the valley before it [W]
+  double after = 0;        ///< power in the valley after it [W]
+  double mark = 0;         ///< time that defines the range, by `EchoTiming` [s]
   double width = 0;        ///< as in `Echo` [s]
   bool dominated = false;  ///< true if a higher peak is within the window
 };
 
 /// Appends a peak after those before it, within the capacity. Merges it with the last one and returns true if they are closer than
-/// `min_separation` [s].
-inline bool merge_or_append(const Peak& peak, double min_separation, std::vector<Peak>& peaks) noexcept {
-  if (!peaks.empty() && peak.time - peaks.back().time < min_separation) {
+/// `min_separation` [s], or if the lower of the two rises by less than `prominence` [W] above the valley between them.
+inline bool merge_or_append(const Peak& peak, double min_separation, double prominence, std::vector<Peak>& peaks) noexcept {
+  if (!peaks.empty()) {
     Peak& one = peaks.back();
-    if (peak.height > one.height) {
-      one.time = peak.time;
-      one.height = peak.height;
+    const double valley = std::fmin(one.after, peak.before), lower = std::fmin(one.height, peak.height);
+    if (peak.time - one.time < min_separation || lower - valley < prominence) {
+      if (peak.height > one.height) {
+        one.time = peak.time;
+        one.height = peak.height;
+        one.mark = peak.mark;
+      }
+      one.end = peak.end;
+      one.after = peak.after;
+      return true;
     }
-    one.end = peak.end;
-    return true;
   }
   if (peaks.size() < peaks.capacity()) peaks.push_back(peak);
   return false;
@@ -65,21 +73,22 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
   peaks.resize(kept);
 }
 
-/// Echo of a peak; reflections are sorted by range.
-[[nodiscard]] inline Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const PulseShape& shape, EchoTiming timing,
-                                  std::size_t number) noexcept {
+/// Echo of a peak of the sum of a pulse's reflections, sorted by range. `shape(t)` is the pulse at a time t since its peak, from
+/// `shape.begin()` to `shape.end()` [s].
+template <class Shape>
+[[nodiscard]] Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const Shape& shape, EchoTiming timing,
+                           std::size_t number) noexcept {
   const Reflection* const end = reflections.data() + reflections.size();
   const auto from = [&](double time) noexcept {
     return reflections.data() + detail::first_not(reflections.size(), [&](std::size_t i) { return arrival(reflections[i]) < time; });
   };
 
-  Echo echo{.range = 0.5 * speed_of_light * peak.time,
+  Echo echo{.range = 0.5 * speed_of_light * peak.mark,
             .amplitude = peak.height,
             .width = peak.width,
             .number = static_cast<std::uint8_t>(number)};
-  constexpr double faded = 60;  // 60 tau after its peak, 1e-22 of a pulse is left
   double strongest = 0;
-  for (auto r = from(peak.time - faded * shape.tau); r != end && arrival(*r) < peak.time + PulseShape::peak * shape.tau; ++r) {
+  for (auto r = from(peak.time - shape.end()); r != end && arrival(*r) < peak.time - shape.begin(); ++r) {
     if (!(r->power > strongest)) continue;  // its share at this time is at most its power
     const double power = r->power * shape(peak.time - arrival(*r));
     if (!(power > strongest)) continue;
@@ -88,7 +97,7 @@ inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noe
     echo.object = r->object;
     echo.classification = r->classification;
   }
-  if (timing == EchoTiming::energy) {
+  if (timing == EchoTiming::true_range) {
     const auto first = from(peak.begin);
     double sum = 0, beyond = 0;
     for (auto r = first; r != end && arrival(*r) < peak.end; ++r) {

@@ -28,6 +28,9 @@ struct PulseShape {
   /// is at most 4 e^(-u/2), with u = t/tau.
   [[nodiscard]] static double fallen_to(double share) noexcept { return 2 * std::log(4 / share) - peak; }
 
+  [[nodiscard]] double begin() const noexcept { return -peak * tau; }  ///< time of the leading edge since the peak [s]
+  [[nodiscard]] double end() const noexcept { return 60 * tau; }       ///< time since the peak when 1e-22 of a pulse is left [s]
+
   /// Power at time t since the peak [s]; 1 at t = 0.
   [[nodiscard]] double operator()(double t) const noexcept {
     const double u = t / tau + peak;

@@ -4,16 +4,17 @@
 #define PULSECAST_DETECTOR_RECEIVER_NOISE_HPP
 
 #include <cmath>
-#include <cstdint>
+#include <span>
 
-#include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
-#include <pulsecast/pulse.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/ideal_samples.hpp>
+#include <pulsecast/detector/waveform_settings.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Receiver noise and background light, none by default. Samples are independent.
+/// Receiver of infinite bandwidth, with noise and background light; none by default. Samples are independent. A policy of `FullWaveform`.
 struct ReceiverNoise {
   double deviation = 0;           ///< standard deviation of the electronic noise per sample, from 0 to 1e20 [W]
   double background = 0;          ///< received sunlight power, from 0 to 1e20 [W]
@@ -36,6 +37,20 @@ struct ReceiverNoise {
     constexpr double planck = 6.62607015e-34;  // [J s]. Source: SI, exact by definition of the kilogram (26th CGPM, 2018)
     const double photon = planck * speed_of_light / wavelength;
     return std::sqrt(deviation * deviation + background * photon / (quantum_efficiency * interval));
+  }
+
+  static constexpr bool listens_always = false;  ///< false: it is asked for pulses with reflections only
+  /// Scratch memory: none.
+  struct Workspace {};
+  [[nodiscard]] Workspace workspace() const { return {}; }  ///< scratch memory of one worker
+
+  /// Computes what pulses of a laser need: nothing.
+  void prepare(const Laser&, const WaveformSettings&) const noexcept {}
+  /// As the concept WaveformReceiver requires.
+  [[nodiscard]] IdealSamples samples(const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
+                                     double width_tail, Workspace&) const noexcept {
+    const double of_sample = none() ? 0 : deviation_of_sample(heard.emitter.laser.wavelength, s.sample_interval);
+    return {of_sample, background, s, heard, reflections, width_tail};
   }
 };
 

@@ -5,25 +5,18 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/detector/echo_timing.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-/// Point of an echo that defines its range.
-enum class EchoTiming : std::uint8_t {
-  /// Power-weighted mean of the reflections between its valleys: unbiased for an echo of any length. Taken from the true ranges of the
-  /// subrays, which no instrument knows: an oracle, not an instrument model.
-  energy,
-  peak,  ///< maximum: on a slope about a tau of `PulseShape` later than the mean, as pulses rise faster than they fall
-};
 
 /// Settings of the waveform detectors. All times are two-way.
 ///
 /// A peak of the waveform is an echo if it passes these tests, in this order:
 /// - it reaches the threshold;
-/// - it is at least `separation` from the peak before it, else the two merge;
+/// - it is at least `separation` from the peak before it, and rises by at least `prominence` above the valley between them, else the two
+///   merge;
 /// - it is the highest within the window;
 /// - it is later than the dead time of the echo before it;
 /// - it is among the first `returns_max`.
@@ -32,21 +25,25 @@ enum class EchoTiming : std::uint8_t {
 /// ones, which lose close echoes; narrower bins gain little. Widths cost more than any other setting, except for moments of
 /// `AnalyticWaveform`, so there are none by default.
 struct WaveformSettings {
-  double sample_interval = 0.25e-9;        ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
-  double threshold = 1e-12;                ///< least power of an echo's peak [W]
-  double separation = 0;                   ///< closer peaks merge, with the greater height [s]
-  double window = 1e-9;                    ///< an echo is the highest peak within this time before and after it [s]
-  double dead_time = 0;                    ///< no other echo within this time after an echo's peak [s]
-  std::size_t returns_max = 15;            ///< first echoes kept, in order of range; from 1 to 255
-  EchoTiming timing = EchoTiming::energy;  ///< definition of an echo's range
-  double record_length = 0;                ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
-  double shape_divisor = 3.5;              ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
+  double sample_interval = 0.25e-9;  ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
+  double threshold = 1e-12;          ///< least power of an echo's peak [W]
+  double separation = 0;             ///< closer peaks merge, with the greater height [s]
+  double prominence = 0;             ///< least rise of the lower of two peaks above the valley between them [W]
+  double window = 1e-9;              ///< an echo is the highest peak within this time before and after it [s]
+  double dead_time = 0;              ///< no other echo within this time after an echo's peak [s]
+  std::size_t returns_max = 15;      ///< first echoes kept, in order of range; from 1 to 255
+  EchoTiming timing = EchoTiming::true_range;  ///< definition of an echo's range
+  double fraction = 0.5;                       ///< share of the maximum, for `EchoTiming::constant_fraction`; from 0.01 to 0.99
+  double record_length = 0;                    ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
+  double shape_divisor = 3.5;                  ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
 
   void validate() const {
     require_within("WaveformSettings::sample_interval", sample_interval, 1e-16, 1, "s");
     require_not_negative("WaveformSettings::threshold", threshold, "W");
     require_not_negative("WaveformSettings::separation", separation, "s");
+    require_not_negative("WaveformSettings::prominence", prominence, "W");
     require_not_negative("WaveformSettings::window", window, "s");
+    require_within("WaveformSettings::fraction", fraction, 0.01, 0.99, "");
     require_not_negative("WaveformSettings::dead_time", dead_time, "s");
     require_within("WaveformSettings::returns_max", static_cast<double>(returns_max), 1, 255, "");
     require_within("WaveformSettings::record_length", record_length, 0, max_kept * sample_interval, "s");
