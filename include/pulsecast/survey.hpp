@@ -176,7 +176,7 @@ class Survey {
     const RangeErrors& errors = unit.receiver.range_errors;
     for (Echo& echo : detection.echoes) {
       echo.reflectance = echo.amplitude / w.white_target.power(constants.budget, echo.range);
-      if (!errors.none()) echo.range += errors.at(echo.range, echo.cos_incidence, normal({seed_, i, echo.number, Purpose::range_noise}));
+      if (!errors.none()) echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}));
     }
     if (detection.echoes.size() > 1 && !errors.none()) sort_by_range(detection.echoes);
     out.echoes = detection.echoes;

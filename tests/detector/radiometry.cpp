@@ -17,11 +17,29 @@ const double infinity = std::numeric_limits<double>::infinity();
 const double nan_value = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
+TEST_CASE("the extinction of haze and fog is Kim's, without jumps") {
+  for (const double wavelength : {0.532e-6, 1.064e-6, 1.55e-6})
+    for (const double edge : {500.0, 1000.0, 6000.0})
+      CHECK(extinction(wavelength, edge * (1 - 1e-12)) == support::relative(extinction(wavelength, edge * (1 + 1e-12)), 1e-10));
+  CHECK(extinction(1.55e-6, 200) == support::relative(3.91 / 200, 1e-14));  // fog: of any wavelength
+  CHECK(extinction(0.532e-6, 200) == extinction(1.55e-6, 200));
+  CHECK(extinction(1.064e-6, 2e3) == support::relative(3.91 / 2e3 * std::pow(1.064 / 0.55, -0.66), 1e-14));
+  CHECK(extinction(1.064e-6, 23e3) == extinction(1.064e-6, 23e3, AerosolModel::kruse));
+}
+
+TEST_CASE("molecules absorb on both ways") {
+  const Receiver absorbing{.visibility = infinity, .absorption = 1e-3};
+  const Receiver clear{.visibility = infinity};
+  CHECK(LinkBudget(absorbing, Laser{}).power(1, 1, 500) ==
+        support::relative(std::exp(-1.0) * LinkBudget(clear, Laser{}).power(1, 1, 500), 1e-14));
+  CHECK_THROWS_AS(Receiver{.absorption = -1}.validate(), SettingError);
+}
+
 TEST_CASE("the extinction of the air is Kruse's, by hand for each of its three stretches") {
-  CHECK(extinction(1.064e-6, 23e3) == support::relative(7.20935317364042e-05, 1e-14));   // q = 1.3
-  CHECK(extinction(1.55e-6, 60e3) == support::relative(1.2418670181727339e-05, 1e-14));  // q = 1.6
-  CHECK(extinction(0.532e-6, 2e3) == support::relative(0.0020035397746925934, 1e-14));   // q = 0.585 V^(1/3)
-  CHECK(extinction(0.55e-6, 10e3) == support::relative(3.91e-4, 1e-14));                 // at 0.55 um, the definition of visibility itself
+  CHECK(extinction(1.064e-6, 23e3) == support::relative(7.20935317364042e-05, 1e-14));                       // q = 1.3
+  CHECK(extinction(1.55e-6, 60e3) == support::relative(1.2418670181727339e-05, 1e-14));                      // q = 1.6
+  CHECK(extinction(0.532e-6, 2e3, AerosolModel::kruse) == support::relative(0.0020035397746925934, 1e-14));  // q = 0.585 V^(1/3)
+  CHECK(extinction(0.55e-6, 10e3) == support::relative(3.91e-4, 1e-14));  // at 0.55 um, the definition of visibility itself
 }
 
 TEST_CASE("air that one sees through without end does not weaken") {
@@ -105,20 +123,29 @@ TEST_CASE("a receiver refuses what cannot be") {
 
 TEST_CASE("a range error is its bias, and a deviation that grows with range and incidence") {
   CHECK(RangeErrors{}.none());
-  CHECK(RangeErrors{.bias = 0.01}.at(100, 1, 2) == 0.01);
-  CHECK(RangeErrors{.deviation = 0.005}.at(100, 0.5, 2) == support::relative(0.01, 1e-15));
-  CHECK(RangeErrors{.deviation = 0.005, .deviation_per_metre = 1e-5}.at(1000, 0.5, -1) == support::relative(-0.015, 1e-14));
-  CHECK(RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(100, 0.5, 1) == support::relative(0.01, 1e-14));
-  CHECK(std::isfinite(RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(100, 0, 1)));
+  CHECK(RangeErrors{.bias = 0.01}.at(Echo{.range = 100, .cos_incidence = 1}, 2) == 0.01);
+  CHECK(RangeErrors{.deviation = 0.005}.at(Echo{.range = 100, .cos_incidence = 0.5}, 2) == support::relative(0.01, 1e-15));
+  CHECK(RangeErrors{.deviation = 0.005, .deviation_per_metre = 1e-5}.at(Echo{.range = 1000, .cos_incidence = 0.5}, -1) ==
+        support::relative(-0.015, 1e-14));
+  CHECK(RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(Echo{.range = 100, .cos_incidence = 0.5}, 1) ==
+        support::relative(0.01, 1e-14));
+  CHECK(std::isfinite(RangeErrors{.deviation = 0.005, .grows_with_incidence = true}.at(Echo{.range = 100, .cos_incidence = 0}, 1)));
+  CHECK(RangeErrors{.scale = 1e-5}.at(Echo{.range = 1000}, 3) == support::relative(0.01, 1e-14));
+  CHECK_FALSE(RangeErrors{.scale = 1e-5}.none());
+  const RangeErrors by_power{.deviation = 0.001, .deviation_at_watt = 1e-6, .power_exponent = -0.5};
+  CHECK(by_power.at(Echo{.range = 10, .amplitude = 1e-6}, 1) == support::relative(0.002, 1e-14));
+  CHECK(by_power.at(Echo{.range = 10, .amplitude = 4e-6}, 1) == support::relative(0.0015, 1e-14));
+  CHECK_FALSE(by_power.none());
+  CHECK_THROWS_AS(RangeErrors{.power_exponent = 1}.validate(), SettingError);
   CHECK_THROWS_AS(RangeErrors{.deviation = -1}.validate(), SettingError);
   const RangeErrors table{.bias = 0.5, .deviations = std::vector<DeviationAtRange>{{10, 0.01}, {20, 0.03}, {100, 0.02}}};
   CHECK_NOTHROW(table.validate());
   CHECK_FALSE(table.none());
-  CHECK(table.at(5, 1, 1) == support::relative(0.51, 1e-14));
-  CHECK(table.at(10, 1, 1) == support::relative(0.51, 1e-14));
-  CHECK(table.at(12.5, 1, 1) == support::relative(0.515, 1e-14));
-  CHECK(table.at(60, 1, -2) == support::relative(0.45, 1e-14));
-  CHECK(table.at(1e6, 1, 1) == support::relative(0.52, 1e-14));
+  CHECK(table.at(Echo{.range = 5, .cos_incidence = 1}, 1) == support::relative(0.51, 1e-14));
+  CHECK(table.at(Echo{.range = 10, .cos_incidence = 1}, 1) == support::relative(0.51, 1e-14));
+  CHECK(table.at(Echo{.range = 12.5, .cos_incidence = 1}, 1) == support::relative(0.515, 1e-14));
+  CHECK(table.at(Echo{.range = 60, .cos_incidence = 1}, -2) == support::relative(0.45, 1e-14));
+  CHECK(table.at(Echo{.range = 1e6}, 1) == support::relative(0.52, 1e-14));
   CHECK_THROWS_AS((RangeErrors{.deviations = std::vector<DeviationAtRange>{{10, 0.01}, {10, 0.02}}}.validate()), SettingError);
   CHECK_THROWS_AS((RangeErrors{.deviations = std::vector<DeviationAtRange>{{10, -0.01}}}.validate()), SettingError);
   CHECK_THROWS_AS(RangeErrors{.bias = std::numeric_limits<double>::infinity()}.validate(), SettingError);

@@ -40,11 +40,14 @@ TEST_CASE("extinction of the air by wavelength and visibility") {
                         {1550, 23, 0.0442068},
                         {905, 23, 0.0889769},
                         {1064, 60, 0.0226725},
-                        {1064, 5, 0.4041397},
-                        {532, 2, 2.0035398}})
+                        {1064, 5, 0.3685588},
+                        {532, 2, 1.9984094},
+                        {1550, 0.2, 19.55}}) {
+    const double range = 1000 * std::fmin(1, c.visibility_km);
     row("air at " + std::to_string(static_cast<int>(c.wavelength_nm)) + " nm, visibility " +
-            std::to_string(static_cast<int>(c.visibility_km)) + " km: extinction [1/km]",
-        c.extinction, -0.5 * std::log(left(c.wavelength_nm * 1e-9, c.visibility_km * 1e3, 1000)), 1e-6);
+            std::to_string(static_cast<int>(1000 * c.visibility_km)) + " m: extinction [1/km]",
+        c.extinction, -500 / range * std::log(left(c.wavelength_nm * 1e-9, c.visibility_km * 1e3, range)), 1e-6);
+  }
 }
 
 TEST_CASE("light that is left by range") {

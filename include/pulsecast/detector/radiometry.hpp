@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include <pulsecast/base/exponential.hpp>
@@ -18,11 +19,18 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Atmospheric extinction coefficient [1/m] for a wavelength [m] and a visibility [m]; 0 for an infinite visibility.
-/// Source: Kruse, McGlauchlin & McQuistan 1962: 3.91/V (lambda / 0.55 um)^-q per km, V in km.
-[[nodiscard]] inline double extinction(double wavelength, double visibility) noexcept {
+/// How aerosols scatter by wavelength where the visibility is below 6 km; above, both are the same.
+enum class AerosolModel : std::uint8_t {
+  kim,    ///< hardly by wavelength in haze, and not at all in fog. Source: Kim, McArthur & Korevaar 2001
+  kruse,  ///< as in clear air, with a jump at 6 km; that of HELIOS++. Source: Kruse, McGlauchlin & McQuistan 1962
+};
+
+/// Extinction coefficient of aerosols [1/m] for a wavelength, from 0.4 to 1.6 um [m], and a visibility [m]; 0 for an infinite visibility:
+/// 3.91/V (lambda / 0.55 um)^-q per km, V in km.
+[[nodiscard]] inline double extinction(double wavelength, double visibility, AerosolModel model = AerosolModel::kim) noexcept {
   const double v = visibility * 1e-3;
-  const double q = v > 50 ? 1.6 : v > 6 ? 1.3 : 0.585 * std::cbrt(v);
+  const double haze = v > 1 ? 0.16 * v + 0.34 : v > 0.5 ? v - 0.5 : 0;
+  const double q = v > 50 ? 1.6 : v > 6 ? 1.3 : model == AerosolModel::kruse ? 0.585 * std::cbrt(v) : haze;
   return 3.91 / v * std::pow(wavelength / 0.55e-6, -q) * 1e-3;
 }
 
@@ -35,16 +43,22 @@ struct DeviationAtRange {
 /// Range errors of an instrument, none by default.
 struct RangeErrors {
   double bias = 0;                    ///< reported minus true range [m]
+  double scale = 0;                   ///< reported minus true range, per metre of range
   double deviation = 0;               ///< standard deviation of the noise, at any range [m]
   double deviation_per_metre = 0;     ///< increase of the deviation per metre of range
   bool grows_with_incidence = false;  ///< divides by the cosine of incidence. Source: Soudarissanane et al. 2011
+  double deviation_at_watt = 0;       ///< further deviation of an echo of an amplitude of 1 W, added [m]. Source: Wujanz et al. 2018
+  double power_exponent = -0.5;       ///< exponent of the amplitude in that deviation, from -4 to 0
   /// Table that replaces both deviations if not empty: linear between rows, constant beyond them; ranges ascend.
   SharedArray<DeviationAtRange> deviations{};
 
   void validate() const {
     require_finite("RangeErrors::bias", bias, "m");
     require_not_negative("RangeErrors::deviation", deviation, "m");
+    require_within("RangeErrors::scale", scale, -0.5, 0.5, "");
     require_not_negative("RangeErrors::deviation_per_metre", deviation_per_metre, "");
+    require_not_negative("RangeErrors::deviation_at_watt", deviation_at_watt, "m");
+    require_within("RangeErrors::power_exponent", power_exponent, -4, 0, "");
     for (std::size_t i = 0; i < deviations.size(); ++i) {
       require_finite("RangeErrors::deviations (range)", deviations[i].range, "m");
       require_not_negative("RangeErrors::deviations (deviation)", deviations[i].deviation, "m");
@@ -53,7 +67,9 @@ struct RangeErrors {
   }
 
   /// True without errors.
-  [[nodiscard]] bool none() const noexcept { return bias == 0 && deviation == 0 && deviation_per_metre == 0 && deviations.size() == 0; }
+  [[nodiscard]] bool none() const noexcept {
+    return bias == 0 && scale == 0 && deviation == 0 && deviation_per_metre == 0 && deviation_at_watt == 0 && deviations.size() == 0;
+  }
 
   /// Standard deviation of the noise at a range, at normal incidence [m].
   [[nodiscard]] double deviation_at(double range) const noexcept {
@@ -61,11 +77,12 @@ struct RangeErrors {
     return detail::interpolated(deviations, range, &DeviationAtRange::range, &DeviationAtRange::deviation);
   }
 
-  /// Reported minus true range [m] of an echo at a range [m], for a draw from the standard normal distribution.
-  [[nodiscard]] double at(double range, double cos_incidence, double draw) const noexcept {
+  /// Reported minus true range [m] of an echo, for a draw from the standard normal distribution.
+  [[nodiscard]] double at(const Echo& echo, double draw) const noexcept {
     constexpr double min_cosine = 0.01;  // bounds the noise of an edge-on surface
-    const double slant = grows_with_incidence ? (cos_incidence > min_cosine ? cos_incidence : min_cosine) : 1;
-    return bias + draw * deviation_at(range) / slant;
+    const double slant = grows_with_incidence ? (echo.cos_incidence > min_cosine ? echo.cos_incidence : min_cosine) : 1;
+    const double by_power = deviation_at_watt > 0 ? deviation_at_watt * std::pow(echo.amplitude, power_exponent) : 0;
+    return bias + scale * echo.range + draw * (deviation_at(echo.range) + by_power) / slant;
   }
 };
 
@@ -73,7 +90,9 @@ struct RangeErrors {
 struct Receiver {
   double diameter = 0.15;                                      ///< aperture, from 0.1 mm to 1 km [m]
   double efficiency = 0.99;                                    ///< transmission of the optics, both ways, in [0, 1]
-  double visibility = 23e3;                                    ///< meteorological visibility, at least 1 m; infinite for no atmosphere [m]
+  double visibility = 23e3;                                    ///< meteorological visibility, at least 1 m; infinite without aerosols [m]
+  AerosolModel aerosols = AerosolModel::kim;                   ///< extinction by wavelength in haze and fog
+  double absorption = 0;                                       ///< absorption by molecules of the air [1/m]
   double range_min = 0;                                        ///< range gate's start [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< range gate's end [m]
   RangeErrors range_errors{};                                  ///< errors of reported ranges
@@ -82,6 +101,7 @@ struct Receiver {
     require_within("Receiver::diameter", diameter, 1e-4, 1e3, "m");  // its square is a factor of every received power
     require_within("Receiver::efficiency", efficiency, 0, 1, "");
     require_within("Receiver::visibility", visibility, 1, std::numeric_limits<double>::infinity(), "m");
+    require_not_negative("Receiver::absorption", absorption, "1/m");
     require_not_negative("Receiver::range_min", range_min, "m");
     range_errors.validate();
     require_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
@@ -102,7 +122,7 @@ class LinkBudget {
   LinkBudget(const Receiver& receiver, const Laser& laser) noexcept
       : gain_(laser.peak_power * receiver.diameter * receiver.diameter * receiver.efficiency / 4),
         near_(receiver.diameter * receiver.diameter / 4),
-        both_ways_(-2 * extinction(laser.wavelength, receiver.visibility)) {}
+        both_ways_(-2 * (extinction(laser.wavelength, receiver.visibility, receiver.aerosols) + receiver.absorption)) {}
 
   /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in `Hit`) at a range [m].
   /// At range 0 all the scattered power is received.

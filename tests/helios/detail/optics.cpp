@@ -218,7 +218,7 @@ TEST_CASE("noise of the range may depend on it by any formula that is finite whe
       c.errors.range_noise = k.formula;
       const Receiver receiver = survey_receiver(c);
       CHECK_NOTHROW(receiver.validate());
-      CHECK(receiver.range_errors.at(range, 1, 1) == relative(0.01 * k.value(range), 1e-4));
+      CHECK(receiver.range_errors.at(Echo{.range = range}, 1) == relative(0.01 * k.value(range), 1e-4));
     }
   c.errors.range_noise = "sqrt(t-5)";
   CHECK_THROWS_AS((void)survey_receiver(c), SettingError);

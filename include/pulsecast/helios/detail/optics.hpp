@@ -229,6 +229,7 @@ namespace detail {
   return {.diameter = channel.receiver_diameter,
           .efficiency = channel.efficiency,
           .visibility = channel.visibility,
+          .aerosols = AerosolModel::kruse,
           .range_min = channel.range_min,
           .range_max = channel.range_max,
           .range_errors = errors};
