@@ -279,11 +279,11 @@ TEST_CASE("second moments are those of a Gaussian beam: a quarter of the squared
     CHECK(std::fabs(4 * m.up - 1) < 1e-12);
     CHECK(std::fabs(4 * m.mixed) < 1e-12);
   };
-  for (const std::size_t n : {3, 4, 5, 7, 19, 37, 100, 1001, 20'011}) {
+  for (const std::size_t n : {3UL, 4UL, 5UL, 7UL, 19UL, 37UL, 100UL, 1001UL, 20011UL}) {
     check(moments(LatticeFootprint(n)), n);
     check(moments(SunflowerFootprint(n)), n);
   }
-  for (const std::size_t circles : {2, 3, 5, 40}) check(moments(RingFootprint(circles, RingMoments::whole)), circles);
+  for (const std::size_t circles : {2UL, 3UL, 5UL, 40UL}) check(moments(RingFootprint(circles, RingMoments::whole)), circles);
   const Moments within = moments(RingFootprint(3));
   CHECK(4 * within.across == doctest::Approx(0.68).epsilon(0.03));
   CHECK(RingFootprint(1, RingMoments::whole).offset(0) == Vec2{0, 0});

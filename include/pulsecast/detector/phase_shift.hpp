@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_DETECTOR_PHASE_SHIFT_HPP
+#define PULSECAST_DETECTOR_PHASE_SHIFT_HPP
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector_math.hpp>
+#include <pulsecast/concepts.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Settings of a phase-shift scanner.
+struct PhaseShiftSettings {
+  /// Modulation frequencies, ascending, from 1 to 8: the finest gives the range, the coarser ones its place, and the coarsest the
+  /// ambiguity c / 2f [Hz].
+  std::vector<double> frequencies{1e6, 10e6, 120e6};
+  double contrast = 1;       ///< modulated share of the power, in (0, 1]
+  double threshold = 1e-12;  ///< least modulated power of an echo at the finest frequency [W]
+  double deviation = 0;      ///< standard deviation of the noise of each component of a phasor [W]
+
+  /// @throws SettingError
+  void validate() const {
+    require_within("PhaseShiftSettings::frequencies (number)", static_cast<double>(frequencies.size()), 1, 8, "");
+    for (std::size_t k = 0; k < frequencies.size(); ++k) {
+      require_within("PhaseShiftSettings::frequencies", frequencies[k], 1e3, 1e11, "Hz");
+      if (k > 0) require_within("PhaseShiftSettings::frequencies (by the one before)", frequencies[k] / frequencies[k - 1], 1, 1e4, "");
+    }
+    require_positive("PhaseShiftSettings::contrast", contrast, "");
+    require_within("PhaseShiftSettings::contrast", contrast, 0, 1, "");
+    require_not_negative("PhaseShiftSettings::threshold", threshold, "W");
+    require_within("PhaseShiftSettings::deviation", deviation, 0, 1e20, "W");
+  }
+
+  /// Ranges of targets that cannot be told apart differ by this [m].
+  [[nodiscard]] double ambiguity() const noexcept { return 0.5 * speed_of_light / frequencies.front(); }
+};
+
+/// Detector of a scanner with a continuous laser whose power is modulated by sines. It measures the phase of the sum of all reflections at
+/// each frequency, and gives one range: at an edge, one between or beyond the surfaces (mixed pixels); beyond the ambiguity, one that is
+/// folded. The laser's peak power is its mean power while it measures. Reflections have the labels of the strongest.
+/// Source: Payne, Jongenelen, Dorrington, Cree & Carnegie 2009; phasors of a sum of sines.
+class PhaseShift {
+ public:
+  /// @throws SettingError for settings out of range
+  explicit PhaseShift(PhaseShiftSettings settings = {}) : s_(validated(std::move(settings))) {}
+
+  /// Settings, as validated.
+  [[nodiscard]] const PhaseShiftSettings& settings() const noexcept { return s_; }
+
+  /// Scratch memory of one worker.
+  struct Workspace {
+    Echo echo;  ///< the only echo
+  };
+  /// Scratch memory for any number of reflections.
+  [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
+
+  /// The echo of all reflections. Noise is drawn from the seed and pulse of `heard.key`.
+  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
+    const Reflection* strongest = nullptr;
+    for (const Reflection& r : heard.reflections)
+      if (r.power > 0 && (!strongest || r.power > strongest->power)) strongest = &r;
+    if (!strongest) return {};
+    RandomKey key = heard.key;
+    key.purpose = Purpose::receiver_noise;
+    double range = 0, amplitude = 0;
+    for (std::size_t k = 0; k < s_.frequencies.size(); ++k) {
+      const double period = 0.5 * speed_of_light / s_.frequencies[k];  // [m]
+      double in_phase = 0, quadrature = 0;
+      for (const Reflection& r : heard.reflections) {
+        const double turns = r.range / period;
+        const auto phase = simd::sincos(2 * pi * (turns - std::floor(turns)));
+        in_phase += r.power * phase.cos;
+        quadrature += r.power * phase.sin;
+      }
+      in_phase *= s_.contrast;
+      quadrature *= s_.contrast;
+      if (s_.deviation > 0) {
+        key.subray = static_cast<std::uint32_t>(2 * k);
+        in_phase += s_.deviation * normal(key);
+        ++key.subray;
+        quadrature += s_.deviation * normal(key);
+      }
+      const double turn = std::atan2(quadrature, in_phase) / (2 * pi), fine = (turn < 0 ? turn + 1 : turn) * period;
+      range = k == 0 ? fine : fine + std::round((range - fine) / period) * period;
+      amplitude = std::hypot(in_phase, quadrature);
+    }
+    if (!(amplitude >= s_.threshold) || range < 0) return {};
+    w.echo = {.range = range,
+              .amplitude = amplitude,
+              .cos_incidence = strongest->cos_incidence,
+              .object = strongest->object,
+              .classification = strongest->classification};
+    return {{&w.echo, 1}, {}, 0};
+  }
+
+ private:
+  PhaseShiftSettings s_;
+};
+
+static_assert(Detector<PhaseShift>);
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_DETECTOR_PHOTON_COUNTING_HPP
+#define PULSECAST_DETECTOR_PHOTON_COUNTING_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/pulse_form.hpp>
+#include <pulsecast/detector/pulse_sum.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Settings of a receiver that counts photons: single-photon avalanche diodes, in linear or Geiger mode.
+struct PhotonCountingSettings {
+  double efficiency = 0.3;        ///< detections per photon, in (0, 1]
+  double dark_rate = 0;           ///< dark counts of all pixels together, at most 1e12 [1/s]
+  double background = 0;          ///< received sunlight [W]
+  std::size_t pixels = 1;         ///< detectors that share the light evenly, at most 4096
+  double dead_time = 20e-9;       ///< time after a detection in which a pixel is blind; infinite for one detection a shot: Geiger mode [s]
+  double afterpulse = 0;          ///< probability that a detection causes another one of its pixel after the dead time, below 1
+  double afterpulse_time = 1e-8;  ///< mean delay of that after the dead time [s]
+  double jitter = 0;              ///< standard deviation of a detection's time [s]
+  std::size_t shots = 1;          ///< pulses of the laser for one histogram, at most 10,000
+  double bin = 1e-9;              ///< width of the histogram's bins [s]
+  std::size_t threshold = 1;      ///< least count of a peak of the histogram
+  std::size_t returns_max = 15;   ///< first echoes kept, in order of range; from 1 to 255
+
+  /// @throws SettingError
+  void validate() const {
+    require_positive("PhotonCountingSettings::efficiency", efficiency, "");
+    require_within("PhotonCountingSettings::efficiency", efficiency, 0, 1, "");
+    require_within("PhotonCountingSettings::dark_rate", dark_rate, 0, 1e12, "1/s");
+    require_within("PhotonCountingSettings::background", background, 0, 1, "W");
+    require_within("PhotonCountingSettings::pixels", static_cast<double>(pixels), 1, 4096, "");
+    require_within("PhotonCountingSettings::dead_time", dead_time, 0, std::numeric_limits<double>::infinity(), "s");
+    require_within("PhotonCountingSettings::afterpulse", afterpulse, 0, 0.99, "");
+    require_not_negative("PhotonCountingSettings::afterpulse_time", afterpulse_time, "s");
+    require_not_negative("PhotonCountingSettings::jitter", jitter, "s");
+    require_within("PhotonCountingSettings::shots", static_cast<double>(shots), 1, 1e4, "");
+    require_within("PhotonCountingSettings::bin", bin, 1e-13, 1e-3, "s");
+    require_within("PhotonCountingSettings::threshold", static_cast<double>(threshold), 1, 1e6, "");
+    require_within("PhotonCountingSettings::returns_max", static_cast<double>(returns_max), 1, 255, "");
+  }
+};
+
+/// Detector that draws single photons. Photoelectrons of each reflection, of sunlight and of dark counts are Poisson processes. Detections
+/// of all shots make a histogram; each of its peaks is an echo, whose range is the mean time of the detections in the bin and its
+/// neighbours. The amplitude is the power that would give as many counts without dead time. With one shot and a threshold of 1, each
+/// isolated detection is an echo. A gate without an end has neither sunlight nor dark counts behind the last reflection.
+///
+/// At most 65,536 detections of a pulse are kept. Source: Gatt, Johnson & Nichols 2009 (detection statistics).
+template <PulseForm Form = GammaPulse>
+class PhotonCounting {
+ public:
+  /// @throws SettingError for settings out of range
+  explicit PhotonCounting(PhotonCountingSettings settings = {}, Form form = {}) : s_(validated(settings)), form_(std::move(form)) {}
+
+  /// Settings, as validated.
+  [[nodiscard]] const PhotonCountingSettings& settings() const noexcept { return s_; }
+
+  static constexpr bool listens_always = true;  ///< true: sunlight and dark counts need no reflection
+
+  /// Computes the distribution of photons over a laser's pulse, before the first of them.
+  void prepare(const Laser& laser) {
+    if (!quantiles_of(laser)) known_.push_back({laser.pulse_length, std::make_shared<const std::vector<double>>(quantiles(laser))});
+  }
+
+  /// Detection of a photoelectron.
+  struct Count {
+    double time;          ///< since the laser's pulse [s]
+    std::uint32_t pixel;  ///< number of the pixel
+    std::uint32_t label;  ///< index of the reflection, or `none`
+  };
+  /// Scratch memory of one worker.
+  struct Workspace {
+    std::vector<Count> shot;    ///< photoelectrons of a shot
+    std::vector<Count> counts;  ///< detections of all shots
+    std::vector<double> blind;  ///< end of the dead time of each pixel [s]
+    std::vector<Echo> echoes;   ///< echoes of the current pulse
+  };
+  /// Scratch memory for any number of reflections.
+  [[nodiscard]] Workspace workspace(std::size_t) const {
+    Workspace w{{}, {}, std::vector<double>(s_.pixels), {}};
+    w.shot.reserve(counts_max);
+    w.counts.reserve(counts_max);
+    w.echoes.reserve(s_.returns_max);
+    return w;
+  }
+
+  /// Echoes of the pulses of a laser that was prepared. Photons are drawn from the seed and pulse of `heard.key`.
+  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
+    const std::vector<double>* quantiles = quantiles_of(heard.emitter.laser);
+    PULSECAST_ASSERT(quantiles != nullptr);
+    w.counts.clear();
+    w.echoes.clear();
+    Draws draws{heard.key};
+    for (std::size_t shot = 0; shot < s_.shots; ++shot) {
+      w.shot.clear();
+      draw_photoelectrons(heard, *quantiles, draws, w.shot);
+      keep_detections(draws, w);
+    }
+    const auto earlier = [](const Count& a, const Count& b) { return a.time < b.time; };
+    std::sort(w.counts.begin(), w.counts.end(), earlier);
+    find_echoes(heard, w);
+    return {w.echoes, {}, 0};
+  }
+
+ private:
+  static constexpr std::size_t counts_max = 65'536;
+  static constexpr std::uint32_t none = 0xffffffff;
+  static constexpr std::size_t quantile_count = 4096;
+
+  /// Random numbers of a pulse, one after the other.
+  struct Draws {
+    RandomKey key;
+    explicit Draws(const RandomKey& k) noexcept : key(k) { key.purpose = Purpose::receiver_noise; }
+    double uniform() noexcept {
+      if (++key.subray == 0) ++key.part;
+      return pulsecast::uniform(key);
+    }
+    double exponential() noexcept { return -std::log(uniform()); }
+  };
+
+  struct Quantiles {
+    double pulse_length;
+    std::shared_ptr<const std::vector<double>> times;
+  };
+
+  [[nodiscard]] const std::vector<double>* quantiles_of(const Laser& laser) const noexcept {
+    for (const Quantiles& q : known_)
+      if (q.pulse_length == laser.pulse_length) return q.times.get();
+    return nullptr;
+  }
+
+  /// Times about the mean of a pulse before which evenly spaced shares of its photons are sent [s].
+  [[nodiscard]] std::vector<double> quantiles(const Laser& laser) const {
+    const double length = laser.pulse_length, begin = form_.begin(length), end = form_.end(length);
+    constexpr std::size_t steps = 1 << 16;
+    const double step = (end - begin) / steps;
+    std::vector<double> sums(steps + 1);
+    for (std::size_t i = 0; i < steps; ++i) sums[i + 1] = sums[i] + form_.power(begin + (static_cast<double>(i) + 0.5) * step, length);
+    std::vector<double> times(quantile_count + 1);
+    std::size_t i = 0;
+    for (std::size_t q = 0; q <= quantile_count; ++q) {
+      const double share = sums.back() * static_cast<double>(q) / quantile_count;
+      while (i + 1 < steps && sums[i + 1] < share) ++i;
+      const double within = sums[i + 1] > sums[i] ? (share - sums[i]) / (sums[i + 1] - sums[i]) : 0;
+      times[q] = begin + (static_cast<double>(i) + std::clamp(within, 0.0, 1.0)) * step;
+    }
+    double mean = 0;
+    for (std::size_t q = 0; q < quantile_count; ++q) mean += 0.5 * (times[q] + times[q + 1]) / quantile_count;
+    for (double& time : times) time -= mean;
+    return times;
+  }
+
+  /// Energy of a photoelectron's share of the light [J].
+  [[nodiscard]] double energy_per_count(const Laser& laser) const noexcept {
+    constexpr double planck = 6.62607015e-34;  // [J s]. Source: SI, exact (26th CGPM, 2018)
+    return planck * speed_of_light / (laser.wavelength * s_.efficiency);
+  }
+
+  /// Draws the photoelectrons of a shot, in order of time.
+  void draw_photoelectrons(const Heard& heard, const std::vector<double>& quantiles, Draws& draws,
+                           std::vector<Count>& shot) const noexcept {
+    const Laser& laser = heard.emitter.laser;
+    const double per_watt = laser.pulse_length / energy_per_count(laser);  // of a reflection's power
+    double last = 0;
+    const auto enter = [&](double time, std::size_t label) {
+      const auto pixel = static_cast<std::uint32_t>(draws.uniform() * static_cast<double>(s_.pixels));
+      if (shot.size() < counts_max) shot.push_back({time, pixel, static_cast<std::uint32_t>(label)});
+    };
+    for (std::size_t r = 0; r < heard.reflections.size(); ++r) {
+      const double mean = heard.reflections[r].power * per_watt, at = arrival(heard.reflections[r]);
+      last = std::max(last, at + quantiles.back());
+      for (double gone = draws.exponential(); gone < mean && shot.size() < counts_max; gone += draws.exponential()) {
+        const double place = draws.uniform() * quantile_count;
+        const auto q = std::min(static_cast<std::size_t>(place), quantile_count - 1);
+        enter(at + quantiles[q] + (place - static_cast<double>(q)) * (quantiles[q + 1] - quantiles[q]), r);
+      }
+    }
+    const double rate = s_.dark_rate + s_.background / energy_per_count(laser);
+    const double begin = 2 * heard.gate.near / speed_of_light, end = 2 * heard.gate.far / speed_of_light;
+    if (rate > 0)
+      for (double t = begin + draws.exponential() / rate; t < (std::isfinite(end) ? end : last) && shot.size() < counts_max;
+           t += draws.exponential() / rate)
+        enter(t, none);
+    std::sort(shot.begin(), shot.end(), [](const Count& a, const Count& b) { return a.time < b.time; });
+  }
+
+  /// Appends the photoelectrons of a shot that pixels detect, with afterpulses and jitter.
+  void keep_detections(Draws& draws, Workspace& w) const noexcept {
+    std::fill(w.blind.begin(), w.blind.end(), -std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < w.shot.size(); ++i) {
+      const Count count = w.shot[i];
+      double& blind = w.blind[count.pixel];
+      if (count.time < blind) continue;
+      blind = count.time + s_.dead_time;
+      if (s_.afterpulse > 0 && std::isfinite(s_.dead_time) && draws.uniform() < s_.afterpulse && w.shot.size() < counts_max) {
+        const Count after{blind + s_.afterpulse_time * draws.exponential(), count.pixel, none};
+        const auto later = [&](const Count& other) { return other.time > after.time; };
+        w.shot.insert(std::find_if(w.shot.begin() + static_cast<std::ptrdiff_t>(i) + 1, w.shot.end(), later), after);
+      }
+      if (w.counts.size() == counts_max) continue;
+      w.counts.push_back(count);
+      if (s_.jitter > 0) w.counts.back().time += s_.jitter * normal_quantile(draws.uniform());
+    }
+  }
+
+  /// Appends an echo for each bin that has the threshold's count, more than the bin before, and at least as many as the one behind.
+  void find_echoes(const Heard& heard, Workspace& w) const noexcept {
+    const double watts = energy_per_count(heard.emitter.laser) / (heard.emitter.laser.pulse_length * static_cast<double>(s_.shots));
+    struct Bin {
+      double number = -1e300;
+      std::size_t begin = 0, end = 0;
+      [[nodiscard]] std::size_t count() const noexcept { return end - begin; }
+    };
+    Bin before{}, bin{};
+    const auto count_of = [](const Bin& next, const Bin& to, double step) { return next.number == to.number + step ? next.count() : 0; };
+    const auto finish = [&](const Bin& behind) {
+      const std::size_t left = count_of(before, bin, -1), right = count_of(behind, bin, 1);
+      if (bin.count() < s_.threshold || bin.count() <= left || bin.count() < right || w.echoes.size() == s_.returns_max) return;
+      w.echoes.push_back(echo_of(heard, std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right), watts));
+      w.echoes.back().number = static_cast<std::uint8_t>(w.echoes.size());
+    };
+    for (std::size_t i = 0; i <= w.counts.size(); ++i) {
+      const double number = i < w.counts.size() ? std::floor(w.counts[i].time / s_.bin) : std::numeric_limits<double>::infinity();
+      if (bin.count() > 0 && number == bin.number) {
+        ++bin.end;
+        continue;
+      }
+      Bin behind{number, i, i + 1};
+      if (bin.count() > 0) {
+        while (behind.end < w.counts.size() && std::floor(w.counts[behind.end].time / s_.bin) == number) ++behind.end;
+        finish(behind);
+        before = bin;
+      }
+      bin = {number, i, i + 1};
+    }
+  }
+
+  /// Echo of some detections: their mean time, and the labels of the first reflection among them.
+  [[nodiscard]] static Echo echo_of(const Heard& heard, std::span<const Count> counts, double watts) noexcept {
+    double beyond = 0;
+    const Reflection* source = nullptr;
+    for (const Count& count : counts) {
+      beyond += count.time - counts.front().time;
+      if (!source && count.label != none) source = &heard.reflections[count.label];
+    }
+    const double number = static_cast<double>(counts.size());
+    Echo echo{.range = 0.5 * speed_of_light * (counts.front().time + beyond / number), .amplitude = number * watts};
+    if (!source) return echo;
+    echo.cos_incidence = source->cos_incidence;
+    echo.object = source->object;
+    echo.classification = source->classification;
+    return echo;
+  }
+
+  PhotonCountingSettings s_;
+  Form form_;
+  std::vector<Quantiles> known_;
+};
+
+static_assert(Detector<PhotonCounting<>>);
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

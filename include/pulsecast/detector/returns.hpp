@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_DETECTOR_RETURNS_HPP
+#define PULSECAST_DETECTOR_RETURNS_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/detector/adaptor.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Echoes of a pulse that an instrument reports.
+enum class ReturnMode : std::uint8_t {
+  first,               ///< the nearest
+  last,                ///< the farthest
+  strongest,           ///< that of the greatest amplitude; the nearest of equals
+  first_and_last,      ///< both; one, if they are the same
+  strongest_and_last,  ///< both; if they are the same, that and the second strongest
+  n_nearest,           ///< the first so many
+  n_strongest,         ///< the strongest so many, in order of range
+};
+
+/// Detector that keeps some of the echoes of another: `SelectedReturns{ReturnMode::strongest, FullWaveform{}}`. Kept echoes are numbered
+/// anew.
+template <Detector Inner>
+class SelectedReturns : public DetectorAdaptor<Inner> {
+ public:
+  /// `number` is that of `n_nearest` and `n_strongest`, from 1 to 255. @throws SettingError
+  SelectedReturns(ReturnMode mode, Inner inside, std::size_t number = 3)
+      : DetectorAdaptor<Inner>{validated(std::move(inside))}, mode_(mode), number_(number) {
+    require_within("SelectedReturns (number)", static_cast<double>(number), 1, 255, "");
+  }
+
+  /// Selected echoes of the detector inside.
+  template <class Workspace>
+  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
+    Detection d = this->inner.detect(heard, w);
+    const std::size_t n = d.echoes.size();
+    if (n < 2) return d;
+    switch (mode_) {
+      case ReturnMode::first:
+        d.echoes = d.echoes.first(1);
+        break;
+      case ReturnMode::last:
+        d.echoes = d.echoes.last(1);
+        break;
+      case ReturnMode::strongest:
+        d.echoes = keep_strongest(d.echoes, 1);
+        break;
+      case ReturnMode::first_and_last:
+        d.echoes[1] = d.echoes[n - 1];
+        d.echoes = d.echoes.first(2);
+        break;
+      case ReturnMode::strongest_and_last:
+        d.echoes = keep_strongest(d.echoes, 2, 1);
+        break;
+      case ReturnMode::n_nearest:
+        d.echoes = d.echoes.first(std::min(n, number_));
+        break;
+      case ReturnMode::n_strongest:
+        d.echoes = keep_strongest(d.echoes, number_);
+        break;
+    }
+    for (std::size_t e = 0; e < d.echoes.size(); ++e) d.echoes[e].number = static_cast<std::uint8_t>(e + 1);
+    return d;
+  }
+
+ private:
+  /// Removes the weakest echoes, the farther one of equals, until so many are left; `held` at the end stay. A pulse has few echoes.
+  static std::span<Echo> keep_strongest(std::span<Echo> echoes, std::size_t number, std::size_t held = 0) noexcept {
+    while (echoes.size() > number) {
+      std::size_t weakest = echoes.size() - 1 - held;
+      for (std::size_t e = weakest; e-- > 0;)
+        if (echoes[e].amplitude < echoes[weakest].amplitude) weakest = e;
+      std::move(echoes.begin() + static_cast<std::ptrdiff_t>(weakest) + 1, echoes.end(),
+                echoes.begin() + static_cast<std::ptrdiff_t>(weakest));
+      echoes = echoes.first(echoes.size() - 1);
+    }
+    return echoes;
+  }
+
+  ReturnMode mode_;
+  std::size_t number_;
+};
+
+template <Detector Inner>
+SelectedReturns(ReturnMode, Inner) -> SelectedReturns<Inner>;
+template <Detector Inner>
+SelectedReturns(ReturnMode, Inner, std::size_t) -> SelectedReturns<Inner>;
+
+/// Detector of an instrument that takes an echo for one of the last pulse, as several are in the air: ranges are folded into c / 2f of its
+/// pulse rate f. Echoes that arrive while a pulse leaves are lost. Ranges that the instrument resolves need no such detector.
+template <Detector Inner>
+class FoldedRanges : public DetectorAdaptor<Inner> {
+ public:
+  /// Takes the pulse rate [Hz], the detector inside, and the range behind the exit that is blind [m]. @throws SettingError
+  FoldedRanges(double pulse_rate, Inner inside, double blind = 0)
+      : DetectorAdaptor<Inner>{validated(std::move(inside))}, ambiguity_(0.5 * speed_of_light / pulse_rate), blind_(blind) {
+    require_within("FoldedRanges (pulse rate)", pulse_rate, 1, 1e12, "Hz");
+    require_within("FoldedRanges (blind)", blind, 0, ambiguity_, "m");
+  }
+
+  /// Range behind which ranges are folded [m].
+  [[nodiscard]] double ambiguity() const noexcept { return ambiguity_; }
+
+  /// Echoes of the detector inside, with folded ranges.
+  template <class Workspace>
+  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
+    Detection d = this->inner.detect(heard, w);
+    for (Echo& echo : d.echoes) echo.range = std::fmod(echo.range, ambiguity_);
+    const auto lost = std::remove_if(d.echoes.begin(), d.echoes.end(), [&](const Echo& echo) { return echo.range < blind_; });
+    d.echoes = d.echoes.first(static_cast<std::size_t>(lost - d.echoes.begin()));
+    std::sort(d.echoes.begin(), d.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
+    for (std::size_t e = 0; e < d.echoes.size(); ++e) d.echoes[e].number = static_cast<std::uint8_t>(e + 1);
+    return d;
+  }
+
+ private:
+  double ambiguity_, blind_;
+};
+
+template <Detector Inner>
+FoldedRanges(double, Inner) -> FoldedRanges<Inner>;
+template <Detector Inner>
+FoldedRanges(double, Inner, double) -> FoldedRanges<Inner>;
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif
