@@ -175,3 +175,47 @@ TEST_CASE("a table with a hole, a repeated angle or an impossible number is refu
   CHECK(with([](auto& e) { e[3].g = 1.01; }) == "LeafProjection::g is 1.01, but must be from 0 to 1");
   CHECK(with([](auto& e) { e[3].g = std::nan(""); }).find("LeafProjection::g is nan") != std::string::npos);
 }
+
+TEST_CASE("leaves send back as their mean squared cosine by their mean cosine, of any density") {
+  for (const Named& named : six()) {
+    CAPTURE(named.name);
+    for (const double zenith : {0.0, 0.3, pi / 4, 1.2, pi / 2}) {
+      constexpr int inclinations = 1000, azimuths = 1000;
+      double first = 0, second = 0;
+      for (int i = 0; i < inclinations; ++i) {
+        const double t = pi / 2 * (i + 0.5) / inclinations;
+        for (int j = 0; j < azimuths; ++j) {
+          const double azimuth = pi * (j + 0.5) / azimuths;
+          const double cosine = std::cos(zenith) * std::cos(t) + std::sin(zenith) * std::sin(t) * std::cos(azimuth);
+          first += named.density(t) * std::fabs(cosine);
+          second += named.density(t) * cosine * cosine;
+        }
+      }
+      CAPTURE(zenith);
+      CHECK(named.leaves.incidence_cosine(at_zenith(zenith)) == doctest::Approx(second / first).epsilon(1e-4));
+      CHECK(named.leaves.incidence_cosine(-7.0 * at_zenith(zenith)) == named.leaves.incidence_cosine(7.0 * at_zenith(zenith)));
+    }
+  }
+  CHECK(LeafAngles::spherical().incidence_cosine(axis::up) == doctest::Approx(2.0 / 3).epsilon(1e-12));
+}
+
+TEST_CASE("leaves that are all level or all upright send back as those do") {
+  // Source: of level ones G and its mean square are cos and cos^2; of upright ones (2/pi) sin and sin^2 / 2
+  for (const double zenith : {0.2, 0.7, 1.3}) {
+    CHECK(LeafAngles::ellipsoidal(1e5).incidence_cosine(at_zenith(zenith)) == doctest::Approx(std::cos(zenith)).epsilon(2e-3));
+    CHECK(LeafAngles::ellipsoidal(1e-5).incidence_cosine(at_zenith(zenith)) == doctest::Approx(pi / 4 * std::sin(zenith)).epsilon(2e-3));
+  }
+  // G of spherical leaves as a table
+  CHECK(LeafAngles::table({{0, 0.5},
+                           {0.15, 0.5},
+                           {0.3, 0.5},
+                           {0.45, 0.5},
+                           {0.6, 0.5},
+                           {0.75, 0.5},
+                           {0.9, 0.5},
+                           {1.05, 0.5},
+                           {1.2, 0.5},
+                           {1.35, 0.5},
+                           {1.5, 0.5}})
+            .incidence_cosine(axis::right) == doctest::Approx(2.0 / 3).epsilon(1e-6));
+}

@@ -646,8 +646,8 @@ TEST_CASE("no leaf is met at `near` itself, however dense they are") {
   CHECK(range(grid, {{0, 0, 1.5}, -axis::up, 0, 0.4}) == infinity);
 }
 
-TEST_CASE("a subray draws the same whatever bundle it comes in, and leaves have no direction") {
-  const VoxelGrid<TransmissiveVoxels> grid(slab(3, 1));
+TEST_CASE("a subray draws the same whatever bundle it comes in, and leaves are tilted against it by their mean, or not at all") {
+  const VoxelGrid<TransmissiveVoxels> grid(slab(3, 1)), flat(slab(3, 1), TransmissiveVoxels{.tilted_leaves = false});
   Generator random(433);
   RayBundle rays = random.cone({0, 0, 4}, -axis::up, 0.2, 40);
   rays.seed = 434;
@@ -660,6 +660,10 @@ TEST_CASE("a subray draws the same whatever bundle it comes in, and leaves have 
     alone.pulse = rays.pulse;
     alone.first_subray = 7 + static_cast<std::uint32_t>(j);
     CHECK(met(grid, alone).range[0] == all.range[j]);
-    if (all.met(j)) CHECK(grid.surface(all.primitive_of(j), rays, j).normal == Vec3{});
+    if (!all.met(j)) continue;
+    const Vec3 normal = grid.surface(all.primitive_of(j), rays, j).normal;
+    CHECK(std::fabs(length(normal) - 1) < 1e-14);
+    CHECK(std::fabs(dot(normal, normalize(rays.direction(j))) + 2.0 / 3) < 1e-9);
+    CHECK(flat.surface(all.primitive_of(j), rays, j).normal == Vec3{});
   }
 }

@@ -59,6 +59,7 @@ class LeafAngles {
       made.half_surface_ = 2;
     else
       made.half_surface_ = chi + (chi < 1 ? std::asin(eccentricity) / eccentricity : std::atanh(eccentricity) / (eccentricity * chi));
+    made.find_upright();
     return made;
   }
 
@@ -79,6 +80,7 @@ class LeafAngles {
     require_no_hole(reached, pi / 2, widest);
     LeafAngles made;
     made.table_ = SharedArray<LeafProjection>(std::move(entries));
+    made.find_upright();
     return made;
   }
 
@@ -89,12 +91,20 @@ class LeafAngles {
     return detail::interpolated(table_, std::atan2(level, steep), &LeafProjection::zenith, &LeafProjection::g);
   }
 
+  /// Cosine of incidence at which a Lambertian surface across the light sends back as much, per leaf area that the light meets, as the
+  /// leaves do: the mean squared cosine by the mean cosine, between light along a direction and normals of leaves. 2/3 for spherical ones.
+  [[nodiscard]] double incidence_cosine(const Vec3& direction) const noexcept {
+    const double up = direction.z * direction.z / dot(direction, direction);
+    const double mean = projection(direction), mean_square = upright_ * up + 0.5 * (1 - upright_) * (1 - up);
+    return mean > 0 ? std::min(mean_square / mean, 1.0) : 1;
+  }
+
   /// Memory held [byte].
   [[nodiscard]] std::size_t memory() const noexcept { return table_.memory(); }
 
   template <class Archive>
   void archive(Archive& a) {
-    a(chi_, half_surface_, table_);
+    a(chi_, half_surface_, upright_, table_);
   }
 
  private:
@@ -120,7 +130,21 @@ class LeafAngles {
     }
     LeafAngles made;
     made.table_ = SharedArray<LeafProjection>(std::move(entries));
+    made.find_upright();
     return made;
+  }
+
+  /// Finds the mean squared vertical component of the leaves' normals from G, by Simpson's rule: 1/3 and 16/3 of the integral of G times
+  /// Legendre's polynomial of degree 2 over the cosine of the zenith angle. Source: Funk-Hecke theorem; the polynomial's integral with the
+  /// magnitude of the cosine is 1/8.
+  void find_upright() noexcept {
+    constexpr int steps = 4096;
+    double sum = 0;
+    for (int i = 0; i <= steps; ++i) {
+      const double u = static_cast<double>(i) / steps, weight = i == 0 || i == steps ? 1 : i % 2 == 1 ? 4 : 2;
+      sum += weight * projection({std::sqrt(1 - u * u), 0, u}) * (1.5 * u * u - 0.5);
+    }
+    upright_ = std::clamp((1 + 16 * sum / (3 * steps)) / 3, 0.0, 1.0);
   }
 
   /// Nodes and weights of a quadrature over [0, 1], exact for polynomials up to degree 47.
@@ -167,6 +191,7 @@ class LeafAngles {
   }
 
   double chi_ = 1, half_surface_ = 2;  ///< shape of the ellipsoid; a sphere unless there is a table
+  double upright_ = 1.0 / 3;           ///< mean squared vertical component of the normals
   SharedArray<LeafProjection> table_;
 };
 

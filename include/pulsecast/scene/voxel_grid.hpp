@@ -159,14 +159,17 @@ struct ScaledVoxels {
 /// Transmittance along a path of length s is exp(-PAD G s). Each ray draws its optical depth once per part and consumes it from voxel to
 /// voxel. As the law is memoryless, this equals a draw per voxel, for any voxel size. Draws are independent between parts. A ray that
 /// begins inside counts its path from there. Density and paths are in metres of the part's own frame: scaling a plant keeps its
-/// transmittance. G is taken in that frame too, z being the vertical. Leaves have no single direction, so incidence is perpendicular.
+/// transmittance. G is taken in that frame too, z being the vertical. Leaves send back as tilted surfaces do: the cosine of incidence is
+/// their mean squared cosine by their mean cosine.
 /// Source: North 1996; Ross 1981.
 struct TransmissiveVoxels {
-  LeafAngles leaf_angles{};  ///< leaf inclinations of all voxels
+  LeafAngles leaf_angles{};   ///< leaf inclinations of all voxels
+  bool tilted_leaves = true;  ///< false: leaves send back as if all were across the light, as in HELIOS++
 
   template <class Archive>
   void archive(Archive& a) {
     leaf_angles.archive(a);
+    a(tilted_leaves);
   }
 
   /// Data of the voxels that this filling needs, by number of the voxel.
@@ -235,8 +238,13 @@ struct TransmissiveVoxels {
     }
 
     template <class Rays>
-    [[nodiscard]] Vec3 normal(const TransmissiveVoxels&, std::uint32_t, const VoxelIndex&, const Rays&, std::size_t) const noexcept {
-      return {};
+    [[nodiscard]] Vec3 normal(const TransmissiveVoxels& settings, std::uint32_t, const VoxelIndex&, const Rays& rays,
+                              std::size_t j) const noexcept {
+      if (!settings.tilted_leaves) return {};
+      const Vec3 along = pulsecast::normalize(rays.direction(j));
+      const double cosine = settings.leaf_angles.incidence_cosine(along);
+      const Vec3 aside = pulsecast::normalize(cross(along, std::fabs(along.x) < 0.5 ? axis::right : axis::up));  // any direction
+      return -cosine * along + std::sqrt(1 - cosine * cosine) * aside;
     }
 
     template <class Archive>
