@@ -51,6 +51,9 @@ void measure(const std::string& name, const Source& source, const wood::Scene& s
   BENCHMARK(std::string(name)) { return go(); };
 }
 
+template <EchoWidth Width>
+using Sampled = FullWaveform<Width>;
+
 template <template <EchoWidth> class Detector, class Source>
 void compare(const std::string& name, const Source& source, const wood::Scene& scene) {
   const std::uint64_t echoes = run(Survey{source, RingFootprint{3}, scene, Receiver{}, Detector<NoWidth>{}, seed}, {}).echoes;
@@ -62,7 +65,7 @@ void compare(const std::string& name, const Source& source, const wood::Scene& s
 template <class Source>
 void compare(const Source& source) {
   const wood::Scene scene = wood::scene(seed);
-  compare<FullWaveform>("FullWaveform", source, scene);
+  compare<Sampled>("FullWaveform", source, scene);
   compare<AnalyticWaveform>("AnalyticWaveform", source, scene);
 }
 

@@ -59,10 +59,10 @@ struct WatchedDetector : DetectorAdaptor<FullWaveform<>> {
   Counts* counts = nullptr;
 
   [[nodiscard]] Detection detect(const Heard& heard, FullWaveform<>::Workspace& w) const noexcept {
-    w.samples.clear();
+    w.window.clear();
     const Detection detection = inner.detect(heard, w);
     ++counts->detected;
-    if (w.samples.empty()) ++counts->in_closed_form;
+    if (w.window.empty()) ++counts->in_closed_form;
     return detection;
   }
 };

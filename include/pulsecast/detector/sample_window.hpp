@@ -39,6 +39,8 @@ class SampleWindow {
   /// Forgets all samples.
   void clear() noexcept { samples_.clear(); }
 
+  [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }  ///< true without samples
+
   /// Takes the next sample, of a number and a power [W]. Appends the peaks of a full window to `peaks` when more are to come.
   void take(double number, double power, bool more, const Search& search, std::vector<Peak>& peaks) noexcept {
     samples_.push_back(power);
