@@ -16,7 +16,7 @@ BEGIN {
   of["at"] = "Motion"; of["open"] = "Gated"; of["pulse"] = of["duration"] = "PulseSource"; of["share"] = of["offset"] = "Footprint"
   of["closest"] = "Target, and as the concept Geometry,"; of["surface"] = of["material_count"] = "Geometry"; of["order"] = "Accelerator"
   of["workspace"] = of["detect"] = "Detector"; of["width"] = "EchoWidth"; of["emitters"] = "PulseSource"
-  of["reflections_per_subray"] = of["trace"] = "Transport"; of["measured"] = "MeasuresBeam"
+  of["reflections"] = of["trace"] = "Transport"; of["measured"] = "MeasuresBeam"
   for (name in of) says[name] = "As the concept " of[name] " requires."
   says["size"] = "Number of elements."
   says["data"] = says["begin"] = "Pointer to the first element."

@@ -309,7 +309,7 @@ static_assert(Transport<DirectLight, LeastRayTarget> && TracesVelocity<DirectLig
 static_assert(!VelocityTarget<LeastRayTarget>, "it has no surfaces");
 
 struct UnsizedTransport : LeastTransport {
-  void reflections_per_subray() const = delete;
+  void reflections(std::size_t) const = delete;
 };
 static_assert(!Transport<UnsizedTransport, LeastRayTarget>, "it does not tell how many reflections there may be");
 

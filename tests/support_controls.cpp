@@ -200,7 +200,7 @@ struct FlawedTransport {
     DirectLight::Workspace inside;
     int uses = 0;
   };
-  std::size_t reflections_per_subray() const noexcept { return 1; }
+  std::size_t reflections(std::size_t subrays) const noexcept { return subrays; }
   Workspace workspace(std::size_t) const { return {}; }
   template <class Map>
   TransportResult trace(const Map& map, const Illumination& light, Workspace& w, std::span<Reflection> reflections) const noexcept {

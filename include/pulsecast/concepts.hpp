@@ -227,17 +227,18 @@ struct TransportResult {
   std::size_t reflections = 0;  ///< number of reflections
   Fate fate = Fate::missed;     ///< fate of a pulse without reflections: `missed`, `out_of_range` or `absorbed`
   bool nan = false;             ///< true if the map answered with NaN: an error of the run
+  bool spread = false;          ///< true if the light was spread over a plane: `spread_over_plane`
 };
 
 /// Paths of light from the beam to surfaces and back. Sets the first of `reflections`, in any order. There is room for
-/// `reflections_per_subray()` of each subray. Its only writable memory is a `Workspace`, made once per worker by `workspace(subrays)`.
+/// `reflections(n)` of a pulse of n subrays. Its only writable memory is a `Workspace`, made once per worker by `workspace(subrays)`.
 /// Law: pure; the terms of the ledger sum to the energy sent to 1e-6; `received` is the sum of the reflections' powers, times the pulse
 /// length, and at most `scattered`; reflections are of positive power, from inside the gate; each of `Illumination::record` is set.
 /// Not required: `trace<true>(...)`, which also sets velocities: `TracesVelocity`.
 template <class T, class Map>
 concept Transport = std::copyable<T> && requires(const T t, const Map& map, const Illumination& light, std::size_t subrays,
                                                  decltype(t.workspace(subrays))& workspace, std::span<Reflection> reflections) {
-  { t.reflections_per_subray() } noexcept -> std::same_as<std::size_t>;
+  { t.reflections(subrays) } noexcept -> std::same_as<std::size_t>;
   { t.trace(map, light, workspace, reflections) } noexcept -> std::same_as<TransportResult>;
 };
 

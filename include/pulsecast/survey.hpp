@@ -35,6 +35,7 @@ struct Outcome {
   std::span<const Echo> echoes;          ///< echoes, sorted by reported range
   std::span<const float> waveform;       ///< received power [W]; empty if not kept
   EnergyLedger energy{};                 ///< energy by the end of its paths; zero if nothing was sent [J]
+  bool spread = false;                   ///< true if the light was spread over a plane: `spread_over_plane`
   std::span<const SubrayHit> subrays{};  ///< all subrays, if the footprint is `WithSubrayRecord`
   PulseError error = PulseError::none;   ///< makes the other members worthless, unless `none`
 };
@@ -110,9 +111,9 @@ class Survey {
   [[nodiscard]] Workspace workspace() const {
     std::size_t most = 0;
     for (const Unit& unit : receivers_) most = std::max(most, unit.footprint.size());
-    const std::size_t each = transport_.reflections_per_subray();
-    Workspace w{transport_.workspace(most), std::vector<Reflection>(most * each), std::vector<SubrayHit>(recorded_subrays()), {}};
-    for (const Unit& unit : receivers_) w.detectors.push_back(unit.detector.workspace(unit.footprint.size() * each));
+    Workspace w{
+        transport_.workspace(most), std::vector<Reflection>(transport_.reflections(most)), std::vector<SubrayHit>(recorded_subrays()), {}};
+    for (const Unit& unit : receivers_) w.detectors.push_back(unit.detector.workspace(transport_.reflections(unit.footprint.size())));
     return w;
   }
 
@@ -165,6 +166,7 @@ class Survey {
     }
     const TransportResult result = trace(*pulse, i, constants, w);
     out.energy = result.energy;
+    out.spread = result.spread;
     out.subrays = w.subrays;
     if (result.reflections == 0 || result.nan || pulse->reported) out.error = error_of(*pulse, result.nan);
     out.shot.fate = result.reflections == 0 ? result.fate : Fate::below_threshold;

@@ -111,7 +111,7 @@ struct LeastFootprint {
 /// Light that meets nothing, whatever is there.
 struct LeastTransport {
   struct Workspace {};
-  std::size_t reflections_per_subray() const noexcept { return 0; }
+  std::size_t reflections(std::size_t) const noexcept { return 0; }
   Workspace workspace(std::size_t) const { return {}; }
   template <class Map>
   TransportResult trace(const Map&, const Illumination& light, Workspace&, std::span<Reflection>) const noexcept {

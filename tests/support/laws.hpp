@@ -260,7 +260,7 @@ template <class T, class Map>
   const Emitter emitter{.laser = {.divergence = 0.02}};
   const SubrayDirections beam(footprint, emitter);
   const LinkBudget budget(receiver, emitter.laser);
-  const std::size_t subrays = footprint.size(), most = subrays * transport.reflections_per_subray();
+  const std::size_t subrays = footprint.size(), most = transport.reflections(subrays);
   std::vector<Reflection> reflections, others;
   auto used = transport.workspace(subrays);
   for (std::size_t k = 0; k < poses.size(); ++k) {

@@ -60,7 +60,7 @@ struct Foil {
   double radius = 5, scattered = 1.0 / 3, passed = 0.5;
   DirectLight behind{};
   using Workspace = DirectLight::Workspace;
-  std::size_t reflections_per_subray() const noexcept { return 2; }
+  std::size_t reflections(std::size_t subrays) const noexcept { return 2 * subrays; }
   Workspace workspace(std::size_t subrays) const { return behind.workspace(subrays); }
   template <class Map>
   TransportResult trace(const Map& map, const Illumination& light, Workspace& w, std::span<Reflection> reflections) const noexcept {

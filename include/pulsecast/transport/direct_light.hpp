@@ -13,18 +13,24 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/plane_spread.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
 /// Transport of light that each subray's first surface scatters straight back. The rest of the light is not followed.
 struct DirectLight {
+  bool spread_planes = true;  ///< spreads light over smooth planes whose subrays would be echoes of their own: `spread_over_plane`
+
   /// Scratch memory of one worker.
   struct Workspace {
     std::array<Hit, RayBundle::capacity> hits;  ///< hits of a bundle
     bool met_nothing = false;                   ///< true if the last pulse met nothing
   };
 
-  [[nodiscard]] std::size_t reflections_per_subray() const noexcept { return 1; }
+  /// Room for the reflections of a pulse of so many subrays.
+  [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
+    return spread_planes && subrays > 2 ? std::max(subrays, plane_reflections_max) : subrays;
+  }
   [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
 
   /// Traces all subrays. After a pulse that met nothing, the beam's cone is tested first: the next one often meets nothing, too. Others pay
@@ -42,6 +48,8 @@ struct DirectLight {
     }
     trace_subrays<with_velocity>(map, light, w, reflections, result);
     w.met_nothing = result.fate == Fate::missed;
+    if (!with_velocity && spread_planes && light.subrays > 2 && result.reflections == light.subrays && light.beam.from_a_point())
+      result.spread = spread_over_plane(light, reflections, result.reflections);
     return result;
   }
 

@@ -246,7 +246,7 @@ class LoadedSimulation final : public Simulation {
     };
     using Pipeline = Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, FullWaveform<Width>>;
     auto units = ReceiverGroups(survey_.scanner).units(scanner, receiver);
-    pipeline_ = std::make_unique<SurveyOf<Pipeline>>(Pipeline(compiled_->source, std::move(units), *scene_, seed_));
+    pipeline_ = std::make_unique<SurveyOf<Pipeline>>(Pipeline(compiled_->source, std::move(units), *scene_, DirectLight{.spread_planes = false}, seed_));
   }
 
   SurveySettings survey_;
