@@ -532,7 +532,7 @@ TEST_CASE("echoes stand in order of the ranges that are reported, each with its 
       if (e > 0) CHECK(echoes[e - 1].range <= echo.range);
       CHECK(echo.number == e + 1);
       CHECK(same.number == echo.object);
-      CHECK(echo.range == same.range + noise.at(same.range, 1, normal({5, i, same.number, Purpose::range_noise})));
+      CHECK(echo.range == same.range + noise.at(Echo{.range = same.range}, normal({5, i, same.number, Purpose::range_noise})));
       CHECK(echo.amplitude == same.amplitude);
       CHECK(echo.reflectance == same.reflectance);
     }
