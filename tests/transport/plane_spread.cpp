@@ -91,6 +91,8 @@ TEST_CASE("steps, rough surfaces and steep pulses are left alone") {
   CHECK(echoes.size() == 2);
   CHECK(!pulse_on({.range = 3000, .tilt = 70_deg, .deeper = 10}, laser, LatticeFootprint(19), true, echoes).spread);
   CHECK(!pulse_on({.range = 3000, .tilt = 70_deg}, laser, SingleRay{}, true, echoes).spread);
+  CHECK(pulse_on({.range = 3000, .tilt = 60_deg}, laser, LatticeFootprint(100), true, echoes).spread);
+  CHECK(!pulse_on({.range = 3000, .tilt = 60_deg}, laser, LatticeFootprint(5000), true, echoes).spread);  // dense enough
 }
 
 TEST_CASE("runs count the pulses that were spread") {

@@ -76,7 +76,7 @@ inline constexpr std::size_t plane_reflections_max = 2048;  ///< greatest number
 ///
 /// They are so near to each other that their sum has a single maximum. Derived for pulses of a `PulseShape`, whose spectrum falls as the
 /// cube of the frequency: the ripple of a comb of spacing d is 2 (d / 2 pi tau)^3, and its curvature is less than that of the whole echo,
-/// of a deviation s, if d is below pi tau^3 / s^2, with all in metres of range.
+/// of a deviation s, if d is below pi tau^3 / s^2, with all in metres of range. Four times as many subrays are dense enough themselves.
 ///
 /// `reflections` begins with those of all subrays, in their order, of which there are `count`; its size is the room for others. Returns
 /// true if it was done, with their number in `count`.
@@ -92,12 +92,14 @@ inline constexpr std::size_t plane_reflections_max = 2048;  ///< greatest number
   const MetPlane plane(light.beam, met);
   if (!(plane.farthest_from(light.beam, met) < 0.1 * deviation)) return false;
 
-  constexpr double reach = 3;  // deviations of the beam
+  constexpr double reach = 4;  // deviations of the beam
   const double begin = plane.range_at(-reach, light.emitter), end = plane.range_at(reach, light.emitter);
   if (!(begin > 0 && end > begin)) return false;
   const double spread = (end - begin) / (2 * reach),
                spacing = std::min(tau, 0.5 * pi * tau * tau * tau / (spread * spread + deviation * deviation));
   const double parts = std::min(std::ceil((end - begin) / spacing) + 1, static_cast<double>(reflections.size()));
+
+  if (static_cast<double>(count) >= 4 * parts) return false;  // dense enough
 
   double power = 0;
   for (const Reflection& r : met) power += r.power;
