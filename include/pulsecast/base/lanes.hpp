@@ -103,7 +103,9 @@ struct TickLanes {
 
 /// Vectors, one in each lane.
 struct Vec3Lanes {
-  simd::Doubles x{}, y{}, z{};
+  simd::Doubles x{};  ///< first components
+  simd::Doubles y{};  ///< second components
+  simd::Doubles z{};  ///< third components
 
   Vec3Lanes() = default;
   /// Of components.
@@ -130,7 +132,10 @@ struct Vec3Lanes {
 
 /// Rotations, one in each lane: unit quaternions.
 struct RotationLanes {
-  simd::Doubles w = in_all_lanes(1), x{}, y{}, z{};
+  simd::Doubles w = in_all_lanes(1);  ///< real parts
+  simd::Doubles x{};                  ///< first imaginary parts
+  simd::Doubles y{};                  ///< second imaginary parts
+  simd::Doubles z{};                  ///< third imaginary parts
 
   RotationLanes() = default;
   /// Of components.

@@ -90,7 +90,7 @@ class BandLimitedSamples {
     [[nodiscard]] double begin() const noexcept { return pulse.begin() - pulse.peak(); }
     [[nodiscard]] double end() const noexcept { return pulse.end() - pulse.peak(); }
   };
-  [[nodiscard]] Shape shape() const noexcept { return {pulses_.pulse}; }
+  [[nodiscard]] Shape shape() const noexcept { return {pulses_.pulse}; }          ///< shape of the pulses of these samples
   [[nodiscard]] double start() const noexcept { return start_; }                  ///< number of the first sample
   [[nodiscard]] double delay() const noexcept { return pulses_.delay(); }         ///< of a pulse's maximum in the samples [s]
   [[nodiscard]] double background() const noexcept { return chain_.background; }  ///< mean that is not in the samples [W]

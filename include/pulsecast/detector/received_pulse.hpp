@@ -80,9 +80,10 @@ class ReceivedPulse {
 
   /// Weights of the four rows, from `first` on, whose sum are the samples of a pulse from `first_sample(arrival)` on.
   struct Phase {
-    std::size_t first;
+    std::size_t first;              ///< number of the first row
     std::array<double, 4> weights;  ///< Lagrange's polynomial
   };
+  /// Rows and weights for a pulse whose peak arrives before the low-pass at a time [s].
   [[nodiscard]] Phase phase(double arrival) const noexcept {
     const double place = (first_sample(arrival) * interval_ - arrival - begin_) / step_;
     const double whole = std::min(std::floor(place), static_cast<double>(phases_ - 1)), x = place - whole;

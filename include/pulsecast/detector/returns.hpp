@@ -90,8 +90,10 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
   std::size_t number_;
 };
 
+/// Takes the type of the detector inside.
 template <Detector Inner>
 SelectedReturns(ReturnMode, Inner) -> SelectedReturns<Inner>;
+/// As above, with a number of returns.
 template <Detector Inner>
 SelectedReturns(ReturnMode, Inner, std::size_t) -> SelectedReturns<Inner>;
 
@@ -126,8 +128,10 @@ class FoldedRanges : public DetectorAdaptor<Inner> {
   double ambiguity_, blind_;
 };
 
+/// Takes the type of the detector inside.
 template <Detector Inner>
 FoldedRanges(double, Inner) -> FoldedRanges<Inner>;
+/// As above, with a range that is blind.
 template <Detector Inner>
 FoldedRanges(double, Inner, double) -> FoldedRanges<Inner>;
 
