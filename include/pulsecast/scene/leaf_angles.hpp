@@ -78,10 +78,7 @@ class LeafAngles {
       require_no_hole(reached, entries[i].zenith, widest);
     }
     require_no_hole(reached, pi / 2, widest);
-    LeafAngles made;
-    made.table_ = SharedArray<LeafProjection>(std::move(entries));
-    made.find_upright();
-    return made;
+    return of_entries(std::move(entries));
   }
 
   /// G for light along a direction of any non-zero length, z being the vertical; within 1e-6 of the defining integral.
@@ -128,8 +125,12 @@ class LeafAngles {
       const double zenith = pi / 2 * static_cast<double>(i) / intervals;
       entries[i] = {zenith, projection(density, zenith, nodes)};
     }
+    return of_entries(std::move(entries));
+  }
+
+  static LeafAngles of_entries(std::vector<LeafProjection> ascending) {
     LeafAngles made;
-    made.table_ = SharedArray<LeafProjection>(std::move(entries));
+    made.table_ = SharedArray<LeafProjection>(std::move(ascending));
     made.find_upright();
     return made;
   }

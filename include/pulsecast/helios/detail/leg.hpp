@@ -29,6 +29,20 @@
 /// Pulses of one leg of a survey, for any platform and scanner.
 namespace PULSECAST_NAMESPACE::helios {
 
+namespace detail {
+/// Calls a function with a path, own or shared.
+template <class AnyPath, class Function>
+auto visit_path(const AnyPath& path, const Function& function) noexcept {
+  const auto call = [&](const auto& p) noexcept {
+    if constexpr (Trajectory<std::remove_cvref_t<decltype(p)>>)
+      return function(p);
+    else
+      return function(*p);
+  };
+  return std::visit(call, path);
+}
+}  // namespace detail
+
 /// Path of any platform from a start time on. Legs of one plan share it.
 struct SurveyPath {
   using AnyPath = std::variant<Tripod, StraightLine, std::shared_ptr<const Waypoints>, std::shared_ptr<const MulticopterFlight>,
@@ -37,25 +51,12 @@ struct SurveyPath {
   Tick start{};  ///< start time on the clock of the plan
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
-    return std::visit(
-        [&](const auto& p) noexcept {
-          if constexpr (Trajectory<std::remove_cvref_t<decltype(p)>>)
-            return p.at(start + t);
-          else
-            return p->at(start + t);
-        },
-        path);
+    return detail::visit_path(path, [&](const auto& p) noexcept { return p.at(start + t); });
   }
 
   /// As the concept MovesInLanes requires.
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
-    const auto find = [&](const auto& p) noexcept {
-      if constexpr (Trajectory<std::remove_cvref_t<decltype(p)>>)
-        return find_poses(p, t + start, all_lanes(), poses);
-      else
-        return find_poses(*p, t + start, all_lanes(), poses);
-    };
-    return std::visit(find, path);
+    return detail::visit_path(path, [&](const auto& p) noexcept { return find_poses(p, t + start, all_lanes(), poses); });
   }
 };
 
