@@ -4,11 +4,18 @@
 #define PULSECAST_DETECTOR_ADAPTOR_HPP
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE {
+
+/// Numbers the echoes of a pulse from 1, in their order.
+inline void number_echoes(std::span<Echo> echoes) noexcept {
+  for (std::size_t e = 0; e < echoes.size(); ++e) echoes[e].number = static_cast<std::uint8_t>(e + 1);
+}
 
 /// Base of detectors around another one, `inner`. It hands on whatever a derived detector does not define itself, so that none of the
 /// optional members is lost:

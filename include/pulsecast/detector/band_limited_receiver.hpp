@@ -21,6 +21,7 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/by_pulse_length.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/filtered_noise.hpp>
 #include <pulsecast/detector/pulse_form.hpp>
@@ -35,7 +36,6 @@ namespace detail {
 
 /// Pulses of one length behind a receiver.
 struct ReceivedPulses {
-  double pulse_length;         ///< full width at half maximum before the low-pass [s]
   LowPass filter;              ///< of the receiver
   ReceivedPulse pulse;         ///< behind it
   std::vector<double> taps{};  ///< of the matched filter; none without one
@@ -239,10 +239,10 @@ class BandLimitedReceiver {
 
   /// Computes what pulses of a laser need, before the first of them.
   void prepare(const Laser& laser, const WaveformSettings& s) {
-    if (of(laser.pulse_length)) return;
+    if (known_.find(laser)) return;
     const LowPass filter = chain_.filter(laser.pulse_length);
     const auto made = std::make_shared<detail::ReceivedPulses>(
-        detail::ReceivedPulses{laser.pulse_length, filter, ReceivedPulse(form_, laser.pulse_length, filter, s.sample_interval)});
+        detail::ReceivedPulses{filter, ReceivedPulse(form_, laser.pulse_length, filter, s.sample_interval)});
     if (chain_.matched_filter) {
       const double step = s.sample_interval;
       const auto first = static_cast<std::int64_t>(std::floor(made->pulse.begin() / step));
@@ -255,7 +255,7 @@ class BandLimitedReceiver {
       for (double& tap : made->taps) tap /= energy;
       made->first_tap = first;
     }
-    known_.push_back(made);
+    known_.add(laser, made);
   }
 
   /// Takes away noise, saturation and the steps of the digitiser.
@@ -267,11 +267,11 @@ class BandLimitedReceiver {
   /// Scratch memory for the pulses that were prepared.
   [[nodiscard]] Workspace workspace() const {
     std::size_t samples = 1, taps = 0, phases = 0;
-    for (const auto& pulses : known_) {
+    known_.each([&](const auto& pulses) {
       samples = std::max(samples, pulses->pulse.stride());
       phases = std::max(phases, pulses->pulse.rows());
       taps = std::max(taps, pulses->taps.size());
-    }
+    });
     return {std::vector<double>(std::bit_ceil(samples)), std::vector<double>(phases),
             std::vector<double>(taps == 0 ? 0 : std::bit_ceil(taps))};
   }
@@ -280,7 +280,7 @@ class BandLimitedReceiver {
   /// too far apart, and for receivers whose samples are more than the sum of the pulses.
   [[nodiscard]] std::optional<OnlyPeak> only_peak(const WaveformSettings& s, const Heard& heard) const noexcept {
     if (!is_linear() || heard.reflections.empty()) return {};
-    const ReceivedPulse& pulse = of(heard.emitter.laser.pulse_length)->pulse;
+    const ReceivedPulse& pulse = (*known_.find(heard.emitter.laser))->pulse;
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
     for (const Reflection& r : heard.reflections) {
       if (!can_count(r, s.sample_interval)) return {};
@@ -322,9 +322,9 @@ class BandLimitedReceiver {
   /// As the concept WaveformReceiver requires; for pulses that were prepared.
   [[nodiscard]] BandLimitedSamples samples(const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
                                            double /*width_tail*/, Workspace& w) const noexcept {
-    const detail::ReceivedPulses* pulses = of(heard.emitter.laser.pulse_length);
+    const auto* pulses = known_.find(heard.emitter.laser);
     PULSECAST_ASSERT(pulses != nullptr);
-    return {chain_, *pulses, s, heard, reflections, w};
+    return {chain_, **pulses, s, heard, reflections, w};
   }
 
  private:
@@ -333,15 +333,9 @@ class BandLimitedReceiver {
     return !chain_.noisy() && !chain_.shot_noise && chain_.saturation == 0 && chain_.full_scale == 0 && !chain_.matched_filter;
   }
 
-  [[nodiscard]] const detail::ReceivedPulses* of(double pulse_length) const noexcept {
-    for (const auto& pulses : known_)
-      if (pulses->pulse_length == pulse_length) return pulses.get();
-    return nullptr;
-  }
-
   ReceiverChain chain_;
   Form form_;
-  std::vector<std::shared_ptr<const detail::ReceivedPulses>> known_;  ///< shared by copies
+  ByPulseLength<std::shared_ptr<const detail::ReceivedPulses>> known_;  ///< shared by copies
 };
 
 }  // namespace PULSECAST_NAMESPACE

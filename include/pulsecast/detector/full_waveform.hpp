@@ -16,6 +16,7 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/by_pulse_length.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
 #include <pulsecast/detector/peaks.hpp>
@@ -35,6 +36,7 @@ concept WaveformReceiver = std::copyable<R> &&
     requires(R& any, const R r, const Laser& laser, const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
              double width_tail, typename R::Workspace& w, bool& more) {
   any.prepare(laser, s);
+  any.silence();
   { r.workspace() } -> std::same_as<typename R::Workspace>;
   { r.samples(s, heard, reflections, width_tail, w).begin_section() }
   noexcept->std::same_as<bool>;
@@ -74,9 +76,7 @@ class FullWaveform {
   void prepare(const Laser& laser) {
     validate(laser);
     receiver_.prepare(laser, s_);
-    const auto known = [&](const Correction& c) { return c.pulse_length == laser.pulse_length; };
-    if (!reads_samples() || std::any_of(corrections_.begin(), corrections_.end(), known)) return;
-    corrections_.push_back(correction_for(laser));
+    if (reads_samples() && !corrections_.find(laser)) corrections_.add(laser, correction_for(laser));
   }
 
   /// Width of a laser's outgoing pulse, by the measure of its echoes [s]. @throws SettingError as `validate`
@@ -98,7 +98,11 @@ class FullWaveform {
   /// Scratch memory for pulses of up to `reflections` reflections, of lasers that were prepared.
   [[nodiscard]] Workspace workspace(std::size_t reflections) const {
     Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(reflections), receiver_.workspace()};
-    w.peaks.reserve(std::max(reflections, max_peaks));
+    const bool noiseless = [&] {
+      if constexpr (ideal) return receiver_.none();
+      return false;
+    }();
+    w.peaks.reserve(noiseless ? reflections : std::max(reflections, max_peaks));
     w.echoes.reserve(std::min(w.peaks.capacity(), s_.returns_max));
     w.record.reserve(s_.record_capacity());
     return w;
@@ -141,7 +145,7 @@ class FullWaveform {
     }
     keep_echoes(s_, w.peaks);
     const EchoTiming timing = samples.independent_noise() && s_.timing == EchoTiming::true_range ? EchoTiming::peak : s_.timing;
-    const Correction* correction = find_correction(laser);
+    const Correction* correction = corrections_.find(laser);
     for (Peak& peak : w.peaks) {
       if (correction) peak.mark = correction->arrival(peak.mark, s_.sample_interval);
       w.echoes.push_back(echo_of(peak, reflections, samples.shape(), timing, w.echoes.size() + 1));
@@ -156,7 +160,6 @@ class FullWaveform {
   /// Time of the echo of a flat target less its arrival, by the place of the arrival between two samples.
   struct Correction {
     static constexpr std::size_t places = 16;
-    double pulse_length = 0;                ///< full width at half maximum [s]
     std::array<double, places + 1> time{};  ///< at evenly spaced places [s]
 
     /// Arrival of the flat target that would have an echo at this time [s].
@@ -176,25 +179,16 @@ class FullWaveform {
     return s_.timing != EchoTiming::true_range && !(ideal && s_.timing == EchoTiming::peak);
   }
 
-  [[nodiscard]] const Correction* find_correction(const Laser& laser) const noexcept {
-    for (const Correction& c : corrections_)
-      if (c.pulse_length == laser.pulse_length) return &c;
-    return nullptr;
-  }
-
   /// Correction for a laser, from echoes without noise whose peaks are ten times the threshold.
   [[nodiscard]] Correction correction_for(const Laser& laser) const {
     FullWaveform quiet = *this;
-    if constexpr (ideal)
-      quiet.receiver_ = {};
-    else
-      quiet.receiver_.silence();
+    quiet.receiver_.silence();
     quiet.s_.record_length = 0;
     quiet.s_.threshold = s_.threshold > 0 ? s_.threshold : 1;
     Workspace w = quiet.workspace(1);
     const Emitter emitter{.laser = laser};
     const double first = (8192 + std::floor(100 * laser.pulse_length / s_.sample_interval)) * s_.sample_interval;
-    Correction c{.pulse_length = laser.pulse_length};
+    Correction c;
     for (std::size_t k = 0; k <= Correction::places; ++k) {
       const double arrival = first + static_cast<double>(k) / Correction::places * s_.sample_interval;
       Reflection reflection{.range = 0.5 * speed_of_light * arrival, .power = 10 * quiet.s_.threshold};
@@ -208,13 +202,9 @@ class FullWaveform {
   template <class Only>
   [[nodiscard]] Detection detection_of(const Only& only, const Laser& laser, std::vector<Echo>& echoes) const noexcept {
     if (only.height < s_.threshold) return {};
-    const Correction* correction = find_correction(laser);
+    const Correction* correction = corrections_.find(laser);
     const double time = correction ? correction->arrival(only.time, s_.sample_interval) : only.time;
-    echoes.push_back({.range = 0.5 * speed_of_light * time,
-                      .amplitude = only.height,
-                      .cos_incidence = only.strongest->cos_incidence,
-                      .object = only.strongest->object,
-                      .classification = only.strongest->classification});
+    echoes.push_back(echo_from(*only.strongest, 0.5 * speed_of_light * time, only.height));
     return {echoes, {}, 0};
   }
 
@@ -246,7 +236,7 @@ class FullWaveform {
   WaveformSettings s_;
   Width width_;
   Receiver receiver_;
-  std::vector<Correction> corrections_;  ///< of the lasers that were prepared
+  ByPulseLength<Correction> corrections_;
 };
 
 static_assert(Detector<FullWaveform<>>);

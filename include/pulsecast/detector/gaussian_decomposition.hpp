@@ -7,15 +7,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <numbers>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/adaptor.hpp>
+#include <pulsecast/detector/by_pulse_length.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -149,8 +148,8 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
   /// Prepares the detector inside, and finds the place of a flat target. @throws SettingError as that does
   void prepare(const Laser& laser) {
     if constexpr (PreparesForLasers<Inner>) this->inner.prepare(laser);
-    if (find(laser)) return;
-    Place place{laser.pulse_length, 0};
+    if (beyond_.find(laser)) return;
+    double beyond = 0;
     auto w = this->workspace(1);
     const Emitter emitter{.laser = laser};
     Reflection one{.range = 0.5 * speed_of_light * 100 * laser.pulse_length, .power = 1};
@@ -159,40 +158,29 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     const Detection d = this->inner.detect(heard, w);
     if (d.echoes.size() == 1) {
       decompose(d, laser, d.echoes);
-      place.beyond = d.echoes[0].range - expected;
+      beyond = d.echoes[0].range - expected;
     }
-    places_.push_back(place);
+    beyond_.add(laser, beyond);
   }
 
   /// Echoes of the detector inside, by the decomposition of its waveform.
   template <class Workspace>
   [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
     const Detection d = this->inner.detect(heard, w);
-    const Place* place = find(heard.emitter.laser);
+    const double* beyond = beyond_.find(heard.emitter.laser);
     const double apart = 2 * speed_of_light * heard.emitter.laser.pulse_length;  // of echoes that do not overlap [m]
     for (std::size_t first = 0, last = 0; first < d.echoes.size(); first = last) {
       last = first + 1;
       while (last < d.echoes.size() && d.echoes[last].range - d.echoes[last - 1].range < apart) ++last;
-      if (decompose(d, heard.emitter.laser, d.echoes.subspan(first, last - first)) && place)
-        for (Echo& echo : d.echoes.subspan(first, last - first)) echo.range -= place->beyond;
+      if (decompose(d, heard.emitter.laser, d.echoes.subspan(first, last - first)) && beyond)
+        for (Echo& echo : d.echoes.subspan(first, last - first)) echo.range -= *beyond;
     }
     std::sort(d.echoes.begin(), d.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
-    for (std::size_t e = 0; e < d.echoes.size(); ++e) d.echoes[e].number = static_cast<std::uint8_t>(e + 1);
+    number_echoes(d.echoes);
     return d;
   }
 
  private:
-  /// Range of a flat target beyond the true one.
-  struct Place {
-    double pulse_length, beyond;  ///< full width at half maximum [s]; [m]
-  };
-
-  [[nodiscard]] const Place* find(const Laser& laser) const noexcept {
-    for (const Place& place : places_)
-      if (place.pulse_length == laser.pulse_length) return &place;
-    return nullptr;
-  }
-
   /// Replaces range, amplitude and width of overlapping echoes; false if there is no fit.
   bool decompose(const Detection& d, const Laser& laser, std::span<Echo> echoes) const noexcept {
     if (echoes.empty() || echoes.size() > detail::GaussianSum::most || d.waveform.empty()) return false;
@@ -215,7 +203,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
     return true;
   }
 
-  std::vector<Place> places_;
+  ByPulseLength<double> beyond_;  ///< range of a flat target beyond the true one [m]
 };
 
 }  // namespace PULSECAST_NAMESPACE

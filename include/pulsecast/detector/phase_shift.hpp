@@ -15,6 +15,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/pulse_sum.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -94,11 +95,7 @@ class PhaseShift {
       amplitude = std::hypot(in_phase, quadrature);
     }
     if (!(amplitude >= s_.threshold) || range < 0) return {};
-    w.echo = {.range = range,
-              .amplitude = amplitude,
-              .cos_incidence = strongest->cos_incidence,
-              .object = strongest->object,
-              .classification = strongest->classification};
+    w.echo = echo_from(*strongest, range, amplitude);
     return {{&w.echo, 1}, {}, 0};
   }
 

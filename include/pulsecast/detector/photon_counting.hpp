@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,6 +16,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/by_pulse_length.hpp>
 #include <pulsecast/detector/pulse_form.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
 
@@ -74,7 +74,7 @@ class PhotonCounting {
 
   /// Computes the distribution of photons over a laser's pulse, before the first of them.
   void prepare(const Laser& laser) {
-    if (!quantiles_of(laser)) known_.push_back({laser.pulse_length, std::make_shared<const std::vector<double>>(quantiles(laser))});
+    if (!quantiles_.find(laser)) quantiles_.add(laser, quantiles(laser));
   }
 
   /// Detection of a photoelectron.
@@ -101,7 +101,7 @@ class PhotonCounting {
 
   /// Echoes of the pulses of a laser that was prepared. Photons are drawn from the seed and pulse of `heard.key`.
   [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    const std::vector<double>* quantiles = quantiles_of(heard.emitter.laser);
+    const std::vector<double>* quantiles = quantiles_.find(heard.emitter.laser);
     PULSECAST_ASSERT(quantiles != nullptr);
     w.counts.clear();
     w.echoes.clear();
@@ -132,17 +132,6 @@ class PhotonCounting {
     }
     double exponential() noexcept { return -std::log(uniform()); }
   };
-
-  struct Quantiles {
-    double pulse_length;
-    std::shared_ptr<const std::vector<double>> times;
-  };
-
-  [[nodiscard]] const std::vector<double>* quantiles_of(const Laser& laser) const noexcept {
-    for (const Quantiles& q : known_)
-      if (q.pulse_length == laser.pulse_length) return q.times.get();
-    return nullptr;
-  }
 
   /// Times about the mean of a pulse before which evenly spaced shares of its photons are sent [s].
   [[nodiscard]] std::vector<double> quantiles(const Laser& laser) const {
@@ -259,17 +248,12 @@ class PhotonCounting {
       if (!source && count.label != none) source = &heard.reflections[count.label];
     }
     const double number = static_cast<double>(counts.size());
-    Echo echo{.range = 0.5 * speed_of_light * (counts.front().time + beyond / number), .amplitude = number * watts};
-    if (!source) return echo;
-    echo.cos_incidence = source->cos_incidence;
-    echo.object = source->object;
-    echo.classification = source->classification;
-    return echo;
+    return echo_from(source ? *source : Reflection{}, 0.5 * speed_of_light * (counts.front().time + beyond / number), number * watts);
   }
 
   PhotonCountingSettings s_;
   Form form_;
-  std::vector<Quantiles> known_;
+  ByPulseLength<std::vector<double>> quantiles_;
 };
 
 static_assert(Detector<PhotonCounting<>>);

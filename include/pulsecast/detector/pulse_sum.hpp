@@ -19,6 +19,11 @@ namespace PULSECAST_NAMESPACE {
 /// Arrival time of the peak of a reflection's pulse, since emission [s].
 [[nodiscard]] inline double arrival(const Reflection& r) noexcept { return 2 * r.range / speed_of_light; }
 
+/// Echo of a range [m] and an amplitude [W] with the labels of a reflection.
+[[nodiscard]] inline Echo echo_from(const Reflection& r, double range, double amplitude) noexcept {
+  return {.range = range, .amplitude = amplitude, .cos_incidence = r.cos_incidence, .object = r.object, .classification = r.classification};
+}
+
 /// True if a reflection can be an echo: it has power, and is nearer than 2^52 samples, so that they can be counted.
 [[nodiscard]] inline bool can_count(const Reflection& r, double sample_interval) noexcept {
   return r.power > 0 && r.range < 0x1p51 * speed_of_light * sample_interval;

@@ -44,6 +44,8 @@ struct ReceiverNoise {
   struct Workspace {};
   [[nodiscard]] Workspace workspace() const { return {}; }  ///< scratch memory of one worker
 
+  /// Takes away noise and background.
+  void silence() noexcept { *this = {}; }
   /// Computes what pulses of a laser need: nothing.
   void prepare(const Laser&, const WaveformSettings&) const noexcept {}
   /// As the concept WaveformReceiver requires.

@@ -68,7 +68,7 @@ class SelectedReturns : public DetectorAdaptor<Inner> {
         d.echoes = keep_strongest(d.echoes, number_);
         break;
     }
-    for (std::size_t e = 0; e < d.echoes.size(); ++e) d.echoes[e].number = static_cast<std::uint8_t>(e + 1);
+    number_echoes(d.echoes);
     return d;
   }
 
@@ -120,7 +120,7 @@ class FoldedRanges : public DetectorAdaptor<Inner> {
     const auto lost = std::remove_if(d.echoes.begin(), d.echoes.end(), [&](const Echo& echo) { return echo.range < blind_; });
     d.echoes = d.echoes.first(static_cast<std::size_t>(lost - d.echoes.begin()));
     std::sort(d.echoes.begin(), d.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
-    for (std::size_t e = 0; e < d.echoes.size(); ++e) d.echoes[e].number = static_cast<std::uint8_t>(e + 1);
+    number_echoes(d.echoes);
     return d;
   }
 

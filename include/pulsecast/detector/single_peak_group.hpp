@@ -133,11 +133,7 @@ class SinglePeakGroup {
   /// The only echo of the group, for a peak at a two-way time [s] and of a height [W].
   [[nodiscard]] Echo echo(double time, double height, EchoTiming timing) const noexcept {
     const Reflection& most = strongest((time - last_edge_) * per_tau_);
-    return {.range = timing == EchoTiming::true_range ? mean_range_ : 0.5 * speed_of_light * time,
-            .amplitude = height,
-            .cos_incidence = most.cos_incidence,
-            .object = most.object,
-            .classification = most.classification};
+    return echo_from(most, timing == EchoTiming::true_range ? mean_range_ : 0.5 * speed_of_light * time, height);
   }
 
  private:
