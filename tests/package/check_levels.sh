@@ -35,5 +35,5 @@ for level in none x86-64-v3; do
   program $level "$survey" --assets "$source/tests/examples/pulsecast" --output "$folder/out/$level" --seed 7 --gps-start-time 0 --write-waveform --calc-echowidth --quiet
 done
 [ -n "$(find "$folder/out/none" -type f -size +10k)" ]
-diff -r "$folder/out/none" "$folder/out/x86-64-v3"
+diff -r "$folder"/out/none/*/* "$folder"/out/x86-64-v3/*/*  # below SURVEY/TIME, as the two runs may not start within one second
 echo "levels 1 and 3 write the same bytes"
