@@ -39,6 +39,7 @@ struct Echo {
   ObjectId object = 0;               ///< object of the strongest contributor
   std::uint16_t classification = 0;  ///< class of the strongest contributor
   std::uint8_t number = 1;           ///< return number, from 1 in order of `range`
+  double velocity = std::numeric_limits<double>::quiet_NaN();  ///< radial velocity, positive away; NaN if not measured [m/s]
 };
 
 /// Fate of a pulse slot. A sink sees all pulses, with or without echoes, unless it `ChoosesShots`. Blocked slots are counted, not passed

@@ -44,6 +44,11 @@ concept RecordedConstant = requires {
   requires std::same_as<decltype(F::recorded), const bool>;
   typename std::bool_constant<F::recorded>;
 };
+template <class F>
+concept TurnedConstant = requires {
+  requires std::same_as<decltype(F::turned), const bool>;
+  typename std::bool_constant<F::turned>;
+};
 template <class D>
 concept ListensConstant = requires {
   requires std::same_as<decltype(D::listens_always), const bool>;
@@ -191,6 +196,12 @@ template <class F>
 concept RecordsSubrays = detail::RecordedConstant<F> && F::recorded;
 PULSECAST_OPTIONAL_MEMBER(RecordedConstant, "static constexpr bool recorded = true", recorded, , is_recorded, record, records,
                           records_subrays)
+
+/// Footprint that is turned about the beam's axis for each pulse, by an angle drawn from the pulse's number, as `TurnedFootprint`. The beams
+/// are round.
+template <class F>
+concept TurnsFootprint = detail::TurnedConstant<F> && F::turned;
+PULSECAST_OPTIONAL_MEMBER(TurnedConstant, "static constexpr bool turned = true", turned, , is_turned, turns, rotated, turning)
 
 /// Detector that samples waveforms, every so many seconds [s].
 template <class D>

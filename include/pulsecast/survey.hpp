@@ -164,7 +164,12 @@ class Survey {
       w.emitter = pulse->emitter;
       w.white_target = {};
     }
-    const TransportResult result = trace(*pulse, i, constants, w);
+    const TransportResult result = [&] {
+      if constexpr (TurnsFootprint<Pattern>)
+        return trace(turned(*pulse, i), i, constants, w);
+      else
+        return trace(*pulse, i, constants, w);
+    }();
     out.energy = result.energy;
     out.spread = result.spread;
     out.subrays = w.subrays;
@@ -178,7 +183,7 @@ class Survey {
     const RangeErrors& errors = unit.receiver.range_errors;
     for (Echo& echo : detection.echoes) {
       echo.reflectance = echo.amplitude / w.white_target.power(constants.budget, echo.range);
-      if (!errors.none()) echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}));
+      if (!errors.none()) echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
     }
     if (detection.echoes.size() > 1 && !errors.none()) sort_by_range(detection.echoes);
     out.echoes = detection.echoes;
@@ -248,6 +253,7 @@ class Survey {
   void set(EmitterConstants* constants, const Emitter& emitter, const EmitterConstants* first) {
     require_within("Emitter::receiver", emitter.receiver, 0, static_cast<double>(receivers_.size()) - 1, "");
     Unit& unit = receivers_[emitter.receiver];
+    if constexpr (TurnsFootprint<Pattern>) require_within("Laser::divergence (up by across)", emitter.laser.divergence.aspect(), 1, 1, "");
     if constexpr (ValidatesLaser<Instrument>) unit.detector.validate(emitter.laser);
     if constexpr (PreparesForLasers<Instrument>) unit.detector.prepare(emitter.laser);
     const EmitterConstants* alike = first;
@@ -281,6 +287,14 @@ class Survey {
 
   static_assert(detail::SurveyMembers<Pattern, Instrument>::checked);
   static constexpr bool recorded = RecordsSubrays<Pattern>;
+
+  /// Pulse i with its beam turned about its axis.
+  [[nodiscard]] Pulse<frame::World> turned(Pulse<frame::World> pulse, PulseIndex i) const noexcept {
+    const Rotation turn = rotation_about(axis::forward, 2 * pi * uniform({seed_, i, 0, Purpose::beam_turn}));
+    pulse.pose.rotation = pulse.pose.rotation * turn;
+    if (pulse.reported) pulse.reported->rotation = pulse.reported->rotation * turn;
+    return pulse;
+  }
 
   [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
                                       Workspace& w) const noexcept {

@@ -27,6 +27,15 @@ TEST_CASE("the extinction of haze and fog is Kim's, without jumps") {
   CHECK(extinction(1.064e-6, 23e3) == extinction(1.064e-6, 23e3, AerosolModel::kruse));
 }
 
+TEST_CASE("models of extinction say where they hold") {
+  CHECK(extinction_is_valid(1.55e-6, 23e3, AerosolModel::kruse));
+  CHECK(extinction_is_valid(1.55e-6, 500, AerosolModel::kim));
+  CHECK_FALSE(extinction_is_valid(1.55e-6, 500, AerosolModel::kruse));
+  CHECK_FALSE(extinction_is_valid(10.6e-6, 23e3, AerosolModel::kim));
+  CHECK_FALSE(extinction_is_valid(0.3e-6, 23e3, AerosolModel::kim));
+  CHECK(extinction_is_valid(10.6e-6, std::numeric_limits<double>::infinity(), AerosolModel::kim));
+}
+
 TEST_CASE("molecules absorb on both ways") {
   const Receiver absorbing{.visibility = infinity, .absorption = 1e-3};
   const Receiver clear{.visibility = infinity};
@@ -136,6 +145,12 @@ TEST_CASE("a range error is its bias, and a deviation that grows with range and 
   CHECK(by_power.at(Echo{.range = 10, .amplitude = 1e-6}, 1) == support::relative(0.002, 1e-14));
   CHECK(by_power.at(Echo{.range = 10, .amplitude = 4e-6}, 1) == support::relative(0.0015, 1e-14));
   CHECK_FALSE(by_power.none());
+  const RangeErrors by_channel{.bias = 0.001, .channel_biases = SharedArray<double>({0.01, -0.02})};
+  CHECK_FALSE(by_channel.none());
+  CHECK(by_channel.at(Echo{.range = 10}, 1, 0) == support::relative(0.011, 1e-14));
+  CHECK(by_channel.at(Echo{.range = 10}, 1, 1) == support::relative(-0.019, 1e-14));
+  CHECK(by_channel.at(Echo{.range = 10}, 1, 2) == 0.001);
+  CHECK_THROWS_AS(RangeErrors{.channel_biases = SharedArray<double>({0.0, std::nan("")})}.validate(), SettingError);
   CHECK_THROWS_AS(RangeErrors{.power_exponent = 1}.validate(), SettingError);
   CHECK_THROWS_AS(RangeErrors{.deviation = -1}.validate(), SettingError);
   const RangeErrors table{.bias = 0.5, .deviations = std::vector<DeviationAtRange>{{10, 0.01}, {20, 0.03}, {100, 0.02}}};

@@ -71,7 +71,7 @@ TEST_CASE("one echo, and none, stay what they are") {
 
 TEST_CASE("ranges are folded exactly, in order, and lost where the instrument is blind") {
   const double rate = 1e6;
-  const FoldedRanges folded{rate, FullWaveform{settings}};
+  const MultiplePulsesInAir folded{rate, FullWaveform{settings}};
   const double ambiguity = folded.ambiguity();
   CHECK(ambiguity == doctest::Approx(149.896229));
   auto w = folded.workspace(3);
@@ -81,14 +81,26 @@ TEST_CASE("ranges are folded exactly, in order, and lost where the instrument is
   CHECK(d.echoes[1].range == std::fmod(910.0, ambiguity));
   CHECK(d.echoes[0].range == std::fmod(160.0, ambiguity));
   CHECK(d.echoes[2].range == 100);
-  CHECK(ranges(FoldedRanges{rate, FullWaveform{settings}, 10.5}, {{.range = 100, .power = 1e-6}, {.range = 160, .power = 2e-6}}) ==
+  CHECK(ranges(MultiplePulsesInAir{rate, FullWaveform{settings}, 10.5}, {{.range = 100, .power = 1e-6}, {.range = 160, .power = 2e-6}}) ==
         List{100});
+}
+
+TEST_CASE("an instrument that resolves multiple pulses in the air has blind zones about multiples of c / 2f") {
+  const double ambiguity = 299'792'458 / 2e6;
+  std::vector<Reflection> reflections;
+  for (const double range : {5.0, 100.0, ambiguity + 5, ambiguity + 20, 6 * ambiguity + 9.9, 6 * ambiguity + 10.1})
+    reflections.push_back({.range = range, .power = 1e-6});
+  const List seen = ranges(MultiplePulsesInAir{1e6, FullWaveform{settings}, 10, RangeAmbiguity::resolved}, reflections);
+  REQUIRE(seen.size() == 3);
+  CHECK(seen[0] == 100);
+  CHECK(seen[1] == 170);
+  CHECK(seen[2] == 909);
 }
 
 TEST_CASE("the laws of detectors, and settings that are refused") {
   const std::vector<std::vector<Reflection>> cases{five, {}, {{.range = 3, .power = 1e-6}}};
   CHECK(support::detector_laws(SelectedReturns{ReturnMode::n_strongest, FullWaveform{settings}}, laser, cases) == "");
-  CHECK(support::detector_laws(FoldedRanges{1e5, FullWaveform{settings}}, laser, cases) == "");
+  CHECK(support::detector_laws(MultiplePulsesInAir{1e5, FullWaveform{settings}}, laser, cases) == "");
   CHECK_THROWS_AS((SelectedReturns{ReturnMode::n_nearest, FullWaveform{settings}, 0}), SettingError);
-  CHECK_THROWS_AS((FoldedRanges{0, FullWaveform{settings}}), SettingError);
+  CHECK_THROWS_AS((MultiplePulsesInAir{0, FullWaveform{settings}}), SettingError);
 }

@@ -23,6 +23,9 @@ enum class Purpose : std::uint32_t {
   position_drift = 6,
   attitude_drift = 7,
   angular_jitter = 8,
+  beam_turn = 9,  ///< rotation of a footprint about its axis
+  speckle = 10,   ///< phases of coherent light
+  leaf_tilt = 11,
 };
 
 /// Key of a random number: the same key gives the same number on any thread, in any order.

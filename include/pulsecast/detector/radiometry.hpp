@@ -34,6 +34,12 @@ enum class AerosolModel : std::uint8_t {
   return 3.91 / v * std::pow(wavelength / 0.55e-6, -q) * 1e-3;
 }
 
+/// True if `extinction` is within what was measured: wavelengths from 0.4 to 1.6 um, and, below a visibility of 6 km, the model of Kim.
+[[nodiscard]] inline bool extinction_is_valid(double wavelength, double visibility, AerosolModel model) noexcept {
+  if (std::isinf(visibility)) return true;
+  return wavelength >= 0.4e-6 && wavelength <= 1.6e-6 && (visibility >= 6e3 || model == AerosolModel::kim);
+}
+
 /// Row of a table of range noise.
 struct DeviationAtRange {
   double range = 0;      ///< true range [m]
@@ -51,6 +57,7 @@ struct RangeErrors {
   double power_exponent = -0.5;       ///< exponent of the amplitude in that deviation, from -4 to 0
   /// Table that replaces both deviations if not empty: linear between rows, constant beyond them; ranges ascend.
   SharedArray<DeviationAtRange> deviations{};
+  SharedArray<double> channel_biases{};  ///< further bias by number of the channel, as in `Emitter`; 0 for channels beyond [m]
 
   void validate() const {
     require_finite("RangeErrors::bias", bias, "m");
@@ -59,6 +66,7 @@ struct RangeErrors {
     require_not_negative("RangeErrors::deviation_per_metre", deviation_per_metre, "");
     require_not_negative("RangeErrors::deviation_at_watt", deviation_at_watt, "m");
     require_within("RangeErrors::power_exponent", power_exponent, -4, 0, "");
+    for (const double offset : channel_biases) require_finite("RangeErrors::channel_biases", offset, "m");
     for (std::size_t i = 0; i < deviations.size(); ++i) {
       require_finite("RangeErrors::deviations (range)", deviations[i].range, "m");
       require_not_negative("RangeErrors::deviations (deviation)", deviations[i].deviation, "m");
@@ -68,7 +76,8 @@ struct RangeErrors {
 
   /// True without errors.
   [[nodiscard]] bool none() const noexcept {
-    return bias == 0 && scale == 0 && deviation == 0 && deviation_per_metre == 0 && deviation_at_watt == 0 && deviations.size() == 0;
+    return bias == 0 && scale == 0 && deviation == 0 && deviation_per_metre == 0 && deviation_at_watt == 0 && deviations.size() == 0 &&
+           channel_biases.size() == 0;
   }
 
   /// Standard deviation of the noise at a range, at normal incidence [m].
@@ -77,13 +86,20 @@ struct RangeErrors {
     return detail::interpolated(deviations, range, &DeviationAtRange::range, &DeviationAtRange::deviation);
   }
 
-  /// Reported minus true range [m] of an echo, for a draw from the standard normal distribution.
-  [[nodiscard]] double at(const Echo& echo, double draw) const noexcept {
+  /// Reported minus true range [m] of an echo of a channel, for a draw from the standard normal distribution.
+  [[nodiscard]] double at(const Echo& echo, double draw, std::size_t channel = 0) const noexcept {
     constexpr double min_cosine = 0.01;  // bounds the noise of an edge-on surface
     const double slant = grows_with_incidence ? (echo.cos_incidence > min_cosine ? echo.cos_incidence : min_cosine) : 1;
     const double by_power = deviation_at_watt > 0 ? deviation_at_watt * std::pow(echo.amplitude, power_exponent) : 0;
-    return bias + scale * echo.range + draw * (deviation_at(echo.range) + by_power) / slant;
+    const double of_channel = channel < channel_biases.size() ? channel_biases[channel] : 0;
+    return bias + of_channel + scale * echo.range + draw * (deviation_at(echo.range) + by_power) / slant;
   }
+};
+
+/// Row of a table of overlap.
+struct OverlapAtRange {
+  double range = 0;  ///< range [m]
+  double share = 1;  ///< share of the light scattered there that reaches the detector, in [0, 1]
 };
 
 /// Receiver of an instrument, and the atmosphere before it.
@@ -96,6 +112,9 @@ struct Receiver {
   double range_min = 0;                                        ///< range gate's start [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< range gate's end [m]
   RangeErrors range_errors{};                                  ///< errors of reported ranges
+  /// Share of the light that the receiver sees by range, all if empty, as by `aperture_overlap`: linear between rows, constant beyond them;
+  /// ranges ascend.
+  SharedArray<OverlapAtRange> overlap{};
 
   void validate() const {
     require_within("Receiver::diameter", diameter, 1e-4, 1e3, "m");  // its square is a factor of every received power
@@ -104,6 +123,11 @@ struct Receiver {
     require_not_negative("Receiver::absorption", absorption, "1/m");
     require_not_negative("Receiver::range_min", range_min, "m");
     range_errors.validate();
+    for (std::size_t i = 0; i < overlap.size(); ++i) {
+      require_finite("Receiver::overlap (range)", overlap[i].range, "m");
+      require_within("Receiver::overlap (share)", overlap[i].share, 0, 1, "");
+      if (i > 0) require_positive("Receiver::overlap (from range to range)", overlap[i].range - overlap[i - 1].range, "m");
+    }
     require_within("Receiver::range_max", range_max, range_min, std::numeric_limits<double>::infinity(), "m");
   }
 
@@ -122,19 +146,28 @@ class LinkBudget {
   LinkBudget(const Receiver& receiver, const Laser& laser) noexcept
       : gain_(laser.peak_power * receiver.diameter * receiver.diameter * receiver.efficiency / 4),
         near_(receiver.diameter * receiver.diameter / 4),
-        both_ways_(-2 * (extinction(laser.wavelength, receiver.visibility, receiver.aerosols) + receiver.absorption)) {}
+        both_ways_(-2 * (extinction(laser.wavelength, receiver.visibility, receiver.aerosols) + receiver.absorption)),
+        overlap_(receiver.overlap) {}
 
   /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in `Hit`) at a range [m].
   /// At range 0 all the scattered power is received.
-  [[nodiscard]] double power(double share, double backscatter, double range) const noexcept { return of(share, backscatter, range); }
+  [[nodiscard]] double power(double share, double backscatter, double range) const noexcept {
+    const double all = of(share, backscatter, range);
+    return overlap_.empty() ? all : all * overlap_at(range);
+  }
 
   /// Received power of several subrays [W].
   [[nodiscard]] simd::Doubles power(const simd::Doubles& share, const simd::Doubles& backscatter,
                                     const simd::Doubles& range) const noexcept {
-    return of(share, backscatter, range);
+    const simd::Doubles all = of(share, backscatter, range);
+    return overlap_.empty() ? all : all * simd::generate([&](std::size_t lane) { return overlap_at(range[lane]); });
   }
 
  private:
+  [[nodiscard]] double overlap_at(double range) const noexcept {
+    return detail::interpolated(overlap_, range, &OverlapAtRange::range, &OverlapAtRange::share);
+  }
+
   template <class Number>
   [[nodiscard]] Number of(const Number& share, const Number& backscatter, const Number& range) const noexcept {
     return gain_ * share * backscatter / (range * range + near_) * exponential(Number(both_ways_ * range));
@@ -143,6 +176,7 @@ class LinkBudget {
   double gain_ = 0;       ///< received power times squared range, from a white surface in vacuum [W m^2]
   double near_ = 0;       ///< square of half the aperture's diameter [m^2]
   double both_ways_ = 0;  ///< slope of the logarithm of the power over range [1/m]
+  SharedArray<OverlapAtRange> overlap_{};
 };
 
 /// Power received from a white Lambertian target facing the beam, of one link budget. Keeps the last result: the echo of a single ray has

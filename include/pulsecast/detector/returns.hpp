@@ -97,28 +97,40 @@ SelectedReturns(ReturnMode, Inner) -> SelectedReturns<Inner>;
 template <Detector Inner>
 SelectedReturns(ReturnMode, Inner, std::size_t) -> SelectedReturns<Inner>;
 
-/// Detector of an instrument that takes an echo for one of the last pulse, as several are in the air: ranges are folded into c / 2f of its
-/// pulse rate f. Echoes that arrive while a pulse leaves are lost. Ranges that the instrument resolves need no such detector.
+/// What an instrument makes of echoes that arrive after the next pulse left: of multiple pulses in the air.
+enum class RangeAmbiguity : std::uint8_t {
+  folded,    ///< takes them for echoes of the last pulse: ranges are modulo c / 2f for a pulse rate f
+  resolved,  ///< knows their pulse; those that arrive while another leaves are lost nevertheless
+};
+
+/// Detector of an instrument with multiple pulses in the air. Echoes that arrive while a pulse leaves are lost: blind zones about the
+/// multiples of c / 2f.
 template <Detector Inner>
-class FoldedRanges : public DetectorAdaptor<Inner> {
+class MultiplePulsesInAir : public DetectorAdaptor<Inner> {
  public:
-  /// Takes the pulse rate [Hz], the detector inside, and the range behind the exit that is blind [m]. @throws SettingError
-  FoldedRanges(double pulse_rate, Inner inside, double blind = 0)
-      : DetectorAdaptor<Inner>{validated(std::move(inside))}, ambiguity_(0.5 * speed_of_light / pulse_rate), blind_(blind) {
-    require_within("FoldedRanges (pulse rate)", pulse_rate, 1, 1e12, "Hz");
-    require_within("FoldedRanges (blind)", blind, 0, ambiguity_, "m");
+  /// Takes the pulse rate [Hz], the detector inside, the range behind the exit that is blind [m], and what becomes of ranges. @throws
+  /// SettingError
+  MultiplePulsesInAir(double pulse_rate, Inner inside, double blind = 0, RangeAmbiguity in_air = RangeAmbiguity::folded)
+      : DetectorAdaptor<Inner>{validated(std::move(inside))},
+        ambiguity_(0.5 * speed_of_light / pulse_rate),
+        blind_(blind),
+        in_air_(in_air) {
+    require_within("MultiplePulsesInAir (pulse rate)", pulse_rate, 1, 1e12, "Hz");
+    require_within("MultiplePulsesInAir (blind)", blind, 0, ambiguity_, "m");
   }
 
   /// Range behind which ranges are folded [m].
   [[nodiscard]] double ambiguity() const noexcept { return ambiguity_; }
 
-  /// Echoes of the detector inside, with folded ranges.
+  /// Echoes of the detector inside, without those in blind zones.
   template <class Workspace>
   [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
     Detection d = this->inner.detect(heard, w);
-    for (Echo& echo : d.echoes) echo.range = std::fmod(echo.range, ambiguity_);
-    const auto lost = std::remove_if(d.echoes.begin(), d.echoes.end(), [&](const Echo& echo) { return echo.range < blind_; });
+    const auto lost =
+        std::remove_if(d.echoes.begin(), d.echoes.end(), [&](const Echo& echo) { return std::fmod(echo.range, ambiguity_) < blind_; });
     d.echoes = d.echoes.first(static_cast<std::size_t>(lost - d.echoes.begin()));
+    if (in_air_ == RangeAmbiguity::folded)
+      for (Echo& echo : d.echoes) echo.range = std::fmod(echo.range, ambiguity_);
     std::sort(d.echoes.begin(), d.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
     number_echoes(d.echoes);
     return d;
@@ -126,14 +138,18 @@ class FoldedRanges : public DetectorAdaptor<Inner> {
 
  private:
   double ambiguity_, blind_;
+  RangeAmbiguity in_air_;
 };
 
 /// Takes the type of the detector inside.
 template <Detector Inner>
-FoldedRanges(double, Inner) -> FoldedRanges<Inner>;
+MultiplePulsesInAir(double, Inner) -> MultiplePulsesInAir<Inner>;
 /// As above, with a range that is blind.
 template <Detector Inner>
-FoldedRanges(double, Inner, double) -> FoldedRanges<Inner>;
+MultiplePulsesInAir(double, Inner, double) -> MultiplePulsesInAir<Inner>;
+/// As above, with what becomes of ranges.
+template <Detector Inner>
+MultiplePulsesInAir(double, Inner, double, RangeAmbiguity) -> MultiplePulsesInAir<Inner>;
 
 }  // namespace PULSECAST_NAMESPACE
 

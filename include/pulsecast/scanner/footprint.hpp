@@ -221,6 +221,17 @@ struct WithSubrayRecord : Pattern {
 
 static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 
+/// Footprint that a survey turns about the axis of each pulse's beam, by an angle of its own: `TurnedFootprint{LatticeFootprint{}}`. A thin
+/// wire or edge then meets other subrays from pulse to pulse, so that errors of neighbours do not repeat. For round beams only.
+template <Footprint Pattern>
+struct TurnedFootprint : Pattern {
+  static constexpr bool turned = true;  ///< as the concept TurnsFootprint describes
+  /// Takes a valid footprint.
+  explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}
+};
+
+static_assert(Footprint<TurnedFootprint<LatticeFootprint>>);
+
 /// Unit direction of a subray in the frame of its beam; +y for zero offset.
 /// `offset` is in units of the beam's 1/e^2 radius, which is half the divergence in the far field.
 [[nodiscard]] inline Vec3 subray_direction(const Vec2& offset, const Divergence& divergence) noexcept {

@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/random.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
@@ -23,7 +22,7 @@
 #include <pulsecast/scene/detail/solid_meeting.hpp>
 #include <pulsecast/scene/detail/voxel_columns.hpp>
 #include <pulsecast/scene/detail/voxel_index_builder.hpp>
-#include <pulsecast/scene/leaf_angles.hpp>
+#include <pulsecast/scene/transmissive_voxels.hpp>
 #include <pulsecast/scene/voxel_data.hpp>
 #include <pulsecast/scene/voxel_index.hpp>
 
@@ -154,109 +153,6 @@ struct ScaledVoxels {
   };
 };
 
-/// Turbid medium of randomly placed leaves: light passes until it meets one. Requires densities.
-///
-/// Transmittance along a path of length s is exp(-PAD G s). Each ray draws its optical depth once per part and consumes it from voxel to
-/// voxel. As the law is memoryless, this equals a draw per voxel, for any voxel size. Draws are independent between parts. A ray that
-/// begins inside counts its path from there. Density and paths are in metres of the part's own frame: scaling a plant keeps its
-/// transmittance. G is taken in that frame too, z being the vertical. Leaves send back as tilted surfaces do: the cosine of incidence is
-/// their mean squared cosine by their mean cosine.
-/// Source: North 1996; Ross 1981.
-struct TransmissiveVoxels {
-  LeafAngles leaf_angles{};   ///< leaf inclinations of all voxels
-  bool tilted_leaves = true;  ///< false: leaves send back as if all were across the light, as in HELIOS++
-
-  template <class Archive>
-  void archive(Archive& a) {
-    leaf_angles.archive(a);
-    a(tilted_leaves);
-  }
-
-  /// Data of the voxels that this filling needs, by number of the voxel.
-  class Columns {
-   public:
-    explicit Columns(DeserializeTag) {}
-    /// Takes the columns of `data` in the order of the numbers. @throws SettingError for a missing column
-    Columns(const VoxelData& data, std::span<const std::uint32_t> order) : densities_(detail::reordered<float>(data.densities, order)) {
-      if (densities_.empty())
-        throw SettingError("VoxelData::densities", 0, "",
-                           "as many as cells, " + std::to_string(data.cells.size()) + ", for transmissive voxels");
-    }
-
-    [[nodiscard]] std::size_t memory() const noexcept { return densities_.memory(); }
-
-    /// Visitor of the voxels along a ray, which consumes its optical depth.
-    template <class Rays, class Hits>
-    class Meeting {
-     public:
-      /// Ray j of a bundle; `nearest` gets its hit.
-      Meeting(const Columns& columns, const LeafAngles& leaf_angles, const Rays& rays, std::size_t j, Hits& nearest) noexcept
-          : columns_(columns), leaf_angles_(leaf_angles), rays_(rays), j_(j), nearest_(nearest) {}
-
-      /// Passes a voxel; returns the range limit of the walk [m].
-      double operator()(std::uint32_t number, const LatticeCell&, const Crossing& in, const Crossing& out) noexcept {
-        if (per_density_ == 0) draw();
-        const double extinction = static_cast<double>(columns_.densities_[number]) * per_density_;
-        const double depth = extinction * (out.range - in.range);
-        if (!(depth > 0) || depth < left_) {
-          left_ -= depth;
-          return infinity;
-        }
-        double at = std::min(in.range + left_ / extinction, out.range);
-        if (!(at > rays_.near)) at = std::nextafter(rays_.near, infinity);
-        nearest_.offer(j_, at, number);
-        return -infinity;
-      }
-
-      /// Ends the walk.
-      void finish() noexcept {}
-
-     private:
-      static constexpr double infinity = std::numeric_limits<double>::infinity();
-
-      void draw() noexcept {
-        const auto part = static_cast<std::uint32_t>(nearest_.part >> 32);
-        const auto subray = rays_.first_subray + static_cast<std::uint32_t>(j_);
-        left_ = -std::log(uniform({rays_.seed, rays_.pulse, subray, Purpose::free_path, part}));
-        per_density_ = leaf_angles_.projection(rays_.direction(j_)) * rays_.direction_length;
-        if (!(per_density_ > 0)) per_density_ = std::numeric_limits<double>::min();  // all leaves edge-on
-      }
-
-      const Columns& columns_;
-      const LeafAngles& leaf_angles_;
-      const Rays& rays_;
-      std::size_t j_;
-      Hits& nearest_;
-      double left_ = 0;         ///< optical depth left to the ray
-      double per_density_ = 0;  ///< optical depth per range and density; 0 before the draw
-    };
-
-    template <class Rays, class Hits>
-    [[nodiscard]] Meeting<Rays, Hits> meeting(const TransmissiveVoxels& settings, const LatticeRay&, const Rays& rays, std::size_t j,
-                                              Hits& nearest) const noexcept {
-      return {*this, settings.leaf_angles, rays, j, nearest};
-    }
-
-    template <class Rays>
-    [[nodiscard]] Vec3 normal(const TransmissiveVoxels& settings, std::uint32_t, const VoxelIndex&, const Rays& rays,
-                              std::size_t j) const noexcept {
-      if (!settings.tilted_leaves) return {};
-      const Vec3 along = pulsecast::normalize(rays.direction(j));
-      const double cosine = settings.leaf_angles.incidence_cosine(along);
-      const Vec3 aside = pulsecast::normalize(cross(along, std::fabs(along.x) < 0.5 ? axis::right : axis::up));  // any direction
-      return -cosine * along + std::sqrt(1 - cosine * cosine) * aside;
-    }
-
-    template <class Archive>
-    void archive(Archive& a) {
-      a(densities_);
-    }
-
-   private:
-    SharedArray<float> densities_;
-  };
-};
-
 /// Sparse grid of voxels; each ray is traversed cell by cell. Primitives are numbered by position, not as in the data. Keeps only the data
 /// that the filling needs, in at most 40 bytes per voxel plus 16.
 /// `Filling`: `OpaqueVoxels`, `ScaledVoxels` or `TransmissiveVoxels`, with the settings common to all voxels.
@@ -321,7 +217,7 @@ class VoxelGrid {
 
  private:
   VoxelGrid(const VoxelData& data, Filling filling, std::vector<std::uint32_t> order)
-      : filling_(std::move(filling)),
+      : filling_(validated(std::move(filling))),
         index_(validated_data(data), order),
         columns_(data, order),
         materials_(detail::reordered<std::uint16_t>(data.materials, order)) {

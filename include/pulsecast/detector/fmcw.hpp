@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_DETECTOR_FMCW_HPP
+#define PULSECAST_DETECTOR_FMCW_HPP
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector_math.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/adaptor.hpp>
+#include <pulsecast/detector/echo_timing.hpp>
+#include <pulsecast/detector/pulse_sum.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Settings of a scanner with frequency-modulated continuous waves.
+struct FmcwSettings {
+  double bandwidth = 1e9;     ///< change of frequency in a sweep: surfaces closer than c / 2B in range are one echo; from 1e6 to 1e12 [Hz]
+  double sweep_time = 10e-6;  ///< duration of the sweep up, and of that down, from 1e-8 to 1 [s]
+  double threshold = 1e-12;   ///< least power of an echo, greater than 0 [W]
+  double quantum_efficiency = 1;  ///< share of the photons detected, in (0, 1]
+  bool shot_noise = false;        ///< adds the shot noise of the reference beam: a photon in a sweep, by the quantum efficiency, has the
+                                  ///< power of the noise
+  bool speckle = false;           ///< adds fields of random phases, as of rough surfaces, in place of powers
+  std::size_t returns_max = 15;   ///< strongest echoes kept, from 1 to 64
+
+  /// @throws SettingError
+  void validate() const {
+    require_within("FmcwSettings::bandwidth", bandwidth, 1e6, 1e12, "Hz");
+    require_within("FmcwSettings::sweep_time", sweep_time, 1e-8, 1, "s");
+    require_positive("FmcwSettings::threshold", threshold, "W");
+    require_positive("FmcwSettings::quantum_efficiency", quantum_efficiency, "");
+    require_within("FmcwSettings::quantum_efficiency", quantum_efficiency, 0, 1, "");
+    require_within("FmcwSettings::returns_max", static_cast<double>(returns_max), 1, 64, "");
+  }
+
+  /// Range that changes the beat by one period in a sweep: c / 2B [m].
+  [[nodiscard]] double resolution() const noexcept { return 0.5 * speed_of_light / bandwidth; }
+  /// Radial velocity that does so, at a wavelength [m]: a half wavelength by the duration of a sweep [m/s].
+  [[nodiscard]] double velocity_resolution(double wavelength) const noexcept { return 0.5 * wavelength / sweep_time; }
+};
+
+/// Detector of a coherent scanner, whose laser sweeps its frequency up and down. The light that returns beats with a share of the light
+/// that leaves: the delay and the Doppler shift add in one sweep, and differ in the other, so that both range and radial velocity are
+/// known. The spectrum of each sweep, weighted by a window of Hann, is searched for peaks. The sweeps' peaks are paired in order of
+/// frequency, or of power if their numbers differ, which may pair those of two surfaces of different velocities. Surfaces do not move from
+/// one sweep to the next. The range is that in the middle. The laser's peak power is its power while it measures. Amplitudes are the powers
+/// of both sweeps' peaks, in the mean. It needs a target that knows velocities, as `Scene` and `MovingScene`. Source: Amann, Bosch,
+/// Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
+class Fmcw {
+ public:
+  /// @throws SettingError for settings out of range
+  explicit Fmcw(FmcwSettings settings = {}) : s_(validated(settings)) {}
+
+  static constexpr bool reads_velocity = true;  ///< as the concept ReadsVelocity describes
+
+  /// Settings, as validated.
+  [[nodiscard]] const FmcwSettings& settings() const noexcept { return s_; }
+
+  /// Peak of a spectrum.
+  struct Peak {
+    double beat = 0;                        ///< frequency [periods in a sweep]
+    double power = 0;                       ///< [W]
+    const Reflection* strongest = nullptr;  ///< strongest reflection near it
+  };
+
+  /// Scratch memory of one worker.
+  struct Workspace {
+    /// Light of one frequency.
+    struct Line {
+      double beat = 0;                     ///< [periods in a sweep]
+      double power = 0, cos = 1, sin = 0;  ///< power [W], and phase
+      const Reflection* from = nullptr;    ///< its reflection
+    };
+    std::vector<Line> lines;                 ///< lines of a spectrum, in order
+    std::array<std::vector<Peak>, 2> peaks;  ///< of the sweeps
+    std::vector<Echo> echoes;                ///< of the pulse
+  };
+  /// Scratch memory for so many reflections.
+  [[nodiscard]] Workspace workspace(std::size_t reflections) const {
+    Workspace w;
+    w.lines.reserve(reflections);
+    for (std::vector<Peak>& peaks : w.peaks) peaks.reserve(s_.returns_max + 1);
+    w.echoes.reserve(s_.returns_max);
+    return w;
+  }
+
+  /// Echoes of all reflections. Noise and phases are drawn from the seed and pulse of `heard.key`.
+  [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
+    const double wavelength = heard.emitter.laser.wavelength, metres = s_.resolution(), speed = s_.velocity_resolution(wavelength);
+    for (const std::size_t sweep : {std::size_t{0}, std::size_t{1}}) {
+      set_lines(heard, sweep == 0 ? 1 / speed : -1 / speed, w);
+      find_peaks(w.lines, noise_of(heard, sweep), w.peaks[sweep]);
+    }
+    auto& [up, down] = w.peaks;
+    const std::size_t pairs = std::min(up.size(), down.size());
+    for (std::vector<Peak>* peaks : {&up, &down})
+      if (peaks->size() > pairs) {
+        std::sort(peaks->begin(), peaks->end(), [](const Peak& a, const Peak& b) { return a.power > b.power; });
+        peaks->resize(pairs);
+        std::sort(peaks->begin(), peaks->end(), [](const Peak& a, const Peak& b) { return a.beat < b.beat; });
+      }
+    w.echoes.clear();
+    for (std::size_t e = 0; e < pairs; ++e) {
+      Echo echo = echo_from(*up[e].strongest, 0.5 * (up[e].beat + down[e].beat) * metres, 0.5 * (up[e].power + down[e].power));
+      echo.velocity = 0.5 * (up[e].beat - down[e].beat) * speed;
+      if (echo.range >= 0) w.echoes.push_back(echo);
+    }
+    std::sort(w.echoes.begin(), w.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
+    number_echoes(w.echoes);
+    return {w.echoes, {}, 0};
+  }
+
+ private:
+  using Line = Workspace::Line;
+  static constexpr double reach = 2;    ///< half the main lobe of the window [periods in a sweep]
+  static constexpr double grid = 0.25;  ///< spacing of the spectrum, of four times as many samples by zeros added [periods in a sweep]
+
+  /// Noise of a sweep: complex amplitudes of white noise by whole periods in the sweep.
+  struct Noise {
+    double deviation = 0;  ///< of each component [sqrt(W)]
+    RandomKey key{};       ///< of the sweep
+
+    /// Adds that of a frequency through the window, which is smaller than 1e-3 beyond six periods.
+    void add(double beat, double& real, double& imaginary) const noexcept {
+      if (deviation == 0) return;
+      const double nearest = std::round(beat);
+      for (int step = -6; step <= 6; ++step) {
+        RandomKey of_bin = key;
+        of_bin.part = static_cast<std::uint32_t>(static_cast<std::int64_t>(nearest) + step) & 0x3FFFFFU;
+        const double weight = deviation * window(beat - nearest - step);
+        real += weight * normal(of_bin);
+        ++of_bin.subray;
+        imaginary += weight * normal(of_bin);
+      }
+    }
+  };
+
+  [[nodiscard]] Noise noise_of(const Heard& heard, std::size_t sweep) const noexcept {
+    RandomKey key = heard.key;
+    key.purpose = Purpose::receiver_noise;
+    key.subray = static_cast<std::uint32_t>(2 * sweep);
+    constexpr double planck = 6.62607015e-34;  // [J s]. Source: SI, exact (26th CGPM, 2018)
+    const double photon = planck * speed_of_light / heard.emitter.laser.wavelength;
+    return {s_.shot_noise ? std::sqrt(0.5 * photon / (s_.quantum_efficiency * s_.sweep_time)) : 0, key};
+  }
+
+  /// Amplitude of the spectrum of a sine through the window of Hann, at so many periods from its own; 1 at 0.
+  /// Source: Harris 1978.
+  [[nodiscard]] static double window(double x) noexcept {
+    const double square = x * x;
+    if (square < 1e-8) return 1;
+    if (std::fabs(square - 1) < 1e-6) return 0.5;
+    return simd::sincos(pi * x).sin / (pi * x * (1 - square));
+  }
+
+  /// Sets the lines of a sweep, for periods by radial velocity [s/m].
+  void set_lines(const Heard& heard, double per_velocity, Workspace& w) const noexcept {
+    w.lines.clear();
+    for (std::size_t i = 0; i < heard.reflections.size(); ++i) {
+      const Reflection& r = heard.reflections[i];
+      if (!(r.power > 0)) continue;
+      Line line{.beat = r.range / s_.resolution() + r.velocity * per_velocity, .power = r.power, .from = &r};
+      if (!(std::fabs(line.beat) < 0x1p40)) continue;  // else it could not be counted
+      if (s_.speckle) {
+        const double turns = uniform({heard.key.seed, heard.key.pulse, static_cast<std::uint32_t>(i), Purpose::speckle});
+        const auto phase = simd::sincos(2 * pi * turns);
+        line.cos = phase.cos;
+        line.sin = phase.sin;
+      }
+      w.lines.push_back(line);
+    }
+    std::sort(w.lines.begin(), w.lines.end(), [](const Line& a, const Line& b) { return a.beat < b.beat; });
+  }
+
+  /// Power of the spectrum of a sweep at a frequency [W]. Only lines within 8 periods matter.
+  [[nodiscard]] double power_at(std::span<const Line> lines, const Noise& noise, double beat) const noexcept {
+    double real = 0, imaginary = 0, power = 0;
+    for (const Line& line : lines) {
+      if (std::fabs(line.beat - beat) > 8) continue;
+      const double h = window(beat - line.beat);
+      if (s_.speckle) {
+        const double amplitude = std::sqrt(line.power) * h;
+        real += amplitude * line.cos;
+        imaginary += amplitude * line.sin;
+      } else {
+        power += line.power * h * h;
+      }
+    }
+    if (!s_.speckle) real = std::sqrt(power);
+    noise.add(beat, real, imaginary);
+    return real * real + imaginary * imaginary;
+  }
+
+  /// Peaks of a sweep's spectrum, in order of frequency: the strongest ones of at least the threshold, near lines.
+  void find_peaks(std::span<const Line> lines, const Noise& noise, std::vector<Peak>& peaks) const noexcept {
+    peaks.clear();
+    for (std::size_t first = 0, last = 0; first < lines.size(); first = last) {
+      for (last = first + 1; last < lines.size() && lines[last].beat - lines[last - 1].beat < 2 * reach;) ++last;
+      const double begin = std::floor((lines[first].beat - reach) / grid), end = std::ceil((lines[last - 1].beat + reach) / grid);
+      std::array<double, 5> y{};  // the last five powers, about the one that may be a peak
+      for (double g = begin; g <= end; ++g) {
+        std::shift_left(y.begin(), y.end(), 1);
+        y[4] = power_at(lines, noise, g * grid);
+        if (g < begin + 4 || !(y[2] >= s_.threshold && y[2] > y[1] && y[2] >= y[3])) continue;
+        const Vertex top = vertex(&y[2]);
+        keep({(g - 2 + top.offset) * grid, top.height, nullptr}, lines, peaks);
+      }
+    }
+    std::sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.beat < b.beat; });
+  }
+
+  /// Keeps a peak, with the strongest line within half the window, unless there are enough stronger ones.
+  void keep(Peak peak, std::span<const Line> lines, std::vector<Peak>& peaks) const noexcept {
+    double strongest = 0;
+    for (const Line& line : lines) {
+      const double h = window(peak.beat - line.beat), power = line.power * h * h;
+      if (!(power > strongest)) continue;
+      strongest = power;
+      peak.strongest = line.from;
+    }
+    if (!peak.strongest) return;
+    peaks.push_back(peak);
+    if (peaks.size() > s_.returns_max)
+      peaks.erase(std::min_element(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.power < b.power; }));
+  }
+
+  FmcwSettings s_;
+};
+
+static_assert(Detector<Fmcw> && ReadsVelocity<Fmcw>);
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_TRANSPORT_APERTURE_OVERLAP_HPP
+#define PULSECAST_TRANSPORT_APERTURE_OVERLAP_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/detector/radiometry.hpp>
+#include <pulsecast/pulse.hpp>
+#include <pulsecast/scanner/beam.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Place and view of a receiver's aperture beside that of the beam.
+struct ApertureGeometry {
+  double separation = 0;        ///< distance of the two axes at the instrument: 0 for coaxial apertures [m]
+  double inclination = 0;       ///< angle at which the receiver's axis approaches the beam's: 0 for parallel ones, from -0.1 to 0.1 [rad]
+  double field_of_view = 2e-3;  ///< full angle of the receiver's view, from 1e-6 to 1 [rad]
+  double obstruction = 0;       ///< diameter of what stands in the middle of the receiver's aperture, as a mirror for the beam [m]
+
+  void validate() const {
+    require_within("ApertureGeometry::separation", separation, 0, 1e3, "m");
+    require_within("ApertureGeometry::inclination", inclination, -0.1, 0.1, "rad");
+    require_within("ApertureGeometry::field_of_view", field_of_view, 1e-6, 1, "rad");
+    require_not_negative("ApertureGeometry::obstruction", obstruction, "m");
+  }
+};
+
+/// Area that two discs share [m^2], from their radii and the distance of their centres [m].
+[[nodiscard]] inline double shared_area(double a, double b, double distance) noexcept {
+  if (distance >= a + b) return 0;
+  const double least = std::min(a, b);
+  if (distance <= std::fabs(a - b)) return pi * least * least;
+  const double from_a = (distance * distance + a * a - b * b) / (2 * distance), from_b = distance - from_a;
+  const auto segment = [](double r, double middle) {
+    const double cosine = std::clamp(middle / r, -1.0, 1.0);
+    return r * r * std::acos(cosine) - middle * r * std::sqrt(1 - cosine * cosine);
+  };
+  return segment(a, from_a) + segment(b, from_b);
+}
+
+/// Share of a beam's cross section, to the 1/e^2 radius, that is in the view of a receiver at a range [m]; of an ellipse, that of the disc
+/// of its area. Source: the overlap function of geometrical optics, Halldorsson & Langerholc 1978; Measures 1984, section 7.4, for an even
+/// beam.
+[[nodiscard]] inline double aperture_overlap(const ApertureGeometry& g, const Receiver& receiver, const Laser& laser,
+                                             double range) noexcept {
+  const Vec2 axes = beam_radius(laser, range);
+  const double beam = std::max(std::sqrt(axes.x * axes.y), 1e-9);  // a line is a thin disc
+  const double aperture = 0.5 * receiver.diameter, view = aperture + range * std::tan(0.5 * g.field_of_view);
+  const double apart = std::fabs(g.separation - range * std::tan(g.inclination));
+  // the shadow of the obstruction ends where its edge no longer covers the view
+  const double shadow = std::max(0.5 * g.obstruction - range * std::tan(0.5 * g.field_of_view), 0.0);
+  return (shared_area(beam, view, apart) - shared_area(beam, std::min(shadow, view), apart)) / (pi * beam * beam);
+}
+
+/// Table for `Receiver::overlap` from range 0 to `far` [m], at steps of a thousandth of the range, and of a hundredth of `near` [m] before
+/// ten times that. @throws SettingError
+[[nodiscard]] inline SharedArray<OverlapAtRange> overlap_table(const ApertureGeometry& g, const Receiver& receiver, const Laser& laser,
+                                                               double near = 0.1, double far = 1000) {
+  g.validate();
+  receiver.validate();
+  laser.validate();
+  require_within("overlap_table (near)", near, 1e-3, 1e6, "m");
+  require_within("overlap_table (far)", far, near, 1e6, "m");
+  std::vector<OverlapAtRange> rows;
+  for (double range = 0; range < far; range += std::max(0.001 * range, 0.01 * near))
+    rows.push_back({range, aperture_overlap(g, receiver, laser, range)});
+  rows.push_back({far, aperture_overlap(g, receiver, laser, far)});
+  return SharedArray<OverlapAtRange>(std::move(rows));
+}
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif
