@@ -33,7 +33,7 @@ concept PulseForm = std::copyable<F> && requires(const F form, double time, doub
 
 /// Gamma distribution of order 3, a `PulseShape`. Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5.
 struct GammaPulse {
-  double divisor = 3.394680670846503;  ///< full width at half maximum by tau: the exact one; the literature says 3.5
+  double divisor = PulseShape::divisor;  ///< full width at half maximum by tau; the literature says 3.5
 
   /// As the concept PulseForm requires.
   [[nodiscard]] double power(double time, double length) const noexcept { return PulseShape(length, divisor)(time); }

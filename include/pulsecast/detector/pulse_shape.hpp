@@ -11,12 +11,14 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Laser pulse in time: (t/tau)^2 exp(-t/tau) from its leading edge at t = 0, scaled to a peak of 1 at 2 tau.
-/// Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5, with tau = full width at half maximum / 3.5.
+/// Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5; the literature takes full width at half maximum / 3.5 for tau.
 struct PulseShape {
   double tau;  ///< time constant [s]
 
-  /// `divisor`: full width at half maximum by tau. The exact value is 3.395; the literature says 3.5.
-  explicit PulseShape(double pulse_length, double divisor = 3.5) noexcept : tau(pulse_length / divisor) {}
+  static constexpr double divisor = 3.394680670846503;  ///< full width at half maximum by tau
+
+  /// `by_tau`: full width at half maximum by tau, if it is another.
+  explicit PulseShape(double pulse_length, double by_tau = divisor) noexcept : tau(pulse_length / by_tau) {}
 
   static constexpr double peak = 2;                                              ///< time of the peak since the leading edge [tau]
   static constexpr double to_unit_peak = std::numbers::e * std::numbers::e / 4;  ///< factor that scales the peak to 1

@@ -8,6 +8,7 @@
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
+#include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -25,17 +26,17 @@ namespace PULSECAST_NAMESPACE {
 /// ones, which lose close echoes; narrower bins gain little. Widths cost more than any other setting, except for moments of
 /// `AnalyticWaveform`, so there are none by default.
 struct WaveformSettings {
-  double sample_interval = 0.25e-9;  ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
-  double threshold = 1e-12;          ///< least power of an echo's peak [W]
-  double separation = 0;             ///< closer peaks merge, with the greater height [s]
-  double prominence = 0;             ///< least rise of the lower of two peaks above the valley between them [W]
-  double window = 1e-9;              ///< an echo is the highest peak within this time before and after it [s]
-  double dead_time = 0;              ///< no other echo within this time after an echo's peak [s]
-  std::size_t returns_max = 15;      ///< first echoes kept, in order of range; from 1 to 255
-  EchoTiming timing = EchoTiming::true_range;  ///< definition of an echo's range
-  double fraction = 0.5;                       ///< share of the maximum, for `EchoTiming::constant_fraction`; from 0.01 to 0.99
-  double record_length = 0;                    ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
-  double shape_divisor = 3.5;                  ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
+  double sample_interval = 0.25e-9;      ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
+  double threshold = 1e-12;              ///< least power of an echo's peak [W]
+  double separation = 0;                 ///< closer peaks merge, with the greater height [s]
+  double prominence = 0;                 ///< least rise of the lower of two peaks above the valley between them [W]
+  double window = 1e-9;                  ///< an echo is the highest peak within this time before and after it [s]
+  double dead_time = 0;                  ///< no other echo within this time after an echo's peak [s]
+  std::size_t returns_max = 15;          ///< first echoes kept, in order of range; from 1 to 255
+  EchoTiming timing = EchoTiming::peak;  ///< definition of an echo's range
+  double fraction = 0.5;                 ///< share of the maximum, for `EchoTiming::constant_fraction`; from 0.01 to 0.99
+  double record_length = 0;              ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
+  double shape_divisor = PulseShape::divisor;  ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
 
   void validate() const {
     require_within("WaveformSettings::sample_interval", sample_interval, 1e-16, 1, "s");

@@ -82,7 +82,7 @@ inline constexpr std::size_t plane_reflections_max = 2048;  ///< greatest number
 /// true if it was done, with their number in `count`.
 [[nodiscard]] inline bool spread_over_plane(const Illumination& light, std::span<Reflection> reflections, std::size_t& count) noexcept {
   const std::span<Reflection> met = reflections.first(count);
-  const double tau = 0.5 * speed_of_light * light.emitter.laser.pulse_length / 3.5, deviation = std::sqrt(3.0) * tau;  // of the pulse [m]
+  const double tau = 0.5 * speed_of_light * light.emitter.laser.pulse_length / 3.4, deviation = std::sqrt(3.0) * tau;  // of the pulse [m]
   double nearest = met[0].range, farthest = met[0].range;
   for (const Reflection& r : met) {
     nearest = r.range < nearest ? r.range : nearest;

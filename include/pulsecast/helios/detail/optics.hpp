@@ -242,6 +242,8 @@ namespace detail {
   WaveformSettings out;
   out.sample_interval = s.bin_size;
   out.threshold = channel.received_power_min;
+  out.timing = EchoTiming::true_range;
+  out.shape_divisor = 3.5;
   out.window = 2 * s.window.value_or(channel.pulse_length / 4);
   out.returns_max = channel.returns_max > 0 ? static_cast<std::size_t>(std::min(channel.returns_max, 255)) : 255;
   out.record_length = s.duration_max > 0 ? std::min(record_length, 2 * s.duration_max) : record_length;
