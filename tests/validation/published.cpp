@@ -244,7 +244,7 @@ TEST_CASE("ranges of a roof by timings of its echo") {
 TEST_CASE("times of light from slopes and spheres") {
   for (const int angle : {20, 45, 70}) {
     const auto lit = lit_by(one_pulse(Roof{far_off, angle * circle / 180}, sunflower, one_metre));
-    // a Gaussian footprint on a plane is a Gaussian in time, as in Jutzi & Stilla 2006
+    // a Gaussian footprint on a plane is a Gaussian in time; slopes and spheres as in Jutzi & Stilla 2006, ISPRS Archives 36-3
     row("slope of " + std::to_string(angle) + " degrees, footprint of 1 m: deviation of times [ns]",
         1e9 * 2 * std::tan(angle * circle / 180) * deviation / light, 1e9 * spread(lit), 0.005);
   }
