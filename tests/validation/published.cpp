@@ -93,7 +93,7 @@ double reading(const Curve& c, EchoTiming timing, double threshold) {
 }
 
 /// Timings that read the samples.
-constexpr EchoTiming timings[] = {EchoTiming::leading_edge, EchoTiming::constant_fraction, EchoTiming::peak};
+constexpr EchoTiming timings[] = {EchoTiming::leading_edge, EchoTiming::constant_fraction, EchoTiming::centroid, EchoTiming::peak};
 
 const char* name_of(EchoTiming timing) {
   constexpr const char* names[]{"mean of true ranges", "maximum", "leading edge", "constant fraction", "centre of gravity"};
@@ -239,6 +239,17 @@ TEST_CASE("ranges of a roof by timings of its echo") {
     row(Kind::bound, head + name_of(EchoTiming::true_range) + " [m]", 0, simulated(EchoTiming::true_range), 0.002);
     row(Kind::published, "the same; about 0.4 in Wagner et al. 2004 [m]", 0.4, farthest - nearest, 0.05);
   }
+}
+
+TEST_CASE("range of a wall by timings of its echo") {
+  for (const EchoTiming timing : timings)
+    for (const double record : {0.0, 100e-9}) {
+      const FullWaveform detector{WaveformSettings{.threshold = 0.1 * white_wall(one_metre), .timing = timing, .record_length = record}};
+      const auto echoes = one_pulse(Roof{far_off, 0}, sunflower, one_metre, vacuum, detector).echoes;
+      REQUIRE(echoes.size() == 1);
+      row(Kind::bound, std::string("wall, ") + (record > 0 ? "waveform kept: " : "no waveform kept: ") + name_of(timing) + " [m]", 0,
+          echoes[0].range - far_off, 0.001);
+    }
 }
 
 TEST_CASE("times of light from slopes and spheres") {
