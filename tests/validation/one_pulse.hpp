@@ -23,6 +23,8 @@ struct Result {
   double power = 0;  ///< of all subrays together [W]
   std::vector<SubrayHit> subrays;
   std::vector<Echo> echoes;
+  std::vector<float> waveform;  ///< received power, if the detector keeps it [W]
+  double waveform_start = 0;    ///< two-way travel time of its first sample [s]
 };
 
 inline const Receiver vacuum{.visibility = std::numeric_limits<double>::infinity()};
@@ -35,7 +37,12 @@ template <Footprint Pattern, Target Map, Detector Instrument = FirstHit>
   const Survey survey{source, WithSubrayRecord{footprint}, map, receiver, detector};
   auto workspace = survey.workspace();
   const Outcome o = survey(0, workspace);
-  Result result{o.energy, 0, {o.subrays.begin(), o.subrays.end()}, {o.echoes.begin(), o.echoes.end()}};
+  Result result{o.energy,
+                0,
+                {o.subrays.begin(), o.subrays.end()},
+                {o.echoes.begin(), o.echoes.end()},
+                {o.waveform.begin(), o.waveform.end()},
+                o.shot.waveform_start};
   for (const SubrayHit& hit : o.subrays) result.power += hit.power;
   return result;
 }

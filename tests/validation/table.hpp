@@ -21,10 +21,11 @@ enum class Kind : std::uint8_t {
   consistency,            ///< a sum that must come out, or a figure that holds by construction
   bound,                  ///< there is none but 0, an error: the tolerance is all that is promised
   peer,                   ///< from HELIOS++
+  published,              ///< printed in a paper
 };
 
 [[nodiscard]] inline const char* name_of(Kind kind) {
-  constexpr const char* names[]{"closed form", "second implementation", "consistency", "bound", "peer"};
+  constexpr const char* names[]{"closed form", "second implementation", "consistency", "bound", "peer", "published"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -86,18 +86,19 @@ namespace detail {
 
 }  // namespace detail
 
+inline constexpr double centroid_level = 0.1;  ///< share of the maximum above which `EchoTiming::centroid` weighs samples
+
 /// Time of an echo by its samples [samples], with the peak at index i and `top` between the samples. `threshold` [W] is the level of a
 /// leading edge, and `fraction` the share of the maximum of a constant fraction.
 [[nodiscard]] inline double echo_time(EchoTiming timing, std::span<const double> y, std::size_t i, const Vertex& top, double threshold,
                                       double fraction) noexcept {
-  constexpr double least_share = 0.1;  // of the maximum, for the centroid
   switch (timing) {
     case EchoTiming::leading_edge:
       return detail::rise_before(y, i, threshold);
     case EchoTiming::constant_fraction:
       return detail::rise_before(y, i, fraction * top.height);
     case EchoTiming::centroid:
-      return detail::centroid_about(y, i, least_share * top.height);
+      return detail::centroid_about(y, i, centroid_level * top.height);
     case EchoTiming::true_range:
     case EchoTiming::peak:
       break;

@@ -125,7 +125,7 @@ class FullWaveform {
       if (s_.record_length == 0 && s_.timing == EchoTiming::peak)
         if (const auto only = receiver_.only_peak(s_, heard)) return detection_of(*only, laser, w.echoes);
     const std::span<const Reflection> reflections = in_order_of_range(heard.reflections, s_.sample_interval);
-    auto samples = receiver_.samples(s_, heard, reflections, tail_of(width_), w.receiver);
+    auto samples = receiver_.samples(s_, heard, reflections, tail(), w.receiver);
     const typename SampleWindow<Width>::Search search{s_, width_, s_.min_separation(laser.pulse_length), samples.delay(),
                                                       samples.independent_noise()};
     while (samples.begin_section()) {
@@ -173,6 +173,13 @@ class FullWaveform {
       return arrival;
     }
   };
+
+  /// Time after the peak of its last pulse up to which a waveform affects a width or a time [tau]. Of pulses that have passed their peaks,
+  /// the sum falls at least as fast as one that is at its peak.
+  [[nodiscard]] double tail() const noexcept {
+    const double of_time = s_.timing == EchoTiming::centroid ? PulseShape::fallen_to(centroid_level) : 0;
+    return std::fmax(tail_of(width_), of_time);
+  }
 
   /// True for echo times that need a correction: those of samples, but not of an ideal receiver's peak.
   [[nodiscard]] bool reads_samples() const noexcept {

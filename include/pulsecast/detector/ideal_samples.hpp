@@ -23,7 +23,7 @@ namespace PULSECAST_NAMESPACE {
 class IdealSamples {
  public:
   /// For reflections sorted by range. `deviation` is that of the noise [W]; the mean of the background is not in the samples [W].
-  /// `width_tail` is the time after the last pulse's peak that a width needs [tau].
+  /// `width_tail` is the time after the last pulse's peak that a width or a centroid needs [tau].
   IdealSamples(double deviation, double background, const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
                double width_tail) noexcept
       : reflections_(reflections),
