@@ -215,7 +215,7 @@ TEST_CASE("hits on the same spot are one, thousands of them too, and add up") {
 TEST_CASE("a slope of thousands of hits is one echo at its middle, as wide as variances add up to") {
   std::vector<Reflection> slope;
   for (int k = 0; k <= 5000; ++k) slope.push_back({1000 + 0.0002 * k, 1e-10});
-  const auto echoes = echoes_of(AnalyticWaveform<MomentWidth>{}, slope);
+  const auto echoes = echoes_of(AnalyticWaveform<MomentWidth>{{.timing = EchoTiming::true_range}}, slope);
   REQUIRE(echoes.size() == 1);
   CHECK(echoes[0].range == support::relative(1000.5, 1e-9));
   const double box = 2 * 1.0002 / speed_of_light;

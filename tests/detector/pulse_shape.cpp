@@ -21,8 +21,20 @@ double falls_to(double value, double low, double high, F f) {
 
 }  // namespace
 
+TEST_CASE("a pulse falls to half its peak after its full width at half maximum, as Newton finds it") {
+  const PulseShape shape(4e-9);
+  const auto half = [&](double t) {
+    for (int step = 0; step < 60; ++step) {
+      const double slope = (shape(t + 1e-14) - shape(t - 1e-14)) / 2e-14;
+      t -= (shape(t) - 0.5) / slope;
+    }
+    return t;
+  };
+  CHECK(half(2e-9) - half(-1.5e-9) == support::relative(4e-9, 1e-9));
+}
+
 TEST_CASE("a pulse has its peak of one at time zero, two tau after its leading edge") {
-  const PulseShape shape(3.5e-9);
+  const PulseShape shape(3.5e-9, 3.5);
   CHECK(shape.tau == support::relative(1e-9, 1e-15));
   CHECK(shape(0) == support::relative(1, 1e-15));
   CHECK(shape(1e-13) < 1);

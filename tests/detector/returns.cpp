@@ -17,7 +17,7 @@ using namespace pulsecast;
 namespace {
 
 const Laser laser{.pulse_length = 2e-9};
-const WaveformSettings settings{.returns_max = 255};
+const WaveformSettings settings{.returns_max = 255, .timing = EchoTiming::true_range};
 
 /// Ranges of the echoes, rounded to metres; checks that they are numbered in order.
 template <class D>

@@ -149,7 +149,7 @@ TEST_CASE("a transport of one's own may give two reflections a subray") {
   const Platform source{Tripod{.position = {0, 0, 20}}, Mount{},
                         Deflector{FixedBeam{rotation_about(axis::right, -90_deg)}, Scanner{.pulses = 1, .laser = {.divergence = 1e-6}}}};
   const Receiver clear{.visibility = std::numeric_limits<double>::infinity()};
-  const Survey survey{source, RingFootprint{3}, wall, Foil{}, clear, FullWaveform{}};
+  const Survey survey{source, RingFootprint{3}, wall, Foil{}, clear, FullWaveform{{.timing = EchoTiming::true_range}}};
   auto w = survey.workspace();
   const Outcome o = survey(0, w);
   REQUIRE(o.echoes.size() == 2);

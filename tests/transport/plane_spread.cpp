@@ -37,7 +37,7 @@ const Receiver vacuum{.visibility = std::numeric_limits<double>::infinity()};
 template <Footprint Pattern>
 Outcome pulse_on(const Slope& slope, const Laser& laser, const Pattern& footprint, bool spread, std::vector<Echo>& echoes) {
   const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 1, .laser = laser}}};
-  const FullWaveform<MomentWidth> detector{WaveformSettings{.threshold = 1e-30, .window = 0, .returns_max = 255}};
+  const FullWaveform<MomentWidth> detector{WaveformSettings{.threshold = 1e-30, .window = 0, .returns_max = 255, .timing = EchoTiming::true_range}};
   const Survey survey{source, footprint, slope, DirectLight{.spread_planes = spread}, vacuum, detector};
   auto w = survey.workspace();
   Outcome o = survey(0, w);
