@@ -39,7 +39,8 @@ struct Echo {
   ObjectId object = 0;               ///< object of the strongest contributor
   std::uint16_t classification = 0;  ///< class of the strongest contributor
   std::uint8_t number = 1;           ///< return number, from 1 in order of `range`
-  double velocity = std::numeric_limits<double>::quiet_NaN();  ///< radial velocity, positive away; NaN if not measured [m/s]
+  double velocity = std::numeric_limits<double>::quiet_NaN();         ///< radial velocity, positive away; NaN if not measured [m/s]
+  double shape_deviation = std::numeric_limits<double>::quiet_NaN();  ///< of `ShapeDeviation`; NaN if not measured [1/1000]
 };
 
 /// Fate of a pulse slot. A sink sees all pulses, with or without echoes, unless it `ChoosesShots`. Blocked slots are counted, not passed

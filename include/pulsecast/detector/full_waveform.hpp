@@ -79,6 +79,9 @@ class FullWaveform {
     if (reads_samples() && !corrections_.find(laser)) corrections_.add(laser, correction_for(laser));
   }
 
+  /// Takes away noise and background.
+  void silence() noexcept { receiver_.silence(); }
+
   /// Width of a laser's outgoing pulse, by the measure of its echoes [s]. @throws SettingError as `validate`
   [[nodiscard]] double pulse_width(const Laser& laser) const {
     validate(laser);
@@ -189,7 +192,7 @@ class FullWaveform {
   /// Correction for a laser, from echoes without noise whose peaks are ten times the threshold.
   [[nodiscard]] Correction correction_for(const Laser& laser) const {
     FullWaveform quiet = *this;
-    quiet.receiver_.silence();
+    quiet.silence();
     quiet.s_.record_length = 0;
     quiet.s_.threshold = s_.threshold > 0 ? s_.threshold : 1;
     Workspace w = quiet.workspace(1);
