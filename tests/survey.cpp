@@ -516,7 +516,12 @@ TEST_CASE("echoes stand in order of the ranges that are reported, each with its 
   };
   const Plates plates;
   const auto survey_with = [&](const RangeErrors& errors) {
-    return Survey{still({}, no_rotation, 1000), SunflowerFootprint{100}, plates, Receiver{.range_errors = errors}, FullWaveform{}, 5};
+    return Survey{still({}, no_rotation, 1000),
+                  SunflowerFootprint{100},
+                  plates,
+                  Receiver{.range_errors = errors},
+                  FullWaveform{{.timing = EchoTiming::true_range}},
+                  5};
   };
   const RangeErrors noise{.deviation = 0.3};
   const auto exact = survey_with({}), noisy = survey_with(noise);

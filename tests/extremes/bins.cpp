@@ -133,7 +133,7 @@ TEST_CASE("waveforms of ten million bins") {
   // the integral of a pulse of peak 1 is e^2 tau / 2
   const Laser laser{.pulse_length = 10e-9, .divergence = 1e-6};
   const TwoWalls walls{100, 1'400'000};
-  const double tau = laser.pulse_length / 3.5;
+  const double tau = laser.pulse_length / 3.3946806708;
   const double energy = 0.5 * (from_wall(laser, 100) + from_wall(laser, 1'400'000)) * std::exp(2.0) / 2 * tau;
   const WaveformSettings settings{.sample_interval = 1e-9, .threshold = 0, .record_length = 10e-3};
   const Record full(FullWaveform{settings}, walls, laser), analytic(AnalyticWaveform{settings}, walls, laser);

@@ -22,9 +22,10 @@
 
 namespace pulsecast::extremes {
 
-/// Calls `judge(name, detector)` with every waveform detector and width.
+/// Calls `judge(name, detector)` with every waveform detector and width, timed by true ranges.
 template <class Judge>
-void for_each_waveform(const WaveformSettings& settings, const Judge& judge) {
+void for_each_waveform(WaveformSettings settings, const Judge& judge) {
+  settings.timing = EchoTiming::true_range;
   judge("FullWaveform", FullWaveform<>(settings));
   judge("FullWaveform, MomentWidth", FullWaveform<MomentWidth>(settings));
   judge("FullWaveform, GaussianFit", FullWaveform<GaussianFit>(settings));
@@ -77,7 +78,7 @@ struct Width {
 /// Of a pulse: sqrt(3) tau, and what the fit gives of one of 4 ns.
 [[nodiscard]] inline Width width_of(double pulse_length) {
   const double fit = FullWaveform<GaussianFit>(WaveformSettings{.sample_interval = 4e-9 / 256}).pulse_width(Laser{.pulse_length = 4e-9});
-  return {std::sqrt(3.0) * pulse_length / 3.5, fit * (pulse_length / 4e-9)};
+  return {std::sqrt(3.0) * pulse_length / 3.3946806708, fit * (pulse_length / 4e-9)};
 }
 
 /// Errors of one echo.

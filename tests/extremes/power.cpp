@@ -33,7 +33,7 @@ double energy_of_record(const Laser& laser, double range) {
   auto workspace = survey.workspace();
   double energy = 0;
   for (const float power : survey(0, workspace).waveform) energy += static_cast<double>(power) * settings.sample_interval;
-  return energy / (from_wall(laser, range) * std::exp(2.0) / 2 * laser.pulse_length / 3.5);
+  return energy / (from_wall(laser, range) * std::exp(2.0) / 2 * laser.pulse_length / 3.3946806708);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST_CASE("pulse lengths, before a wall") {
   }
   // a double tells two-way times of 0.27 s from each other by 6e-17 s, a fifth of the tau of 1 fs
   const Laser shortest{.pulse_length = 1e-15};
-  const WaveformSettings bins{.sample_interval = 1e-16, .threshold = 0, .window = 1e-15};
+  const WaveformSettings bins{.sample_interval = 1e-16, .threshold = 0, .window = 1e-15, .timing = EchoTiming::true_range};
   const auto far_away = [&](const auto& detector) {
     const auto echoes = validation::one_pulse(Wall{4e7}, SingleRay{}, shortest, validation::vacuum, detector).echoes;
     REQUIRE(echoes.size() == 1);

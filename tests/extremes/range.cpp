@@ -155,7 +155,7 @@ TEST_CASE("a pulse's echo from a wall, at any range") {
     row(quantity, detector + ", wall at these ranges: largest error of the range [nm]", 0, worst * 1e9, 1000);
     row(quantity, detector + ", wall at these ranges: largest error of the power [1e-12]", 0, worst_power * 1e12, 1);
   };
-  const WaveformSettings settings{.threshold = 0};
+  const WaveformSettings settings{.threshold = 0, .timing = EchoTiming::true_range};
   ask("FirstHit", FirstHit{});
   ask("AnalyticWaveform", AnalyticWaveform{settings});
   ask("FullWaveform", FullWaveform{settings});

@@ -445,6 +445,16 @@ TEST_CASE("an intensity of amplitude has the full scale that it is given") {
   CHECK(one(shot, {.range = 1, .amplitude = 0}, settings).point.intensity == 0);
 }
 
+TEST_CASE("an intensity normalized by range is that of the same surface at the range that it is given") {
+  const Shot shot{.direction = {0, 0, -1}};
+  const LasSettings settings{.intensity = LasIntensity::range_normalized, .intensity_full_scale = 1e-6, .intensity_range = 10};
+  CHECK(one(shot, {.range = 10, .amplitude = 1e-7}, settings).point.intensity == 6554);
+  CHECK(one(shot, {.range = 20, .amplitude = 0.25e-7}, settings).point.intensity == 6554);
+  CHECK(one(shot, {.range = 5, .amplitude = 4e-7}, settings).point.intensity == 6554);
+  CHECK_THROWS_AS((LasSettings{.intensity = LasIntensity::range_normalized}.validate()), SettingError);
+  CHECK_THROWS_AS((LasSettings{.intensity_range = 0}.validate()), SettingError);
+}
+
 TEST_CASE("without one, the strongest echo of the file has the greatest intensity, and all others theirs in proportion") {
   const LasSettings settings{.intensity = LasIntensity::amplitude};
   Survey survey;

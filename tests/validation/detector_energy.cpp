@@ -85,8 +85,8 @@ TEST_CASE("ties do not lose energy") {
 }
 
 TEST_CASE("a waveform holds all the energy that came in") {
-  // Source: the integral of (t/tau)^2 exp(-t/tau) is 2 tau; its peak is 4/e^2; tau is the pulse's length by 3.5, Carlsson et al. 2001
-  const double closed = 4e-9 / 3.5 * std::numbers::e * std::numbers::e / 2;
+  // Source: the integral of (t/tau)^2 exp(-t/tau) is 2 tau; its peak is 4/e^2; tau is the pulse's length by 3.3947, Carlsson et al. 2001
+  const double closed = 4e-9 / 3.3946806708 * std::numbers::e * std::numbers::e / 2;
   row("AnalyticWaveform, 100 reflections: integral of the waveform by the received power [ns]", closed * 1e9,
       recorded<AnalyticWaveform>() * 1e9, 1e-3);
   row("FullWaveform, 100 reflections: integral of the waveform by the received power [ns]", closed * 1e9, recorded<FullWaveform>() * 1e9,

@@ -29,7 +29,7 @@ TEST_CASE("the peer's pulse in time") {
     int number;
     double power;
   };
-  const PulseShape shape(4_ns);
+  const PulseShape shape(4_ns, 3.5);
   for (const Sample& s :
        {Sample{1, 0.123581163261589}, {3, 0.463646639803008}, {5, 0.536879651903989}, {10, 0.240944910109088}, {15, 0.0608248568271227}})
     row(Kind::peer, "pulse of 4 ns, sample " + std::to_string(s.number) + " of 15, by its peak", s.power * PulseShape::to_unit_peak,

@@ -36,9 +36,10 @@ struct Lit {
   double range, power;  ///< range [m]; power, of all light from a white wall that faces the beam
 };
 
-/// Outgoing pulse at a time since its peak, which is 1. Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5, tau the pulse length by 3.5.
+/// Outgoing pulse at a time since its peak, which is 1. Source: Carlsson, Steinvall & Letalick 2001, eq. 4.5, tau the pulse length
+/// by 3.3947.
 double outgoing(double t, double length) {
-  const double u = t / (length / 3.5) + 2;
+  const double u = t / (length / 3.3946806708) + 2;
   return u > 0 ? 0.25 * u * u * std::exp(2 - u) : 0;
 }
 
@@ -260,7 +261,7 @@ TEST_CASE("times of light from slopes and spheres") {
         1e9 * 2 * std::tan(angle * circle / 180) * deviation / light, 1e9 * spread(lit), 0.005);
   }
   const Laser laser{.pulse_length = 1e-9, .divergence = one_metre.divergence};
-  const double pulse = std::sqrt(3.0) * 1e-9 / 3.5, interval = 1e-9 / 16;  // deviation of (t/tau)^2 exp(-t/tau): sqrt(3) tau
+  const double pulse = std::sqrt(3.0) * 1e-9 / 3.3946806708, interval = 1e-9 / 16;  // deviation of (t/tau)^2 exp(-t/tau): sqrt(3) tau
   for (const double radius : {0.25, 0.5, 1.0}) {
     char head[64];
     std::snprintf(head, sizeof head, "sphere of radius %g m, footprint of 1 m: ", radius);

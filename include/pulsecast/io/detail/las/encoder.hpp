@@ -193,7 +193,10 @@ class LasEncoder {
 
   [[nodiscard]] std::uint16_t intensity(const Echo& echo) const noexcept {
     if (automatic_intensity()) return 0;
-    const double value = settings_.intensity == LasIntensity::amplitude ? echo.amplitude : echo.reflectance;
+    const double ranges = echo.range / settings_.intensity_range;
+    const double value = settings_.intensity == LasIntensity::reflectance ? echo.reflectance
+                         : settings_.intensity == LasIntensity::amplitude ? echo.amplitude
+                                                                          : echo.amplitude * ranges * ranges;
     return detail::las_rounded<std::uint16_t>(value / settings_.intensity_full_scale.value_or(1) * 65535, 0, 65535);
   }
 

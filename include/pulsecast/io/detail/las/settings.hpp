@@ -24,6 +24,8 @@ enum class LasFormat : std::uint8_t {
 enum class LasIntensity : std::uint8_t {
   reflectance,  ///< reflectance of the echo, independent of range
   amplitude,    ///< received power of the echo, as of most instruments
+  /// Received power times the squared share of the range in `LasSettings::intensity_range`: that of the same surface there, but for the air
+  range_normalized,
 };
 
 /// Epoch of the times of a LAS file. Source: ASPRS LAS 1.4 R15, global encoding, bit 0.
@@ -48,6 +50,7 @@ struct LasSettings {
   LasIntensity intensity = LasIntensity::reflectance;  ///< meaning of the intensity
   std::optional<double> intensity_full_scale = {};     ///< value stored as the greatest intensity, 65535, and clipped above;
                                                        ///< if empty, a reflectance of 1, or the greatest amplitude of the file [W]
+  double intensity_range = 1;                          ///< range that intensities are normalized to [m]
   double amplitude_reference = 1e-9;                   ///< reference power of amplitudes in dB [W]
   std::optional<Date> created = std::nullopt;          ///< date in the header; if empty, 0, so that equal surveys give equal bytes
 
@@ -59,8 +62,11 @@ struct LasSettings {
     require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // with a terminator, counted by 16 bits
     if (epsg != 0) require_within("LasSettings::epsg", epsg, 1024, 32766, "");  // range of EPSG codes; source: OGC GeoTIFF 1.1
     require_finite("LasSettings::start_time", start_time, "s");
+    require_positive("LasSettings::intensity_range", intensity_range, "m");
+    if (intensity == LasIntensity::range_normalized && !intensity_full_scale)
+      throw SettingError("LasSettings::intensity_full_scale", 0, "W", "given, for intensities normalized by range");
     if (intensity_full_scale)
-      require_positive("LasSettings::intensity_full_scale", *intensity_full_scale, intensity == LasIntensity::amplitude ? "W" : "");
+      require_positive("LasSettings::intensity_full_scale", *intensity_full_scale, intensity == LasIntensity::reflectance ? "" : "W");
     require_positive("LasSettings::amplitude_reference", amplitude_reference, "W");
     if (created && !created->ok()) throw SettingError("LasSettings::created day", unsigned{created->day()}, "", "a valid date");
   }
