@@ -101,6 +101,7 @@ Loading loading_of(const Options& o, const SurveyFile& file, std::uint64_t seed)
                        .las_waveforms = o.format == "las" && o.write_waveform && !o.las_1_0,
                        .waveform_noise = o.waveform_noise,
                        .fixed_incidence = o.fixed_incidence,
+                       .library_physics = o.library_physics,
                        .platform_noise = o.platform_noise,
                        .leg_noise = o.leg_noise,
                        .assets = o.assets,
@@ -276,7 +277,7 @@ class Session {
     out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec << " format=" << options_.format
         << " scale=" << options_.las_scale << " epsg=" << options_.epsg.value_or(0) << " las10=" << options_.las_1_0
         << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width << options_.waveform_noise
-        << options_.fixed_incidence << options_.split_by_channel << options_.platform_noise << options_.leg_noise;
+        << options_.fixed_incidence << options_.library_physics << options_.split_by_channel << options_.platform_noise << options_.leg_noise;
     return out.str();
   }
 

@@ -36,6 +36,7 @@ struct SceneBuildOptions {
   double pulse_rate = 100e3;      ///< pulse rate of the first leg, for motions per pulse [Hz]
   std::uint64_t seed = 0;         ///< seed of random properties of the scene
   bool fixed_incidence = false;   ///< perpendicular incidence on all surfaces, for scattering
+  bool tilted_leaves = false;     ///< leaves of voxels send back as tilted surfaces do, see `TransmissiveVoxels`
   unsigned threads = 0;           ///< threads for reading and building, at most `max_threads`; 0: all of the machine
 
   void validate() const { require_within("SceneBuildOptions::threads", threads, 0, max_threads, ""); }

@@ -73,6 +73,7 @@ class Simulation {
     bool las_waveforms = false;                   ///< cut and sample waveforms to the limits of LAS
     bool waveform_noise = false;                  ///< add receiver noise
     bool fixed_incidence = false;                 ///< perpendicular incidence on all surfaces, for scattering
+    bool library_physics = false;                 ///< true: the library's own physics in place of that of HELIOS++, see docs/surveys.md
     bool platform_noise = true;                   ///< true: as in the survey; false: none
     bool leg_noise = true;                        ///< true: random leg offsets as in the survey; false: none
     std::vector<std::filesystem::path> assets{};  ///< folders; a folder `spectra` in one describes materials

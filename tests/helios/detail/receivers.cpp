@@ -172,4 +172,33 @@ TEST_CASE("channels with equal receivers are one group, and pulses carry its num
 }
 
 }  // namespace
+
+TEST_CASE("receivers of the library's physics have its defaults, and noise that seldom is an echo") {
+  ChannelSettings channel;
+  channel.waveform.rings = 3;
+  const auto unit = library_receiver_unit<NoWidth>(channel, survey_waveform(channel, 0, true), true);
+  CHECK(unit.receiver.aerosols == AerosolModel::kim);
+  CHECK(unit.detector.settings().timing == EchoTiming::peak);
+  CHECK(unit.detector.settings().shape_divisor == PulseShape::divisor);
+  double squares = 0;
+  for (std::size_t j = 0; j < unit.footprint.size(); ++j)
+    squares += unit.footprint.share(j) * dot(unit.footprint.offset(j), unit.footprint.offset(j));
+  CHECK(squares == doctest::Approx(0.5));
+  const WaveformSettings as_before = survey_waveform(channel);
+  CHECK(as_before.timing == EchoTiming::true_range);
+  CHECK(as_before.shape_divisor == 3.5);
+  CHECK(survey_receiver(channel).aerosols == AerosolModel::kruse);
+}
+
+TEST_CASE("air beyond what its extinction was measured for is told of") {
+  ChannelSettings channel;
+  channel.wavelength = 1064e-9;
+  CHECK(air_warning(channel).empty());
+  channel.visibility = 2e3;
+  CHECK(air_warning(channel).find("2 km") != std::string::npos);
+  CHECK(air_warning(channel, true).empty());
+  channel.wavelength = 10.6e-6;
+  CHECK(air_warning(channel, true).find("10600 nm") != std::string::npos);
+}
+
 }  // namespace pulsecast::helios

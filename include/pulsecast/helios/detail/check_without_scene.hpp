@@ -23,6 +23,8 @@ PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettin
   std::vector<std::string> warnings = compile_survey(survey, ground, {.leg_places = leg_places}).warnings;
   for (const ChannelSettings& channel : survey.scanner.channels) {
     survey_receiver(channel).validate();
+    const std::string odd = air_warning(channel);
+    if (!odd.empty() && std::find(warnings.begin(), warnings.end(), odd) == warnings.end()) warnings.push_back(odd);
     survey_waveform(channel).validate();
     (void)RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)));
   }

@@ -118,6 +118,7 @@ class LoadedSimulation final : public Simulation {
                                 .pulse_rate = first_pulse_rate(survey),
                                 .seed = settings.seed,
                                 .fixed_incidence = settings.fixed_incidence,
+                                .tilted_leaves = settings.library_physics,
                                 .threads = settings.threads}),
         limits_(survey, settings) {
     for (const Mesh& mesh : settings.meshes)
@@ -237,16 +238,27 @@ class LoadedSimulation final : public Simulation {
   template <class Width>
   void connect(const ScannerSettings& scanner, bool ideal, std::vector<std::string>& odd) {
     const Vec3 size = scene_->bounds().empty() ? Vec3{} : scene_->bounds().size();
-    const bool waveforms = settings_.waveforms && !ideal, noisy = settings_.waveform_noise && !ideal;
-    const auto receiver = [&](const ChannelSettings& channel) {
-      const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
-      WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0);
-      limits_.limit_record(waveform, odd);
-      return survey_receiver_unit<Width>(channel, waveform, noisy);
+    const bool waveforms = settings_.waveforms && !ideal, noisy = settings_.waveform_noise && !ideal, library = settings_.library_physics;
+    const auto units_by = [&](const auto& receiver_unit) {
+      return ReceiverGroups(survey_.scanner).units(scanner, [&](const ChannelSettings& channel) {
+        const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
+        WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library);
+        limits_.limit_record(waveform, odd);
+        if (const std::string air = air_warning(channel, library); !air.empty()) odd.push_back(air);
+        return receiver_unit(channel, waveform, noisy);
+      });
     };
-    using Pipeline = Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, FullWaveform<Width>>;
-    auto units = ReceiverGroups(survey_.scanner).units(scanner, receiver);
-    pipeline_ = std::make_unique<SurveyOf<Pipeline>>(Pipeline(compiled_->source, std::move(units), *scene_, DirectLight{.spread_planes = false}, seed_));
+    if (library)
+      connect<BandLimitedWaveform<Width>>(units_by(library_receiver_unit<Width>));
+    else
+      connect<FullWaveform<Width>>(units_by(survey_receiver_unit<Width>));
+  }
+
+  template <class Detector>
+  void connect(std::vector<ReceiverUnit<RingFootprint, Detector>> units) {
+    using Pipeline = Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, Detector>;
+    const DirectLight light{.spread_planes = settings_.library_physics};
+    pipeline_ = std::make_unique<SurveyOf<Pipeline>>(Pipeline(compiled_->source, std::move(units), *scene_, light, seed_));
   }
 
   SurveySettings survey_;

@@ -222,28 +222,42 @@ namespace detail {
 
 }  // namespace detail
 
-/// Receiver of a channel. Throws a `SettingError` or a `std::invalid_argument` if the noise formula is invalid.
-[[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel) {
+/// Receiver of a channel, with the aerosols of Kim in place of those of Kruse by the library's physics. Throws a `SettingError` or a
+/// `std::invalid_argument` if the noise formula is invalid.
+[[nodiscard]] inline Receiver survey_receiver(const ChannelSettings& channel, bool library_physics = false) {
   const bool by_formula = !channel.errors.range_noise.empty();
   const RangeErrors errors = by_formula ? detail::range_noise(channel) : RangeErrors{.deviation = channel.accuracy};
   return {.diameter = channel.receiver_diameter,
           .efficiency = channel.efficiency,
           .visibility = channel.visibility,
-          .aerosols = AerosolModel::kruse,
+          .aerosols = library_physics ? AerosolModel::kim : AerosolModel::kruse,
           .range_min = channel.range_min,
           .range_max = channel.range_max,
           .range_errors = errors};
 }
 
+/// Warning about air, or light in it, beyond what its extinction was measured for; empty if there is nothing to tell.
+[[nodiscard]] inline std::string air_warning(const ChannelSettings& channel, bool library_physics = false) {
+  const Receiver receiver = survey_receiver(channel, library_physics);
+  if (extinction_is_valid(channel.wavelength, receiver.visibility, receiver.aerosols)) return {};
+  return "light of " + pulsecast::detail::to_text(std::round(channel.wavelength * 1e10) / 10) + " nm in air of a visibility of " +
+         pulsecast::detail::to_text(receiver.visibility / 1e3) + " km: the formula of its extinction holds from 400 to 1600 nm" +
+         (library_physics ? "" : ", and from 6 km on; --libraryPhysics has one for haze and fog");
+}
+
 /// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are one-way times of
-/// light and count twice. `binSize_ns` is two-way time, as in a digitiser.
-[[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0) {
+/// light and count twice. `binSize_ns` is two-way time, as in a digitiser. Echoes are timed by true ranges, unless by the library's
+/// physics.
+[[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
+                                                      bool library_physics = false) {
   const FullWaveformSettings& s = channel.waveform;
   WaveformSettings out;
   out.sample_interval = s.bin_size;
   out.threshold = channel.received_power_min;
-  out.timing = EchoTiming::true_range;
-  out.shape_divisor = 3.5;
+  if (!library_physics) {
+    out.timing = EchoTiming::true_range;
+    out.shape_divisor = 3.5;
+  }
   out.window = 2 * s.window.value_or(channel.pulse_length / 4);
   out.returns_max = channel.returns_max > 0 ? static_cast<std::size_t>(std::min(channel.returns_max, 255)) : 255;
   out.record_length = s.duration_max > 0 ? std::min(record_length, 2 * s.duration_max) : record_length;

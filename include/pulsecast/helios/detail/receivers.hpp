@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include <pulsecast/detector/band_limited_receiver.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/settings.hpp>
@@ -65,6 +66,21 @@ template <EchoWidth Width>
   if (noisy) noise.deviation = 0.25 * channel.received_power_min;
   return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings))), survey_receiver(channel),
           FullWaveform<Width>(waveform, {}, noise)};
+}
+
+/// Detector of the library's physics.
+template <EchoWidth Width>
+using BandLimitedWaveform = FullWaveform<Width, BandLimitedReceiver<>>;
+
+/// As above, by the library's physics: the footprint has the second moments of the beam, and the receiver the bandwidth of the pulse. Noise
+/// is a sixth of the least power of an echo, so that false echoes are rare though it listens to the whole gate.
+template <EchoWidth Width>
+[[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(const ChannelSettings& channel,
+                                                                                            const WaveformSettings& waveform, bool noisy) {
+  ReceiverChain chain;
+  if (noisy) chain.noise_power = channel.received_power_min / 6 / std::sqrt(chain.filter(channel.pulse_length).noise_bandwidth());
+  return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)), RingMoments::whole), survey_receiver(channel, true),
+          BandLimitedWaveform<Width>(waveform, {}, BandLimitedReceiver<>(chain))};
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios

@@ -346,6 +346,13 @@ TEST_CASE("voxels have a mode, a table and a material") {
   CHECK(voxels.leaf_angles.filename() == "mesh.obj");
   CHECK(voxels.material.name == "leaf");
   CHECK(voxels.material.random == 3);
+  CHECK(voxels.leaf_area == 0);
+  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="leafArea_m2" value="0.004"/><param key="clumping" value="0.7"/>)",
+                    voxels)
+            .empty());
+  CHECK(voxels.leaf_area == 0.004);
+  CHECK(voxels.clumping == 0.7);
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="clumping" value="0"/>)", voxels), "from 0.01 to 10"));
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="ladlut" value="no.txt"/>)", voxels), "does not exist"));
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="intersectionArgument" value="-1"/>)", voxels),
                  "from 0 to 100"));

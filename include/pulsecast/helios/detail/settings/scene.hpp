@@ -84,6 +84,8 @@ struct VoxelSource {
   VoxelMode mode = VoxelMode::transmittive;  ///< `intersectionMode`
   double scaling_exponent = 0.5;             ///< scaled mode only; `intersectionArgument`
   bool random_shift = false;                 ///< scaled mode: random place of each cube in its cell; `randomShift`
+  double leaf_area = 0;                      ///< 0: leaves without a size. `leafArea_m2` [m^2]
+  double clumping = 1;                       ///< factor of the extinction. `clumping`
   std::filesystem::path leaf_angles{};       ///< look-up table; empty: none. `ladlut`
 
   void validate() const { material.validate(); }

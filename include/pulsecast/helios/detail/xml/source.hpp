@@ -107,6 +107,8 @@ void fields(Io& io, Of<Io, VoxelSource>& source) {
   io.number("intersectionArgument", source.scaling_exponent, units::one, 0, 100);
   io.flag("randomShift", source.random_shift);
   io.file("ladlut", source.leaf_angles);
+  io.number("leafArea_m2", source.leaf_area, units::one, 0, 100);
+  io.number("clumping", source.clumping, units::one, 0.01, 10);
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios::xml
