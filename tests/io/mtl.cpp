@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "support/file_errors.hpp"
+#include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pulsecast;
@@ -73,6 +74,23 @@ TEST_CASE("the colours decide the angular law, material by material") {
   CHECK(m.at("specular").specular_exponent == 10);
   CHECK_FALSE(m.at("diffuse").ground);
   for (const auto& [name, material] : m) CHECK_NOTHROW(material.validate());
+}
+
+TEST_CASE("laws of the library's own have keys of its own") {
+  const MaterialLibrary library =
+      mtl("newmtl gloss\nKd 0.3\nKs 0.1\nNs 20\npulsecast_normalizedPhong true\n"
+          "newmtl plain\nKd 0.3\nKs 0.1\npulsecast_normalizedPhong false\n"
+          "newmtl sign\nKd 0.3\npulsecast_retroreflection 70\nnewmtl mark\npulsecast_retroreflection 300.5 45\n");
+  CHECK(library.materials.at("gloss").scattering == Scattering::normalized_phong);
+  CHECK(library.materials.at("plain").scattering == Scattering::phong);
+  CHECK(library.materials.at("sign").scattering == Scattering::retroreflective);
+  CHECK(library.materials.at("sign").retroreflection == 70);
+  CHECK(library.materials.at("sign").retroreflection_half_angle == support::relative(pi / 6, 1e-12));
+  CHECK(library.materials.at("mark").retroreflection == 300.5);
+  CHECK(library.materials.at("mark").retroreflection_half_angle == support::relative(pi / 4, 1e-12));
+  for (const char* wrong : {"pulsecast_retroreflection -1", "pulsecast_retroreflection 70 0", "pulsecast_retroreflection 70 30 5",
+                            "pulsecast_retroreflection", "pulsecast_normalizedPhong maybe"})
+    CHECK_THROWS_AS((void)mtl(std::string("newmtl a\n") + wrong + "\n"), FileError);
 }
 
 TEST_CASE("a reflectance above 1 is percent, with a warning; the limits are themselves allowed") {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -120,4 +121,80 @@ TEST_CASE("a material refuses what no surface can do") {
     CHECK_THROWS_AS(Material{.specular_share = bad}.validate(), SettingError);
   }
   for (const double bad : {-1.0, nan}) CHECK_THROWS_AS(Material{.specular_exponent = bad}.validate(), SettingError);
+}
+
+TEST_CASE("the lobe of normalized Phong holds its share of the energy, by quadrature over the hemisphere") {
+  for (const double exponent : {0.0, 1.0, 7.5, 30.0, 100.0})
+    for (const double share : {0.2, 1.0}) {
+      const Material m{
+          .reflectance = 0.6, .scattering = Scattering::normalized_phong, .specular_share = share, .specular_exponent = exponent};
+      // Source: Lafortune & Willems 1994: reflectance ((1 - share) / pi + share (n + 2) / 2 pi cos^n of the angle to the mirror direction)
+      const auto brdf = [&](double cos_to_mirror) {
+        return 0.6 * ((1 - share) / pi + share * (exponent + 2) / (2 * pi) * std::pow(std::fmax(cos_to_mirror, 0), exponent));
+      };
+      for (const double incidence : {0.0, 0.3, 0.6}) {
+        CHECK(m.backscatter(std::cos(incidence), nir) ==
+              support::relative(pi * brdf(std::cos(2 * incidence)) * std::cos(incidence), 1e-13));
+        double energy = 0;
+        constexpr int n = 400;
+        for (int i = 0; i < n; ++i)
+          for (int k = 0; k < n; ++k) {
+            const double zenith = pi / 2 * (i + 0.5) / n, azimuth = 2 * pi * (k + 0.5) / n;
+            const double to_mirror = std::sin(zenith) * std::cos(azimuth) * std::sin(incidence) + std::cos(zenith) * std::cos(incidence);
+            energy += brdf(to_mirror) * std::cos(zenith) * std::sin(zenith) * (pi / 2 / n) * (2 * pi / n);
+          }
+        INFO("exponent ", exponent, ", incidence ", incidence);
+        CHECK(energy < 0.6 * (1 + 1e-4));
+        if (incidence == 0) CHECK(energy == support::relative(0.6, 1e-4));
+      }
+    }
+}
+
+TEST_CASE("a retroreflector has its coefficient at normal incidence, and half of its light at its half angle") {
+  Material m{.reflectance = 0.1, .scattering = Scattering::retroreflective, .retroreflection = 70, .retroreflection_half_angle = 30_deg};
+  CHECK(m.backscatter(1, nir) == support::relative(0.1 + 70 * pi, 1e-13));
+  CHECK(m.backscatter(std::cos(30_deg), nir) == support::relative(0.1 * std::cos(30_deg) + 35 * pi, 1e-13));
+  CHECK(m.backscatter(0, nir) == 0);
+  m.retroreflection = 1 / pi;  // as a white surface
+  m.retroreflection_half_angle = 60_deg;
+  m.reflectance = 0;
+  CHECK(m.backscatter(std::cos(40_deg), nir) == support::relative(std::cos(40_deg), 1e-13));
+}
+
+TEST_CASE("measured backscatter is linear in the angle between the rows, and constant beyond") {
+  const Material m{.reflectance = 0.5,
+                   .scattering = Scattering::tabulated,
+                   .backscatter_table = SharedArray<BackscatterAtIncidence>({{10_deg, 3.0}, {20_deg, 1.0}, {60_deg, 0.5}})};
+  CHECK(m.backscatter(1, nir) == support::relative(1.5, 1e-13));
+  CHECK(m.backscatter(std::cos(15_deg), nir) == support::relative(1, 1e-13));
+  CHECK(m.backscatter(std::cos(40_deg), nir) == support::relative(0.375, 1e-13));
+  CHECK(m.backscatter(0, nir) == support::relative(0.25, 1e-13));
+}
+
+TEST_CASE("lanes have the backscatter of one, by every law") {
+  const Material laws[]{{.scattering = Scattering::normalized_phong, .specular_share = 0.4, .specular_exponent = 12.5},
+                        {.scattering = Scattering::retroreflective, .retroreflection = 200},
+                        {.scattering = Scattering::tabulated,
+                         .backscatter_table = SharedArray<BackscatterAtIncidence>({{0.0, 3.0}, {0.3, 1.0}, {1.2, 0.5}})}};
+  for (const Material& m : laws) {
+    const Backscatter law = m.backscatter(nir);
+    for (double cosine = 0; cosine < 0.9; cosine += 0.01) {
+      const simd::Doubles cosines = simd::generate([&](std::size_t lane) { return cosine + 0.02 * static_cast<double>(lane); });
+      const simd::Doubles all = law.glossy(cosines);
+      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) CHECK(all[lane] == law(cosines[lane]));
+    }
+  }
+}
+
+TEST_CASE("retroreflectors and tables that cannot be are refused") {
+  CHECK_THROWS_AS(Material{.retroreflection = -1}.validate(), SettingError);
+  CHECK_THROWS_AS(Material{.retroreflection_half_angle = 0}.validate(), SettingError);
+  CHECK_THROWS_AS(Material{.scattering = Scattering::tabulated}.validate(), SettingError);
+  const auto table = [](std::vector<BackscatterAtIncidence> rows) {
+    return Material{.scattering = Scattering::tabulated, .backscatter_table = SharedArray<BackscatterAtIncidence>(std::move(rows))};
+  };
+  CHECK_NOTHROW(table({{0.1, 1}}).validate());
+  CHECK_THROWS_AS(table({{0.2, 1}, {0.1, 1}}).validate(), SettingError);
+  CHECK_THROWS_AS(table({{0.2, -1}}).validate(), SettingError);
+  CHECK_THROWS_AS(table({{2, 1}}).validate(), SettingError);
 }

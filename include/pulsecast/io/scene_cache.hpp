@@ -106,8 +106,9 @@ template <CacheableScene S, class Build, class... Further>
 /// Lists the members of a material. A new member of a material or part is a compile error here.
 template <class Archive>
 void list_members(Archive& a, Material& m) {
-  auto& [name, reflectance, scattering, specular_share, specular_exponent, classification, ground, spectrum] = m;
-  a(name, reflectance, scattering, specular_share, specular_exponent, classification, ground, spectrum);
+  auto& [name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, table, classification, ground,
+         spectrum] = m;
+  a(name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, table, classification, ground, spectrum);
 }
 /// Lists the members of a part.
 template <class Archive, class... Shapes>

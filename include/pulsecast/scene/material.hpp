@@ -3,13 +3,20 @@
 #ifndef PULSECAST_SCENE_MATERIAL_HPP
 #define PULSECAST_SCENE_MATERIAL_HPP
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/search.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/simd.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector.hpp>
 #include <pulsecast/base/vector_math.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
@@ -18,16 +25,34 @@ namespace PULSECAST_NAMESPACE {
 /// Angular law of the light that a surface scatters back to its source.
 enum class Scattering : std::uint8_t {
   lambert,                ///< proportional to the cosine of incidence
-  phong,                  ///< Lambert and a specular lobe
+  phong,                  ///< Lambert and a specular lobe that is as high as a white Lambertian surface, whatever its exponent
   direction_independent,  ///< equal at any incidence
+  normalized_phong,       ///< Lambert and a specular lobe that holds its share of the energy. Source: Lafortune & Willems 1994
+  retroreflective,        ///< Lambert and light that returns to its source, as of sheeting and road marks
+  tabulated,              ///< as measured, by `Material::backscatter_table`
+};
+
+/// Row of a table of backscatter.
+struct BackscatterAtIncidence {
+  double incidence = 0;    ///< angle between light and normal, from 0 to pi/2 [rad]
+  double backscatter = 0;  ///< by that of a white Lambertian surface at normal incidence, per unit of the reflectance
 };
 
 /// Backscatter of a material at one wavelength, by the cosine of incidence.
 /// Source: Jutzi & Gross 2009; the lobe is about the mirror direction, twice the incidence away, and ends at 90 degrees.
 struct Backscatter {
-  double reflectance = 0;                 ///< a fraction, split into the three shares below
-  double even = 0, cosine = 0, lobe = 0;  ///< shares: isotropic; Lambertian; specular lobe
-  double exponent = 0;                    ///< exponent of the lobe
+  /// What the lobe depends on.
+  enum class Lobe : std::uint8_t {
+    mirror,         ///< power of the cosine of the angle to the mirror direction
+    mirror_facing,  ///< that, times the cosine of incidence
+    source,         ///< power of the cosine of incidence
+  };
+
+  double reflectance = 0;                                      ///< a fraction, split into the three shares below
+  double even = 0, cosine = 0, lobe = 0;                       ///< shares: isotropic; Lambertian; specular lobe
+  double exponent = 0;                                         ///< exponent of the lobe
+  const SharedArray<BackscatterAtIncidence>* table = nullptr;  ///< table in place of the lobe, owned by the material; null without
+  Lobe lobe_by = Lobe::mirror;                                 ///< form of the lobe
 
   /// Backscatter towards the source at a cosine of incidence in [0, 1].
   [[nodiscard]] double operator()(double cos_incidence) const noexcept {
@@ -39,12 +64,20 @@ struct Backscatter {
 
   /// Backscatter with the lobe, by lane. Error of the lobe at most 1e-14 of `lobe`.
   [[nodiscard]] simd::Doubles glossy(const simd::Doubles& cos_incidence) const noexcept {
-    const simd::Doubles cos_to_mirror = 2 * cos_incidence * cos_incidence - 1;
+    if (table) return reflectance * simd::generate([&](std::size_t lane) { return tabulated(cos_incidence[lane]); });
+    const simd::Doubles base = lobe_by == Lobe::source ? cos_incidence : simd::Doubles(2 * cos_incidence * cos_incidence - 1);
     const simd::Doubles power = exponent <= 64 && exponent == static_cast<unsigned>(exponent)
-                                    ? simd::whole_power(cos_to_mirror, static_cast<unsigned>(exponent))
-                                    : exponential(simd::Doubles(exponent * simd::detail::log_of_normal(cos_to_mirror)));
-    const simd::Doubles specular = cos_to_mirror > 0 ? lobe * power : simd::Doubles{};
+                                    ? simd::whole_power(base, static_cast<unsigned>(exponent))
+                                    : exponential(simd::Doubles(exponent * simd::detail::log_of_normal(base)));
+    simd::Doubles specular = base > 0 ? lobe * power : simd::Doubles{};
+    if (lobe_by == Lobe::mirror_facing) specular *= cos_incidence;
     return reflectance * (cosine * cos_incidence + even + specular);
+  }
+
+ private:
+  [[nodiscard]] double tabulated(double cos_incidence) const noexcept {
+    return detail::interpolated(*table, std::acos(std::clamp(cos_incidence, -1.0, 1.0)), &BackscatterAtIncidence::incidence,
+                                &BackscatterAtIncidence::backscatter);
   }
 };
 
@@ -53,17 +86,34 @@ struct Material {
   std::string name = "default";                 ///< name in its file or program
   double reflectance = 0.5;                     ///< reflectance at the laser's wavelength, in [0, 1]; ignored with a spectrum
   Scattering scattering = Scattering::lambert;  ///< angular law
-  double specular_share = 0;                    ///< share of the reflectance in the lobe of Phong's law, in [0, 1]
+  double specular_share = 0;                    ///< share of the reflectance in the lobe of Phong's laws, in [0, 1]
   double specular_exponent = 10;                ///< exponent of that lobe, at least 0
-  std::uint16_t classification = 0;             ///< ASPRS class of its points
-  bool ground = false;                          ///< true if it may carry set-ups and vehicles
-  std::shared_ptr<const Spectrum> spectrum{};   ///< reflectance by wavelength, shareable; empty for a constant reflectance
+  /// Coefficient of retroreflection R_A, for light along the normal, at most 1e6 [cd/(lx m^2)]. That of a white Lambertian surface is 1/pi;
+  /// beaded sheeting has some 70, prismatic 300 to 1,000. The budget holds from a few apertures' diameters on. Source: ASTM E808, CIE 54.2.
+  double retroreflection = 0;
+  double retroreflection_half_angle = pi / 6;  ///< entrance angle at which backscatter has fallen to half, from 0.01 to 1.5 [rad]
+  /// Backscatter by incidence for `Scattering::tabulated`: linear between rows, constant beyond them; angles ascend.
+  SharedArray<BackscatterAtIncidence> backscatter_table{};
+  std::uint16_t classification = 0;            ///< ASPRS class of its points
+  bool ground = false;                         ///< true if it may carry set-ups and vehicles
+  std::shared_ptr<const Spectrum> spectrum{};  ///< reflectance by wavelength, shareable; empty for a constant reflectance
 
   /// @throws SettingError for values out of range
   void validate() const {
     require_within("Material::reflectance", reflectance, 0, 1, "");
     require_within("Material::specular_share", specular_share, 0, 1, "");
     require_not_negative("Material::specular_exponent", specular_exponent, "");
+    require_within("Material::retroreflection", retroreflection, 0, 1e6, "cd/(lx m^2)");
+    require_within("Material::retroreflection_half_angle", retroreflection_half_angle, 0.01, 1.5, "rad");
+    if (scattering == Scattering::tabulated)
+      require_within("Material::backscatter_table (rows)", static_cast<double>(backscatter_table.size()), 1, 1e6, "");
+    for (std::size_t i = 0; i < backscatter_table.size(); ++i) {
+      require_within("Material::backscatter_table (incidence)", backscatter_table[i].incidence, 0, pi / 2 * (1 + 1e-6), "rad");
+      require_not_negative("Material::backscatter_table (backscatter)", backscatter_table[i].backscatter, "");
+      if (i > 0)
+        require_positive("Material::backscatter_table (from incidence to incidence)",
+                         backscatter_table[i].incidence - backscatter_table[i - 1].incidence, "rad");
+    }
   }
 
   /// Reflectance at a wavelength [m], a fraction.
@@ -85,6 +135,23 @@ struct Material {
         break;
       case Scattering::direction_independent:
         all.even = 1;
+        break;
+      case Scattering::normalized_phong:
+        all.cosine = 1 - specular_share;
+        all.lobe = specular_share * (specular_exponent + 2) / 2;
+        all.exponent = specular_exponent;
+        all.lobe_by = Backscatter::Lobe::mirror_facing;
+        break;
+      case Scattering::retroreflective:
+        all.cosine = all.reflectance;
+        all.reflectance = 1;
+        all.lobe = pi * retroreflection;
+        all.exponent = std::log(0.5) / std::log(std::cos(retroreflection_half_angle));
+        all.lobe_by = Backscatter::Lobe::source;
+        break;
+      case Scattering::tabulated:
+        all.lobe = 1;
+        all.table = &backscatter_table;
         break;
     }
     return all;

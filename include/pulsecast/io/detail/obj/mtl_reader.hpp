@@ -64,14 +64,22 @@ class MtlReader : private StatementBuffer {
         return value >= 0 && value <= high;
       });
     };
+    const auto is_angle = [](std::string_view word) {
+      const double value = number_in<double>(word).value_or(0);
+      return value >= 1 && value <= 85;
+    };
     const bool is_one = given.size() == 1, is_colour = keyword() == "Kd" || keyword() == "Ks";
     if (is_colour) require((is_one || given.size() == 3) && are_within(max_number), "one or three numbers that are not negative");
     if (keyword() == "Ns") require(is_one && are_within(max_number), "a number that is not negative");
     if (keyword() == "helios_reflectance") require(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
     if (keyword() == "helios_classification") require(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
+    if (keyword() == "pulsecast_retroreflection")
+      require(!given.empty() && given.size() <= 2 && are_within(1e6) && (is_one || is_angle(given[1])),
+              "a coefficient from 0 to 1e6 cd/(lx m^2), and the angle of half of it from 1 to 85 degrees");
+    if (keyword() == "pulsecast_normalizedPhong") require(is_one && (given[0] == "true" || given[0] == "false"), "true or false");
     if (is_first) ready = "newmtl default" + exponent;
     // with textures, tinyobjloader would change the colour, depending on the order
-    if (is_colour || keyword() == "Ns" || keyword().starts_with("helios_")) ready += statement();
+    if (is_colour || keyword() == "Ns" || keyword().starts_with("helios_") || keyword().starts_with("pulsecast_")) ready += statement();
     // a single number is the value of red, green and blue. Source: MTL specification, Wavefront 1995.
     if (is_colour && is_one) ready.append(" ").append(given[0]).append(" ").append(given[0]);
   }
@@ -95,6 +103,14 @@ class MtlReader : private StatementBuffer {
       made.scattering = Scattering::lambert;
     }
     made.specular_exponent = m.shininess;
+    if (made.scattering == Scattering::phong && text::trimmed(extra("pulsecast_normalizedPhong")) == "true")
+      made.scattering = Scattering::normalized_phong;
+    if (const std::string text = extra("pulsecast_retroreflection"); !text.empty()) {
+      const std::string_view all = text::trimmed(text), first = all.substr(0, all.find_first_of(text::blanks));
+      made.scattering = Scattering::retroreflective;
+      made.retroreflection = *number_in<double>(first);
+      if (first.size() < all.size()) made.retroreflection_half_angle = radians(*number_in<double>(text::trimmed(all.substr(first.size()))));
+    }
     const std::string reflectance = extra("helios_reflectance"), spectrum(text::trimmed(extra("helios_spectra")));
     if (!reflectance.empty()) {
       made.reflectance = *number_in<double>(reflectance);
