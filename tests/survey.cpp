@@ -15,6 +15,7 @@
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/detector/first_hit.hpp>
@@ -822,4 +823,33 @@ TEST_CASE("a detector that listens always is asked for every pulse sent, also to
   CHECK(sent == 90);
   CHECK(asked_of_light.size() == with_light);
   CHECK(with_light == 30);
+}
+
+TEST_CASE("a turned footprint is the same beam, turned by the number of the pulse and the seed; ellipses are refused") {
+  /// All that is right of the axis.
+  struct Half {
+    std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+      return ray.direction.x > 0 ? std::optional(Hit{.range = 10 / ray.direction.y}) : std::nullopt;
+    }
+  };
+  const Half half;
+  const auto survey_of = [&](std::uint64_t seed, const Laser& laser = {}) {
+    const Platform source{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulses = 500, .laser = laser}}};
+    return Survey{source, WithSubrayRecord{TurnedFootprint{LatticeFootprint{20}}}, half, clear_air, FirstHit{}, seed};
+  };
+  const auto survey = survey_of(1), other = survey_of(2);
+  auto v = survey.workspace(), u = other.workspace();
+  double met = 0;
+  int alike = 0;
+  for (PulseIndex i = 0; i < survey.size(); ++i) {
+    const double missed = survey(i, v).energy.share(&EnergyLedger::missed);
+    CHECK(survey(i, v).energy.share(&EnergyLedger::missed) == missed);
+    alike += other(i, u).energy.share(&EnergyLedger::missed) == missed ? 1 : 0;
+    met += 1 - missed;
+    for (const SubrayHit& hit : survey(i, v).subrays)
+      if (hit.met()) CHECK(hit.point.x > 0);  // points are those of the turned subrays
+  }
+  CHECK(met / 500 == support::relative(0.5, 0.02));
+  CHECK(alike < 300);
+  CHECK_THROWS_AS(survey_of(1, {.divergence = {1e-3, 2e-3}}), SettingError);
 }

@@ -241,7 +241,7 @@ class Survey {
     require_alike();
     const std::vector<Emitter> emitters = source_.emitters();
     require_within("PulseSource::emitters (number)", static_cast<double>(emitters.size()), size() > 0 ? 1 : 0, max_emitters, "");
-    const std::shared_ptr<EmitterConstants[]> constants(new EmitterConstants[emitters.size()]);
+    const std::shared_ptr<EmitterConstants[]> constants = std::make_unique<EmitterConstants[]>(emitters.size());
     EmitterConstants* next = constants.get();
     for (const Emitter& emitter : emitters) set(next++, validated(emitter), constants.get());
     emitters_ = {constants.get(), emitters.size()};
