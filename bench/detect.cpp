@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <pulsecast/detector/analytic_waveform.hpp>
+#include <pulsecast/detector/band_limited_receiver.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/pulsecast.hpp>
 
@@ -72,6 +73,10 @@ void measure(Report& report, const Case& what) {
   const auto enter = [&](const std::string& name, const auto& detector) { add(report, what, name, detector, names, works, echoes); };
   enter("FirstHit", FirstHit{});
   enter("FullWaveform", FullWaveform{});
+  enter("FullWaveform, true ranges", FullWaveform{{.timing = EchoTiming::true_range}});
+  FullWaveform<NoWidth, BandLimitedReceiver<>> band_limited;
+  band_limited.prepare(Laser{});
+  enter("FullWaveform, band-limited", band_limited);
   enter("FullWaveform<GaussianFit>", FullWaveform<GaussianFit>{});
   enter("FullWaveform, recorded", FullWaveform{{.record_length = 40_ns}});
   enter("AnalyticWaveform", AnalyticWaveform{});

@@ -105,7 +105,8 @@ struct Setting {
 /// Calls a function with the detector of a setting.
 template <class Function>
 auto with_detector(double bin, Width width, double threshold, Function function) {
-  WaveformSettings settings{.threshold = threshold};
+  // by true ranges, and with the divisor of the peer: the study tells what sampling costs, not what receivers do
+  WaveformSettings settings{.threshold = threshold, .timing = EchoTiming::true_range, .shape_divisor = 3.5};
   if (bin > 0) settings.sample_interval = bin;
   const auto with_width = [&](auto measure) {
     using Measure = decltype(measure);
