@@ -234,3 +234,32 @@ TEST_CASE("a mesh of up to 256 materials spends a byte on each, one of a single 
   CHECK(with(256) == bare + data.triangles.size());
   CHECK(with(257) == bare + 4 * data.triangles.size());
 }
+
+TEST_CASE("a broad bundle among many small triangles, which gives up, meets what its rays meet alone") {
+  Generator random(77);
+  MeshData leaves;
+  for (std::uint32_t i = 0; i < 20'000; ++i) {
+    const Vec3 centre{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(0, 3)};
+    for (int k = 0; k < 3; ++k) leaves.vertices.push_back(centre + 0.05 * random.unit());
+    leaves.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const TriangleMesh<> mesh(leaves);
+  const TriangleMesh<Linear<>> all(leaves);
+  for (const std::size_t size : {std::size_t{2}, std::size_t{19}, RayBundle::capacity}) {
+    RayBundle rays;
+    rays.origin = {0.1, -0.2, 30};
+    rays.size = size;
+    for (std::size_t j = 0; j < size; ++j)
+      rays.set_direction(j, normalize(Vec3{random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), -1}));
+    rays.pad();
+    ClosestHits nearest(rays), expected(rays);
+    nearest.part = expected.part = std::uint64_t{5} << 32;
+    mesh.closest(rays, nearest);
+    all.closest(rays, expected);
+    INFO("seed 77, ", size, " rays");
+    for (std::size_t j = 0; j < size; ++j) {
+      CHECK(nearest.range[j] == expected.range[j]);
+      CHECK(nearest.id[j] == expected.id[j]);
+    }
+  }
+}

@@ -22,6 +22,7 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/line_test.hpp>
 #include <pulsecast/geometry/triangle.hpp>
+#include <pulsecast/scene/detail/bundle_budget.hpp>
 #include <pulsecast/scene/detail/corner_table.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -152,7 +153,13 @@ class TriangleMesh {
   template <class Rays, HitsOf<Rays> Hits>
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Test<Rays, Hits> test(*this, rays, nearest);
-    if constexpr (detail::Searches<Index, Rays, Test<Rays, Hits>, Hits>) {
+    using Limit = detail::BudgetedLimit<Hits>;
+    if constexpr (Rays::capacity > 1 && detail::Searches<Index, Rays, detail::BudgetedTest<Test<Rays, Hits>>, Limit>) {
+      detail::BundleBudget budget(rays.size);
+      Limit limit{nearest, budget};
+      index_.closest(rays, detail::BudgetedTest<Test<Rays, Hits>>{test, budget}, limit);
+      if (budget.spent()) detail::closest_one_by_one(*this, rays, nearest);
+    } else if constexpr (detail::Searches<Index, Rays, Test<Rays, Hits>, Hits>) {
       index_.closest(rays, test, nearest);
     } else {
       const RayBundle bundle = bundle_of(rays, nearest.limit_of(0));
