@@ -47,7 +47,7 @@ struct ApertureGeometry {
 }
 
 /// Share of a beam's cross section, to the 1/e^2 radius, that is in the view of a receiver at a range [m]; of an ellipse, that of the disc
-/// of its area. Source: the overlap function of geometrical optics, Halldorsson & Langerholc 1978; Measures 1984, section 7.4, for an even
+/// of its area. Source: the overlap function of geometrical optics, Halldorsson & Langerholc 1978; Measures 1984, for an even
 /// beam.
 [[nodiscard]] inline double aperture_overlap(const ApertureGeometry& g, const Receiver& receiver, const Laser& laser,
                                              double range) noexcept {
