@@ -46,8 +46,8 @@ concept RecordedConstant = requires {
 };
 template <class F>
 concept TurnedConstant = requires {
-  requires std::same_as<decltype(F::turned), const bool>;
-  typename std::bool_constant<F::turned>;
+  requires std::same_as<decltype(F::turned_by_pulse), const bool>;
+  typename std::bool_constant<F::turned_by_pulse>;
 };
 template <class D>
 concept ListensConstant = requires {
@@ -200,8 +200,9 @@ PULSECAST_OPTIONAL_MEMBER(RecordedConstant, "static constexpr bool recorded = tr
 /// Footprint that is turned about the beam's axis for each pulse, by an angle drawn from the pulse's number, as `TurnedFootprint`. The beams
 /// are round.
 template <class F>
-concept TurnsFootprint = detail::TurnedConstant<F> && F::turned;
-PULSECAST_OPTIONAL_MEMBER(TurnedConstant, "static constexpr bool turned = true", turned, , is_turned, turns, rotated, turning)
+concept TurnsFootprint = detail::TurnedConstant<F> && F::turned_by_pulse;
+PULSECAST_OPTIONAL_MEMBER(TurnedConstant, "static constexpr bool turned_by_pulse = true", turned_by_pulse, , turned_per_pulse,
+                          turned_each_pulse, turns_by_pulse, turn_by_pulse)
 
 /// Detector that samples waveforms, every so many seconds [s].
 template <class D>

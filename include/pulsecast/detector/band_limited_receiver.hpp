@@ -227,8 +227,9 @@ struct OnlyPeak {
 template <PulseForm Form = GammaPulse>
 class BandLimitedReceiver {
  public:
+  BandLimitedReceiver() : BandLimitedReceiver(ReceiverChain{}) {}  ///< receiver without noise
   /// @throws SettingError for settings out of range
-  explicit BandLimitedReceiver(ReceiverChain settings = {}, Form form = {}) : chain_(validated(settings)), form_(std::move(form)) {}
+  explicit BandLimitedReceiver(ReceiverChain settings, Form form = {}) : chain_(validated(settings)), form_(std::move(form)) {}
 
   /// Settings, as validated.
   [[nodiscard]] const ReceiverChain& settings() const noexcept { return chain_; }

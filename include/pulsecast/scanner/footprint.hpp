@@ -225,7 +225,7 @@ static_assert(Footprint<WithSubrayRecord<RingFootprint>>);
 /// wire or edge then meets other subrays from pulse to pulse, so that errors of neighbours do not repeat. For round beams only.
 template <Footprint Pattern>
 struct TurnedFootprint : Pattern {
-  static constexpr bool turned = true;  ///< as the concept TurnsFootprint describes
+  static constexpr bool turned_by_pulse = true;  ///< as the concept TurnsFootprint describes
   /// Takes a valid footprint.
   explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}
 };
