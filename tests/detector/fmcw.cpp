@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -73,7 +72,7 @@ TEST_CASE("a moving surface before a still one: each has its own velocity") {
 
 // The deviation of a peak's frequency: that of the maximum of a windowed transform in white noise, to first order. The window is 1 + cos.
 TEST_CASE("shot noise of the reference beam: deviation of range and velocity") {
-  constexpr double pi = std::numbers::pi, photon = 6.62607015e-34 * 299'792'458 / 1.55e-6;
+  constexpr double photon = 6.62607015e-34 * 299'792'458 / 1.55e-6;
   const FmcwSettings settings{.quantum_efficiency = 0.5, .shot_noise = true};
   const Fmcw detector(settings);
   const double ratio = 1000, power = ratio * photon / (0.5 * settings.sweep_time);
