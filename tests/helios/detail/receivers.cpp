@@ -174,7 +174,7 @@ TEST_CASE("channels with equal receivers are one group, and pulses carry its num
 }  // namespace
 
 TEST_CASE("receivers of the library's physics have its defaults, and noise that seldom is an echo") {
-  ChannelSettings channel;
+  ChannelSettings channel = ahead();
   channel.waveform.rings = 3;
   const auto unit = library_receiver_unit<NoWidth>(channel, survey_waveform(channel, 0, true), true);
   CHECK(unit.receiver.aerosols == AerosolModel::kim);
@@ -191,7 +191,7 @@ TEST_CASE("receivers of the library's physics have its defaults, and noise that 
 }
 
 TEST_CASE("air beyond what its extinction was measured for is told of") {
-  ChannelSettings channel;
+  ChannelSettings channel = ahead();
   channel.wavelength = 1064e-9;
   CHECK(air_warning(channel).empty());
   channel.visibility = 2e3;
