@@ -366,7 +366,7 @@ def test_a_scanner_of_one_s_own():
     survey = own_scanner.RosetteSurvey(20_000)
     points = survey.run().points
     assert len(points) == len(survey) == 20_000
-    assert np.abs(points["z"] + 10).max() < 1e-6
+    assert np.abs(points["z"] + 10).max() < 1e-4  # between two bins of the waveform
     assert np.hypot(points["x"], points["y"]).max() < 10 * np.tan(0.4) * 1.01
     with pytest.raises(pulsecast.SettingError):  # of the other module: they are the same
         own_scanner.RosetteSurvey(10, bend=float("nan")).run(stride=0)
