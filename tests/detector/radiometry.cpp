@@ -92,7 +92,7 @@ TEST_CASE("several subrays at once bring back what each brings back alone") {
       backscatter[k] = 0.3 * n;
       ranges[k] = range * (1 + 0.1 * n);
     }
-    const simd::Doubles power = budget.power(share, backscatter, ranges);
+    const simd::Doubles power = budget.power_in_view(share, backscatter, ranges);
     for (std::size_t k = 0; k < simd::lane_count; ++k) {
       const double alone = budget.power(share[k], backscatter[k], ranges[k]);
       CHECK(std::fabs(power[k] - alone) <= 2e-15 * alone);

@@ -153,21 +153,23 @@ class LinkBudget {
   /// At range 0 all the scattered power is received.
   [[nodiscard]] double power(double share, double backscatter, double range) const noexcept {
     const double all = of(share, backscatter, range);
-    return overlap_.empty() ? all : all * overlap_at(range);
+    return sees_all() ? all : all * overlap_at(range);
   }
 
-  /// Received power of several subrays [W].
-  [[nodiscard]] simd::Doubles power(const simd::Doubles& share, const simd::Doubles& backscatter,
-                                    const simd::Doubles& range) const noexcept {
-    const simd::Doubles all = of(share, backscatter, range);
-    return overlap_.empty() ? all : all * simd::generate([&](std::size_t lane) { return overlap_at(range[lane]); });
+  /// Received power of several subrays [W], if the receiver sees all of the light.
+  [[nodiscard]] simd::Doubles power_in_view(const simd::Doubles& share, const simd::Doubles& backscatter,
+                                            const simd::Doubles& range) const noexcept {
+    return of(share, backscatter, range);
+  }
+
+  /// True if the receiver sees all of the light.
+  [[nodiscard]] bool sees_all() const noexcept { return overlap_.empty(); }
+  /// Share of the light from a range [m] that the receiver sees.
+  [[nodiscard]] double overlap_at(double range) const noexcept {
+    return sees_all() ? 1 : detail::interpolated(overlap_, range, &OverlapAtRange::range, &OverlapAtRange::share);
   }
 
  private:
-  [[nodiscard]] double overlap_at(double range) const noexcept {
-    return detail::interpolated(overlap_, range, &OverlapAtRange::range, &OverlapAtRange::share);
-  }
-
   template <class Number>
   [[nodiscard]] Number of(const Number& share, const Number& backscatter, const Number& range) const noexcept {
     return gain_ * share * backscatter / (range * range + near_) * exponential(Number(both_ways_ * range));

@@ -38,21 +38,17 @@ struct BackscatterAtIncidence {
   double backscatter = 0;  ///< by that of a white Lambertian surface at normal incidence, per unit of the reflectance
 };
 
+struct Material;
+
 /// Backscatter of a material at one wavelength, by the cosine of incidence.
 /// Source: Jutzi & Gross 2009; the lobe is about the mirror direction, twice the incidence away, and ends at 90 degrees.
 struct Backscatter {
-  /// What the lobe depends on.
-  enum class Lobe : std::uint8_t {
-    mirror,         ///< power of the cosine of the angle to the mirror direction
-    mirror_facing,  ///< that, times the cosine of incidence
-    source,         ///< power of the cosine of incidence
+  double reflectance = 0;                 ///< a fraction, split into the three shares below
+  double even = 0, cosine = 0, lobe = 0;  ///< shares: isotropic; Lambertian; specular lobe, or a negative number for a lobe of `material`
+  union {
+    double exponent = 0;       ///< exponent of the lobe
+    const Material* material;  ///< material whose lobe is another than Phong's
   };
-
-  double reflectance = 0;                                      ///< a fraction, split into the three shares below
-  double even = 0, cosine = 0, lobe = 0;                       ///< shares: isotropic; Lambertian; specular lobe
-  double exponent = 0;                                         ///< exponent of the lobe
-  const SharedArray<BackscatterAtIncidence>* table = nullptr;  ///< table in place of the lobe, owned by the material; null without
-  Lobe lobe_by = Lobe::mirror;                                 ///< form of the lobe
 
   /// Backscatter towards the source at a cosine of incidence in [0, 1].
   [[nodiscard]] double operator()(double cos_incidence) const noexcept {
@@ -63,22 +59,23 @@ struct Backscatter {
   [[nodiscard]] double rough(double cos_incidence) const noexcept { return cosine * cos_incidence + even; }
 
   /// Backscatter with the lobe, by lane. Error of the lobe at most 1e-14 of `lobe`.
-  [[nodiscard]] simd::Doubles glossy(const simd::Doubles& cos_incidence) const noexcept {
-    if (table) return reflectance * simd::generate([&](std::size_t lane) { return tabulated(cos_incidence[lane]); });
-    const simd::Doubles base = lobe_by == Lobe::source ? cos_incidence : simd::Doubles(2 * cos_incidence * cos_incidence - 1);
-    const simd::Doubles power = exponent <= 64 && exponent == static_cast<unsigned>(exponent)
-                                    ? simd::whole_power(base, static_cast<unsigned>(exponent))
-                                    : exponential(simd::Doubles(exponent * simd::detail::log_of_normal(base)));
-    simd::Doubles specular = base > 0 ? lobe * power : simd::Doubles{};
-    if (lobe_by == Lobe::mirror_facing) specular *= cos_incidence;
-    return reflectance * (cosine * cos_incidence + even + specular);
+  [[nodiscard, gnu::always_inline]] simd::Doubles glossy(const simd::Doubles& cos_incidence) const noexcept {
+    if (lobe < 0) [[unlikely]]
+      return with_other_lobe(cos_incidence);
+    const simd::Doubles cos_to_mirror = 2 * cos_incidence * cos_incidence - 1;
+    return reflectance * (cosine * cos_incidence + even + lobe * positive_power(cos_to_mirror, exponent));
   }
 
  private:
-  [[nodiscard]] double tabulated(double cos_incidence) const noexcept {
-    return detail::interpolated(*table, std::acos(std::clamp(cos_incidence, -1.0, 1.0)), &BackscatterAtIncidence::incidence,
-                                &BackscatterAtIncidence::backscatter);
+  /// Power of the positive lanes; 0 of others.
+  [[nodiscard, gnu::always_inline]] static simd::Doubles positive_power(const simd::Doubles& base, double exponent) noexcept {
+    const simd::Doubles power = exponent <= 64 && exponent == static_cast<unsigned>(exponent)
+                                    ? simd::whole_power(base, static_cast<unsigned>(exponent))
+                                    : exponential(simd::Doubles(exponent * simd::detail::log_of_normal(base)));
+    return base > 0 ? power : simd::Doubles{};
   }
+
+  [[nodiscard]] simd::Doubles with_other_lobe(const simd::Doubles& cos_incidence) const noexcept;
 };
 
 /// Surface material.
@@ -123,7 +120,7 @@ struct Material {
 
   /// Reflectance times the angular law, at a wavelength [m].
   [[nodiscard]] Backscatter backscatter(double wavelength) const noexcept {
-    Backscatter all{.reflectance = reflectance_at(wavelength)};
+    Backscatter all{.reflectance = reflectance_at(wavelength), .exponent = 0};
     switch (scattering) {
       case Scattering::lambert:
         all.cosine = 1;
@@ -136,23 +133,9 @@ struct Material {
       case Scattering::direction_independent:
         all.even = 1;
         break;
-      case Scattering::normalized_phong:
-        all.cosine = 1 - specular_share;
-        all.lobe = specular_share * (specular_exponent + 2) / 2;
-        all.exponent = specular_exponent;
-        all.lobe_by = Backscatter::Lobe::mirror_facing;
-        break;
-      case Scattering::retroreflective:
-        all.cosine = all.reflectance;
-        all.reflectance = 1;
-        all.lobe = pi * retroreflection;
-        all.exponent = std::log(0.5) / std::log(std::cos(retroreflection_half_angle));
-        all.lobe_by = Backscatter::Lobe::source;
-        break;
-      case Scattering::tabulated:
-        all.lobe = 1;
-        all.table = &backscatter_table;
-        break;
+      default:
+        all.lobe = -1;
+        all.material = this;
     }
     return all;
   }
@@ -162,6 +145,23 @@ struct Material {
     return backscatter(wavelength)(cos_incidence);
   }
 };
+
+[[gnu::noinline]] inline simd::Doubles Backscatter::with_other_lobe(const simd::Doubles& cos_incidence) const noexcept {
+  const Material& m = *material;
+  const simd::Doubles cos_to_mirror = 2 * cos_incidence * cos_incidence - 1;
+  if (m.scattering == Scattering::normalized_phong) {
+    const double height = m.specular_share * (m.specular_exponent + 2) / 2;
+    return reflectance * cos_incidence * (1 - m.specular_share + height * positive_power(cos_to_mirror, m.specular_exponent));
+  }
+  if (m.scattering == Scattering::retroreflective) {
+    const double power = std::log(0.5) / std::log(std::cos(m.retroreflection_half_angle));
+    return reflectance * cos_incidence + pi * m.retroreflection * positive_power(cos_incidence, power);
+  }
+  return reflectance * simd::generate([&](std::size_t lane) {
+           return detail::interpolated(m.backscatter_table, std::acos(std::clamp(cos_incidence[lane], -1.0, 1.0)),
+                                       &BackscatterAtIncidence::incidence, &BackscatterAtIncidence::backscatter);
+         });
+}
 
 }  // namespace PULSECAST_NAMESPACE
 

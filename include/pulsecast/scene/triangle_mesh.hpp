@@ -154,11 +154,10 @@ class TriangleMesh {
   void closest(const Rays& rays, Hits& nearest) const noexcept {
     const Test<Rays, Hits> test(*this, rays, nearest);
     using Limit = detail::BudgetedLimit<Hits>;
-    if constexpr (Rays::capacity > 1 && detail::Searches<Index, Rays, detail::BudgetedTest<Test<Rays, Hits>>, Limit>) {
-      detail::BundleBudget budget(rays.size);
-      Limit limit{nearest, budget};
-      index_.closest(rays, detail::BudgetedTest<Test<Rays, Hits>>{test, budget}, limit);
-      if (budget.spent()) detail::closest_one_by_one(*this, rays, nearest);
+    if constexpr (Rays::capacity > 1 && detail::Searches<Index, Rays, Test<Rays, Hits>, Limit>) {
+      Limit limit{nearest};
+      index_.closest(rays, test, limit);
+      if (limit.spent()) detail::closest_one_by_one(*this, rays, nearest);
     } else if constexpr (detail::Searches<Index, Rays, Test<Rays, Hits>, Hits>) {
       index_.closest(rays, test, nearest);
     } else {

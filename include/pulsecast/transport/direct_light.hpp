@@ -133,8 +133,16 @@ struct DirectLight {
     for (std::size_t j = 0; j < size; j += simd::lane_count) {
       const simd::Doubles range = simd::generate([&](std::size_t lane) { return w.hits[j + lane].range; });
       const simd::Doubles backscatter = simd::generate([&](std::size_t lane) { return w.hits[j + lane].backscatter; });
-      simd::store(light.budget.power(simd::load<simd::Doubles>(beam.shares[first + j]), backscatter, range), power[j]);
+      simd::store(light.budget.power_in_view(simd::load<simd::Doubles>(beam.shares[first + j]), backscatter, range), power[j]);
     }
+    if (!light.budget.sees_all()) [[unlikely]]
+      keep_in_view(light.budget, size, w, power);
+  }
+
+  /// Takes away what the receiver does not see of the power of a bundle [W].
+  [[gnu::noinline]] static void keep_in_view(const LinkBudget& budget, std::size_t size, const Workspace& w,
+                                             RayBundle::Column& power) noexcept {
+    for (std::size_t j = 0; j < size; ++j) power[j] *= budget.overlap_at(w.hits[j].range);
   }
 
   /// Sets a reflection from a hit, without a velocity.

@@ -5,49 +5,29 @@
 
 #include <cstddef>
 #include <limits>
-#include <span>
 
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Count of the primitives that a bundle tests. A bundle meets all primitives between its rays: where they are many, as the leaves in a
-/// broad beam, single rays are faster, and the bundle gives up.
-struct BundleBudget {
-  std::size_t most;        ///< tests that cost about as much as single rays
-  std::size_t tested = 0;  ///< primitives so far
-
-  /// Budget of a bundle of so many rays: without a limit for one.
-  explicit BundleBudget(std::size_t rays) noexcept : most(rays == 1 ? std::numeric_limits<std::size_t>::max() : 256) {}
-
-  [[nodiscard]] bool spent() const noexcept { return tested > most; }  ///< true once the bundle has given up
-};
-
-/// Leaf test within a budget.
-template <class Test>
-struct BudgetedTest {
-  const Test& test;      ///< leaf test
-  BundleBudget& budget;  ///< of the bundle
-
-  void operator()(std::span<const PrimitiveIndex> primitives) const noexcept {
-    budget.tested += primitives.size();
-    if (!budget.spent()) test(primitives);
-  }
-  void prefetch(std::span<const PrimitiveIndex> primitives) const noexcept { test.prefetch(primitives); }
-};
-
-/// Limit of a search within a budget: nothing, once it is spent.
+/// Limit of the search of an accelerator by a bundle, which asks for it after each leaf. A bundle meets all primitives between its rays:
+/// where they are many, as the leaves in a broad beam, single rays are faster, and the bundle gives up: nothing more is in its limit.
 template <class Hits>
 struct BudgetedLimit {
-  const Hits& nearest;         ///< hits so far
-  const BundleBudget& budget;  ///< of the bundle
+  static constexpr int most = 128;  ///< leaves that cost about as much as single rays
 
+  const Hits& nearest;    ///< hits so far
+  mutable int asked = 0;  ///< times that the limit was asked for
+
+  /// As in `ClosestHits`.
   template <class Rays>
   [[nodiscard]] double limit(const Rays& rays) const noexcept {
-    return budget.spent() ? -std::numeric_limits<double>::infinity() : nearest.limit(rays);
+    return ++asked > most ? -std::numeric_limits<double>::infinity() : nearest.limit(rays);
   }
   [[nodiscard]] double limit_of(std::size_t j) const noexcept { return nearest.limit_of(j); }  ///< as in `ClosestHits`
+
+  [[nodiscard]] bool spent() const noexcept { return asked > most; }  ///< true once the bundle has given up
 };
 
 /// Closest hits of a shape by each ray of a bundle alone; the hits are the same.
