@@ -171,6 +171,11 @@ TEST_CASE("measured backscatter is linear in the angle between the rows, and con
   CHECK(m.backscatter(0, nir) == support::relative(0.25, 1e-13));
 }
 
+TEST_CASE("a table without rows, which validation refuses, is black") {
+  CHECK(Material{.scattering = Scattering::tabulated}.backscatter(0.7, nir) == 0);
+  CHECK(Material{.scattering = static_cast<Scattering>(200)}.backscatter(0.7, nir) == 0);  // as from a forged file
+}
+
 TEST_CASE("lanes have the backscatter of one, by every law") {
   const Material laws[]{{.scattering = Scattering::normalized_phong, .specular_share = 0.4, .specular_exponent = 12.5},
                         {.scattering = Scattering::retroreflective, .retroreflection = 200},

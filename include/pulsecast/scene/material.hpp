@@ -157,6 +157,7 @@ struct Material {
     const double power = std::log(0.5) / std::log(std::cos(m.retroreflection_half_angle));
     return reflectance * cos_incidence + pi * m.retroreflection * positive_power(cos_incidence, power);
   }
+  if (m.backscatter_table.empty()) return simd::Doubles{};  // a material that was not validated
   return reflectance * simd::generate([&](std::size_t lane) {
            return detail::interpolated(m.backscatter_table, std::acos(std::clamp(cos_incidence[lane], -1.0, 1.0)),
                                        &BackscatterAtIncidence::incidence, &BackscatterAtIncidence::backscatter);
