@@ -79,8 +79,22 @@ class FullWaveform {
     if (reads_samples() && !corrections_.find(laser)) corrections_.add(laser, correction_for(laser));
   }
 
-  /// Takes away noise and background.
-  void silence() noexcept { receiver_.silence(); }
+  /// Calls `visit(k, arrival, detection)` with what a flat target gives without noise, at ten times the threshold, whose pulse arrives at
+  /// the place k of `places` between two samples [s]; the last place is the next sample.
+  template <class Visit>
+  void visit_flat_targets(const Laser& laser, std::size_t places, const Visit& visit) const {
+    FullWaveform quiet = *this;
+    quiet.receiver_.silence();
+    quiet.s_.threshold = s_.threshold > 0 ? s_.threshold : 1;
+    Workspace w = quiet.workspace(1);
+    const Emitter emitter{.laser = laser};
+    const double first = (8192 + std::floor(100 * laser.pulse_length / s_.sample_interval)) * s_.sample_interval;
+    for (std::size_t k = 0; k <= places; ++k) {
+      const double arrival = first + static_cast<double>(k) / static_cast<double>(places) * s_.sample_interval;
+      Reflection reflection{.range = 0.5 * speed_of_light * arrival, .power = 10 * quiet.s_.threshold};
+      visit(k, arrival, quiet.detect({.emitter = emitter, .reflections = {&reflection, 1}}, w));
+    }
+  }
 
   /// Width of a laser's outgoing pulse, by the measure of its echoes [s]. @throws SettingError as `validate`
   [[nodiscard]] double pulse_width(const Laser& laser) const {
@@ -191,20 +205,12 @@ class FullWaveform {
 
   /// Correction for a laser, from echoes without noise whose peaks are ten times the threshold.
   [[nodiscard]] Correction correction_for(const Laser& laser) const {
-    FullWaveform quiet = *this;
-    quiet.silence();
-    quiet.s_.record_length = 0;
-    quiet.s_.threshold = s_.threshold > 0 ? s_.threshold : 1;
-    Workspace w = quiet.workspace(1);
-    const Emitter emitter{.laser = laser};
-    const double first = (8192 + std::floor(100 * laser.pulse_length / s_.sample_interval)) * s_.sample_interval;
+    FullWaveform unrecorded = *this;
+    unrecorded.s_.record_length = 0;
     Correction c;
-    for (std::size_t k = 0; k <= Correction::places; ++k) {
-      const double arrival = first + static_cast<double>(k) / Correction::places * s_.sample_interval;
-      Reflection reflection{.range = 0.5 * speed_of_light * arrival, .power = 10 * quiet.s_.threshold};
-      const Detection d = quiet.detect({.emitter = emitter, .reflections = {&reflection, 1}}, w);
+    unrecorded.visit_flat_targets(laser, Correction::places, [&](std::size_t k, double arrival, const Detection& d) {
       if (!d.echoes.empty()) c.time[k] = 2 * d.echoes[0].range / speed_of_light - arrival;
-    }
+    });
     return c;
   }
 

@@ -53,18 +53,10 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
 
   /// Waveform of a flat target from a pulse length before its range to one after it, relative to its amplitude.
   [[nodiscard]] std::vector<double> shape_of(const Laser& laser) const {
-    Inner quiet = this->inner;
-    quiet.silence();
-    auto w = quiet.workspace(1);
-    const Emitter emitter{.laser = laser};
     const auto reach = static_cast<std::size_t>(std::ceil(laser.pulse_length / interval())) + 1;
-    const double first = (8192 + std::floor(100 * laser.pulse_length / interval())) * interval();
     std::vector<double> shape(2 * reach * places + 1);
-    for (std::size_t k = 0; k < places; ++k) {
-      const double arrival = first + static_cast<double>(k) / places * interval();
-      Reflection reflection{.range = 0.5 * speed_of_light * arrival, .power = 10 * std::max(this->inner.settings().threshold, 1e-30)};
-      const Detection d = quiet.detect({.emitter = emitter, .reflections = {&reflection, 1}}, w);
-      if (d.echoes.empty()) continue;
+    this->inner.visit_flat_targets(laser, places, [&](std::size_t k, double arrival, const Detection& d) {
+      if (k == places || d.echoes.empty()) return;
       for (std::size_t i = 0; i < shape.size(); ++i) {
         // sample i of the shape is `place` digitised samples after the arrival
         const double place = static_cast<double>(i) / places - static_cast<double>(reach);
@@ -72,7 +64,7 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
         if (std::fabs(sample - std::round(sample)) > 0.25 / places) continue;
         shape[i] = at(d.waveform, std::lround(sample)) / d.echoes[0].amplitude;
       }
-    }
+    });
     return shape;
   }
 

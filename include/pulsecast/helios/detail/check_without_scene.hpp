@@ -22,8 +22,9 @@ PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettin
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
   std::vector<std::string> warnings = compile_survey(survey, ground, {.leg_places = leg_places}).warnings;
   for (const ChannelSettings& channel : survey.scanner.channels) {
-    survey_receiver(channel).validate();
-    const std::string odd = air_warning(channel);
+    const Receiver receiver = survey_receiver(channel);
+    receiver.validate();
+    const std::string odd = air_warning(channel.wavelength, receiver);
     if (!odd.empty() && std::find(warnings.begin(), warnings.end(), odd) == warnings.end()) warnings.push_back(odd);
     survey_waveform(channel).validate();
     (void)RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)));

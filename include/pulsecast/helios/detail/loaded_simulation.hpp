@@ -244,8 +244,9 @@ class LoadedSimulation final : public Simulation {
         const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
         WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library);
         limits_.limit_record(waveform, odd);
-        if (const std::string air = air_warning(channel, library); !air.empty()) odd.push_back(air);
-        return receiver_unit(channel, waveform, noisy);
+        auto unit = receiver_unit(channel, waveform, noisy);
+        if (const std::string air = air_warning(channel.wavelength, unit.receiver); !air.empty()) odd.push_back(air);
+        return unit;
       });
     };
     if (library)

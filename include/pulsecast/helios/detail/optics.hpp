@@ -236,13 +236,13 @@ namespace detail {
           .range_errors = errors};
 }
 
-/// Warning about air, or light in it, beyond what its extinction was measured for; empty if there is nothing to tell.
-[[nodiscard]] inline std::string air_warning(const ChannelSettings& channel, bool library_physics = false) {
-  const Receiver receiver = survey_receiver(channel, library_physics);
-  if (extinction_is_valid(channel.wavelength, receiver.visibility, receiver.aerosols)) return {};
-  return "light of " + pulsecast::detail::to_text(std::round(channel.wavelength * 1e10) / 10) + " nm in air of a visibility of " +
+/// Warning about light of a wavelength [m] in the air before a receiver, beyond what its extinction was measured for; empty if there is
+/// nothing to tell.
+[[nodiscard]] inline std::string air_warning(double wavelength, const Receiver& receiver) {
+  if (extinction_is_valid(wavelength, receiver.visibility, receiver.aerosols)) return {};
+  return "light of " + pulsecast::detail::to_text(std::round(wavelength * 1e10) / 10) + " nm in air of a visibility of " +
          pulsecast::detail::to_text(receiver.visibility / 1e3) + " km: the formula of its extinction holds from 400 to 1600 nm" +
-         (library_physics ? "" : ", and from 6 km on; --libraryPhysics has one for haze and fog");
+         (receiver.aerosols == AerosolModel::kim ? "" : ", and from 6 km on; --libraryPhysics has one for haze and fog");
 }
 
 /// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are one-way times of
