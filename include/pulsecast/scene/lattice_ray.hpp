@@ -74,6 +74,15 @@ class LatticeRay {
     Crossing in{-std::numeric_limits<double>::infinity(), 0};  ///< entry
     Crossing out{std::numeric_limits<double>::infinity(), 0};  ///< exit
   };
+  /// Passage through a cell.
+  [[nodiscard]] Passage through(const LatticeCell& cell) const noexcept {
+    std::array<double, 3> low, high;
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = cell[k];
+      high[k] = cell[k] + 1;
+    }
+    return through(low, high);
+  }
   /// Passage through the box between two corners [edges].
   [[nodiscard]] Passage through(const std::array<double, 3>& low, const std::array<double, 3>& high) const noexcept {
     Passage p;

@@ -143,9 +143,7 @@ struct TransmissiveVoxels {
       const Vec3 direction = rays.direction(j), along = pulsecast::normalize(direction);
       double cosine = settings.leaf_angles.incidence_cosine(along);
       if (settings.leaf_area > 0) {  // a leaf's own, of that mean: as of spherical leaves if 2/3, whose squared cosine is uniform
-        const LatticeCell cell = index.cell(number);
-        const auto passage =
-            index.ray(rays, j).through({cell[0] + 0.0, cell[1] + 0.0, cell[2] + 0.0}, {cell[0] + 1.0, cell[1] + 1.0, cell[2] + 1.0});
+        const LatticeRay::Passage passage = index.ray(rays, j).through(index.cell(number));
         const detail::LeafColumns columns(rays.origin, direction, settings.leaf_area);
         const detail::LeafColumn column = columns.at(0.5 * (passage.in.range + passage.out.range)).column;
         cosine = std::pow(uniform({rays.seed, column.layer, column.place, Purpose::leaf_tilt, 0}), 1 / cosine - 1);

@@ -73,14 +73,8 @@ struct OpaqueVoxels {
         const Vec3 kept = normals_[number].unpacked();
         if (kept != Vec3{}) return normalize(kept);
       }
-      const LatticeCell cell = index.cell(number);
       const LatticeRay ray = index.ray(rays, j);
-      std::array<double, 3> low, high;
-      for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = cell[k];
-        high[k] = cell[k] + 1;
-      }
-      return detail::face_normal(ray, ray.through(low, high), rays.near);
+      return detail::face_normal(ray, ray.through(index.cell(number)), rays.near);
     }
 
     template <class Archive>
