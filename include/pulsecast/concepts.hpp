@@ -190,6 +190,24 @@ concept VelocityTarget = Target<T> && requires(const T t, const Ray& ray) {
   { t.surface(*t.closest_hit(ray), ray).velocity } noexcept -> std::convertible_to<Vec3>;
 };
 
+struct Material;
+
+/// Surface that a ray of a bundle met, in the world.
+struct HitSurface {
+  const Material* material = nullptr;  ///< owned by the target; of no meaning for a miss
+  Vec3 normal{};                       ///< unit, either side; zero for a surface without direction
+};
+
+/// Map that also tells the materials and normals at the hits of a bundle, and answers for rays one by one, as `Scene`: light can go on there.
+/// Law: hits are those of `closest` without surfaces; `closest_hit` finds the same.
+template <class T>
+concept OpticalTarget = BundleTarget<T> && requires(const T t, const RayBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces,
+                                                    const Ray& ray, double range) {
+  { t.closest(rays, hits, surfaces) } noexcept;
+  { t.occluded(ray, range) } noexcept -> std::same_as<bool>;
+  { t.surface(*t.closest_hit(ray), ray).material } noexcept -> std::convertible_to<const Material*>;
+};
+
 // ---------------------------------------------------------------------------------------------- from the beam to the echoes
 
 /// Sampling of a beam's cross section by subrays, in units of its 1/e^2 radius: x to the right and y up, looking along the beam.
@@ -202,18 +220,13 @@ concept Footprint = std::copyable<F> && requires(const F f, std::size_t j) {
   { f.share(j) } noexcept -> std::same_as<double>;
 };
 
-/// Origin of a reflection.
-enum class ReflectionKind : std::uint8_t {
-  surface,  ///< a surface that the subray met directly
-};
-
 /// Light that returned along one path of a subray: the input of a detector.
 struct Reflection {
   double range = 0;                               ///< half the optical path from the pulse's origin and back [m]
   double power = 0;                               ///< received power for a pulse of zero length; greater than 0 [W]
   ObjectId object = 0;                            ///< as in `Hit`
   std::uint16_t classification = 0;               ///< as in `Hit`
-  ReflectionKind kind = ReflectionKind::surface;  ///< origin
+  ReflectionKind kind = ReflectionKind::surface;  ///< way of the light
   double cos_incidence = 1;                       ///< as in `Hit`
   double velocity = 0;                            ///< velocity of the surface along the ray, positive away; set for `ReadsVelocity` [m/s]
 };

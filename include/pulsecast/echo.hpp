@@ -29,16 +29,26 @@ struct Hit {
   [[nodiscard]] bool met() const noexcept { return range < std::numeric_limits<double>::infinity(); }
 };
 
+/// Way that returned light took. Of several, the last in this list names it.
+enum class ReflectionKind : std::uint8_t {
+  surface,  ///< from a surface that the beam met directly
+  glass,    ///< through glass or another clear body
+  water,    ///< from water: its surface, its column, or what is under it
+  mirror,   ///< by a mirror, or by glass or water that mirrored it: a ghost, as its surface is elsewhere
+};
+inline constexpr std::size_t reflection_kind_count = 4;  ///< number of kinds
+
 /// One return of a pulse, as the instrument reports it.
 struct Echo {
-  double range = 0;                  ///< distance along the pulse's axis [m]
-  double amplitude = 0;              ///< received power at the echo's peak [W]
-  double reflectance = 0;            ///< amplitude relative to a white Lambertian surface at normal incidence and this range
-  double width = 0;                  ///< standard deviation in time; 0 if not measured, NaN if not found [s]
-  double cos_incidence = 1;          ///< cosine of incidence of the strongest contributor
-  ObjectId object = 0;               ///< object of the strongest contributor
-  std::uint16_t classification = 0;  ///< class of the strongest contributor
-  std::uint8_t number = 1;           ///< return number, from 1 in order of `range`
+  double range = 0;                               ///< distance along the pulse's axis [m]
+  double amplitude = 0;                           ///< received power at the echo's peak [W]
+  double reflectance = 0;                         ///< amplitude relative to a white Lambertian surface at normal incidence and this range
+  double width = 0;                               ///< standard deviation in time; 0 if not measured, NaN if not found [s]
+  double cos_incidence = 1;                       ///< cosine of incidence of the strongest contributor
+  ObjectId object = 0;                            ///< object of the strongest contributor
+  std::uint16_t classification = 0;               ///< class of the strongest contributor
+  std::uint8_t number = 1;                        ///< return number, from 1 in order of `range`
+  ReflectionKind kind = ReflectionKind::surface;  ///< way of the light of the strongest contributor
   double velocity = std::numeric_limits<double>::quiet_NaN();         ///< radial velocity, positive away; NaN if not measured [m/s]
   double shape_deviation = std::numeric_limits<double>::quiet_NaN();  ///< of `ShapeDeviation`; NaN if not measured [1/1000]
 };

@@ -31,7 +31,8 @@ struct FirstHit {
                           .amplitude = first->power,
                           .cos_incidence = first->cos_incidence,
                           .object = first->object,
-                          .classification = first->classification};
+                          .classification = first->classification,
+                          .kind = first->kind};
     return {{&workspace.echo, 1}, {}, 0};
   }
 };

@@ -96,6 +96,7 @@ template <class Shape>
     echo.cos_incidence = r->cos_incidence;
     echo.object = r->object;
     echo.classification = r->classification;
+    echo.kind = r->kind;
   }
   if (timing == EchoTiming::true_range) {
     const auto first = from(peak.begin);

@@ -21,7 +21,12 @@ namespace PULSECAST_NAMESPACE {
 
 /// Echo of a range [m] and an amplitude [W] with the labels of a reflection.
 [[nodiscard]] inline Echo echo_from(const Reflection& r, double range, double amplitude) noexcept {
-  return {.range = range, .amplitude = amplitude, .cos_incidence = r.cos_incidence, .object = r.object, .classification = r.classification};
+  return {.range = range,
+          .amplitude = amplitude,
+          .cos_incidence = r.cos_incidence,
+          .object = r.object,
+          .classification = r.classification,
+          .kind = r.kind};
 }
 
 /// True if a reflection can be an echo: it has power, and is nearer than 2^52 samples, so that they can be counted.

@@ -162,6 +162,17 @@ class LinkBudget {
     return of(share, backscatter, range);
   }
 
+  /// As `power`, of light that spreads as over a range [m], and passes so much air both on its way out and back [m].
+  [[nodiscard]] double power_through(double share, double backscatter, double range, double air) const noexcept {
+    return power(share, backscatter, range) * std::exp(both_ways_ * (air - range));
+  }
+  /// Received power [W] of a subray with this share of the pulse's energy that comes back into the aperture itself, after so much air [m].
+  [[nodiscard]] double power_captured(double share, double air) const noexcept {
+    return near_ > 0 ? gain_ / near_ * share * std::exp(both_ways_ * air / 2) : 0;
+  }
+  /// Radius of the aperture [m].
+  [[nodiscard]] double aperture_radius() const noexcept { return std::sqrt(near_); }
+
   /// True if the receiver sees all of the light.
   [[nodiscard]] bool sees_all() const noexcept { return overlap_.empty(); }
   /// Share of the light from a range [m] that the receiver sees.

@@ -52,6 +52,12 @@ class AnyTarget {
     std::visit([&](const auto& target) noexcept { find_hits(target, rays, hits); }, target_);
   }
 
+  /// As above, with the material and normal at each hit. Exists if all types have it.
+  void closest(const RayBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept
+      requires(OpticalTarget<First> && (OpticalTarget<Others> && ...)) {
+    std::visit([&](const auto& target) noexcept { target.closest(rays, hits, surfaces); }, target_);
+  }
+
   /// True only if no ray of a cone meets anything, as of the target; false of a target that cannot tell.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
     return std::visit([&](const auto& target) noexcept { return detail::misses_cone(target, cone); }, target_);

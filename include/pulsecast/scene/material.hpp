@@ -18,6 +18,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/base/vector_math.hpp>
+#include <pulsecast/scene/smooth_interface.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -94,6 +95,7 @@ struct Material {
   std::uint16_t classification = 0;            ///< ASPRS class of its points
   bool ground = false;                         ///< true if it may carry set-ups and vehicles
   std::shared_ptr<const Spectrum> spectrum{};  ///< reflectance by wavelength, shareable; empty for a constant reflectance
+  SmoothInterface smooth{};                    ///< light that goes on from it, for a transport that follows it
 
   /// @throws SettingError for values out of range
   void validate() const {
@@ -102,6 +104,9 @@ struct Material {
     require_not_negative("Material::specular_exponent", specular_exponent, "");
     require_within("Material::retroreflection", retroreflection, 0, 1e6, "cd/(lx m^2)");
     require_within("Material::retroreflection_half_angle", retroreflection_half_angle, 0.01, 1.5, "rad");
+    smooth.validate();
+    if (smooth.kind == InterfaceKind::mirror)
+      require_within("Material::reflectance (with SmoothInterface::reflectance)", reflectance + smooth.reflectance, 0, 1, "");
     if (scattering == Scattering::tabulated)
       require_within("Material::backscatter_table (rows)", static_cast<double>(backscatter_table.size()), 1, 1e6, "");
     for (std::size_t i = 0; i < backscatter_table.size(); ++i) {
@@ -117,6 +122,9 @@ struct Material {
   [[nodiscard]] double reflectance_at(double wavelength) const noexcept {
     return spectrum ? spectrum->reflectance(wavelength) : reflectance;
   }
+
+  /// Share of the light of a wavelength [m] that the surface scatters in all directions, as an energy ledger counts it.
+  [[nodiscard]] double scattered_share(double wavelength) const noexcept { return std::min(reflectance_at(wavelength), 1.0); }
 
   /// Reflectance times the angular law, at a wavelength [m].
   [[nodiscard]] Backscatter backscatter(double wavelength) const noexcept {

@@ -66,10 +66,10 @@ class MovingScene {
   }
 
   /// Nearest hit of each ray of the bundle at its tick. Ties between parts go to the first in the list, moving or not.
-  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    ClosestHits nearest(rays);
-    search(rays, nearest);
-    scene_.describe(rays, nearest, hits, [&](std::size_t part) noexcept { return placement(part, rays.tick); });
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept { describe(rays, hits, detail::NotesNothing{}); }
+  /// As above, with the material and normal at each hit.
+  void closest(const RayBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept {
+    describe(rays, hits, detail::NotesSurfaces{surfaces});
   }
 
   /// Offers the hits of the rays of a bundle at its tick, as of `Scene`.
@@ -116,6 +116,14 @@ class MovingScene {
 
   const Mover& mover_of(std::size_t part) const noexcept {
     return movers_[detail::first_not(movers_.size(), [&](std::size_t i) noexcept { return movers_[i].part < part; })];
+  }
+
+  template <class Note>
+  void describe(const RayBundle& rays, std::span<Hit> hits, const Note& note) const noexcept {
+    ClosestHits nearest(rays);
+    search(rays, nearest);
+    scene_.describe(
+        rays, nearest, hits, [&](std::size_t part) noexcept { return placement(part, rays.tick); }, note);
   }
 
   template <class Rays, class Hits>

@@ -25,6 +25,23 @@
 
 namespace PULSECAST_NAMESPACE {
 
+namespace detail {
+/// What is noted of surfaces where nobody asks for them.
+struct NotesNothing {
+  template <class Normal>
+  void operator()(std::size_t, std::size_t, const Material*, const Normal&) const noexcept {}
+};
+/// Notes the surface of each hit.
+struct NotesSurfaces {
+  std::span<HitSurface> surfaces;
+  template <class Normal>
+  void operator()(std::size_t first, std::size_t end, const Material* material, const Normal& normal) const noexcept {
+    const HitSurface surface{material, normal()};
+    for (std::size_t j = first; j < end; ++j) surfaces[j] = surface;
+  }
+};
+}  // namespace detail
+
 /// Static parts of the given kinds of geometry, without code for other kinds: `Scene<TriangleMesh<>>`. `MovingScene` moves parts.
 ///
 /// Parts share their geometries, so a second scene of other parts or placements costs one box per part. For changes between repetitions of
@@ -106,7 +123,11 @@ class Scene {
 
   /// Nearest hit of each ray of the bundle, one per ray. Ties between parts go to the first in the list.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    describe(rays, nearest(rays), hits, [&](std::size_t part) noexcept -> const Similarity& { return parts_[part].placement; });
+    describe(rays, nearest(rays), hits, placements(), detail::NotesNothing{});
+  }
+  /// As above, with the material and normal at each hit.
+  void closest(const RayBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept {
+    describe(rays, nearest(rays), hits, placements(), detail::NotesSurfaces{surfaces});
   }
 
   /// Offers the hits of the rays of a bundle to `hits`, by part and primitive.
@@ -199,6 +220,11 @@ class Scene {
     return boxes;
   }
 
+  /// Placement of a part by its index.
+  auto placements() const noexcept {
+    return [this](std::size_t part) noexcept -> const Similarity& { return parts_[part].placement; };
+  }
+
   ClosestHits nearest(const RayBundle& rays) const noexcept {
     ClosestHits nearest(rays);
     search(rays, nearest);
@@ -247,7 +273,7 @@ class Scene {
     double min_cosine = 0;  ///< 1 for a surface without direction
     Backscatter backscatter{};
     ObjectId object = 0;
-    std::uint16_t classification = 0;
+    const Material* material = nullptr;
     bool flat = false;  ///< same for every ray that met the primitive
   };
 
@@ -259,15 +285,17 @@ class Scene {
               .min_cosine = surface.normal == Vec3{} ? 1.0 : 0.0,
               .backscatter = material.backscatter(local.wavelength),
               .object = part.object,
-              .classification = material.classification,
+              .material = &material,
               .flat = FlatGeometry<Shape>};
     };
     return visit_shape(look, part.geometry);
   }
 
   /// `placement_of(i)` returns the placement of part i.
-  template <class PlacementOf>
-  void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of) const noexcept {
+  /// `note(first, end, material, normal)` takes the surface that some rays met, with `normal()` in the world.
+  template <class PlacementOf, class Note>
+  void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of,
+                const Note& note) const noexcept {
     constexpr std::size_t nothing = std::size_t(-1);
     std::size_t at = nothing;  // part of the frame of `local`
     const RayBundle* local = &rays;
@@ -286,6 +314,8 @@ class Scene {
       const SurfaceSample sample = this->sample_surface(parts_[at], nearest.primitive_of(first), *local, first);
       while (end < rays.size && nearest.id[end] == nearest.id[first] && sample.flat)
         ++end;  // neighbouring rays often meet the same primitive
+      note(first, end, sample.material, [&] { return placement_of(at).rotation * (sample.normal * local->direction_length); });
+      const std::uint16_t classification = sample.material->classification;
       const Backscatter law = sample.backscatter;
       const simd::Doubles one = simd::Doubles{} + 1.0, least = simd::Doubles{} + sample.min_cosine;
       for (std::size_t j = first - first % simd::lane_count; j < end; j += simd::lane_count) {
@@ -297,7 +327,7 @@ class Scene {
         if (law.lobe != 0) [[unlikely]]
           values = law.glossy(cosines);
         for (std::size_t k = std::max(j, first); k < std::min(j + simd::lane_count, end); ++k)
-          hits[k] = {nearest.range[k], cosines[k - j], values[k - j], sample.object, sample.classification};
+          hits[k] = {nearest.range[k], cosines[k - j], values[k - j], sample.object, classification};
       }
     }
   }

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <span>
 
-#include <pulsecast/base/simd.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/transport/detail/returned_light.hpp>
 #include <pulsecast/transport/illumination.hpp>
 #include <pulsecast/transport/plane_spread.hpp>
 
@@ -75,8 +75,8 @@ struct DirectLight {
       if (!from_a_point) rays.origin = light.pulse.origin() + world_from_beam * beam.exits[first];
       beam.to_world(world_from_beam, first, rays);
       find_hits(map, rays, w.hits);
-      received_power(light, first, rays.size, w, power);
-      if (!light.record.empty()) record(light, first, rays.size, w, power);
+      detail::received_power(light, &beam.shares[first], rays.size, w.hits, power);
+      if (!light.record.empty()) detail::record_subrays(light, first, std::span(w.hits).first(rays.size), power);
       for (std::size_t j = 0; j < rays.size; ++j) {
         const Hit& hit = w.hits[j];
         const double share = beam.shares[first + j];
@@ -99,8 +99,8 @@ struct DirectLight {
         scattered += share;
         received += power[j];
         Reflection& reflection = reflections[result.reflections++];
-        set(reflection, hit, power[j]);
-        if constexpr (with_velocity) reflection.velocity = radial_velocity(map, rays.ray(j));
+        detail::set_reflection(reflection, hit, power[j]);
+        if constexpr (with_velocity) reflection.velocity = detail::radial_velocity(map, rays.ray(j));
       }
     }
     result.fate = in_gate ? Fate::absorbed : met ? Fate::out_of_range : Fate::missed;
@@ -120,66 +120,6 @@ struct DirectLight {
     const Pose<frame::Beam, frame::World>& pose = light.pulse.pose;
     const Vec3 direction = matrix_of(pose.rotation)[1];
     return detail::misses_cone(map, RayCone{pose.position, direction, not_quite_unit * light.beam.spread, light.pulse.tick});
-  }
-
-  /// Power received from the hits of a bundle, without the range gate [W]. Undefined for misses.
-  [[gnu::always_inline]] static void received_power(const Illumination& light, std::size_t first, std::size_t size, const Workspace& w,
-                                                    RayBundle::Column& power) noexcept {
-    const SubrayDirections& beam = light.beam;
-    if (size == 1) {
-      power[0] = beam.shares[first] * w.hits[0].backscatter * light.white_target.power(light.budget, w.hits[0].range);
-      return;
-    }
-    for (std::size_t j = 0; j < size; j += simd::lane_count) {
-      const simd::Doubles range = simd::generate([&](std::size_t lane) { return w.hits[j + lane].range; });
-      const simd::Doubles backscatter = simd::generate([&](std::size_t lane) { return w.hits[j + lane].backscatter; });
-      simd::store(light.budget.power_in_view(simd::load<simd::Doubles>(beam.shares[first + j]), backscatter, range), power[j]);
-    }
-    if (!light.budget.sees_all()) [[unlikely]]
-      keep_in_view(light.budget, size, w, power);
-  }
-
-  /// Takes away what the receiver does not see of the power of a bundle [W].
-  [[gnu::noinline]] static void keep_in_view(const LinkBudget& budget, std::size_t size, const Workspace& w,
-                                             RayBundle::Column& power) noexcept {
-    for (std::size_t j = 0; j < size; ++j) power[j] *= budget.overlap_at(w.hits[j].range);
-  }
-
-  /// Sets a reflection from a hit, without a velocity.
-  static void set(Reflection& reflection, const Hit& hit, double power) noexcept {
-    reflection.range = hit.range;
-    reflection.power = power;
-    reflection.object = hit.object;
-    reflection.classification = hit.classification;
-    reflection.kind = ReflectionKind::surface;
-    reflection.cos_incidence = hit.cos_incidence;
-  }
-
-  /// Records the subrays of a bundle.
-  static void record(const Illumination& light, std::size_t first, std::size_t size, const Workspace& w,
-                     const RayBundle::Column& power) noexcept {
-    const SubrayDirections& beam = light.beam;
-    for (std::size_t j = 0; j < size; ++j) {
-      const Hit& hit = w.hits[j];
-      SubrayHit& subray = light.record[first + j];
-      subray = {hit, 0, Vec3{}};
-      if (!hit.met()) continue;
-      const Vec3 exit = beam.from_a_point() ? Vec3{} : beam.exits[first + j];
-      const Vec3 direction{beam.x[first + j], beam.y[first + j], beam.z[first + j]};
-      subray.point = light.reported().point(exit + hit.range * direction);
-      if (light.gate.contains(hit.range) && power[j] > 0) subray.power = power[j];
-    }
-  }
-
-  /// Velocity of the surface that a ray meets, along the ray [m/s].
-  template <class Map>
-  static double radial_velocity(const Map& map, const Ray& ray) noexcept {
-    static_assert(VelocityTarget<Map>,
-                  "the detector reads velocities, which this map does not give: it needs closest_hit(ray) and surface(hit, ray), as Scene");
-    if constexpr (VelocityTarget<Map>) {
-      if (const auto hit = map.closest_hit(ray)) return dot(map.surface(*hit, ray).velocity, ray.direction);
-    }
-    return 0;
   }
 };
 

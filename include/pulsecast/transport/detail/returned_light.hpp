@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_TRANSPORT_DETAIL_RETURNED_LIGHT_HPP
+#define PULSECAST_TRANSPORT_DETAIL_RETURNED_LIGHT_HPP
+
+#include <cstddef>
+#include <span>
+
+#include <pulsecast/base/simd.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/transport/illumination.hpp>
+
+/// Light that the hits of a bundle send back, for all transports.
+namespace PULSECAST_NAMESPACE::detail {
+
+/// Takes away what the receiver does not see of the power of a bundle [W].
+[[gnu::noinline]] inline void keep_in_view(const LinkBudget& budget, std::span<const Hit> hits, RayBundle::Column& power) noexcept {
+  for (std::size_t j = 0; j < hits.size(); ++j) power[j] *= budget.overlap_at(hits[j].range);
+}
+
+/// Power received from the hits of `size` rays, by the share of the pulse's energy of each, without the range gate [W]. Undefined for
+/// misses.
+[[gnu::always_inline]] inline void received_power(const Illumination& light, const double* shares, std::size_t size,
+                                                  std::span<const Hit> hits, RayBundle::Column& power) noexcept {
+  if (size == 1) {
+    power[0] = shares[0] * hits[0].backscatter * light.white_target.power(light.budget, hits[0].range);
+    return;
+  }
+  for (std::size_t j = 0; j < size; j += simd::lane_count) {
+    const simd::Doubles range = simd::generate([&](std::size_t lane) { return hits[j + lane].range; });
+    const simd::Doubles backscatter = simd::generate([&](std::size_t lane) { return hits[j + lane].backscatter; });
+    simd::store(light.budget.power_in_view(simd::load<simd::Doubles>(shares[j]), backscatter, range), power[j]);
+  }
+  if (!light.budget.sees_all()) [[unlikely]]
+    keep_in_view(light.budget, hits.first(size), power);
+}
+
+/// Sets a reflection from a hit, without a velocity.
+inline void set_reflection(Reflection& reflection, const Hit& hit, double power) noexcept {
+  reflection.range = hit.range;
+  reflection.power = power;
+  reflection.object = hit.object;
+  reflection.classification = hit.classification;
+  reflection.kind = ReflectionKind::surface;
+  reflection.cos_incidence = hit.cos_incidence;
+}
+
+/// Records the subrays from `first` on: their first hits, and what returns from there.
+inline void record_subrays(const Illumination& light, std::size_t first, std::span<const Hit> hits,
+                           const RayBundle::Column& power) noexcept {
+  const SubrayDirections& beam = light.beam;
+  for (std::size_t j = 0; j < hits.size(); ++j) {
+    const Hit& hit = hits[j];
+    SubrayHit& subray = light.record[first + j];
+    subray = {hit, 0, Vec3{}};
+    if (!hit.met()) continue;
+    const Vec3 exit = beam.from_a_point() ? Vec3{} : beam.exits[first + j];
+    const Vec3 direction{beam.x[first + j], beam.y[first + j], beam.z[first + j]};
+    subray.point = light.reported().point(exit + hit.range * direction);
+    if (light.gate.contains(hit.range) && power[j] > 0) subray.power = power[j];
+  }
+}
+
+/// Velocity of the surface that a ray meets, along the ray [m/s].
+template <class Map>
+[[nodiscard]] double radial_velocity(const Map& map, const Ray& ray) noexcept {
+  static_assert(VelocityTarget<Map>,
+                "the detector reads velocities, which this map does not give: it needs closest_hit(ray) and surface(hit, ray), as Scene");
+  if constexpr (VelocityTarget<Map>) {
+    if (const auto hit = map.closest_hit(ray)) return dot(map.surface(*hit, ray).velocity, ray.direction);
+  }
+  return 0;
+}
+
+}  // namespace PULSECAST_NAMESPACE::detail
+
+#endif

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
+#define PULSECAST_TRANSPORT_LIGHT_PATHS_HPP
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/transport/detail/path_tracer.hpp>
+#include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/plane_spread.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Transport of light that goes on from smooth surfaces, by `Material::smooth`: `Survey{platform, footprint, scene, LightPaths{}, receiver,
+/// detector}`. Every surface that it meets on its way sends light back along the same way, which an instrument reports in the direction of
+/// its beam, at half the optical path.
+///
+/// A scene without such surfaces gives the reflections of `DirectLight`, bit for bit. In the ledger, a surface's share of the light is
+/// scattered, and the rest is absorbed.
+///
+/// Mirrors and panes that are plane pass subrays on together; bodies refract them one by one. Light spreads by the plane that each ray
+/// meets. Left out: polarisation from one surface to the next, interference, diffraction.
+struct LightPaths {
+  std::size_t passages = 8;   ///< greatest number of surfaces that pass light on, from 0 to 32
+  double least_share = 1e-4;  ///< least share of a subray's light that is followed, one way, in [0, 1]
+  bool spread_planes = true;  ///< as in `DirectLight`
+
+  void validate() const {
+    require_within("LightPaths::passages", static_cast<double>(passages), 0, 32, "");
+    require_within("LightPaths::least_share", least_share, 0, 1, "");
+  }
+
+  /// Scratch memory of one worker.
+  struct Workspace {
+    std::vector<detail::PencilHits> levels;  ///< by number of surfaces passed
+  };
+
+  /// Room for the reflections of a pulse of so many subrays. Light of further ones is counted as cut.
+  [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
+    const std::size_t most = subrays * (2 * passages + 1);
+    return spread_planes && subrays > 2 ? std::max(most, plane_reflections_max) : most;
+  }
+  [[nodiscard]] Workspace workspace(std::size_t) const { return {std::vector<detail::PencilHits>(passages + 1)}; }
+
+  /// Follows all subrays. Sets velocities, too, if `with_velocity`.
+  template <bool with_velocity = false, OpticalTarget Map>
+  [[nodiscard]] TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
+                                      std::span<Reflection> reflections) const noexcept {
+    TransportResult result;
+    detail::PathTracer<with_velocity, Map> tracer(map, light, least_share, w.levels, reflections, result);
+    tracer.trace();
+    if (!with_velocity && spread_planes && !tracer.passed_on() && light.subrays > 2 && result.reflections == light.subrays &&
+        light.beam.from_a_point())
+      result.spread = spread_over_plane(light, reflections, result.reflections);
+    return result;
+  }
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif
