@@ -308,7 +308,8 @@ class Survey {
                              constants.budget,
                              w.white_target,
                              unit.receiver.gate(),
-                             recorded ? std::span(w.subrays) : std::span<SubrayHit>{}};
+                             recorded ? std::span(w.subrays) : std::span<SubrayHit>{},
+                             interval_of(unit)};
     if constexpr (ReadsVelocity<Instrument>)
       return transport_.template trace<true>(*map_, light, w.transport, w.reflections);
     else

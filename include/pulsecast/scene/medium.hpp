@@ -7,7 +7,7 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Homogeneous medium that light passes through: glass, water.
+/// Medium that light passes through: glass, water, fog.
 struct Medium {
   double index = 1;        ///< refractive index, from 1 to 4
   double group_index = 0;  ///< vacuum speed of light by that of a pulse, from 1 to 4; 0 for that of `index`
@@ -25,6 +25,10 @@ struct Medium {
 
   /// Share of the light that is lost per metre, for short ways [1/m].
   [[nodiscard]] double extinction() const noexcept { return absorption + scattering; }
+  /// Medium of two at the same place, with the index of the first: fog and rain.
+  [[nodiscard]] Medium with(const Medium& other) const noexcept {
+    return {index, group_index, absorption + other.absorption, scattering + other.scattering, backscatter + other.backscatter};
+  }
   /// Vacuum speed of light by that of a pulse.
   [[nodiscard]] double delay() const noexcept { return group_index > 0 ? group_index : index; }
 };

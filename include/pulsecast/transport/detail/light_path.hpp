@@ -19,6 +19,13 @@
 /// refracted.
 namespace PULSECAST_NAMESPACE::detail {
 
+inline constexpr double apart = 1e-6;  ///< surfaces nearer to each other than this are one [m]
+
+/// Normal of a plane that a ray meets, towards the ray.
+[[nodiscard]] inline Vec3 towards(const Vec3& normal, const Vec3& direction) noexcept {
+  return dot(normal, direction) > 0 ? -normal : normal;
+}
+
 /// Rays in air that seem to come from one point: the pulse's exit, or its image in mirrors and panes. Ranges are counted from there, so
 /// that they are lengths of the whole way.
 struct Pencil {
@@ -90,9 +97,9 @@ struct LightPath {
       if (slope != 0) place[k] -= dot(place[k], normal) / slope * ray.direction;
     }
   }
-  /// Range at which light in air would have spread as far, and come back as weak [m].
-  [[nodiscard]] double spread() const noexcept {
-    return medium().index * std::sqrt(std::fabs(dot(cross(place[0], place[1]), ray.direction)));
+  /// Range at which light in air would have spread as far as here at a distance along the ray, and come back as weak [m].
+  [[nodiscard]] double spread(double distance = 0) const noexcept {
+    return medium().index * std::sqrt(std::fabs(dot(cross(place[0] + distance * turn[0], place[1] + distance * turn[1]), ray.direction)));
   }
 
   /// Takes a share of the light along.

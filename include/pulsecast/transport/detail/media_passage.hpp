@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_TRANSPORT_DETAIL_MEDIA_PASSAGE_HPP
+#define PULSECAST_TRANSPORT_DETAIL_MEDIA_PASSAGE_HPP
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/scene/media.hpp>
+#include <pulsecast/transport/detail/light_ledger.hpp>
+#include <pulsecast/transport/detail/light_path.hpp>
+#include <pulsecast/transport/detail/volume_bins.hpp>
+#include <pulsecast/transport/illumination.hpp>
+
+namespace PULSECAST_NAMESPACE::detail {
+
+/// Takes the light of one pulse through media: what they absorb and scatter, and what they send back.
+class MediaPassage {
+ public:
+  /// `air`: media between the surfaces; `in_air`, `in_water`: memory for what media in the air and bodies send back.
+  MediaPassage(const Illumination& light, const Media& air, LightLedger& ledger, VolumeBins& in_air, VolumeBins& in_water) noexcept
+      : light_(light), air_(air), ledger_(ledger), in_air_(in_air), in_water_(in_water) {
+    const double interval = light.sample_interval > 0 ? light.sample_interval : light.emitter.laser.pulse_length / 16;
+    in_air_.begin(speed_of_light / 2 * interval);
+    in_water_.begin(speed_of_light / 2 * interval);
+  }
+
+  /// Names the body that light enters.
+  void label_body(ObjectId object, std::uint16_t classification) noexcept {
+    in_water_.object = object;
+    in_water_.classification = classification;
+  }
+
+  /// Takes the rays of a pencil through the air up to their hits: what is lost of each, and what returns of all.
+  void pass_air(Pencil& p, std::span<const Hit> hits) noexcept {
+    if (air_.empty()) return;
+    const std::size_t size = p.rays.size;
+    struct End {
+      double range, both;
+    };
+    std::array<End, RayBundle::capacity> ends;
+    double together = 0;
+    for (std::size_t j = 0; j < size; ++j) {
+      ends[j] = {hits[j].range, p.both[j]};
+      together += p.both[j];
+    }
+    std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(size), [](const End& a, const End& b) { return a.range < b.range; });
+    const std::size_t middle = size / 2;
+    double passed = 1;  // share of the light both ways
+    std::size_t ended = 0;
+    const auto range = [](double s) noexcept { return s; };
+    air_.along(p.rays.origin, p.rays.direction(middle), p.begin[middle], ends[size - 1].range,
+               [&](double from, double to, const Medium& medium, double density) noexcept {
+                 for (double at = from; at < to;) {
+                   for (; ended < size && !(ends[ended].range > at); ++ended) together -= ends[ended].both;
+                   if (ended == size) return;
+                   const double end = std::min(to, ends[ended].range), loss = density * medium.extinction();
+                   const VolumeWay way{at, end, together * passed, loss, density * medium.backscatter, at + p.delay[middle]};
+                   if (medium.backscatter > 0) add_volume(in_air_, way, range, range);
+                   passed *= std::exp(-2 * loss * (end - at));
+                   at = end;
+                 }
+               });
+    for (std::size_t j = 0; j < size; ++j)
+      air_.along(p.rays.origin, p.rays.direction(j), p.begin[j], hits[j].range,
+                 [&](double from, double to, const Medium& medium, double density) noexcept {
+                   const double left = lose(medium, density, to - from, p.sent[j]);
+                   p.sent[j] *= left;
+                   p.both[j] *= left * left;
+                 });
+  }
+
+  /// Takes a path through the media up to its next surface, at a range [m].
+  void pass(LightPath& path, double range) noexcept {
+    const auto stretch = [&](double from, double to, const Medium& medium, double density, VolumeBins& bins) noexcept {
+      if (medium.backscatter > 0) {
+        const VolumeWay way{from,
+                            to,
+                            path.both,
+                            density * medium.extinction(),
+                            density * medium.backscatter,
+                            path.optical + from * path.medium().delay(),
+                            path.medium().delay()};
+        add_volume(
+            bins, way, [&](double s) noexcept { return path.spread(s); },
+            [&](double s) noexcept { return path.depth == 0 ? path.air + s : path.air; });
+      }
+      path.keep(lose(medium, density, to - from, path.sent));
+    };
+    if (path.depth == 0)
+      air_.along(path.ray.origin, path.ray.direction, 0, range, [&](double from, double to, const Medium& medium, double density) noexcept {
+        stretch(from, to, medium, density, in_air_);
+      });
+    else
+      stretch(0, range, path.medium(), 1, in_water_);
+  }
+
+  /// Turns what media sent back into reflections.
+  void close() noexcept {
+    return_volume(in_air_, ReflectionKind::air);
+    return_volume(in_water_, ReflectionKind::water);
+  }
+
+ private:
+  /// Takes away what a medium absorbs and scatters of light on a way [m]. Returns the share that is left.
+  double lose(const Medium& medium, double density, double way, double sent) noexcept {
+    const double per_metre = density * medium.extinction(), left = per_metre > 0 ? std::exp(-per_metre * way) : 1;
+    if (per_metre > 0) {
+      const double lost = (1 - left) * sent / medium.extinction();
+      ledger_.shares.absorbed += lost * medium.absorption;
+      ledger_.shares.scattered += lost * medium.scattering;
+    }
+    return left;
+  }
+
+  /// Way of light that a medium scatters back.
+  struct VolumeWay {
+    double from = 0, to = 0;  ///< ends of the stretch, from where `spread` counts [m]
+    double both = 0;          ///< as in `Pencil`, at its beginning
+    double extinction = 0;    ///< of the medium [1/m]
+    double backscatter = 0;   ///< of the medium [1/(m sr)]
+    double optical = 0;       ///< optical path up to its beginning [m]
+    double delay = 1;         ///< optical path by way
+  };
+  /// Adds what returns from a stretch. `spread(s)` is the range by which light spreads up to s, `air(s)` the way in air [m].
+  template <class Spread, class Air>
+  void add_volume(VolumeBins& bins, const VolumeWay& way, const Spread& spread, const Air& air) noexcept {
+    const double white = pi * way.backscatter, tooth = bins.spacing() / way.delay, aperture = light_.budget.aperture_radius();
+    double both = way.both;
+    for (double at = way.from; at < way.to && both > least_return * way.both;) {
+      const double step = std::min(way.to - at, std::min(tooth, 0.1 * std::hypot(spread(at), aperture))), middle = at + step / 2;
+      const double left = std::exp(-2 * way.extinction * step);
+      const double length = way.extinction > 0 ? (1 - left) / (2 * way.extinction) : step;
+      const double range = way.optical + way.delay * (middle - way.from);
+      if (range > light_.gate.far) return;
+      if (light_.gate.contains(range)) bins.add(range, light_.budget.power_through(both, white * length, spread(middle), air(middle)));
+      both *= left;
+      at += step;
+    }
+  }
+  static constexpr double least_return = 1e-9;  // share of the light below which that of a medium is left out
+
+  /// Turns what a medium sent back into reflections.
+  void return_volume(const VolumeBins& bins, ReflectionKind kind) noexcept {
+    bins.visit([&](double range, double power) noexcept {
+      ledger_.reflect({.range = range, .object = bins.object, .classification = bins.classification}, power, {kind});
+    });
+  }
+
+  const Illumination& light_;
+  const Media& air_;
+  LightLedger& ledger_;
+  VolumeBins &in_air_, &in_water_;
+};
+
+}  // namespace PULSECAST_NAMESPACE::detail
+
+#endif

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_TRANSPORT_DETAIL_REFRACTED_PATHS_HPP
+#define PULSECAST_TRANSPORT_DETAIL_REFRACTED_PATHS_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/transport/detail/light_ledger.hpp>
+#include <pulsecast/transport/detail/light_path.hpp>
+#include <pulsecast/transport/detail/media_passage.hpp>
+#include <pulsecast/transport/illumination.hpp>
+
+namespace PULSECAST_NAMESPACE::detail {
+
+/// Follows subrays one by one, from where they meet a body.
+template <bool with_velocity, OpticalTarget Map>
+class RefractedPaths {
+ public:
+  /// `passages`: greatest number of surfaces that pass light on.
+  RefractedPaths(const Map& map, const Illumination& light, double least_share, std::size_t passages, LightLedger& ledger,
+                 MediaPassage& media) noexcept
+      : map_(map), light_(light), least_share_(least_share), passages_(passages), ledger_(ledger), media_(media) {}
+
+  /// Follows a path to its end. `passed_air`: the media up to the first surface are passed already.
+  void follow(LightPath path, bool passed_air = false) noexcept {
+    while (path.both >= least_share_ * path.sent && path.both > 0) {
+      const auto hit = map_.closest_hit(path.ray);
+      const double range = hit ? hit->range : infinity;
+      if (!passed_air) media_.pass(path, range);
+      passed_air = false;
+      if (!hit) return ledger_.miss(path.sent, infinity);
+      const auto at = map_.surface(*hit, path.ray);
+      const Material& material = *at.material;
+      path.advance(range, at.normal);
+      end_at(path, at);
+      if (!material.smooth.passes_light() || !pass_on(path, at)) return;
+      path.ray.near = apart;
+      ++path.passages;
+    }
+    ledger_.shares.cut += path.sent;
+  }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  /// Light that a surface sends back to a path that ends there.
+  template <class Point>
+  void end_at(const LightPath& path, const Point& at) noexcept {
+    const double wavelength = light_.emitter.laser.wavelength;
+    Hit hit{.range = path.optical, .object = at.object, .classification = at.classification};
+    if (at.normal != Vec3{}) hit.cos_incidence = std::min(1.0, std::fabs(dot(at.normal, path.ray.direction)));
+    hit.backscatter = at.material->backscatter(hit.cos_incidence, wavelength);
+    const double power = light_.budget.power_through(path.both, hit.backscatter, path.spread(), path.air);
+    LightWay way{path.kind, path.sent};
+    if constexpr (with_velocity) way.velocity = path.drift + path.medium().index * dot(at.velocity, path.ray.direction);
+    ledger_.end_at(hit, *at.material, power, way);
+  }
+
+  /// Passes a path on: reflects a part of it, and goes on with the other. Returns false if nothing goes on.
+  template <class Point>
+  bool pass_on(LightPath& path, const Point& at) noexcept {
+    const SmoothInterface& smooth = at.material->smooth;
+    const double reaching = 1 - at.material->scattered_share(light_.emitter.laser.wavelength);
+    const Vec3 n = towards(at.normal, path.ray.direction), before = path.ray.direction;
+    const Medium around = path.medium();
+    const double cosine = std::min(1.0, -dot(n, before));
+    if (path.passages >= passages_) {
+      ledger_.shares.cut += reaching * path.sent;
+      return false;
+    }
+    const auto moved = [&](LightPath& p) noexcept {
+      if constexpr (with_velocity) p.drift += dot(at.velocity, around.index * before - p.medium().index * p.ray.direction);
+    };
+    const auto reflect = [&](LightPath& p, double share) noexcept {
+      p.keep(share);
+      p.kind = std::max(p.kind, ReflectionKind::mirror);
+      p.reflect(n);
+      moved(p);
+    };
+    const auto reflect_too = [&](double share) noexcept {
+      LightPath other = path;
+      reflect(other, share);
+      other.ray.near = apart;
+      ++other.passages;
+      follow(other);
+    };
+    switch (smooth.kind) {
+      case InterfaceKind::mirror:
+        ledger_.shares.absorbed += std::max(0.0, reaching - smooth.reflectance) * path.sent;
+        reflect(path, smooth.reflectance);
+        return true;
+      case InterfaceKind::pane: {
+        const PaneSplit split = pane_split(cosine, smooth, around);
+        ledger_.shares.absorbed += std::max(0.0, 1 - split.reflected - split.transmitted) * reaching * path.sent;
+        reflect_too(reaching * split.reflected);
+        path.keep(reaching * split.transmitted);
+        path.kind = std::max(path.kind, ReflectionKind::glass);
+        path.ray.origin -= split.shift * n;
+        path.optical += split.delay;
+        return true;
+      }
+      default: {
+        const Medium inside = path.behind(*at.material);
+        const double relative = inside.index / around.index;
+        const FresnelSplit split = fresnel_split(cosine, relative);
+        const ReflectionKind kind = smooth.kind == InterfaceKind::water ? ReflectionKind::water : ReflectionKind::glass;
+        if (split.reflected >= 1) {
+          reflect(path, reaching);
+          return true;
+        }
+        reflect_too(reaching * split.reflected);
+        path.keep(reaching * split.refracted());
+        path.kind = std::max(path.kind, kind);
+        path.refract(n, relative, split);
+        path.cross_face(*at.material);
+        media_.label_body(at.object, at.classification);
+        moved(path);
+        return true;
+      }
+    }
+  }
+
+  const Map& map_;
+  const Illumination& light_;
+  double least_share_;
+  std::size_t passages_;
+  LightLedger& ledger_;
+  MediaPassage& media_;
+};
+
+}  // namespace PULSECAST_NAMESPACE::detail
+
+#endif
