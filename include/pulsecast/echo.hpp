@@ -36,8 +36,9 @@ enum class ReflectionKind : std::uint8_t {
   water,    ///< from water: its surface, its column, or what is under it
   mirror,   ///< by a mirror, or by glass or water that mirrored it: a ghost, as its surface is elsewhere
   air,      ///< from what is in the air: fog, rain, smoke
+  multiple  ///< scattered by more than one surface
 };
-inline constexpr std::size_t reflection_kind_count = 5;  ///< number of kinds
+inline constexpr std::size_t reflection_kind_count = 6;  ///< number of kinds
 
 /// One return of a pulse, as the instrument reports it.
 struct Echo {

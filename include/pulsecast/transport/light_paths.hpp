@@ -30,12 +30,14 @@ struct LightPaths {
   std::size_t passages = 8;         ///< greatest number of surfaces that pass light on, from 0 to 32
   double least_share = 1e-4;        ///< least share of a subray's light that is followed, one way, in [0, 1]
   bool spread_planes = true;        ///< as in `DirectLight`
+  MultipleScattering scattering{};  ///< light that surfaces scatter to and fro
   Media air{};                      ///< media in the air
   std::size_t volume_cells = 8192;  ///< greatest number of reflections of the media in the air, and of those of bodies, from 4 to 1e6
 
   void validate() const {
     require_within("LightPaths::passages", static_cast<double>(passages), 0, 32, "");
     require_within("LightPaths::least_share", least_share, 0, 1, "");
+    scattering.validate();
     require_within("LightPaths::volume_cells", static_cast<double>(volume_cells), 4, 1e6, "");
   }
 
@@ -44,7 +46,7 @@ struct LightPaths {
 
   /// Room for the reflections of a pulse of so many subrays. Light of further ones is counted as cut.
   [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
-    const std::size_t most = subrays * (2 * passages + 1) + 2 * volume_cells;
+    const std::size_t most = subrays * (2 * passages + 1) + 2 * volume_cells + scattering.reflections();
     return spread_planes && subrays > 2 ? std::max(most, plane_reflections_max) : most;
   }
   [[nodiscard]] Workspace workspace(std::size_t) const {
@@ -56,7 +58,7 @@ struct LightPaths {
   [[nodiscard]] TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
                                       std::span<Reflection> reflections) const noexcept {
     TransportResult result;
-    detail::PathTracer<with_velocity, Map> tracer(map, light, air, least_share, w, reflections, result);
+    detail::PathTracer<with_velocity, Map> tracer(map, light, {passages, least_share, air, scattering}, w, reflections, result);
     tracer.trace();
     if (!with_velocity && spread_planes && !tracer.passed_on() && light.subrays > 2 && result.reflections == light.subrays &&
         light.beam.from_a_point())

@@ -20,6 +20,7 @@
 #include <pulsecast/transport/detail/media_passage.hpp>
 #include <pulsecast/transport/detail/refracted_paths.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>
+#include <pulsecast/transport/detail/scattered_paths.hpp>
 #include <pulsecast/transport/detail/volume_bins.hpp>
 #include <pulsecast/transport/illumination.hpp>
 
@@ -33,6 +34,14 @@ struct PencilHits {
   RayBundle::Column power{};
 };
 
+/// Settings of a `PathTracer`.
+struct PathSettings {
+  std::size_t passages;
+  double least_share;
+  const Media& air;
+  const MultipleScattering& scattering;
+};
+
 /// Scratch memory of a `PathTracer`.
 struct PathWorkspace {
   std::vector<PencilHits> levels;  ///< by number of surfaces that passed light on
@@ -43,16 +52,16 @@ struct PathWorkspace {
 template <bool with_velocity, OpticalTarget Map>
 class PathTracer {
  public:
-  /// `air` are the media between the surfaces.
-  PathTracer(const Map& map, const Illumination& light, const Media& air, double least_share, PathWorkspace& w,
-             std::span<Reflection> reflections, TransportResult& result) noexcept
+  PathTracer(const Map& map, const Illumination& light, const PathSettings& settings, PathWorkspace& w, std::span<Reflection> reflections,
+             TransportResult& result) noexcept
       : map_(map),
         light_(light),
-        least_share_(least_share),
+        least_share_(settings.least_share),
         w_(w),
         ledger_(light, reflections, result),
-        media_(light, air, ledger_, w.in_air, w.in_water),
-        bodies_(map, light, least_share, w.levels.size() - 1, ledger_, media_) {}
+        media_(light, settings.air, ledger_, w.in_air, w.in_water),
+        bodies_(map, light, settings.least_share, settings.passages, ledger_, media_),
+        scattered_(map, light, settings.air, settings.scattering, ledger_) {}
 
   /// Follows all subrays.
   void trace() noexcept {
@@ -75,6 +84,7 @@ class PathTracer {
         p.begin[j] = p.delay[j] = p.drift[j] = 0;
       }
       follow(0);
+      scattered_.start(p, w_.levels[0].hits, w_.levels[0].surfaces);
     }
     media_.close();
     ledger_.close();
@@ -285,6 +295,7 @@ class PathTracer {
   LightLedger ledger_;
   MediaPassage media_;
   RefractedPaths<with_velocity, Map> bodies_;
+  ScatteredPaths<Map> scattered_;
   bool passed_on_ = false;
 };
 

@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/transport/light_paths.hpp>
+
+#include "support/generators.hpp"
+#include "support/laws.hpp"
+#include "support/light.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+using support::clean;
+using support::from_to;
+using support::rectangle;
+using support::traced;
+
+namespace {
+
+using World = support::LightScene;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+const Medium mist{.absorption = 0.01, .scattering = 0.04, .backscatter = 0.002};
+
+double power_of(const std::vector<Reflection>& reflections) {
+  double sum = 0;
+  for (const Reflection& r : reflections) sum += r.power;
+  return sum;
+}
+
+/// Power that a medium sends back from between two ranges, by a fine sum [W].
+double integral(const support::Lamp& lamp, const Medium& m, double near, double far, double fog_begin) {
+  const LinkBudget budget(lamp.receiver, lamp.laser);
+  double sum = 0;
+  const int steps = 200000;
+  for (int k = 0; k < steps; ++k) {
+    const double s = near + (k + 0.5) / steps * (far - near);
+    sum += budget.power(1, pi * m.backscatter * std::exp(-2 * m.extinction() * (s - fog_begin)), s) * (far - near) / steps;
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("fog dims what is behind it, and sends light back from all along the way") {
+  const World scene({rectangle({0, 60, 0}, 50.0 * axis::right, 50.0 * axis::up, Material{.reflectance = 0.5}, 4)});
+  const support::Lamp lamp{.laser = {.divergence = 1e-3}};
+  for (const double begin : {0.0, 20.0}) {
+    const LightPaths light{.spread_planes = false, .air = Media({{.medium = mist, .bounds = {{-9, begin, -9}, {9, 60.5, 9}}}})};
+    const auto seen = traced(light, scene, from_to({0, 0, 0}, axis::forward), LatticeFootprint(19), lamp);
+    const auto open = traced(LightPaths{.spread_planes = false}, scene, from_to({0, 0, 0}, axis::forward), LatticeFootprint(19), lamp);
+    CHECK(std::fabs(seen.imbalance()) < 1e-9);
+    const double left = std::exp(-0.05 * (60 - begin));
+    CHECK(power_of(seen.of(ReflectionKind::surface)) == doctest::Approx(left * left * power_of(open.reflections)).epsilon(1e-5));
+    const auto in_air = seen.of(ReflectionKind::air);
+    CHECK(power_of(in_air) == doctest::Approx(integral(lamp, mist, begin, 60, begin)).epsilon(begin > 0 ? 1e-4 : 2e-2));
+    for (const Reflection& r : in_air) {
+      CHECK(r.range > begin - 0.1);
+      CHECK(r.range < 60.1);
+    }
+    const double from = begin + 10, to = begin + 20;
+    double part = 0;
+    for (const Reflection& r : in_air)
+      if (r.range > from && r.range < to) part += r.power;
+    CHECK(part == doctest::Approx(integral(lamp, mist, from, to, begin)).epsilon(5e-3));
+    CHECK(seen.result.energy.absorbed / seen.result.energy.sent == doctest::Approx(0.2 * (1 - left) + 0.5 * left).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("fog without an end takes all of the light") {
+  const LightPaths light{.air = Media({{.medium = mist}})};
+  const auto seen = traced(light, World({}), from_to({0, 0, 0}, axis::forward), RingFootprint(3), {.laser = {.divergence = 1e-3}});
+  CHECK(std::fabs(seen.imbalance()) < 1e-9);
+  CHECK(seen.result.energy.missed < 1e-12 * seen.result.energy.sent);
+  CHECK(seen.result.energy.scattered / seen.result.energy.sent == doctest::Approx(0.8));
+  CHECK(seen.reflections.size() > 1000);
+}
+
+TEST_CASE("fog is passed on every stretch of a path, once") {
+  // a mirror at 45 degrees, and a wall to the right
+  const Vec3 slant = normalize(Vec3{1, 1, 0});
+  const World scene({rectangle({0, 20, 0}, 9.0 * slant, 9.0 * axis::up, clean(SmoothInterface::mirror(1))),
+                     rectangle({30, 20, 0}, 9.0 * axis::forward, 9.0 * axis::up, Material{.reflectance = 1})});
+  const LightPaths light{.air = Media({{.medium = mist}})};
+  const auto pose = from_to({0, 0, 0}, axis::forward);
+  for (const auto& [glass, way] : {std::pair{false, 50.0}, std::pair{true, 50.0}}) {
+    std::vector<World::Part> parts(scene.parts().begin(), scene.parts().end());
+    if (glass)
+      parts.push_back(
+          rectangle({0, 10, 0}, 1.0 * axis::right, 1.0 * axis::up, clean({.kind = InterfaceKind::dielectric, .inside = {.index = 1}})));
+    if (glass) {
+      parts.push_back(rectangle({0, 11, 0}, 1.0 * axis::right, 1.0 * axis::up, Material{}));
+      parts.back().materials = parts[2].materials;
+    }
+    const World world(parts);
+    const auto seen = traced(light, world, pose, SingleRay{}), open = traced(LightPaths{}, world, pose, SingleRay{});
+    const auto ghost = seen.of(ReflectionKind::mirror), clear = open.of(ReflectionKind::mirror);
+    REQUIRE(ghost.size() == 1);
+    REQUIRE(clear.size() == 1);
+    CHECK(ghost[0].power / clear[0].power == doctest::Approx(std::exp(-2 * 0.05 * (way - (glass ? 1 : 0)))).epsilon(1e-9));
+    CHECK(std::fabs(seen.imbalance()) < 1e-9);
+  }
+}
+
+TEST_CASE("the water's column sends light back by its coefficients, between the surface and the bottom") {
+  const Medium water{.index = 1.33, .group_index = 1.36, .absorption = 0.08, .scattering = 0.07, .backscatter = 0.003};
+  const World scene(
+      {rectangle({0, 0, 0}, 500.0 * axis::right, 500.0 * axis::forward, clean({.kind = InterfaceKind::water, .inside = water}), 9),
+       rectangle({0, 0, -8}, 500.0 * axis::right, 500.0 * axis::forward, Material{.reflectance = 0.2}, 2)});
+  for (const double degrees : {0.0, 20.0, 40.0}) {
+    const double a = degrees * 1_deg, b = std::asin(std::sin(a) / 1.33), above = 200 / std::cos(a), below = 8 / std::cos(b);
+    const support::Lamp lamp;
+    const auto seen = traced(LightPaths{}, scene, from_to({0, 0, 200}, {200 * std::tan(a), 0, 0}), SingleRay{}, lamp);
+    CHECK(std::fabs(seen.imbalance()) < 1e-9);
+    double column = 0, middle = 0;
+    for (const Reflection& r : seen.of(ReflectionKind::water)) {
+      if (r.object != 9) continue;
+      column += r.power;
+      middle += r.power * r.range;
+    }
+    const LinkBudget budget(lamp.receiver, lamp.laser);
+    const double pass = std::pow(fresnel_split(std::cos(a), 1.33).refracted(), 2);
+    double sum = 0, moment = 0;
+    const int steps = 20000;
+    for (int k = 0; k < steps; ++k) {
+      const double s = (k + 0.5) / steps * below;
+      const double across = 1.33 * above + s, along = 1.33 * above + s * std::pow(std::cos(a) / std::cos(b), 2);
+      const double spread = std::sqrt(across * along) * std::cos(b) / std::cos(a);
+      const double power = budget.power_through(pass, pi * 0.003 * std::exp(-2 * 0.15 * s), spread, above) * below / steps;
+      sum += power;
+      moment += power * (above + 1.36 * s);
+    }
+    CHECK(column == doctest::Approx(sum).epsilon(1e-3));
+    CHECK(middle / column == doctest::Approx(moment / sum).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("a comb that is too long for its room grows coarser, and keeps its sum and its middle") {
+  support::Generator any(5);
+  for (const std::size_t capacity : {8UL, 64UL, 1000UL}) {
+    detail::VolumeBins bins(capacity);
+    bins.begin(0.01);
+    double sum = 0, middle = 0;
+    for (int k = 0; k < 3000; ++k) {
+      const double range = any.uniform(3, 40), power = any.uniform(0, 2);
+      bins.add(range, power);
+      sum += power;
+      middle += power * range;
+    }
+    double seen = 0, seen_middle = 0;
+    std::size_t teeth = 0;
+    bins.visit([&](double range, double power) {
+      seen += power;
+      seen_middle += power * range;
+      ++teeth;
+    });
+    CHECK(teeth <= capacity);
+    CHECK(seen == doctest::Approx(sum).epsilon(1e-12));
+    CHECK(seen_middle == doctest::Approx(middle).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("light paths through media keep the laws of transports") {
+  support::Generator any(3);
+  const Media air(
+      {{.medium = mist}, {.medium = {.absorption = 1, .scattering = 2, .backscatter = 0.1}, .bounds = {{-5, -5, -5}, {5, 5, 5}}}});
+  const SmoothInterface water{.kind = InterfaceKind::water,
+                              .inside = {.index = 1.33, .absorption = 0.1, .scattering = 0.1, .backscatter = 0.01}};
+  std::vector<World::Part> parts;
+  for (int k = 0; k < 12; ++k)
+    parts.push_back(rectangle(any.point(20), any.uniform(2, 12) * any.unit(), 8.0 * any.unit(),
+                              Material{.reflectance = any.uniform(0, 0.5), .smooth = k % 2 == 0 ? water : SmoothInterface::pane()}));
+  std::vector<Pose<frame::Beam, frame::World>> poses;
+  for (int k = 0; k < 60; ++k) poses.push_back({any.rotation(), any.point(20)});
+  const World scene(std::move(parts));
+  CHECK(support::transport_laws(LightPaths{.air = air}, scene, poses) == "");
+  CHECK(support::transport_laws(LightPaths{.air = air, .volume_cells = 50}, scene, poses, {.range_min = 5, .range_max = 40}) == "");
+}

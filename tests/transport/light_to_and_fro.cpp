@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/transport/direct_light.hpp>
+#include <pulsecast/transport/light_paths.hpp>
+
+#include "support/generators.hpp"
+#include "support/laws.hpp"
+#include "support/light.hpp"
+#include "support/scenes.hpp"
+
+using namespace pulsecast;
+using support::from_to;
+using support::rectangle;
+using support::traced;
+
+namespace {
+
+using World = support::LightScene;
+
+/// Scattering of so many orders by so many paths.
+LightPaths to_and_fro(std::size_t orders, std::size_t paths) {
+  return {.spread_planes = false, .scattering = {.orders = orders, .paths = paths}};
+}
+
+double power_of(const std::vector<Reflection>& reflections) {
+  double sum = 0;
+  for (const Reflection& r : reflections) sum += r.power;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("in a sphere seen from its middle, each order is the wall's reflectance of the one before") {
+  const double albedo = 0.8;
+  const Scene<support::UnitBall> sphere({{.geometry = std::make_shared<const support::UnitBall>(),
+                                          .materials = material_table({{.reflectance = albedo}}),
+                                          .placement = {.scale = 7}}});
+  LightPaths light = to_and_fro(6, 50);
+  light.scattering.field_of_view = 2 * pi;
+  const auto seen = traced(light, sphere, from_to({0, 0, 0}, {1, 2, 3}), RingFootprint(2));
+  const double first = power_of(seen.of(ReflectionKind::surface));
+  std::vector<double> order(7);
+  for (const Reflection& r : seen.of(ReflectionKind::multiple)) {
+    // from the middle to the wall and back, and chords between
+    CHECK(r.range >= 7 - 1e-9);
+    CHECK(r.cos_incidence == doctest::Approx(1));
+  }
+  CHECK(seen.of(ReflectionKind::multiple).size() == 250);
+  double expected = 0;
+  for (int k = 1; k < 6; ++k) expected += std::pow(albedo, k);
+  CHECK(power_of(seen.of(ReflectionKind::multiple)) / first == doctest::Approx(expected).epsilon(1e-6));
+  CHECK(seen.result.energy.received <= seen.result.energy.scattered);
+}
+
+TEST_CASE("the first order is that of direct light, bit for bit") {
+  support::Generator any(2);
+  MeshData mesh;
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 at = Vec3{0, 20, 0} + any.point(4);
+    support::add_triangle(mesh, {at, at + any.unit(), at + any.unit()});
+  }
+  const World scene({{.geometry = std::make_shared<const TriangleMesh<>>(mesh)}});
+  std::size_t more = 0;
+  for (int k = 0; k < 50; ++k) {
+    const auto pose = from_to({0, 0, 0}, Vec3{0, 20, 0} + any.point(3));
+    const support::Lamp lamp{.laser = {.divergence = 0.02}};
+    const auto seen = traced(to_and_fro(4, 20), scene, pose, RingFootprint(5), lamp),
+               direct = traced(DirectLight{.spread_planes = false}, scene, pose, RingFootprint(5), lamp);
+    const auto first = seen.of(ReflectionKind::surface);
+    REQUIRE(first.size() == direct.reflections.size());
+    for (std::size_t j = 0; j < first.size(); ++j) {
+      CHECK(first[j].range == direct.reflections[j].range);
+      CHECK(first[j].power == direct.reflections[j].power);
+    }
+    more += seen.of(ReflectionKind::multiple).size();
+  }
+  CHECK(more > 100);
+}
+
+TEST_CASE("what a receiver of a narrow view does not see is left out") {
+  const World corner({rectangle({0, 10, 0}, 30.0 * axis::right, 30.0 * axis::up, Material{}),
+                      rectangle({5, 10, 0}, 30.0 * axis::forward, 30.0 * axis::up, Material{})});
+  LightPaths light = to_and_fro(2, 2000);
+  const auto all = traced(light, corner, from_to({0, 0, 0}, {0, 10, 0}), SingleRay{});
+  light.scattering.field_of_view = 0.2;
+  const auto some = traced(light, corner, from_to({0, 0, 0}, {0, 10, 0}), SingleRay{});
+  light.scattering.field_of_view = 1.2;
+  const auto most = traced(light, corner, from_to({0, 0, 0}, {0, 10, 0}), SingleRay{});
+  CHECK(some.of(ReflectionKind::multiple).empty());
+  CHECK(most.of(ReflectionKind::multiple).size() > 10);
+  CHECK(most.of(ReflectionKind::multiple).size() < all.of(ReflectionKind::multiple).size());
+}
+
+TEST_CASE("light that is scattered to and fro keeps the laws of transports") {
+  support::Generator any(9);
+  std::vector<World::Part> parts;
+  for (int k = 0; k < 20; ++k)
+    parts.push_back(rectangle(any.point(15), 6.0 * any.unit(), 6.0 * any.unit(), Material{.reflectance = any.uniform()}));
+  std::vector<Pose<frame::Beam, frame::World>> poses;
+  for (int k = 0; k < 60; ++k) poses.push_back({any.rotation(), any.point(10)});
+  const World scene(std::move(parts));
+  CHECK(support::transport_laws(to_and_fro(3, 5), scene, poses) == "");
+  CHECK(support::transport_laws(to_and_fro(3, 100), scene, poses, {.range_min = 2, .range_max = 20}) == "");
+  CHECK_THROWS_AS(to_and_fro(0, 1).validate(), SettingError);
+  CHECK_THROWS_AS(to_and_fro(2, 0).validate(), SettingError);
+}
