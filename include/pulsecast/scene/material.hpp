@@ -18,6 +18,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/base/vector_math.hpp>
+#include <pulsecast/scene/microfacet.hpp>
 #include <pulsecast/scene/smooth_interface.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
@@ -31,6 +32,14 @@ enum class Scattering : std::uint8_t {
   normalized_phong,       ///< Lambert and a specular lobe that holds its share of the energy. Source: Lafortune & Willems 1994
   retroreflective,        ///< Lambert and light that returns to its source, as of sheeting and road marks
   tabulated,              ///< as measured, by `Material::backscatter_table`
+  microfacet,             ///< light reflected by rough facets, and Lambert of the rest: varnish, wet ground, rippled water
+};
+
+/// How what a retroreflector returns falls with the entrance angle.
+enum class RetroreflectorKind : std::uint8_t {
+  beads,        ///< as a power of the cosine, by `Material::retroreflection_half_angle`: glass beads
+  cube_corner,  ///< by the open area of three mirrors, and none beyond 35.3 degrees: hollow cube corners
+  prisms,       ///< the same, with the angle inside glass by Snell's law: cube corners of glass, and prismatic sheeting
 };
 
 /// Row of a table of backscatter.
@@ -90,6 +99,11 @@ struct Material {
   /// beaded sheeting has some 70, prismatic 300 to 1,000. The budget holds from a few apertures' diameters on. Source: ASTM E808, CIE 54.2.
   double retroreflection = 0;
   double retroreflection_half_angle = pi / 6;  ///< entrance angle at which backscatter has fallen to half, from 0.01 to 1.5 [rad]
+  RetroreflectorKind retroreflector = RetroreflectorKind::beads;  ///< law by entrance angle
+  double retroreflection_index = 1.5;                             ///< refractive index of prisms, from 1 to 4
+  /// Half angle at 1/e^2 of the light that returns, from 0 to 0.1; 0: wide against the aperture, and its energy is not told [rad].
+  double retroreflection_width = 0;
+  double roughness = 0.3;  ///< of `Scattering::microfacet`: root mean square slope of the facets, from 1e-3 to 2
   /// Backscatter by incidence for `Scattering::tabulated`: linear between rows, constant beyond them; angles ascend.
   SharedArray<BackscatterAtIncidence> backscatter_table{};
   std::uint16_t classification = 0;            ///< ASPRS class of its points
@@ -103,6 +117,11 @@ struct Material {
     require_within("Material::specular_share", specular_share, 0, 1, "");
     require_not_negative("Material::specular_exponent", specular_exponent, "");
     require_within("Material::retroreflection", retroreflection, 0, 1e6, "cd/(lx m^2)");
+    require_within("Material::retroreflection_index", retroreflection_index, 1, 4, "");
+    require_within("Material::retroreflection_width", retroreflection_width, 0, 0.1, "rad");
+    require_within("Material::retroreflection (share of the light in its width, and Material::reflectance)",
+                   reflectance + retroreflected_share(), 0, 1, "");
+    require_within("Material::roughness", roughness, 1e-3, 2, "");
     require_within("Material::retroreflection_half_angle", retroreflection_half_angle, 0.01, 1.5, "rad");
     smooth.validate();
     if (smooth.kind == InterfaceKind::mirror)
@@ -123,8 +142,46 @@ struct Material {
     return spectrum ? spectrum->reflectance(wavelength) : reflectance;
   }
 
-  /// Share of the light of a wavelength [m] that the surface scatters in all directions, as an energy ledger counts it.
-  [[nodiscard]] double scattered_share(double wavelength) const noexcept { return std::min(reflectance_at(wavelength), 1.0); }
+  /// Share of the light of a wavelength [m], at a cosine of incidence, that the surface scatters, as an energy ledger counts it.
+  [[nodiscard]] double scattered_share(double wavelength, double cos_incidence) const noexcept {
+    return scattered_share(wavelength, cos_incidence, facets().index);
+  }
+  /// As above, with the index behind the surface by that before it.
+  [[nodiscard]] double scattered_share(double wavelength, double cos_incidence, double relative_index) const noexcept {
+    const double rest = std::min(std::min(reflectance_at(wavelength), 1.0) + retroreflected_share(), 1.0);
+    if (scattering != Scattering::microfacet) return rest;
+    const double by_facets = fresnel_split(cos_incidence, relative_index).reflected;
+    return by_facets + (1 - by_facets) * rest;
+  }
+  /// Share of the light along the normal that a retroreflector returns within its width.
+  [[nodiscard]] double retroreflected_share() const noexcept {
+    return scattering == Scattering::retroreflective ? retroreflection * pi / 2 * retroreflection_width * retroreflection_width : 0;
+  }
+  /// Facets of `Scattering::microfacet`, of the index of `smooth`.
+  [[nodiscard]] Microfacets facets() const noexcept { return {roughness, smooth.inside.index > 1 ? smooth.inside.index : 1.5}; }
+  /// Light scattered from one direction towards another, by that of a white Lambertian surface towards its normal: for light that goes on
+  /// from surface to surface, with the Lambertian law for those that are known towards the source alone. Unit vectors away from the
+  /// surface; a normal of zero is that of leaves, which scatter into all directions alike.
+  [[nodiscard]] double scattered(const Vec3& from, const Vec3& to, const Vec3& normal, double wavelength) const noexcept {
+    const double diffuse = std::min(reflectance_at(wavelength), 1.0);
+    if (normal == Vec3{}) return diffuse / 4;
+    const double in = dot(from, normal), out = dot(to, normal);
+    if (!(in > 0 && out > 0)) return 0;
+    if (scattering != Scattering::microfacet) return diffuse * out;
+    const Microfacets rough = facets();
+    return pi * rough.scattered(from, to, normal) + (1 - rough.reflected(in)) * diffuse * out;
+  }
+  /// Light that a retroreflector returns at a cosine of the entrance angle, by that along the normal. Source: open area of a round cube
+  /// corner, Chang, Currie, Alley & Pittman 1971, as in Degnan 1993.
+  [[nodiscard]] double returned(double cosine) const noexcept {
+    if (!(cosine > 0)) return 0;
+    if (retroreflector == RetroreflectorKind::beads)
+      return std::pow(cosine, std::log(0.5) / std::log(std::cos(retroreflection_half_angle)));
+    const double n = retroreflector == RetroreflectorKind::prisms ? retroreflection_index : 1, sine2 = (1 - cosine * cosine) / (n * n);
+    const double tangent2 = sine2 / (1 - sine2), open = 1 - 2 * tangent2;
+    if (!(open > 0)) return 0;
+    return 2 / pi * cosine * (std::asin(std::sqrt(open)) - std::sqrt(2 * tangent2 * open));
+  }
 
   /// Reflectance times the angular law, at a wavelength [m].
   [[nodiscard]] Backscatter backscatter(double wavelength) const noexcept {
@@ -162,8 +219,15 @@ struct Material {
     return reflectance * cos_incidence * (1 - m.specular_share + height * positive_power(cos_to_mirror, m.specular_exponent));
   }
   if (m.scattering == Scattering::retroreflective) {
-    const double power = std::log(0.5) / std::log(std::cos(m.retroreflection_half_angle));
-    return reflectance * cos_incidence + pi * m.retroreflection * positive_power(cos_incidence, power);
+    return reflectance * cos_incidence +
+           pi * m.retroreflection * simd::generate([&](std::size_t lane) { return m.returned(cos_incidence[lane]); });
+  }
+  if (m.scattering == Scattering::microfacet) {
+    const Microfacets facets = m.facets();
+    return simd::generate([&](std::size_t lane) {
+      const double at = cos_incidence[lane];
+      return facets.backscatter(at) + (1 - facets.reflected(at)) * reflectance * at;
+    });
   }
   if (m.backscatter_table.empty()) return simd::Doubles{};  // a material that was not validated
   return reflectance * simd::generate([&](std::size_t lane) {

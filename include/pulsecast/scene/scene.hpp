@@ -271,8 +271,6 @@ class Scene {
   struct SurfaceSample {
     Vec3 normal{};          ///< divided by the length of the directions, in the part's frame
     double min_cosine = 0;  ///< 1 for a surface without direction
-    Backscatter backscatter{};
-    ObjectId object = 0;
     const Material* material = nullptr;
     bool flat = false;  ///< same for every ray that met the primitive
   };
@@ -280,12 +278,9 @@ class Scene {
   SurfaceSample sample_surface(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j) const noexcept {
     const auto look = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept -> SurfaceSample {
       const Surface surface = shape->surface(primitive, local, j);
-      const Material& material = (*part.materials)[surface.material];
       return {.normal = surface.normal / local.direction_length,
               .min_cosine = surface.normal == Vec3{} ? 1.0 : 0.0,
-              .backscatter = material.backscatter(local.wavelength),
-              .object = part.object,
-              .material = &material,
+              .material = &(*part.materials)[surface.material],
               .flat = FlatGeometry<Shape>};
     };
     return visit_shape(look, part.geometry);
@@ -315,8 +310,9 @@ class Scene {
       while (end < rays.size && nearest.id[end] == nearest.id[first] && sample.flat)
         ++end;  // neighbouring rays often meet the same primitive
       note(first, end, sample.material, [&] { return placement_of(at).rotation * (sample.normal * local->direction_length); });
+      const Backscatter law = sample.material->backscatter(rays.wavelength);
+      const ObjectId object = parts_[at].object;
       const std::uint16_t classification = sample.material->classification;
-      const Backscatter law = sample.backscatter;
       const simd::Doubles one = simd::Doubles{} + 1.0, least = simd::Doubles{} + sample.min_cosine;
       for (std::size_t j = first - first % simd::lane_count; j < end; j += simd::lane_count) {
         const auto column = [&](const RayBundle::Column& all) { return simd::load<simd::Doubles>(all[j]); };
@@ -327,7 +323,7 @@ class Scene {
         if (law.lobe != 0) [[unlikely]]
           values = law.glossy(cosines);
         for (std::size_t k = std::max(j, first); k < std::min(j + simd::lane_count, end); ++k)
-          hits[k] = {nearest.range[k], cosines[k - j], values[k - j], sample.object, classification};
+          hits[k] = {nearest.range[k], cosines[k - j], values[k - j], object, classification};
       }
     }
   }

@@ -34,10 +34,10 @@ class LightLedger {
     shares.missed += share;
   }
 
-  /// Counts the light that a surface scatters and keeps, and what returns of it [W]. The range of the hit is half the optical path [m].
-  void end_at(const Hit& hit, const Material& material, double power, const LightWay& way) noexcept {
+  /// Counts the share of the light that a surface scatters, and what it keeps; and what returns [W]. The range of the hit is half the
+  /// optical path [m].
+  void end_at(const Hit& hit, const Material& material, double scattered, double power, const LightWay& way) noexcept {
     met_ = true;
-    const double scattered = material.scattered_share(light_.emitter.laser.wavelength);
     const double kept = material.smooth.passes_light() ? 0 : 1 - scattered;
     if (!light_.gate.contains(hit.range)) {
       shares.out_of_range += (scattered + kept) * way.share;

@@ -111,15 +111,26 @@ class PathTracer {
       goes_on |= surfaces[j].material->smooth.passes_light();
       if (refracts(surfaces[j])) continue;  // its path meets the surface once more
       const Hit at{hits[j].range + p.delay[j], hits[j].cos_incidence, hits[j].backscatter, hits[j].object, hits[j].classification};
+      if (surfaces[j].material->retroreflection_width > 0) power[j] *= caught(surfaces[j].material->retroreflection_width, at.range);
       LightWay way{p.kind, p.sent[j]};
       if constexpr (with_velocity) way.velocity = p.drift[j] + radial_velocity(map_, p.rays.ray(j));
-      ledger_.end_at(at, *surfaces[j].material, power[j], way);
+      ledger_.end_at(at, *surfaces[j].material, scattered_share(surfaces[j], hits[j]), power[j], way);
     }
     if (goes_on) pass_on(level);
   }
 
   static bool refracts(const HitSurface& surface) noexcept {
     return surface.material->smooth.passes_light() && !surface.material->smooth.keeps_pencils();
+  }
+
+  /// Light of a Gaussian lobe of a half angle [rad] that the aperture catches at a range [m], by that of one much wider than it.
+  double caught(double width, double range) const noexcept {
+    const double apertures = light_.budget.aperture_radius() / (width * range), x = 2 * apertures * apertures;
+    return x > 0 ? -std::expm1(-x) / x : 1;
+  }
+
+  double scattered_share(const HitSurface& surface, const Hit& hit) const noexcept {
+    return surface.material->scattered_share(light_.emitter.laser.wavelength, hit.cos_incidence);
   }
 
   /// Passes on the rays of a level that met smooth surfaces: those on one plane together.
@@ -136,7 +147,7 @@ class PathTracer {
         continue;
       }
       while (end < p.rays.size && on_one_plane(level, first, end)) ++end;
-      const double scattered = surfaces[first].material->scattered_share(p.rays.wavelength);
+      const double scattered = scattered_share(surfaces[first], hits[first]);
       if (p.passages + 1 == w_.levels.size()) {
         for (std::size_t j = first; j < end; ++j) {
           const double lost = smooth.kind == InterfaceKind::mirror ? std::max(0.0, 1 - scattered - smooth.reflectance) : 0;

@@ -36,8 +36,9 @@ class RefractedPaths {
       const auto at = map_.surface(*hit, path.ray);
       const Material& material = *at.material;
       path.advance(range, at.normal);
-      end_at(path, at);
-      if (!material.smooth.passes_light() || !pass_on(path, at)) return;
+      const Face face = face_at(path, at);
+      end_at(path, at, face);
+      if (!material.smooth.passes_light() || !pass_on(path, at, face)) return;
       path.ray.near = apart;
       ++path.passages;
     }
@@ -47,27 +48,41 @@ class RefractedPaths {
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
+  /// Surface of a body where a path meets it.
+  struct Face {
+    Vec3 normal{};         ///< towards the path
+    double cosine = 1;     ///< of incidence
+    double relative = 1;   ///< index behind it by that before it
+    double scattered = 0;  ///< share of the light that it scatters
+  };
+  template <class Point>
+  Face face_at(const LightPath& path, const Point& at) const noexcept {
+    Face face{towards(at.normal, path.ray.direction)};
+    if (at.normal != Vec3{}) face.cosine = std::min(1.0, -dot(face.normal, path.ray.direction));
+    face.relative = path.behind(*at.material).index / path.medium().index;
+    face.scattered = at.material->scattered_share(light_.emitter.laser.wavelength, face.cosine,
+                                                  at.material->smooth.passes_light() ? face.relative : at.material->facets().index);
+    return face;
+  }
+
   /// Light that a surface sends back to a path that ends there.
   template <class Point>
-  void end_at(const LightPath& path, const Point& at) noexcept {
-    const double wavelength = light_.emitter.laser.wavelength;
-    Hit hit{.range = path.optical, .object = at.object, .classification = at.classification};
-    if (at.normal != Vec3{}) hit.cos_incidence = std::min(1.0, std::fabs(dot(at.normal, path.ray.direction)));
-    hit.backscatter = at.material->backscatter(hit.cos_incidence, wavelength);
+  void end_at(const LightPath& path, const Point& at, const Face& face) noexcept {
+    Hit hit{.range = path.optical, .cos_incidence = face.cosine, .object = at.object, .classification = at.classification};
+    hit.backscatter = at.material->backscatter(hit.cos_incidence, light_.emitter.laser.wavelength);
     const double power = light_.budget.power_through(path.both, hit.backscatter, path.spread(), path.air);
     LightWay way{path.kind, path.sent};
     if constexpr (with_velocity) way.velocity = path.drift + path.medium().index * dot(at.velocity, path.ray.direction);
-    ledger_.end_at(hit, *at.material, power, way);
+    ledger_.end_at(hit, *at.material, face.scattered, power, way);
   }
 
   /// Passes a path on: reflects a part of it, and goes on with the other. Returns false if nothing goes on.
   template <class Point>
-  bool pass_on(LightPath& path, const Point& at) noexcept {
+  bool pass_on(LightPath& path, const Point& at, const Face& face) noexcept {
     const SmoothInterface& smooth = at.material->smooth;
-    const double reaching = 1 - at.material->scattered_share(light_.emitter.laser.wavelength);
-    const Vec3 n = towards(at.normal, path.ray.direction), before = path.ray.direction;
+    const double reaching = 1 - face.scattered;
+    const Vec3 n = face.normal, before = path.ray.direction;
     const Medium around = path.medium();
-    const double cosine = std::min(1.0, -dot(n, before));
     if (path.passages >= passages_) {
       ledger_.shares.cut += reaching * path.sent;
       return false;
@@ -88,40 +103,36 @@ class RefractedPaths {
       ++other.passages;
       follow(other);
     };
-    switch (smooth.kind) {
-      case InterfaceKind::mirror:
-        ledger_.shares.absorbed += std::max(0.0, reaching - smooth.reflectance) * path.sent;
-        reflect(path, smooth.reflectance);
-        return true;
-      case InterfaceKind::pane: {
-        const PaneSplit split = pane_split(cosine, smooth, around);
-        ledger_.shares.absorbed += std::max(0.0, 1 - split.reflected - split.transmitted) * reaching * path.sent;
-        reflect_too(reaching * split.reflected);
-        path.keep(reaching * split.transmitted);
-        path.kind = std::max(path.kind, ReflectionKind::glass);
-        path.ray.origin -= split.shift * n;
-        path.optical += split.delay;
-        return true;
-      }
-      default: {
-        const Medium inside = path.behind(*at.material);
-        const double relative = inside.index / around.index;
-        const FresnelSplit split = fresnel_split(cosine, relative);
-        const ReflectionKind kind = smooth.kind == InterfaceKind::water ? ReflectionKind::water : ReflectionKind::glass;
-        if (split.reflected >= 1) {
-          reflect(path, reaching);
-          return true;
-        }
-        reflect_too(reaching * split.reflected);
-        path.keep(reaching * split.refracted());
-        path.kind = std::max(path.kind, kind);
-        path.refract(n, relative, split);
-        path.cross_face(*at.material);
-        media_.label_body(at.object, at.classification);
-        moved(path);
-        return true;
-      }
+    if (smooth.kind == InterfaceKind::mirror) {
+      ledger_.shares.absorbed += std::max(0.0, reaching - smooth.reflectance) * path.sent;
+      reflect(path, smooth.reflectance);
+      return true;
     }
+    if (smooth.kind == InterfaceKind::pane) {
+      const PaneSplit split = pane_split(face.cosine, smooth, around);
+      ledger_.shares.absorbed += std::max(0.0, 1 - split.reflected - split.transmitted) * reaching * path.sent;
+      reflect_too(reaching * split.reflected);
+      path.keep(reaching * split.transmitted);
+      path.kind = std::max(path.kind, ReflectionKind::glass);
+      path.ray.origin -= split.shift * n;
+      path.optical += split.delay;
+      return true;
+    }
+    const FresnelSplit split = fresnel_split(face.cosine, face.relative);
+    const bool rough = at.material->scattering == Scattering::microfacet;  // what it reflects is scattered
+    if (split.reflected >= 1) {
+      if (rough) return false;
+      reflect(path, reaching);
+      return true;
+    }
+    if (!rough) reflect_too(reaching * split.reflected);
+    path.keep(rough ? reaching : reaching * split.refracted());
+    path.kind = std::max(path.kind, smooth.kind == InterfaceKind::water ? ReflectionKind::water : ReflectionKind::glass);
+    path.refract(n, face.relative, split);
+    path.cross_face(*at.material);
+    media_.label_body(at.object, at.classification);
+    moved(path);
+    return true;
   }
 
   const Map& map_;

@@ -16,25 +16,9 @@
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/illumination.hpp>
+#include <pulsecast/transport/multiple_scattering.hpp>
 
-namespace PULSECAST_NAMESPACE {
-
-/// Light that is scattered more than once before it returns.
-struct MultipleScattering {
-  std::size_t orders = 1;     ///< greatest number of surfaces that scatter it, from 1 to 64; 1: none of it
-  std::size_t paths = 8;      ///< number of random paths of a pulse, from 1 to 100,000
-  double field_of_view = pi;  ///< full angle about the beam's axis that the receiver sees, from 0 to 2 pi [rad]
-
-  void validate() const {
-    require_within("MultipleScattering::orders", static_cast<double>(orders), 1, 64, "");
-    require_within("MultipleScattering::paths", static_cast<double>(paths), 1, 100'000, "");
-    require_within("MultipleScattering::field_of_view", field_of_view, 0, 2 * pi * (1 + 1e-9), "rad");
-  }
-  /// Number of reflections that it may add to a pulse.
-  [[nodiscard]] std::size_t reflections() const noexcept { return (orders - 1) * paths; }
-};
-
-namespace detail {
+namespace PULSECAST_NAMESPACE::detail {
 
 /// Follows light from surface to surface at random, and at each takes what returns straight to the receiver.
 /// Source: next-event estimation, Coveyou, Cain & Yost 1967; cosine-weighted directions by the disk, Shirley & Chiu 1997.
@@ -79,18 +63,16 @@ class ScatteredPaths {
   }
 
   void follow(Arrival at, std::size_t path) noexcept {
+    const double wavelength = light_.emitter.laser.wavelength;
     for (std::size_t order = 2; order <= settings_.orders; ++order) {
-      at.share *= at.material->scattered_share(light_.emitter.laser.wavelength);
-      if (!(at.share > 0)) return;
-      const bool leaf = at.normal == Vec3{};
       const auto [u, v] = draw(path, static_cast<std::uint32_t>(order - 1));
-      const Ray ray{.origin = at.place,
-                    .direction = leaf ? evenly(u, v) : by_cosine(towards(at.normal, at.direction), u, v),
-                    .near = apart,
-                    .tick = light_.pulse.tick,
-                    .seed = light_.seed,
-                    .pulse = light_.index,
-                    .subray = 0x8000'0000U | static_cast<std::uint32_t>(path * settings_.orders + order)};
+      const Vec3 normal = towards(at.normal, at.direction);
+      const bool leaf = normal == Vec3{};
+      Ray ray{.origin = at.place, .direction = leaf ? evenly(u, v) : by_cosine(normal, u, v), .near = apart, .tick = light_.pulse.tick};
+      name(ray);
+      const double per_draw = leaf ? 4 : 1 / dot(ray.direction, normal);  // inverse density of the directions
+      at.share *= per_draw * at.material->scattered(-at.direction, ray.direction, normal, wavelength);
+      if (!(at.share > 0)) return;
       const auto hit = map_.closest_hit(ray);
       if (!hit) return;
       const auto next = map_.surface(*hit, ray);
@@ -101,25 +83,31 @@ class ScatteredPaths {
     }
   }
 
+  /// Names a ray for what the scene draws at random.
+  void name(Ray& ray) noexcept {
+    ray.seed = light_.seed;
+    ray.pulse = light_.index;
+    ray.subray = 0x8000'0000U | rays_++;
+  }
+
   /// Adds what returns to the receiver from a surface.
   void return_from(const Arrival& at, ObjectId object, std::uint16_t classification) noexcept {
-    const Vec3 exit = light_.pulse.origin(), back = exit - at.place;
+    const Vec3 back = light_.pulse.origin() - at.place, axis = light_.pulse.pose.rotation * axis::forward;
     const double distance = length(back);
-    const Vec3 direction = back / distance;
-    const double seen = -dot(light_.pulse.pose.rotation * axis::forward, direction);
-    if (!(seen >= std::cos(settings_.field_of_view / 2))) return;
-    const bool leaf = at.normal == Vec3{};
-    const double cosine = leaf ? 0.25 : dot(towards(at.normal, at.direction), direction);  // a leaf scatters into the whole sphere
-    const double scattered = at.material->scattered_share(light_.emitter.laser.wavelength) * cosine;
+    const Vec3 direction = back / distance, normal = towards(at.normal, at.direction);
+    if (!(-dot(axis, direction) >= std::cos(settings_.field_of_view / 2))) return;
+    const double scattered = at.material->scattered(-at.direction, direction, normal, light_.emitter.laser.wavelength);
     if (!(scattered > 0)) return;
-    Ray ray{
-        .origin = at.place, .direction = direction, .near = apart, .tick = light_.pulse.tick, .seed = light_.seed, .pulse = light_.index};
-    ray.subray = 0xC000'0000U | next_shadow_++;
+    Ray ray{.origin = at.place, .direction = direction, .near = apart, .tick = light_.pulse.tick};
+    name(ray);
     if (map_.occluded(ray, distance)) return;
     const double both_ways = (at.way + distance) / 2;
     const double power = light_.budget.power_through(at.share * left(at.place, direction, distance), scattered, distance, both_ways);
     if (!(power > 0) || !light_.gate.contains(both_ways)) return;
-    const Hit hit{.range = both_ways, .cos_incidence = leaf ? 1 : cosine, .object = object, .classification = classification};
+    const Hit hit{.range = both_ways,
+                  .cos_incidence = normal == Vec3{} ? 1 : dot(normal, direction),
+                  .object = object,
+                  .classification = classification};
     ledger_.reflect(hit, power, {ReflectionKind::multiple});
   }
 
@@ -148,11 +136,9 @@ class ScatteredPaths {
   LightLedger& ledger_;
   double passed_ = 0;     ///< shares of the subrays so far
   std::size_t next_ = 0;  ///< next path
-  std::uint32_t next_shadow_ = 0;
+  std::uint32_t rays_ = 0;
 };
 
-}  // namespace detail
-
-}  // namespace PULSECAST_NAMESPACE
+}  // namespace PULSECAST_NAMESPACE::detail
 
 #endif

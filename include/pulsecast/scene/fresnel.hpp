@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#ifndef PULSECAST_TRANSPORT_FRESNEL_HPP
-#define PULSECAST_TRANSPORT_FRESNEL_HPP
+#ifndef PULSECAST_SCENE_FRESNEL_HPP
+#define PULSECAST_SCENE_FRESNEL_HPP
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include <pulsecast/transport/fresnel.hpp>
+#include <pulsecast/scene/fresnel.hpp>
 
 #include <cmath>
 #include <cstdint>
