@@ -93,6 +93,48 @@ TEST_CASE("laws of the library's own have keys of its own") {
     CHECK_THROWS_AS((void)mtl(std::string("newmtl a\n") + wrong + "\n"), FileError);
 }
 
+TEST_CASE("light that goes on has the keys of the format, and keys of the library") {
+  const MaterialLibrary library =
+      mtl("newmtl chrome\nhelios_reflectance 0.1\nKs 0.8\nillum 3\n"
+          "newmtl metal\nhelios_reflectance 0\nPm 0.7\n"
+          "newmtl body\nhelios_reflectance 0\nillum 7\nNi 1.6\n"
+          "newmtl plain\nillum 2\nNi 1.45\n"
+          "newmtl window\nhelios_reflectance 0\nTf 0.8 0.8 0.8\npulsecast_interface pane 0.004\n"
+          "newmtl lake\nhelios_reflectance 0\npulsecast_interface water\npulsecast_medium 1.33 1.36 0.1 0.2 0.01\n"
+          "newmtl wet\nhelios_reflectance 0.2\npulsecast_roughness 0.25\n"
+          "newmtl sign\npulsecast_retroreflection 400\npulsecast_retroreflector prisms 1.58 0.02\n"
+          "newmtl corner\npulsecast_retroreflection 400\npulsecast_retroreflector cubeCorner\n"
+          "newmtl mirror\nhelios_reflectance 0.05\npulsecast_interface mirror 0.9\n");
+  const auto& m = library.materials;
+  for (const auto& [name, material] : m) CHECK_NOTHROW(material.validate());
+  CHECK(m.at("chrome").smooth.kind == InterfaceKind::mirror);
+  CHECK(m.at("chrome").smooth.reflectance == doctest::Approx(0.8));
+  CHECK(m.at("metal").smooth.reflectance == doctest::Approx(0.7));
+  CHECK(m.at("body").smooth.kind == InterfaceKind::dielectric);
+  CHECK(m.at("body").smooth.inside.index == doctest::Approx(1.6));
+  CHECK(m.at("plain").smooth.kind == InterfaceKind::none);
+  CHECK(m.at("window").smooth.kind == InterfaceKind::pane);
+  CHECK(m.at("window").smooth.inside.absorption == doctest::Approx(-std::log(0.8) / 0.004));
+  CHECK(m.at("lake").smooth.kind == InterfaceKind::water);
+  CHECK(m.at("lake").smooth.inside.scattering == 0.2);
+  CHECK(m.at("lake").smooth.inside.backscatter == 0.01);
+  CHECK(m.at("wet").scattering == Scattering::microfacet);
+  CHECK(m.at("wet").roughness == 0.25);
+  CHECK(m.at("sign").retroreflector == RetroreflectorKind::prisms);
+  CHECK(m.at("sign").retroreflection_index == 1.58);
+  CHECK(m.at("sign").retroreflection_width == 0.02);
+  CHECK(m.at("corner").retroreflector == RetroreflectorKind::cube_corner);
+  CHECK(m.at("mirror").smooth.reflectance == 0.9);
+  for (const char* wrong :
+       {"pulsecast_interface", "pulsecast_interface mirror", "pulsecast_interface mirror 1.1", "pulsecast_interface pane -1",
+        "pulsecast_interface door", "pulsecast_interface glass 2", "pulsecast_medium 0.9", "pulsecast_medium", "pulsecast_medium 1.3 0.5",
+        "pulsecast_medium 1.3 1.4 -1", "pulsecast_medium 1.3 1.4 1 1 1 1", "pulsecast_roughness 0", "pulsecast_retroreflector cat",
+        "pulsecast_retroreflector prisms", "pulsecast_retroreflector prisms 0.5", "pulsecast_retroreflector beads 1", "illum 7\nNi 0.9"}) {
+    CAPTURE(wrong);
+    CHECK_THROWS_AS((void)mtl(std::string("newmtl a\n") + wrong + "\n"), FileError);
+  }
+}
+
 TEST_CASE("a reflectance above 1 is percent, with a warning; the limits are themselves allowed") {
   const MaterialLibrary library =
       mtl("newmtl a\nhelios_reflectance 35 # percent\nnewmtl b\nhelios_reflectance 1\nnewmtl c\nhelios_reflectance 100\nnewmtl "

@@ -106,9 +106,13 @@ template <CacheableScene S, class Build, class... Further>
 /// Lists the members of a material. A new member of a material or part is a compile error here.
 template <class Archive>
 void list_members(Archive& a, Material& m) {
-  auto& [name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, table, classification, ground,
-         spectrum] = m;
-  a(name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, table, classification, ground, spectrum);
+  auto& [name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, retroreflector, prism_index, width,
+         roughness, table, classification, ground, spectrum, smooth] = m;
+  a(name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, retroreflector, prism_index, width,
+    roughness, table, classification, ground, spectrum);
+  auto& [kind, mirrored, thickness, inside] = smooth;
+  auto& [index, group_index, absorption, volume_scattering, backscatter] = inside;
+  a(kind, mirrored, thickness, index, group_index, absorption, volume_scattering, backscatter);
 }
 /// Lists the members of a part.
 template <class Archive, class... Shapes>
@@ -124,7 +128,7 @@ namespace detail {
 struct CacheHeader {
   static constexpr std::array<char, 8> own_mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
   static constexpr std::uint32_t own_order = 0x01020304;  ///< reads differently in another byte order
-  static constexpr std::uint32_t own_format = 4;          ///< version of the layout of the file
+  static constexpr std::uint32_t own_format = 5;          ///< version of the layout of the file
 
   std::array<char, 8> mark = own_mark;
   std::uint32_t order = own_order, format = own_format;

@@ -156,7 +156,7 @@ class PathTracer {
         }
       } else if (smooth.kind == InterfaceKind::mirror) {
         for (std::size_t j = first; j < end; ++j) ledger_.shares.absorbed += std::max(0.0, 1 - scattered - smooth.reflectance) * p.sent[j];
-        send_mirrored(level, first, end, [&](std::size_t) noexcept { return smooth.reflectance; });
+        send_mirrored(level, first, end, [&](std::size_t) noexcept { return std::min(smooth.reflectance, 1 - scattered); });
       } else {
         pass_pane(level, first, end, smooth, 1 - scattered);
       }

@@ -105,7 +105,7 @@ class RefractedPaths {
     };
     if (smooth.kind == InterfaceKind::mirror) {
       ledger_.shares.absorbed += std::max(0.0, reaching - smooth.reflectance) * path.sent;
-      reflect(path, smooth.reflectance);
+      reflect(path, std::min(smooth.reflectance, reaching));
       return true;
     }
     if (smooth.kind == InterfaceKind::pane) {

@@ -19,6 +19,7 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/obj/mtl_light.hpp>
 #include <pulsecast/io/detail/obj/statements.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
@@ -77,9 +78,12 @@ class MtlReader : private StatementBuffer {
       require(!given.empty() && given.size() <= 2 && are_within(1e6) && (is_one || is_angle(given[1])),
               "a coefficient from 0 to 1e6 cd/(lx m^2), and the angle of half of it from 1 to 85 degrees");
     if (keyword() == "pulsecast_normalizedPhong") require(is_one && (given[0] == "true" || given[0] == "false"), "true or false");
+    if (const char* const expected = expected_of_light_key(keyword(), given)) require(false, expected);
     if (is_first) ready = "newmtl default" + exponent;
     // with textures, tinyobjloader would change the colour, depending on the order
-    if (is_colour || keyword() == "Ns" || keyword().starts_with("helios_") || keyword().starts_with("pulsecast_")) ready += statement();
+    if (is_colour || keyword() == "Ns" || (is_light_key(keyword()) && !given.empty() && number_in<double>(given[0])) ||
+        keyword().starts_with("helios_") || keyword().starts_with("pulsecast_"))
+      ready += statement();
     // a single number is the value of red, green and blue. Source: MTL specification, Wavefront 1995.
     if (is_colour && is_one) ready.append(" ").append(given[0]).append(" ").append(given[0]);
   }
@@ -128,12 +132,26 @@ class MtlReader : private StatementBuffer {
     } else if (!spectrum.empty()) {
       warn("helios_spectra", "refers to the spectrum '" + spectrum + "', which is in no library: a reflectance of 0.5 is assumed");
     }
+    set_light(made, m, extra);
     made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
     const std::string ground = text::lower(extra("helios_isGround"));
     made.ground = ground == "true" || ground == "1";
     if (!made.ground && !ground.empty() && ground != "false" && ground != "0")
       warn("helios_isGround", "has helios_isGround '" + ground + "', expected true or false: false is assumed");
     return made;
+  }
+
+  template <class Extra>
+  void set_light(Material& made, const tinyobj::material_t& m, const Extra& extra) const {
+    if (!set_standard_light(made, m))
+      throw FileError(path(), "line " + std::to_string(lines_.at({m.name, "Ni"})), "the index Ni of a clear body: expected from 1 to 4");
+    std::vector<std::string> texts;
+    set_own_light(made, m, [&](const char* key) {
+      texts.push_back(extra(key));
+      std::vector<std::string_view> words;
+      for (std::string_view left = text::trimmed(texts.back()); !left.empty();) words.push_back(text::take_word(left));
+      return words;
+    });
   }
 
   [[nodiscard]] static std::string nanometres(double metres) { return pulsecast::detail::to_text(std::round(metres * 1e12) / 1e3); }

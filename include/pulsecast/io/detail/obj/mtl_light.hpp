@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_OBJ_MTL_LIGHT_HPP
+#define PULSECAST_IO_DETAIL_OBJ_MTL_LIGHT_HPP
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tiny_obj_loader.h>
+
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/scene/material.hpp>
+
+/// Keys of MTL files for light that goes on from a surface.
+namespace PULSECAST_NAMESPACE::io::detail {
+
+/// Numbers from the word `first` on, at most `most`; empty if one of them is none, or outside the limits.
+[[nodiscard]] inline std::optional<std::vector<double>> numbers_from(const std::vector<std::string_view>& words, std::size_t first,
+                                                                     std::size_t least, std::size_t most, double low, double high) {
+  if (words.size() < first + least || words.size() > first + most) return std::nullopt;
+  std::vector<double> numbers;
+  for (std::size_t i = first; i < words.size(); ++i) {
+    const auto number = text::number_in<double>(words[i]);
+    if (!number || !(*number >= low && *number <= high)) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+/// True for a standard key of light that goes on.
+[[nodiscard]] inline bool is_light_key(std::string_view key) { return key == "illum" || key == "Ni" || key == "Tf" || key == "Pm"; }
+
+/// What is expected of a key's words; null if they are right, or the key is another.
+[[nodiscard]] inline const char* expected_of_light_key(std::string_view key, const std::vector<std::string_view>& words) {
+  const auto is = [&](std::string_view word) { return !words.empty() && words[0] == word; };
+  if (key == "pulsecast_interface") {
+    const bool right = (is("mirror") && numbers_from(words, 1, 1, 1, 0, 1)) || (is("pane") && numbers_from(words, 1, 1, 1, 0, 10)) ||
+                       ((is("glass") || is("water") || is("none")) && words.size() == 1);
+    return right ? nullptr : "mirror and its reflectance from 0 to 1, pane and its thickness from 0 to 10 m, glass, water or none";
+  }
+  if (key == "pulsecast_medium") {
+    const bool right =
+        numbers_from({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(words.size(), 2))}, 0, 1, 2, 1, 4) &&
+        numbers_from(words, std::min<std::size_t>(words.size(), 2), 0, 3, 0, 1e6);
+    return right ? nullptr
+                 : "an index from 1 to 4, and then, as far as given, a group index from 1 to 4, absorption, scattering and backscatter "
+                   "from 0";
+  }
+  if (key == "pulsecast_roughness") return numbers_from(words, 0, 1, 1, 1e-3, 2) ? nullptr : "a root mean square slope from 0.001 to 2";
+  if (key == "pulsecast_retroreflector") {
+    const bool right =
+        ((is("beads") || is("cubeCorner")) && numbers_from(words, 1, 0, 1, 0, 0.1)) ||
+        (is("prisms") && words.size() >= 2 && numbers_from({words[1]}, 0, 1, 1, 1, 4) && numbers_from(words, 2, 0, 1, 0, 0.1));
+    return right ? nullptr
+                 : "beads, cubeCorner, or prisms and their index from 1 to 4, and then, if given, the half width of the light from 0 to "
+                   "0.1 rad";
+  }
+  return nullptr;
+}
+
+/// Sets what a material passes on from the standard keys: `illum` 3, 5 and 8, and `Pm`, are mirrors; 4, 6, 7 and 9 bodies of glass with the
+/// index `Ni`. Source: MTL specification, Wavefront 1995; `Pm`: the common extension for physically based shading.
+/// Returns false for an index below 1.
+[[nodiscard]] inline bool set_standard_light(Material& made, const tinyobj::material_t& m) {
+  const double rest = 1 - std::min(made.reflectance, 1.0), specular = (m.specular[0] + m.specular[1] + m.specular[2]) / 3;
+  if (m.metallic > 0)
+    made.smooth = SmoothInterface::mirror(std::min<double>(m.metallic, rest));
+  else if (m.illum == 3 || m.illum == 5 || m.illum == 8)
+    made.smooth = SmoothInterface::mirror(std::min(specular > 0 ? specular : 1.0, rest));
+  else if (m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9) {
+    made.smooth = SmoothInterface::glass();
+    if (m.ior < 1 || m.ior > 4) return false;
+    if (m.ior > 1) made.smooth.inside = {.index = m.ior};
+  }
+  return true;
+}
+
+/// Sets what a material passes on from the keys of this library, whose words are right. `words_of(key)` are those of a key.
+template <class WordsOf>
+void set_own_light(Material& made, const tinyobj::material_t& m, const WordsOf& words_of) {
+  const auto number = [](std::string_view word) { return *text::number_in<double>(word); };
+  if (const auto words = words_of("pulsecast_interface"); !words.empty()) {
+    const Medium before = made.smooth.inside;
+    if (words[0] == "mirror") made.smooth = SmoothInterface::mirror(number(words[1]));
+    if (words[0] == "pane") made.smooth = SmoothInterface::pane(number(words[1]));
+    if (words[0] == "glass") made.smooth = SmoothInterface::glass();
+    if (words[0] == "water") made.smooth = {.kind = InterfaceKind::water, .inside = {.index = 1.33}};
+    if (words[0] == "none") made.smooth = {};
+    if (m.ior > 1 && words[0] != "mirror") made.smooth.inside = before;
+  }
+  if (const auto words = words_of("pulsecast_medium"); !words.empty()) {
+    Medium& inside = made.smooth.inside = {.index = number(words[0])};
+    double* const members[] = {&inside.group_index, &inside.absorption, &inside.scattering, &inside.backscatter};
+    for (std::size_t i = 1; i < words.size(); ++i) *members[i - 1] = number(words[i]);
+  }
+  const double transmission = (m.transmittance[0] + m.transmittance[1] + m.transmittance[2]) / 3;
+  if (made.smooth.kind == InterfaceKind::pane && made.smooth.thickness > 0 && transmission > 0 && transmission < 1)
+    made.smooth.inside.absorption = -std::log(transmission) / made.smooth.thickness;
+  if (const auto words = words_of("pulsecast_roughness"); !words.empty()) {
+    made.scattering = Scattering::microfacet;
+    made.roughness = number(words[0]);
+  }
+  if (const auto words = words_of("pulsecast_retroreflector"); !words.empty()) {
+    const bool prisms = words[0] == "prisms";
+    made.retroreflector = prisms                     ? RetroreflectorKind::prisms
+                          : words[0] == "cubeCorner" ? RetroreflectorKind::cube_corner
+                                                     : RetroreflectorKind::beads;
+    if (prisms) made.retroreflection_index = number(words[1]);
+    const std::size_t width = prisms ? 2 : 1;
+    if (words.size() > width) made.retroreflection_width = number(words[width]);
+  }
+}
+
+}  // namespace PULSECAST_NAMESPACE::io::detail
+
+#endif
