@@ -199,9 +199,9 @@ struct HitSurface {
 };
 
 /// Map that also tells the materials and normals at the hits of a bundle, and answers for rays one by one, as `Scene`: light can go on there.
-/// Law: hits are those of `closest` without surfaces; `closest_hit` finds the same.
+/// Law: hits are those of `closest` without surfaces, but for the ranges at which rays begin; `closest_hit` finds the same.
 template <class T>
-concept OpticalTarget = BundleTarget<T> && requires(const T t, const RayBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces,
+concept OpticalTarget = BundleTarget<T> && requires(const T t, const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces,
                                                     const Ray& ray, double range) {
   { t.closest(rays, hits, surfaces) } noexcept;
   { t.occluded(ray, range) } noexcept -> std::same_as<bool>;

@@ -67,6 +67,8 @@ struct RayBundle : BundleOrigin {
   [[nodiscard]] Ray ray(std::size_t j) const noexcept {
     return {origin, direction(j), near, far, tick, seed, pulse, first_subray + static_cast<std::uint32_t>(j)};
   }
+  /// Range that ray j has to be beyond to count [m].
+  [[nodiscard]] double near_of(std::size_t) const noexcept { return near; }
   [[nodiscard]] double least_along(int k) const noexcept { return least[k]; }  ///< component k of `least`
   [[nodiscard]] double most_along(int k) const noexcept { return most[k]; }    ///< component k of `most`
 
@@ -112,6 +114,18 @@ struct RayBundle : BundleOrigin {
     least = other.least;
     most = other.most;
   }
+};
+
+/// Bundle whose rays begin at ranges of their own, as where they leave a mirror. `near` is the least of them, or less. Triangles heed the
+/// ranges; other shapes may meet a ray before it begins.
+struct StaggeredBundle : RayBundle {
+  alignas(64) Column begin;  ///< ray j meets nothing up to this range; set for `padded_size()` rays [m]
+
+  StaggeredBundle() noexcept {}
+  /// Takes the common properties, and leaves the directions and ranges unset.
+  explicit StaggeredBundle(const BundleOrigin& o) noexcept : RayBundle(o) {}
+  /// Ranges of the rays of a register from j on [m].
+  [[nodiscard]] simd::Doubles near_of(std::size_t j) const noexcept { return simd::load<simd::Doubles>(begin[j]); }
 };
 
 /// Bundle of one ray.

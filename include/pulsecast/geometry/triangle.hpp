@@ -227,7 +227,7 @@ template <class Rays, class Hits>
         const simd::Doubles best = simd::load<simd::Doubles>(nearest.range[j]);
         const simd::Ids best_id = simd::load<simd::Ids>(nearest.id[j]), own_id = simd::Ids{} + (nearest.part | primitive);
         const simd::Mask nearer = (at < best) | ((at == best) & (own_id < best_id));
-        const simd::Mask hit = inside & (entry <= exit) & (at > rays.near) & nearer;
+        const simd::Mask hit = inside & (entry <= exit) & (at > rays.near_of(j)) & nearer;
         simd::store(hit ? at : best, nearest.range[j]);
         simd::store(hit ? own_id : best_id, nearest.id[j]);
       }

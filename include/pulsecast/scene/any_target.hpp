@@ -53,7 +53,7 @@ class AnyTarget {
   }
 
   /// As above, with the material and normal at each hit. Exists if all types have it.
-  void closest(const RayBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept
+  void closest(const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept
       requires(OpticalTarget<First> && (OpticalTarget<Others> && ...)) {
     std::visit([&](const auto& target) noexcept { target.closest(rays, hits, surfaces); }, target_);
   }

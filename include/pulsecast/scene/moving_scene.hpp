@@ -68,7 +68,7 @@ class MovingScene {
   /// Nearest hit of each ray of the bundle at its tick. Ties between parts go to the first in the list, moving or not.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept { describe(rays, hits, detail::NotesNothing{}); }
   /// As above, with the material and normal at each hit.
-  void closest(const RayBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept {
+  void closest(const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept {
     describe(rays, hits, detail::NotesSurfaces{surfaces});
   }
 
@@ -118,8 +118,8 @@ class MovingScene {
     return movers_[detail::first_not(movers_.size(), [&](std::size_t i) noexcept { return movers_[i].part < part; })];
   }
 
-  template <class Note>
-  void describe(const RayBundle& rays, std::span<Hit> hits, const Note& note) const noexcept {
+  template <class Rays, class Note>
+  void describe(const Rays& rays, std::span<Hit> hits, const Note& note) const noexcept {
     ClosestHits nearest(rays);
     search(rays, nearest);
     scene_.describe(

@@ -83,17 +83,14 @@ struct Similarity {
   /// Rays of the world in the part's own frame. Directions change in length, so that ranges are kept.
   [[nodiscard]] RayBundle to_local(const RayBundle& rays) const noexcept {
     RayBundle local(static_cast<const BundleOrigin&>(rays));
-    const double per_metre = 1 / scale;
-    const Matrix3 back = per_metre * matrix_of(conjugate(rotation));
-    local.origin = back * (rays.origin - translation);
-    local.direction_length = rays.direction_length * per_metre;
-    const Vec3 x = back[0], y = back[1], z = back[2];
-    for (std::size_t j = 0; j < rays.padded_size(); ++j) {
-      local.x[j] = x.x * rays.x[j] + y.x * rays.y[j] + z.x * rays.z[j];
-      local.y[j] = x.y * rays.x[j] + y.y * rays.y[j] + z.y * rays.z[j];
-      local.z[j] = x.z * rays.x[j] + y.z * rays.y[j] + z.z * rays.z[j];
-    }
-    local.pad();
+    set_local(rays, local);
+    return local;
+  }
+  /// As above.
+  [[nodiscard]] StaggeredBundle to_local(const StaggeredBundle& rays) const noexcept {
+    StaggeredBundle local(static_cast<const BundleOrigin&>(rays));
+    set_local(rays, local);
+    std::copy_n(rays.begin.begin(), rays.padded_size(), local.begin.begin());
     return local;
   }
   /// Ray of the world in the part's own frame, as above.
@@ -106,6 +103,22 @@ struct Similarity {
     const Vec3 x = back[0], y = back[1], z = back[2], &d = ray.toward;
     local.toward = {x.x * d.x + y.x * d.y + z.x * d.z, x.y * d.x + y.y * d.y + z.y * d.z, x.z * d.x + y.z * d.y + z.z * d.z};
     return local;
+  }
+
+ private:
+  // always inlined, as the bundle of a scene is made in place
+  [[gnu::always_inline]] void set_local(const RayBundle& rays, RayBundle& local) const noexcept {
+    const double per_metre = 1 / scale;
+    const Matrix3 back = per_metre * matrix_of(conjugate(rotation));
+    local.origin = back * (rays.origin - translation);
+    local.direction_length = rays.direction_length * per_metre;
+    const Vec3 x = back[0], y = back[1], z = back[2];
+    for (std::size_t j = 0; j < rays.padded_size(); ++j) {
+      local.x[j] = x.x * rays.x[j] + y.x * rays.y[j] + z.x * rays.z[j];
+      local.y[j] = x.y * rays.x[j] + y.y * rays.y[j] + z.y * rays.z[j];
+      local.z[j] = x.z * rays.x[j] + y.z * rays.y[j] + z.z * rays.z[j];
+    }
+    local.pad();
   }
 };
 

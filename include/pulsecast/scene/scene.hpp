@@ -126,7 +126,7 @@ class Scene {
     describe(rays, nearest(rays), hits, placements(), detail::NotesNothing{});
   }
   /// As above, with the material and normal at each hit.
-  void closest(const RayBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept {
+  void closest(const StaggeredBundle& rays, std::span<Hit> hits, std::span<HitSurface> surfaces) const noexcept {
     describe(rays, nearest(rays), hits, placements(), detail::NotesSurfaces{surfaces});
   }
 
@@ -225,7 +225,8 @@ class Scene {
     return [this](std::size_t part) noexcept -> const Similarity& { return parts_[part].placement; };
   }
 
-  ClosestHits nearest(const RayBundle& rays) const noexcept {
+  template <class Rays>
+  ClosestHits nearest(const Rays& rays) const noexcept {
     ClosestHits nearest(rays);
     search(rays, nearest);
     return nearest;

@@ -29,10 +29,9 @@ inline constexpr double apart = 1e-6;  ///< surfaces nearer to each other than t
 /// Rays in air that seem to come from one point: the pulse's exit, or its image in mirrors and panes. Ranges are counted from there, so
 /// that they are lengths of the whole way.
 struct Pencil {
-  RayBundle rays{};
+  StaggeredBundle rays{};              ///< with the range from which each exists
   alignas(64) RayBundle::Column sent;  ///< share of the pulse's energy on its way
   alignas(64) RayBundle::Column both;  ///< the same times the share that passes the same way back
-  RayBundle::Column begin;             ///< range from which the ray exists [m]
   RayBundle::Column delay;             ///< optical path so far less the range [m]
   RayBundle::Column drift;             ///< rate at which the optical path so far grows, as mirrors move [m/s]
   unsigned passages = 0;               ///< surfaces that passed the light on

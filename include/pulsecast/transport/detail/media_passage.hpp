@@ -54,7 +54,7 @@ class MediaPassage {
     double passed = 1;  // share of the light both ways
     std::size_t ended = 0;
     const auto range = [](double s) noexcept { return s; };
-    air_.along(p.rays.origin, p.rays.direction(middle), p.begin[middle], ends[size - 1].range,
+    air_.along(p.rays.origin, p.rays.direction(middle), p.rays.begin[middle], ends[size - 1].range,
                [&](double from, double to, const Medium& medium, double density) noexcept {
                  for (double at = from; at < to;) {
                    for (; ended < size && !(ends[ended].range > at); ++ended) together -= ends[ended].both;
@@ -67,7 +67,7 @@ class MediaPassage {
                  }
                });
     for (std::size_t j = 0; j < size; ++j)
-      air_.along(p.rays.origin, p.rays.direction(j), p.begin[j], hits[j].range,
+      air_.along(p.rays.origin, p.rays.direction(j), p.rays.begin[j], hits[j].range,
                  [&](double from, double to, const Medium& medium, double density) noexcept {
                    const double left = lose(medium, density, to - from, p.sent[j]);
                    p.sent[j] *= left;

@@ -68,7 +68,7 @@ class PathTracer {
     const SubrayDirections& beam = light_.beam;
     const Matrix3 world_from_beam = matrix_of(light_.pulse.pose.rotation);
     Pencil& p = w_.levels[0].pencil;
-    RayBundle& rays = p.rays;
+    StaggeredBundle& rays = p.rays;
     rays.origin = light_.pulse.origin();
     rays.wavelength = light_.emitter.laser.wavelength;
     rays.tick = light_.pulse.tick;
@@ -81,7 +81,7 @@ class PathTracer {
       beam.to_world(world_from_beam, first, rays);
       for (std::size_t j = 0; j < rays.padded_size(); ++j) {
         p.sent[j] = p.both[j] = beam.shares[first + j];
-        p.begin[j] = p.delay[j] = p.drift[j] = 0;
+        rays.begin[j] = p.delay[j] = p.drift[j] = 0;
       }
       follow(0);
       scattered_.start(p, w_.levels[0].hits, w_.levels[0].surfaces);
@@ -99,6 +99,7 @@ class PathTracer {
   void follow(std::size_t level) noexcept {
     auto& [p, hits, surfaces, power] = w_.levels[level];
     map_.closest(p.rays, hits, surfaces);
+    if (level > 0) meet_late(level);
     media_.pass_air(p, hits);
     received_power(light_, p.both.data(), p.rays.size, hits, power);
     if (level == 0 && !light_.record.empty()) record_subrays(light_, p.rays.first_subray, std::span(hits).first(p.rays.size), power);
@@ -117,6 +118,24 @@ class PathTracer {
       ledger_.end_at(at, *surfaces[j].material, scattered_share(surfaces[j], hits[j]), power[j], way);
     }
     if (goes_on) pass_on(level);
+  }
+
+  /// Traces the rays again that met something before they begin: shapes other than triangles do not heed that.
+  void meet_late(std::size_t level) noexcept {
+    auto& [p, hits, surfaces, power] = w_.levels[level];
+    for (std::size_t j = 0; j < p.rays.size; ++j) {
+      if (!(hits[j].range <= p.rays.begin[j])) continue;
+      Ray ray = p.rays.ray(j);
+      ray.near = p.rays.begin[j];
+      hits[j] = Hit{};
+      const auto hit = map_.closest_hit(ray);
+      if (!hit) continue;
+      const auto at = map_.surface(*hit, ray);
+      surfaces[j] = {at.material, at.normal};
+      hits[j] = {.range = hit->range, .object = at.object, .classification = at.classification};
+      if (at.normal != Vec3{}) hits[j].cos_incidence = std::min(1.0, std::fabs(dot(at.normal, ray.direction)));
+      hits[j].backscatter = at.material->backscatter(hits[j].cos_incidence, p.rays.wavelength);
+    }
   }
 
   static bool refracts(const HitSurface& surface) noexcept {
@@ -201,7 +220,7 @@ class PathTracer {
       const double inside = pane.thickness / (pane.inside.index * split[j].cos_inside);  // of the way of the shifted ray [m]
       return {p.rays.direction(j), reaching * split[j].transmitted, hits[j].range + inside, p.delay[j] + split[j].delay};
     };
-    const bool together = most - least < apart / 4;
+    const bool together = most - least < apart;  // no ray is out of place by more than half of that
     for (std::size_t from = first, to = 0; from < end; from = to) {
       to = together ? end : from + 1;
       const double shift = together ? (least + most) / 2 : split[from].shift;
@@ -217,15 +236,14 @@ class PathTracer {
     double delay = 0;  ///< as in `Pencil`
   };
 
-  /// Sends rays of a level on from a common origin; `next(j)` tells of each how. Where something is in front of the plane so near that one
-  /// ray may meet it before another leaves the plane, they go one by one.
+  /// Sends rays of a level on from a common origin; `next(j)` tells of each how.
   template <class NextOf>
   void send(std::size_t level, std::size_t first, std::size_t end, const Vec3& origin, ReflectionKind kind, const NextOf& next) noexcept {
     const Pencil& p = w_.levels[level].pencil;
     Pencil& to = w_.levels[level + 1].pencil;
     static_cast<BundleOrigin&>(to.rays) = p.rays;
     to.rays.origin = origin;
-    to.rays.near = 0;
+    to.rays.near = infinity;
     to.rays.first_subray = p.rays.first_subray + static_cast<std::uint32_t>(first);
     to.rays.size = end - first;
     to.passages = p.passages + 1;
@@ -237,11 +255,11 @@ class PathTracer {
       to.rays.set_direction(k, ray.direction);
       to.sent[k] = p.sent[j] * ray.share;
       to.both[k] = p.both[j] * ray.share * ray.share;
-      to.begin[k] = ray.begin;
+      to.rays.begin[k] = ray.begin + apart;
       to.delay[k] = ray.delay;
       to.drift[k] = p.drift[j];
       if constexpr (with_velocity) to.drift[k] += dot(velocity_at(p.rays.ray(j)), p.rays.direction(j) - ray.direction);
-      to.rays.near = std::max(to.rays.near, ray.begin + apart);
+      to.rays.near = std::min(to.rays.near, to.rays.begin[k]);
       if (kind == ReflectionKind::mirror) take_captured(to, k);
       sum += to.sent[k];
       if (to.sent[k] > 0) most = std::max(most, to.both[k] / to.sent[k]);
@@ -250,16 +268,8 @@ class PathTracer {
       ledger_.shares.cut += sum;
       return;
     }
-    for (std::size_t k = to.rays.size; k < to.rays.padded_size(); ++k) to.both[k] = 0;
+    for (std::size_t k = to.rays.size; k < to.rays.padded_size(); ++k) to.both[k] = to.rays.begin[k] = 0;
     to.rays.pad();
-    for (std::size_t k = 0; k < to.rays.size && to.rays.size > 1; ++k) {
-      if (to.rays.near - to.begin[k] < 10 * apart) continue;
-      Ray between = to.rays.ray(k);
-      between.near = to.begin[k] + apart;
-      if (!map_.occluded(between, to.rays.near)) continue;
-      for (std::size_t j = first; j < end; ++j) send(level, j, j + 1, origin, kind, next);
-      return;
-    }
     follow(level + 1);
   }
 
@@ -268,8 +278,8 @@ class PathTracer {
     const Vec3 to_exit = light_.pulse.origin() - p.rays.origin, direction = p.rays.direction(k);
     const double way = dot(to_exit, direction), radius = light_.budget.aperture_radius();
     const Vec3 off = to_exit - way * direction;
-    if (!(way > p.begin[k] && dot(off, off) < radius * radius)) return;
-    Ray back{.origin = p.rays.origin, .direction = direction, .near = p.begin[k] + apart, .tick = p.rays.tick};
+    if (!(way > p.rays.begin[k] && dot(off, off) < radius * radius)) return;
+    Ray back{.origin = p.rays.origin, .direction = direction, .near = p.rays.begin[k], .tick = p.rays.tick};
     if (map_.occluded(back, way)) return;
     const Hit at{.range = (way + p.delay[k]) / 2, .cos_incidence = 1, .backscatter = 1};
     ledger_.reflect(at, light_.budget.power_captured(p.sent[k], way), {p.kind, p.sent[k], p.drift[k] / 2});
@@ -288,7 +298,7 @@ class PathTracer {
   void leave_pencil(const Pencil& p, std::size_t j) noexcept {
     LightPath path;
     Ray ray = p.rays.ray(j);
-    ray.near = std::max(ray.near, p.begin[j]);
+    ray.near = p.rays.begin[j];
     path.start(ray);
     path.sent = p.sent[j];
     path.both = p.both[j];
