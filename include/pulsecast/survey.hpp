@@ -132,7 +132,6 @@ class Survey {
   [[nodiscard]] std::span<const ReceiverUnit<Pattern, Instrument>> receivers() const noexcept { return receivers_; }
   /// Sample spacing of a waveform; 0 if the detectors have none [s].
   [[nodiscard]] double sample_interval() const noexcept { return interval_of(receivers_.front()); }
-
   /// Token that this survey shares with its copies alone: they may use each other's workspaces.
   [[nodiscard]] const std::shared_ptr<const void>& identity() const noexcept { return identity_; }
 

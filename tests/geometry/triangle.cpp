@@ -178,3 +178,32 @@ TEST_CASE("a triangle's bounds hold its corners, and its normal is right-handed"
   CHECK(flat.normal() == axis::up);
   CHECK_FALSE(finite(Triangle{}.normal()));
 }
+
+TEST_CASE("rays of a staggered bundle meet what is beyond their own beginnings") {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    StaggeredBundle rays;
+    rays.size = 1 + any.whole(RayBundle::capacity);
+    rays.origin = any.point(1);
+    for (std::size_t j = 0; j < rays.size; ++j) rays.set_direction(j, normalize(Vec3{any.uniform(-0.3, 0.3), 1, any.uniform(-0.3, 0.3)}));
+    for (std::size_t j = 0; j < rays.padded_size(); ++j) rays.begin[j] = any.uniform(0, 20);
+    rays.pad();
+    std::vector<Triangle> triangles;
+    for (int k = 0; k < 20; ++k) {
+      const Vec3 at{any.uniform(-5, 5), any.uniform(1, 20), any.uniform(-5, 5)};
+      triangles.push_back({at, at + 6.0 * any.unit(), at + 6.0 * any.unit()});
+    }
+    ClosestHits together(rays);
+    for (PrimitiveIndex k = 0; k < triangles.size(); ++k) intersect(triangles[k], k, rays, together);
+    for (std::size_t j = 0; j < rays.size; ++j) {
+      Ray ray = rays.ray(j);
+      ray.near = rays.begin[j];
+      const RayBundle one = bundle_of(ray);
+      ClosestHits alone(one);
+      for (PrimitiveIndex k = 0; k < triangles.size(); ++k) intersect(triangles[k], k, one, alone);
+      CHECK(together.id[j] == alone.id[0]);
+      CHECK(together.range[j] == alone.range[0]);
+    }
+  }
+}

@@ -191,6 +191,54 @@ TEST_CASE("lanes have the backscatter of one, by every law") {
   }
 }
 
+TEST_CASE("cube corners return light by their open area, up to an angle, and prisms up to that inside") {
+  Material m{.reflectance = 0,
+             .scattering = Scattering::retroreflective,
+             .retroreflection = 1 / pi,
+             .retroreflector = RetroreflectorKind::cube_corner};
+  CHECK(m.backscatter(1, 1e-6) == doctest::Approx(1));
+  CHECK(m.backscatter(std::cos(35.2_deg), 1e-6) > 0);
+  CHECK(m.backscatter(std::cos(35.3_deg), 1e-6) == 0);
+  double before = 1;
+  for (int degrees = 1; degrees < 36; ++degrees) {
+    const double now = m.backscatter(std::cos(degrees * 1_deg), 1e-6);
+    CHECK(now < before);
+    before = now;
+  }
+  // Source: lens of two equal circles, shifted by sqrt(2) tan(a) of their radius; in projection
+  const double a = 20_deg, t = std::sqrt(2.0) * std::tan(a);
+  CHECK(m.backscatter(std::cos(a), 1e-6) ==
+        doctest::Approx(std::cos(a) * 2 / pi * (std::acos(t) - t * std::sqrt(1 - t * t))).epsilon(1e-12));
+  m.retroreflector = RetroreflectorKind::prisms;
+  m.retroreflection_index = 1.455;
+  const double limit = std::asin(1.455 * std::sin(std::atan(std::sqrt(0.5))));
+  CHECK(m.backscatter(std::cos(limit - 0.001), 1e-6) > 0);
+  CHECK(m.backscatter(std::cos(limit + 0.001), 1e-6) == 0);
+  CHECK(degrees(limit) == doctest::Approx(57.1).epsilon(0.01));
+  m.retroreflection = 300;
+  m.retroreflection_width = 0.03;
+  CHECK(m.retroreflected_share() == doctest::Approx(300 * pi * 0.03 * 0.03 / 2));
+  CHECK_NOTHROW(m.validate());
+  m.retroreflection_width = 0.06;  // more light than there is
+  CHECK_THROWS_AS(m.validate(), SettingError);
+}
+
+TEST_CASE("rough facets add their glint to what is scattered under them") {
+  const Material m{.reflectance = 0.4, .scattering = Scattering::microfacet, .roughness = 0.3};
+  for (const double angle : {0.0, 0.3, 0.9, 1.4}) {
+    const double c = std::cos(angle), facets = m.facets().reflected(c);
+    CHECK(m.backscatter(c, 1e-6) == doctest::Approx(m.facets().backscatter(c) + (1 - facets) * 0.4 * c));
+    CHECK(m.scattered_share(1e-6, c) == doctest::Approx(facets + (1 - facets) * 0.4));
+    const Vec3 from{std::sin(angle), 0, c}, to{0, 0.6, 0.8};
+    CHECK(m.scattered(from, to, axis::up, 1e-6) ==
+          doctest::Approx(pi * m.facets().scattered(from, to, axis::up) + (1 - facets) * 0.4 * 0.8));
+  }
+  CHECK(Material{.reflectance = 0.4}.scattered({0, 0, 1}, {0, 0.6, 0.8}, axis::up, 1e-6) == doctest::Approx(0.32));
+  CHECK(Material{.reflectance = 0.4}.scattered({0, 0, 1}, {0, 0.6, -0.8}, axis::up, 1e-6) == 0);
+  CHECK(Material{.reflectance = 0.4}.scattered({0, 0, 1}, {0, 0.6, -0.8}, Vec3{}, 1e-6) == doctest::Approx(0.1));
+  CHECK_THROWS_AS(Material{.roughness = 0}.validate(), SettingError);
+}
+
 TEST_CASE("retroreflectors and tables that cannot be are refused") {
   CHECK_THROWS_AS(Material{.retroreflection = -1}.validate(), SettingError);
   CHECK_THROWS_AS(Material{.retroreflection_half_angle = 0}.validate(), SettingError);

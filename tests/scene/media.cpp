@@ -103,11 +103,3 @@ TEST_CASE("media that cannot be are refused, with the number of their region") {
   CHECK_THROWS_AS(Media({a, a}), SettingError);
   CHECK_NOTHROW(Media({a, c}));
 }
-
-TEST_CASE("two media at one place add up") {
-  const Medium both = Medium{.index = 1.3, .absorption = 1, .scattering = 2, .backscatter = 0.1}.with(
-      {.absorption = 3, .scattering = 4, .backscatter = 0.2});
-  CHECK(both.index == 1.3);
-  CHECK(both.extinction() == 10);
-  CHECK(both.backscatter == doctest::Approx(0.3));
-}

@@ -71,7 +71,8 @@ TEST_CASE("facets scatter no more than they reflect, and the same both ways") {
     CAPTURE(k);
     const Microfacets rough{.slope = any.uniform(0.05, 1), .index = any.uniform(1.1, 3)};
     Vec3 a = any.unit(), b = any.unit();
-    a.z = std::fabs(a.z), b.z = std::fabs(b.z);
+    a.z = std::fabs(a.z);
+    b.z = std::fabs(b.z);
     CHECK(rough.scattered(a, b, axis::up) * a.z == doctest::Approx(rough.scattered(b, a, axis::up) * b.z).epsilon(1e-9));
   }
 }

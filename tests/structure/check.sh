@@ -37,7 +37,7 @@ includes_of_higher_layers() {
     may["accel"] = may["scanner"] = may["detector"] = may["cloud"] = may["stage_arguments"] = words " concepts"
     may["deflector"] = may["platform"] = words " concepts stage_arguments"
     may["scene"] = words " concepts accel"
-    may["transport"] = words " concepts scanner detector"
+    may["transport"] = words " concepts accel scene scanner detector"
     may["survey"] = may["scene"] " scene scanner deflector platform detector transport cloud stage_arguments"
     may["result_buffer"] = may["survey"] " survey"
     may["run"] = may["result_buffer"] " result_buffer"

@@ -21,7 +21,7 @@
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Follows light from surface to surface at random, and at each takes what returns straight to the receiver.
-/// Source: next-event estimation, Coveyou, Cain & Yost 1967; cosine-weighted directions by the disk, Shirley & Chiu 1997.
+/// Source: next-event estimation, Coveyou, Cain & Yost 1967; directions by the cosine, from a uniform disk.
 template <OpticalTarget Map>
 class ScatteredPaths {
  public:
