@@ -42,8 +42,8 @@ SceneInputs inputs_of(const SurveySettings& survey, const Loading& how, int run)
     for (const helios::SwapSettings& swap : part.swaps) random = random || (swap.source && is_random(*swap.source));
   }
   std::ostringstream all;
-  all << std::setprecision(17) << how.scene_text << "\nrun " << run << " fixed_incidence " << how.settings.fixed_incidence << " library_physics "
-      << how.settings.library_physics;
+  all << std::setprecision(17) << how.scene_text << "\nrun " << run << " fixed_incidence " << how.settings.fixed_incidence
+      << " library_physics " << how.settings.library_physics;
   if (random) all << " seed " << how.settings.seed;
   if (moves) all << " rate " << helios::first_pulse_rate(survey);
   for (const auto& channel : survey.scanner.channels) all << ' ' << channel.wavelength;

@@ -102,6 +102,7 @@ Loading loading_of(const Options& o, const SurveyFile& file, std::uint64_t seed)
                        .waveform_noise = o.waveform_noise,
                        .fixed_incidence = o.fixed_incidence,
                        .library_physics = o.library_physics,
+                       .light_paths = o.light_paths,
                        .platform_noise = o.platform_noise,
                        .leg_noise = o.leg_noise,
                        .assets = o.assets,
@@ -123,6 +124,7 @@ class Session {
         pages_(options, file.survey),
         log_{.seed = seed},
         notes_(notes) {
+    options_.light_paths = options_.light_paths || survey_.scene.follows_light();
     if (options_.page && options_.resume) notes_.say("--page shows only the legs simulated now, not those of the earlier run");
   }
 
@@ -277,7 +279,8 @@ class Session {
     out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec << " format=" << options_.format
         << " scale=" << options_.las_scale << " epsg=" << options_.epsg.value_or(0) << " las10=" << options_.las_1_0
         << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width << options_.waveform_noise
-        << options_.fixed_incidence << options_.library_physics << options_.split_by_channel << options_.platform_noise << options_.leg_noise;
+        << options_.fixed_incidence << options_.library_physics << options_.light_paths << options_.split_by_channel
+        << options_.platform_noise << options_.leg_noise;
     return out.str();
   }
 
@@ -385,7 +388,7 @@ class Session {
     return all;
   }
 
-  const Options& options_;
+  Options options_;  // of the command line, and what the survey adds to them
   const SurveyFile& file_;
   const SurveySettings& survey_;
   Ranks& ranks_;

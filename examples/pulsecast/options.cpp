@@ -185,6 +185,7 @@ class CommandLine {
     app_.add_flag(both("fullwaveNoise"), o_.waveform_noise, "Add receiver noise");
     app_.add_flag(both("fixedIncidenceAngle"), o_.fixed_incidence, "Scatter as at normal incidence");
     app_.add_flag(both("libraryPhysics"), o_.library_physics, "Physics of the library in place of that of HELIOS++");
+    app_.add_flag(both("lightPaths"), o_.light_paths, "Light goes on from mirrors, glass and water");
     app_.add_flag(both("splitByChannel"), o_.split_by_channel, "Write a file of points for each channel");
     app_.add_flag(both("disablePlatformNoise"), no_platform_noise_, "No platform noise");
     app_.add_flag(both("disableLegNoise"), no_leg_noise_, "No random offset of the start of legs");

@@ -39,7 +39,8 @@ struct Options {
   double las_scale = 1e-4;              ///< [m]
   std::optional<std::uint16_t> epsg{};  ///< of the coordinates in LAS, 0 for none; default: that of the scene's rasters
   bool las_1_0 = false;                 ///< write LAS 1.0
-  bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false, library_physics = false;
+  bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false,
+       library_physics = false, light_paths = false;
   bool page = false, live = false;  ///< page of the points: as a file, and live
   std::size_t page_points = 1'000'000;
   bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false, verbose = false;

@@ -211,5 +211,29 @@ TEST_CASE("a provider may give parts that were made before, and what it gives co
   CHECK(simulation->warnings() == std::vector<std::string>{"odd"});
 }
 
+TEST_CASE("light goes on from what passes it on, if the scene or the program says so, and else does not") {
+  // a clear pane a metre above the plane
+  Simulation::Mesh pane{
+      .data = {.vertices = {{-100, -100, 1}, {100, -100, 1}, {100, 100, 1}, {-100, 100, 1}}, .triangles = {{0, 1, 2}, {0, 2, 3}}},
+      .material = {.reflectance = 0, .smooth = SmoothInterface::pane()},
+      .object = 8};
+  const auto through = [](const Cloud& cloud) {
+    return std::count_if(cloud.echoes.begin(), cloud.echoes.end(),
+                         [](const Echo& e) { return e.object == 7 && e.kind == ReflectionKind::glass; });
+  };
+  CHECK(run(*make_simulation(survey(), {.meshes = {plane(), pane}})).size() == 0);
+  CHECK(through(run(*make_simulation(survey(), {.light_paths = true, .meshes = {plane(), pane}}))) == 2000);
+  SurveySettings lit = survey();
+  lit.scene.light = {{}};
+  CHECK(through(run(*make_simulation(lit, {.meshes = {plane(), pane}}))) == 2000);
+  lit.scene.light[0].passages = 0;
+  CHECK(run(*make_simulation(lit, {.meshes = {plane(), pane}})).size() == 0);
+  SurveySettings foggy = survey();
+  foggy.scene.media = {{.absorption = 1}};
+  CHECK(run(*make_simulation(foggy, {.meshes = {plane()}})).size() < 2000);
+  foggy.scene.media.push_back({.absorption = 2});
+  CHECK_THROWS_AS((void)make_simulation(foggy, {.meshes = {plane()}}), SettingError);
+}
+
 }  // namespace
 }  // namespace pulsecast::helios

@@ -70,6 +70,7 @@ struct Survey {
         echo.object = static_cast<ObjectId>(random.whole(std::uint64_t{1} << 32));
         echo.classification = static_cast<std::uint16_t>(random.whole(400));
         echo.number = ++number;
+        echo.kind = static_cast<ReflectionKind>(random.whole(reflection_kind_count));
       }
       survey.add({.index = random.whole(std::uint64_t{1} << 52) << 12 | i,
                   .tick = Tick::of(i, 2e6),
@@ -177,6 +178,7 @@ TEST_CASE("the values beyond the standard ones are named and described") {
         "EchoWidth 9 standard deviation in time [ns]\n"
         "PulseIndex 7 number of the pulse, from 0\n"
         "ObjectId 5 number of the object met\n");
+  CHECK(Survey{}.written({.light_kinds = true}).extras.back().name == "LightKind");
 }
 
 TEST_CASE("a coordinate reference system is written as given, even the longest that can be") {
@@ -330,7 +332,8 @@ TEST_CASE("whatever is written reads back, field by field, and its header is exa
     CAPTURE(seed);
     Generator random(seed + 1000);
     const Survey survey = Survey::random(seed, 100, random.log_uniform(1, 1e7));
-    LasSettings settings{.scale = random.log_uniform(1e-5, 1e-2), .start_time = random.uniform(0, 6e5)};
+    const bool kinds = seed % 2 == 1;
+    LasSettings settings{.light_kinds = kinds, .scale = random.log_uniform(1e-5, 1e-2), .start_time = random.uniform(0, 6e5)};
     const LasFile file = survey.written(settings);  // checks numbers and bounds against the points
     REQUIRE(file.points.size() == survey.echoes.size());
     std::size_t i = 0;
@@ -358,6 +361,7 @@ TEST_CASE("whatever is written reads back, field by field, and its header is exa
         CHECK(las_real(file, p, "EchoWidth") == doctest::Approx(echo.width * 1e9).epsilon(1e-6));
         CHECK(las_whole(file, p, "PulseIndex") == shot.index);
         CHECK(las_whole(file, p, "ObjectId") == echo.object);
+        if (kinds) CHECK(las_whole(file, p, "LightKind") == static_cast<std::uint64_t>(echo.kind));
       }
     }
   }

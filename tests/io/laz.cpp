@@ -55,7 +55,8 @@ struct Pulses {
                           .reflectance = random.uniform(),
                           .object = static_cast<ObjectId>(random.whole(100)),
                           .classification = static_cast<std::uint16_t>(random.whole(8)),
-                          .number = static_cast<std::uint8_t>(k + 1)});
+                          .number = static_cast<std::uint8_t>(k + 1),
+                          .kind = static_cast<ReflectionKind>(random.whole(reflection_kind_count))});
     }
   }
 
@@ -94,6 +95,7 @@ TEST_CASE("a LAZ file holds what the LAS file does, around the size of a chunk a
 TEST_CASE("and with several scanner channels, and with whatever else may be set") {
   Pulses(20'000, 4).same();
   Pulses(3'000).same({.scale = 1e-2, .offset = Vec3{1, 2, 3}, .wkt = "LOCAL_CS[]", .gps_time = GpsTime::week, .start_time = 1e8});
+  Pulses(3'000).same({.light_kinds = true});
   Pulses(3'000).same({.epsg = 31467, .intensity = LasIntensity::amplitude, .intensity_full_scale = 1e-7});
 }
 

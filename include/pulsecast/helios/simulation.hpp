@@ -74,6 +74,7 @@ class Simulation {
     bool waveform_noise = false;                  ///< add receiver noise
     bool fixed_incidence = false;                 ///< perpendicular incidence on all surfaces, for scattering
     bool library_physics = false;                 ///< true: the library's own physics in place of that of HELIOS++, see docs/surveys.md
+    bool light_paths = false;                     ///< true: light goes on from smooth surfaces, also without `<light>` or `<medium>`
     bool platform_noise = true;                   ///< true: as in the survey; false: none
     bool leg_noise = true;                        ///< true: random leg offsets as in the survey; false: none
     std::vector<std::filesystem::path> assets{};  ///< folders; a folder `spectra` in one describes materials

@@ -24,7 +24,7 @@ class LasRecords {
  public:
   static constexpr std::uint8_t format_bits = 0;        ///< flags in the header's point format
   static constexpr std::uint32_t descriptor_count = 0;  ///< variable-length records for the decoding of points
-  [[nodiscard]] static std::vector<std::byte> descriptors() { return {}; }
+  [[nodiscard]] static std::vector<std::byte> descriptors(std::size_t /*record*/) { return {}; }
 
   /// Begins the points at the file's position; `record` is the size of a record [byte], `changed` says if `change` will be called.
   void begin(const OutputFile& file, std::size_t record, bool /*changed*/) {

@@ -31,12 +31,13 @@ namespace detail {
 
 inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
 
-/// Variable-length record, header included, on the compression of points. Source: `laszip encoded` as documented by LASzip, LAStools.
-[[nodiscard]] inline std::vector<std::byte> laz_descriptor() {
+/// Variable-length record, header included, on the compression of points of a size [byte]. Source: `laszip encoded` as documented by
+/// LASzip, LAStools.
+[[nodiscard]] inline std::vector<std::byte> laz_descriptor(std::size_t record) {
   struct Item {
     std::uint16_t type, size, version;
   };
-  constexpr std::array items{Item{10, laz_point_size, 3}, Item{14, las_extras_size, 3}};  // POINT14, BYTE14
+  const std::array items{Item{10, laz_point_size, 3}, Item{14, static_cast<std::uint16_t>(record - laz_point_size), 3}};  // POINT14, BYTE14
   LasBytes<34 + 6 * items.size()> d{};
   d.put(0, std::uint16_t{3});  // layered chunks; then 0: arithmetic coder
   d.put(4, std::uint8_t{3});   // version 3.4, revision 3, as of LASzip
@@ -84,7 +85,7 @@ class LazRecords {
 
   static constexpr std::uint8_t format_bits = 128;
   static constexpr std::uint32_t descriptor_count = 1;
-  [[nodiscard]] static std::vector<std::byte> descriptors() { return laz_descriptor(); }
+  [[nodiscard]] static std::vector<std::byte> descriptors(std::size_t record) { return laz_descriptor(record); }
 
   void begin(OutputFile& file, std::size_t record, bool changed) {
     record_ = record;

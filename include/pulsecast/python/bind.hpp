@@ -49,7 +49,8 @@ struct PointRow {
   std::uint8_t return_number;      ///< return number, from 1 in order of range
   std::uint8_t number_of_returns;  ///< returns of its pulse, 255 if more
   std::uint16_t channel;           ///< number of the emitter, from 0
-  std::uint8_t spare[4]{};         ///< zeros outside the array, so that equal rows have equal bytes
+  std::uint8_t kind;               ///< way of its light, by number: `ReflectionKind`
+  std::uint8_t spare[3]{};         ///< zeros outside the array, so that equal rows have equal bytes
 };
 
 /// Pulse sent, as a row of a NumPy array.
@@ -109,8 +110,8 @@ class RowSink {
         const Vec3 p = point_of(s, e);
         points_.push_back({p.x, p.y, p.z, time, e.range, static_cast<float>(e.amplitude), static_cast<float>(e.reflectance),
                            static_cast<float>(e.width), static_cast<float>(e.cos_incidence), static_cast<std::int64_t>(s.index), e.object,
-                           e.classification, s.leg, e.number, static_cast<std::uint8_t>(std::min<std::uint32_t>(255, s.echoes)),
-                           s.channel});
+                           e.classification, s.leg, e.number, static_cast<std::uint8_t>(std::min<std::uint32_t>(255, s.echoes)), s.channel,
+                           static_cast<std::uint8_t>(e.kind)});
       }
     }
   }
@@ -199,7 +200,7 @@ template <class Run>
 inline void bind_rows() {
   if (pybind11::detail::get_numpy_internals().get_type_info<PointRow>(false)) return;
   PYBIND11_NUMPY_DTYPE(PointRow, x, y, z, time, range, intensity, reflectance, echo_width, cos_incidence, pulse, object, classification,
-                       leg, return_number, number_of_returns, channel);
+                       leg, return_number, number_of_returns, channel, kind);
   PYBIND11_NUMPY_DTYPE(PulseRow, pulse, time, x, y, z, direction_x, direction_y, direction_z, scan_angle, waveform_start, first_sample,
                        first_point, samples, points, leg, channel, fate);
 }
@@ -251,7 +252,8 @@ inline void bind_batch(pybind11::module_& m) {
       .def_readonly(
           "points", &Batch::points,
           "Structured array, one row per echo: x, y, z [m, world]; time [s]; range [m]; intensity [W]; reflectance; echo_width [s]; "
-          "cos_incidence; pulse; object; classification; leg; return_number; number_of_returns; channel.")
+          "cos_incidence; pulse; object; classification; leg; return_number; number_of_returns; channel; kind of light: "
+          "0 direct, 1 through glass, 2 from water, 3 by a mirror, 4 from the air, 5 scattered more than once.")
       .def_readonly("pulses", &Batch::pulses,
                     "Structured array, one row per pulse sent: pulse; time [s]; x, y, z [m, world]; direction_x, direction_y, "
                     "direction_z; scan_angle [rad]; waveform_start [s]; first_sample, samples; first_point, points; leg; channel; fate, "

@@ -36,6 +36,7 @@
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 #include <pulsecast/survey.hpp>
+#include <pulsecast/transport/light_paths.hpp>
 
 /// Surveys with their scenes, ready to run.
 namespace PULSECAST_NAMESPACE::helios {
@@ -108,6 +109,20 @@ class WaveformLimits {
 };
 
 /// Only implementation of `Simulation`.
+/// Transport of a scene with `<light>` or `<medium>`. @throws SettingError for boxes of media that overlap
+[[nodiscard]] inline LightPaths light_paths(const SceneSettings& scene, bool library_physics) {
+  const LightSettings light = scene.light.empty() ? LightSettings{} : scene.light.front();
+  std::vector<MediumRegion> regions;
+  for (const MediumSettings& medium : scene.media) regions.push_back(medium.region());
+  return {.passages = static_cast<std::size_t>(light.passages),
+          .least_share = light.least_share,
+          .spread_planes = library_physics,
+          .scattering = {.orders = static_cast<std::size_t>(light.orders),
+                         .paths = static_cast<std::size_t>(light.paths),
+                         .field_of_view = light.field_of_view},
+          .air = Media(std::move(regions))};
+}
+
 class LoadedSimulation final : public Simulation {
  public:
   LoadedSimulation(const SurveySettings& survey, const Settings& settings, const PartProvider& provider)
@@ -257,8 +272,16 @@ class LoadedSimulation final : public Simulation {
 
   template <class Detector>
   void connect(std::vector<ReceiverUnit<RingFootprint, Detector>> units) {
-    using Pipeline = Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, Detector>;
-    const DirectLight light{.spread_planes = settings_.library_physics};
+    const SceneSettings& scene = survey_.scene;
+    if (settings_.light_paths || scene.follows_light())
+      connect(std::move(units), validated(light_paths(scene, settings_.library_physics)));
+    else
+      connect(std::move(units), DirectLight{.spread_planes = settings_.library_physics});
+  }
+
+  template <class Detector, class Light>
+  void connect(std::vector<ReceiverUnit<RingFootprint, Detector>> units, const Light& light) {
+    using Pipeline = Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, Detector, Light>;
     pipeline_ = std::make_unique<SurveyOf<Pipeline>>(Pipeline(compiled_->source, std::move(units), *scene_, light, seed_));
   }
 

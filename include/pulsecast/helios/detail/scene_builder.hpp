@@ -182,7 +182,9 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Voxe
     if (!source.leaf_angles.empty())  // convention of surveys: a `ladlut` gives 2 pi times the extinction of unit density
       for (float& density : voxels.voxels.densities) density /= static_cast<float>(2 * pi);
     if (source.mode == VoxelMode::transmittive)
-      all.push_back({std::make_shared<const VoxelGrid<TransmissiveVoxels>>(voxels.voxels, TransmissiveVoxels{leaves, options_.tilted_leaves, source.leaf_area, source.clumping}), materials});
+      all.push_back({std::make_shared<const VoxelGrid<TransmissiveVoxels>>(
+                         voxels.voxels, TransmissiveVoxels{leaves, options_.tilted_leaves, source.leaf_area, source.clumping}),
+                     materials});
     else if (source.mode == VoxelMode::fixed)
       all.push_back({std::make_shared<const VoxelGrid<OpaqueVoxels>>(voxels.voxels), materials});
     else

@@ -257,6 +257,26 @@ TEST_CASE("a scene and a part that say little have the defaults of the format") 
   CHECK(timed.parts.at(0).dynamic_interval == 1);
 }
 
+TEST_CASE("light and media of a scene are read, and what they cannot be is told") {
+  const std::string part = "<part>" + std::string(mesh) + "</part></scene>";
+  const SceneSettings scene = from<SceneSettings>(R"(<scene id="s"><light passages="3" orders="2" fieldOfView_deg="90"/>
+    <medium scattering_perM="0.1" backscatter_perMSr="0.01" min="0;1;2" max="3;4;5"/><medium absorption_perM="2"/>)" +
+                                                  part);
+  REQUIRE(scene.light.size() == 1);
+  CHECK(scene.light[0] == LightSettings{.passages = 3, .orders = 2, .field_of_view = pi / 2});
+  REQUIRE(scene.media.size() == 2);
+  CHECK(scene.media[0].region().bounds == Box{{0, 1, 2}, {3, 4, 5}});
+  CHECK(scene.media[0].backscatter == 0.01);
+  CHECK(scene.media[1].region().bounds == everywhere());
+  const auto fault = [&](const std::string& inside) { return told<SceneSettings>("<scene id=\"s\">" + inside + part); };
+  CHECK(contains(fault(R"(<light passages="33"/>)"), "from 0 to 32"));
+  CHECK(contains(fault(R"(<light orders="0"/>)"), "from 1 to 64"));
+  CHECK(contains(fault(R"(<light/><light/>)"), "a second <light>"));
+  CHECK(contains(fault(R"(<medium absorption_perM="-1"/>)"), "from 0"));
+  CHECK(contains(fault(R"(<medium scattering_perM="0.1" backscatter_perMSr="0.2"/>)"), "Medium::backscatter"));
+  CHECK(contains(fault(R"(<medium min="1;1;1" max="0;0;0"/>)"), "MediumRegion::bounds"));
+}
+
 TEST_CASE("scale and translate replace, with a warning; rotations add up") {
   const std::string twice = std::string(mesh) + R"(<filter type="scale"><param type="double" key="scale" value="2"/></filter>
     <filter type="rotate"><param type="rotation" key="rotation"><rot axis="z" angle_deg="90"/></param></filter>
@@ -347,9 +367,10 @@ TEST_CASE("voxels have a mode, a table and a material") {
   CHECK(voxels.material.name == "leaf");
   CHECK(voxels.material.random == 3);
   CHECK(voxels.leaf_area == 0);
-  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="leafArea_m2" value="0.004"/><param key="clumping" value="0.7"/>)",
-                    voxels)
-            .empty());
+  CHECK(
+      filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="leafArea_m2" value="0.004"/><param key="clumping" value="0.7"/>)",
+                  voxels)
+          .empty());
   CHECK(voxels.leaf_area == 0.004);
   CHECK(voxels.clumping == 0.7);
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="clumping" value="0"/>)", voxels), "from 0.01 to 10"));

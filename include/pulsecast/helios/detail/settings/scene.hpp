@@ -13,8 +13,10 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
+#include <pulsecast/scene/media.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -210,6 +212,46 @@ struct PartSettings {
   bool operator==(const PartSettings&) const = default;
 };
 
+/// Light that goes on from smooth surfaces: `<light>`, of this library. As `LightPaths`.
+struct LightSettings {
+  int passages = 8;           ///< greatest number of surfaces that pass light on; `passages`
+  double least_share = 1e-4;  ///< least share of a subray that is followed; `leastShare`
+  int orders = 1;             ///< greatest number of surfaces that scatter it; `orders`
+  int paths = 8;              ///< random paths of a pulse, for more than one order; `paths`
+  double field_of_view = pi;  ///< full angle that the receiver sees, for more than one order; `fieldOfView_deg` [rad]
+
+  /// @throws SettingError for values out of range
+  void validate() const {
+    require_within("passages", passages, 0, 32, "");
+    require_within("leastShare", least_share, 0, 1, "");
+    require_within("orders", orders, 1, 64, "");
+    require_within("paths", paths, 1, 100'000, "");
+    require_within("fieldOfView_deg", field_of_view, 0, 2 * pi * (1 + 1e-9), "rad");
+  }
+
+  bool operator==(const LightSettings&) const = default;
+};
+
+/// Medium in the air: `<medium>`, of this library. As `MediumRegion`.
+struct MediumSettings {
+  double absorption = 0;      ///< `absorption_perM` [1/m]
+  double scattering = 0;      ///< `scattering_perM` [1/m]
+  double backscatter = 0;     ///< `backscatter_perMSr` [1/(m sr)]
+  std::optional<Vec3> min{};  ///< lower corner of its box, default none; `min` [m]
+  std::optional<Vec3> max{};  ///< upper corner of its box, default none; `max` [m]
+
+  /// The same for `LightPaths`.
+  [[nodiscard]] MediumRegion region() const {
+    const Box all = everywhere();
+    return {.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter},
+            .bounds = {min.value_or(all.min), max.value_or(all.max)}};
+  }
+  /// @throws SettingError for values out of range
+  void validate() const { region().validate(); }
+
+  bool operator==(const MediumSettings&) const = default;
+};
+
 /// `<scene>`
 struct SceneSettings {
   std::string id{};                          ///< `id`
@@ -217,9 +259,16 @@ struct SceneSettings {
   int dynamic_step = 1;                      ///< pulse slots per update; `dynStep`
   std::optional<double> dynamic_interval{};  ///< interval of updates, instead of `dynStep`; `dynTimeStep` [s]
   std::vector<PartSettings> parts{};
+  std::vector<LightSettings> light{};   ///< `<light>`: the first counts; none: every ray ends at its first surface, unless there are media
+  std::vector<MediumSettings> media{};  ///< `<medium>`
+
+  /// True if light goes on from its surfaces.
+  [[nodiscard]] bool follows_light() const { return !light.empty() || !media.empty(); }
 
   void validate() const {
     detail::require_at_least(1, "dynStep", dynamic_step);
+    for (const LightSettings& one : light) one.validate();
+    for (const MediumSettings& medium : media) medium.validate();
     if (dynamic_interval) require_positive("dynTimeStep", *dynamic_interval, "s");
     for (const PartSettings& part : parts) naming("part '" + part.id + "'", [&] { part.validate(); });
   }

@@ -149,6 +149,38 @@ void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
   }
 }
 
+template <class Io>
+void fields(Io& io, Of<Io, LightSettings>& light) {
+  io.whole("passages", light.passages, 0, 32);
+  io.number("leastShare", light.least_share, units::one, 0, 1);
+  io.whole("orders", light.orders, 1, 64);
+  io.whole("paths", light.paths, 1, 100'000);
+  io.number("fieldOfView_deg", light.field_of_view, units::degree, 0, 360);
+}
+
+template <class Io>
+void fields(Io& io, Of<Io, MediumSettings>& medium) {
+  io.number("absorption_perM", medium.absorption, units::one, 0, 1e6);
+  io.number("scattering_perM", medium.scattering, units::one, 0, 1e6);
+  io.number("backscatter_perMSr", medium.backscatter, units::one, 0, 1e6);
+  io.vector("min", medium.min, max_coordinate);
+  io.vector("max", medium.max, max_coordinate);
+  if constexpr (Io::reads) {
+    try {
+      medium.validate();
+    } catch (const SettingError& wrong) {
+      io.report().fault(io.place(), wrong.what());
+    }
+  }
+}
+
+/// Light and media of a scene.
+template <class Io>
+void light_fields(Io& io, Of<Io, SceneSettings>& scene) {
+  io.children("light", scene.light, [](auto& inner, auto& light) { fields(inner, light); });
+  io.children("medium", scene.media, [](auto& inner, auto& medium) { fields(inner, medium); });
+}
+
 /// Reads a scene. A part of several files and no id becomes several parts, each with a number.
 inline void fields(XmlInput& io, SceneSettings& scene) {
   io.require({"id"});
@@ -157,6 +189,8 @@ inline void fields(XmlInput& io, SceneSettings& scene) {
   io.whole("dynStep", scene.dynamic_step, 1, 1'000'000'000);
   io.number("dynTimeStep", scene.dynamic_interval, units::second, 1e-9, 1e6);
   io.know({}, {"part"});
+  light_fields(io, scene);
+  if (scene.light.size() > 1) io.report().warn(io.place(), "<scene> holds a second <light>: the first is used");
   std::size_t number = 0;
   for (pugi::xml_node node = io.node().child("part"); node; node = node.next_sibling("part")) {
     XmlInput inner(io.document(), node, io.report(), io.search());
@@ -192,6 +226,7 @@ inline void fields(XmlOutput& io, const SceneSettings& scene) {
   io.text("name", scene.name);
   io.whole("dynStep", scene.dynamic_step, 1, 1);
   io.number("dynTimeStep", scene.dynamic_interval, units::second, 0, any);
+  light_fields(io, scene);
   io.children("part", scene.parts, [](XmlOutput& inner, const PartSettings& part) {
     inner.text("id", part.id);
     filters(inner, &part.source, part.transform);

@@ -57,11 +57,13 @@ class LasEncoder {
 
   /// `settings` must be valid.
   explicit LasEncoder(LasSettings settings)
-      : settings_(std::move(settings)), layout_(settings_.format, settings_.waveforms), offset_(settings_.offset.value_or(Vec3{})) {}
+      : settings_(std::move(settings)),
+        layout_(settings_.format, settings_.waveforms, settings_.light_kinds),
+        offset_(settings_.offset.value_or(Vec3{})) {}
 
   /// Size of a point record with these settings [byte].
   [[nodiscard]] static std::size_t record_size(const LasSettings& settings) {
-    return detail::LasLayout(settings.format, settings.waveforms).record();
+    return detail::LasLayout(settings.format, settings.waveforms, settings.light_kinds).record();
   }
 
   /// Calls put(record, point) for every echo of a shot, in order. `record` lacks the coordinates of `point`; its length is
@@ -98,6 +100,7 @@ class LasEncoder {
       record.put(extras + reflectance_at, las_level(echo.reflectance));
       record.put(extras + width_at, static_cast<float>(echo.width * 1e9));
       record.put(extras + object_at, echo.object);
+      if (settings_.light_kinds) record.put(extras + kind_at, static_cast<std::uint8_t>(echo.kind));
       ++tally_.points_by_return[number - 1];
       put(record, point_of(shot, echo));
     }
@@ -179,7 +182,8 @@ class LasEncoder {
   [[nodiscard]] LasTally& tally() noexcept { return tally_; }
 
  private:
-  static constexpr std::size_t range_at = 0, amplitude_at = 8, reflectance_at = 12, width_at = 16, pulse_at = 20, object_at = 28;
+  static constexpr std::size_t range_at = 0, amplitude_at = 8, reflectance_at = 12, width_at = 16, pulse_at = 20, object_at = 28,
+                               kind_at = 32;
 
   /// Writes the part of a wave packet common to all returns. Offsets from its first byte: LAS 1.4 R15, Point Data Record Format 4.
   void put_packet(Record& record, const Shot& shot, const LasPacket& packet) const noexcept {

@@ -15,7 +15,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
 /// Extra value of each point, behind the standard ones.
 struct LasExtra {
   std::string_view name, description;
-  std::uint8_t type, size;  ///< data type of the Extra Bytes record: 5 uint32, 7 uint64, 9 float, 10 double; size [byte]
+  std::uint8_t type, size;  ///< data type of the Extra Bytes record: 1 uint8, 5 uint32, 7 uint64, 9 float, 10 double; size [byte]
 };
 
 inline constexpr std::array las_extras{
@@ -25,6 +25,7 @@ inline constexpr std::array las_extras{
     LasExtra{"EchoWidth", "standard deviation in time [ns]", 9, 4},
     LasExtra{"PulseIndex", "number of the pulse, from 0", 7, 8},
     LasExtra{"ObjectId", "number of the object met", 5, 4},
+    LasExtra{"LightKind", "way of the light, 0: direct", 1, 1},  // last: left out unless it is asked for
 };
 
 // sizes [byte]. Source: LAS 1.4 R15, Extra Bytes, Point Data Record Format 4.
@@ -38,7 +39,7 @@ inline constexpr std::size_t las_extras_size = [] {
 /// Offsets and limits of a file. Source: LAS 1.4 R15, Public Header Block, Point Data Record Formats 1, 4, 6 and 9;
 /// LAS 1.0, Public Header Block, Point Data Start Signature.
 struct LasLayout {
-  LasLayout(LasFormat file, bool with_waveforms) noexcept
+  LasLayout(LasFormat file, bool with_waveforms, bool with_light_kinds) noexcept
       : legacy(file != LasFormat::las_1_4),
         minor(file == LasFormat::las_1_0 ? 0 : 4),
         format(legacy ? (with_waveforms ? 4 : 1) : (with_waveforms ? 9 : 6)),
@@ -46,16 +47,21 @@ struct LasLayout {
         start_signature(minor == 0 ? 2 : 0),
         packet(legacy ? 28 : 30),
         extras(packet + (with_waveforms ? las_packet_size : 0)),
+        extra_count(las_extras.size() - (with_light_kinds ? 0 : 1)),
         max_returns(legacy ? 5 : 15),
         max_class(legacy ? 31 : 255) {}
 
-  [[nodiscard]] std::size_t record() const noexcept { return extras + las_extras_size; }  ///< size of a point [byte]
+  /// Size of a point [byte].
+  [[nodiscard]] std::size_t record() const noexcept {
+    return extras + las_extras_size - (extra_count < las_extras.size() ? las_extras.back().size : 0);
+  }
 
   bool legacy;                           ///< true for point formats older than version 1.4
   std::uint8_t minor, format;            ///< version 1.`minor`, point format
   std::size_t header;                    ///< size of the header [byte]
   std::size_t start_signature;           ///< size of the signature between the last record and the first point [byte]
   std::size_t packet, extras;            ///< offsets of wave packet and extra bytes in a point [byte]
+  std::size_t extra_count;               ///< number of extra values of a point
   std::uint32_t max_returns, max_class;  ///< limits of return numbers and classes
 };
 

@@ -41,6 +41,7 @@ struct LasSettings {
 
   LasFormat format = LasFormat::las_1_4;               ///< version and point format
   bool waveforms = false;                              ///< true to write waveforms to a .wdp file beside it
+  bool light_kinds = false;                            ///< true to write `Echo::kind` as an extra byte: `ReflectionKind` by number
   double scale = 1e-4;                                 ///< step of the coordinates [m]
   std::optional<Vec3> offset = std::nullopt;           ///< origin [m]; if empty, the multiple of 1e6 steps nearest to the first point
   std::string wkt = {};                                ///< coordinate reference system as OGC well-known text; if empty, `epsg` counts

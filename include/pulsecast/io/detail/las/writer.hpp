@@ -72,7 +72,7 @@ class LasFileWriter {
       file_.write(packets_->descriptors());
       variable_records_ += LasPackets::descriptor_count;
     }
-    file_.write(Records::descriptors());
+    file_.write(Records::descriptors(layout().record()));
     variable_records_ += Records::descriptor_count;
     if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // source: LAS 1.0, Point Data Start Signature
     points_at_ = file_.position();
@@ -210,8 +210,9 @@ class LasFileWriter {
 
   /// Writes the descriptions of the extra bytes. Source: LAS 1.4 R15, Extra Bytes.
   void write_extra_bytes_record() {
-    write_record_header("LASF_Spec", 4, las_extras.size() * las_descriptor_size, "Extra Bytes");
-    for (const LasExtra& extra : las_extras) {
+    const auto extras = std::span(las_extras).first(layout().extra_count);
+    write_record_header("LASF_Spec", 4, extras.size() * las_descriptor_size, "Extra Bytes");
+    for (const LasExtra& extra : extras) {
       LasBytes<las_descriptor_size> descriptor{};
       descriptor.put(2, extra.type);
       descriptor.put_text(4, extra.name);
