@@ -222,10 +222,11 @@ TEST_CASE("light goes on from what passes it on, if the scene or the program say
                          [](const Echo& e) { return e.object == 7 && e.kind == ReflectionKind::glass; });
   };
   CHECK(run(*make_simulation(survey(), {.meshes = {plane(), pane}})).size() == 0);
-  CHECK(through(run(*make_simulation(survey(), {.light_paths = true, .meshes = {plane(), pane}}))) == 2000);
+  // straight down, the light that the pane mirrors into the aperture blinds the receiver for a while
+  CHECK(through(run(*make_simulation(survey(), {.light_paths = true, .meshes = {plane(), pane}}))) > 1950);
   SurveySettings lit = survey();
   lit.scene.light = {{}};
-  CHECK(through(run(*make_simulation(lit, {.meshes = {plane(), pane}}))) == 2000);
+  CHECK(through(run(*make_simulation(lit, {.meshes = {plane(), pane}}))) > 1950);
   lit.scene.light[0].passages = 0;
   CHECK(run(*make_simulation(lit, {.meshes = {plane(), pane}})).size() == 0);
   SurveySettings foggy = survey();
