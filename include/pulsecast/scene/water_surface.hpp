@@ -42,6 +42,7 @@ struct WaterArea {
 class WaterSurface {
  public:
   static constexpr bool keyless = true;  ///< as the concept KeylessGeometry describes
+  static constexpr bool timed = true;    ///< as the concept TimedGeometry describes
 
   /// @throws SettingError as `WaterArea::validate`
   explicit WaterSurface(const WaterArea& area, WaveField waves = {}) : waves_(std::move(waves)), level_(area.level) {
@@ -63,7 +64,7 @@ class WaterSurface {
       const Vec3 direction = rays.direction(j);
       const Span span = span_of(rays.origin, direction);
       if (!(span.begin <= span.end) || !(span.end > rays.near) || !(span.begin <= nearest.limit_of(j))) continue;
-      /// True while more hits are of use.
+      // true while more hits are of use
       const auto offer = [&](double at) noexcept {
         if (!(at > rays.near)) return true;
         nearest.offer(j, at, span.share_of(at));
@@ -73,7 +74,7 @@ class WaterSurface {
         offer(span.begin);
         continue;
       }
-      if (!prepared) phases = detail::WaveProfile::phases_of(waves_, {rays.origin.x, rays.origin.y}, rays.tick);
+      if (!prepared) detail::WaveProfile::set_phases(waves_, {rays.origin.x, rays.origin.y}, rays.tick, phases);
       prepared = true;
       const detail::WaveProfile profile(waves_, phases, {direction.x, direction.y});
       const Line line{rays.origin.z - level_, direction.z};
@@ -186,7 +187,7 @@ class WaterSurface {
   Box bounds_;
 };
 
-static_assert(Geometry<WaterSurface>);
+static_assert(Geometry<WaterSurface> && TimedGeometry<WaterSurface>);
 
 }  // namespace PULSECAST_NAMESPACE
 

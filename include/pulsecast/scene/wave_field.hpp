@@ -210,11 +210,9 @@ class WaveProfile {
     std::size_t groups;   ///< groups that were summed
   };
 
-  /// Phases of a field at the place and time where lines begin.
-  [[nodiscard]] static WavePhases phases_of(const WaveField& field, const Vec2& place, const Tick& t) noexcept {
-    WavePhases phases;
+  /// Sets the phases of a field at the place and time where lines begin.
+  static void set_phases(const WaveField& field, const Vec2& place, const Tick& t, WavePhases& phases) noexcept {
     field.set_phases(place, t, phases);
-    return phases;
   }
 
   /// Field and phases must outlive the profile.
