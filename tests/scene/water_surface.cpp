@@ -196,7 +196,9 @@ TEST_CASE("hits are those of a search by fine steps, from above and from below, 
   }
   const std::vector<Case> cases{{waves_of({.wind_speed = 2, .shortest = 0.02, .components = 32}), 1e-3},
                                 {waves_of({.wind_speed = 8, .fetch = 500, .shortest = 0.05, .components = 48, .seed = 3}), 1e-3},
-                                {steep, 2e-3}};
+                                {steep, 2e-3},
+                                {{{.amplitude = 0.5, .wavelength = 2}}, 1e-2},
+                                {{{.amplitude = 0.5, .wavelength = 2}, {.amplitude = 0.3, .wavelength = 1.3, .toward = 1}}, 1e-2}};
   for (std::size_t c = 0; c < cases.size(); ++c) {
     const WaterSurface surface = water(cases[c].waves);
     int met = 0, below = 0;
@@ -295,6 +297,30 @@ TEST_CASE("hits are pure, and those of a copy") {
   for (int k = 0; k < 100; ++k) rays.push_back(some_ray(random, 12, surface.waves().highest()));
   const auto range = [&](const WaterSurface& w, std::size_t k) { return range_of(w, rays[k]); };
   CHECK(support::detail::purity_laws(surface, rays.size(), range) == "");
+}
+
+TEST_CASE("a ray that starts on the surface does not meet it there") {
+  const WaterSurface surface = water({{.amplitude = 0.5, .wavelength = 8}});
+  REQUIRE(surface.waves().height({0, 3}, {}) == 0);
+  CHECK(std::fabs(range_of(surface, {{0, 3, 12}, axis::right}) - 4) < 1e-9);
+  CHECK(range_of(surface, {{0, 3, 12}, axis::up}) == -1);
+}
+
+TEST_CASE("a ray that leaves through a wall before it comes to the waves meets nothing") {
+  const WaterSurface surface = water({{.amplitude = 0.5, .wavelength = 60}, {.amplitude = 0.5, .wavelength = 50, .toward = pi / 2}});
+  Generator random(12);
+  int met = 0, passed = 0;
+  for (int time = 0; time < 500; ++time) {
+    CAPTURE(time);
+    const Vec3 aim{100 + random.uniform(-0.05, 0.05), random.uniform(-99, 99), 12 + random.uniform(-1, 1)};
+    const Vec3 direction = normalize(Vec3{random.uniform(-0.3, 0.3), 0.01, random.coin() ? 1 : -1});
+    const Ray ray{aim - 3.0 * direction, direction};
+    const double expected = searched(surface, ray, 0.01);
+    CHECK(std::fabs(range_of(surface, ray) - expected) < 1e-9);
+    (expected > 0 ? met : passed) += 1;
+  }
+  CHECK(met > 100);
+  CHECK(passed > 100);
 }
 
 TEST_CASE("two areas side by side are met as one") {

@@ -119,6 +119,8 @@ TEST_CASE("a fully developed sea is as high, and peaks where, others have found"
     // waves at the peak run 1/0.84 times as fast as the wind at 10 m
     CHECK(std::sqrt(9.80665 / spectrum.peak()) == relative(speed / 0.84, 1e-6));
   }
+  // the youngest sea that the spectrum describes
+  CHECK(WindSpectrum(10, 1).peak() == relative(25 * 9.80665 / 100, 1e-12));
   // less fetch, lower and shorter waves
   double height = 100, peak = 0;
   for (const double fetch : {1e6, 1e5, 1e4, 1e3}) {
@@ -146,6 +148,7 @@ TEST_CASE("the spectrum alone has nearly the slopes of Cox & Munk, as it was mad
 TEST_CASE("waves travel with the wind, and the longest most of all") {
   const double toward = 2;
   for (const SineWave& wave : waves_of({.wind_speed = 8, .toward = toward, .components = 512})) CHECK(std::cos(wave.toward - toward) > 0);
+  for (const double turn : {-6.28, 6.28}) CHECK_NOTHROW(WaveField(waves_of({.toward = turn})));
   const WindSpectrum spectrum(8, 1e9);
   CHECK(spectrum.spread(spectrum.peak()) > 0.99);
   CHECK(spectrum.spread(10.0) < 0.5);

@@ -135,7 +135,7 @@ class WaterSurface {
       span.begin = std::max(span.begin, std::min(a, b));
       span.end = std::min(span.end, std::max(a, b));
     }
-    return span.end < std::numeric_limits<double>::max() ? span : none;
+    return span;
   }
 
   /// Range at which a ray steeper than all waves meets them, before its origin too: Newton's method between bounds.
