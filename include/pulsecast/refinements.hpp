@@ -199,7 +199,7 @@ PULSECAST_OPTIONAL_MEMBER(KeylessConstant, "static constexpr bool keyless = true
 /// Geometry whose hits depend on the tick of the rays, as `WaterSurface`. Its bounds hold at all times.
 template <class G>
 concept TimedGeometry = detail::TimedConstant<G> && G::timed;
-PULSECAST_OPTIONAL_MEMBER(TimedConstant, "static constexpr bool timed = true", timed, , is_timed, moving, time_dependent, timeless)
+PULSECAST_OPTIONAL_MEMBER(TimedConstant, "static constexpr bool timed = true", timed, , is_timed, timed_hits, time_dependent, timeless)
 
 /// Footprint whose subrays are all passed to the sinks, as those of `WithSubrayRecord`.
 template <class F>

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/lanes.hpp>
@@ -68,8 +68,11 @@ class WaveSum {
 /// Calls `add(i, part)` for each register of waves from `first` up to `last`, and the register of the sum that it belongs to.
 template <class Add>
 [[gnu::always_inline]] inline void each_wave(std::size_t first, std::size_t last, const Add& add) noexcept {
-  for (std::size_t i = first; i < last; i += simd::sum_stride)
-    for (std::size_t part = 0; part < WaveSum::count; ++part) add(i + part * simd::lane_count, part);
+  // unrolled, so that the sums stay in registers
+  const auto each_part = [&]<std::size_t... part>(std::size_t i, std::index_sequence<part...>) noexcept {
+    (add(i + part * simd::lane_count, part), ...);
+  };
+  for (std::size_t i = first; i < last; i += simd::sum_stride) each_part(i, std::make_index_sequence<WaveSum::count>());
 }
 
 /// Sine and cosine of phases in half turns, below 2^51; errors 2e-16 and 2e-15.

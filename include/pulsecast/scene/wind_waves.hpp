@@ -67,12 +67,12 @@ class WindSpectrum {
   /// Of a wind speed 10 m above the mean level [m/s] and a fetch [m].
   WindSpectrum(double wind_speed, double fetch) noexcept {
     const double wind = std::max(wind_speed, 0.5), scale = standard_gravity / (wind * wind);
-    age_ = std::min(0.84 * std::pow(std::tanh(std::pow(scale * fetch / 2.2e4, 0.4)), -0.75), 5.0);  // eq. 37
+    age_ = std::min(0.84 * std::pow(std::tanh(std::pow(scale * fetch / 2.2e4, 0.4)), -0.75), 5.0);
     peak_ = scale * age_ * age_;
     peak_speed_ = wind / age_;
     friction_ = wind * std::sqrt((0.8 + 0.065 * wind) * 1e-3);
-    long_ = 6e-3 * std::pow(age_, 0.55);                                                                       // eq. 34
-    short_ = 1e-2 * std::max(0.0, 1 + (friction_ > least_speed ? 3 : 1) * std::log(friction_ / least_speed));  // eq. 44
+    long_ = 6e-3 * std::pow(age_, 0.55);
+    short_ = 1e-2 * std::max(0.0, 1 + (friction_ > least_speed ? 3 : 1) * std::log(friction_ / least_speed));
     overshoot_ = age_ > 1 ? 1.7 + 6 * std::log10(age_) : 1.7;
     width_ = 0.08 * (1 + 4 / (age_ * age_ * age_));
   }
@@ -89,7 +89,7 @@ class WindSpectrum {
     return 0.5 * (from_long + from_short) / speed * peaked;
   }
 
-  /// Coefficient of cos(2 angle) in the distribution of directions about the wind, in [0, 1]; eq. 57.
+  /// Coefficient of cos(2 angle) in the distribution of directions about the wind, in [0, 1].
   [[nodiscard]] double spread(double k) const noexcept {
     const double speed = phase_speed(k);
     return std::tanh(0.25 * std::log(2.0) + 4 * std::pow(speed / peak_speed_, 2.5) +
