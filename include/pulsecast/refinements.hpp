@@ -39,6 +39,11 @@ concept KeylessConstant = requires {
   requires std::same_as<decltype(G::keyless), const bool>;
   typename std::bool_constant<G::keyless>;
 };
+template <class G>
+concept TimedConstant = requires {
+  requires std::same_as<decltype(G::timed), const bool>;
+  typename std::bool_constant<G::timed>;
+};
 template <class F>
 concept RecordedConstant = requires {
   requires std::same_as<decltype(F::recorded), const bool>;
@@ -190,6 +195,11 @@ PULSECAST_OPTIONAL_MEMBER(FlatConstant, "static constexpr bool flat = true", fla
 template <class G>
 concept KeylessGeometry = detail::KeylessConstant<G> && G::keyless;
 PULSECAST_OPTIONAL_MEMBER(KeylessConstant, "static constexpr bool keyless = true", keyless, , is_keyless, without_key, no_key, key_less)
+
+/// Geometry whose hits depend on the tick of the rays, as `WaterSurface`. Its bounds hold at all times.
+template <class G>
+concept TimedGeometry = detail::TimedConstant<G> && G::timed;
+PULSECAST_OPTIONAL_MEMBER(TimedConstant, "static constexpr bool timed = true", timed, , is_timed, timed_hits, time_dependent, timeless)
 
 /// Footprint whose subrays are all passed to the sinks, as those of `WithSubrayRecord`.
 template <class F>

@@ -48,10 +48,11 @@ struct NotesSurfaces {
 /// a survey (leaves fall, a car is gone), make one scene each from the same geometries.
 template <Geometry... Shapes>
 class Scene {
-  static_assert((detail::FlatConstantCheck<Shapes>::passed && ...) && (detail::KeylessConstantCheck<Shapes>::passed && ...));
+  static_assert((detail::FlatConstantCheck<Shapes>::passed && ...) && (detail::KeylessConstantCheck<Shapes>::passed && ...) &&
+                (detail::TimedConstantCheck<Shapes>::passed && ...));
 
  public:
-  static constexpr bool timeless = true;  ///< no hit depends on the tick of a ray
+  static constexpr bool timeless = !(TimedGeometry<Shapes> || ...);  ///< true if no hit depends on the tick of a ray
 
   /// Part of this scene.
   using Part = pulsecast::Part<Shapes...>;
