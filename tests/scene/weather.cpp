@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include <doctest/doctest.h>
-
 #include <pulsecast/base/random.hpp>
+
+#include <doctest/doctest.h>
 
 #include "support/relative.hpp"
 
@@ -154,13 +154,13 @@ TEST_CASE("droplets of fog have the lidar ratio of fog, and absorb hardly, by Mi
   };
   const std::array<Water, 4> waters{
       {{0.532e-6, {1.3337, 1.5e-9}}, {0.905e-6, {1.3235, 5.1e-7}}, {1.064e-6, {1.3205, 1.28e-6}}, {1.55e-6, {1.3109, 1.336e-4}}}};
-  for (const auto& [wavelength, index] : waters) {
-    CAPTURE(wavelength);
+  for (const Water& water : waters) {
+    CAPTURE(water.wavelength);
     const auto by_size = [](double d) {  // most droplets have radii about 5 um
       const double um = d / 2e-6;
       return std::pow(um, 6) * std::exp(-1.2 * um);
     };
-    const Sphere drops = spheres(4e-6, 40e-6, 4000, wavelength, index, by_size);
+    const Sphere drops = spheres(4e-6, 40e-6, 4000, water.wavelength, water.index, by_size);
     CHECK(drops.extinction / drops.backscatter == relative(18.8, 0.12));
     CHECK(drops.scattering / drops.extinction > 0.99);
   }
@@ -308,7 +308,7 @@ TEST_CASE("precipitation that cannot be is refused by the name of its setting") 
     CHECK(refused({.least = bad}) == "Precipitation::least");
     CHECK(refused({.absorption = bad}) == "Precipitation::absorption");
   }
-  for (const double bad : {0.0, -1.0, nan_value, infinity}) CHECK(refused({.slope = bad}) == "Precipitation::slope");
+  for (const double bad : {0.0, 0.9e-3, 1.1e9, -1.0, nan_value, infinity}) CHECK(refused({.slope = bad}) == "Precipitation::slope");
   for (const double bad : {1e-4, 0.9e-4, nan_value, infinity}) CHECK(refused({.most = bad}) == "Precipitation::most (above least)");
   for (const double bad : {0.99, -20.0, nan_value, infinity}) CHECK(refused({.lidar_ratio = bad}) == "Precipitation::lidar_ratio");
   for (const double bad : {-0.01, 1.01, nan_value}) CHECK(refused({.reflectance = bad}) == "Precipitation::reflectance");

@@ -98,7 +98,7 @@ template <int order>
 /// D, which wide receivers take for light that was not lost (van de Hulst 1957). All that is lost counts as scattered.
 struct Precipitation {
   double density = 0;       ///< N(D) extrapolated to D = 0: number per volume and diameter [1/m^4]
-  double slope = 1;         ///< decline of the distribution with diameter [1/m]
+  double slope = 1;         ///< decline of the distribution with diameter, from 1e-3 to 1e9 [1/m]
   double least = 0.1e-3;    ///< least diameter [m]
   double most = 6e-3;       ///< greatest diameter [m]
   double lidar_ratio = 20;  ///< extinction by backscatter of particles that absorb nothing, at least 1 [sr]
@@ -107,7 +107,7 @@ struct Precipitation {
 
   void validate() const {
     require_not_negative("Precipitation::density", density, "1/m^4");
-    require_positive("Precipitation::slope", slope, "1/m");
+    require_within("Precipitation::slope", slope, 1e-3, 1e9, "1/m");
     require_not_negative("Precipitation::least", least, "m");
     require_positive("Precipitation::most (above least)", most - least, "m");
     require_within("Precipitation::lidar_ratio", lidar_ratio, 1, std::numeric_limits<double>::max(), "sr");
