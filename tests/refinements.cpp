@@ -177,6 +177,10 @@ MISSPELT(MissesCones, misses_all, bool misses_all(const RayCone&) const noexcept
 MISSPELT(MissesCones, throwing, bool misses_cone(const RayCone&) const);
 MISSPELT(ChoosesShots, reads_empty, bool reads_empty() const noexcept);
 MISSPELT(ChoosesShots, reads_misses, bool reads_misses() const noexcept);
+MISSPELT(TimedConstant, is_timed, static constexpr bool is_timed = true);
+MISSPELT(TimedConstant, timed_hits, static constexpr bool timed_hits = true);
+MISSPELT(TimedConstant, time_dependent, static constexpr bool time_dependent = true);
+MISSPELT(TimedConstant, number, static constexpr int timed = 1);
 MISSPELT(ChoosesShots, wants_empty_shots, bool wants_empty_shots() const noexcept);
 MISSPELT(ChoosesShots, wants_misses, bool wants_misses() const noexcept);
 MISSPELT(ChoosesShots, constant, static constexpr bool reads_empty_shots = true);

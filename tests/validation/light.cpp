@@ -19,6 +19,8 @@
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/scene/transmissive_voxels.hpp>
 #include <pulsecast/scene/voxel_grid.hpp>
+#include <pulsecast/scene/water_surface.hpp>
+#include <pulsecast/scene/wind_waves.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
 #include "support/generators.hpp"
@@ -38,6 +40,7 @@ using support::traced;
 namespace {
 
 using World = support::LightScene;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double power_of(const std::vector<Reflection>& reflections) {
   double sum = 0;
@@ -145,6 +148,35 @@ TEST_CASE("water") {
   row("the same: bottom's echo against exp(-2 Kd s), largest error, by it", 0, dimmed, 1e-9);
   row("the same: the column's echoes against their integral, largest error, by it", 0, volume, 1e-3);
   row(Kind::consistency, "the same: energy sent, less all terms of the ledger, by it", 0, balance, 1e-9);
+}
+
+TEST_CASE("refraction by waves") {
+  // of thin beams from above: the angle between the refracted ray and the vertical, along one axis, at two standard deviations.
+  // Source of the slopes: Cox & Munk 1954; of the angles: the tilt's share 1 - 1/n for small ones, here exactly
+  for (const double wind : {5.0, 10.0}) {
+    const WaterSurface sea({{-500, -500}, {500, 500}}, WaveField(waves_of({.wind_speed = wind, .seed = 11})));
+    double squares = 0, expected = 0;
+    const int beams = 20'000;
+    support::Generator any(3);
+    for (int k = 0; k < beams; ++k) {
+      const Ray down{.origin = {any.uniform(-400, 400), any.uniform(-400, 400), 50},
+                     .direction = -axis::up,
+                     .tick = Tick::of_seconds(any.uniform(0, 60))};
+      ClosestHit hit(infinity);
+      const BundleOfOne ray(down);
+      sea.closest(ray, hit);
+      const Vec3 normal = sea.surface(hit.primitive_of(0), ray, 0).normal;
+      const Vec3 below = refracted(down.direction, normal, 1.34, fresnel_split(normal.z, 1.34));
+      squares += (std::pow(std::atan2(below.x, -below.z), 2) + std::pow(std::atan2(below.y, -below.z), 2)) / 2 / beams;
+      const double tilt = std::atan(std::sqrt((0.003 + 0.00508 * wind) / 2) * any.normal());
+      expected += std::pow(tilt - std::asin(std::sin(tilt) / 1.34), 2) / beams;
+    }
+    const std::string title =
+        "refraction by waves at " + std::to_string(static_cast<int>(wind)) + " m/s of wind, one axis, 2 sigma [degrees]";
+    row(title, degrees(2 * std::sqrt(expected)), degrees(2 * std::sqrt(squares)), 0.05 * degrees(2 * std::sqrt(expected)));
+    row(Kind::published, title + ": Eren et al. 2018", wind == 5 ? 3.5 : 4.8, degrees(2 * std::sqrt(squares)),
+        0.05 * (wind == 5 ? 3.5 : 4.8));
+  }
 }
 
 TEST_CASE("fog") {

@@ -38,6 +38,12 @@ struct SmoothInterface {
   /// Face of a body of the same glass.
   [[nodiscard]] static SmoothInterface glass() noexcept { return {.kind = InterfaceKind::dielectric, .inside = soda_lime}; }
 
+  /// Surface of water of a kind, as of `water(JerlovType::coastal_1, 532e-9)`. For the glint of waves that the scene has not, and foam, see
+  /// `Scattering::microfacet` and `Material::reflectance`.
+  [[nodiscard]] static SmoothInterface water(const Medium& inside = {.index = 1.33}) noexcept {
+    return {.kind = InterfaceKind::water, .inside = inside};
+  }
+
   void validate() const {
     require_within("SmoothInterface::reflectance", reflectance, 0, 1, "");
     require_not_negative("SmoothInterface::thickness", thickness, "m");

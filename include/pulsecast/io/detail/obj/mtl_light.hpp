@@ -90,7 +90,7 @@ void set_own_light(Material& made, const tinyobj::material_t& m, const WordsOf& 
     if (words[0] == "mirror") made.smooth = SmoothInterface::mirror(number(words[1]));
     if (words[0] == "pane") made.smooth = SmoothInterface::pane(number(words[1]));
     if (words[0] == "glass") made.smooth = SmoothInterface::glass();
-    if (words[0] == "water") made.smooth = {.kind = InterfaceKind::water, .inside = {.index = 1.33}};
+    if (words[0] == "water") made.smooth = SmoothInterface::water();
     if (words[0] == "none") made.smooth = {};
     if (m.ior > 1 && words[0] != "mirror") made.smooth.inside = before;
   }
