@@ -24,8 +24,8 @@ struct Stretch {
 
 std::vector<Stretch> stretches(const Media& media, const Vec3& origin, const Vec3& direction, double near, double far) {
   std::vector<Stretch> all;
-  media.along(origin, direction, near, far, [&](double from, double to, const Medium& medium, double density) {
-    all.push_back({from, to, medium.absorption, density});
+  media.along(origin, direction, near, far, [&](double from, double to, const MediumRegion& region, double density) {
+    all.push_back({from, to, region.medium.absorption, density});
   });
   return all;
 }

@@ -166,6 +166,85 @@ TEST_CASE("a comb that is too long for its room grows coarser, and keeps its sum
   }
 }
 
+TEST_CASE("drops in the beam are Poisson in number, and give back the mean of their medium") {
+  // a pulse from 5 to 25 m through rain, in a box without a wall
+  const double wavelength = 905e-9;
+  const Precipitation drops = rain(5, wavelength);
+  const support::Lamp base{.laser = {.wavelength = wavelength, .divergence = 5e-3}};
+  const MediumRegion region = MediumRegion::of(drops, {{-9, 5, -9}, {9, 25, 9}});
+  // volume of a cone up to two radii: pi theta^2 (b^3 - a^3) / 3
+  const double expected = drops.number() * pi * 25e-6 * (std::pow(25.0, 3) - std::pow(5.0, 3)) / 3;
+  REQUIRE(expected < detail::BeamParticles::most);
+  const LightPaths light{.air = Media({region}), .volume_cells = 4096};
+  MediumRegion mean = region;
+  mean.particles = {};
+  const double continuous =
+      power_of(traced(LightPaths{.air = Media({mean})}, World({}), from_to({}, axis::forward), SingleRay{}, base).reflections);
+  double count = 0, squares = 0, power = 0, power2 = 0;
+  const int pulses = 2000;
+  for (int k = 0; k < pulses; ++k) {
+    support::Lamp lamp = base;
+    lamp.index = static_cast<PulseIndex>(k);
+    const auto seen = traced(light, World({}), from_to({}, axis::forward), LatticeFootprint(19), lamp);
+    CHECK(std::fabs(seen.imbalance()) < 1e-9);
+    const auto n = static_cast<double>(seen.reflections.size());
+    count += n / pulses;
+    squares += n * n / pulses;
+    const double p = power_of(seen.reflections);
+    power += p / pulses;
+    power2 += p * p / pulses;
+    for (const Reflection& r : seen.reflections) {
+      CHECK(r.kind == ReflectionKind::air);
+      CHECK(r.range > 5 - 1e-9);
+      CHECK(r.range < 25.1);
+    }
+  }
+  CHECK(std::fabs(count - expected) < 3 * std::sqrt(expected / pulses));
+  CHECK(std::fabs((squares - count * count) / expected - 1) < 3 * std::sqrt(2.0 / pulses));
+  CHECK(std::fabs(power - continuous) < 3 * std::sqrt((power2 - power * power) / pulses) + 0.01 * continuous);
+}
+
+TEST_CASE("drops are the same for the same pulse, others for another, and none are behind a wall") {
+  const support::Lamp lamp{.laser = {.wavelength = 905e-9, .divergence = 3e-3}};
+  const LightPaths light{.spread_planes = false, .air = Media({MediumRegion::of(rain(20, 905e-9))})};
+  const World wall({rectangle({0, 12, 0}, 9.0 * axis::right, 9.0 * axis::up, Material{}, 3)});
+  const auto a = traced(light, wall, from_to({}, axis::forward), LatticeFootprint(19), lamp),
+             b = traced(light, wall, from_to({}, axis::forward), LatticeFootprint(19), lamp);
+  support::Lamp next = lamp;
+  next.index = 1;
+  const auto c = traced(light, wall, from_to({}, axis::forward), LatticeFootprint(19), next);
+  REQUIRE(a.reflections.size() == b.reflections.size());
+  CHECK(a.of(ReflectionKind::surface).size() == 19);
+  CHECK(a.of(ReflectionKind::air).size() > 5);
+  CHECK(a.reflections.front().range == b.reflections.front().range);
+  CHECK(a.reflections.front().range != c.reflections.front().range);
+  for (const Reflection& r : a.of(ReflectionKind::air)) CHECK(r.range < 12.01);
+}
+
+TEST_CASE("where drops are too many to be met one by one, their mean takes over without a gap") {
+  const double wavelength = 905e-9;
+  const MediumRegion region = MediumRegion::of(rain(20, wavelength), {{-99, 2, -99}, {99, 120, 99}});
+  MediumRegion mean = region;
+  mean.particles = {};
+  const support::Lamp lamp{.laser = {.wavelength = wavelength, .divergence = 5e-3}};
+  const auto profile = [&](const MediumRegion& of, PulseIndex pulses) {
+    std::vector<double> bins(12);
+    for (PulseIndex k = 0; k < pulses; ++k) {
+      support::Lamp one = lamp;
+      one.index = k;
+      for (const Reflection& r :
+           traced(LightPaths{.air = Media({of})}, World({}), from_to({}, axis::forward), SingleRay{}, one).reflections)
+        bins[std::min<std::size_t>(11, static_cast<std::size_t>(r.range / 10))] += r.power / static_cast<double>(pulses);
+    }
+    return bins;
+  };
+  const auto grains = profile(region, 400), smooth = profile(mean, 1);
+  for (std::size_t k = 1; k < 12; ++k) {
+    CAPTURE(k);
+    CHECK(grains[k] == doctest::Approx(smooth[k]).epsilon(k < 4 ? 0.1 : 1e-9));
+  }
+}
+
 TEST_CASE("light paths through media keep the laws of transports") {
   support::Generator any(3);
   const Media air(

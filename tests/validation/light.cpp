@@ -234,6 +234,27 @@ TEST_CASE("fog") {
   }
 }
 
+TEST_CASE("rain") {
+  const Precipitation drops = rain(10, 905e-9);
+  const Box box{{-9, 5, -9}, {9, 30, 9}};
+  const support::Lamp base{.laser = {.wavelength = 905e-9, .divergence = 3e-3}};
+  const double expected = drops.number() * pi * 9e-6 * (27'000 - 125) / 3;  // in a cone of two radii
+  const World nothing(std::vector<World::Part>{});
+  double count = 0, squares = 0;
+  const int pulses = 4000;
+  for (int k = 0; k < pulses; ++k) {
+    support::Lamp lamp = base;
+    lamp.index = static_cast<PulseIndex>(k);
+    const auto n = static_cast<double>(
+        traced(LightPaths{.air = Media({MediumRegion::of(drops, box)})}, nothing, from_to({}, axis::forward), SingleRay{}, lamp)
+            .reflections.size());
+    count += n / pulses;
+    squares += n * n / pulses;
+  }
+  row("rain of 10 mm/h, 5 to 30 m before a beam of 3 mrad: mean number of drops", expected, count, 3 * std::sqrt(expected / pulses));
+  row("the same: variance of the number, by its mean", 1, (squares - count * count) / expected, 3 * std::sqrt(2.0 / pulses));
+}
+
 TEST_CASE("light to and fro") {
   const auto to_and_fro = [](std::size_t orders, std::size_t paths) {
     return LightPaths{.spread_planes = false, .scattering = {.orders = orders, .paths = paths, .field_of_view = 2 * pi}};

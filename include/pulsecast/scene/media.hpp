@@ -17,6 +17,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/scene/medium.hpp>
+#include <pulsecast/scene/weather.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -34,10 +35,18 @@ struct MediumRegion {
   std::array<std::size_t, 3> cells{1, 1, 1};
   /// Factors of the medium's coefficients by cell, x fastest and z slowest; all 1 if empty.
   SharedArray<float> densities{};
+  /// Particles that the medium is the mean of: a beam meets them one by one, as long as they are few. None by default.
+  Precipitation particles{};
+
+  /// Rain or snow in a box.
+  [[nodiscard]] static MediumRegion of(const Precipitation& particles, const Box& bounds = everywhere()) noexcept {
+    return {.medium = particles.medium(), .bounds = bounds, .particles = particles};
+  }
 
   void validate() const {
     medium.validate();
     require_within("MediumRegion::medium (index)", medium.index, 1, 1, "");
+    particles.validate();
     if (bounds.empty()) throw SettingError("MediumRegion::bounds (volume)", 0, "m^3", "greater than 0");
     if (densities.empty()) return;
     const Vec3 size = bounds.size();
@@ -66,7 +75,12 @@ class Media {
   /// True for clear air.
   [[nodiscard]] bool empty() const noexcept { return !regions_ || regions_->empty(); }
 
-  /// Calls `visit(from, to, medium, density)` with the stretches of a ray between two ranges [m] that are in a medium, in their order.
+  /// True if there are particles in any region.
+  [[nodiscard]] bool has_particles() const noexcept {
+    return !empty() && std::any_of(regions_->begin(), regions_->end(), [](const MediumRegion& r) { return r.particles.density > 0; });
+  }
+
+  /// Calls `visit(from, to, region, density)` with the stretches of a ray between two ranges [m] that are in a medium, in their order.
   template <class Visitor>
   void along(const Vec3& origin, const Vec3& direction, double near, double far, const Visitor& visit) const noexcept {
     if (empty()) return;
@@ -87,7 +101,7 @@ class Media {
       if (innermost) {
         to = std::min(to, here.out);
         if (innermost->densities.empty())
-          visit(from, to, innermost->medium, 1.0);
+          visit(from, to, *innermost, 1.0);
         else
           along_cells(origin, direction, from, to, *innermost, visit);
       }
@@ -143,7 +157,7 @@ class Media {
         }
       }
       const double density = static_cast<double>(region.densities[cell[0] + region.cells[0] * (cell[1] + region.cells[1] * cell[2])]);
-      if (end > from && density > 0) visit(from, end, region.medium, density);
+      if (end > from && density > 0) visit(from, end, region, density);
       from = end;
       if (through == 3) return;
       const bool up = direction[static_cast<int>(through)] > 0;

@@ -46,7 +46,9 @@ struct LightPaths {
 
   /// Room for the reflections of a pulse of so many subrays. Light of further ones is counted as cut.
   [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
-    const std::size_t most = subrays * (2 * passages + 1) + 2 * volume_cells + scattering.reflections();
+    const std::size_t particles =
+        air.has_particles() ? static_cast<std::size_t>(1.2 * detail::BeamParticles::most) : 0;  // six deviations more
+    const std::size_t most = subrays * (2 * passages + 1) + 2 * volume_cells + scattering.reflections() + particles;
     return spread_planes && subrays > 2 ? std::max(most, plane_reflections_max) : most;
   }
   [[nodiscard]] Workspace workspace(std::size_t) const {

@@ -8,10 +8,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/scene/media.hpp>
+#include <pulsecast/transport/detail/beam_particles.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
 #include <pulsecast/transport/detail/volume_bins.hpp>
@@ -24,7 +26,7 @@ class MediaPassage {
  public:
   /// `air`: media between the surfaces; `in_air`, `in_water`: memory for what media in the air and bodies send back.
   MediaPassage(const Illumination& light, const Media& air, LightLedger& ledger, VolumeBins& in_air, VolumeBins& in_water) noexcept
-      : light_(light), air_(air), ledger_(ledger), in_air_(in_air), in_water_(in_water) {
+      : light_(light), air_(air), ledger_(ledger), in_air_(in_air), in_water_(in_water), particles_(light, ledger) {
     const double interval = light.sample_interval > 0 ? light.sample_interval : light.emitter.laser.pulse_length / 16;
     in_air_.begin(speed_of_light / 2 * interval);
     in_water_.begin(speed_of_light / 2 * interval);
@@ -36,40 +38,45 @@ class MediaPassage {
     in_water_.classification = classification;
   }
 
-  /// Takes the rays of a pencil through the air up to their hits: what is lost of each, and what returns of all.
-  void pass_air(Pencil& p, std::span<const Hit> hits) noexcept {
+  /// Takes the rays of a pencil through the air up to their hits: what is lost of each, and what returns of all. `occluded(ray, range)`
+  /// tells if a ray meets a surface.
+  template <class Occluded>
+  void pass_air(Pencil& p, std::span<const Hit> hits, const Occluded& occluded) noexcept {
     if (air_.empty()) return;
-    const std::size_t size = p.rays.size;
     struct End {
       double range, both;
     };
     std::array<End, RayBundle::capacity> ends;
-    double together = 0;
+    const std::size_t size = p.rays.size, middle = size / 2;
+    double together = 0, passed = 1;  // share of the light on both ways, and what is left of it
     for (std::size_t j = 0; j < size; ++j) {
-      ends[j] = {hits[j].range, p.both[j]};
+      ends[j] = {hits[j].met() ? hits[j].range : std::numeric_limits<double>::infinity(), p.both[j]};
       together += p.both[j];
     }
     std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(size), [](const End& a, const End& b) { return a.range < b.range; });
-    const std::size_t middle = size / 2;
-    double passed = 1;  // share of the light both ways
+    const bool of_beam = p.passages == 0, meets_particles = of_beam && p.rays.first_subray == 0;
     std::size_t ended = 0;
-    const auto range = [](double s) noexcept { return s; };
-    air_.along(p.rays.origin, p.rays.direction(middle), p.rays.begin[middle], ends[size - 1].range,
-               [&](double from, double to, const Medium& medium, double density) noexcept {
-                 for (double at = from; at < to;) {
-                   for (; ended < size && !(ends[ended].range > at); ++ended) together -= ends[ended].both;
-                   if (ended == size) return;
-                   const double end = std::min(to, ends[ended].range), loss = density * medium.extinction();
-                   const VolumeWay way{at, end, together * passed, loss, density * medium.backscatter, at + p.delay[middle]};
-                   if (medium.backscatter > 0) add_volume(in_air_, way, range, range);
-                   passed *= std::exp(-2 * loss * (end - at));
-                   at = end;
-                 }
-               });
+    const auto same = [](double s) noexcept { return s; };
+    const auto stretch = [&](double from, double to, const MediumRegion& region, double density) noexcept {
+      const Medium& medium = region.medium;
+      const double loss = density * medium.extinction(), grains = of_beam ? particles_.end(from, to, region, density) : from;
+      if (meets_particles && grains > from) particles_.meet(from, grains, region, density, passed, occluded);
+      for (double at = from; at < to;) {
+        for (; ended < size && !(ends[ended].range > at); ++ended) together -= ends[ended].both;
+        if (ended == size) return;
+        double end = std::min(to, ends[ended].range);
+        if (at < grains) end = std::min(end, grains);
+        const VolumeWay way{at, end, together * passed, loss, density * medium.backscatter, at + p.delay[middle]};
+        if (medium.backscatter > 0 && !(at < grains)) add_volume(in_air_, way, same, same);
+        passed *= std::exp(-2 * loss * (end - at));
+        at = end;
+      }
+    };
+    air_.along(p.rays.origin, p.rays.direction(middle), p.rays.begin[middle], ends[size - 1].range, stretch);
     for (std::size_t j = 0; j < size; ++j)
       air_.along(p.rays.origin, p.rays.direction(j), p.rays.begin[j], hits[j].range,
-                 [&](double from, double to, const Medium& medium, double density) noexcept {
-                   const double left = lose(medium, density, to - from, p.sent[j]);
+                 [&](double from, double to, const MediumRegion& region, double density) noexcept {
+                   const double left = lose(region.medium, density, to - from, p.sent[j]);
                    p.sent[j] *= left;
                    p.both[j] *= left * left;
                  });
@@ -93,9 +100,10 @@ class MediaPassage {
       path.keep(lose(medium, density, to - from, path.sent));
     };
     if (path.depth == 0)
-      air_.along(path.ray.origin, path.ray.direction, 0, range, [&](double from, double to, const Medium& medium, double density) noexcept {
-        stretch(from, to, medium, density, in_air_);
-      });
+      air_.along(path.ray.origin, path.ray.direction, 0, range,
+                 [&](double from, double to, const MediumRegion& region, double density) noexcept {
+                   stretch(from, to, region.medium, density, in_air_);
+                 });
     else
       stretch(0, range, path.medium(), 1, in_water_);
   }
@@ -156,6 +164,7 @@ class MediaPassage {
   const Media& air_;
   LightLedger& ledger_;
   VolumeBins &in_air_, &in_water_;
+  BeamParticles particles_;
 };
 
 }  // namespace PULSECAST_NAMESPACE::detail

@@ -100,7 +100,7 @@ class PathTracer {
     auto& [p, hits, surfaces, power] = w_.levels[level];
     map_.closest(p.rays, hits, surfaces);
     if (level > 0) meet_late(level);
-    media_.pass_air(p, hits);
+    media_.pass_air(p, hits, [this](const Ray& ray, double range) noexcept { return map_.occluded(ray, range); });
     received_power(light_, p.both.data(), p.rays.size, hits, power);
     if (level == 0 && !light_.record.empty()) record_subrays(light_, p.rays.first_subray, std::span(hits).first(p.rays.size), power);
     bool goes_on = false;

@@ -114,8 +114,9 @@ class ScatteredPaths {
   /// Share of the light that the media leave over on a way [m].
   double left(const Vec3& origin, const Vec3& direction, double way) const noexcept {
     double depth = 0;
-    air_.along(origin, direction, 0, way,
-               [&](double from, double to, const Medium& m, double density) noexcept { depth += density * m.extinction() * (to - from); });
+    air_.along(origin, direction, 0, way, [&](double from, double to, const MediumRegion& region, double density) noexcept {
+      depth += density * region.medium.extinction() * (to - from);
+    });
     return depth > 0 ? std::exp(-depth) : 1;
   }
 
