@@ -194,8 +194,10 @@ class PathTracer {
   /// Sends rays on from the image of their origin in a plane; `share(j)` is the share reflected.
   template <class Share>
   void send_mirrored(std::size_t level, std::size_t first, std::size_t end, const Share& share) noexcept {
-    const auto& [p, hits, surfaces, power] = w_.levels[level];
-    const Vec3 n = towards(surfaces[first].normal, p.rays.direction(first));
+    const PencilHits& met = w_.levels[level];
+    const Pencil& p = met.pencil;
+    const auto& hits = met.hits;
+    const Vec3 n = towards(met.surfaces[first].normal, p.rays.direction(first));
     const double above = -dot(p.rays.direction(first), n) * hits[first].range;  // height of the origin above the plane
     const auto next = [&](std::size_t j) noexcept -> Next {
       return {mirrored(p.rays.direction(j), n), share(j), hits[j].range, p.delay[j]};
@@ -205,7 +207,9 @@ class PathTracer {
 
   /// Reflects rays at a pane, and lets them through.
   void pass_pane(std::size_t level, std::size_t first, std::size_t end, const SmoothInterface& pane, double reaching) noexcept {
-    const auto& [p, hits, surfaces, power] = w_.levels[level];
+    const PencilHits& met = w_.levels[level];
+    const Pencil& p = met.pencil;
+    const auto& hits = met.hits;
     std::array<PaneSplit, RayBundle::capacity> split;
     double least = infinity, most = 0;
     for (std::size_t j = first; j < end; ++j) {
@@ -215,7 +219,7 @@ class PathTracer {
       ledger_.shares.absorbed += std::max(0.0, 1 - split[j].reflected - split[j].transmitted) * reaching * p.sent[j];
     }
     send_mirrored(level, first, end, [&](std::size_t j) noexcept { return reaching * split[j].reflected; });
-    const Vec3 n = towards(surfaces[first].normal, p.rays.direction(first));
+    const Vec3 n = towards(met.surfaces[first].normal, p.rays.direction(first));
     const auto next = [&](std::size_t j) noexcept -> Next {
       const double inside = pane.thickness / (pane.inside.index * split[j].cos_inside);  // of the way of the shifted ray [m]
       return {p.rays.direction(j), reaching * split[j].transmitted, hits[j].range + inside, p.delay[j] + split[j].delay};
