@@ -381,7 +381,8 @@ TEST_CASE("the velocity of a ghost is that of the image, in a mirror that moves"
   const Vec3 normal = normalize(Vec3{1, -1, 0.2}), side = normalize(cross(normal, axis::up)), of_mirror{1, 2, 3}, of_wall{-4, 1, 2};
   const MovingScene<Mesh> scene(
       {moving(rectangle({0, 10, 0}, 9.0 * side, 9.0 * cross(normal, side), clean(SmoothInterface::mirror())), of_mirror),
-       moving(rectangle({30, 10, 0}, 90.0 * axis::forward, 90.0 * axis::up, Material{.reflectance = 0.5}), of_wall)},
+       moving(rectangle({30, 10, 0}, 90.0 * axis::forward, 90.0 * axis::up, Material{.reflectance = 0.5}), of_wall),
+       moving(rectangle({0, 10.5, 0}, 9.0 * side, 9.0 * cross(normal, side), Material{}), {9, 9, 9})},  // behind the mirror
       {.to = 10});
   const auto pose = from_to({0, 0, 0}, {0.3, 10, 0.1});
   for (const double waist : {0.0, 0.01}) {

@@ -114,10 +114,17 @@ class PathTracer {
       const Hit at{hits[j].range + p.delay[j], hits[j].cos_incidence, hits[j].backscatter, hits[j].object, hits[j].classification};
       if (surfaces[j].material->retroreflection_width > 0) power[j] *= caught(surfaces[j].material->retroreflection_width, at.range);
       LightWay way{p.kind, p.sent[j]};
-      if constexpr (with_velocity) way.velocity = p.drift[j] + radial_velocity(map_, p.rays.ray(j));
+      if constexpr (with_velocity) way.velocity = p.drift[j] + radial_velocity(map_, ray_of(p, j));
       ledger_.end_at(at, *surfaces[j].material, scattered_share(surfaces[j], hits[j]), power[j], way);
     }
     if (goes_on) pass_on(level);
+  }
+
+  /// Ray of a pencil, from where it exists.
+  static Ray ray_of(const Pencil& p, std::size_t j) noexcept {
+    Ray ray = p.rays.ray(j);
+    ray.near = p.rays.begin[j];
+    return ray;
   }
 
   /// Traces the rays again that met something before they begin: shapes other than triangles do not heed that.
@@ -125,8 +132,7 @@ class PathTracer {
     auto& [p, hits, surfaces, power] = w_.levels[level];
     for (std::size_t j = 0; j < p.rays.size; ++j) {
       if (!(hits[j].range <= p.rays.begin[j])) continue;
-      Ray ray = p.rays.ray(j);
-      ray.near = p.rays.begin[j];
+      const Ray ray = ray_of(p, j);
       hits[j] = Hit{};
       const auto hit = map_.closest_hit(ray);
       if (!hit) continue;
@@ -262,7 +268,7 @@ class PathTracer {
       to.rays.begin[k] = ray.begin + apart;
       to.delay[k] = ray.delay;
       to.drift[k] = p.drift[j];
-      if constexpr (with_velocity) to.drift[k] += dot(velocity_at(p.rays.ray(j)), p.rays.direction(j) - ray.direction);
+      if constexpr (with_velocity) to.drift[k] += dot(velocity_at(ray_of(p, j)), p.rays.direction(j) - ray.direction);
       to.rays.near = std::min(to.rays.near, to.rays.begin[k]);
       if (kind == ReflectionKind::mirror) take_captured(to, k);
       sum += to.sent[k];
@@ -301,9 +307,7 @@ class PathTracer {
   /// Follows a ray that meets a body by itself.
   void leave_pencil(const Pencil& p, std::size_t j) noexcept {
     LightPath path;
-    Ray ray = p.rays.ray(j);
-    ray.near = p.rays.begin[j];
-    path.start(ray);
+    path.start(ray_of(p, j));
     path.sent = p.sent[j];
     path.both = p.both[j];
     path.optical = p.delay[j];
