@@ -382,7 +382,8 @@ TEST_CASE("the velocity of a ghost is that of the image, in a mirror that moves"
   const MovingScene<Mesh> scene(
       {moving(rectangle({0, 10, 0}, 9.0 * side, 9.0 * cross(normal, side), clean(SmoothInterface::mirror())), of_mirror),
        moving(rectangle({30, 10, 0}, 90.0 * axis::forward, 90.0 * axis::up, Material{.reflectance = 0.5}), of_wall),
-       moving(rectangle({0, 10.5, 0}, 9.0 * side, 9.0 * cross(normal, side), Material{}), {9, 9, 9})},  // behind the mirror
+       moving(rectangle(Vec3{0.5, 11, 1.5} - 0.5 * normal - 0.5 * Vec3{9, 9, 9}, 9.0 * side, 9.0 * cross(normal, side), Material{}),
+              {9, 9, 9})},  // behind the mirror by then
       {.to = 10});
   const auto pose = from_to({0, 0, 0}, {0.3, 10, 0.1});
   for (const double waist : {0.0, 0.01}) {
