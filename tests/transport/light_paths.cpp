@@ -382,17 +382,23 @@ TEST_CASE("the velocity of a ghost is that of the image, in a mirror that moves"
   const MovingScene<Mesh> scene(
       {moving(rectangle({0, 10, 0}, 9.0 * side, 9.0 * cross(normal, side), clean(SmoothInterface::mirror())), of_mirror),
        moving(rectangle({30, 10, 0}, 90.0 * axis::forward, 90.0 * axis::up, Material{.reflectance = 0.5}), of_wall),
-       moving(rectangle(Vec3{0.5, 11, 1.5} - 0.5 * normal - 0.5 * Vec3{9, 9, 9}, 9.0 * side, 9.0 * cross(normal, side), Material{}),
+       moving(rectangle(Vec3{0.5, 11, 1.5} - 0.01 * normal - 0.5 * Vec3{9, 9, 9}, 9.0 * side, 9.0 * cross(normal, side), Material{}),
               {9, 9, 9})},  // behind the mirror by then
       {.to = 10});
   const auto pose = from_to({0, 0, 0}, {0.3, 10, 0.1});
-  for (const double waist : {0.0, 0.01}) {
-    support::Lamp lamp{.laser = {.divergence = 1e-3, .waist_diameter = waist}, .tick = Tick::of_seconds(0.5)};
-    const auto seen = traced<true>(LightPaths{}, scene, pose, SingleRay{}, lamp);
-    REQUIRE(seen.reflections.size() == 1);
-    const Vec3 image = mirrored(of_wall, normal) + 2 * dot(of_mirror, normal) * normal;
-    CHECK(seen.reflections[0].velocity == doctest::Approx(dot(image, pose.rotation * axis::forward)).epsilon(1e-12));
-  }
+  const Vec3 image = mirrored(of_wall, normal) + 2 * dot(of_mirror, normal) * normal;
+  const auto check = [&](const auto& footprint, const Laser& laser) {
+    const auto seen =
+        traced<true>(LightPaths{.passages = 1}, scene, pose, footprint, support::Lamp{.laser = laser, .tick = Tick::of_seconds(0.5)});
+    REQUIRE(seen.reflections.size() == footprint.size());
+    const SubrayDirections beam(footprint, Emitter{.laser = laser});
+    for (std::size_t j = 0; j < footprint.size(); ++j)
+      CHECK(seen.reflections[j].velocity ==
+            doctest::Approx(dot(image, pose.rotation * Vec3{beam.x[j], beam.y[j], beam.z[j]})).epsilon(1e-9));
+  };
+  check(SingleRay{}, {.divergence = 0});
+  check(SingleRay{}, {.divergence = 1e-3, .waist_diameter = 0.01});
+  check(LatticeFootprint(19), {.divergence = 0.1});
 }
 
 TEST_CASE("glass that grows towards the target delays its light, and so does water that rises") {
