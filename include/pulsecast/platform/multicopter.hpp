@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/gravity.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/platform/heading.hpp>
@@ -19,9 +20,6 @@
 #include <pulsecast/platform/speed_profile.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-/// Standard acceleration of gravity [m/s^2]. Source: 3rd CGPM, 1901.
-inline constexpr double standard_gravity = 9.80665;
 
 /// Waypoint of a multicopter.
 struct FlightPoint {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/gravity.hpp>
 #include <pulsecast/base/lanes.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/shared_array.hpp>
@@ -18,9 +19,6 @@
 #include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-/// Standard acceleration of gravity [m/s^2]. Source: 3rd CGPM, 1901.
-inline constexpr double standard_gravity = 9.80665;
 
 /// Angular frequency of waves on deep water of 20 degrees Celsius, by gravity and surface tension [rad/s]; `wavenumber` in rad/m.
 /// Source: Lamb 1932, Hydrodynamics, article 267; surface tension: IAPWS R1-76(2014), over the density of water, 998.2 kg/m^3.
