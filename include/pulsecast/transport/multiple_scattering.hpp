@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include <pulsecast/base/require.hpp>
-#include <pulsecast/base/units.hpp>
+#include <pulsecast/base/vector.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -38,7 +38,7 @@ class ScatteredPaths {
       passed_ += share;
       // the k-th path belongs to the subray in which the sum of shares reaches (k + u) / paths
       for (; next_ < settings_.paths && (static_cast<double>(next_) + draw(next_, 0)[0]) / paths < passed_; ++next_) {
-        if (!hits[j].met() || !(share > 0) || surfaces[j].material->smooth.passes_light()) continue;
+        if (!hits[j].met() || !light_.gate.contains(hits[j].range) || !(share > 0) || surfaces[j].material->smooth.passes_light()) continue;
         const Vec3 direction = p.rays.direction(j);
         follow({p.rays.origin + hits[j].range * direction, direction, surfaces[j].normal, surfaces[j].material, p.sent[j] / (share * paths),
                 hits[j].range},
