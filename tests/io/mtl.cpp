@@ -100,6 +100,7 @@ TEST_CASE("light that goes on has the keys of the format, and keys of the librar
           "newmtl body\nhelios_reflectance 0\nillum 7\nNi 1.6\n"
           "newmtl plain\nillum 2\nNi 1.45\n"
           "newmtl window\nhelios_reflectance 0\nTf 0.8 0.8 0.8\npulsecast_interface pane 0.004\n"
+          "newmtl thick\nillum 2\nNi 1.45\npulsecast_interface pane 0.01\n"
           "newmtl lake\nhelios_reflectance 0\npulsecast_interface water\npulsecast_medium 1.33 1.36 0.1 0.2 0.01\n"
           "newmtl wet\nhelios_reflectance 0.2\npulsecast_roughness 0.25\n"
           "newmtl sign\npulsecast_retroreflection 400\npulsecast_retroreflector prisms 1.58 0.02\n"
@@ -115,6 +116,7 @@ TEST_CASE("light that goes on has the keys of the format, and keys of the librar
   CHECK(m.at("plain").smooth.kind == InterfaceKind::none);
   CHECK(m.at("window").smooth.kind == InterfaceKind::pane);
   CHECK(m.at("window").smooth.inside.absorption == doctest::Approx(-std::log(0.8) / 0.004));
+  CHECK(m.at("thick").smooth.inside.index == doctest::Approx(1.45));
   CHECK(m.at("lake").smooth.kind == InterfaceKind::water);
   CHECK(m.at("lake").smooth.inside.scattering == 0.2);
   CHECK(m.at("lake").smooth.inside.backscatter == 0.01);

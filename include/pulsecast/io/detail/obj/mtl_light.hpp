@@ -86,13 +86,12 @@ template <class WordsOf>
 void set_own_light(Material& made, const tinyobj::material_t& m, const WordsOf& words_of) {
   const auto number = [](std::string_view word) { return *text::number_in<double>(word); };
   if (const auto words = words_of("pulsecast_interface"); !words.empty()) {
-    const Medium before = made.smooth.inside;
     if (words[0] == "mirror") made.smooth = SmoothInterface::mirror(number(words[1]));
     if (words[0] == "pane") made.smooth = SmoothInterface::pane(number(words[1]));
     if (words[0] == "glass") made.smooth = SmoothInterface::glass();
     if (words[0] == "water") made.smooth = SmoothInterface::water();
     if (words[0] == "none") made.smooth = {};
-    if (m.ior > 1 && words[0] != "mirror") made.smooth.inside = before;
+    if (m.ior > 1 && m.ior <= 4 && made.smooth.inside.index > 1) made.smooth.inside = {.index = m.ior};
   }
   if (const auto words = words_of("pulsecast_medium"); !words.empty()) {
     Medium& inside = made.smooth.inside = {.index = number(words[0])};
