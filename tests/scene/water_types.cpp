@@ -11,9 +11,11 @@
 
 #include <doctest/doctest.h>
 
+#include "support/refused_field.hpp"
 #include "support/relative.hpp"
 
 using namespace pulsecast;
+using support::refused_field;
 using support::relative;
 
 namespace {
@@ -24,16 +26,6 @@ const double nan_value = std::numeric_limits<double>::quiet_NaN();
 using enum JerlovType;
 constexpr std::array<JerlovType, 10> types{oceanic_i, oceanic_ia, oceanic_ib, oceanic_ii, oceanic_iii,
                                            coastal_1, coastal_3,  coastal_5,  coastal_7,  coastal_9};
-
-template <class Call>
-std::string refused_field(const Call& call) {
-  try {
-    call();
-  } catch (const SettingError& e) {
-    return e.field();
-  }
-  return "";
-}
 
 }  // namespace
 

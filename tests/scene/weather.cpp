@@ -16,9 +16,11 @@
 
 #include <doctest/doctest.h>
 
+#include "support/refused_field.hpp"
 #include "support/relative.hpp"
 
 using namespace pulsecast;
+using support::refused_field;
 using support::relative;
 
 namespace {
@@ -26,16 +28,6 @@ namespace {
 const double infinity = std::numeric_limits<double>::infinity();
 const double nan_value = std::numeric_limits<double>::quiet_NaN();
 const double pi = std::numbers::pi;
-
-template <class Call>
-std::string refused_field(const Call& call) {
-  try {
-    call();
-  } catch (const SettingError& e) {
-    return e.field();
-  }
-  return "";
-}
 
 /// Integral over the diameters of a precipitation by Gauss and Legendre with five points in each of 2000 intervals.
 template <class Function>

@@ -38,6 +38,13 @@ struct Traced {
   }
 };
 
+/// Power of all reflections together [W].
+[[nodiscard]] inline double power_of(const std::vector<Reflection>& reflections) {
+  double sum = 0;
+  for (const Reflection& r : reflections) sum += r.power;
+  return sum;
+}
+
 /// Settings of such pulses.
 struct Lamp {
   Laser laser{.divergence = 0};

@@ -19,6 +19,7 @@ using namespace pulsecast;
 using namespace pulsecast::literals;
 using support::clean;
 using support::from_to;
+using support::power_of;
 using support::rectangle;
 using support::traced;
 
@@ -27,12 +28,6 @@ namespace {
 using World = support::LightScene;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const Medium mist{.absorption = 0.01, .scattering = 0.04, .backscatter = 0.002};
-
-double power_of(const std::vector<Reflection>& reflections) {
-  double sum = 0;
-  for (const Reflection& r : reflections) sum += r.power;
-  return sum;
-}
 
 /// Power that a medium sends back from between two ranges, by a fine sum [W].
 double integral(const support::Lamp& lamp, const Medium& m, double near, double far, double fog_begin) {

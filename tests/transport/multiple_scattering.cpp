@@ -19,6 +19,7 @@
 
 using namespace pulsecast;
 using support::from_to;
+using support::power_of;
 using support::rectangle;
 using support::traced;
 
@@ -29,12 +30,6 @@ using World = support::LightScene;
 /// Scattering of so many orders by so many paths.
 LightPaths to_and_fro(std::size_t orders, std::size_t paths) {
   return {.spread_planes = false, .scattering = {.orders = orders, .paths = paths}};
-}
-
-double power_of(const std::vector<Reflection>& reflections) {
-  double sum = 0;
-  for (const Reflection& r : reflections) sum += r.power;
-  return sum;
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ using namespace pulsecast::literals;
 using namespace pulsecast::validation;
 using support::clean;
 using support::from_to;
+using support::power_of;
 using support::rectangle;
 using support::traced;
 
@@ -41,12 +42,6 @@ namespace {
 
 using World = support::LightScene;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-double power_of(const std::vector<Reflection>& reflections) {
-  double sum = 0;
-  for (const Reflection& r : reflections) sum += r.power;
-  return sum;
-}
 
 /// Midpoint rule.
 template <class F>

@@ -172,18 +172,16 @@ class PathTracer {
         continue;
       }
       while (end < p.rays.size && on_one_plane(level, first, end)) ++end;
-      const double scattered = scattered_share(surfaces[first], hits[first]);
+      const double reaching = 1 - scattered_share(surfaces[first], hits[first]);
+      const bool mirror = smooth.kind == InterfaceKind::mirror;
+      const double lost = mirror ? std::max(0.0, reaching - smooth.reflectance) : 0;  // a pane loses its own
+      for (std::size_t j = first; j < end; ++j) ledger_.shares.absorbed += lost * p.sent[j];
       if (p.passages + 1 == w_.levels.size()) {
-        for (std::size_t j = first; j < end; ++j) {
-          const double lost = smooth.kind == InterfaceKind::mirror ? std::max(0.0, 1 - scattered - smooth.reflectance) : 0;
-          ledger_.shares.absorbed += lost * p.sent[j];
-          ledger_.shares.cut += (1 - scattered - lost) * p.sent[j];
-        }
-      } else if (smooth.kind == InterfaceKind::mirror) {
-        for (std::size_t j = first; j < end; ++j) ledger_.shares.absorbed += std::max(0.0, 1 - scattered - smooth.reflectance) * p.sent[j];
-        send_mirrored(level, first, end, [&](std::size_t) noexcept { return std::min(smooth.reflectance, 1 - scattered); });
+        for (std::size_t j = first; j < end; ++j) ledger_.shares.cut += (reaching - lost) * p.sent[j];
+      } else if (mirror) {
+        send_mirrored(level, first, end, [&](std::size_t) noexcept { return reaching - lost; });
       } else {
-        pass_pane(level, first, end, smooth, 1 - scattered);
+        pass_pane(level, first, end, smooth, reaching);
       }
     }
   }
