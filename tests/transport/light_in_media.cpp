@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -26,7 +25,6 @@ using support::traced;
 namespace {
 
 using World = support::LightScene;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 const Medium mist{.absorption = 0.01, .scattering = 0.04, .backscatter = 0.002};
 
 /// Power that a medium sends back from between two ranges, by a fine sum [W].
