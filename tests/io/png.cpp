@@ -28,6 +28,7 @@ struct Point {
   ObjectId object = 0;
   double reflectance = 0.5;
   std::uint8_t number = 1;
+  ReflectionKind kind = ReflectionKind::surface;
 };
 
 /// Gives the points to a sink, so many a batch, each as the one echo of a shot from above.
@@ -42,7 +43,7 @@ void give(ImageWriter& writer, const std::vector<Point>& points, std::size_t a_b
                        .direction = -axis::up,
                        .first_echo = static_cast<std::uint32_t>(echoes.size()),
                        .echoes = 1});
-      echoes.push_back({.range = 8, .reflectance = p.reflectance, .object = p.object, .number = p.number});
+      echoes.push_back({.range = 8, .reflectance = p.reflectance, .object = p.object, .number = p.number, .kind = p.kind});
     }
     EchoBatch batch;
     batch.shots = shots;
@@ -88,8 +89,8 @@ std::vector<Point> field(std::size_t n, Vec3 corner = {0, 0, 0}) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < n; ++i) {
     const double x = 10 * uniform({.seed = 1, .pulse = i, .subray = 0}), y = 10 * uniform({.seed = 1, .pulse = i, .subray = 1});
-    points.push_back(
-        {corner + Vec3{x, y, std::sin(x) * std::cos(y)}, static_cast<ObjectId>(i % 3), x / 10, static_cast<std::uint8_t>(1 + i % 4)});
+    points.push_back({corner + Vec3{x, y, std::sin(x) * std::cos(y)}, static_cast<ObjectId>(i % 3), x / 10,
+                      static_cast<std::uint8_t>(1 + i % 4), static_cast<ReflectionKind>(i % reflection_kind_count)});
   }
   return points;
 }
@@ -177,14 +178,14 @@ TEST_CASE("the same points give the same bytes, however they come") {
 TEST_CASE("colours differ by what they tell") {
   const std::vector<Point> points = field(3000);
   std::set<std::string> pictures;
-  for (const ColourBy by : {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number})
+  for (const ColourBy by : {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number, ColourBy::kind})
     pictures.insert(png(points, {.width = 160, .height = 90, .colour_by = by}));
-  CHECK(pictures.size() == 4);
+  CHECK(pictures.size() == 5);
 
   ImageSettings settings = map;
   settings.point_size = 6;
-  const std::vector<Point> pair{{{0, 0, 0}, 1, 0.1, 1}, {{40, 0, 4}, 2, 0.9, 2}};
-  for (const ColourBy by : {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number}) {
+  const std::vector<Point> pair{{{0, 0, 0}, 1, 0.1, 1}, {{40, 0, 4}, 2, 0.9, 2, ReflectionKind::water}};
+  for (const ColourBy by : {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number, ColourBy::kind}) {
     settings.colour_by = by;
     const Picture picture = decoded(png(pair, settings));
     CHECK(picture.at(5, 50) != picture.at(195, 50));
@@ -214,7 +215,7 @@ TEST_CASE("values that are not finite harm no picture") {
   points[4].reflectance = std::numeric_limits<double>::infinity();
   points[5].number = 0;
   points[6].at = {1e300, 1e300, -1e300};
-  for (const ColourBy by : {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number})
+  for (const ColourBy by : {ColourBy::height, ColourBy::intensity, ColourBy::object, ColourBy::return_number, ColourBy::kind})
     CHECK(decoded(png(points, {.width = 16, .height = 9, .colour_by = by})).width == 16);
 }
 

@@ -11,6 +11,7 @@
 #include <span>
 
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/echo.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -91,6 +92,10 @@ inline constexpr std::array<Srgb, 7> okabe_ito{
   if (classification >= 64) return own[(classification - 64u) % own.size()];
   return classification < standard.size() ? standard[classification] : other;
 }
+
+/// Colours of the ways of returned light, by the number of `ReflectionKind`; distinct for every colour vision. Source: Okabe & Ito 2008.
+inline constexpr std::array<Srgb, reflection_kind_count> kind_colours{
+    {{184, 184, 184}, {86, 180, 233}, {0, 114, 178}, {213, 94, 0}, {204, 121, 167}, {240, 228, 66}}};
 
 }  // namespace PULSECAST_NAMESPACE::io
 

@@ -150,6 +150,9 @@ class Canvas {
           break;
         case ColourBy::return_number:
           colours.push_back(from_srgb(okabe_ito[static_cast<std::size_t>(std::max(p.value, 1.0f) - 1) % okabe_ito.size()]));
+          break;
+        case ColourBy::kind:
+          colours.push_back(from_srgb(kind_colours[static_cast<std::size_t>(p.value)]));
       }
     return colours;
   }
@@ -211,6 +214,8 @@ class ImageWriter {
         return echo.classification;
       case ColourBy::return_number:
         return echo.number;
+      case ColourBy::kind:
+        return static_cast<float>(echo.kind);
       // the golden ratio spreads the hues of consecutive numbers; 0 is olive, as it often is the ground
       case ColourBy::object:
         return static_cast<float>(std::fmod(0.3 + echo.object * (std::numbers::phi - 1), 1.0));

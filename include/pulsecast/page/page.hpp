@@ -90,6 +90,7 @@ inline void write_colours(page::detail::JsonWriter& json) {
   json.key("hues").array(256, [](std::size_t i) { return io::to_srgb(io::of_hue(static_cast<double>(i) / 256)); });
   json.key("classes").array(70, [](std::size_t i) { return io::of_class(static_cast<std::uint16_t>(i)); });
   json.member("kinds", io::okabe_ito);
+  json.member("light", io::kind_colours);
   json.end_object();
 }
 

@@ -98,8 +98,8 @@ async function checkFile() {
 
   // what was written is read, attribute by attribute
   const names = ['x', 'y', 'z', 'time', 'pulse', 'amplitude', 'reflectance', 'width', 'incidence', 'scan_angle', 'object', 'class', 'leg',
-                 'return_number', 'returns', 'channel', 'range']
-  const errors = [0.00026, 0.00026, 0.00026, 0.6e-7, 0, null, 0.00101, 0.00051, 0.26, 0.026, 0, 0, 0, 0, 0, 0, 0.001]
+                 'return_number', 'returns', 'channel', 'range', 'kind']
+  const errors = [0.00026, 0.00026, 0.00026, 0.6e-7, 0, null, 0.00101, 0.00051, 0.26, 0.026, 0, 0, 0, 0, 0, 0, 0.001, 0]
   const { length } = truth, read = JSON.parse(await page(
     `JSON.stringify(${JSON.stringify(names)}.map(name => [...pulsecast.points.arrays[name].subarray(0, ${length})]))`))
   truth.forEach((point, i) => names.forEach((name, k) =>
@@ -138,7 +138,7 @@ async function checkFile() {
     expect(await page(`document.querySelector('[aria-checked=true]').dataset.name`) === name, `${name} is chosen`)
     pictures.add((await seen()).colour)
   }
-  expect(pictures.size >= 13, `${pictures.size} kinds of colours`)
+  expect(pictures.size >= 14, `${pictures.size} kinds of colours`)
   await page(`pulsecast.choose('object')`)
   await rest()
   expect((await page(`document.getElementById('kinds').textContent`)).includes('</script><img'), 'objects have their names')

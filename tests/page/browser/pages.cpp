@@ -62,7 +62,8 @@ struct Shots {
                           .cos_incidence = 0.5 + 0.4 * u,
                           .object = static_cast<ObjectId>(i % 3),
                           .classification = static_cast<std::uint16_t>(2 + i % 5),
-                          .number = static_cast<std::uint8_t>(k)});
+                          .number = static_cast<std::uint8_t>(k),
+                          .kind = static_cast<ReflectionKind>(i % reflection_kind_count)});
     }
   }
   [[nodiscard]] EchoBatch batch() const { return {shots, echoes, {}, 0}; }
@@ -77,7 +78,7 @@ void write_truth(const std::string& path, std::span<const page::PagePoint> point
     out << '[' << p.position.x << ',' << p.position.y << ',' << p.position.z << ',' << p.time << ',' << p.pulse << ',' << p.amplitude << ','
         << p.reflectance << ',' << p.width * 1e9f << ',' << p.incidence * 180 / pi << ',' << p.scan_angle * 180 / pi << ',' << p.object
         << ',' << p.classification << ',' << p.leg << ',' << int{p.number} << ',' << int{p.returns} << ',' << int{p.channel} << ','
-        << std::hypot(p.to_instrument[0], p.to_instrument[1], p.to_instrument[2]) << ']';
+        << std::hypot(p.to_instrument[0], p.to_instrument[1], p.to_instrument[2]) << ',' << static_cast<int>(p.kind) << ']';
   }
   out << "]\n";
 }

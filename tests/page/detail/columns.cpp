@@ -103,7 +103,8 @@ std::vector<PagePoint> random_points(std::size_t n, std::uint64_t seed) {
                       .leg = static_cast<std::uint16_t>(3 * draw()),
                       .number = static_cast<std::uint8_t>(1 + 4 * draw()),
                       .returns = static_cast<std::uint8_t>(5 + 200 * draw()),
-                      .channel = static_cast<std::uint8_t>(16 * draw())});
+                      .channel = static_cast<std::uint8_t>(16 * draw()),
+                      .kind = static_cast<ReflectionKind>(reflection_kind_count * draw())});
   }
   return points;
 }
@@ -137,6 +138,7 @@ TEST_CASE("every attribute is read back, right to half its step") {
     check("channel", i, p.channel, 0);
     check("object", i, p.object, 0);
     check("class", i, p.classification, 0);
+    check("kind", i, static_cast<double>(p.kind), 0);
     check("key", i, p.key, 0);
     check("reflectance", i, static_cast<double>(p.reflectance), 0.001 + rounding);
     check("amplitude", i, static_cast<double>(p.amplitude), 0.0101 * static_cast<double>(p.amplitude));
@@ -163,11 +165,15 @@ TEST_CASE("what has no value is told as such") {
   CHECK(std::isfinite(all.columns.at("width")[3]));
 }
 
-TEST_CASE("widths and keys are left out unless they are wanted") {
+TEST_CASE("widths, kinds of light and keys are left out unless they are wanted") {
   auto points = random_points(10, 3);
-  for (PagePoint& p : points) p.width = 0;
+  for (PagePoint& p : points) {
+    p.width = 0;
+    p.kind = ReflectionKind::surface;
+  }
   const Decoded all = decoded(page_columns(points), 10);
   CHECK_FALSE(all.columns.contains("width"));
+  CHECK_FALSE(all.columns.contains("kind"));
   CHECK_FALSE(all.columns.contains("key"));
 }
 

@@ -56,7 +56,7 @@ TEST_CASE("what fits is kept, in pulse order, with all that its shot and echo we
                   .echoes = 2};
   const Echo echoes[] = {
       {.range = 10, .amplitude = 1e-6, .reflectance = 0.5, .width = 2e-9, .cos_incidence = 0.5, .object = 9, .classification = 5},
-      {.range = 20, .number = 2}};
+      {.range = 20, .number = 2, .kind = ReflectionKind::water}};
   EchoBatch batch;
   batch.shots = {&shot, 1};
   batch.echoes = echoes;
@@ -79,7 +79,9 @@ TEST_CASE("what fits is kept, in pulse order, with all that its shot and echo we
   CHECK(p.channel == 2);
   CHECK(p.number == 1);
   CHECK(p.returns == 2);
+  CHECK(p.kind == ReflectionKind::surface);
   CHECK(sample.points()[1].number == 2);
+  CHECK(sample.points()[1].kind == ReflectionKind::water);
   CHECK(sample.seen() == 2);
 }
 

@@ -9,7 +9,7 @@ import test from 'node:test'
 import { blockOf, load, near } from './load.mjs'
 
 const scale = Array.from({ length: 256 }, (_, i) => [i, 0, 255 - i]), kinds = [[1, 1, 1], [2, 2, 2], [3, 3, 3]]
-const survey = { objects: { 2: 'house' }, legs: [{ name: 'north' }], colours: { viridis: scale, greys: scale, hues: scale, classes: scale, kinds } }
+const survey = { objects: { 2: 'house' }, legs: [{ name: 'north' }], colours: { viridis: scale, greys: scale, hues: scale, classes: scale, kinds, light: kinds } }
 globalThis.document = { getElementById: () => ({ textContent: JSON.stringify(survey) }) }
 const { Colouring, attributes, brief, description, points, power, whole, written } =
   load('attributes.js', 'Colouring', 'attributes', 'brief', 'description', 'points', 'power', 'whole', 'written')
@@ -48,7 +48,7 @@ test('values have the unit of their attribute and the decimals of their step', (
   assert.deepEqual([brief('z', 123.456789), brief('incidence', 0.25), brief('amplitude', 1e-9)], ['123.5 m', '0.25°', '1 nW'])
 })
 
-test('a point is told with all its attributes, the width of its echo only where there are widths', () => {
+test('a point is told with all its attributes, the width of its echo and the way of its light only where they are there', () => {
   const columns = { return_number: [1], returns: [2], object: [2], class: [6], leg: [0], amplitude: [1e-3], reflectance: [0.5], pulse: [12345],
                     incidence: [10], scan_angle: [5], channel: [3], time: [7] }
   take(columns)
@@ -59,9 +59,10 @@ test('a point is told with all its attributes, the width of its echo only where 
   assert.equal(told.Pulse, '12\u202f345')
   assert.equal(told.Leg, 'north')
   assert.equal(told.Range, '1.000 m')
-  assert.ok(!('Echo width' in told))
-  take({ ...columns, width: [4] }, { width: 0.001 })
-  assert.equal(Object.fromEntries(description(0))['Echo width'], '4.000 ns')
+  assert.ok(!('Echo width' in told) && !('Light' in told))
+  take({ ...columns, width: [4], kind: [3] }, { width: 0.001 })
+  const more = Object.fromEntries(description(0))
+  assert.deepEqual([more['Echo width'], more.Light], ['4.000 ns', 'By a mirror'])
 })
 
 test('bars count all usual values of an amount, and kinds are told by their number', () => {

@@ -242,6 +242,8 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
   block.add(unlike(linear_codes("reflectance", points, 0.002, [](Point p) { return p.reflectance; })));
   block.add(logarithmic_codes("amplitude", points, 0.02, [](Point p) { return p.amplitude; }));
   block.add(unlike(linear_codes("incidence", points, 0.5, [](Point p) { return static_cast<double>(p.incidence) * 180 / pi; })));
+  if (std::any_of(points.begin(), points.end(), [](Point p) { return p.kind != ReflectionKind::surface; }))
+    block.add(listed_codes("kind", points, [](Point p) { return static_cast<std::uint32_t>(p.kind); }));
   if (std::any_of(points.begin(), points.end(), [](Point p) { return p.width != 0; }))
     block.add(linear_codes("width", points, 0.001, [](Point p) { return static_cast<double>(p.width) * 1e9; }));
   if (settings.keys) block.add(unlike(linear_codes("key", points, 1, [](Point p) { return p.key; })));

@@ -20,19 +20,20 @@ namespace PULSECAST_NAMESPACE::page {
 
 /// Point of a page: an echo with attributes of its shot.
 struct PagePoint {
-  Vec3 position{};                       ///< in the world [m]
-  double time = 0;                       ///< since the survey's start [s]
-  PulseIndex pulse = 0;                  ///< number of the pulse
-  std::array<float, 3> to_instrument{};  ///< vector from the point to the origin of its pulse [m]
-  float amplitude = 0, reflectance = 0;  ///< as in `Echo`, the amplitude in watts
-  float width = 0;                       ///< as in `Echo` [s]
-  float incidence = 0, scan_angle = 0;   ///< [rad]
-  ObjectId object = 0;                   ///< as in `Echo`
-  std::uint32_t key = 0;                 ///< for thinning: see `page_key`
-  std::uint16_t classification = 0;      ///< as in `Echo`
-  std::uint16_t leg = 0;                 ///< as in `Shot`
-  std::uint8_t number = 1, returns = 1;  ///< number of the echo, total of its pulse
-  std::uint16_t channel = 0;             ///< as in `Shot`
+  Vec3 position{};                                ///< in the world [m]
+  double time = 0;                                ///< since the survey's start [s]
+  PulseIndex pulse = 0;                           ///< number of the pulse
+  std::array<float, 3> to_instrument{};           ///< vector from the point to the origin of its pulse [m]
+  float amplitude = 0, reflectance = 0;           ///< as in `Echo`, the amplitude in watts
+  float width = 0;                                ///< as in `Echo` [s]
+  float incidence = 0, scan_angle = 0;            ///< [rad]
+  ObjectId object = 0;                            ///< as in `Echo`
+  std::uint32_t key = 0;                          ///< for thinning: see `page_key`
+  std::uint16_t classification = 0;               ///< as in `Echo`
+  std::uint16_t leg = 0;                          ///< as in `Shot`
+  std::uint8_t number = 1, returns = 1;           ///< number of the echo, total of its pulse
+  std::uint16_t channel = 0;                      ///< as in `Shot`
+  ReflectionKind kind = ReflectionKind::surface;  ///< as in `Echo`
 };
 
 /// Pseudo-random number of an echo, independent of the rest of the cloud. Source: Appleby 2011, MurmurHash3, fmix64.
@@ -73,7 +74,8 @@ class PageSample {
                            .leg = shot.leg,
                            .number = echo.number,
                            .returns = static_cast<std::uint8_t>(std::min<std::uint32_t>(shot.echoes, 255)),
-                           .channel = shot.channel});
+                           .channel = shot.channel,
+                           .kind = echo.kind});
         if (points_.size() >= most_ + most_ / 4 + 1) thin();
       }
   }

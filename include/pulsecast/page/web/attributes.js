@@ -10,6 +10,8 @@ const classNames = { 0: 'Never classified', 1: 'Unassigned', 2: 'Ground', 3: 'Lo
                      6: 'Building', 7: 'Low noise', 9: 'Water', 10: 'Rail', 11: 'Road surface', 13: 'Wire, guard', 14: 'Wire, conductor',
                      15: 'Transmission tower', 17: 'Bridge deck', 18: 'High noise' }  // source: ASPRS LAS 1.4 R15, table 17
 
+const kindNames = ['Direct', 'Through glass', 'From water', 'By a mirror', 'From the air', 'Scattered to and fro']
+
 /// Attributes of a point, in display order. Those with a `list` are categorical, the others numeric.
 const attributes = {
   z: { label: 'Height', unit: 'm', main: true },
@@ -18,6 +20,7 @@ const attributes = {
             colour: v => survey.colours.hues[Math.round(256 * ((0.3 + v * 0.6180339887) % 1)) % 256] },  // golden ratio, as in pictures
   class: { label: 'Class', list: true, main: true, colour: v => survey.colours.classes[v < 64 ? v : 64 + (v - 64) % 6],
            name: v => v in classNames ? `${v} ${classNames[v]}` : String(v) },
+  kind: { label: 'Light', list: true, colour: v => survey.colours.light[v], name: v => kindNames[v] ?? String(v) },
   return_number: { label: 'Return', list: true, main: true },
   returns: { label: 'Returns', list: true },
   reflectance: { label: 'Reflectance', unit: '' },
@@ -66,6 +69,7 @@ function description(i) {
   for (const name of ['range', 'amplitude', 'reflectance']) rows.push([attributes[name].label, written(name, value(name))])
   rows.push(['Return', `${value('return_number')} of ${value('returns')}`])
   rows.push(['Object', written('object', value('object'))], ['Class', written('class', value('class'))])
+  if (points.arrays.kind) rows.push(['Light', written('kind', value('kind'))])
   rows.push(['Time', written('time', value('time'))], ['Pulse', whole(value('pulse'))])
   for (const name of ['incidence', 'scan_angle', 'leg', 'channel']) rows.push([attributes[name].label, written(name, value(name))])
   if (points.arrays.width) rows.push(['Echo width', written('width', value('width'))])

@@ -15,7 +15,7 @@
 namespace PULSECAST_NAMESPACE::io {
 
 /// Meaning of a point's colour.
-enum class ColourBy : std::uint8_t { height, intensity, object, classification, return_number };
+enum class ColourBy : std::uint8_t { height, intensity, object, classification, return_number, kind };
 
 /// Settings of a picture.
 struct ImageSettings {
