@@ -135,6 +135,7 @@ struct House {
   int bays = 4;  ///< windows in a row
   int storeys = 3;
   MaterialIndex wall = plaster;
+  bool shop = false;  ///< a shop on its ground floor, behind one wide window a bay
 
   [[nodiscard]] double width() const noexcept { return 2.7 * bays; }  ///< [m]
 };
@@ -150,8 +151,9 @@ struct House {
   for (int i = 0; i < kind.storeys; ++i) {
     for (int k = 0; k < kind.bays; ++k) {
       const bool entry = i == 0 && k == 1;
-      const double low = plinth + storey * i, high = low + storey, left = bay * k, right = left + bay;
-      const double l = left + 0.75, r = right - 0.75, sill = low + (entry ? 0 : 0.9), lintel = low + 2.5;
+      const bool wide = kind.shop && i == 0 && !entry;
+      const double low = plinth + storey * i, high = low + storey, left = bay * k, right = left + bay, wall = wide ? 0.15 : 0.75;
+      const double l = left + wall, r = right - wall, sill = low + (entry ? 0 : wide ? 0.2 : 0.9), lintel = low + 2.5;
       add_upright(mesh, left, l, 0, low, high, kind.wall);
       add_upright(mesh, r, right, 0, low, high, kind.wall);
       add_upright(mesh, l, r, 0, lintel, high, kind.wall);
@@ -159,11 +161,21 @@ struct House {
       for (const double z : {sill, lintel}) add_face(mesh, {{l, 0, z}, {r, 0, z}, {r, reveal, z}, {l, reveal, z}}, kind.wall);
       for (const double x : {l, r}) add_face(mesh, {{x, 0, sill}, {x, reveal, sill}, {x, reveal, lintel}, {x, 0, lintel}}, kind.wall);
       add_upright(mesh, l, r, reveal, sill, lintel, entry ? door : glass);
-      if (entry) continue;
+      if (entry || wide) continue;
       const double bars = 0.8 * reveal, middle = (l + r) / 2, cross = sill + 1.05;
       add_upright(mesh, middle - 0.04, middle + 0.04, bars, sill, lintel, frame);
       add_upright(mesh, l, r, bars, cross - 0.04, cross + 0.04, frame);
     }
+  }
+  if (kind.shop) {
+    constexpr double back = 4;  // of the room behind the windows
+    add_upright(mesh, 0, width, back, plinth, plinth + storey, plaster);
+    for (const double z : {plinth, plinth + storey}) add_face(mesh, {{0, 0.3, z}, {width, 0.3, z}, {width, back, z}, {0, back, z}}, paving);
+    for (double x = 0.8; x < width; x += 1.3) {  // what it sells: vases on a shelf, and taller ones before it
+      add_tube(mesh, {x, 0.8, plinth}, {x, 0.8, plinth + 1.1}, 0.22, 0.1, 12, door);
+      add_tube(mesh, {x + 0.5, 2.4, plinth}, {x + 0.5, 2.4, plinth + 1.7}, 0.1, 0.3, 12, brick);
+    }
+    add_face(mesh, {{0, 3.2, 1.6}, {width, 3.2, 1.6}, {width, 3.8, 1.6}, {0, 3.8, 1.6}}, frame);
   }
   const double ridge = eaves + 3.4, beyond = 0.4, drop = beyond * 3.4 / (depth / 2);
   for (const double x : {0.0, width}) {
@@ -255,10 +267,14 @@ struct House {
 using Mesh = pulsecast::TriangleMesh<>;
 using Scene = pulsecast::Scene<Mesh>;
 
+/// Houses of six kinds.
+using Houses = std::array<House, 6>;
+inline constexpr Houses dwellings{House{3, 2, plaster}, House{4, 3, plaster}, House{3, 3, brick},
+                                  House{5, 3, plaster}, House{4, 2, brick},   House{3, 4, plaster}};
+
 /// The streets of a seed. The ground is object 0.
-[[nodiscard]] inline Scene scene(std::uint64_t seed) {
+[[nodiscard]] inline std::vector<Scene::Part> parts(std::uint64_t seed, const Houses& kinds, const pulsecast::MaterialTable& table) {
   const auto model = [](const MeshData& mesh) { return std::make_shared<const Mesh>(mesh); };
-  const auto table = pulsecast::material_table(materials());
   std::vector<Scene::Part> parts;
   const auto place = [&](const std::shared_ptr<const Mesh>& shape, const Vec3& at, double turn) {
     parts.push_back(
@@ -267,8 +283,6 @@ using Scene = pulsecast::Scene<Mesh>;
   place(model(ground()), {}, 0);
 
   Dice dice(seed, 1);
-  const std::array kinds{House{3, 2, plaster}, House{4, 3, plaster}, House{3, 3, brick},
-                         House{5, 3, plaster}, House{4, 2, brick},   House{3, 4, plaster}};
   std::vector<std::shared_ptr<const Mesh>> houses;
   for (const House& kind : kinds) houses.push_back(model(house(kind)));
   const auto post = model(lamp_post()), hatchback = model(car());
@@ -308,7 +322,9 @@ using Scene = pulsecast::Scene<Mesh>;
   build_row({-side, y}, {-near, y});
   build_row({side, -y}, {near, -y});
   build_row({-near, -y}, {-side, -y});
-  return Scene(std::move(parts));
+  return parts;
 }
+
+[[nodiscard]] inline Scene scene(std::uint64_t seed) { return Scene(parts(seed, dwellings, pulsecast::material_table(materials()))); }
 
 }  // namespace street

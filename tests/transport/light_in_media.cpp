@@ -75,6 +75,17 @@ TEST_CASE("fog without an end takes all of the light") {
   CHECK(seen.reflections.size() > 1000);
 }
 
+TEST_CASE("what fog sends back is left out from where the least share of it is left, as that of walls there") {
+  for (const double least : {1e-1, 1e-2, 1e-3, 1e-4}) {
+    const LightPaths light{.least_share = least, .air = Media({{.medium = mist}})};
+    const auto seen = traced(light, World({}), from_to({0, 0, 0}, axis::forward), RingFootprint(3), {.laser = {.divergence = 1e-3}});
+    double last = 0;
+    for (const Reflection& r : seen.reflections) last = std::max(last, r.range);
+    CHECK(last == doctest::Approx(-std::log(least) / mist.extinction()).epsilon(0.02));
+    CHECK(std::fabs(seen.imbalance()) < 1e-9);
+  }
+}
+
 TEST_CASE("fog is passed on every stretch of a path, once") {
   // a mirror at 45 degrees, and a wall to the right
   const Vec3 slant = normalize(Vec3{1, 1, 0});

@@ -143,7 +143,8 @@ class LinkBudget {
 
   /// As `power`, of light that spreads as over a range [m], and passes so much air both on its way out and back [m].
   [[nodiscard]] double power_through(double share, double backscatter, double range, double air) const noexcept {
-    return power(share, backscatter, range) * std::exp(both_ways_ * (air - range));
+    const double power_in_air = power(share, backscatter, range);
+    return air == range ? power_in_air : power_in_air * std::exp(both_ways_ * (air - range));
   }
   /// Received power [W] of a subray with this share of the pulse's energy that comes back into the aperture itself, after so much air [m].
   [[nodiscard]] double power_captured(double share, double air) const noexcept {

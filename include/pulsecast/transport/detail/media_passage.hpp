@@ -24,9 +24,17 @@ namespace PULSECAST_NAMESPACE::detail {
 /// Takes the light of one pulse through media: what they absorb and scatter, and what they send back.
 class MediaPassage {
  public:
-  /// `air`: media between the surfaces; `in_air`, `in_water`: memory for what media in the air and bodies send back.
-  MediaPassage(const Illumination& light, const Media& air, LightLedger& ledger, VolumeBins& in_air, VolumeBins& in_water) noexcept
-      : light_(light), air_(air), ledger_(ledger), in_air_(in_air), in_water_(in_water), particles_(light, ledger) {
+  /// `air`: media between the surfaces; `least_share` as in `LightPaths`; `in_air`, `in_water`: memory for what media in the air and bodies
+  /// send back.
+  MediaPassage(const Illumination& light, const Media& air, double least_share, LightLedger& ledger, VolumeBins& in_air,
+               VolumeBins& in_water) noexcept
+      : light_(light),
+        air_(air),
+        least_share_(least_share),
+        ledger_(ledger),
+        in_air_(in_air),
+        in_water_(in_water),
+        particles_(light, ledger) {
     const double interval = light.sample_interval > 0 ? light.sample_interval : light.emitter.laser.pulse_length / 16;
     in_air_.begin(speed_of_light / 2 * interval);
     in_water_.begin(speed_of_light / 2 * interval);
@@ -55,6 +63,7 @@ class MediaPassage {
     }
     std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(size), [](const End& a, const End& b) { return a.range < b.range; });
     const bool of_beam = p.passages == 0, meets_particles = of_beam && p.rays.first_subray == 0;
+    const double least = least_return() * together;
     std::size_t ended = 0;
     const auto same = [](double s) noexcept { return s; };
     const auto stretch = [&](double from, double to, const MediumRegion& region, double density) noexcept {
@@ -66,7 +75,7 @@ class MediaPassage {
         if (ended == size) return;
         double end = std::min(to, ends[ended].range);
         if (at < grains) end = std::min(end, grains);
-        const VolumeWay way{at, end, together * passed, loss, density * medium.backscatter, at + p.delay[middle]};
+        const VolumeWay way{at, end, together * passed, least, loss, density * medium.backscatter, at + p.delay[middle]};
         if (medium.backscatter > 0 && !(at < grains)) add_volume(in_air_, way, same, same);
         passed *= std::exp(-2 * loss * (end - at));
         at = end;
@@ -84,11 +93,13 @@ class MediaPassage {
 
   /// Takes a path through the media up to its next surface, at a range [m].
   void pass(LightPath& path, double range) noexcept {
+    const double least = least_return() * path.both;
     const auto stretch = [&](double from, double to, const Medium& medium, double density, VolumeBins& bins) noexcept {
       if (medium.backscatter > 0) {
         const VolumeWay way{from,
                             to,
                             path.both,
+                            least,
                             density * medium.extinction(),
                             density * medium.backscatter,
                             path.optical + from * path.medium().delay(),
@@ -130,6 +141,7 @@ class MediaPassage {
   struct VolumeWay {
     double from = 0, to = 0;  ///< ends of the stretch, from where `spread` counts [m]
     double both = 0;          ///< as in `Pencil`, at its beginning
+    double least = 0;         ///< least of it of which the return counts
     double extinction = 0;    ///< of the medium [1/m]
     double backscatter = 0;   ///< of the medium [1/(m sr)]
     double optical = 0;       ///< optical path up to its beginning [m]
@@ -140,10 +152,16 @@ class MediaPassage {
   void add_volume(VolumeBins& bins, const VolumeWay& way, const Spread& spread, const Air& air) noexcept {
     const double white = pi * way.backscatter, tooth = bins.spacing() / way.delay, aperture = light_.budget.aperture_radius();
     double both = way.both;
-    for (double at = way.from; at < way.to && both > least_return * way.both;) {
-      const double step = std::min(way.to - at, std::min(tooth, 0.1 * std::hypot(spread(at), aperture))), middle = at + step / 2;
-      const double left = std::exp(-2 * way.extinction * step);
-      const double length = way.extinction > 0 ? (1 - left) / (2 * way.extinction) : step;
+    double step = 0, left = 1, length = 0;
+    for (double at = way.from; at < way.to && both > way.least;) {
+      const double wide2 = spread(at) * spread(at) + aperture * aperture;
+      const double next = std::min(way.to - at, wide2 < 100 * tooth * tooth ? 0.1 * std::sqrt(wide2) : tooth);
+      if (next != step) {
+        step = next;
+        left = std::exp(-2 * way.extinction * step);
+        length = way.extinction > 0 ? (1 - left) / (2 * way.extinction) : step;
+      }
+      const double middle = at + step / 2;
       const double range = way.optical + way.delay * (middle - way.from);
       if (range > light_.gate.far) return;
       if (light_.gate.contains(range)) bins.add(range, light_.budget.power_through(both, white * length, spread(middle), air(middle)));
@@ -151,7 +169,8 @@ class MediaPassage {
       at += step;
     }
   }
-  static constexpr double least_return = 1e-9;  // share of the light below which that of a medium is left out
+  /// Share of light to and fro, of that with which it begins a way, below which what media send back is left out.
+  [[nodiscard]] double least_return() const noexcept { return std::max(1e-9, least_share_ * least_share_); }
 
   /// Turns what a medium sent back into reflections.
   void return_volume(const VolumeBins& bins, ReflectionKind kind) noexcept {
@@ -162,6 +181,7 @@ class MediaPassage {
 
   const Illumination& light_;
   const Media& air_;
+  double least_share_;
   LightLedger& ledger_;
   VolumeBins &in_air_, &in_water_;
   BeamParticles particles_;

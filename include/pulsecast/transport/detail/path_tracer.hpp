@@ -59,7 +59,7 @@ class PathTracer {
         least_share_(settings.least_share),
         w_(w),
         ledger_(light, reflections, result),
-        media_(light, settings.air, ledger_, w.in_air, w.in_water),
+        media_(light, settings.air, settings.least_share, ledger_, w.in_air, w.in_water),
         bodies_(map, light, settings.least_share, settings.passages, ledger_, media_),
         scattered_(map, light, settings.air, settings.scattering, ledger_) {}
 

@@ -37,9 +37,10 @@ class VolumeBins {
   /// Adds the power that returns from a range [m], to the two teeth beside it. Where they would be too many, every second is left out.
   void add(double range, double power) noexcept {
     if (!(power > 0) || power_.size() < 4) return;
-    if (end_ == 0) origin_ = std::floor(range / spacing_);
-    while (!has_room(range / spacing_)) thin_out();
-    const double at = range / spacing_, tooth = std::floor(at), beyond = at - tooth;
+    double at = range / spacing_;
+    if (end_ == 0) origin_ = std::floor(at);
+    for (; !has_room(at); at = range / spacing_) thin_out();
+    const double tooth = std::floor(at), beyond = at - tooth;
     if (tooth < origin_) move_up(static_cast<std::size_t>(origin_ - tooth));
     const auto i = static_cast<std::size_t>(tooth - origin_);
     for (; end_ < i + 2; ++end_) power_[end_] = 0;
