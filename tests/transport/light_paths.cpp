@@ -330,6 +330,28 @@ TEST_CASE("dirt on glass scatters, and is not passed on") {
   CHECK(seen.result.energy.missed / seen.result.energy.sent == doctest::Approx(0.7 * split.reflected));
 }
 
+TEST_CASE("an aperture catches no more of a narrow retroreflector's light than there is, also through a body") {
+  const Material sign{.reflectance = 0,
+                      .scattering = Scattering::retroreflective,
+                      .retroreflection = 700,
+                      .retroreflector = RetroreflectorKind::prisms,
+                      .retroreflection_width = 2e-3};
+  Material wide = sign;
+  wide.retroreflection_width = 0;
+  const SmoothInterface of_air{.kind = InterfaceKind::dielectric, .inside = {}};  // what a body of it does is nothing
+  for (const double y : {10.0, 40.0, 160.0}) {
+    CAPTURE(y);
+    const auto target = [&](const Material& m) { return rectangle({0, y, 0}, 3.0 * axis::right, 3.0 * axis::up, m); };
+    const auto face = [&](double at) { return rectangle({0, at, 0}, 3.0 * axis::right, 3.0 * axis::up, clean(of_air)); };
+    const auto power = [&](std::vector<World::Part> parts) {
+      return support::power_of(traced(LightPaths{}, World(std::move(parts)), from_to({0, 0, 0}, axis::forward), SingleRay{}).reflections);
+    };
+    const double x = 2 * std::pow(0.075 / (2e-3 * y), 2), caught = (1 - std::exp(-x)) / x;  // of a Gaussian lobe, by its middle
+    CHECK(power({target(sign)}) == doctest::Approx(caught * power({target(wide)})).epsilon(1e-12));
+    CHECK(power({face(5), face(6), target(sign)}) == doctest::Approx(power({target(sign)})).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("the range gate takes surfaces, not what passes light on") {
   const World scene(
       {rectangle({0, 1, 0}, 1.0 * axis::right, 1.0 * axis::up, Material{.reflectance = 0.1, .smooth = SmoothInterface::pane()}),

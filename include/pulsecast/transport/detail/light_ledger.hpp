@@ -20,6 +20,14 @@ struct LightWay {
   double velocity = 0;                            ///< rate at which the optical path to the place grows [m/s]
 };
 
+/// Share of a retroreflector's Gaussian lobe that the aperture catches from where light spreads as over a range [m], by that of a lobe much
+/// wider than it; 1 without a width.
+inline double caught(const LinkBudget& budget, const Material& material, double range) noexcept {
+  if (!(material.retroreflection_width > 0)) return 1;
+  const double apertures = budget.aperture_radius() / (material.retroreflection_width * range), x = 2 * apertures * apertures;
+  return x > 0 ? -std::expm1(-x) / x : 1;
+}
+
 /// Account of one pulse: shares of its energy by their end, and reflections.
 class LightLedger {
  public:

@@ -112,7 +112,7 @@ class PathTracer {
       goes_on |= surfaces[j].material->smooth.passes_light();
       if (refracts(surfaces[j])) continue;  // its path meets the surface once more
       const Hit at{hits[j].range + p.delay[j], hits[j].cos_incidence, hits[j].backscatter, hits[j].object, hits[j].classification};
-      if (surfaces[j].material->retroreflection_width > 0) power[j] *= caught(surfaces[j].material->retroreflection_width, at.range);
+      power[j] *= caught(light_.budget, *surfaces[j].material, at.range);
       LightWay way{p.kind, p.sent[j]};
       if constexpr (with_velocity) way.velocity = p.drift[j] + radial_velocity(map_, ray_of(p, j));
       ledger_.end_at(at, *surfaces[j].material, scattered_share(surfaces[j], hits[j]), power[j], way);
@@ -146,12 +146,6 @@ class PathTracer {
 
   static bool refracts(const HitSurface& surface) noexcept {
     return surface.material->smooth.passes_light() && !surface.material->smooth.keeps_pencils();
-  }
-
-  /// Light of a Gaussian lobe of a half angle [rad] that the aperture catches at a range [m], by that of one much wider than it.
-  double caught(double width, double range) const noexcept {
-    const double apertures = light_.budget.aperture_radius() / (width * range), x = 2 * apertures * apertures;
-    return x > 0 ? -std::expm1(-x) / x : 1;
   }
 
   double scattered_share(const HitSurface& surface, const Hit& hit) const noexcept {

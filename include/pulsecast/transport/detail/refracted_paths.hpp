@@ -70,7 +70,8 @@ class RefractedPaths {
   void end_at(const LightPath& path, const Point& at, const Face& face) noexcept {
     Hit hit{.range = path.optical, .cos_incidence = face.cosine, .object = at.object, .classification = at.classification};
     hit.backscatter = at.material->backscatter(hit.cos_incidence, light_.emitter.laser.wavelength);
-    const double power = light_.budget.power_through(path.both, hit.backscatter, path.spread(), path.air);
+    const double spread = path.spread(), wide = light_.budget.power_through(path.both, hit.backscatter, spread, path.air);
+    const double power = wide * caught(light_.budget, *at.material, spread);
     LightWay way{path.kind, path.sent};
     if constexpr (with_velocity) way.velocity = path.drift + path.medium().index * dot(at.velocity, path.ray.direction);
     ledger_.end_at(hit, *at.material, face.scattered, power, way);
