@@ -132,6 +132,7 @@ concept Accelerator = std::copyable<A> && std::constructible_from<A, std::span<c
 struct Surface {
   Vec3 normal{};               ///< unit, either side, in the geometry's own frame; zero for a surface without direction
   std::uint32_t material = 0;  ///< index into the material table of the part
+  bool foliage = false;        ///< true for one of many leaves of all directions, of whose incidence the normal tells the mean
 };
 
 /// Shape for ray intersection, in its own frame [m], shared by any number of parts. `memory()` is in bytes; `material_count()` is the least
@@ -196,6 +197,7 @@ struct Material;
 struct HitSurface {
   const Material* material = nullptr;  ///< owned by the target; of no meaning for a miss
   Vec3 normal{};                       ///< unit, either side; zero for a surface without direction
+  bool foliage = false;                ///< as in `Surface`
 };
 
 /// Map that also tells the materials and normals at the hits of a bundle, and answers for rays one by one, as `Scene`: light can go on there.

@@ -104,6 +104,7 @@ TEST_CASE("tilts of leaves of a size have the mean of all leaves, and are spheri
     ClosestHits nearest(rays);
     grid.closest(rays, nearest);
     if (!nearest.met(0)) continue;
+    CHECK(grid.surface(nearest.primitive_of(0), rays, 0).foliage);
     const double cosine = std::fabs(grid.surface(nearest.primitive_of(0), rays, 0).normal.z);
     mean += cosine;
     square += cosine * cosine;

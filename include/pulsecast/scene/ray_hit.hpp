@@ -51,6 +51,7 @@ struct SurfacePoint {
   Vec3 velocity{};                     ///< velocity of the surface at the ray's tick; zero unless the part moves [m/s]
   ObjectId object = 0;                 ///< object id of the part
   std::uint16_t classification = 0;    ///< ASPRS class of the material
+  bool foliage = false;                ///< as in `Surface`
 };
 
 }  // namespace PULSECAST_NAMESPACE

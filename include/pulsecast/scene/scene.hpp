@@ -29,14 +29,14 @@ namespace detail {
 /// What is noted of surfaces where nobody asks for them.
 struct NotesNothing {
   template <class Normal>
-  void operator()(std::size_t, std::size_t, const Material*, const Normal&) const noexcept {}
+  void operator()(std::size_t, std::size_t, const Material*, bool, const Normal&) const noexcept {}
 };
 /// Notes the surface of each hit.
 struct NotesSurfaces {
   std::span<HitSurface> surfaces;
   template <class Normal>
-  void operator()(std::size_t first, std::size_t end, const Material* material, const Normal& normal) const noexcept {
-    const HitSurface surface{material, normal()};
+  void operator()(std::size_t first, std::size_t end, const Material* material, bool foliage, const Normal& normal) const noexcept {
+    const HitSurface surface{material, normal(), foliage};
     for (std::size_t j = first; j < end; ++j) surfaces[j] = surface;
   }
 };
@@ -274,7 +274,8 @@ class Scene {
     Vec3 normal{};          ///< divided by the length of the directions, in the part's frame
     double min_cosine = 0;  ///< 1 for a surface without direction
     const Material* material = nullptr;
-    bool flat = false;  ///< same for every ray that met the primitive
+    bool flat = false;     ///< same for every ray that met the primitive
+    bool foliage = false;  ///< as in `Surface`
   };
 
   SurfaceSample sample_surface(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j) const noexcept {
@@ -283,13 +284,14 @@ class Scene {
       return {.normal = surface.normal / local.direction_length,
               .min_cosine = surface.normal == Vec3{} ? 1.0 : 0.0,
               .material = &(*part.materials)[surface.material],
-              .flat = FlatGeometry<Shape>};
+              .flat = FlatGeometry<Shape>,
+              .foliage = surface.foliage};
     };
     return visit_shape(look, part.geometry);
   }
 
   /// `placement_of(i)` returns the placement of part i.
-  /// `note(first, end, material, normal)` takes the surface that some rays met, with `normal()` in the world.
+  /// `note(first, end, material, foliage, normal)` takes the surface that some rays met, with `normal()` in the world.
   template <class PlacementOf, class Note>
   void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of,
                 const Note& note) const noexcept {
@@ -311,7 +313,8 @@ class Scene {
       const SurfaceSample sample = this->sample_surface(parts_[at], nearest.primitive_of(first), *local, first);
       while (end < rays.size && nearest.id[end] == nearest.id[first] && sample.flat)
         ++end;  // neighbouring rays often meet the same primitive
-      note(first, end, sample.material, [&] { return placement_of(at).rotation * (sample.normal * local->direction_length); });
+      note(first, end, sample.material, sample.foliage,
+           [&] { return placement_of(at).rotation * (sample.normal * local->direction_length); });
       const Backscatter law = sample.material->backscatter(rays.wavelength);
       const ObjectId object = parts_[at].object;
       const std::uint16_t classification = sample.material->classification;

@@ -153,7 +153,8 @@ struct ScaledVoxels {
 template <class Filling = OpaqueVoxels>
 class VoxelGrid {
  public:
-  static constexpr bool keyless = !std::same_as<Filling, TransmissiveVoxels>;  ///< as the concept KeylessGeometry describes
+  static constexpr bool of_leaves = std::same_as<Filling, TransmissiveVoxels>;  ///< true if its surfaces are foliage
+  static constexpr bool keyless = !of_leaves;                                   ///< as the concept KeylessGeometry describes
 
   explicit VoxelGrid(DeserializeTag tag) : index_(tag), columns_(tag) {}
 
@@ -190,7 +191,7 @@ class VoxelGrid {
 
   /// All hits of a ray with solid voxels: the closest one from each on. Light through leaves ends at its first leaf.
   void closest(const BundleOfOne& ray, HitBuffer& hits) const noexcept {
-    if constexpr (std::is_same_v<Filling, TransmissiveVoxels>)
+    if constexpr (of_leaves)
       hits.offer_first(ray, [this](const BundleOfOne& from, ClosestHit& first) noexcept { closest(from, first); });
     else
       hits.offer_chain(ray, [this](const BundleOfOne& from, ClosestHit& next) noexcept { closest(from, next); });
@@ -198,7 +199,7 @@ class VoxelGrid {
 
   template <class Rays>
   [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
-    return {columns_.normal(filling_, i, index_, rays, j), materials_.empty() ? 0U : materials_[i]};
+    return {columns_.normal(filling_, i, index_, rays, j), materials_.empty() ? 0U : materials_[i], of_leaves};
   }
 
   template <class Archive>

@@ -21,7 +21,9 @@
 namespace PULSECAST_NAMESPACE::detail {
 
 /// Follows light from surface to surface at random, and at each takes what returns straight to the receiver.
-/// Source: next-event estimation, Coveyou, Cain & Yost 1967; directions by the cosine, from a uniform disk.
+/// Foliage scatters as a leaf of it: of the normals of leaves of all directions, light meets each as often as its cosine of incidence says,
+/// so that they are by the cosine about its way back. Their mean is the phase function of a turbid medium of such leaves.
+/// Source: next-event estimation, Coveyou, Cain & Yost 1967; directions by the cosine, from a uniform disk; leaves: Ross 1981.
 template <OpticalTarget Map>
 class ScatteredPaths {
  public:
@@ -37,11 +39,11 @@ class ScatteredPaths {
       const double share = light_.beam.shares[p.rays.first_subray + j];
       passed_ += share;
       // the k-th path belongs to the subray in which the sum of shares reaches (k + u) / paths
-      for (; next_ < settings_.paths && (static_cast<double>(next_) + draw(next_, 0)[0]) / paths < passed_; ++next_) {
+      for (; next_ < settings_.paths && (static_cast<double>(next_) + draw(next_, 0).turn[0]) / paths < passed_; ++next_) {
         if (!hits[j].met() || !light_.gate.contains(hits[j].range) || !(share > 0) || surfaces[j].material->smooth.passes_light()) continue;
         const Vec3 direction = p.rays.direction(j);
-        follow({p.rays.origin + hits[j].range * direction, direction, surfaces[j].normal, surfaces[j].material, p.sent[j] / (share * paths),
-                hits[j].range},
+        follow({p.rays.origin + hits[j].range * direction, direction, normal_at(surfaces[j], direction, draw(next_, 0)),
+                surfaces[j].material, p.sent[j] / (share * paths), hits[j].range},
                next_);
       }
     }
@@ -51,32 +53,48 @@ class ScatteredPaths {
   /// Light that arrives at a surface.
   struct Arrival {
     Vec3 place{}, direction{};
-    Vec3 normal{};  ///< either side
+    Vec3 normal{};  ///< towards the light; zero for a surface without direction
     const Material* material = nullptr;
     double share = 0;  ///< share of the pulse's energy
     double way = 0;    ///< length of the way so far [m]
   };
 
-  std::array<double, 2> draw(std::size_t path, std::uint32_t order) const noexcept {
+  /// Random numbers of a surface on a path: uniform in [0, 1).
+  struct Draw {
+    std::array<double, 2> turn;  ///< for the direction in which light goes on
+    std::array<double, 2> leaf;  ///< for the normal of the leaf that it meets there
+  };
+  Draw draw(std::size_t path, std::uint32_t order) const noexcept {
     const auto words = random_words({light_.seed, light_.index, static_cast<std::uint32_t>(path), Purpose::scattering, order});
-    return {(words[0] + 0.5) * 0x1p-32, (words[1] + 0.5) * 0x1p-32};
+    const auto number = [&](std::size_t k) noexcept { return (words[k] + 0.5) * 0x1p-32; };
+    return {{number(0), number(1)}, {number(2), number(3)}};
+  }
+
+  /// Normal of a surface that light along a direction meets.
+  static Vec3 normal_at(const auto& surface, const Vec3& direction, const Draw& any) noexcept {
+    if (surface.normal == Vec3{}) return {};
+    return surface.foliage ? by_cosine(-direction, any.leaf[0], any.leaf[1]) : towards(surface.normal, direction);
   }
 
   void follow(Arrival at, std::size_t path) noexcept {
     const double wavelength = light_.emitter.laser.wavelength;
     for (std::size_t order = 2; order <= settings_.orders; ++order) {
-      const auto [u, v] = draw(path, static_cast<std::uint32_t>(order - 1));
-      const Vec3 normal = towards(at.normal, at.direction);
-      const bool leaf = normal == Vec3{};
-      Ray ray{.origin = at.place, .direction = leaf ? evenly(u, v) : by_cosine(normal, u, v), .near = apart, .tick = light_.pulse.tick};
+      const Draw any = draw(path, static_cast<std::uint32_t>(order - 1));
+      const auto [u, v] = any.turn;
+      const bool even = at.normal == Vec3{};
+      Ray ray{.origin = at.place, .direction = even ? evenly(u, v) : by_cosine(at.normal, u, v), .near = apart, .tick = light_.pulse.tick};
       name(ray);
-      const double per_draw = leaf ? 4 : 1 / dot(ray.direction, normal);  // inverse density of the directions
-      at.share *= per_draw * at.material->scattered(-at.direction, ray.direction, normal, wavelength);
+      const double per_draw = even ? 4 : 1 / dot(ray.direction, at.normal);  // inverse density of the directions
+      at.share *= per_draw * at.material->scattered(-at.direction, ray.direction, at.normal, wavelength);
       if (!(at.share > 0)) return;
       const auto hit = map_.closest_hit(ray);
       if (!hit) return;
       const auto next = map_.surface(*hit, ray);
-      at = {next.position,      ray.direction, next.normal, next.material, at.share * left(ray.origin, ray.direction, hit->range),
+      at = {next.position,
+            ray.direction,
+            normal_at(next, ray.direction, any),
+            next.material,
+            at.share * left(ray.origin, ray.direction, hit->range),
             at.way + hit->range};
       if (at.material->smooth.passes_light()) return;
       return_from(at, next.object, next.classification);
@@ -94,9 +112,9 @@ class ScatteredPaths {
   void return_from(const Arrival& at, ObjectId object, std::uint16_t classification) noexcept {
     const Vec3 back = light_.pulse.origin() - at.place, axis = light_.pulse.pose.rotation * axis::forward;
     const double distance = length(back);
-    const Vec3 direction = back / distance, normal = towards(at.normal, at.direction);
+    const Vec3 direction = back / distance;
     if (!(-dot(axis, direction) >= std::cos(settings_.field_of_view / 2))) return;
-    const double scattered = at.material->scattered(-at.direction, direction, normal, light_.emitter.laser.wavelength);
+    const double scattered = at.material->scattered(-at.direction, direction, at.normal, light_.emitter.laser.wavelength);
     if (!(scattered > 0)) return;
     Ray ray{.origin = at.place, .direction = direction, .near = apart, .tick = light_.pulse.tick};
     name(ray);
@@ -105,7 +123,7 @@ class ScatteredPaths {
     const double power = light_.budget.power_through(at.share * left(at.place, direction, distance), scattered, distance, both_ways);
     if (!(power > 0) || !light_.gate.contains(both_ways)) return;
     const Hit hit{.range = both_ways,
-                  .cos_incidence = normal == Vec3{} ? 1 : dot(normal, direction),
+                  .cos_incidence = at.normal == Vec3{} ? 1 : dot(at.normal, direction),
                   .object = object,
                   .classification = classification};
     ledger_.reflect(hit, power, {ReflectionKind::multiple});
