@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/scene/water_types.hpp>
+
 #include "support/file_errors.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
@@ -24,9 +26,9 @@ const support::TemporaryFolder folder;
 const std::filesystem::path path = folder.path() / "file";
 
 /// Reads a file with this text.
-MaterialLibrary mtl(const std::string& text) {
+MaterialLibrary mtl(const std::string& text, const std::vector<double>& wavelengths = {}) {
   std::ofstream(path, std::ios::binary) << text;
-  return read_mtl(path);
+  return read_mtl(path, {.wavelengths = wavelengths});
 }
 
 }  // namespace
@@ -135,6 +137,32 @@ TEST_CASE("light that goes on has the keys of the format, and keys of the librar
     CAPTURE(wrong);
     CHECK_THROWS_AS((void)mtl(std::string("newmtl a\n") + wrong + "\n"), FileError);
   }
+}
+
+TEST_CASE("water by a type is that of the laser's wavelength") {
+  const std::string lake = "newmtl lake\nhelios_reflectance 0\npulsecast_water ";
+  const char* const names[]{"I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C", "9C"};
+  for (int k = 0; k < 10; ++k) {
+    const SmoothInterface smooth = mtl(lake + names[k], {532e-9, 532e-9}).materials.at("lake").smooth;
+    const Medium expected = water(static_cast<JerlovType>(k), 532e-9);
+    CHECK(smooth.kind == InterfaceKind::water);
+    CHECK(smooth.inside.group_index == expected.group_index);
+    CHECK(smooth.inside.extinction() == expected.extinction());
+    CHECK(smooth.inside.backscatter == expected.backscatter);
+  }
+  CHECK(mtl(lake + "secchi 4", {532e-9}).materials.at("lake").smooth.inside.extinction() == doctest::Approx(1.7 / 4));
+  const MaterialLibrary dark = mtl(lake + "1C");
+  CHECK(dark.materials.at("lake").smooth.inside.extinction() == 0);
+  REQUIRE(dark.warnings.size() == 1);
+  CHECK(contains(dark.warnings[0], "line 3"));
+  CHECK(contains(dark.warnings[0], "taken as clear"));
+  for (const char* wrong : {"", "2C", "I II", "secchi", "secchi 100", "secchi 4 5"}) {
+    CAPTURE(wrong);
+    CHECK_THROWS_AS((void)mtl(lake + wrong, {532e-9}), FileError);
+  }
+  CHECK_THROWS_AS((void)mtl(lake + "1C", {532e-9, 1064e-9}), FileError);
+  CHECK_THROWS_AS((void)mtl(lake + "1C", {1550e-9}), FileError);
+  CHECK_THROWS_AS((void)mtl(lake + "secchi 4", {1064e-9}), FileError);
 }
 
 TEST_CASE("a reflectance above 1 is percent, with a warning; the limits are themselves allowed") {

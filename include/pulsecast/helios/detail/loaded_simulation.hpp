@@ -108,12 +108,24 @@ class WaveformLimits {
   bool las_;
 };
 
-/// Only implementation of `Simulation`.
-/// Transport of a scene with `<light>` or `<medium>`. @throws SettingError for boxes of media that overlap
-[[nodiscard]] inline LightPaths light_paths(const SceneSettings& scene, bool library_physics) {
+/// Wavelength of all channels, for media that are by it [m]. @throws SettingError if there are several
+[[nodiscard]] inline double wavelength_of(const SurveySettings& survey) {
+  const std::vector<ChannelSettings>& channels = survey.scanner.channels;
+  for (const ChannelSettings& channel : channels)
+    if (channel.wavelength != channels.front().wavelength)
+      throw SettingError("wavelength_nm (of another channel, with a preset of <medium>)", units::nanometre.number(channel.wavelength), "nm",
+                         "that of the first; give the coefficients of the medium instead");
+  return channels.front().wavelength;
+}
+
+/// Transport of a survey whose scene has `<light>` or `<medium>`. @throws SettingError for boxes of media that overlap, and presets beyond
+/// the wavelength
+[[nodiscard]] inline LightPaths light_paths(const SurveySettings& survey, bool library_physics) {
+  const SceneSettings& scene = survey.scene;
   const LightSettings light = scene.light.empty() ? LightSettings{} : scene.light.front();
   std::vector<MediumRegion> regions;
-  for (const MediumSettings& medium : scene.media) regions.push_back(medium.region());
+  for (const MediumSettings& medium : scene.media)
+    regions.push_back(medium.region(medium.preset == MediumPreset::none ? 0 : wavelength_of(survey)));
   return {.passages = static_cast<std::size_t>(light.passages),
           .least_share = light.least_share,
           .spread_planes = library_physics,
@@ -123,6 +135,7 @@ class WaveformLimits {
           .air = Media(std::move(regions))};
 }
 
+/// Only implementation of `Simulation`.
 class LoadedSimulation final : public Simulation {
  public:
   LoadedSimulation(const SurveySettings& survey, const Settings& settings, const PartProvider& provider)
@@ -272,9 +285,8 @@ class LoadedSimulation final : public Simulation {
 
   template <class Detector>
   void connect(std::vector<ReceiverUnit<RingFootprint, Detector>> units) {
-    const SceneSettings& scene = survey_.scene;
-    if (settings_.light_paths || scene.follows_light())
-      connect(std::move(units), validated(light_paths(scene, settings_.library_physics)));
+    if (settings_.light_paths || survey_.scene.follows_light())
+      connect(std::move(units), validated(light_paths(survey_, settings_.library_physics)));
     else
       connect(std::move(units), DirectLight{.spread_planes = settings_.library_physics});
   }

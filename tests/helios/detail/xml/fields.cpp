@@ -265,9 +265,9 @@ TEST_CASE("light and media of a scene are read, and what they cannot be is told"
   REQUIRE(scene.light.size() == 1);
   CHECK(scene.light[0] == LightSettings{.passages = 3, .orders = 2, .field_of_view = pi / 2});
   REQUIRE(scene.media.size() == 2);
-  CHECK(scene.media[0].region().bounds == Box{{0, 1, 2}, {3, 4, 5}});
+  CHECK(scene.media[0].region(0).bounds == Box{{0, 1, 2}, {3, 4, 5}});
   CHECK(scene.media[0].backscatter == 0.01);
-  CHECK(scene.media[1].region().bounds == everywhere());
+  CHECK(scene.media[1].region(0).bounds == everywhere());
   const auto fault = [&](const std::string& inside) { return told<SceneSettings>("<scene id=\"s\">" + inside + part); };
   CHECK(contains(fault(R"(<light passages="33"/>)"), "from 0 to 32"));
   CHECK(contains(fault(R"(<light orders="0"/>)"), "from 1 to 64"));
@@ -275,6 +275,29 @@ TEST_CASE("light and media of a scene are read, and what they cannot be is told"
   CHECK(contains(fault(R"(<medium absorption_perM="-1"/>)"), "from 0"));
   CHECK(contains(fault(R"(<medium scattering_perM="0.1" backscatter_perMSr="0.2"/>)"), "Medium::backscatter"));
   CHECK(contains(fault(R"(<medium min="1;1;1" max="0;0;0"/>)"), "MediumRegion::bounds"));
+}
+
+TEST_CASE("media are read by presets, too, and what does not go together is told") {
+  const std::string part = "<part>" + std::string(mesh) + "</part></scene>";
+  const SceneSettings scene = from<SceneSettings>(R"(<scene id="s"><medium preset="fog" visibility_m="200"/>
+    <medium preset="rain" rate_mmPerH="5" min="0;0;0" max="1;1;1"/>)" +
+                                                  part);
+  REQUIRE(scene.media.size() == 2);
+  const Medium thick = fog(200, 1550e-9);
+  CHECK(scene.media[0].region(1550e-9).medium.scattering == thick.scattering);
+  CHECK(scene.media[0].region(1550e-9).medium.backscatter == thick.backscatter);
+  CHECK(scene.media[1].region(905e-9).particles.lidar_ratio == rain(5, 905e-9).lidar_ratio);
+  CHECK(scene.media[1].region(905e-9).bounds == Box{{0, 0, 0}, {1, 1, 1}});
+  const auto fault = [&](const std::string& inside) { return told<SceneSettings>("<scene id=\"s\">" + inside + part); };
+  CHECK(contains(fault(R"(<medium preset="fogg" visibility_m="200"/>)"), "fog"));
+  CHECK(contains(fault(R"(<medium preset="fog"/>)"), "fog (visibility)"));
+  CHECK(contains(fault(R"(<medium preset="fog" visibility_m="2000"/>)"), "from 1 to 1000"));
+  CHECK(contains(fault(R"(<medium preset="fog" visibility_m="0"/>)"), "visibility_m"));
+  CHECK(contains(fault(R"(<medium preset="snow" rate_mmPerH="20"/>)"), "from 0.1 to 10"));
+  CHECK(contains(fault(R"(<medium preset="rain" visibility_m="200"/>)"), "visibility_m"));
+  CHECK(contains(fault(R"(<medium preset="haze" visibility_m="2000" rate_mmPerH="2"/>)"), "rate_mmPerH"));
+  CHECK(contains(fault(R"(<medium visibility_m="200"/>)"), "but for fog"));
+  CHECK(contains(fault(R"(<medium preset="fog" visibility_m="200" scattering_perM="0.1"/>)"), "with a preset"));
 }
 
 TEST_CASE("scale and translate replace, with a warning; rotations add up") {

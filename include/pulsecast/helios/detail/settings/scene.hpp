@@ -232,24 +232,62 @@ struct LightSettings {
   bool operator==(const LightSettings&) const = default;
 };
 
+/// Media by visibility or rate: the functions of `scene/weather.hpp`.
+enum class MediumPreset : std::uint8_t { none, fog, haze, dust, smoke, rain, snow };
+
 /// Medium in the air: `<medium>`, of this library. As `MediumRegion`.
 struct MediumSettings {
-  double absorption = 0;      ///< `absorption_perM` [1/m]
-  double scattering = 0;      ///< `scattering_perM` [1/m]
-  double backscatter = 0;     ///< `backscatter_perMSr` [1/(m sr)]
-  std::optional<Vec3> min{};  ///< lower corner of its box, default none; `min` [m]
-  std::optional<Vec3> max{};  ///< upper corner of its box, default none; `max` [m]
+  MediumPreset preset = MediumPreset::none;  ///< medium of the light's wavelength, instead of coefficients; `preset`
+  std::optional<double> visibility{};        ///< of fog, haze, dust and smoke; `visibility_m` [m]
+  std::optional<double> rate{};              ///< of rain and snow, melted; `rate_mmPerH` [mm/h]
+  double absorption = 0;                     ///< `absorption_perM` [1/m]
+  double scattering = 0;                     ///< `scattering_perM` [1/m]
+  double backscatter = 0;                    ///< `backscatter_perMSr` [1/(m sr)]
+  std::optional<Vec3> min{};                 ///< lower corner of its box, default none; `min` [m]
+  std::optional<Vec3> max{};                 ///< upper corner of its box, default none; `max` [m]
 
-  /// The same for `LightPaths`.
-  [[nodiscard]] MediumRegion region() const {
+  /// The same for `LightPaths`, for light of a wavelength [m]. @throws SettingError for values out of range of a preset
+  [[nodiscard]] MediumRegion region(double wavelength) const {
     const Box all = everywhere();
-    return {.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter},
-            .bounds = {min.value_or(all.min), max.value_or(all.max)}};
+    MediumRegion made = contents(wavelength);
+    made.bounds = {min.value_or(all.min), max.value_or(all.max)};
+    return made;
   }
-  /// @throws SettingError for values out of range
-  void validate() const { region().validate(); }
+  /// @throws SettingError for values out of range, or that do not go together
+  void validate() const {
+    const bool drops = preset == MediumPreset::rain || preset == MediumPreset::snow, by_visibility = preset != MediumPreset::none && !drops;
+    if (visibility && !by_visibility) throw SettingError("visibility_m", *visibility, "m", "left out, but for fog, haze, dust and smoke");
+    if (rate && !drops) throw SettingError("rate_mmPerH", *rate, "mm/h", "left out, but for rain and snow");
+    if (preset != MediumPreset::none)
+      require_within("absorption_perM, scattering_perM or backscatter_perMSr, with a preset",
+                     std::max({absorption, scattering, backscatter}), 0, 0, "");
+    constexpr double known_to_all = 905e-9;
+    region(known_to_all).validate();
+  }
 
   bool operator==(const MediumSettings&) const = default;
+
+ private:
+  [[nodiscard]] MediumRegion contents(double wavelength) const {
+    const double far = visibility.value_or(0), fall = rate.value_or(0);
+    switch (preset) {
+      case MediumPreset::fog:
+        return {.medium = fog(far, wavelength)};
+      case MediumPreset::haze:
+        return {.medium = haze(far, wavelength)};
+      case MediumPreset::dust:
+        return {.medium = dust(far, wavelength)};
+      case MediumPreset::smoke:
+        return {.medium = smoke(far, wavelength)};
+      case MediumPreset::rain:
+        return MediumRegion::of(rain(fall, wavelength));
+      case MediumPreset::snow:
+        return MediumRegion::of(snow(fall, wavelength));
+      case MediumPreset::none:
+        break;
+    }
+    return {.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter}};
+  }
 };
 
 /// `<scene>`

@@ -160,6 +160,15 @@ void fields(Io& io, Of<Io, LightSettings>& light) {
 
 template <class Io>
 void fields(Io& io, Of<Io, MediumSettings>& medium) {
+  io.choice("preset", medium.preset,
+            {{"fog", MediumPreset::fog},
+             {"haze", MediumPreset::haze},
+             {"dust", MediumPreset::dust},
+             {"smoke", MediumPreset::smoke},
+             {"rain", MediumPreset::rain},
+             {"snow", MediumPreset::snow}});
+  io.number("visibility_m", medium.visibility, units::metre, 1, 1e5);
+  io.number("rate_mmPerH", medium.rate, units::one, 0.1, 300);
   io.number("absorption_perM", medium.absorption, units::one, 0, 1e6);
   io.number("scattering_perM", medium.scattering, units::one, 0, 1e6);
   io.number("backscatter_perMSr", medium.backscatter, units::one, 0, 1e6);

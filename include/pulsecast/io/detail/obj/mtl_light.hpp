@@ -4,6 +4,7 @@
 #define PULSECAST_IO_DETAIL_OBJ_MTL_LIGHT_HPP
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -16,6 +17,7 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/scene/material.hpp>
+#include <pulsecast/scene/water_types.hpp>
 
 /// Keys of MTL files for light that goes on from a surface.
 namespace PULSECAST_NAMESPACE::io::detail {
@@ -36,6 +38,14 @@ namespace PULSECAST_NAMESPACE::io::detail {
 /// True for a standard key of light that goes on.
 [[nodiscard]] inline bool is_light_key(std::string_view key) { return key == "illum" || key == "Ni" || key == "Tf" || key == "Pm"; }
 
+/// Jerlov's type of water by its name; empty for another word.
+[[nodiscard]] inline std::optional<JerlovType> jerlov_type(std::string_view word) {
+  constexpr std::array<std::string_view, 10> names{"I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C", "9C"};
+  const auto found = std::find(names.begin(), names.end(), word);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<JerlovType>(found - names.begin());
+}
+
 /// What is expected of a key's words; null if they are right, or the key is another.
 [[nodiscard]] inline const char* expected_of_light_key(std::string_view key, const std::vector<std::string_view>& words) {
   const auto is = [&](std::string_view word) { return !words.empty() && words[0] == word; };
@@ -51,6 +61,10 @@ namespace PULSECAST_NAMESPACE::io::detail {
     return right ? nullptr
                  : "an index from 1 to 4, and then, as far as given, a group index from 1 to 4, absorption, scattering and backscatter "
                    "from 0";
+  }
+  if (key == "pulsecast_water") {
+    const bool right = (words.size() == 1 && jerlov_type(words[0])) || (is("secchi") && numbers_from(words, 1, 1, 1, 0.1, 80));
+    return right ? nullptr : "a type of Jerlov's, I, IA, IB, II, III, 1C, 3C, 5C, 7C or 9C, or secchi and a depth from 0.1 to 80 m";
   }
   if (key == "pulsecast_roughness") return numbers_from(words, 0, 1, 1, 1e-3, 2) ? nullptr : "a root mean square slope from 0.001 to 2";
   if (key == "pulsecast_retroreflector") {
@@ -81,7 +95,13 @@ namespace PULSECAST_NAMESPACE::io::detail {
   return true;
 }
 
-/// Sets what a material passes on from the keys of this library, whose words are right. `words_of(key)` are those of a key.
+/// Water of a key's words, which are right, for light of a wavelength [m]. @throws SettingError for a wavelength out of range
+[[nodiscard]] inline SmoothInterface water_of(const std::vector<std::string_view>& words, double wavelength) {
+  if (const auto type = jerlov_type(words[0])) return SmoothInterface::water(water(*type, wavelength));
+  return SmoothInterface::water(secchi_water(*text::number_in<double>(words[1]), wavelength));
+}
+
+/// Sets what a material passes on from the keys of this library, but for water, whose words are right. `words_of(key)` are those of a key.
 template <class WordsOf>
 void set_own_light(Material& made, const tinyobj::material_t& m, const WordsOf& words_of) {
   const auto number = [](std::string_view word) { return *text::number_in<double>(word); };

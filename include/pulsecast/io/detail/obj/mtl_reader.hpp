@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <istream>
 #include <map>
@@ -132,7 +133,7 @@ class MtlReader : private StatementBuffer {
     } else if (!spectrum.empty()) {
       warn("helios_spectra", "refers to the spectrum '" + spectrum + "', which is in no library: a reflectance of 0.5 is assumed");
     }
-    set_light(made, m, extra);
+    set_light(made, m, extra, warn);
     made.classification = number_in<std::uint16_t>(extra("helios_classification")).value_or(made.classification);
     const std::string ground = text::lower(extra("helios_isGround"));
     made.ground = ground == "true" || ground == "1";
@@ -141,17 +142,41 @@ class MtlReader : private StatementBuffer {
     return made;
   }
 
-  template <class Extra>
-  void set_light(Material& made, const tinyobj::material_t& m, const Extra& extra) const {
+  template <class Extra, class Warn>
+  void set_light(Material& made, const tinyobj::material_t& m, const Extra& extra, const Warn& warn) const {
     if (!set_standard_light(made, m))
       throw FileError(path(), "line " + std::to_string(lines_.at({m.name, "Ni"})), "the index Ni of a clear body: expected from 1 to 4");
-    std::vector<std::string> texts;
-    set_own_light(made, m, [&](const char* key) {
+    std::deque<std::string> texts;
+    const auto words_of = [&](const char* key) {
       texts.push_back(extra(key));
       std::vector<std::string_view> words;
       for (std::string_view left = text::trimmed(texts.back()); !left.empty();) words.push_back(text::take_word(left));
       return words;
-    });
+    };
+    if (const auto words = words_of("pulsecast_water"); !words.empty()) made.smooth = water_for_lasers(m.name, words, warn);
+    set_own_light(made, m, words_of);
+  }
+
+  /// Water for the wavelength of all lasers; clear, with a warning, if there is none.
+  template <class Warn>
+  [[nodiscard]] SmoothInterface water_for_lasers(const std::string& name, const std::vector<std::string_view>& words,
+                                                 const Warn& warn) const {
+    const std::vector<double>& all = spectra_.wavelengths;
+    const auto wrong = [&](const std::string& what) {
+      return FileError(path(), "line " + std::to_string(lines_.at({name, "pulsecast_water"})), what);
+    };
+    if (all.empty()) {
+      warn("pulsecast_water", "has water by a type, and no wavelength of a laser is known: it is taken as clear");
+      return SmoothInterface::water();
+    }
+    for (const double wavelength : all)
+      if (wavelength != all.front())
+        throw wrong("water by a type, for lasers of several wavelengths: expected one; pulsecast_medium has the coefficients");
+    try {
+      return water_of(words, all.front());
+    } catch (const SettingError& refused) {
+      throw wrong(refused.what());
+    }
   }
 
   [[nodiscard]] static std::string nanometres(double metres) { return pulsecast::detail::to_text(std::round(metres * 1e12) / 1e3); }
