@@ -270,7 +270,7 @@ class LoadedSimulation final : public Simulation {
     const auto units_by = [&](const auto& receiver_unit) {
       return ReceiverGroups(survey_.scanner).units(scanner, [&](const ChannelSettings& channel) {
         const double longest = std::min(2 * length(size) / speed_of_light + 20 * channel.pulse_length, 4e-6);
-        WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library);
+        WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library, follows_light());
         limits_.limit_record(waveform, odd);
         auto unit = receiver_unit(channel, waveform, noisy);
         if (const std::string air = air_warning(channel.wavelength, unit.receiver); !air.empty()) odd.push_back(air);
@@ -283,9 +283,11 @@ class LoadedSimulation final : public Simulation {
       connect<FullWaveform<Width>>(units_by(survey_receiver_unit<Width>));
   }
 
+  [[nodiscard]] bool follows_light() const { return settings_.light_paths || survey_.scene.follows_light(); }
+
   template <class Detector>
   void connect(std::vector<ReceiverUnit<RingFootprint, Detector>> units) {
-    if (settings_.light_paths || survey_.scene.follows_light())
+    if (follows_light())
       connect(std::move(units), validated(light_paths(survey_, settings_.library_physics)));
     else
       connect(std::move(units), DirectLight{.spread_planes = settings_.library_physics});
