@@ -16,10 +16,12 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/scene/scene.hpp>
+#include <pulsecast/transport/light_paths.hpp>
 
 #include "support/archetypes.hpp"
 #include "support/generators.hpp"
 #include "support/laws.hpp"
+#include "support/light.hpp"
 
 using namespace pulsecast;
 using support::LeastGeometry;
@@ -61,6 +63,9 @@ concept Grounded = requires(const Map& map) {
 };
 static_assert(Bounded<Layered<Discs, Discs>> && Grounded<Layered<Discs, Discs>>);
 static_assert(!Bounded<Layered<Discs, support::LeastRayTarget>> && !Grounded<Layered<Discs, support::LeastRayTarget>>);
+
+static_assert(OpticalTarget<Layered<Discs, Discs>> && OpticalTarget<Layered<Layered<Discs, Discs>, Discs>>);
+static_assert(!OpticalTarget<Layered<Discs, support::LeastRayTarget>>);
 
 }  // namespace
 
@@ -174,4 +179,44 @@ TEST_CASE("a cone misses layers if it misses each, and none that cannot tell") {
   std::size_t missed = 0;
   CHECK(support::cone_laws(Layered{low, high}, support::cones_from(10, 3, 3000), missed) == "");
   CHECK(missed > 1000);
+}
+
+TEST_CASE("light goes on through layers as through one scene of all their parts") {
+  using World = support::LightScene;
+  const Material kinds[]{{.reflectance = 0.5},
+                         {.reflectance = 0.1, .smooth = SmoothInterface::mirror(0.8)},
+                         {.reflectance = 0.02, .smooth = SmoothInterface::pane()},
+                         {.reflectance = 0.01, .smooth = SmoothInterface::glass()}};
+  std::size_t reflections = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<World::Part> all, still, moving;
+    for (std::uint32_t k = 0; k < 14; ++k) {
+      const Vec3 right = 5.0 * any.unit();
+      all.push_back(support::rectangle(any.point(12), right, 5.0 * normalize(cross(right, any.unit())), kinds[k % 4], k));
+      (any.uniform() < 0.5 ? still : moving).push_back(all.back());
+    }
+    const World one(all), first(still), second(moving);
+    const Layered layers{first, second};
+    const LightPaths light{.spread_planes = false,
+                           .scattering = {.orders = 3, .paths = 5},
+                           .air = Media({{.medium = {.scattering = 0.01, .backscatter = 1e-4}}})};
+    for (int k = 0; k < 5; ++k) {
+      const Pose<frame::Beam, frame::World> pose{any.rotation(), any.point(10)};
+      const support::Lamp lamp{.laser = {.divergence = 0.01}};
+      const auto expected = support::traced(light, one, pose, RingFootprint(3), lamp),
+                 seen = support::traced(light, layers, pose, RingFootprint(3), lamp);
+      REQUIRE(seen.reflections.size() == expected.reflections.size());
+      for (std::size_t j = 0; j < expected.reflections.size(); ++j) {
+        const Reflection &a = seen.reflections[j], &b = expected.reflections[j];
+        REQUIRE(a.range == b.range);
+        REQUIRE(a.power == b.power);
+        REQUIRE(a.object == b.object);
+        REQUIRE(a.kind == b.kind);
+      }
+      reflections += expected.reflections.size();
+    }
+  }
+  CHECK(reflections > 10'000);
 }

@@ -235,6 +235,31 @@ struct LightSettings {
 /// Media by visibility or rate: the functions of `scene/weather.hpp`.
 enum class MediumPreset : std::uint8_t { none, fog, haze, dust, smoke, rain, snow };
 
+namespace detail {
+
+/// Medium of a visibility [m], or of a rate [mm/h], for light of a wavelength [m]. @throws SettingError for values out of its range
+[[nodiscard]] inline MediumRegion medium_of(MediumPreset preset, double visibility, double rate, double wavelength) {
+  switch (preset) {
+    case MediumPreset::fog:
+      return {.medium = fog(visibility, wavelength)};
+    case MediumPreset::haze:
+      return {.medium = haze(visibility, wavelength)};
+    case MediumPreset::dust:
+      return {.medium = dust(visibility, wavelength)};
+    case MediumPreset::smoke:
+      return {.medium = smoke(visibility, wavelength)};
+    case MediumPreset::rain:
+      return MediumRegion::of(rain(rate, wavelength));
+    case MediumPreset::snow:
+      return MediumRegion::of(snow(rate, wavelength));
+    case MediumPreset::none:
+      break;
+  }
+  return {};
+}
+
+}  // namespace detail
+
 /// Medium in the air: `<medium>`, of this library. As `MediumRegion`.
 struct MediumSettings {
   MediumPreset preset = MediumPreset::none;  ///< medium of the light's wavelength, instead of coefficients; `preset`
@@ -249,7 +274,9 @@ struct MediumSettings {
   /// The same for `LightPaths`, for light of a wavelength [m]. @throws SettingError for values out of range of a preset
   [[nodiscard]] MediumRegion region(double wavelength) const {
     const Box all = everywhere();
-    MediumRegion made = contents(wavelength);
+    MediumRegion made = preset == MediumPreset::none
+                            ? MediumRegion{.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter}}
+                            : detail::medium_of(preset, visibility.value_or(0), rate.value_or(0), wavelength);
     made.bounds = {min.value_or(all.min), max.value_or(all.max)};
     return made;
   }
@@ -266,28 +293,6 @@ struct MediumSettings {
   }
 
   bool operator==(const MediumSettings&) const = default;
-
- private:
-  [[nodiscard]] MediumRegion contents(double wavelength) const {
-    const double far = visibility.value_or(0), fall = rate.value_or(0);
-    switch (preset) {
-      case MediumPreset::fog:
-        return {.medium = fog(far, wavelength)};
-      case MediumPreset::haze:
-        return {.medium = haze(far, wavelength)};
-      case MediumPreset::dust:
-        return {.medium = dust(far, wavelength)};
-      case MediumPreset::smoke:
-        return {.medium = smoke(far, wavelength)};
-      case MediumPreset::rain:
-        return MediumRegion::of(rain(fall, wavelength));
-      case MediumPreset::snow:
-        return MediumRegion::of(snow(fall, wavelength));
-      case MediumPreset::none:
-        break;
-    }
-    return {.medium = {.absorption = absorption, .scattering = scattering, .backscatter = backscatter}};
-  }
 };
 
 /// `<scene>`
