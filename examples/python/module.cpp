@@ -22,6 +22,7 @@
 #include <pulsecast/python/ray_queries.hpp>
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/scene/water_types.hpp>
 #include <pulsecast/version.hpp>
 
 #include "../pulsecast/loading.hpp"
@@ -59,7 +60,7 @@ void warn(const std::vector<std::string>& warnings) {
 /// Triangles of arrays, with one material.
 Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices, const py::object& triangles_given,
                          ObjectId object, double reflectance, std::uint16_t classification, bool ground,
-                         const std::optional<python::NumberArray>& texture) {
+                         const std::optional<python::NumberArray>& texture, const std::optional<SmoothInterface>& smooth) {
   const auto require_rows_of_three = [](const py::array& array, const std::string& field) {
     if (array.ndim() != 2) throw SettingError(field + " (dimensions)", static_cast<double>(array.ndim()), "", "2: shape (n, 3)");
     if (array.shape(1) != 3) throw SettingError(field + " (columns)", static_cast<double>(array.shape(1)), "", "3: shape (n, 3)");
@@ -72,6 +73,7 @@ Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::arra
     throw py::type_error("Mesh triangles: expected whole numbers, not " + std::string(py::str(numbers.dtype())));
   const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles(numbers);
   Simulation::Mesh mesh{.material = {.reflectance = reflectance, .classification = classification, .ground = ground}, .object = object};
+  if (smooth) mesh.material.smooth = *smooth;
   mesh.material.validate();
   for (py::ssize_t i = 0; i < vertices.shape(0); ++i)
     mesh.data.vertices.push_back({vertices.at(i, 0), vertices.at(i, 1), vertices.at(i, 2)});
@@ -196,13 +198,48 @@ void bind_documents(py::module_& m) {
       "path"_a, "assets"_a = Paths{}, "Reads an XML document of scanners, platforms and scenes: a dict of three lists of settings.");
 }
 
+void bind_light(py::module_& m) {
+  py::class_<Medium>(m, "Medium", "Medium that light passes, at its wavelength.")
+      .def(py::init([](double index, double group_index, double absorption, double scattering, double backscatter) {
+             const Medium medium{index, group_index, absorption, scattering, backscatter};
+             medium.validate();
+             return medium;
+           }),
+           "index"_a = 1.0, "group_index"_a = 0.0, "absorption"_a = 0.0, "scattering"_a = 0.0, "backscatter"_a = 0.0,
+           "index: refractive index, from 1 to 4; group_index: vacuum speed of light by that of a pulse, 0 for the index; absorption, "
+           "scattering: coefficients [1/m]; backscatter: at most scattering [1/(m sr)]. Raises SettingError.")
+      .def_readonly("index", &Medium::index)
+      .def_readonly("group_index", &Medium::group_index)
+      .def_readonly("absorption", &Medium::absorption, "[1/m]")
+      .def_readonly("scattering", &Medium::scattering, "[1/m]")
+      .def_readonly("backscatter", &Medium::backscatter, "[1/(m sr)]")
+      .def_static(
+          "of_water",
+          [](const std::string& type, double wavelength) {
+            const auto known = jerlov_type(type);
+            if (!known)
+              throw py::value_error("Medium.of_water: '" + type +
+                                    "' is no type of water: expected I, IA, IB, II, III, 1C, 3C, 5C, 7C or 9C");
+            return water(*known, wavelength);
+          },
+          "type"_a, "wavelength"_a,
+          "Water of a type by Jerlov, from I, the clearest ocean, to III, and from 1C to 9C, coasts, for a laser's wavelength [m]. Raises "
+          "ValueError and SettingError.");
+  py::class_<SmoothInterface>(m, "SmoothInterface", "Smooth surface that passes light on.")
+      .def_static("mirror", &SmoothInterface::mirror, "reflectance"_a = 0.95, "Mirror that reflects a share of the light.")
+      .def_static("pane", &SmoothInterface::pane, "thickness"_a = 4e-3, "Pane of clear glass [m].")
+      .def_static("glass", &SmoothInterface::glass, "Face of a body of clear glass, drawn as a closed shape.")
+      .def_static("water", &SmoothInterface::water, "inside"_a = Medium{.index = 1.33}, "Surface of water.");
+}
+
 void bind_mesh(py::module_& m) {
   py::class_<Simulation::Mesh>(m, "Mesh", "Triangles in the scene, in addition to the survey's own parts.")
       .def(py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
-           "ground"_a = false, "texture"_a = py::none(),
+           "ground"_a = false, "texture"_a = py::none(), "smooth"_a = py::none(),
            "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), vertex indices from 0; object: object id of its "
            "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry platforms; "
-           "texture: shape (m, 3, 2), texture coordinates of the corners, which ray queries interpolate.")
+           "texture: shape (m, 3, 2), texture coordinates of the corners, which ray queries interpolate; "
+           "smooth: SmoothInterface that passes light on, in a simulation with light_paths.")
       .def_property_readonly(
           "size", [](const Simulation::Mesh& mesh) { return mesh.data.triangles.size(); }, "Number of triangles.")
       .def("__repr__", [](const Simulation::Mesh& mesh) {
@@ -276,6 +313,7 @@ PYBIND11_MODULE(_core, m) {
   python::bind_common(m);
   bind_settings(m);
   bind_documents(m);
+  bind_light(m);  // of whose types meshes are told
   bind_mesh(m);
   bind_raycasting_scene(m);
   bind_simulation(m);

@@ -44,6 +44,15 @@ TEST_CASE("the attenuation of a type is that of the published tables, and linear
   for (std::size_t i = 0; i < types.size(); ++i) CHECK(std::fabs(water_attenuation(types[i], 475e-9) - jerlov[i]) < 5e-4);
 }
 
+TEST_CASE("a type is known by its name") {
+  CHECK(jerlov_type("I") == JerlovType::oceanic_i);
+  CHECK(jerlov_type("III") == JerlovType::oceanic_iii);
+  CHECK(jerlov_type("1C") == JerlovType::coastal_1);
+  CHECK(jerlov_type("9C") == JerlovType::coastal_9);
+  CHECK(!jerlov_type("2C"));
+  CHECK(!jerlov_type(""));
+}
+
 TEST_CASE("a more turbid type weakens more at every wavelength, and none less than pure water") {
   for (double w = 0.35e-6; w <= 1.1e-6; w += 1e-9) {
     CAPTURE(w);

@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <optional>
+#include <string_view>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/scene/medium.hpp>
@@ -29,6 +31,14 @@ enum class JerlovType : std::uint8_t {
   coastal_7,    ///< 7C
   coastal_9,    ///< 9C: most turbid of the coasts
 };
+
+/// Type by its name, as Jerlov writes it: "IB" or "3C"; empty for another text.
+[[nodiscard]] inline std::optional<JerlovType> jerlov_type(std::string_view name) noexcept {
+  constexpr std::array<std::string_view, 10> names{"I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C", "9C"};
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<JerlovType>(found - names.begin());
+}
 
 namespace detail {
 

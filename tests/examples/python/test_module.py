@@ -189,6 +189,39 @@ def test_meshes_stand_beside_the_survey_s_own_parts(survey):
     assert np.abs(steep["reflectance"] / steep["cos_incidence"] - 0.25).max() < 0.01
 
 
+def test_a_mesh_that_passes_light_on_shows_ghosts(survey):
+    survey.scene.parts = []
+    for leg in survey.legs:
+        leg.platform.on_ground = False
+    down = np.array(SQUARE[0], float)
+    mirror = pulsecast.Mesh(down, SQUARE[1], object=1, reflectance=0, smooth=pulsecast.SmoothInterface.mirror(0.9))
+    ceiling = pulsecast.Mesh(down + [0, 0, 4], SQUARE[1], object=2)
+    points = simulation(survey, meshes=[mirror, ceiling], light_paths=True).run().points
+    ghosts = points[points["z"] < -1]
+    assert len(ghosts) > 100 and set(ghosts["object"]) == {2} and set(ghosts["kind"]) == {3}
+    assert np.abs(ghosts["z"] + 4).max() < 1e-3
+    lake = pulsecast.Mesh(down, SQUARE[1], reflectance=0, smooth=pulsecast.SmoothInterface.water(
+        pulsecast.Medium.of_water("1C", 532e-9)))
+    bottom = pulsecast.Mesh(down - [0, 0, 1], SQUARE[1], object=3)
+    wet = simulation(survey, meshes=[lake, bottom], light_paths=True).run().points
+    assert 3 in set(wet["object"]) and wet["z"].min() < -1.05
+
+
+def test_light_that_cannot_be_is_refused():
+    for wrong in ({"index": 0.9}, {"absorption": -1}, {"scattering": 1, "backscatter": 2}):
+        with pytest.raises(pulsecast.SettingError):
+            pulsecast.Medium(**wrong)
+    with pytest.raises(pulsecast.SettingError):
+        pulsecast.Medium.of_water("1C", 1550e-9)
+    with pytest.raises(ValueError, match="2C"):
+        pulsecast.Medium.of_water("2C", 532e-9)
+    for wrong in (pulsecast.SmoothInterface.mirror(1.5), pulsecast.SmoothInterface.pane(-1)):
+        with pytest.raises(pulsecast.SettingError):
+            pulsecast.Mesh(*SQUARE, reflectance=0, smooth=wrong)
+    with pytest.raises(pulsecast.SettingError):
+        pulsecast.Mesh(*SQUARE, reflectance=0.5, smooth=pulsecast.SmoothInterface.mirror(0.6))
+
+
 @pytest.mark.parametrize(("vertices", "triangles", "field"), [
     ([[0, 0]], [[0, 0, 0]], "vertices"), (SQUARE[0], [[0, 1]], "triangles"), (SQUARE[0], [[0, 1, 4]], "triangles"),
     (SQUARE[0], [[0, 1, -1]], "triangles"), (np.zeros(9), [[0, 1, 2]], "vertices (dimensions)"),

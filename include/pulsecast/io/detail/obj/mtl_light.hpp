@@ -4,7 +4,6 @@
 #define PULSECAST_IO_DETAIL_OBJ_MTL_LIGHT_HPP
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -37,14 +36,6 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 /// True for a standard key of light that goes on.
 [[nodiscard]] inline bool is_light_key(std::string_view key) { return key == "illum" || key == "Ni" || key == "Tf" || key == "Pm"; }
-
-/// Jerlov's type of water by its name; empty for another word.
-[[nodiscard]] inline std::optional<JerlovType> jerlov_type(std::string_view word) {
-  constexpr std::array<std::string_view, 10> names{"I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C", "9C"};
-  const auto found = std::find(names.begin(), names.end(), word);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<JerlovType>(found - names.begin());
-}
 
 /// What is expected of a key's words; null if they are right, or the key is another.
 [[nodiscard]] inline const char* expected_of_light_key(std::string_view key, const std::vector<std::string_view>& words) {
