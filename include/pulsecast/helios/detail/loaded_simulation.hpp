@@ -123,16 +123,15 @@ class WaveformLimits {
 [[nodiscard]] inline LightPaths light_paths(const SurveySettings& survey, bool library_physics) {
   const SceneSettings& scene = survey.scene;
   const LightSettings light = scene.light.empty() ? LightSettings{} : scene.light.front();
-  std::vector<MediumRegion> regions;
-  for (const MediumSettings& medium : scene.media)
-    regions.push_back(medium.region(medium.preset == MediumPreset::none ? 0 : wavelength_of(survey)));
+  const bool by_wavelength =
+      std::any_of(scene.media.begin(), scene.media.end(), [](const auto& m) { return m.preset != MediumPreset::none; });
   return {.passages = static_cast<std::size_t>(light.passages),
           .least_share = light.least_share,
           .spread_planes = library_physics,
           .scattering = {.orders = static_cast<std::size_t>(light.orders),
                          .paths = static_cast<std::size_t>(light.paths),
                          .field_of_view = light.field_of_view},
-          .air = Media(std::move(regions))};
+          .air = scene.air(by_wavelength ? wavelength_of(survey) : MediumSettings::known_wavelength)};
 }
 
 /// Only implementation of `Simulation`.

@@ -275,6 +275,8 @@ TEST_CASE("light and media of a scene are read, and what they cannot be is told"
   CHECK(contains(fault(R"(<medium absorption_perM="-1"/>)"), "from 0"));
   CHECK(contains(fault(R"(<medium scattering_perM="0.1" backscatter_perMSr="0.2"/>)"), "Medium::backscatter"));
   CHECK(contains(fault(R"(<medium min="1;1;1" max="0;0;0"/>)"), "MediumRegion::bounds"));
+  CHECK(contains(fault(R"(<medium min="0;0;0" max="2;2;2"/><medium min="1;1;1" max="3;3;3"/>)"), "Media (region)"));
+  CHECK(contains(fault(R"(<medium min="0;0;0" max="2;2;2"/><medium min="1;1;1" max="3;3;3"/>)"), "apart from it"));
 }
 
 TEST_CASE("media are read by presets, too, and what does not go together is told") {

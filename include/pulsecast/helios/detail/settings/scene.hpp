@@ -288,9 +288,9 @@ struct MediumSettings {
     if (preset != MediumPreset::none)
       require_within("absorption_perM, scattering_perM or backscatter_perMSr, with a preset",
                      std::max({absorption, scattering, backscatter}), 0, 0, "");
-    constexpr double known_to_all = 905e-9;
-    region(known_to_all).validate();
+    region(known_wavelength).validate();
   }
+  static constexpr double known_wavelength = 905e-9;  ///< for which all presets are known [m]
 
   bool operator==(const MediumSettings&) const = default;
 };
@@ -305,6 +305,12 @@ struct SceneSettings {
   std::vector<LightSettings> light{};   ///< `<light>`: the first counts; none: every ray ends at its first surface, unless there are media
   std::vector<MediumSettings> media{};  ///< `<medium>`
 
+  /// Media in its air, for light of a wavelength [m]. @throws SettingError for boxes that overlap, and as `MediumSettings::region`
+  [[nodiscard]] Media air(double wavelength) const {
+    std::vector<MediumRegion> regions;
+    for (const MediumSettings& medium : media) regions.push_back(medium.region(wavelength));
+    return Media(std::move(regions));
+  }
   /// True if light goes on from its surfaces.
   [[nodiscard]] bool follows_light() const { return !light.empty() || !media.empty(); }
 
@@ -312,6 +318,7 @@ struct SceneSettings {
     detail::require_at_least(1, "dynStep", dynamic_step);
     for (const LightSettings& one : light) one.validate();
     for (const MediumSettings& medium : media) medium.validate();
+    (void)air(MediumSettings::known_wavelength);
     if (dynamic_interval) require_positive("dynTimeStep", *dynamic_interval, "s");
     for (const PartSettings& part : parts) naming("part '" + part.id + "'", [&] { part.validate(); });
   }

@@ -188,6 +188,14 @@ template <class Io>
 void light_fields(Io& io, Of<Io, SceneSettings>& scene) {
   io.children("light", scene.light, [](auto& inner, auto& light) { fields(inner, light); });
   io.children("medium", scene.media, [](auto& inner, auto& medium) { fields(inner, medium); });
+  if constexpr (Io::reads) {
+    if (!io.report().is_clean()) return;
+    try {
+      (void)scene.air(MediumSettings::known_wavelength);
+    } catch (const SettingError& overlap) {
+      io.report().fault(io.place(), overlap.what());
+    }
+  }
 }
 
 /// Reads a scene. A part of several files and no id becomes several parts, each with a number.
