@@ -36,8 +36,8 @@ def mypy(tmp_path_factory):
 
 # What only pybind11's classes have, and what dataclasses without members have.
 ALLOWED = r"""
-pulsecast\.(_core\.)?(Batch|Mesh|RaycastingScene|Simulation)
-pulsecast\.(_core\.)?Batch\.(__init__|__pybind11_module_local_.*)
+pulsecast\.(_core\.)?(Batch|Medium|Mesh|RaycastingScene|Simulation|SmoothInterface)
+pulsecast\.(_core\.)?(Batch|SmoothInterface)\.(__init__|__pybind11_module_local_.*)
 pulsecast\.(_core\.)?(ConicOptic|NoMotion)\.__match_args__
 """
 

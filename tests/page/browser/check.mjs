@@ -184,7 +184,7 @@ async function checkFile() {
   near(parseFloat(value.Intensity) * (value.Intensity.endsWith('µW') ? 1e-6 : 1e-9), point[5], 0.016 * point[5], 'Intensity')
   expect(value.Return === `${point[13]} of ${point[14]}`, 'the return is told')
   expect(value.Pulse.replace(/\D/g, '') === String(point[4]), 'the pulse is told')
-  expect(value.Class.startsWith(`${point[11]} `) && told.length === 16, `all attributes are told: ${JSON.stringify(value)}`)
+  expect(value.Class.startsWith(`${point[11]} `) && told.length === 17, `all attributes are told: ${JSON.stringify(value)}`)
 
   // hands and keys move the view
   const azimuth = await page('pulsecast.view.camera.azimuth'), distance = await page('pulsecast.view.camera.distance')
