@@ -20,7 +20,6 @@ const attributes = {
             colour: v => survey.colours.hues[Math.round(256 * ((0.3 + v * 0.6180339887) % 1)) % 256] },  // golden ratio, as in pictures
   class: { label: 'Class', list: true, main: true, colour: v => survey.colours.classes[v < 64 ? v : 64 + (v - 64) % 6],
            name: v => v in classNames ? `${v} ${classNames[v]}` : String(v) },
-  kind: { label: 'Light', list: true, colour: v => survey.colours.light[v], name: v => kindNames[v] ?? String(v) },
   return_number: { label: 'Return', list: true, main: true },
   returns: { label: 'Returns', list: true },
   reflectance: { label: 'Reflectance', unit: '' },
@@ -31,6 +30,7 @@ const attributes = {
   time: { label: 'Time', unit: 's' },
   leg: { label: 'Leg', list: true, name: v => survey.legs[v]?.name ?? String(v) },
   channel: { label: 'Channel', list: true },
+  kind: { label: 'Light', list: true, colour: v => survey.colours.light[v], name: v => kindNames[v] ?? String(v) },
 }
 for (const attribute of Object.values(attributes)) {
   if (attribute.list) attribute.colour ??= v => survey.colours.kinds[(v + survey.colours.kinds.length - 1) % survey.colours.kinds.length]
