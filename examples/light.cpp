@@ -4,10 +4,11 @@
 // Light that goes on. A tripod in a foggy street, where shop windows, the mirrors of a car and a puddle show what is not where it seems;
 // a drone over a river, whose green light passes the waves down to the bed. Writes street.las, street.png, river.las and river.png.
 
-#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iostream>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -42,7 +43,8 @@ void scan(const auto& survey, const CommandLine& line, const std::string& name, 
 
 namespace town {
 
-enum More : std::uint32_t { mirror = street::leaf + 1, prisms, puddle };  ///< materials besides those of a street
+// materials besides those of a street
+constexpr street::MaterialIndex mirror{street::leaf + 1}, prisms{street::leaf + 2}, puddle{street::leaf + 3};
 
 MaterialTable materials(double wavelength) {
   std::vector<Material> all = street::materials();
@@ -68,8 +70,7 @@ MeshData car_with_mirrors() {
   for (const double side : {-1.0, 1.0}) {
     const Vec3 middle{side * 1.02, 0.75, 1.02};
     const Vec3 across{0.12, -0.02 * side, 0}, up{0, 0.01, 0.075};
-    street::add_face(mesh, {middle - across - up, middle + across - up, middle + across + up, middle - across + up},
-                     static_cast<street::MaterialIndex>(mirror));
+    street::add_face(mesh, {middle - across - up, middle + across - up, middle + across + up, middle - across + up}, mirror);
   }
   return mesh;
 }
@@ -80,7 +81,7 @@ MeshData sign() {
   street::add_tube(mesh, {0, 0.05, 0}, {0, 0.05, 2.9}, 0.04, 0.04, 8, street::metal);
   for (int k = 0; k < 24; ++k) {
     const auto rim = [&](int i) { return Vec3{0.3 * std::cos(i * 15_deg), 0, 2.6 + 0.3 * std::sin(i * 15_deg)}; };
-    street::add_face(mesh, {{0, 0, 2.6}, rim(k), rim(k + 1)}, static_cast<street::MaterialIndex>(prisms));
+    street::add_face(mesh, {{0, 0, 2.6}, rim(k), rim(k + 1)}, prisms);
   }
   return mesh;
 }
@@ -101,8 +102,7 @@ street::Scene scene(std::uint64_t seed, double wavelength) {
   for (const double y : {-70.0, -50.0, -30.0}) place(sign(), street::on({6.6, y}));
   MeshData water;
   const double level = street::height({-5.9, -79}) + 0.02;
-  street::add_face(water, {{-6, -91, level}, {-3, -91, level}, {-3, -66, level}, {-6, -66, level}},
-                   static_cast<street::MaterialIndex>(puddle));
+  street::add_face(water, {{-6, -91, level}, {-3, -91, level}, {-3, -66, level}, {-6, -66, level}}, puddle);
   place(water, {});
   return street::Scene(std::move(parts));
 }
@@ -110,10 +110,10 @@ street::Scene scene(std::uint64_t seed, double wavelength) {
 void scan(const CommandLine& line, double visibility, double step) {
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 3_ns, .divergence = 0.5_mrad};
   const Scanner scanner{.pulse_rate = 100_kHz, .pulses = static_cast<PulseIndex>(100_deg / step * 360_deg / step), .laser = laser};
-  const PolygonMirror mirror{.lines_per_second = scanner.pulse_rate * step / 100_deg, .sweep = 100_deg, .angle_min = -60_deg};
+  const PolygonMirror polygon{.lines_per_second = scanner.pulse_rate * step / 100_deg, .sweep = 100_deg, .angle_min = -60_deg};
   const RotatingHead head{.rate = 360_deg / scanner.duration().seconds()};
   const Vec3 foot = street::on({0.5, -82});
-  const Platform tripod{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}}, Deflector{head, Deflector{mirror, scanner}}};
+  const Platform tripod{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}}, Deflector{head, Deflector{polygon, scanner}}};
 
   const street::Scene map = scene(line.seed, laser.wavelength);
   const LightPaths light{.least_share = 1e-3, .air = Media({{.medium = fog(visibility, laser.wavelength)}})};
@@ -179,12 +179,13 @@ Scene scene(std::uint64_t seed, double depth, double wind, double wavelength) {
 
   std::vector<Material> of_trees = street::materials();
   of_trees[street::leaf].reflectance = 0.1;
+  const MaterialTable wood = material_table(std::move(of_trees));
   const auto tree = std::make_shared<const TriangleMesh<>>(street::tree(street::Dice(seed, 2)));
   street::Dice dice(seed, 3);
   for (int k = 0; k < 60; ++k) {
     const Vec2 at{dice.between(-half.x, half.x), dice.between(-half.y, half.y)};
     const double ground = height(at, depth), size = dice.between(0.8, 1.5), twist = dice.between(0, 6);
-    if (ground > 1.5) place(tree, material_table(of_trees), {rotation_about(axis::up, twist), size, {at.x, at.y, ground}});
+    if (ground > 1.5) place(tree, wood, {rotation_about(axis::up, twist), size, {at.x, at.y, ground}});
   }
   return Scene(std::move(parts));
 }

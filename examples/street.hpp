@@ -152,8 +152,8 @@ struct House {
     for (int k = 0; k < kind.bays; ++k) {
       const bool entry = i == 0 && k == 1;
       const bool wide = kind.shop && i == 0 && !entry;
-      const double low = plinth + storey * i, high = low + storey, left = bay * k, right = left + bay, wall = wide ? 0.15 : 0.75;
-      const double l = left + wall, r = right - wall, sill = low + (entry ? 0 : wide ? 0.2 : 0.9), lintel = low + 2.5;
+      const double low = plinth + storey * i, high = low + storey, left = bay * k, right = left + bay, margin = wide ? 0.15 : 0.75;
+      const double l = left + margin, r = right - margin, sill = low + (entry ? 0 : wide ? 0.2 : 0.9), lintel = low + 2.5;
       add_upright(mesh, left, l, 0, low, high, kind.wall);
       add_upright(mesh, r, right, 0, low, high, kind.wall);
       add_upright(mesh, l, r, 0, lintel, high, kind.wall);

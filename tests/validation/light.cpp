@@ -26,6 +26,7 @@
 #include "support/generators.hpp"
 #include "support/light.hpp"
 #include "support/scenes.hpp"
+#include "validation/integral.hpp"
 #include "validation/one_pulse.hpp"
 #include "validation/table.hpp"
 
@@ -42,14 +43,6 @@ namespace {
 
 using World = support::LightScene;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// Midpoint rule.
-template <class F>
-double integral(const F& f, double from, double to, int steps) {
-  double sum = 0;
-  for (int k = 0; k < steps; ++k) sum += f(from + (k + 0.5) / steps * (to - from));
-  return sum * (to - from) / steps;
-}
 
 }  // namespace
 

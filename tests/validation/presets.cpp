@@ -17,6 +17,7 @@
 #include <pulsecast/transport/light_paths.hpp>
 
 #include "support/light.hpp"
+#include "validation/integral.hpp"
 #include "validation/table.hpp"
 
 using namespace pulsecast;
@@ -31,15 +32,6 @@ using support::traced;
 namespace {
 
 using World = support::LightScene;
-
-/// Integral by Simpson's rule.
-template <class F>
-double integral(const F& f, double from, double to) {
-  constexpr int steps = 4000;
-  double sum = 0;
-  for (int k = 0; k <= steps; ++k) sum += (k == 0 || k == steps ? 1 : k % 2 == 1 ? 4 : 2) * f(from + (to - from) * k / steps);
-  return sum * (to - from) / (3.0 * steps);
-}
 
 /// What a pulse finds of a medium.
 struct Found {
@@ -65,7 +57,7 @@ Found found_in_air(const Medium& medium, double wavelength) {
   const double half = speed_of_light / 2 * lamp.laser.pulse_length / 16 / 2;  // of the distance of reflections
   const LinkBudget budget(lamp.receiver, lamp.laser);
   const auto even = [&](double s) { return budget.power(1, pi, s) * std::exp(-2 * extinction * s); };
-  return {extinction, extinction * integral(even, first - half, last + half) / back};
+  return {extinction, extinction * integral(even, first - half, last + half, 4000) / back};
 }
 
 /// Diffuse attenuation [1/m] of water over a bottom at 2 m, from the bottom's echo.
@@ -86,7 +78,7 @@ double found_in_water(const Medium& medium, double wavelength) {
 /// Extinction of particles [1/m]: twice their shadows, with so many per volume and diameter.
 template <class Density>
 double extinction_of(const Density& density, double least, double most, double wider) {
-  return integral([&](double d) { return 2 * pi / 4 * std::pow(wider * d, 2) * density(d); }, least, most);
+  return integral([&](double d) { return 2 * pi / 4 * std::pow(wider * d, 2) * density(d); }, least, most, 100'000);
 }
 
 }  // namespace
