@@ -38,10 +38,12 @@ includes_of_higher_layers() {
     may["deflector"] = may["platform"] = words " concepts stage_arguments"
     may["scene"] = words " concepts accel"
     may["transport"] = words " concepts accel scene scanner detector"
+    may["sensor"] = words " concepts stage_arguments scanner deflector detector"
     may["survey"] = may["scene"] " scene scanner deflector platform detector transport cloud stage_arguments"
     may["result_buffer"] = may["survey"] " survey"
     may["run"] = may["result_buffer"] " result_buffer"
-    may["pulsecast"] = may["io"] = may["run"] " run version"
+    may["pulsecast"] = may["run"] " run version"
+    may["io"] = may["pulsecast"] " sensor"
     may["helios"] = may["mpi"] = may["page"] = may["python"] = may["io"] " io"
     may["version"] = ""
   }

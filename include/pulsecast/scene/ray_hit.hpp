@@ -44,6 +44,7 @@ struct SurfacePoint {
   Vec3 normal{};                       ///< unit, towards the side of the ray's origin; zero for a surface without direction, as of leaves
   bool front = true;                   ///< true if the shape's own normal is towards that side, too, as for corners seen anticlockwise
   const Material* material = nullptr;  ///< owned by the scene
+  std::uint32_t material_index = 0;    ///< its index in the part's table of materials
   std::uint32_t part = 0;              ///< index of the part in the scene
   PrimitiveIndex primitive = 0;        ///< primitive of the part's geometry
   std::optional<Vec3> weights{};       ///< barycentric weights of a triangle's corners, not negative, of sum one; empty for other shapes

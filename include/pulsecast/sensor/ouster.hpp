@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_SENSOR_OUSTER_HPP
+#define PULSECAST_SENSOR_OUSTER_HPP
+
+#include <cstddef>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/sensor/spinning_sensor.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Ouster OS1 with 64 evenly spaced lasers, the uppermost first, which fire together. It measures 512, 1024 or 2048 columns a turn. The
+/// origin is that of the sensor's frame in its manual, whose forward is ours: the head starts backwards, at encoder 0.
+/// Source: Ouster, OS1 data sheet, rev. 7, 2023, and software user manual, 2.x, lidar coordinate frame: lenses 15.806 mm from the axis,
+/// 36.180 mm above the base. Noise of 1 cm of the 0.5 to 3 cm published; pulse length not published, typical of its class; each unit's
+/// azimuth offsets are its own, and left out: set `SensorLaser::azimuth`.
+[[nodiscard]] inline SpinningSensor ouster_os1_64(std::size_t columns = 1024, double turns_per_second = 10) {
+  using namespace literals;
+  require_within("ouster_os1_64 (columns)", static_cast<double>(columns), 512, 2048, "");
+  SpinningSensor sensor{.name = "OS-1-64",
+                        .sequence_rate = static_cast<double>(columns) * turns_per_second,
+                        .turns_per_second = turns_per_second,
+                        .start = pi,
+                        .exit_radius = 15.806_mm,
+                        .beam = {.wavelength = 865_nm, .pulse_length = 6_ns, .divergence = 5.3_mrad},
+                        .range_min = 0.5,
+                        .range_max = 170,
+                        .range_deviation = 1_cm};
+  for (std::size_t k = 0; k < 64; ++k)
+    sensor.lasers.push_back({.elevation = 21.2_deg - static_cast<double>(k) * 42.4_deg / 63, .height = 36.180_mm});
+  return sensor;
+}
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/io/point_layout.hpp>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/base/error.hpp>
+
+namespace pulsecast::io {
+namespace {
+
+TEST_CASE("the layouts of drivers have the sizes and offsets of what they publish") {
+  CHECK(layouts::velodyne().size == 22);
+  CHECK(layouts::velodyne().fields[5].offset == 18);
+  CHECK(layouts::hesai().size == 26);
+  CHECK(layouts::hesai().fields[5].offset == 18);
+  CHECK(layouts::livox().size == 26);
+  CHECK(layouts::livox().fields[6].offset == 18);
+  CHECK(layouts::ouster().size == 48);
+  CHECK(layouts::autoware().size == 32);
+  CHECK(layouts::autoware().fields[6].offset == 16);
+  CHECK(layouts::map().fields[3].offset == 24);
+  for (const PointLayout& layout : {layouts::velodyne(), layouts::hesai(), layouts::livox(), layouts::ouster(), layouts::autoware(),
+                                    layouts::map(), layouts::velodyne().with(layouts::labels())})
+    layout.validate();
+}
+
+TEST_CASE("fields behind a padded layout begin behind its padding") {
+  const PointLayout layout = layouts::ouster().with(layouts::labels());
+  CHECK(layout.fields[9].offset == 48);
+  CHECK(layout.has(PointQuantity::normal_x, PointQuantity::velocity_z));
+  CHECK_FALSE(layouts::ouster().has(PointQuantity::normal_x, PointQuantity::velocity_z));
+}
+
+TEST_CASE("fields that overlap or leave the record are refused") {
+  PointLayout layout = layouts::velodyne();
+  layout.fields[5].offset = 17;
+  CHECK_THROWS_AS(layout.validate(), SettingError);
+  layout.fields[5].offset = 19;
+  CHECK_THROWS_AS(layout.validate(), SettingError);
+  CHECK_THROWS_AS(PointLayout{}.validate(), SettingError);
+}
+
+}  // namespace
+}  // namespace pulsecast::io
