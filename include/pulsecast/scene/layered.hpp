@@ -25,10 +25,7 @@ namespace detail {
 
 /// Target through which light can go on, with surfaces as of a `Scene`.
 template <class Map>
-concept OpticalLayer = OpticalTarget<Map> && requires(const Map& map, const Ray& ray) {
-  { map.surface(*map.closest_hit(ray), ray) }
-  noexcept->std::same_as<SurfacePoint>;
-};
+concept OpticalLayer = OpticalTarget<Map> && TellsSurfaces<Map>;
 
 template <class Map>
 using RayHitOf = std::remove_cvref_t<decltype(*std::declval<const Map&>().closest_hit(std::declval<const Ray&>()))>;

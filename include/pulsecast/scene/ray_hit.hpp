@@ -55,6 +55,13 @@ struct SurfacePoint {
   bool foliage = false;                ///< as in `Surface`
 };
 
+/// World that tells the surface at the hit of a ray, as `Scene`, `MovingScene` and `Layered`.
+template <class World>
+concept TellsSurfaces = requires(const World& world, const Ray& ray) {
+  { world.surface(*world.closest_hit(ray), ray) }
+  noexcept->std::same_as<SurfacePoint>;
+};
+
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

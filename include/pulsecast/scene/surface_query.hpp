@@ -18,13 +18,6 @@ namespace PULSECAST_NAMESPACE {
 /// Surface that an echo of a batch came from: what a sink asks for normal, part, material and velocity of a point. Empty if unknown.
 using SurfaceQuery = std::function<std::optional<SurfacePoint>(const EchoBatch&, const Shot&, const Echo&)>;
 
-/// World that tells the surface at the hit of a ray, as `Scene`, `MovingScene` and `Layered`.
-template <class World>
-concept TellsSurfaces = requires(const World& world, const Ray& ray) {
-  { world.surface(*world.closest_hit(ray), ray) }
-  noexcept->std::same_as<SurfacePoint>;
-};
-
 /// Query of the surfaces of a world, which must outlive it, by one more ray per echo. The ray follows the pulse's axis, or, if the
 /// footprint is `WithSubrayRecord`, the subray whose hit has the echo's labels and is nearest to it in range. The surface is the first of
 /// the echo's object and class that the ray meets within `tolerance` [m] of the echo's range. It is unknown for light by way of mirrors,

@@ -72,10 +72,7 @@ struct SpinningSensor {
   [[nodiscard]] Tick sequence_start(PulseIndex sequence) const noexcept { return Tick::of(sequence, sequence_rate); }
   /// First slot of the first firing sequence that begins at a time or after it.
   [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept {
-    const double sequences = t.seconds() * sequence_rate;
-    auto sequence = static_cast<PulseIndex>(std::max(0.0, std::floor(sequences) - 1));
-    while (sequence_start(sequence) < t) ++sequence;
-    return sequence * lasers.size();
+    return lasers.size() * Scanner{.pulse_rate = sequence_rate, .pulses = PulseIndex{1} << 52}.slot_from(t);
   }
 
   /// Source of all pulses of a time [s], rounded up to whole firing sequences. @throws SettingError for settings out of range

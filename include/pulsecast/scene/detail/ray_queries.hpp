@@ -107,7 +107,7 @@ template <class Part>
     point.front = !(dot(surface.normal, local.toward) > 0);
     point.normal = placement.rotation * (point.front ? surface.normal : -surface.normal);
     point.material = &(*part.materials)[surface.material];
-    point.material_index = static_cast<std::uint32_t>(surface.material);
+    point.material_index = surface.material;
     point.foliage = surface.foliage;
     if constexpr (MadeOfTriangles<Shape>) point.weights = shape->triangle(hit.primitive).weights(local.origin, local.toward);
     if constexpr (Textured<Shape>) point.texture = shape->texture(hit.primitive, *point.weights);
