@@ -58,6 +58,8 @@ namespace PULSECAST_NAMESPACE {
 
 /// Speed of light in vacuum [m/s]. Source: SI, exact by definition of the metre (17th CGPM, 1983).
 inline constexpr double speed_of_light = 299792458.0;
+/// Planck constant [J s]. Source: SI, exact by definition of the kilogram (26th CGPM, 2018).
+inline constexpr double planck_constant = 6.62607015e-34;
 
 /// Converts degrees, as in files and user input, to radians.
 [[nodiscard]] constexpr double radians(double angle_deg) noexcept { return angle_deg * (std::numbers::pi / 180.0); }

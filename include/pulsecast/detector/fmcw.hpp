@@ -149,8 +149,7 @@ class Fmcw {
     RandomKey key = heard.key;
     key.purpose = Purpose::receiver_noise;
     key.subray = static_cast<std::uint32_t>(2 * sweep);
-    constexpr double planck = 6.62607015e-34;  // [J s]. Source: SI, exact (26th CGPM, 2018)
-    const double photon = planck * speed_of_light / heard.emitter.laser.wavelength;
+    const double photon = planck_constant * speed_of_light / heard.emitter.laser.wavelength;
     return {s_.shot_noise ? std::sqrt(0.5 * photon / (s_.quantum_efficiency * s_.sweep_time)) : 0, key};
   }
 

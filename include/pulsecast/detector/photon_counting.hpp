@@ -156,8 +156,7 @@ class PhotonCounting {
 
   /// Energy of a photoelectron's share of the light [J].
   [[nodiscard]] double energy_per_count(const Laser& laser) const noexcept {
-    constexpr double planck = 6.62607015e-34;  // [J s]. Source: SI, exact (26th CGPM, 2018)
-    return planck * speed_of_light / (laser.wavelength * s_.efficiency);
+    return planck_constant * speed_of_light / (laser.wavelength * s_.efficiency);
   }
 
   /// Draws the photoelectrons of a shot, in order of time.

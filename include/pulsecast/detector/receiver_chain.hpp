@@ -59,9 +59,9 @@ struct ReceiverChain {
   /// One-sided density of the noise before the low-pass, at a signal of so much power [W^2/Hz]: of the amplifier, and shot noise of signal,
   /// background and dark current.
   [[nodiscard]] double density(double signal, double wavelength) const noexcept {
-    constexpr double planck = 6.62607015e-34, charge = 1.602176634e-19;  // [J s], [C]. Source: SI, exact (26th CGPM, 2018)
+    constexpr double charge = 1.602176634e-19;  // [C]. Source: SI, exact (26th CGPM, 2018)
     if (!shot_noise) return noise_power * noise_power;
-    const double energy_per_electron = planck * speed_of_light / (wavelength * quantum_efficiency);
+    const double energy_per_electron = planck_constant * speed_of_light / (wavelength * quantum_efficiency);
     const double dark = dark_current * energy_per_electron / charge;
     return noise_power * noise_power + 2 * excess_noise * energy_per_electron * (std::max(signal, 0.0) + background + dark);
   }

@@ -34,8 +34,7 @@ struct ReceiverNoise {
   /// a variance equal to its mean. It is large per interval, so a normal distribution approximates it. Source: Liu et al. 2006, Applied
   /// Optics 45.
   [[nodiscard]] double deviation_of_sample(double wavelength, double interval) const noexcept {
-    constexpr double planck = 6.62607015e-34;  // [J s]. Source: SI, exact by definition of the kilogram (26th CGPM, 2018)
-    const double photon = planck * speed_of_light / wavelength;
+    const double photon = planck_constant * speed_of_light / wavelength;
     return std::sqrt(deviation * deviation + background * photon / (quantum_efficiency * interval));
   }
 
