@@ -49,6 +49,12 @@ struct ResultBuffer {
   std::vector<SubrayHit> subrays{};  ///< as in `EchoBatch`
   RunSummary counts{};               ///< without rays and seconds
 
+  /// Makes room for slots with an echo each.
+  void reserve(PulseIndex slots) {
+    shots.reserve(slots);
+    echoes.reserve(slots);
+  }
+
   /// Removes all results, and keeps the memory.
   void clear() noexcept {
     shots.clear();

@@ -121,8 +121,9 @@ struct WorkspaceMemory : ScratchItem {
 /// these are large. The chunk delivered last is reused first, as it is in the cache.
 class ReorderBuffer {
  public:
-  ReorderBuffer(ScratchMemory* kept, std::uint64_t chunks, std::size_t workers, std::stop_token stop)
+  ReorderBuffer(ScratchMemory* kept, std::uint64_t chunks, PulseIndex slots_per_chunk, std::size_t workers, std::stop_token stop)
       : chunks_(chunks), always_ahead_(2 * workers + 2), max_ahead_(16 * always_ahead_), memory_(kept, max_ahead_), stop_(std::move(stop)) {
+    if (kept) make_room(slots_per_chunk);
     for (std::size_t i = max_ahead_; i-- > 0;) memory_->chunks[i].next_free = std::exchange(free_, &memory_->chunks[i]);
     std::fill_n(memory_->finished.get(), max_ahead_, nullptr);
   }
@@ -171,6 +172,13 @@ class ReorderBuffer {
 
  private:
   static constexpr std::size_t max_bytes = std::size_t{6} << 20;  // finished but not delivered: some milliseconds of fast work
+
+  /// Makes room for a short run in the chunks that it may need, so that a loop of such runs allocates nothing later.
+  void make_room(PulseIndex slots_per_chunk) {
+    const std::size_t bytes = slots_per_chunk * (sizeof(Shot) + sizeof(Echo));
+    const std::uint64_t some = std::min<std::uint64_t>({chunks_, max_ahead_, max_bytes / bytes});
+    for (std::size_t i = 0; i < some; ++i) memory_->chunks[i].reserve(slots_per_chunk);
+  }
 
   [[nodiscard]] bool may_go_ahead() const noexcept {
     const std::uint64_t ahead = handed_out_ - delivered_;
@@ -232,15 +240,16 @@ template <PulseSurvey Survey, EchoSink... Sinks>
 RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks) {
   const RunSlots slots = options.slots(survey.size());
   const PulseIndex subrays_per_chunk = 65'536;  // bound where subrays are recorded; otherwise they take no memory
+  const PulseIndex most = std::clamp(slots.count / 16, PulseIndex{256}, PulseIndex{2048});  // fewer in a short run, for all workers
   const PulseIndex slots_per_chunk =
-      std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, PulseIndex{2048});
+      std::clamp(subrays_per_chunk / std::max<PulseIndex>(1, survey.recorded_subrays()), PulseIndex{1}, most);
   const std::uint64_t chunks = (slots.count + slots_per_chunk - 1) / slots_per_chunk;
   const std::size_t workers = std::min<std::uint64_t>(options.workers().count(), std::max<std::uint64_t>(chunks, 1));
   const auto began = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
 
   const bool empty_shots = (detail::reads_empty_shots(sinks) || ...);
-  detail::ReorderBuffer buffer(options.executor.memory(), chunks, workers, options.stop);
+  detail::ReorderBuffer buffer(options.executor.memory(), chunks, slots_per_chunk, workers, options.stop);
   RunSummary summary;
   const auto deliver = [&](const detail::ResultChunk& chunk) {
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
