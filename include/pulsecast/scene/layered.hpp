@@ -129,7 +129,8 @@ class Layered {
   /// Replaces the hits beyond those of a target, which is traced no farther than the farthest of them.
   template <class Map>
   static void add(const Map& map, const RayBundle& rays, std::span<Hit> hits) noexcept {
-    std::array<Hit, RayBundle::capacity> others;
+    alignas(Hit) std::array<std::byte, RayBundle::capacity * sizeof(Hit)> memory;  // not initialised, as most bundles have one ray
+    const std::span<Hit> others(reinterpret_cast<Hit*>(memory.data()), rays.size);
     find_hits(map, up_to(hits, rays), others);
     for (std::size_t j = 0; j < rays.size; ++j)
       if (is_nearer(others[j], hits[j])) hits[j] = others[j];
