@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/io/point_records.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
+#include <pulsecast/detector/first_hit.hpp>
+#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/straight_line.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/run.hpp>
+#include <pulsecast/scanner/footprint.hpp>
+#include <pulsecast/scene/motion.hpp>
+#include <pulsecast/scene/moving_scene.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
+#include <pulsecast/sensor/spinning_sensor.hpp>
+
+namespace pulsecast::io {
+namespace {
+
+using namespace literals;
+
+/// Batch of one pulse to the east with echoes at 10 m and 20 m.
+struct TwoEchoes {
+  std::array<Shot, 1> shots{
+      {{.index = 7, .tick = {3, 0.25}, .origin = {1, 2, 3}, .direction = axis::right, .leg = 2, .channel = 1, .echoes = 2}}};
+  std::array<Echo, 2> echoes{
+      {{.range = 10, .amplitude = 2e-9, .reflectance = 0.5, .width = 1e-9, .cos_incidence = 0.7, .object = 9, .classification = 6},
+       {.range = 20, .amplitude = 1e-9, .reflectance = 8, .number = 2, .kind = ReflectionKind::glass, .velocity = -3}}};
+
+  [[nodiscard]] EchoBatch batch() const { return {.shots = shots, .echoes = echoes, .samples = {}}; }
+};
+
+/// Layout of one field a quantity, of one type.
+PointLayout every_quantity(FieldType type) {
+  std::vector<PointField> fields;
+  for (int q = 0; q <= static_cast<int>(PointQuantity::kind); ++q)
+    fields.push_back({std::to_string(q), type, static_cast<PointQuantity>(q)});
+  return PointLayout::packed(fields);
+}
+
+double number(const PointBuffer& points, std::size_t point, PointQuantity quantity) {
+  for (const PointField& field : points.layout().fields)
+    if (field.quantity == quantity) return points.number(point, field);
+  FAIL("the layout has no such quantity");
+  return 0;
+}
+
+TEST_CASE("each quantity of a point is in its field") {
+  using enum PointQuantity;
+  PointBuffer points(every_quantity(FieldType::float64),
+                     {.origin = {1, 0, 0}, .rings = {5, 11}, .start_time = 1000, .laser = {.wavelength = 1e-6, .pulse_length = 5e-9}});
+  points.begin_scan({3, 0});
+  const TwoEchoes two;
+  points(two.batch());
+  REQUIRE(points.size() == 2);
+  const auto at = [&](std::size_t point, PointQuantity quantity) { return number(points, point, quantity); };
+  CHECK(at(0, none) == 0);
+  CHECK((at(0, x) == 10 && at(0, y) == 2 && at(0, z) == 3));
+  CHECK(at(1, x) == 20);
+  CHECK(at(0, range) == 10);
+  CHECK(at(0, azimuth) == doctest::Approx(std::atan2(2, 10)));
+  CHECK(at(0, elevation) == doctest::Approx(std::atan2(3, std::hypot(2, 10))));
+  CHECK((at(0, reflectance) == 0.5 && at(0, reflectivity) == 50 && at(1, reflectivity) == 130));
+  CHECK(at(0, photons) == doctest::Approx(2e-9 * 5e-9 * 1e-6 / (6.62607015e-34 * 299792458)));
+  CHECK((at(0, amplitude) == 2e-9 && at(0, width) == 1e-9 && at(0, cos_incidence) == 0.7));
+  CHECK((std::isnan(at(0, radial_velocity)) && at(1, radial_velocity) == -3));
+  CHECK((at(0, time) == 0.25 && at(0, clock) == 1003.25));
+  CHECK((at(0, ring) == 11 && at(0, pulse) == 7 && at(0, leg) == 2));
+  CHECK((at(0, return_number) == 1 && at(1, return_number) == 2 && at(1, returns) == 2));
+  CHECK((at(0, classification) == 6 && at(0, object) == 9 && at(1, kind) == static_cast<double>(ReflectionKind::glass)));
+  CHECK((at(0, normal_x) == 0 && at(0, velocity_z) == 0 && std::isinf(at(0, part)) && std::isinf(at(0, material))));
+}
+
+TEST_CASE("integers are rounded and limited to the range of their type, and NaN is 0") {
+  TwoEchoes two;
+  two.echoes[0] = {.range = 3.6, .reflectance = 1e9, .object = 70'000, .velocity = std::numeric_limits<double>::quiet_NaN()};
+  two.shots[0].origin = {-400, 0, 0};
+  for (const FieldType type :
+       {FieldType::int8, FieldType::uint8, FieldType::int16, FieldType::uint16, FieldType::int32, FieldType::uint32}) {
+    CAPTURE(static_cast<int>(type));
+    PointBuffer points(every_quantity(type));
+    points(two.batch());
+    const bool has_sign = type == FieldType::int8 || type == FieldType::int16 || type == FieldType::int32;
+    const double bits = 8 * size_of(type) - (has_sign ? 1 : 0);
+    const double most = std::exp2(bits) - 1, least = has_sign ? -most - 1 : 0;
+    CHECK(number(points, 0, PointQuantity::range) == 4);
+    CHECK(number(points, 0, PointQuantity::x) == std::max(least, -396.0));
+    CHECK(number(points, 0, PointQuantity::object) == std::min(most, 70'000.0));
+    CHECK(number(points, 0, PointQuantity::part) == most);
+    CHECK(number(points, 0, PointQuantity::radial_velocity) == 0);
+    CHECK(number(points, 0, PointQuantity::reflectivity) == std::min(most, 255.0));
+  }
+}
+
+TEST_CASE("records have their numbers at the offsets of the layout, scaled, and padding is zero") {
+  PointBuffer points(layouts::ouster());
+  const TwoEchoes two;
+  points(two.batch());
+  REQUIRE(points.records().size() == 2 * 48);
+  const std::byte* const second = points.records().data() + 48;
+  float x = 0;
+  std::uint32_t t = 0, range = 0;
+  std::memcpy(&x, second, sizeof x);
+  std::memcpy(&t, second + 20, sizeof t);
+  std::memcpy(&range, second + 32, sizeof range);
+  CHECK((x == 21 && t == 3'250'000'000 && range == 20'000));
+  for (std::size_t k = 36; k < 48; ++k) CHECK(second[k] == std::byte{});
+}
+
+TEST_CASE("reflectivity is in percent up to white, and grows by 10 a doubling up to its limit") {
+  CHECK(reflectivity_byte(-1) == 0);
+  CHECK(reflectivity_byte(0.25) == 25);
+  CHECK(reflectivity_byte(1) == 100);
+  CHECK(reflectivity_byte(4) == 120);
+  CHECK(reflectivity_byte(1e30) == 255);
+  CHECK(reflectivity_byte(std::numeric_limits<double>::quiet_NaN()) == 0);
+}
+
+TEST_CASE("points of a moving sensor are distorted in its frame, unless the distortion is removed") {
+  // two pulses ahead, 0.5 s apart, to a wall at y = 50, from a sensor that drives to it at 10 m/s
+  const MeshData wall{.vertices = {{-9, 50, -9}, {9, 50, -9}, {9, 50, 9}, {-9, 50, 9}}, .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(wall)}});
+  const StraightLine path{.from = {5, 0, 1}, .to = {5, 100, 1}, .speed = 10};
+  const Platform platform{path, Mount{.lever_arm = {0, 1, 0}}, Deflector{FixedBeam{}, Scanner{.pulse_rate = 2, .pulses = 2}}};
+  const Survey survey{platform, SingleRay{}, scene, Receiver{}, FirstHit{}};
+  PointSettings settings{.sensor = [&](Tick t) { return platform.instrument_at(t); }, .axes = PointAxes::forward_left_up};
+  const auto forward = [&](std::size_t point) {
+    PointBuffer points(every_quantity(FieldType::float64), settings);
+    points.begin_scan({});
+    run(survey, {}, points);
+    CHECK(std::fabs(number(points, point, PointQuantity::y)) < 1e-9);
+    CHECK(std::fabs(number(points, point, PointQuantity::z)) < 1e-9);
+    return number(points, point, PointQuantity::x);
+  };
+  CHECK(forward(0) == doctest::Approx(49));
+  CHECK(forward(1) == doctest::Approx(44));
+  settings.distortion = MotionDistortion::removed;
+  CHECK(forward(0) == doctest::Approx(49));
+  CHECK(forward(1) == doctest::Approx(49));
+}
+
+TEST_CASE("part, material, normal and velocity of a moving board are in the sensor's axes") {
+  using enum PointQuantity;
+  const MeshData board{
+      .vertices = {{-9, 20, -9}, {9, 20, -9}, {9, 20, 9}, {-9, 20, 9}}, .triangles = {{0, 1, 2}, {0, 2, 3}}, .materials = {1, 1}};
+  const auto drive = std::make_shared<const PartMotion>(SteadyMotion{.velocity = {2, 0, 0}});
+  const auto mesh = std::make_shared<const TriangleMesh<>>(board);
+  const MaterialTable paints = material_table({{.name = "red"}, {.name = "green"}});
+  const MovingScene<TriangleMesh<>> scene({{.geometry = mesh, .materials = paints, .placement = {.translation = {0, 50, 0}}},
+                                           {.geometry = mesh, .materials = paints, .object = 4, .motion = drive}},
+                                          {.to = 1});
+  const Platform platform{Tripod{.heading = -90_deg}, Mount{.boresight = rotation_about(axis::up, -90_deg)},
+                          Deflector{FixedBeam{}, Scanner{.pulses = 1}}};
+  const Survey survey{platform, SingleRay{}, scene, Receiver{}, FirstHit{}};
+  PointBuffer points(
+      every_quantity(FieldType::float64),
+      {.sensor = [&](Tick t) { return platform.instrument_at(t); }, .axes = PointAxes::forward_left_up, .surfaces = surfaces_of(scene)});
+  run(survey, {}, points);
+  REQUIRE(points.size() == 1);
+  const auto at = [&](PointQuantity quantity) { return number(points, 0, quantity); };
+  const Pose<frame::World, frame::Instrument> frame = platform.instrument_at({}).inverse();
+  const Vec3 towards = to_forward_left_up(frame.direction({0, -1, 0})), along = to_forward_left_up(frame.direction({2, 0, 0}));
+  CHECK((at(part) == 1 && at(material) == 1 && at(object) == 4));
+  CHECK(length(Vec3{at(normal_x), at(normal_y), at(normal_z)} - towards) < 1e-12);
+  CHECK(length(Vec3{at(velocity_x), at(velocity_y), at(velocity_z)} - along) < 1e-12);
+}
+
+TEST_CASE("a buffer that has grown keeps its memory for further scans") {
+  const TwoEchoes two;
+  PointBuffer points(layouts::velodyne().with(layouts::labels()));
+  points(two.batch());
+  const std::byte* const memory = points.records().data();
+  for (int scan = 0; scan < 100; ++scan) {
+    points.begin_scan({scan, 0});
+    points(two.batch());
+  }
+  CHECK(points.records().data() == memory);
+  CHECK(points.size() == 2);
+}
+
+TEST_CASE("settings out of range are refused") {
+  CHECK_THROWS_AS(PointBuffer{PointLayout{}}, SettingError);
+  CHECK_THROWS_WITH_AS(PointBuffer(layouts::map(), {.start_time = std::numeric_limits<double>::infinity()}),
+                       doctest::Contains("PointSettings::start_time"), SettingError);
+}
+
+}  // namespace
+}  // namespace pulsecast::io
