@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_PACKED_POINTS_HPP
+#define PULSECAST_IO_DETAIL_PACKED_POINTS_HPP
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/io/point_records.hpp>
+
+/// Points as point files hold them: PCD, PLY, NPZ.
+namespace PULSECAST_NAMESPACE::io::detail {
+
+static_assert(std::endian::native == std::endian::little, "point files are written as the numbers lie in memory");
+
+/// Throws a `SettingError` unless the names of a layout can stand in the header of a file, and its fields be told by them.
+inline void require_field_names(const PointLayout& layout) {
+  for (const PointField& field : layout.fields) {
+    require_within("PointField::name (length)", static_cast<double>(field.name.size()), 1, 100, "");
+    for (const char c : field.name)
+      if (!(c > ' ' && c <= '~' && c != '/'))
+        throw SettingError("PointField::name (character code)", static_cast<unsigned char>(c), "",
+                           "that of a visible ASCII character but /");
+    const auto same = std::count_if(layout.fields.begin(), layout.fields.end(), [&](const PointField& f) { return f.name == field.name; });
+    require_within("PointField::name (number of " + field.name + ")", static_cast<double>(same), 1, 1, "");
+  }
+}
+
+/// Encoder of packed records, of echoes or of the records of a buffer.
+class PackedPoints {
+ public:
+  /// Packs the fields of `layout`. @throws SettingError for a layout or settings out of range
+  PackedPoints(const PointLayout& layout, const PointSettings& settings) : encoder_(PointLayout::packed(layout.fields), settings) {
+    require_field_names(layout);
+  }
+
+  /// Layout of the packed records.
+  [[nodiscard]] const PointLayout& layout() const noexcept { return encoder_.layout(); }
+
+  /// Records of the echoes of a batch, valid until the next call. Times since a scan's start count from tick 0.
+  [[nodiscard]] std::span<const std::byte> of(const EchoBatch& batch) {
+    records_.clear();
+    encoder_.encode(batch, records_);
+    return records_;
+  }
+
+  /// Records of a buffer, valid until the next call. @throws SettingError for a buffer of other fields
+  [[nodiscard]] std::span<const std::byte> of(const PointBuffer& points) {
+    const std::vector<PointField>&from = points.layout().fields, &to = layout().fields;
+    for (std::size_t k = 0; k < std::max(from.size(), to.size()); ++k)
+      if (k >= from.size() || k >= to.size() || !same_number(from[k], to[k]))
+        throw SettingError("PointBuffer::layout (index of a field)", static_cast<double>(k), "", "of fields as those of the file");
+    if (points.layout().size == layout().size) return points.records();
+    records_.resize(points.size() * layout().size);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t k = 0; k < to.size(); ++k)
+        std::memcpy(records_.data() + i * layout().size + to[k].offset, points.records().data() + i * points.layout().size + from[k].offset,
+                    size_of(to[k].type));
+    return records_;
+  }
+
+ private:
+  [[nodiscard]] static bool same_number(const PointField& a, const PointField& b) {
+    return a.name == b.name && a.type == b.type && a.quantity == b.quantity && a.scale == b.scale;
+  }
+
+  PointEncoder encoder_;
+  std::vector<std::byte> records_;
+};
+
+/// Columns of packed records: the numbers of each field one after another.
+class FieldColumns {
+ public:
+  explicit FieldColumns(const PointLayout& packed) : columns_(packed.fields.size()), layout_(packed) {}
+
+  /// Appends records.
+  void add(std::span<const std::byte> records) {
+    const std::size_t count = records.size() / layout_.size;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const std::size_t size = size_of(layout_.fields[k].type), begin = columns_[k].size();
+      columns_[k].resize(begin + count * size);
+      for (std::size_t i = 0; i < count; ++i)
+        std::memcpy(columns_[k].data() + begin + i * size, records.data() + i * layout_.size + layout_.fields[k].offset, size);
+    }
+  }
+
+  /// Numbers of each field of the layout.
+  [[nodiscard]] const std::vector<std::vector<std::byte>>& all() const noexcept { return columns_; }
+
+ private:
+  std::vector<std::vector<std::byte>> columns_;
+  PointLayout layout_;
+};
+
+/// Text of a count, and of blanks that bring it to the length of the longest count: for headers that are written again with another count.
+struct CountText {
+  std::string digits, blanks;
+
+  explicit CountText(std::uint64_t count) : digits(std::to_string(count)) {
+    blanks.assign(std::numeric_limits<std::uint64_t>::digits10 + 1 - digits.size(), ' ');
+  }
+};
+
+}  // namespace PULSECAST_NAMESPACE::io::detail
+
+#endif

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_KITTI_HPP
+#define PULSECAST_IO_KITTI_HPP
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/frame.hpp>
+#include <pulsecast/io/detail/text/output.hpp>
+#include <pulsecast/io/output_file.hpp>
+#include <pulsecast/io/scan_splitter.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+/// Classes of SemanticKITTI by those of echoes. Classes without an entry are 0, unlabeled.
+using KittiClasses = std::map<std::uint16_t, std::uint16_t>;
+
+/// Table for the classes of LAS that have a counterpart; classes from 64 on are the user's, and go into further entries.
+/// Source: ASPRS LAS 1.4 R15, table of classes; semantic-kitti-api, config/semantic-kitti.yaml.
+[[nodiscard]] inline KittiClasses kitti_classes() {
+  return {{2, 72},    // ground: terrain
+          {3, 70},    // low vegetation: vegetation
+          {4, 70},    // medium vegetation: vegetation
+          {5, 70},    // high vegetation: vegetation
+          {6, 50},    // building: building
+          {7, 1},     // low point, noise: outlier
+          {11, 40},   // road surface: road
+          {15, 52},   // transmission tower: other-structure
+          {18, 1},    // high noise: outlier
+          {19, 52}};  // overhead structure: other-structure
+}
+
+/// Settings of a SemanticKITTI sequence.
+struct KittiSettings {
+  double scan_rate = 10;                   ///< scans per second [Hz]
+  KittiClasses classes = kitti_classes();  ///< classes in the labels by those of the echoes
+  PointSettings points{};                  ///< pose of the sensor, which is required, and distortion; axes are those of the format
+
+  void validate() const {
+    require_within("KittiSettings::scan_rate", scan_rate, 1e-3, 1e6, "Hz");
+    points.validate();
+    if (!points.sensor) throw SettingError("PointSettings::sensor (poses)", 0, "", "1, for points in the frame of a sensor");
+  }
+};
+
+/// Writes scans as a sequence folder of SemanticKITTI. Source: Behley et al. 2019, SemanticKITTI; semantic-kitti-api, README and auxiliary
+/// scripts. Scans are those of `ScanSplitter`, numbered from 0:
+/// - velodyne/000000.bin: x forward, y left, z up [m] and reflectance, limited to 0 to 1, in the sensor's frame, as 32-bit floats;
+/// - labels/000000.label: of each point 32 bits, instance in the upper 16 and class in the lower. The instance is the object modulo 65536;
+/// - times.txt: seconds since the first scan, one line a scan;
+/// - poses.txt: sensor at each scan's start in the frame of the first, both with x forward, y left, z up: rows of a matrix of 3 by 4;
+/// - calib.txt: the identity as Tr, from the sensor to the frame of the poses. There are no cameras.
+///
+/// Files of a scan are complete with the scan; times, poses and calibration with `close()`. Throws a `FileError`.
+class KittiWriter {
+ public:
+  /// Creates the folder, which holds no scans yet. @throws SettingError for settings out of range @throws FileError
+  KittiWriter(std::filesystem::path folder, const KittiSettings& settings)
+      : folder_(std::move(folder)),
+        classes_(settings.classes),
+        splitter_(PointBuffer(layout(), in_format(validated(settings).points)), settings.scan_rate,
+                  [this](const PointBuffer& scan) { write(scan); }),
+        times_(OutputFile(new_folder() / "times.txt")),
+        poses_(OutputFile(folder_ / "poses.txt")) {}
+  KittiWriter(const KittiWriter&) = delete;
+  KittiWriter& operator=(const KittiWriter&) = delete;
+
+  void operator()(const EchoBatch& batch) { splitter_(batch); }
+
+  /// Completes the last scan and the sequence. Throws a `FileError`.
+  void close() {
+    splitter_.close();
+    OutputFile calibration(folder_ / "calib.txt");
+    calibration.write(std::string_view("Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n"));
+    calibration.commit();
+    poses_.close();
+    times_.close();
+  }
+
+ private:
+  static_assert(std::endian::native == std::endian::little, "scans are written as the numbers lie in memory");
+
+  [[nodiscard]] static PointLayout layout() {
+    return PointLayout::packed(layouts::xyz_float())
+        .with({{"reflectance", FieldType::float32, PointQuantity::reflectance},
+               {"classification", FieldType::uint16, PointQuantity::classification},
+               {"object", FieldType::uint32, PointQuantity::object}});
+  }
+
+  [[nodiscard]] static PointSettings in_format(PointSettings points) {
+    points.axes = PointAxes::forward_left_up;
+    return points;
+  }
+
+  /// Creates the folders. Throws a `FileError` if there are scans, which another sequence would leave behind its own.
+  [[nodiscard]] const std::filesystem::path& new_folder() const {
+    for (const std::string_view name : {"velodyne", "labels"}) {
+      const std::filesystem::path folder = folder_ / name;
+      std::error_code error;
+      std::filesystem::create_directories(folder, error);
+      const bool empty = !error && std::filesystem::is_empty(folder, error);
+      if (error) throw FileError(folder.string(), "", "cannot be created: " + error.message() + "; expected a writable folder");
+      if (!empty) throw FileError(folder.string(), "", "holds files already; expected a folder without scans");
+    }
+    return folder_;
+  }
+
+  void write(const PointBuffer& scan) {
+    const std::string number = std::to_string(scans_++);
+    const std::string name = std::string(6 - std::min<std::size_t>(6, number.size()), '0') + number;
+    OutputFile points(folder_ / "velodyne" / (name + ".bin")), labels(folder_ / "labels" / (name + ".label"));
+    const std::vector<PointField>& fields = scan.layout().fields;
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      std::array<float, 4> point;
+      std::memcpy(point.data(), scan.records().data() + i * scan.layout().size, sizeof point);
+      point[3] = point[3] > 0 ? std::min(point[3], 1.0F) : 0;
+      points.write(std::as_bytes(std::span(point)));
+      const auto known = classes_.find(static_cast<std::uint16_t>(scan.number(i, fields[4])));
+      const auto instance = static_cast<std::uint32_t>(scan.number(i, fields[5]));
+      const std::uint32_t label = instance << 16 | (known == classes_.end() ? 0 : known->second);
+      labels.write(std::as_bytes(std::span(&label, 1)));
+    }
+    points.commit();
+    labels.commit();
+    const double start = scan.scan_start().seconds();
+    if (!first_start_) first_start_ = start;
+    times_.reals(9, start - *first_start_).end_row();
+    write_pose(scan.settings().sensor(scan.scan_start()));
+  }
+
+  void write_pose(const Pose<frame::Instrument, frame::World>& sensor) {
+    if (!first_) first_ = sensor.inverse();
+    const auto pose = *first_ * sensor;
+    const auto column = [&](const Vec3& axis) { return to_forward_left_up(pose.rotation * from_forward_left_up(axis)); };
+    const Vec3 x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1}), at = to_forward_left_up(pose.position);
+    poses_.reals(12, x.x, y.x, z.x, at.x, x.y, y.y, z.y, at.y, x.z, y.z, z.z, at.z).end_row();
+  }
+
+  std::filesystem::path folder_;
+  KittiClasses classes_;
+  ScanSplitter splitter_;
+  TextOutput times_, poses_;
+  std::size_t scans_ = 0;
+  std::optional<double> first_start_;                           // start of the first scan [s]
+  std::optional<Pose<frame::World, frame::Instrument>> first_;  // frame of the first scan
+};
+static_assert(EchoSink<KittiWriter>);
+
+}  // namespace PULSECAST_NAMESPACE::io
+
+#endif

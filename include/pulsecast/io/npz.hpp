@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_NPZ_HPP
+#define PULSECAST_IO_NPZ_HPP
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <archive.h>
+#include <archive_entry.h>
+
+#include <pulsecast/io/detail/packed_points.hpp>
+#include <pulsecast/io/output_file.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+/// Settings of an NPZ file.
+struct NpzSettings {
+  PointLayout layout = layouts::map();  ///< arrays: one a field, by its name
+  PointSettings points{};               ///< values of the arrays; set the origin for large coordinates in single precision
+
+  void validate() const {
+    layout.validate();
+    points.validate();
+    detail::require_field_names(layout);
+  }
+};
+
+namespace detail {
+
+/// Zip file without compression and without times, so that equal content gives equal bytes.
+class StoredZip {
+ public:
+  explicit StoredZip(OutputFile& file) : file_(file), archive_(archive_write_new()), entry_(archive_entry_new()) {
+    if (!archive_ || !entry_) throw std::bad_alloc();
+    check(archive_write_set_format_zip(archive_.get()));
+    check(archive_write_zip_set_compression_store(archive_.get()));
+    check(archive_write_set_bytes_per_block(archive_.get(), 0));  // unbuffered: the file has a buffer, and a last block is not padded
+    check(archive_write_open(archive_.get(), this, nullptr, write_some, nullptr));
+  }
+  StoredZip(const StoredZip&) = delete;
+  StoredZip& operator=(const StoredZip&) = delete;
+
+  /// Appends a member of two parts.
+  void add(const std::string& name, std::string_view head, std::span<const std::byte> body) {
+    archive_entry_clear(entry_.get());
+    archive_entry_set_pathname(entry_.get(), name.c_str());
+    archive_entry_set_filetype(entry_.get(), AE_IFREG);
+    archive_entry_set_perm(entry_.get(), 0644);
+    archive_entry_set_size(entry_.get(), static_cast<la_int64_t>(head.size() + body.size()));
+    check(archive_write_header(archive_.get(), entry_.get()));
+    put(std::as_bytes(std::span(head)));
+    put(body);
+  }
+
+  /// Appends the table of members.
+  void close() { check(archive_write_close(archive_.get())); }
+
+ private:
+  struct Free {
+    void operator()(archive* zip) const noexcept { archive_write_free(zip); }
+    void operator()(archive_entry* entry) const noexcept { archive_entry_free(entry); }
+  };
+
+  /// Passes bytes on to the file. No exception may pass the library, which is in C.
+  static la_ssize_t write_some(archive*, void* self, const void* bytes, std::size_t size) noexcept {
+    auto& zip = *static_cast<StoredZip*>(self);
+    try {
+      zip.file_.write(std::span(static_cast<const std::byte*>(bytes), size));
+      return static_cast<la_ssize_t>(size);
+    } catch (...) {
+      zip.error_ = std::current_exception();
+      return -1;
+    }
+  }
+
+  void put(std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {  // the library takes 2 GiB at a time
+      const la_ssize_t written = archive_write_data(archive_.get(), bytes.data(), bytes.size());
+      if (written <= 0) check(ARCHIVE_FATAL);
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+  }
+
+  /// Throws the error of the file, or else a `FileError` with that of the library.
+  void check(int result) {
+    if (result == ARCHIVE_OK) return;
+    if (error_) std::rethrow_exception(error_);
+    const char* const reason = archive_error_string(archive_.get());
+    file_.discard();
+    throw FileError(file_.path().string(), "",
+                    pulsecast::detail::joined({"cannot be written as zip: ", reason == nullptr ? "no reason given" : reason}));
+  }
+
+  OutputFile& file_;
+  std::exception_ptr error_;
+  std::unique_ptr<archive, Free> archive_;
+  std::unique_ptr<archive_entry, Free> entry_;
+};
+
+/// Header of an array of one dimension. Source: NumPy, numpy.lib.format, version 1.0: a length of 16 bits, padded to 64 bytes in all.
+[[nodiscard]] inline std::string npy_header(FieldType type, std::uint64_t count) {
+  constexpr std::array<std::string_view, 9> types{"", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<f4", "<f8"};
+  std::string text = pulsecast::detail::joined(
+      {"{'descr': '", types[static_cast<std::size_t>(type)], "', 'fortran_order': False, 'shape': (", std::to_string(count), ",), }"});
+  constexpr std::size_t preamble = 10, alignment = 64;  // [byte]
+  text.resize((preamble + text.size()) / alignment * alignment + alignment - preamble, ' ');
+  text.back() = '\n';
+  const auto length = static_cast<std::uint16_t>(text.size());
+  return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(length & 0xFF) + static_cast<char>(length >> 8) + text;
+}
+
+}  // namespace detail
+
+/// Writes points as NPZ for NumPy: for each field of the layout an array of one dimension, `name.npy`, in a zip file without compression.
+/// Equal points give equal bytes. Source: NumPy, numpy.savez and numpy.lib.format.
+/// Columns are held in memory until `close()`, up to twice the size of the points.
+/// Times since a scan's start count from tick 0, except of scans that `add` appends.
+/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+class NpzWriter {
+ public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
+  explicit NpzWriter(std::filesystem::path path, const NpzSettings& settings = {})
+      : points_(validated(settings).layout, settings.points), columns_(points_.layout()), file_(std::move(path)) {}
+
+  void operator()(const EchoBatch& batch) { columns_.add(points_.of(batch)); }
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+
+  /// Appends the points of a buffer, as of a scan. @throws SettingError for other fields than those of the file
+  void add(const PointBuffer& points) { columns_.add(points_.of(points)); }
+
+  /// Writes the arrays, and gives the file its name. Throws a `FileError`.
+  void close() {
+    detail::StoredZip zip(file_);
+    for (std::size_t k = 0; k < points_.layout().fields.size(); ++k) {
+      const PointField& field = points_.layout().fields[k];
+      const std::vector<std::byte>& column = columns_.all()[k];
+      zip.add(field.name + ".npy", detail::npy_header(field.type, column.size() / size_of(field.type)), column);
+    }
+    zip.close();
+    file_.commit();
+  }
+
+ private:
+  detail::PackedPoints points_;
+  detail::FieldColumns columns_;
+  OutputFile file_;
+};
+static_assert(EchoSink<NpzWriter>);
+
+}  // namespace PULSECAST_NAMESPACE::io
+
+#endif

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/io/ply_io.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <pulsecast/io/ply.hpp>
+#include <pulsecast/io/scan_splitter.hpp>
+
+#include "support/random_pulses.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace pulsecast::io {
+namespace {
+
+using support::RandomPulses;
+using support::TemporaryFolder;
+
+TEST_CASE("PCL reads the same numbers from PLY, of all types") {
+  const std::vector<PointLayout> all{layouts::map(), layouts::livox(), layouts::velodyne().with(layouts::labels()),
+                                     PointLayout::packed(layouts::xyz_float())
+                                         .with({{"a", FieldType::int8, PointQuantity::ring, -1},
+                                                {"b", FieldType::int16, PointQuantity::x, 7},
+                                                {"c", FieldType::int32, PointQuantity::y, 1e3},
+                                                {"d", FieldType::float32, PointQuantity::radial_velocity}})};
+  for (const PointLayout& layout : all)
+    for (std::uint64_t seed = 1; seed < 5; ++seed) {
+      CAPTURE(layout.fields.back().name);
+      CAPTURE(seed);
+      const RandomPulses pulses(100 * seed, seed);
+      PointBuffer points(layout);
+      points(pulses.batch());
+      const TemporaryFolder folder;
+      PlyWriter writer(folder / "a.ply", {.layout = layout});
+      writer(pulses.batch());
+      writer.close();
+      pcl::PCLPointCloud2 cloud;
+      REQUIRE(pcl::PLYReader().read((folder / "a.ply").string(), cloud) == 0);
+      REQUIRE(cloud.fields.size() == layout.fields.size());
+      REQUIRE(std::size_t{cloud.width} * cloud.height == points.size());
+      std::size_t wrong = 0;
+      for (std::size_t k = 0; k < layout.fields.size(); ++k) {
+        CHECK(cloud.fields[k].name == layout.fields[k].name);
+        CHECK(cloud.fields[k].datatype == static_cast<std::uint8_t>(layout.fields[k].type));
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const auto* const at = reinterpret_cast<const std::byte*>(cloud.data.data() + i * cloud.point_step + cloud.fields[k].offset);
+          const double expected = points.number(i, layout.fields[k]);
+          const double number =
+              detail::visit_field_type(layout.fields[k].type, [&]<class Number>() { return detail::load_number<Number>(at); });
+          wrong += !(number == expected || (std::isnan(number) && std::isnan(expected)));
+        }
+      }
+      CHECK(wrong == 0);
+    }
+}
+
+TEST_CASE("PCL reads points of its own type from PLY, from scans written one by one") {
+  const RandomPulses pulses(2000, 7);
+  const TemporaryFolder folder;
+  PlyWriter writer(folder / "a.ply", {.layout = layouts::xyzi()});
+  ScanSplitter splitter(PointBuffer(layouts::xyzi()), 10, [&](const PointBuffer& scan) { writer.add(scan); });
+  splitter(pulses.batch());
+  splitter.close();
+  writer.close();
+  pcl::PointCloud<pcl::PointXYZI> cloud;
+  REQUIRE(pcl::io::loadPLYFile<pcl::PointXYZI>((folder / "a.ply").string(), cloud) == 0);
+  REQUIRE(cloud.size() == pulses.echoes.size());
+  std::size_t i = 0, wrong = 0;
+  for (const Shot& shot : pulses.shots)
+    for (const Echo& echo : pulses.batch().echoes_of(shot)) {
+      const Vec3 at = point_of(shot, echo);
+      const pcl::PointXYZI& point = cloud[i++];
+      wrong += point.x != static_cast<float>(at.x) || point.y != static_cast<float>(at.y) || point.z != static_cast<float>(at.z) ||
+               point.intensity != static_cast<float>(reflectivity_byte(echo.reflectance));
+    }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("PCL reads a PLY without points") {
+  const TemporaryFolder folder;
+  PlyWriter(folder / "a.ply").close();
+  pcl::PCLPointCloud2 cloud;
+  CHECK(pcl::PLYReader().read((folder / "a.ply").string(), cloud) == 0);
+  CHECK(cloud.data.empty());
+}
+
+}  // namespace
+}  // namespace pulsecast::io
