@@ -6,9 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <concepts>
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -33,27 +31,13 @@
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
+#include "support/allocations.hpp"
 #include "support/archetypes.hpp"
 #include "support/laws.hpp"
 #include "support/relative.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
-
-namespace {
-
-std::atomic<std::size_t> allocations = 0;
-
-}  // namespace
-
-// never inlined, else g++ sees `free` meet the memory of `new`; weak, as the thread sanitizer has its own, under which nothing is counted
-[[gnu::noinline, gnu::weak]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* const memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline, gnu::weak]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline, gnu::weak]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace {
 
@@ -316,10 +300,10 @@ namespace {
 /// Allocations of a run; a thread needs one.
 template <class Survey>
 std::size_t allocations_of(const Survey& survey, const RunOptions& options) {
-  const std::size_t before = allocations;
+  const std::size_t before = support::allocations;
   const RunSummary summary = run(survey, options);
   CHECK(summary.complete);
-  return allocations - before;
+  return support::allocations - before;
 }
 
 /// Executor of a user's: the tasks in reverse, one after the other.

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/io/point_cloud2.hpp>
 
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <new>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -22,21 +19,6 @@
 
 #include "support/allocations.hpp"
 #include "support/generators.hpp"
-
-namespace pulsecast {
-
-std::atomic<std::size_t> support::allocations = 0;
-
-}  // namespace pulsecast
-
-// as in tests/scene/deforming_mesh.cpp
-[[gnu::noinline, gnu::weak]] void* operator new(std::size_t size) {
-  ++pulsecast::support::allocations;
-  if (void* const memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline, gnu::weak]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline, gnu::weak]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace pulsecast::io {
 namespace {

@@ -3,13 +3,10 @@
 #include <pulsecast/scene/deforming_mesh.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <memory>
-#include <new>
 #include <string>
 #include <vector>
 
@@ -23,25 +20,6 @@
 using namespace pulsecast;
 using support::Generator;
 using Mesh = TriangleMesh<>;
-
-std::atomic<std::size_t> support::allocations = 0;
-
-// never inlined, else g++ sees `free` meet the memory of `new`; weak, as the thread sanitizer has its own, under which nothing is counted
-[[gnu::noinline, gnu::weak]] void* operator new(std::size_t size) {
-  ++support::allocations;
-  if (void* const memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline, gnu::weak]] void* operator new(std::size_t size, std::align_val_t alignment) {
-  ++support::allocations;
-  const auto step = static_cast<std::size_t>(alignment);
-  if (void* const memory = std::aligned_alloc(step, (size + step - 1) / step * step)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline, gnu::weak]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline, gnu::weak]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline, gnu::weak]] void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-[[gnu::noinline, gnu::weak]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 namespace pulsecast::support {
 
-/// Number of calls of operator new so far, which tests/scene/deforming_mesh.cpp replaces; none is counted under a sanitizer.
+/// Number of calls of operator new so far, which allocations.cpp replaces in all test programs; none is counted under a sanitizer.
 extern std::atomic<std::size_t> allocations;
 
 }  // namespace pulsecast::support
