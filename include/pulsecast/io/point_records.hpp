@@ -65,6 +65,11 @@ struct PointSettings {
   return std::min(255.0, reflectance <= 1 ? 100 * reflectance : 100 + 10 * std::log2(reflectance));
 }
 
+/// Photons that a power [W] brings in a laser's pulse length.
+[[nodiscard]] inline double photon_count(double power, const Laser& laser) noexcept {
+  return power * laser.pulse_length * laser.wavelength / (planck_constant * speed_of_light);
+}
+
 namespace detail {
 
 /// Quantities of a point, by `PointQuantity`.

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_PACKETS_CALIBRATION_FILE_HPP
+#define PULSECAST_IO_DETAIL_PACKETS_CALIBRATION_FILE_HPP
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/input_file.hpp>
+
+namespace PULSECAST_NAMESPACE::io::detail {
+
+/// Calibration of a sensor as a tree of YAML, of which JSON is a part. Its errors name the line.
+class CalibrationFile {
+ public:
+  /// @throws FileError for a file that is no map of YAML
+  CalibrationFile(const std::filesystem::path& path, std::string_view expected) : path_(path.string()) {
+    InputFile file(path, expected);
+    if (file.size() > InputFile::block_size) file.fail(pulsecast::detail::joined({"is longer than 1 MiB: expected ", expected}));
+    const std::string text = file.take_rest();
+    try {
+      root_ = YAML::Load(text);
+    } catch (const YAML::Exception& error) {
+      fail(error.mark, "is no YAML or JSON: " + error.msg);
+    }
+    if (!root_.IsMap()) file.fail(pulsecast::detail::joined({"is no map: expected ", expected}));
+  }
+
+  [[nodiscard]] const YAML::Node& root() const noexcept { return root_; }
+
+  /// Value of a key; empty if there is none. @throws FileError if the parent is no map
+  [[nodiscard]] std::optional<YAML::Node> find(const YAML::Node& parent, const std::string& key) const {
+    if (!parent.IsMap()) fail(parent, "is no map: expected one with " + key);
+    const YAML::Node node = parent[key];
+    return node.IsDefined() ? std::optional(node) : std::nullopt;
+  }
+
+  /// Value of a key. @throws FileError if there is none
+  [[nodiscard]] YAML::Node at(const YAML::Node& parent, const std::string& key) const {
+    if (std::optional<YAML::Node> node = find(parent, key)) return *node;
+    fail(parent, "has no " + key);
+  }
+
+  /// Text of a scalar, which is called `name` in messages. @throws FileError for anything else
+  [[nodiscard]] std::string word(const YAML::Node& node, const std::string& name) const {
+    if (!node.IsScalar()) fail(node, name + " is a list or map: expected one value");
+    return node.Scalar();
+  }
+
+  /// Number from `low` to `high`. @throws FileError for anything else
+  [[nodiscard]] double number(const YAML::Node& node, const std::string& name, double low, double high) const {
+    const std::string scalar = word(node, name);
+    const std::optional<double> value = text::finite_number_in(scalar);
+    if (!value || *value < low || *value > high) {
+      using pulsecast::detail::to_text;
+      const std::string allowed = low < high ? "a number from " + to_text(low) + " to " + to_text(high) : to_text(high);
+      fail(node, pulsecast::detail::joined({name, " is ", text::quoted(scalar), ": expected ", allowed}));
+    }
+    return *value;
+  }
+
+  /// As many numbers from `low` to `high`. @throws FileError for anything else
+  [[nodiscard]] std::vector<double> numbers(const YAML::Node& node, const std::string& name, std::size_t count, double low,
+                                            double high) const {
+    if (!node.IsSequence() || node.size() != count) fail(node, pulsecast::detail::joined({name, " is no list of ", std::to_string(count)}));
+    std::vector<double> values;
+    for (const YAML::Node& value : node) values.push_back(number(value, name, low, high));
+    return values;
+  }
+
+  /// @throws FileError about a node
+  [[noreturn]] void fail(const YAML::Node& node, const std::string& problem) const { fail(node.Mark(), problem); }
+
+ private:
+  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& problem) const {
+    throw FileError(path_, mark.is_null() ? "" : "line " + std::to_string(mark.line + 1), problem);
+  }
+
+  std::string path_;
+  YAML::Node root_;
+};
+
+}  // namespace PULSECAST_NAMESPACE::io::detail
+
+#endif
