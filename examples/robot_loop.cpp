@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
   CommandLine line("A robot drives through traffic, step by step, and brakes for what its sensor sees.");
   std::size_t steps = 600, others = 20;
   bool undistorted = false;
-  line.add_number("--steps", steps, 60, 1'000'000, "Number of steps of the physics, 60 a second");
+  line.add_number("--steps", steps, 120, 1'000'000, "Number of steps of the physics, 60 a second");
   line.add_number("--cars", others, 1, 1000, "Number of cars");
   line.add_flag("--undistorted", undistorted, "Remove the distortion of scans by the robot's motion");
   return line.run(argc, argv, [&] {

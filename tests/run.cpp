@@ -183,6 +183,8 @@ TEST_CASE("a run hands out what the survey says of each pulse, and nothing for b
   CHECK(double_echoes > 0);
 }
 
+namespace {
+
 /// Every thousandth slot has a pulse, and the source knows which.
 struct Drips : Rain {
   std::atomic<PulseIndex>* visits;
@@ -193,6 +195,8 @@ struct Drips : Rain {
   PulseIndex next_pulse(PulseIndex i) const noexcept { return std::min(pulses, i / 1000 * 1000 + 999); }
 };
 static_assert(WorldSource<Drips> && SkipsBlocked<Drips>);
+
+}  // namespace
 
 TEST_CASE("a run counts the blocked slots that a survey passes over, and visits few of them") {
   std::atomic<PulseIndex> visits = 0;
