@@ -6,9 +6,12 @@
 // bench_robots [ROBOTS [THREADS]]
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,10 +26,26 @@
 
 using namespace pulsecast;
 
+/// The parts of a scene as one mesh, without their materials and objects.
+street::Scene flat(const street::Scene& scene) {
+  MeshData all;
+  for (const street::Scene::Part& part : scene.parts())
+    for (std::size_t i = 0; i < part.geometry->size(); ++i) {
+      const Triangle t = part.geometry->triangle(static_cast<PrimitiveIndex>(i));
+      const auto first = static_cast<std::uint32_t>(all.vertices.size());
+      for (const Vec3& corner : {t.a, t.b, t.c}) all.vertices.push_back(part.placement.point(corner));
+      all.triangles.push_back({first, first + 1, first + 2});
+    }
+  return street::Scene({{std::make_shared<const street::Mesh>(all), material_table(), {}, 0, "street", {}}});
+}
+
 int main(int argc, char** argv) {
+  const bool is_flat = argc > 1 && std::string_view(argv[1]) == "--flat";
+  argc -= is_flat ? 1 : 0;
+  argv += is_flat ? 1 : 0;
   const std::size_t count = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 10, seconds = 10, rate = 60;
   const unsigned threads = argc > 2 ? static_cast<unsigned>(std::strtoul(argv[2], nullptr, 10)) : 0;
-  const street::Scene town = street::scene(1);
+  const street::Scene town = is_flat ? flat(street::scene(1)) : street::scene(1);
   std::vector<traffic::Vehicle> cars = traffic::cars(20, street::Dice(1, 7)), robots(count);
   std::vector<Similarity> placements;
   street::Scene moving = traffic::scene_of(cars), unused = moving;
@@ -57,11 +76,15 @@ int main(int argc, char** argv) {
     traffic::place(cars, 0.5 * (start.seconds() + end.seconds()), placements);
     street::Scene next = moving.with_placements(placements, std::move(unused), pool);
     unused = std::exchange(moving, std::move(next));
-    for (std::size_t k = 0; k < count; ++k) {
+    std::atomic<std::size_t> found = 0;
+    const auto scan = [&](std::size_t k) {  // a robot on one thread, as there are more robots than threads
       robots[k].begin_step(start.seconds());
       if (step % (rate / 10) == 0) scans[k].begin_scan(start);
-      points += run(surveys[k], {.executor = pool, .first = sensor.slot_from(start), .end = sensor.slot_from(end)}, scans[k]).echoes;
-    }
+      const RunOptions options{.threads = 1, .executor = pool, .first = sensor.slot_from(start), .end = sensor.slot_from(end)};
+      found += run(surveys[k], options, scans[k]).echoes;
+    };
+    pool.for_each(count, scan);
+    points += found;
     if (step % rate == 0) times.push_back(0);
     times.back() += bench::wall_seconds() - began;
   }
