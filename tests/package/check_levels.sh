@@ -8,7 +8,7 @@ set -eu
 source=$1 folder=$2 compiler=$3
 rm -rf "$folder/prefix" "$folder/out"
 mkdir -p "$folder"
-cmake -S "$source" -B "$folder/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS=-O1 -DBUILD_TESTING=OFF "-DPULSECAST_LEVELS=1;3" > "$folder.log"
+cmake -S "$source" -B "$folder/build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS=-O0 -DBUILD_TESTING=OFF "-DPULSECAST_LEVELS=1;3" > "$folder.log"
 cmake --build "$folder/build" --target pulsecast_program >> "$folder.log"
 for component in bin/pulsecast lib/pulsecast/libpulsecast.so lib/pulsecast/glibc-hwcaps/x86-64-v3/libpulsecast.so; do
   mkdir -p "$folder/prefix/$(dirname "$component")"
