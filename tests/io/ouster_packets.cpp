@@ -25,18 +25,8 @@ namespace {
 
 using support::Generator;
 using support::KeptPacket;
-using support::PacketKeeper;
+using support::packets_of;
 using support::SensorEchoes;
-
-std::vector<KeptPacket> packets_of(const SensorEchoes& all, const SpinningSensor& sensor, const PacketSettings& settings) {
-  PacketKeeper kept;
-  OusterPackets packets(sensor, settings, std::ref(kept));
-  Generator any(1);
-  all.give(packets, any);
-  packets.close();
-  CHECK(kept.places.size() <= 1);  // no payload is allocated anew
-  return kept.packets;
-}
 
 /// Return of a pulse as a decoder has it.
 struct Return {
@@ -94,7 +84,7 @@ TEST_CASE("a decoder by the manual gives the echoes of an OS1 back, of all modes
                                   .start_time = static_cast<double>(any.whole(2'000'000'000))};
     const PulseIndex first = any.whole(64 * 2048 * 40);
     const SensorEchoes all = SensorEchoes::any(sensor.source(100), first, first + 64 * 300, 3, any);
-    const auto returns = decoded(packets_of(all, sensor, settings), sensor, columns);
+    const auto returns = decoded(packets_of<OusterPackets>(all, sensor, settings), sensor, columns);
     std::size_t compared = 0;
     for (const Shot& shot : all.shots) {
       if (shot.echoes == 0) continue;
@@ -129,7 +119,7 @@ TEST_CASE("the bytes of a column are those of the manual") {
   for (Echo& echo : all.echoes) echo.amplitude = echo.range == 10 ? 3e-10 : 1e-10;
   const double photon = 6.62607015e-34 * 299792458 / 865e-9;
   const auto signal = [&](double power) { return static_cast<unsigned>(std::lround(power * 6e-9 / photon)); };
-  const auto single = packets_of(all, sensor, {.start_time = 5});
+  const auto single = packets_of<OusterPackets>(all, sensor, {.start_time = 5});
   REQUIRE(single.size() == 1);
   const std::size_t column = 3 * 788, pixel = column + 16 + 2 * 12;
   CHECK(single[0].port == 7502);
@@ -146,7 +136,7 @@ TEST_CASE("the bytes of a column are those of the manual") {
   CHECK(single[0].time.second == 5);
   CHECK(std::fabs(single[0].time.fraction - 1040 / 10240.0) < 1e-12);
 
-  const auto dual = packets_of(all, sensor, {.returns = PacketReturns::dual});
+  const auto dual = packets_of<OusterPackets>(all, sensor, {.returns = PacketReturns::dual});
   const std::size_t dual_column = 32 + 3 * 1036, dual_pixel = dual_column + 12 + 2 * 16;
   CHECK(dual[0].at<std::uint16_t>(0) == 1);
   CHECK(dual[0].at<std::uint16_t>(2) == 1);
@@ -165,7 +155,8 @@ TEST_CASE("a range beyond its bits is no return, and photons end at 16 bits") {
   all.add(sensor.source(1), 0, {1049.0});
   all.add(sensor.source(1), 1, {600.0});
   for (Echo& echo : all.echoes) echo.amplitude = 1;
-  const auto single = packets_of(all, sensor, {}), dual = packets_of(all, sensor, {.returns = PacketReturns::dual});
+  const auto single = packets_of<OusterPackets>(all, sensor, {}),
+             dual = packets_of<OusterPackets>(all, sensor, {.returns = PacketReturns::dual});
   CHECK(single[0].at<std::uint32_t>(16) == 0);
   CHECK(single[0].at<std::uint32_t>(28) == 600'016);
   CHECK(single[0].at<std::uint16_t>(34) == 0xFFFF);

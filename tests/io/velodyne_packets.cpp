@@ -33,17 +33,8 @@ namespace {
 using support::Generator;
 using support::KeptPacket;
 using support::PacketKeeper;
+using support::packets_of;
 using support::SensorEchoes;
-
-std::vector<KeptPacket> packets_of(const SensorEchoes& all, const SpinningSensor& sensor, const PacketSettings& settings) {
-  PacketKeeper kept;
-  VelodynePackets packets(sensor, settings, std::ref(kept));
-  Generator any(1);
-  all.give(packets, any);
-  packets.close();
-  CHECK(kept.places.size() <= 1);  // no payload is allocated anew
-  return kept.packets;
-}
 
 /// Return of a pulse as a decoder has it.
 struct Return {
@@ -157,7 +148,7 @@ TEST_CASE("the bytes of a packet are those of the manual") {
   all.add(source, 0, {10.0});                 // laser 0 of the first sequence
   all.add(source, 16 * 3 + 5, {2.5, 131.5});  // laser 5 of the second sequence of block 1; the farther is beyond 16 bits
   all.add(source, 16 * 24, {1.0});            // the next packet
-  const auto packets = packets_of(all, sensor, {.start_time = 7200.25});
+  const auto packets = packets_of<VelodynePackets>(all, sensor, {.start_time = 7200.25});
   REQUIRE(packets.size() == 2);
   std::vector<std::uint8_t> expected(1206);
   const std::vector<unsigned> azimuths{0, 40, 80, 119, 159, 199, 239, 279, 319, 358, 398, 438};  // 360 deg 10 Hz 110.592 us = 0.39813 deg
@@ -189,7 +180,7 @@ TEST_CASE("factory bytes tell the mode and the product") {
     all.add(sensor.source(1), 0, {2.0});
     for (const auto& [returns, mode] :
          {std::pair{PacketReturns::strongest, 0x37}, {PacketReturns::last, 0x38}, {PacketReturns::dual, 0x39}}) {
-      const auto packets = packets_of(all, sensor, {.returns = returns});
+      const auto packets = packets_of<VelodynePackets>(all, sensor, {.returns = returns});
       CHECK(packets[0].at<std::uint8_t>(1204) == mode);
       CHECK(packets[0].at<std::uint8_t>(1205) == (sensor.lasers.size() == 16 ? 0x22 : 0x28));
     }
@@ -203,7 +194,7 @@ TEST_CASE("a distance beyond 16 bits, and one that rounds to nothing, are no ret
   all.add(source, 0, {131.07});
   all.add(source, 1, {131.0711});
   all.add(source, 2, {0.0009});
-  const auto packets = packets_of(all, sensor, {});
+  const auto packets = packets_of<VelodynePackets>(all, sensor, {});
   CHECK(packets[0].at<std::uint16_t>(4) == 0xFFFF);
   CHECK(packets[0].at<std::uint16_t>(7) == 0);
   CHECK(packets[0].at<std::uint8_t>(9) == 0);
@@ -220,7 +211,7 @@ TEST_CASE("a decoder by the manuals gives the echoes back, of all modes and rate
     const PacketSettings settings{.returns = static_cast<PacketReturns>(seed / 2 % 3), .start_time = any.uniform(0, 2e9)};
     const PulseIndex first = any.whole(100'000);
     const SensorEchoes all = SensorEchoes::any(sensor.source(10), first, first + 20'000, 3, any);
-    check_decoded(all, packets_of(all, sensor, settings), sensor, settings);
+    check_decoded(all, packets_of<VelodynePackets>(all, sensor, settings), sensor, settings);
   }
 }
 
@@ -230,7 +221,7 @@ TEST_CASE("azimuths wrap at the end of the turn, and times at the top of the hou
     const PacketSettings settings{.start_time = start_time};
     Generator any(5);
     const SensorEchoes all = SensorEchoes::any(sensor.source(1), 0, 30'000, 1, any);  // one turn and more
-    const auto packets = packets_of(all, sensor, settings);
+    const auto packets = packets_of<VelodynePackets>(all, sensor, settings);
     check_decoded(all, packets, sensor, settings);
     bool wraps_azimuth = false, wraps_time = false;
     for (std::size_t n = 0; n < packets.size(); ++n) {
@@ -249,7 +240,7 @@ TEST_CASE("a head that has all but turned once is at 0 degrees, and a time just 
   sensor.start = 2 * pi - 1e-6;
   SensorEchoes all;
   all.add(sensor.source(1), 0, {1.0});
-  const auto packets = packets_of(all, sensor, {.start_time = 3600 - 1e-7});
+  const auto packets = packets_of<VelodynePackets>(all, sensor, {.start_time = 3600 - 1e-7});
   CHECK(packets[0].at<std::uint16_t>(2) == 0);
   CHECK(packets[0].at<std::uint32_t>(1200) == 0);
 }
@@ -260,7 +251,7 @@ TEST_CASE("missing slots are empty packets, and the packets of a part are those 
   SensorEchoes whole, part;
   for (const PulseIndex slot : {PulseIndex{3}, PulseIndex{16 * 24 * 2 + 7}, PulseIndex{16 * 24 * 5 + 9}}) whole.add(source, slot, {2.0});
   for (const PulseIndex slot : {PulseIndex{16 * 24 * 2 + 7}, PulseIndex{16 * 24 * 5 + 9}}) part.add(source, slot, {2.0});
-  const auto all = packets_of(whole, sensor, {}), some = packets_of(part, sensor, {});
+  const auto all = packets_of<VelodynePackets>(whole, sensor, {}), some = packets_of<VelodynePackets>(part, sensor, {});
   REQUIRE(all.size() == 6);
   REQUIRE(some.size() == 4);
   for (std::size_t n = 0; n < 4; ++n) CHECK(some[n].payload == all[n + 2].payload);

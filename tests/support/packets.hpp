@@ -6,11 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <span>
 #include <vector>
 
+#include <doctest/doctest.h>
+
 #include <pulsecast/echo.hpp>
-#include <pulsecast/io/detail/packets/packet.hpp>
+#include <pulsecast/io/detail/packets/packet_stream.hpp>
 #include <pulsecast/sensor/spinning_sensor.hpp>
 
 #include "support/generators.hpp"
@@ -92,6 +95,19 @@ struct SensorEchoes {
     }
   }
 };
+
+/// Packets of echoes, by a sink of this type.
+template <class Packets>
+[[nodiscard]] std::vector<KeptPacket> packets_of(const SensorEchoes& all, const SpinningSensor& sensor,
+                                                 const io::PacketSettings& settings) {
+  PacketKeeper kept;
+  Packets packets(sensor, settings, std::ref(kept));
+  Generator any(1);
+  all.give(packets, any);
+  packets.close();
+  CHECK(kept.places.size() <= 1);  // no payload is allocated anew
+  return kept.packets;
+}
 
 /// Strongest of the echoes of a pulse, and the strongest of the others, if there are others.
 [[nodiscard]] inline std::vector<Echo> by_strength(std::span<const Echo> echoes) {
