@@ -196,8 +196,7 @@ class PointEncoder {
     value(values, range) = echo.range;
     value(values, reflectance) = echo.reflectance;
     value(values, reflectivity) = reflectivity_byte(echo.reflectance);
-    value(values, photons) =
-        echo.amplitude * settings_.laser.pulse_length * settings_.laser.wavelength / (planck_constant * speed_of_light);
+    value(values, photons) = photon_count(echo.amplitude, settings_.laser);
     value(values, amplitude) = echo.amplitude;
     value(values, width) = echo.width;
     value(values, cos_incidence) = echo.cos_incidence;
