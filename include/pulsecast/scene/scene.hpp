@@ -19,11 +19,29 @@
 #include <pulsecast/accel/refit.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/scene/detail/bundle_budget.hpp>
 #include <pulsecast/scene/detail/ray_queries.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 
 namespace PULSECAST_NAMESPACE {
+
+namespace detail {
+/// What is noted of surfaces where nobody asks for them.
+struct NotesNothing {
+  template <class Normal>
+  void operator()(std::size_t, std::size_t, const Material*, bool, const Normal&) const noexcept {}
+};
+/// Notes the surface of each hit.
+struct NotesSurfaces {
+  std::span<HitSurface> surfaces;
+  template <class Normal>
+  void operator()(std::size_t first, std::size_t end, const Material* material, bool foliage, const Normal& normal) const noexcept {
+    const HitSurface surface{material, normal(), foliage};
+    for (std::size_t j = first; j < end; ++j) surfaces[j] = surface;
+  }
+};
+}  // namespace detail
 
 /// Static parts of the given kinds of geometry, without code for other kinds: `Scene<TriangleMesh<>>`. `MovingScene` moves parts.
 ///
@@ -216,11 +234,14 @@ class Scene {
     return nearest;
   }
 
+  auto searcher() const noexcept {
+    return [this](const BundleOfOne& ray, auto& hits) noexcept { this->search(ray, hits); };
+  }
   /// Offers the hits of a bundle, or of a single ray, to `hits`.
   template <class Rays, class Hits>
   void search(const Rays& rays, Hits& hits) const noexcept {
     if constexpr (std::is_same_v<Rays, RayBundle> && (detail::Intersects<Shapes, BundleOfOne, ClosestHit> && ...))
-      if (rays.size == 1) return search_alone(rays, hits);
+      if (rays.size == 1) return detail::closest_one_by_one(rays, hits, searcher());  // cheaper to take into the frames of parts
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
       for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, hits);
     };
@@ -230,20 +251,6 @@ class Scene {
       closest_in(0, parts_[0].placement, rays, hits);  // shapes test their own bounds
     else
       index_.closest(rays, test, hits);
-  }
-  /// Offers the hit of a bundle of one as that of a single ray, which is cheaper to take into the frames of parts.
-  void search_alone(const RayBundle& rays, ClosestHits& hits) const noexcept {
-    BundleOfOne ray(rays.ray(0));
-    ray.direction_length = rays.direction_length;
-    ClosestHit hit(hits.limit_of(0));
-    search(ray, hit);
-    if (hit.met(0)) {
-      hits.part = std::uint64_t{hit.part_of(0)} << 32;
-      hits.offer(0, hit.range, hit.primitive_of(0));
-    }
-  }
-  auto searcher() const noexcept {
-    return [this](const BundleOfOne& ray, auto& hits) noexcept { this->search(ray, hits); };
   }
 
   /// Material met by the bundle's only ray.

@@ -157,7 +157,8 @@ class TriangleMesh {
     if constexpr (Rays::capacity > 1 && detail::Searches<Index, Rays, Test<Rays, Hits>, Limit>) {
       Limit limit{nearest};
       index_.closest(rays, test, limit);
-      if (limit.spent()) detail::closest_one_by_one(*this, rays, nearest);
+      if (limit.spent())
+        detail::closest_one_by_one(rays, nearest, [this](const auto& ray, auto& hit) noexcept { this->closest(ray, hit); });
     } else if constexpr (detail::Searches<Index, Rays, Test<Rays, Hits>, Hits>) {
       index_.closest(rays, test, nearest);
     } else {

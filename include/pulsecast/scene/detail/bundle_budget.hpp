@@ -4,6 +4,7 @@
 #define PULSECAST_SCENE_DETAIL_BUNDLE_BUDGET_HPP
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include <pulsecast/geometry/bundle.hpp>
@@ -30,16 +31,18 @@ struct BudgetedLimit {
   [[nodiscard]] bool spent() const noexcept { return asked > most; }  ///< true once the bundle has given up
 };
 
-/// Closest hits of a shape by each ray of a bundle alone; the hits are the same.
-template <class Shape, class Rays, HitsOf<Rays> Hits>
-void closest_one_by_one(const Shape& shape, const Rays& rays, Hits& nearest) noexcept {
+/// Closest hits of each ray of a bundle alone; the hits are the same. `search(ray, hit)` offers those of a `BundleOfOne` to a `ClosestHit`.
+template <class Rays, HitsOf<Rays> Hits, class Search>
+void closest_one_by_one(const Rays& rays, Hits& nearest, const Search& search) noexcept {
   for (std::size_t j = 0; j < rays.size; ++j) {
     BundleOfOne one(rays.ray(j));
     one.direction_length = rays.direction_length;
     ClosestHit hit(nearest.limit_of(j));
     hit.part = nearest.part;
-    shape.closest(one, hit);
-    if (hit.met(0)) nearest.offer(j, hit.range, hit.primitive_of(0));
+    search(one, hit);
+    if (!hit.met(0)) continue;
+    nearest.part = std::uint64_t{hit.part_of(0)} << 32;
+    nearest.offer(j, hit.range, hit.primitive_of(0));
   }
 }
 

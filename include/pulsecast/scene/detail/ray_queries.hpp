@@ -9,31 +9,14 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <type_traits>
 
-#include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 
 /// Queries by a single ray. `search(ray, hits)` offers the hits of a scene to a `ClosestHit`, an `AnyHit` or a `HitBuffer`.
 namespace PULSECAST_NAMESPACE::detail {
-
-/// What is noted of surfaces where nobody asks for them.
-struct NotesNothing {
-  template <class Normal>
-  void operator()(std::size_t, std::size_t, const Material*, bool, const Normal&) const noexcept {}
-};
-/// Notes the surface of each hit.
-struct NotesSurfaces {
-  std::span<HitSurface> surfaces;
-  template <class Normal>
-  void operator()(std::size_t first, std::size_t end, const Material* material, bool foliage, const Normal& normal) const noexcept {
-    const HitSurface surface{material, normal(), foliage};
-    for (std::size_t j = first; j < end; ++j) surfaces[j] = surface;
-  }
-};
 
 /// Shape that takes such rays and hits.
 template <class Shape, class Rays, class Hits>
