@@ -17,6 +17,7 @@
 #include <pulsecast/io/pcd.hpp>
 #include <pulsecast/io/scan_splitter.hpp>
 
+#include "io/by_pcl/wrong_points.hpp"
 #include "support/random_pulses.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -86,16 +87,7 @@ TEST_CASE("PCL reads points of its own type, from scans written one by one") {
     writer.close();
     pcl::PointCloud<pcl::PointXYZI> cloud;
     REQUIRE(pcl::io::loadPCDFile<pcl::PointXYZI>((folder / "a.pcd").string(), cloud) == 0);
-    REQUIRE(cloud.size() == pulses.echoes.size());
-    std::size_t i = 0, wrong = 0;
-    for (const Shot& shot : pulses.shots)
-      for (const Echo& echo : pulses.batch().echoes_of(shot)) {
-        const Vec3 at = point_of(shot, echo);
-        const pcl::PointXYZI& point = cloud[i++];
-        wrong += point.x != static_cast<float>(at.x) || point.y != static_cast<float>(at.y) || point.z != static_cast<float>(at.z) ||
-                 point.intensity != static_cast<float>(reflectivity_byte(echo.reflectance));
-      }
-    CHECK(wrong == 0);
+    CHECK(wrong_points(cloud, pulses) == 0);
   }
 }
 

@@ -15,6 +15,7 @@
 #include <pulsecast/io/ply.hpp>
 #include <pulsecast/io/scan_splitter.hpp>
 
+#include "io/by_pcl/wrong_points.hpp"
 #include "support/random_pulses.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -72,16 +73,7 @@ TEST_CASE("PCL reads points of its own type from PLY, from scans written one by 
   writer.close();
   pcl::PointCloud<pcl::PointXYZI> cloud;
   REQUIRE(pcl::io::loadPLYFile<pcl::PointXYZI>((folder / "a.ply").string(), cloud) == 0);
-  REQUIRE(cloud.size() == pulses.echoes.size());
-  std::size_t i = 0, wrong = 0;
-  for (const Shot& shot : pulses.shots)
-    for (const Echo& echo : pulses.batch().echoes_of(shot)) {
-      const Vec3 at = point_of(shot, echo);
-      const pcl::PointXYZI& point = cloud[i++];
-      wrong += point.x != static_cast<float>(at.x) || point.y != static_cast<float>(at.y) || point.z != static_cast<float>(at.z) ||
-               point.intensity != static_cast<float>(reflectivity_byte(echo.reflectance));
-    }
-  CHECK(wrong == 0);
+  CHECK(wrong_points(cloud, pulses) == 0);
 }
 
 TEST_CASE("PCL reads a PLY without points") {
