@@ -168,6 +168,36 @@ TEST_CASE("a missing pixel makes a hole of the triangles that it is a corner of"
   CHECK(raster.mesh().vertices.size() == 15);
 }
 
+TEST_CASE("a pixel has the material of its two triangles, as in the mesh, in as few bits as it needs") {
+  Generator random(11);
+  for (const std::uint32_t materials : {2U, 3U, 16U, 17U, 256U}) {
+    CAPTURE(materials);
+    Raster raster = raster_of(23, 14, [&](std::uint32_t, std::uint32_t) { return random.uniform(0, 3); });
+    raster.heights[40] = missing;
+    for (std::size_t i = 0; i < raster.heights.size(); ++i) raster.materials.push_back(static_cast<std::uint8_t>(random.whole(materials)));
+    raster.materials[100] = static_cast<std::uint8_t>(materials - 1);
+    const HeightField field(raster);
+    const RasterMesh<Bvh<float>> mesh(raster);
+    CHECK(field.material_count() == materials);
+    CHECK(field.is_consistent());
+    for (std::size_t i = 0; i < mesh.numbers().size(); ++i)
+      CHECK(field.surface(mesh.numbers()[i], bundle_of({}), 0).material == mesh.data().materials[i]);
+    // the pixel of column 5 and row 4 has a triangle to its south-east and one to its north-west
+    const std::uint32_t own = raster.materials[4 * 23 + 5];
+    CHECK(field.surface(2 * (4 * 22 + 5), bundle_of({}), 0).material == own);
+    CHECK(field.surface(2 * (3 * 22 + 4) + 1, bundle_of({}), 0).material == own);
+  }
+  Raster alike = slope();
+  alike.materials.assign(alike.heights.size(), 0);
+  CHECK(HeightField(alike).memory() == HeightField(slope()).memory());
+}
+
+TEST_CASE("two materials over a raster take less than a twelfth of the memory that the mesh takes") {
+  Raster raster = raster_of(600, 600, [](std::uint32_t c, std::uint32_t r) { return 300 + 15 * std::sin(c / 9.0) * std::cos(r / 7.0); });
+  for (std::uint32_t i = 0; i < 360'000; ++i) raster.materials.push_back(i / 600 / 50 % 2);
+  CHECK(12 * HeightField(raster).memory() <= TriangleMesh<>(raster.mesh()).memory());
+}
+
 TEST_CASE("where all is missing nothing is met") {
   const HeightField field(raster_of(30, 20, [](std::uint32_t, std::uint32_t) { return missing; }));
   CHECK(field.bounds().empty());

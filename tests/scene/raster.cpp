@@ -56,6 +56,21 @@ TEST_CASE("a raster's mesh leaves out triangles with a missing corner, and pixel
   CHECK(mesh.vertices.empty());
 }
 
+TEST_CASE("a raster takes its materials from one of codes with other pixels") {
+  Raster ground = two_cells();  // pixels at 100, 102, 104 m east and 200, 196 m north
+  // codes in pixels of 3 m, from 99 to 105 m east and from 201 to 195 m north
+  const Raster codes{.columns = 2, .rows = 2, .first = {100.5, 199.5}, .pixel = {3, 3}, .heights = {21, 7, missing, 30}};
+  CHECK(set_materials(ground, codes, {{7, 2}, {21, 1}, {30, 3}}, 9) == 1);
+  CHECK(ground.materials == std::vector<std::uint8_t>{1, 2, 2, 9, 3, 3});
+  CHECK(set_materials(ground, codes, {{30, 3}}) == 4);
+  CHECK(ground.materials == std::vector<std::uint8_t>{0, 0, 0, 0, 3, 3});
+  const Raster elsewhere{.columns = 2, .rows = 2, .first = {103, 197}, .pixel = {1, 1}, .heights = {5, 5, 5, 5}};
+  CHECK(set_materials(ground, elsewhere, {{5, 1}}) == 5);  // of pixels from 102.5 to 104.5 m east and from 197.5 to 195.5 m north
+  CHECK(ground.materials == std::vector<std::uint8_t>{0, 0, 0, 0, 0, 1});
+  const MeshData mesh = ground.mesh();
+  CHECK(mesh.materials == std::vector<std::uint32_t>{0, 0, 0, 1});
+}
+
 TEST_CASE("a raster that cannot be is refused, and the refusal says what is wrong") {
   const auto with = [](auto change) {
     Raster raster = two_cells();
@@ -67,6 +82,7 @@ TEST_CASE("a raster that cannot be is refused, and the refusal says what is wron
   CHECK(with([](Raster& r) { r.columns = 1; }) == "Raster::columns is 1, but must be from 2 to 134217728");
   CHECK(with([](Raster& r) { r.rows = 0; }) == "Raster::rows is 0, but must be from 2 to 134217728");
   CHECK(with([](Raster& r) { r.columns = r.rows = 60000; }).find("cells between them is 3599880001") != std::string::npos);
+  CHECK(with([](Raster& r) { r.materials = {1, 2}; }) == "Raster::materials is 2, but must be as many as pixels, 6, or none");
   CHECK(with([](Raster& r) { r.heights.pop_back(); }) == "Raster::heights is 5, but must be as many as pixels, 6");
   CHECK(with([](Raster& r) { r.heights[4] = std::numeric_limits<float>::infinity(); }) ==
         "Raster::heights is inf m, but must be within 1e15 m, or NaN; see pixel 4");

@@ -20,11 +20,13 @@
 #include <pulsecast/geometry/bundle_interval.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/detail/height_pyramid.hpp>
+#include <pulsecast/scene/detail/packed_numbers.hpp>
 #include <pulsecast/scene/raster.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell. Two-sided. The two
+/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell, and of
+/// 2, 4, 16 or 256 materials a further 1, 2, 4 or 8 bits. Two-sided. The two
 /// triangles of cell i, row by row, are primitives 2 i and 2 i + 1.
 /// A min-max pyramid of heights, eight children per node, bounds the ground for rays. A bundle traverses it as a whole, front to back: row
 /// by row and column by column in the order of passage.
@@ -39,6 +41,7 @@ class HeightField {
     raster.validate();
     grid_ = raster.grid();
     heights_ = std::move(raster.heights);
+    materials_ = detail::PackedNumbers(raster.materials);
     const detail::PyramidLayout layout(grid_);
     levels_ = layout.levels;
     top_ = layout.top;
@@ -54,7 +57,7 @@ class HeightField {
   explicit HeightField(DeserializeTag) {}
   template <class Archive>
   void archive(Archive& a) {
-    a(grid_, levels_, top_, per_metre_, pad_, centre_, bounds_, heights_, pyramid_);
+    a(grid_, levels_, top_, per_metre_, pad_, centre_, bounds_, heights_, pyramid_, materials_);
   }
 
   /// True if the array sizes match the grid.
@@ -62,7 +65,7 @@ class HeightField {
     if (grid_.columns < 2 || grid_.rows < 2 || grid_.columns > detail::max_pixels || grid_.rows > detail::max_pixels) return false;
     const detail::PyramidLayout layout(grid_);
     return heights_.size() == std::size_t{grid_.columns} * grid_.rows && pyramid_.size() == layout.size && top_ == layout.top &&
-           levels_ == layout.levels;
+           levels_ == layout.levels && materials_.is_consistent(heights_.size());
   }
 
   /// Pixels from west to east.
@@ -70,8 +73,8 @@ class HeightField {
   /// Pixels from north to south.
   [[nodiscard]] std::uint32_t rows() const noexcept { return grid_.rows; }
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
-  [[nodiscard]] std::size_t memory() const noexcept { return heights_.memory() + pyramid_.memory(); }
-  [[nodiscard]] std::size_t material_count() const noexcept { return 1; }
+  [[nodiscard]] std::size_t memory() const noexcept { return heights_.memory() + pyramid_.memory() + materials_.memory(); }
+  [[nodiscard]] std::size_t material_count() const noexcept { return std::size_t{materials_.greatest()} + 1; }
 
   /// Triangle of primitive i [m]; its missing corners are NaN.
   [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept {
@@ -112,12 +115,11 @@ class HeightField {
   template <class Rays>
   [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
-    return {finite(normal) ? normal : Vec3{}, 0};
+    return {finite(normal) ? normal : Vec3{}, materials_[grid_.owner(i)]};
   }
 
  private:
   static constexpr float most = std::numeric_limits<float>::max();
-
   static constexpr std::size_t few = 4;  ///< cells up to this number are tested without traversal
 
   using Cells = detail::CellRectangle;
@@ -338,6 +340,7 @@ class HeightField {
   Vec3 centre_{};     ///< centre of the raster, at height 0, so that heights are exact
   Box bounds_;
   SharedArray<float> heights_, pyramid_;
+  detail::PackedNumbers materials_;  ///< of the pixels
 };
 
 static_assert(Geometry<HeightField>);

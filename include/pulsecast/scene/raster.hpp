@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
@@ -33,6 +34,12 @@ struct RasterGrid {
   }
 
   [[nodiscard]] std::size_t index(std::uint32_t column, std::uint32_t row) const noexcept { return std::size_t{row} * columns + column; }
+
+  /// Pixel of the right angle of triangle i, row by row, two a cell. A pixel inside so has two triangles, about its centre.
+  [[nodiscard]] std::size_t owner(PrimitiveIndex i) const noexcept {
+    const std::uint32_t cell = i / 2, which = i % 2, cells = columns - 1;
+    return index(cell % cells + which, cell / cells + which);
+  }
 };
 
 /// Corners of a cell: north-west, south-west, south-east, north-east. Its triangles are (0, 1, 3) and (1, 2, 3).
@@ -72,6 +79,8 @@ struct Raster {
   Vec2 first{};                         ///< centre of the first pixel, in the north-west [m east, m north]
   Vec2 pixel{1, 1};                     ///< spacing of the centres, to the next column in the east and the next row in the south [m]
   std::vector<float> heights{};         ///< heights, row by row from the north [m]; NaN if missing
+  /// Index of each pixel into the part's table of materials, for the two triangles with their right angle there; empty if all are 0.
+  std::vector<std::uint8_t> materials{};
 
   void validate() const {
     require_within("Raster::columns", columns, 2, detail::max_pixels, "");
@@ -91,6 +100,9 @@ struct Raster {
       if (std::fabs(heights[i]) > 1e15F)
         throw SettingError("Raster::heights", static_cast<double>(heights[i]), "m",
                            "within 1e15 m, or NaN; see pixel " + std::to_string(i));
+    if (!materials.empty() && materials.size() != heights.size())
+      throw SettingError("Raster::materials", static_cast<double>(materials.size()), "",
+                         "as many as pixels, " + std::to_string(heights.size()) + ", or none");
   }
 
   /// Placement of the pixels.
@@ -121,11 +133,45 @@ struct Raster {
             triangle[i] = vertex;
           }
           mesh.triangles.push_back(triangle);
+          if (!materials.empty()) mesh.materials.push_back(materials[which == 0 ? north : south + 1]);
         }
       }
     return mesh;
   }
 };
+
+/// Material of the pixels with a code, as of a class of land cover.
+struct CodeMaterial {
+  double code = 0;            ///< number in the raster of codes
+  std::uint8_t material = 0;  ///< index into the part's table of materials
+};
+
+/// Sets the materials of a raster by one of codes, which may have other pixels: each pixel takes the code of the pixel that its centre is
+/// in. `otherwise` is that of pixels without a code, or with one that is not listed; returns their number.
+/// @throws SettingError as `Raster::validate`, of both
+inline std::size_t set_materials(Raster& ground, const Raster& codes, const std::vector<CodeMaterial>& listed, std::uint8_t otherwise = 0) {
+  ground.validate();
+  codes.validate();
+  std::size_t unlisted = 0;
+  std::vector<std::uint8_t> materials(ground.heights.size(), otherwise);
+  for (std::uint32_t row = 0; row < ground.rows; ++row)
+    for (std::uint32_t column = 0; column < ground.columns; ++column) {
+      const detail::RasterGrid grid = ground.grid();
+      const Vec3 centre = grid.vertex(column, row, 0);
+      const double east = std::floor((centre.x - codes.first.x) / codes.pixel.x + 0.5);
+      const double south = std::floor((codes.first.y - centre.y) / codes.pixel.y + 0.5);
+      const bool inside = east >= 0 && south >= 0 && east < codes.columns && south < codes.rows;
+      const std::size_t at = inside ? codes.grid().index(static_cast<std::uint32_t>(east), static_cast<std::uint32_t>(south)) : 0;
+      const auto has_code = [&](const CodeMaterial& one) { return static_cast<double>(codes.heights[at]) == one.code; };
+      const auto found = inside ? std::find_if(listed.begin(), listed.end(), has_code) : listed.end();
+      if (found == listed.end())
+        ++unlisted;
+      else
+        materials[grid.index(column, row)] = found->material;
+    }
+  ground.materials = std::move(materials);
+  return unlisted;
+}
 
 }  // namespace PULSECAST_NAMESPACE
 
