@@ -262,6 +262,41 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   CHECK_THROWS_WITH_AS((void)built(scene_of({cloud})), doctest::Contains("holds no material 'brick'; it has ground, wall"), FileError);
 }
 
+TEST_CASE("a raster of classes chooses the materials of a raster of heights") {
+  const Files files;
+  const TemporaryFolder& folder = files.folder;
+  // pixels at 0, 1, 2 m east and 1, 0 m north; classes in pixels twice as wide
+  std::ofstream(folder / "dem.asc") << "ncols 3\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n7 7 7\n7 7 7\n";
+  std::ofstream(folder / "land.ASC") << "ncols 2\nnrows 2\nxllcorner -0.5\nyllcorner -2.5\ncellsize 2\n6 2\n6 9\n";
+  SceneSettings scene =
+      scene_of({{"1", GeoTiffSource{.files = {folder / "dem.asc"}, .material = {folder / "m.mtl", "ground"}}, {}, 1, {}, {}, {}}});
+  const auto class_at = [&](double x, double y) { return below(built(scene), x, y).classification; };
+  CHECK(below(built(scene), 0.25, 0.75).range == relative(93, 1e-12));
+  CHECK(class_at(0.25, 0.9) == 2);
+  std::get<GeoTiffSource>(scene.parts[0].source).classes = folder / "land.ASC";
+  CHECK(class_at(0.25, 0.9) == 6);  // pixel at (0, 1)
+  CHECK(class_at(1.9, 0.4) == 2);   // pixel at (2, 0)
+  CHECK(below(built(scene), 0.25, 0.9).backscatter == relative(0.8, 1e-12));
+  SceneBuilder builder(scene, {});
+  CHECK(builder.parts().size() == 1);
+  CHECK(builder.warnings().empty());
+  std::ofstream(folder / "land.ASC") << "ncols 2\nnrows 2\nxllcorner -0.5\nyllcorner -2.5\ncellsize 2\n6 9\n6 9\n";
+  // two more columns of heights to the east
+  std::ofstream(folder / "east.asc") << "ncols 2\nnrows 2\nxllcenter 3\nyllcenter 0\ncellsize 1\n7 7\n7 7\n";
+  SceneSettings tiled = scene;
+  GeoTiffSource& tiles = std::get<GeoTiffSource>(tiled.parts[0].source);
+  tiles.files.push_back(folder / "east.asc");
+  CHECK(SceneBuilder(tiled, {}).parts().size() == 2);
+  CHECK_FALSE(below(built(tiled), 2.5, 0.5).met());
+  tiles.mosaic = true;
+  CHECK(SceneBuilder(tiled, {}).parts().size() == 1);
+  CHECK(below(built(tiled), 2.5, 0.5).range == relative(93, 1e-12));
+  SceneBuilder told(scene, {});
+  CHECK(told.parts().size() == 1);
+  REQUIRE(told.warnings().size() == 1);
+  CHECK(told.warnings()[0].find("land.ASC: 2 of 6 pixels have no class with a material, and get 'ground'") != std::string::npos);
+}
+
 TEST_CASE("what a file comes to, and cannot be, is told with the file; what a part is asked for, with the part") {
   const Files files;
   std::ofstream(files.folder / "wide.vox") << "VOXEL SPACE\n#min_corner: 0 0 0\n#res: 1\ni j k PadBVTotal\n0 0 0 1\n3000000 0 0 1\n";

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -54,6 +55,51 @@ TEST_CASE("a raster's mesh leaves out triangles with a missing corner, and pixel
   const MeshData mesh = raster.mesh();
   CHECK(mesh.triangles.empty());
   CHECK(mesh.vertices.empty());
+}
+
+TEST_CASE("a mosaic of tiles is the raster that they were cut from") {
+  Raster whole{.columns = 7, .rows = 5, .first = {1000.1, 2000.7}, .pixel = {0.3, 0.7}};
+  for (std::size_t i = 0; i < 35; ++i) whole.heights.push_back(static_cast<float>(i));
+  for (std::size_t i = 0; i < 35; ++i) whole.materials.push_back(i % 3 == 0 ? 1 : 0);
+  const auto cut = [&](std::uint32_t west, std::uint32_t north, std::uint32_t columns, std::uint32_t rows) {
+    Raster tile{.columns = columns, .rows = rows, .first = whole.first + Vec2{west * 0.3, north * -0.7}, .pixel = whole.pixel};
+    for (std::uint32_t r = north; r < north + rows; ++r)
+      for (std::uint32_t c = west; c < west + columns; ++c) {
+        tile.heights.push_back(whole.heights[7 * r + c]);
+        tile.materials.push_back(whole.materials[7 * r + c]);
+      }
+    return tile;
+  };
+  const auto same = [&](const Raster& all) {
+    return all.columns == 7 && all.rows == 5 && all.first == whole.first && all.heights == whole.heights &&
+           all.materials == whole.materials;
+  };
+  CHECK(same(mosaic({cut(0, 0, 4, 2), cut(4, 0, 3, 2), cut(0, 2, 4, 3), cut(4, 2, 3, 3)})));
+  CHECK(same(mosaic({cut(3, 1, 4, 4), cut(0, 0, 7, 3), cut(0, 2, 5, 3)})));  // tiles that overlap
+  Raster holed = cut(0, 0, 7, 5);
+  holed.heights[8] = missing;
+  CHECK(same(mosaic({holed, cut(0, 0, 2, 2)})));  // the second tile fills the hole
+  const Raster apart = mosaic({cut(0, 0, 2, 2), cut(5, 3, 2, 2)});
+  CHECK(apart.heights.size() == 35);
+  CHECK(std::isnan(apart.heights[3]));
+  CHECK(apart.heights[34] == 34);
+
+  const auto refused = [](const std::vector<Raster>& tiles) {
+    try {
+      (void)mosaic(tiles);
+      return std::string();
+    } catch (const SettingError& error) {
+      return std::string(error.what());
+    }
+  };
+  CHECK(refused({}).find("mosaic (number of tiles)") == 0);
+  Raster shifted = cut(4, 0, 3, 2), coarse = shifted, far = shifted;
+  shifted.first.x += 0.1;
+  coarse.pixel.y = 0.71;
+  far.first.x += 1e6;
+  CHECK(refused({cut(0, 0, 4, 2), shifted}).find("mosaic (shift of a tile's pixels") == 0);
+  CHECK(refused({cut(0, 0, 4, 2), coarse}).find("mosaic (shift of a tile's pixels") == 0);
+  CHECK(refused({cut(0, 0, 4, 2), far}).find("mosaic (pixels)") == 0);
 }
 
 TEST_CASE("a raster takes its materials from one of codes with other pixels") {

@@ -18,6 +18,7 @@
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
+#include <pulsecast/scene/raster.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 #include <pulsecast/scene/voxel_grid.hpp>
 
@@ -75,6 +76,9 @@ class SceneBuilder {
   std::vector<Loaded> read(const XyzSource& source);
   std::vector<Loaded> read(const VoxelSource& source);
   void drop_bare(const std::filesystem::path& file, io::PointCloud& cloud);
+  Raster raster(const std::filesystem::path& file);
+  Loaded ground(const GeoTiffSource& source, Raster raster);
+  std::vector<Material> classify(const GeoTiffSource& source, Raster& ground);
   Material material(const MaterialSource& source);
   MaterialTable table(std::vector<Material> materials) const;
   MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels);

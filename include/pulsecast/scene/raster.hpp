@@ -140,6 +140,56 @@ struct Raster {
   }
 };
 
+namespace detail {
+
+/// Column or row of a tile's first pixel, from that of a mosaic `offset` away [m]. @throws SettingError if it is between two pixels, or
+/// the tile's last one of `count` pixels of size `own` is
+[[nodiscard]] inline std::uint32_t place_in_mosaic(double offset, double own, std::uint32_t count, double pixel) {
+  const double place = offset / pixel, nearest = std::nearbyint(place), slip = std::fabs(own / pixel - 1) * count;
+  require_within("mosaic (shift of a tile's pixels against those of the first)", std::fabs(place - nearest) + slip, 0, 0.01, "pixel");
+  return static_cast<std::uint32_t>(nearest);
+}
+
+}  // namespace detail
+
+/// Raster of tiles whose pixels are those of one lattice, to a hundredth. Pixels without a tile are missing; where tiles overlap, the first
+/// one with a height counts. Unlike tiles as parts of their own, a mosaic has no gap of one pixel between them.
+/// @throws SettingError as `Raster::validate`; for no tile, pixels of different lattices, or tiles on less than a 64th of their extent
+[[nodiscard]] inline Raster mosaic(const std::vector<Raster>& tiles) {
+  require_within("mosaic (number of tiles)", static_cast<double>(tiles.size()), 1, 1e6, "");
+  const Vec2 pixel = tiles.front().pixel;
+  double west = tiles.front().first.x, north = tiles.front().first.y, east = west, south = north, pixels = 0;
+  for (const Raster& tile : tiles) {
+    tile.validate();
+    west = std::min(west, tile.first.x);
+    north = std::max(north, tile.first.y);
+    east = std::max(east, tile.first.x + (tile.columns - 1) * pixel.x);
+    south = std::min(south, tile.first.y - (tile.rows - 1) * pixel.y);
+    pixels += static_cast<double>(tile.heights.size());
+  }
+  const double columns = std::nearbyint((east - west) / pixel.x) + 1, rows = std::nearbyint((north - south) / pixel.y) + 1;
+  require_within("mosaic (pixels)", columns * rows, 4, std::min(64 * pixels, 4294967296.0), "");
+  Raster all{
+      .columns = static_cast<std::uint32_t>(columns), .rows = static_cast<std::uint32_t>(rows), .first = {west, north}, .pixel = pixel};
+  const detail::RasterGrid grid = all.grid();
+  all.heights.assign(std::size_t{all.columns} * all.rows, std::numeric_limits<float>::quiet_NaN());
+  if (std::any_of(tiles.begin(), tiles.end(), [](const Raster& tile) { return !tile.materials.empty(); }))
+    all.materials.assign(all.heights.size(), 0);
+  for (const Raster& tile : tiles) {
+    const std::uint32_t column = detail::place_in_mosaic(tile.first.x - west, tile.pixel.x, tile.columns, pixel.x);
+    const std::uint32_t row = detail::place_in_mosaic(north - tile.first.y, tile.pixel.y, tile.rows, pixel.y);
+    for (std::size_t from = 0; from < tile.heights.size(); ++from) {
+      const auto c = static_cast<std::uint32_t>(from % tile.columns), r = static_cast<std::uint32_t>(from / tile.columns);
+      const std::size_t to = grid.index(column + c, row + r);
+      if (!std::isnan(all.heights[to])) continue;
+      all.heights[to] = tile.heights[from];
+      if (!tile.materials.empty()) all.materials[to] = tile.materials[from];
+    }
+  }
+  all.validate();
+  return all;
+}
+
 /// Material of the pixels with a code, as of a class of land cover.
 struct CodeMaterial {
   double code = 0;            ///< number in the raster of codes

@@ -70,8 +70,9 @@ TEST_CASE("a scene has ground if any of its MTL files says so") {
 }
 
 TEST_CASE("other sources bring the files that their settings name; each counts once, and those that are not there do not") {
-  const Folder folder({"a.tif", "b.tif", "m.mtl", "v.vox", "l.txt", "p.xyz", "y.obj"});
+  const Folder folder({"a.tif", "b.tif", "c.asc", "m.mtl", "v.vox", "l.txt", "p.xyz", "y.obj"});
   CHECK(folder.files(GeoTiffSource{{folder / "a.tif", folder / "b.tif"}, {folder / "m.mtl", {}}}) == Names{"a.tif", "b.tif", "m.mtl"});
+  CHECK(folder.files(GeoTiffSource{.files = {folder / "a.tif"}, .classes = folder / "c.asc"}) == Names{"a.tif", "c.asc"});
   CHECK(folder.files(XyzSource{.files = {folder / "p.xyz", folder / "q.xyz"}}) == Names{"p.xyz"});
   CHECK(folder.files(VoxelSource{.files = {folder / "v.vox"}, .leaf_angles = folder / "l.txt"}) == Names{"v.vox", "l.txt"});
   SceneSettings scene;

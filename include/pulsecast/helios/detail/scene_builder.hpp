@@ -18,6 +18,7 @@
 #include <pulsecast/helios/detail/part_motion.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/settings.hpp>
+#include <pulsecast/io/ascii_grid.hpp>
 #include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/leaf_angles.hpp>
 #include <pulsecast/io/mtl.hpp>
@@ -28,6 +29,7 @@
 #include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/on_ground.hpp>
+#include <pulsecast/scene/raster.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 #include <pulsecast/scene/variation.hpp>
 #include <pulsecast/scene/voxel_grid.hpp>
@@ -110,11 +112,51 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjS
 }
 
 PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const GeoTiffSource& source) {
-  return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-    io::GeoTiff tiff = io::read_geotiff(file);
-    warn(tiff.warnings);
-    all.push_back({std::make_shared<const HeightField>(std::move(tiff.raster), options_.threads), table({material(source.material)})});
+  std::vector<Raster> tiles;
+  std::vector<Loaded> loaded = each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
+    if (source.mosaic)
+      tiles.push_back(raster(file));
+    else
+      all.push_back(ground(source, raster(file)));
   });
+  if (source.mosaic && !tiles.empty()) naming(source.files.front().string(), [&] { loaded.push_back(ground(source, mosaic(tiles))); });
+  return loaded;
+}
+
+PULSECAST_INLINE SceneBuilder::Loaded SceneBuilder::ground(const GeoTiffSource& source, Raster raster) {
+  MaterialTable materials = table(source.classes.empty() ? std::vector{material(source.material)} : classify(source, raster));
+  return {std::make_shared<const HeightField>(std::move(raster), options_.threads), std::move(materials)};
+}
+
+PULSECAST_INLINE Raster SceneBuilder::raster(const std::filesystem::path& file) {
+  if (io::is_ascii_grid(file)) {
+    io::AsciiGrid grid = io::read_ascii_grid(file);
+    warn(grid.warnings);
+    return std::move(grid.raster);
+  }
+  io::GeoTiff tiff = io::read_geotiff(file);
+  warn(tiff.warnings);
+  return std::move(tiff.raster);
+}
+
+/// Sets the materials of a raster: of each class the first, by name, with this number.
+PULSECAST_INLINE std::vector<Material> SceneBuilder::classify(const GeoTiffSource& source, Raster& ground) {
+  std::vector<Material> all{material(source.material)};
+  std::map<std::uint16_t, Material> by_class;
+  if (!source.material.file.empty())
+    for (const auto& [name, one] : io::read_mtl(source.material.file, options_.spectra).materials)
+      by_class.try_emplace(one.classification, one);
+  require_within("classes with a material (number)", static_cast<double>(by_class.size()), 0, 255, "");
+  std::vector<CodeMaterial> listed;
+  for (const auto& [number, one] : by_class) {
+    listed.push_back({static_cast<double>(number), static_cast<std::uint8_t>(all.size())});
+    all.push_back(one);
+  }
+  const std::size_t unlisted = set_materials(ground, raster(source.classes), listed);
+  if (unlisted > 0)
+    warn({source.classes.string() + ": " + std::to_string(unlisted) + " of " + std::to_string(ground.heights.size()) +
+          " pixels have no class with a material, and get '" + all[0].name + "'"});
+  return all;
 }
 
 PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const XyzSource& source) {

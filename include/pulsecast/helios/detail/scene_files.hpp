@@ -40,6 +40,10 @@ template <class Source>
 concept WithLeafAngles = requires(Source source) {
   source.leaf_angles;
 };
+template <class Source>
+concept WithClasses = requires(Source source) {
+  source.classes;
+};
 
 class SceneFiles {
  public:
@@ -50,6 +54,7 @@ class SceneFiles {
             if (add(file) && std::is_same_v<decltype(s), const ObjSource&>) add_materials(file);
           if constexpr (WithMaterial<decltype(s)>) add_material(s.material.file);
           if constexpr (WithLeafAngles<decltype(s)>) add(s.leaf_angles);
+          if constexpr (WithClasses<decltype(s)>) add(s.classes);
         },
         source);
   }

@@ -380,6 +380,17 @@ TEST_CASE("files may be one, those of a pattern, or a list") {
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="up" value="x"/>)", none), "up=\"x\" is not known"));
 }
 
+TEST_CASE("a raster of heights may be of tiles, and have one of classes") {
+  GeoTiffSource raster;
+  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="classfile" value="mesh.obj"/>)", raster).empty());
+  CHECK(raster.classes.filename() == "mesh.obj");
+  CHECK_FALSE(raster.mosaic);
+  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="mosaic" value="true"/>)", raster).empty());
+  CHECK(raster.mosaic);
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="classfile" value="no.tif"/>)", raster),
+                 "does not exist"));
+}
+
 TEST_CASE("voxels have a mode, a table and a material") {
   VoxelSource voxels;
   CHECK(filter_told(

@@ -45,8 +45,10 @@ struct ObjSource {
 
 /// Elevation raster: filter `geotiffloader`.
 struct GeoTiffSource {
-  std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
-  MaterialSource material{};
+  std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name; `.asc` is an Esri ASCII grid
+  MaterialSource material{};                   ///< that of pixels without a class
+  bool mosaic = false;                         ///< true: the files are tiles of one raster. `mosaic`
+  std::filesystem::path classes{};             ///< raster of classes, which choose materials; empty: none. `classfile`
 
   void validate() const { material.validate(); }
 

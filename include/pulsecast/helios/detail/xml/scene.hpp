@@ -224,7 +224,8 @@ inline void fields(XmlInput& io, SceneSettings& scene) {
     }
     std::vector<std::filesystem::path> loaded;
     std::visit([&](auto& of_kind) { loaded = std::move(of_kind.files); }, *source);
-    const bool is_split = !id && loaded.size() > 1;
+    const auto* const rasters = std::get_if<GeoTiffSource>(&*source);
+    const bool is_split = !id && loaded.size() > 1 && !(rasters && rasters->mosaic);
     for (std::size_t i = 0; i < (is_split ? loaded.size() : 1); ++i) {
       PartSettings one = part;
       one.id = id ? *id : std::to_string(number + i);

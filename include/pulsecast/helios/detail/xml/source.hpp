@@ -70,6 +70,8 @@ template <class Io>
 void fields(Io& io, Of<Io, GeoTiffSource>& source) {
   files(io, source.files);
   fields(io, source.material);
+  io.flag("mosaic", source.mosaic);
+  io.file("classfile", source.classes);
 }
 
 template <class Io>
