@@ -113,6 +113,10 @@ TEST_CASE("a raster takes its materials from one of codes with other pixels") {
   const Raster elsewhere{.columns = 2, .rows = 2, .first = {103, 197}, .pixel = {1, 1}, .heights = {5, 5, 5, 5}};
   CHECK(set_materials(ground, elsewhere, {{5, 1}}) == 5);  // of pixels from 102.5 to 104.5 m east and from 197.5 to 195.5 m north
   CHECK(ground.materials == std::vector<std::uint8_t>{0, 0, 0, 0, 0, 1});
+  const Raster edges{.columns = 2, .rows = 2, .first = {101, 199}, .pixel = {2, 2}, .heights = {1, 2, 3, 4}};
+  Raster within = two_cells();  // whose pixels are on the edges of those codes
+  CHECK(set_materials(within, edges, {{1, 1}, {2, 2}, {3, 3}, {4, 4}}) == 0);
+  CHECK(within.materials == std::vector<std::uint8_t>{1, 2, 2, 3, 4, 4});
   const MeshData mesh = ground.mesh();
   CHECK(mesh.materials == std::vector<std::uint32_t>{0, 0, 0, 1});
 }

@@ -208,10 +208,10 @@ inline std::size_t set_materials(Raster& ground, const Raster& codes, const std:
     for (std::uint32_t column = 0; column < ground.columns; ++column) {
       const detail::RasterGrid grid = ground.grid();
       const Vec3 centre = grid.vertex(column, row, 0);
-      const double east = std::floor((centre.x - codes.first.x) / codes.pixel.x + 0.5);
-      const double south = std::floor((codes.first.y - centre.y) / codes.pixel.y + 0.5);
-      const bool inside = east >= 0 && south >= 0 && east < codes.columns && south < codes.rows;
-      const std::size_t at = inside ? codes.grid().index(static_cast<std::uint32_t>(east), static_cast<std::uint32_t>(south)) : 0;
+      const double east = (centre.x - codes.first.x) / codes.pixel.x + 0.5, south = (codes.first.y - centre.y) / codes.pixel.y + 0.5;
+      const bool inside = east >= 0 && south >= 0 && east <= codes.columns && south <= codes.rows;  // its edges, too
+      const auto number = [](double place, std::uint32_t count) { return std::min(static_cast<std::uint32_t>(place), count - 1); };
+      const std::size_t at = inside ? codes.grid().index(number(east, codes.columns), number(south, codes.rows)) : 0;
       const auto has_code = [&](const CodeMaterial& one) { return static_cast<double>(codes.heights[at]) == one.code; };
       const auto found = inside ? std::find_if(listed.begin(), listed.end(), has_code) : listed.end();
       if (found == listed.end())
