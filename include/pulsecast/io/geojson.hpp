@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_GEOJSON_HPP
+#define PULSECAST_IO_GEOJSON_HPP
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/base/vector.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/io/output_file.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+/// Settings of a GeoJSON file.
+struct GeoJsonSettings {
+  int epsg = 0;                    ///< EPSG code of a projected system in metres, from 1 to 32766; 0 if unknown, and none is written
+  double interval = 1;             ///< time between two points of a trajectory [s]
+  double footprint_interval = 10;  ///< time that one polygon of a footprint covers [s]
+
+  void validate() const {
+    require_within("GeoJsonSettings::epsg", epsg, 0, 32766, "");  // range of EPSG codes; source: OGC GeoTIFF 1.1
+    require_positive("GeoJsonSettings::interval", interval, "s");
+    require_positive("GeoJsonSettings::footprint_interval", footprint_interval, "s");
+  }
+};
+
+namespace detail {
+
+/// Convex hull of points in the plane, anticlockwise from the lowest x, without points on its edges.
+/// Source: Andrew 1979, Another efficient algorithm for convex hulls in two dimensions. Exact if the products of differences are.
+[[nodiscard]] inline std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
+  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Vec2> hull;
+  const auto add = [&hull](const Vec2& p, std::size_t fewest) {
+    const auto turns_left = [&] {
+      const Vec2 &a = hull[hull.size() - 2], &b = hull.back();
+      return (b.x - a.x) * (p.y - a.y) > (b.y - a.y) * (p.x - a.x);
+    };
+    while (hull.size() > fewest && !turns_left()) hull.pop_back();
+    hull.push_back(p);
+  };
+  for (const Vec2& p : points) add(p, 1);
+  const std::size_t lower = hull.size();
+  for (auto p = points.rbegin() + 1; p != points.rend(); ++p) add(*p, lower);
+  hull.pop_back();  // the first point again
+  return hull;
+}
+
+/// Convex hull of a stream of points. Keeps a buffer of some thousands, or of twice the corners if these are more.
+class HullOfStream {
+ public:
+  void add(const Vec2& point) {
+    if (points_.size() >= limit_) {
+      points_ = convex_hull(std::move(points_));
+      limit_ = std::max(least, 2 * points_.size());
+    }
+    points_.push_back(point);
+  }
+
+  /// Corners of all points since the last call.
+  [[nodiscard]] std::vector<Vec2> take() { return convex_hull(std::exchange(points_, {})); }
+
+ private:
+  static constexpr std::size_t least = 4096;
+  std::vector<Vec2> points_;
+  std::size_t limit_ = least;
+};
+
+}  // namespace detail
+
+/// Writes the trajectory and the footprint of each leg as GeoJSON, one feature a line, as for a look in QGIS:
+/// - trajectory: LineString of the origins of pulses, the first and the last among them, without repeated points. It is a Point for a leg
+///   that does not move. Properties: kind, leg, pulses, points (all echoes of the leg), start and end [s];
+/// - footprint: Polygon of the convex hull, seen from above, of the echoes' points of one `footprint_interval`, counted from the start of
+///   the leg. Properties: kind, leg, start and end (first and last pulse with a point) [s], points, area [m^2]. Points on a line have none.
+///
+/// Sources: RFC 7946, sections 3.1 and 3.3; for the member "crs", which names `epsg`: GeoJSON 2008, section 3. QGIS and GDAL read that
+/// member; RFC 7946 knows longitude and latitude of WGS 84 only, so that readers bound to it misplace coordinates in metres.
+/// Coordinates have 3 decimals. Points that are not finite are left out. A leg ends when another begins; one that comes back has new
+/// features.
+/// Footprints are written as their time ends, a trajectory with its leg: memory grows with the
+/// points of one leg's trajectory, and the corners of one footprint.
+/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+class GeoJsonWriter {
+ public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
+  explicit GeoJsonWriter(std::filesystem::path path, const GeoJsonSettings& settings = {})
+      : settings_(validated(settings)), file_(std::move(path)) {
+    file_.write(std::string_view("{\"type\":\"FeatureCollection\","));
+    if (settings_.epsg != 0)
+      file_.write(pulsecast::detail::joined(
+          {R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::)", std::to_string(settings_.epsg), "\"}},"}));
+    file_.write(std::string_view("\"features\":["));
+  }
+
+  void operator()(const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots) {
+      const double time = shot.tick.seconds();
+      if (!leg_ || leg_->number != shot.leg) {
+        end_leg();
+        leg_ = Leg{.number = shot.leg, .time = {time, time}};
+      }
+      follow(shot, time);
+      for (const Echo& echo : batch.echoes_of(shot)) cover(point_of(shot, echo), time);
+    }
+  }
+
+  /// Writes the last leg, and gives the file its name. Throws a `FileError`.
+  void close() {
+    end_leg();
+    file_.write(std::string_view("\n]}\n"));
+    file_.commit();
+  }
+
+ private:
+  static constexpr double per_metre = 1000;  // units of the coordinates as written
+
+  struct Times {
+    double start = 0, end = 0;
+  };
+
+  struct Leg {
+    std::uint16_t number = 0;
+    Times time{};
+    std::uint64_t pulses = 0, points = 0;
+    double slot = -1;            // number of the interval of the last point
+    std::optional<Vec3> last{};  // origin of the last pulse [mm]
+    std::string line{}, end{};   // points so far, and the last of them
+    std::size_t line_points = 0;
+
+    void add(const Vec3& point) {
+      std::string text = position({point.x, point.y, point.z});
+      if (text == end) return;
+      line += (line_points == 0 ? "" : ",") + text;
+      end = std::move(text);
+      ++line_points;
+    }
+  };
+
+  struct Footprint {
+    double slot = 0;
+    Times time{};
+    std::uint64_t points = 0;
+  };
+
+  /// Point in whole millimetres, so that hulls are exact up to some 90 km and remain convex as written; empty if not finite.
+  [[nodiscard]] static std::optional<Vec3> rounded(const Vec3& point) {
+    const Vec3 scaled = point * per_metre;
+    if (!finite(scaled)) return std::nullopt;
+    return Vec3{std::nearbyint(scaled.x) + 0.0, std::nearbyint(scaled.y) + 0.0, std::nearbyint(scaled.z) + 0.0};  // no negative zero
+  }
+
+  /// Array of coordinates [m].
+  template <std::size_t N>
+  [[nodiscard]] static std::string position(const double (&millimetres)[N]) {
+    std::string text = "[";
+    for (const double value : millimetres) {
+      std::array<char, 320> digits;  // enough for all finite numbers
+      const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value / per_metre, std::chars_format::fixed, 3).ptr;
+      text.append(text.size() > 1 ? "," : "").append(digits.data(), end);
+    }
+    return text + "]";
+  }
+
+  void follow(const Shot& shot, double time) {
+    ++leg_->pulses;
+    leg_->points += shot.echoes;
+    leg_->time.end = time;
+    const std::optional<Vec3> origin = rounded(shot.origin);
+    if (!origin) return;
+    leg_->last = origin;
+    const double slot = std::floor((time - leg_->time.start) / settings_.interval);
+    if (slot <= leg_->slot) return;
+    leg_->slot = slot;
+    leg_->add(*origin);
+  }
+
+  void cover(const Vec3& echo, double time) {
+    const std::optional<Vec3> point = rounded(echo);
+    if (!point) return;
+    const double slot = std::floor((time - leg_->time.start) / settings_.footprint_interval);
+    if (footprint_ && footprint_->slot != slot) end_footprint();
+    if (!footprint_) footprint_ = Footprint{.slot = slot, .time = {time, time}};
+    footprint_->time.end = time;
+    ++footprint_->points;
+    hull_.add({point->x, point->y});
+  }
+
+  void end_footprint() {
+    if (!footprint_) return;
+    const Footprint done = *std::exchange(footprint_, std::nullopt);
+    const std::vector<Vec2> corners = hull_.take();
+    if (corners.size() < 3) return;
+    double twice = 0;  // area [mm^2]
+    std::string ring;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec2 a = corners[i] - corners[0], b = corners[(i + 1) % corners.size()] - corners[0];
+      twice += a.x * b.y - a.y * b.x;
+      ring += position({corners[i].x, corners[i].y}) + ",";
+    }
+    if (!std::isfinite(twice)) return;
+    const std::string area = pulsecast::detail::to_text(twice / (2 * per_metre * per_metre));
+    feature("footprint", done.time, pulsecast::detail::joined({R"("points":)", std::to_string(done.points), R"(,"area":)", area}),
+            pulsecast::detail::joined({R"({"type":"Polygon","coordinates":[[)", ring, position({corners[0].x, corners[0].y}), "]]}"}));
+  }
+
+  void end_leg() {
+    if (!leg_) return;
+    end_footprint();
+    if (leg_->last) leg_->add(*leg_->last);
+    const bool moves = leg_->line_points > 1;
+    const std::string geometry = pulsecast::detail::joined(
+        {R"({"type":")", moves ? "LineString" : "Point", R"(","coordinates":)", moves ? "[" : "", leg_->line, moves ? "]}" : "}"});
+    if (leg_->last)
+      feature("trajectory", leg_->time,
+              pulsecast::detail::joined({R"("pulses":)", std::to_string(leg_->pulses), R"(,"points":)", std::to_string(leg_->points)}),
+              geometry);
+    leg_.reset();
+  }
+
+  /// Writes a feature of the present leg.
+  void feature(std::string_view kind, const Times& time, std::string_view counts, std::string_view geometry) {
+    using pulsecast::detail::to_text;
+    file_.write(pulsecast::detail::joined({std::exchange(separator_, ",\n"), R"({"type":"Feature","properties":{"kind":")", kind,
+                                           R"(","leg":)", std::to_string(leg_->number), R"(,"start":)", to_text(time.start), R"(,"end":)",
+                                           to_text(time.end), ",", counts, R"(},"geometry":)", geometry, "}"}));
+  }
+
+  GeoJsonSettings settings_;
+  OutputFile file_;
+  std::string_view separator_ = "\n";
+  std::optional<Leg> leg_;
+  std::optional<Footprint> footprint_;
+  detail::HullOfStream hull_;
+};
+static_assert(EchoSink<GeoJsonWriter>);
+
+}  // namespace PULSECAST_NAMESPACE::io
+
+#endif
