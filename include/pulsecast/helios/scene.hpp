@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -66,6 +67,12 @@ class SceneBuilder {
     decltype(SurveyPart::geometry) geometry;
     MaterialTable materials;
   };
+  /// Materials of rasters, and the raster of classes that chooses them, if any.
+  struct GroundMaterials {
+    MaterialTable table;
+    std::optional<Raster> codes;
+    std::vector<CodeMaterial> listed;
+  };
   using Load = std::function<void(const std::filesystem::path&, std::vector<Loaded>&)>;
 
   void warn(const std::vector<std::string>& what);
@@ -77,8 +84,7 @@ class SceneBuilder {
   std::vector<Loaded> read(const VoxelSource& source);
   void drop_bare(const std::filesystem::path& file, io::PointCloud& cloud);
   Raster raster(const std::filesystem::path& file);
-  Loaded ground(const GeoTiffSource& source, Raster raster);
-  std::vector<Material> classify(const GeoTiffSource& source, Raster& ground);
+  GroundMaterials ground_materials(const GeoTiffSource& source);
   Material material(const MaterialSource& source);
   MaterialTable table(std::vector<Material> materials) const;
   MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels);

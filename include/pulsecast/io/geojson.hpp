@@ -4,8 +4,6 @@
 #define PULSECAST_IO_GEOJSON_HPP
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +17,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/io/detail/text/row.hpp>
 #include <pulsecast/io/output_file.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -161,19 +160,17 @@ class GeoJsonWriter {
   [[nodiscard]] static std::optional<Vec3> rounded(const Vec3& point) {
     const Vec3 scaled = point * per_metre;
     if (!finite(scaled)) return std::nullopt;
-    return Vec3{std::nearbyint(scaled.x) + 0.0, std::nearbyint(scaled.y) + 0.0, std::nearbyint(scaled.z) + 0.0};  // no negative zero
+    return Vec3{std::nearbyint(scaled.x), std::nearbyint(scaled.y), std::nearbyint(scaled.z)};
   }
 
   /// Array of coordinates [m].
   template <std::size_t N>
   [[nodiscard]] static std::string position(const double (&millimetres)[N]) {
-    std::string text = "[";
-    for (const double value : millimetres) {
-      std::array<char, 320> digits;  // enough for all finite numbers
-      const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value / per_metre, std::chars_format::fixed, 3).ptr;
-      text.append(text.size() > 1 ? "," : "").append(digits.data(), end);
-    }
-    return text + "]";
+    TextRow row(',');
+    for (const double value : millimetres) row.add(value / per_metre, 3);
+    std::string_view text = row.end();
+    text.remove_suffix(1);  // the line end
+    return pulsecast::detail::joined({"[", text, "]"});
   }
 
   void follow(const Shot& shot, double time) {

@@ -25,9 +25,8 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell, and of
-/// 2, 4, 16 or 256 materials a further 1, 2, 4 or 8 bits. Two-sided. The two
-/// triangles of cell i, row by row, are primitives 2 i and 2 i + 1.
+/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell, and of 2, 4, 16 or 256
+/// materials a further 1, 2, 4 or 8 bits. Two-sided. The two triangles of cell i, row by row, are primitives 2 i and 2 i + 1.
 /// A min-max pyramid of heights, eight children per node, bounds the ground for rays. A bundle traverses it as a whole, front to back: row
 /// by row and column by column in the order of passage.
 /// Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic).

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,6 +35,13 @@ struct RasterGrid {
   }
 
   [[nodiscard]] std::size_t index(std::uint32_t column, std::uint32_t row) const noexcept { return std::size_t{row} * columns + column; }
+
+  /// Pixel that holds a place, edges of the raster included; empty outside.
+  [[nodiscard]] std::optional<std::size_t> pixel_at(const Vec3& place) const noexcept {
+    const double east = (place.x - first.x) / pixel.x + 0.5, south = (first.y - place.y) / pixel.y + 0.5;
+    if (!(east >= 0 && east <= columns && south >= 0 && south <= rows)) return std::nullopt;
+    return index(std::min(static_cast<std::uint32_t>(east), columns - 1), std::min(static_cast<std::uint32_t>(south), rows - 1));
+  }
 
   /// Pixel of the right angle of triangle i, row by row, two a cell. A pixel inside so has two triangles, about its centre.
   [[nodiscard]] std::size_t owner(PrimitiveIndex i) const noexcept {
@@ -178,13 +186,13 @@ namespace detail {
   for (const Raster& tile : tiles) {
     const std::uint32_t column = detail::place_in_mosaic(tile.first.x - west, tile.pixel.x, tile.columns, pixel.x);
     const std::uint32_t row = detail::place_in_mosaic(north - tile.first.y, tile.pixel.y, tile.rows, pixel.y);
-    for (std::size_t from = 0; from < tile.heights.size(); ++from) {
-      const auto c = static_cast<std::uint32_t>(from % tile.columns), r = static_cast<std::uint32_t>(from / tile.columns);
-      const std::size_t to = grid.index(column + c, row + r);
-      if (!std::isnan(all.heights[to])) continue;
-      all.heights[to] = tile.heights[from];
-      if (!tile.materials.empty()) all.materials[to] = tile.materials[from];
-    }
+    for (std::uint32_t r = 0; r < tile.rows; ++r)
+      for (std::uint32_t c = 0; c < tile.columns; ++c) {
+        const std::size_t from = tile.grid().index(c, r), to = grid.index(column + c, row + r);
+        if (!std::isnan(all.heights[to])) continue;
+        all.heights[to] = tile.heights[from];
+        if (!tile.materials.empty()) all.materials[to] = tile.materials[from];
+      }
   }
   all.validate();
   return all;
@@ -202,18 +210,14 @@ struct CodeMaterial {
 inline std::size_t set_materials(Raster& ground, const Raster& codes, const std::vector<CodeMaterial>& listed, std::uint8_t otherwise = 0) {
   ground.validate();
   codes.validate();
+  const detail::RasterGrid grid = ground.grid();
   std::size_t unlisted = 0;
   std::vector<std::uint8_t> materials(ground.heights.size(), otherwise);
   for (std::uint32_t row = 0; row < ground.rows; ++row)
     for (std::uint32_t column = 0; column < ground.columns; ++column) {
-      const detail::RasterGrid grid = ground.grid();
-      const Vec3 centre = grid.vertex(column, row, 0);
-      const double east = (centre.x - codes.first.x) / codes.pixel.x + 0.5, south = (codes.first.y - centre.y) / codes.pixel.y + 0.5;
-      const bool inside = east >= 0 && south >= 0 && east <= codes.columns && south <= codes.rows;  // its edges, too
-      const auto number = [](double place, std::uint32_t count) { return std::min(static_cast<std::uint32_t>(place), count - 1); };
-      const std::size_t at = inside ? codes.grid().index(number(east, codes.columns), number(south, codes.rows)) : 0;
-      const auto has_code = [&](const CodeMaterial& one) { return static_cast<double>(codes.heights[at]) == one.code; };
-      const auto found = inside ? std::find_if(listed.begin(), listed.end(), has_code) : listed.end();
+      const std::optional<std::size_t> at = codes.grid().pixel_at(grid.vertex(column, row, 0));
+      const auto has_code = [&](const CodeMaterial& one) { return static_cast<double>(codes.heights[*at]) == one.code; };
+      const auto found = at ? std::find_if(listed.begin(), listed.end(), has_code) : listed.end();
       if (found == listed.end())
         ++unlisted;
       else

@@ -112,20 +112,24 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjS
 }
 
 PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const GeoTiffSource& source) {
+  GroundMaterials materials;  // read after the first raster
+  const auto ground = [&](Raster raster) -> Loaded {
+    if (!materials.table) materials = ground_materials(source);
+    const std::size_t unlisted = materials.codes ? set_materials(raster, *materials.codes, materials.listed) : 0;
+    if (unlisted > 0)
+      warn({source.classes.string() + ": " + std::to_string(unlisted) + " of " + std::to_string(raster.heights.size()) +
+            " pixels have no class with a material, and get '" + materials.table->front().name + "'"});
+    return {std::make_shared<const HeightField>(std::move(raster), options_.threads), materials.table};
+  };
   std::vector<Raster> tiles;
   std::vector<Loaded> loaded = each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
     if (source.mosaic)
       tiles.push_back(raster(file));
     else
-      all.push_back(ground(source, raster(file)));
+      all.push_back(ground(raster(file)));
   });
-  if (source.mosaic && !tiles.empty()) naming(source.files.front().string(), [&] { loaded.push_back(ground(source, mosaic(tiles))); });
+  if (source.mosaic && !tiles.empty()) naming(source.files.front().string(), [&] { loaded.push_back(ground(mosaic(tiles))); });
   return loaded;
-}
-
-PULSECAST_INLINE SceneBuilder::Loaded SceneBuilder::ground(const GeoTiffSource& source, Raster raster) {
-  MaterialTable materials = table(source.classes.empty() ? std::vector{material(source.material)} : classify(source, raster));
-  return {std::make_shared<const HeightField>(std::move(raster), options_.threads), std::move(materials)};
 }
 
 PULSECAST_INLINE Raster SceneBuilder::raster(const std::filesystem::path& file) {
@@ -139,24 +143,24 @@ PULSECAST_INLINE Raster SceneBuilder::raster(const std::filesystem::path& file) 
   return std::move(tiff.raster);
 }
 
-/// Sets the materials of a raster: of each class the first, by name, with this number.
-PULSECAST_INLINE std::vector<Material> SceneBuilder::classify(const GeoTiffSource& source, Raster& ground) {
+/// The material of pixels without a class, and then of each class the first, by name, with this number.
+PULSECAST_INLINE SceneBuilder::GroundMaterials SceneBuilder::ground_materials(const GeoTiffSource& source) {
   std::vector<Material> all{material(source.material)};
-  std::map<std::uint16_t, Material> by_class;
-  if (!source.material.file.empty())
-    for (const auto& [name, one] : io::read_mtl(source.material.file, options_.spectra).materials)
-      by_class.try_emplace(one.classification, one);
-  require_within("classes with a material (number)", static_cast<double>(by_class.size()), 0, 255, "");
-  std::vector<CodeMaterial> listed;
-  for (const auto& [number, one] : by_class) {
-    listed.push_back({static_cast<double>(number), static_cast<std::uint8_t>(all.size())});
-    all.push_back(one);
+  GroundMaterials made;
+  if (!source.classes.empty()) {
+    std::map<std::uint16_t, Material> by_class;
+    if (!source.material.file.empty())
+      for (const auto& [name, one] : io::read_mtl(source.material.file, options_.spectra).materials)
+        by_class.try_emplace(one.classification, one);
+    require_within("classes with a material (number)", static_cast<double>(by_class.size()), 0, 255, "");
+    for (const auto& [number, one] : by_class) {
+      made.listed.push_back({static_cast<double>(number), static_cast<std::uint8_t>(all.size())});
+      all.push_back(one);
+    }
+    made.codes = raster(source.classes);
   }
-  const std::size_t unlisted = set_materials(ground, raster(source.classes), listed);
-  if (unlisted > 0)
-    warn({source.classes.string() + ": " + std::to_string(unlisted) + " of " + std::to_string(ground.heights.size()) +
-          " pixels have no class with a material, and get '" + all[0].name + "'"});
-  return all;
+  made.table = table(std::move(all));
+  return made;
 }
 
 PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const XyzSource& source) {

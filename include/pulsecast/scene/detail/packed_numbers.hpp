@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/shared_array.hpp>
@@ -20,13 +21,12 @@ class PackedNumbers {
     if (!numbers.empty()) most_ = *std::max_element(numbers.begin(), numbers.end());
     if (most_ == 0) return;
     while (most_ >> (1U << shift_) != 0) ++shift_;
-    const SharedBuffer<std::uint8_t> bytes(bytes_of(numbers.size()));
-    std::fill(bytes.begin(), bytes.end(), std::uint8_t{0});
+    std::vector<std::uint8_t> bytes(bytes_of(numbers.size()));
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       std::uint8_t& byte = bytes[(i << shift_) / 8];
       byte = static_cast<std::uint8_t>(byte | numbers[i] << ((i << shift_) % 8));
     }
-    bytes_ = bytes;
+    bytes_ = std::move(bytes);
   }
 
   template <class Archive>
