@@ -157,14 +157,15 @@ TEST_CASE("a lattice of 9e18 cells, of which the outermost are there, is served"
 
 namespace {
 
-/// Fills a height field as one that was kept in a file is filled: flat ground at height 0, on pages that nobody ever wrote to.
+/// Fills a height field as one that was kept in a file is filled: flat ground of one material at height 0, on pages that
+/// nobody ever wrote to.
 struct FlatGround {
   std::uint32_t columns, rows;
   std::shared_ptr<const void> zeros;
   std::size_t size;  ///< of the zeros [byte]
 
   void operator()(pulsecast::detail::RasterGrid& grid, auto& levels, std::uint32_t& top, Vec2& per_metre, Vec2& pad, Vec3& centre,
-                  Box& bounds, SharedArray<float>& heights, SharedArray<float>& pyramid) const {
+                  Box& bounds, SharedArray<float>& heights, SharedArray<float>& pyramid, pulsecast::detail::PackedNumbers&) const {
     grid = {.columns = columns, .rows = rows};
     per_metre = {1, -1};
     pad = Vec2(1e-6 * columns);
