@@ -107,18 +107,36 @@ template <CacheableScene S, class Build, class... Further>
 template <class Archive>
 void list_members(Archive& a, Material& m) {
   auto& [name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, retroreflector, prism_index, width,
-         roughness, table, classification, ground, spectrum, smooth] = m;
+         roughness, table, classification, ground, spectrum, smooth, colour, picture, reflectance_map] = m;
   a(name, reflectance, scattering, specular_share, specular_exponent, retroreflection, half_angle, retroreflector, prism_index, width,
-    roughness, table, classification, ground, spectrum);
+    roughness, table, classification, ground, spectrum, colour, picture, reflectance_map);
   auto& [kind, mirrored, thickness, inside] = smooth;
   auto& [index, group_index, absorption, volume_scattering, backscatter] = inside;
   a(kind, mirrored, thickness, index, group_index, absorption, volume_scattering, backscatter);
 }
+/// Lists the members of a picture.
+template <class Archive>
+void list_members(Archive& a, Image& image) {
+  auto& [width, height, channels, samples] = image;
+  a(width, height, channels, samples);
+}
+/// Lists the members of a map of reflectances.
+template <class Archive>
+void list_members(Archive& a, ReflectanceMap& map) {
+  auto& [image, wavelengths, relative] = map;
+  a(image, wavelengths, relative);
+}
+/// Lists the members of a named number.
+template <class Archive>
+void list_members(Archive& a, Attribute& attribute) {
+  auto& [name, value] = attribute;
+  a(name, value);
+}
 /// Lists the members of a part.
 template <class Archive, class... Shapes>
 void list_members(Archive& a, Part<Shapes...>& part) {
-  auto& [geometry, materials, placement, object, name, motion] = part;
-  a(geometry, materials, placement, object, name);
+  auto& [geometry, materials, placement, object, name, motion, attributes] = part;
+  a(geometry, materials, placement, object, name, attributes);
   if constexpr (detail::Restorable<PartMotion>) a(motion);
 }
 
@@ -128,7 +146,7 @@ namespace detail {
 struct CacheHeader {
   static constexpr std::array<char, 8> own_mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
   static constexpr std::uint32_t own_order = 0x01020304;  ///< reads differently in another byte order
-  static constexpr std::uint32_t own_format = 6;          ///< version of the layout of the file
+  static constexpr std::uint32_t own_format = 7;          ///< version of the layout of the file
 
   std::array<char, 8> mark = own_mark;
   std::uint32_t order = own_order, format = own_format;

@@ -18,7 +18,9 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/base/vector_math.hpp>
+#include <pulsecast/scene/image.hpp>
 #include <pulsecast/scene/microfacet.hpp>
+#include <pulsecast/scene/reflectance_map.hpp>
 #include <pulsecast/scene/smooth_interface.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
@@ -110,6 +112,9 @@ struct Material {
   bool ground = false;                         ///< true if it may carry set-ups and vehicles
   std::shared_ptr<const Spectrum> spectrum{};  ///< reflectance by wavelength, shareable; empty for a constant reflectance
   SmoothInterface smooth{};                    ///< light that goes on from it, for a transport that follows it
+  Vec3 colour{1, 1, 1};                        ///< red, green and blue of its points, as displays take them (sRGB), each from 0 to 1
+  std::shared_ptr<const Image> picture{};      ///< what the colour is multiplied by, by texture coordinates; empty without
+  std::shared_ptr<const ReflectanceMap> reflectance_map{};  ///< reflectance by texture coordinates; empty without
 
   /// @throws SettingError for values out of range
   void validate() const {
@@ -124,6 +129,9 @@ struct Material {
     require_within("Material::roughness", roughness, 1e-3, 2, "");
     require_within("Material::retroreflection_half_angle", retroreflection_half_angle, 0.01, 1.5, "rad");
     smooth.validate();
+    for (int k = 0; k < 3; ++k) require_within("Material::colour", colour[k], 0, 1, "");
+    if (picture) picture->validate();
+    if (reflectance_map) reflectance_map->validate();
     if (smooth.kind == InterfaceKind::mirror)
       require_within("Material::reflectance (with SmoothInterface::reflectance)", reflectance + smooth.reflectance, 0, 1, "");
     if (scattering == Scattering::tabulated)

@@ -183,6 +183,14 @@ constexpr decltype(auto) visit_shape(const Visitor& visitor, const std::variant<
   return std::visit(visitor, geometry);
 }
 
+/// Named number of a part, such as age, species or diameter.
+struct Attribute {
+  std::string name{};  ///< name, as of a column
+  double value = 0;    ///< value, in units of the user's
+
+  friend bool operator==(const Attribute&, const Attribute&) = default;
+};
+
 /// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
@@ -192,6 +200,7 @@ struct Part {
   ObjectId object = 0;                             ///< object id of its points
   std::string name{};                              ///< user's name for it
   std::shared_ptr<const PartMotion> motion{};      ///< motion on top of its placement; empty if static; for a `MovingScene`
+  std::vector<Attribute> attributes{};             ///< what its points are told besides, as by `ObjectAttributes`
 };
 
 }  // namespace PULSECAST_NAMESPACE

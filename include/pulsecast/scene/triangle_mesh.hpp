@@ -24,6 +24,7 @@
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/detail/bundle_budget.hpp>
 #include <pulsecast/scene/detail/corner_table.hpp>
+#include <pulsecast/scene/mask.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -33,6 +34,7 @@ struct MeshData {
   std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertex indices of the corners
   std::vector<std::uint32_t> materials{};                 ///< one per triangle: index into the part's table; empty if all are 0
   std::vector<std::array<Vec2, 3>> texture{};             ///< one per triangle: texture coordinates of its corners; empty without
+  std::vector<Mask> masks{};                              ///< by material: its holes, by texture coordinates; those beyond have none
 
   /// @throws SettingError for no triangles, an index out of range, a vertex that is not finite, or columns of different lengths
   void validate() const {
