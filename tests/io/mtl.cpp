@@ -242,3 +242,18 @@ TEST_CASE("a damaged MTL file gives one error with its line") {
     CHECK(contains(error.problem(), "expected"));
   }
 }
+
+TEST_CASE("pictures are named beside the file, without their options, and for the first of equal names") {
+  const Folder folder;
+  const MaterialLibrary library =
+      read_mtl(folder.write("a.mtl",
+                            "newmtl leaf\nmap_Kd -s 2 2 1 pictures\\my leaf.png\nmap_d -clamp on mask.png\n"
+                            "pulsecast_reflectanceMap pattern bark.jpg\nnewmtl bare\nnewmtl leaf\nmap_Kd other.png\n");
+  REQUIRE(library.pictures.size() == 1);
+  const MaterialPictures& leaf = library.pictures.at("leaf");
+  CHECK(leaf.colour.file == folder.path() / "pictures/my leaf.png");
+  CHECK(leaf.opacity.file == folder.path() / "mask.png");
+  CHECK(leaf.reflectance.file == folder.path() / "bark.jpg");
+  CHECK(leaf.reflectance_pattern);
+  CHECK_THROWS_AS(static_cast<void>(mtl("newmtl a\nmap_d\n")), FileError);
+}

@@ -52,6 +52,29 @@ void require_same(const Mesh& mesh, const MeshData& data, Generator& any, double
 
 }  // namespace
 
+TEST_CASE("texture coordinates and masks stay when the index is built anew") {
+  Generator any(11);
+  MeshData data;
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    const Vec3 at = any.point(10);
+    for (int k = 0; k < 3; ++k) data.vertices.push_back(at + any.point(0.1));
+    data.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    data.texture.push_back({Vec2{0, 0}, {1, 0}, {0, 1}});
+  }
+  data.masks = {{2, 1, {1}}};  // solid on the left
+  DeformingMesh mesh(data);
+  const auto before = mesh.mesh()->memory();
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    const Vec3 at = any.point(10);  // a scattering that no refit bears
+    for (std::uint32_t k = 0; k < 3; ++k) data.vertices[3 * i + k] = at + any.point(0.1);
+  }
+  const auto moved = mesh.refit(data.vertices);
+  CHECK(moved->is_consistent());
+  CHECK(moved->texture(7, {0.25, 0.25, 0.5}) == Vec2{0.25, 0.5});
+  CHECK(double(moved->memory()) == doctest::Approx(double(before)).epsilon(0.2));
+  require_same(*moved, data, any, 10);
+}
+
 TEST_CASE("a floor that is raised is met where it is, and the mesh before where it was") {
   DeformingMesh floor({.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, .triangles = {{0, 1, 2}, {0, 2, 3}}});
   const auto range = [](const Mesh& mesh) {

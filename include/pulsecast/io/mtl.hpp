@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
+#include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/io/detail/spectra.hpp>
-#include <pulsecast/io/material_pictures.hpp>
 #include <pulsecast/scene/material.hpp>
 
 namespace PULSECAST_NAMESPACE::io {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
+#include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/io/detail/spectra.hpp>
-#include <pulsecast/io/material_pictures.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
-#include <pulsecast/io/material_pictures.hpp>
+#include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/scene/image.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>

@@ -47,6 +47,13 @@ TEST_CASE("an OBJ file brings the materials that it names, as one name and as se
   CHECK(std::find(found.begin(), found.end(), "missing.mtl") == found.end());
 }
 
+TEST_CASE("an MTL file brings the pictures that it names") {
+  const Folder folder({"leaf.png", "bark.jpg"});
+  folder.put("a.mtl", "newmtl a\nmap_Kd .\\leaf.png\nmap_d missing.png\nnewmtl b\npulsecast_reflectanceMap bark.jpg\n");
+  folder.put("x.obj", "mtllib a.mtl\n");
+  CHECK(folder.files(ObjSource{{folder / "x.obj"}}) == Names{"x.obj", "a.mtl", "leaf.png", "bark.jpg"});
+}
+
 TEST_CASE("a scene has ground if any of its MTL files says so") {
   const Folder folder({"p.xyz", "v.vox"});
   folder.put("a.mtl", "newmtl a\nKd 1 1 1\n# helios_isGround true\nhelios_isGround false\n");

@@ -20,7 +20,7 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Files of a scene in all runs, each once: those in its settings and the material files of OBJ files. Missing files are left out; the
+/// Files of a scene in all runs, each once: those in its settings, the material files of OBJ files, and their pictures. Missing files are left out; the
 /// builder of the scene reports them.
 [[nodiscard]] std::vector<std::filesystem::path> scene_files(const SceneSettings& scene);
 
@@ -71,8 +71,15 @@ class SceneFiles {
     return true;
   }
 
+  /// Adds an MTL file, and the pictures that it names.
   void add_material(const std::filesystem::path& file) {
-    if (add(file)) materials_.push_back(file);
+    if (!add(file)) return;
+    materials_.push_back(file);
+    try {
+      for (const auto& [name, pictures] : io::read_mtl(file).pictures)
+        for (const io::PictureSource* picture : {&pictures.colour, &pictures.opacity, &pictures.reflectance}) add(picture->file);
+    } catch (const FileError&) {  // unreadable
+    }
   }
 
   /// Adds the files that `mtllib` in an OBJ file may name.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#ifndef PULSECAST_IO_MATERIAL_PICTURES_HPP
-#define PULSECAST_IO_MATERIAL_PICTURES_HPP
+#ifndef PULSECAST_IO_DETAIL_MATERIAL_PICTURES_HPP
+#define PULSECAST_IO_DETAIL_MATERIAL_PICTURES_HPP
 
 #include <cstddef>
 #include <filesystem>
