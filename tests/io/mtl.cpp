@@ -244,11 +244,9 @@ TEST_CASE("a damaged MTL file gives one error with its line") {
 }
 
 TEST_CASE("pictures are named beside the file, without their options, and for the first of equal names") {
-  const Folder folder;
   const MaterialLibrary library =
-      read_mtl(folder.write("a.mtl",
-                            "newmtl leaf\nmap_Kd -s 2 2 1 pictures\\my leaf.png\nmap_d -clamp on mask.png\n"
-                            "pulsecast_reflectanceMap pattern bark.jpg\nnewmtl bare\nnewmtl leaf\nmap_Kd other.png\n");
+      mtl("newmtl leaf\nmap_Kd -s 2 2 1 pictures\\my leaf.png\nmap_d -clamp on mask.png\npulsecast_reflectanceMap pattern bark.jpg\n"
+          "newmtl bare\nnewmtl leaf\nmap_Kd other.png\n");
   REQUIRE(library.pictures.size() == 1);
   const MaterialPictures& leaf = library.pictures.at("leaf");
   CHECK(leaf.colour.file == folder.path() / "pictures/my leaf.png");
