@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/io/detail/las/layout.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/las/writer.hpp>
 #include <pulsecast/io/output_file.hpp>
@@ -24,12 +25,12 @@ class LasRecords {
  public:
   static constexpr std::uint8_t format_bits = 0;        ///< flags in the header's point format
   static constexpr std::uint32_t descriptor_count = 0;  ///< variable-length records for the decoding of points
-  [[nodiscard]] static std::vector<std::byte> descriptors(std::size_t /*record*/) { return {}; }
+  [[nodiscard]] static std::vector<std::byte> descriptors(const LasLayout& /*layout*/) { return {}; }
 
-  /// Begins the points at the file's position; `record` is the size of a record [byte], `changed` says if `change` will be called.
-  void begin(const OutputFile& file, std::size_t record, bool /*changed*/) {
+  /// Begins the points at the file's position; `changed` says if `change` will be called.
+  void begin(const OutputFile& file, const LasLayout& layout, bool /*changed*/) {
     begin_ = file.position();
-    record_ = record;
+    record_ = layout.record();
   }
 
   void write(OutputFile& file, std::span<const std::byte> record) { file.write(record); }

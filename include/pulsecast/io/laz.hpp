@@ -4,7 +4,6 @@
 #define PULSECAST_IO_LAZ_HPP
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -31,30 +30,36 @@ namespace detail {
 
 inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
 
-/// Variable-length record, header included, on the compression of points of a size [byte]. Source: `laszip encoded` as documented by
-/// LASzip, LAStools.
-[[nodiscard]] inline std::vector<std::byte> laz_descriptor(std::size_t record) {
+/// Variable-length record, header included, on the compression of points in chunks of `chunk` points. Source: `laszip encoded`
+/// as documented by LASzip, LAStools.
+[[nodiscard]] inline std::vector<std::byte> laz_descriptor(const LasLayout& layout, std::uint32_t chunk = laz_chunk_points) {
   struct Item {
-    std::uint16_t type, size, version;
+    std::uint16_t type;
+    std::size_t size;
   };
-  const std::array items{Item{10, laz_point_size, 3}, Item{14, static_cast<std::uint16_t>(record - laz_point_size), 3}};  // POINT14, BYTE14
-  LasBytes<34 + 6 * items.size()> d{};
+  std::vector<Item> items{{10, laz_point_size}};  // POINT14
+  if (layout.colour_size > 0)
+    items.push_back({layout.colour_size == 6 ? std::uint16_t{11} : std::uint16_t{12}, layout.colour_size});  // RGB14, RGBNIR14
+  items.push_back({14, layout.record() - layout.extras});                                                    // BYTE14
+  LasBytes<34> d{};
   d.put(0, std::uint16_t{3});  // layered chunks; then 0: arithmetic coder
   d.put(4, std::uint8_t{3});   // version 3.4, revision 3, as of LASzip
   d.put(5, std::uint8_t{4});
   d.put(6, std::uint16_t{3});
-  d.put(12, static_cast<std::uint32_t>(laz_chunk_points));
+  d.put(12, chunk);
   d.put(16, std::int64_t{-1});  // no special extended records:
   d.put(24, std::int64_t{-1});  // number and offset
   d.put(32, static_cast<std::uint16_t>(items.size()));
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    d.put(34 + 6 * i, items[i].type);
-    d.put(36 + 6 * i, items[i].size);
-    d.put(38 + 6 * i, items[i].version);
-  }
-  const auto head = las_vlr_header("laszip encoded", 22204, d.size(), "https://laszip.org");
+  const auto head = las_vlr_header("laszip encoded", 22204, d.size() + 6 * items.size(), "https://laszip.org");
   std::vector<std::byte> bytes(head.begin(), head.end());
   bytes.insert(bytes.end(), d.begin(), d.end());
+  for (const Item& item : items) {
+    LasBytes<6> i{};
+    i.put(0, item.type);
+    i.put(2, static_cast<std::uint16_t>(item.size));
+    i.put(4, std::uint16_t{3});  // version
+    bytes.insert(bytes.end(), i.begin(), i.end());
+  }
   return bytes;
 }
 
@@ -85,10 +90,11 @@ class LazRecords {
 
   static constexpr std::uint8_t format_bits = 128;
   static constexpr std::uint32_t descriptor_count = 1;
-  [[nodiscard]] static std::vector<std::byte> descriptors(std::size_t record) { return laz_descriptor(record); }
+  [[nodiscard]] static std::vector<std::byte> descriptors(const LasLayout& layout) { return laz_descriptor(layout); }
 
-  void begin(OutputFile& file, std::size_t record, bool changed) {
-    record_ = record;
+  void begin(OutputFile& file, const LasLayout& layout, bool changed) {
+    record_ = layout.record();
+    colour_ = layout.colour_size;
     table_position_at_ = file.position();
     file.write(table_position(-1));  // placeholder
     if (changed) unchanged_.emplace(file.path().string() + ".points");
@@ -134,7 +140,7 @@ class LazRecords {
     std::vector<std::vector<std::byte>> chunks((gathered_.size() + full - 1) / full);
     for_each_index(chunks.size(), threads_, [&](std::size_t i) {
       const auto records = std::span<const std::byte>(gathered_).subspan(i * full);
-      chunks[i] = LazChunk(records.first(std::min(full, records.size())), record_).compressed();
+      chunks[i] = LazChunk(records.first(std::min(full, records.size())), record_, colour_).compressed();
     });
     for (const auto& chunk : chunks) {
       file.write(chunk);
@@ -144,7 +150,7 @@ class LazRecords {
   }
 
   unsigned threads_;
-  std::size_t record_ = 0;               // [byte]
+  std::size_t record_ = 0, colour_ = 0;  // sizes of a record and of its colour [byte]
   std::uint64_t table_position_at_ = 0;  // offset of the table's position in the file [byte]
   std::optional<OutputFile> unchanged_;
   std::vector<std::byte> gathered_;
@@ -153,10 +159,10 @@ class LazRecords {
 
 }  // namespace detail
 
-/// Writes points as LAZ: as `LasWriter` in version 1.4 with point format 6, extra bytes included, compressed as by LASzip. Chunks of 50,000
-/// points are compressed on `threads` threads, 0 as in `thread_count`; the bytes of the file are the same for any number. Throws a
-/// `SettingError` for another format, or for waveforms. With intensities scaled to the greatest amplitude, `close()` compresses all; until
-/// then, points wait in `NAME.points.part`.
+/// Writes points as LAZ: as `LasWriter` in version 1.4 with point format 6, 7 or 8, extra bytes included, compressed as by LASzip. Chunks
+/// of 50,000 points are compressed on `threads` threads, 0 as in `thread_count`; the bytes of the file are the same for any number. Throws
+/// a `SettingError` for another format, or for waveforms. With intensities scaled to the greatest amplitude, `close()` compresses all;
+/// until then, points wait in `NAME.points.part`.
 class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
  public:
   /// @throws SettingError for settings out of range, or that LAZ cannot meet
@@ -167,16 +173,17 @@ class LazWriter : public detail::LasFileWriter<detail::LazRecords> {
   /// Settings, if LAZ can meet them. Throws a `SettingError` for another format, or for waveforms.
   [[nodiscard]] static LasSettings compressible(LasSettings settings) {
     if (settings.format != LasFormat::las_1_4)
-      throw SettingError("LasSettings::format", static_cast<double>(settings.format), "", "0 for LAZ: LAS 1.4 with point format 6");
+      throw SettingError("LasSettings::format", static_cast<double>(settings.format), "", "0 for LAZ: LAS 1.4 with point formats 6 to 8");
     if (settings.waveforms) throw SettingError("LasSettings::waveforms", 1, "", "false for LAZ, which is written without waveforms");
     return settings;
   }
 
   static constexpr std::uint64_t chunk_points = detail::laz_chunk_points;  ///< points of a chunk, except the last
 
-  /// Compresses a chunk of whole records of `record_size` bytes: at least one, at most `chunk_points`.
-  [[nodiscard]] static std::vector<std::byte> compressed_chunk(std::span<const std::byte> records, std::size_t record_size) {
-    return detail::LazChunk(records, record_size).compressed();
+  /// Compresses a chunk of whole records by these settings: at least one, at most `chunk_points`.
+  [[nodiscard]] static std::vector<std::byte> compressed_chunk(std::span<const std::byte> records, const LasSettings& settings) {
+    const detail::LasLayout layout(settings);
+    return detail::LazChunk(records, layout.record(), layout.colour_size).compressed();
   }
 };
 static_assert(EchoSink<LazWriter>);

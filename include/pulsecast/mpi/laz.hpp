@@ -104,7 +104,7 @@ class MpiLaz final : public MpiOutput {
     std::vector<Chunk> some;
     for (; !ready_.empty() && some.size() < threads_; ready_.pop_front()) some.push_back(std::move(ready_.front()));
     if (some.empty()) return false;
-    for_each_index(some.size(), threads_, [&](std::size_t i) { some[i].bytes = io::LazWriter::compressed_chunk(some[i].bytes, record_); });
+    for_each_index(some.size(), threads_, [&](std::size_t i) { some[i].bytes = io::LazWriter::compressed_chunk(some[i].bytes, settings_); });
     MpiMessage sizes;
     sizes.add(MessageKind::sizes);
     for (Chunk& chunk : some) {

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,8 +33,6 @@ using namespace pulsecast::io;
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr std::size_t record_size = 62;
 
 /// Which values of a point change, and how: with the chance given, to anything, or to a neighbour.
 void change(std::span<std::uint8_t> record, support::Generator& random, double chance, unsigned channels) {
@@ -58,6 +57,11 @@ void change(std::span<std::uint8_t> record, support::Generator& random, double c
   for (std::size_t i = 30; i < record.size(); ++i) any(i, 1);
 }
 
+/// Makes green and blue as red is.
+void make_grey(std::span<std::uint8_t> record) {
+  for (const std::size_t at : {32U, 34U}) std::memcpy(record.data() + at, record.data() + 30, 2);
+}
+
 /// Times that go on in even steps, in steps of all sizes, back, not at all, and in several series at once.
 void change_time(std::span<std::uint8_t> record, support::Generator& random, std::vector<std::uint64_t>& series) {
   std::uint64_t& time = series[random.uniform() < 0.9 ? 0 : random.whole(series.size())];
@@ -73,11 +77,15 @@ void change_time(std::span<std::uint8_t> record, support::Generator& random, std
   std::memcpy(record.data() + 22, &time, sizeof time);
 }
 
+/// Colours without meaning: what they are is not asked where records are made here.
+const PointColours any_colour = [](const EchoBatch&, const Shot&, const Echo&) { return PointColour{}; };
+
 /// The files of no point are made by the writers; records of any bytes then follow, which no echo would give.
-void write_random(const fs::path& folder, const std::string& name, std::size_t points, double chance, unsigned channels) {
+void write_random(const fs::path& folder, const std::string& name, std::size_t points, double chance, unsigned channels,
+                  const LasSettings& settings = {}) {
   const fs::path las = folder / (name + ".las"), laz = folder / (name + ".laz");
-  LasWriter(las).close();
-  LazWriter(laz).close();
+  LasWriter(las, settings).close();
+  LazWriter(laz, settings).close();
   const auto count_points = [&](std::string file) {
     const std::uint64_t count = points;
     std::memcpy(file.data() + 247, &count, sizeof count);
@@ -88,12 +96,13 @@ void write_random(const fs::path& folder, const std::string& name, std::size_t p
   las_file.write(las_head);
   laz_file.write(std::string_view(laz_head).substr(0, laz_head.size() - 16));  // table, and its place
   io::detail::LazRecords records(2);
-  records.begin(laz_file, record_size, false);
+  records.begin(laz_file, io::detail::LasLayout(settings), false);
   support::Generator random(points + channels);
-  std::vector<std::uint8_t> record(record_size);
+  std::vector<std::uint8_t> record(LasEncoder::record_size(settings));
   std::vector<std::uint64_t> series(6);
   for (std::size_t i = 0; i < points; ++i) {
     change(record, random, i == 0 ? 1 : chance, channels);
+    if (settings.colours && random.coin()) make_grey(record);
     change_time(record, random, series);
     const auto bytes = std::as_bytes(std::span(record));
     las_file.write(bytes);
@@ -125,6 +134,19 @@ void write_survey(const fs::path& folder, const std::string& name, PulseIndex pu
   laz.close();
 }
 
+/// Colours by height, none of every third pulse, and attributes of the one object.
+LasSettings of_heights() {
+  Part<TriangleMesh<>> part;
+  part.attributes = {{"height of the trunk", 17.5}, {"age", 80}};
+  return {.colours = [](const EchoBatch&, const Shot& shot, const Echo& echo) -> std::optional<PointColour> {
+            if (shot.index % 3 == 0) return std::nullopt;
+            const auto high = static_cast<std::uint16_t>(200 * point_of(shot, echo).z + 2000);
+            return PointColour{high, static_cast<std::uint16_t>(2 * high), 300, static_cast<std::uint16_t>(shot.index)};
+          },
+          .near_infrared = true,
+          .attributes = std::make_shared<const ObjectAttributes>(std::span<const Part<TriangleMesh<>>>(&part, 1))};
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -140,6 +162,15 @@ int main(int count, char** words) {
   write_random(folder, "calm", 60'000, 0.1, 1);
   write_random(folder, "calm_channels", 60'000, 0.1, 4);
   write_random(folder, "still", 60'000, 0.001, 2);
+  const LasSettings colours{.colours = any_colour}, near_infrared{.colours = any_colour, .near_infrared = true};
+  for (const unsigned channels : {1U, 4U}) {
+    const std::string by = std::to_string(channels);
+    for (const double chance : {1.0, 0.1, 0.001}) {
+      write_random(folder, "colours_" + by + '_' + std::to_string(chance), 20'000, chance, channels, colours);
+      write_random(folder, "near_infrared_" + by + '_' + std::to_string(chance), 20'000, chance, channels, near_infrared);
+    }
+  }
+  write_survey(folder, "survey_colours", 20'000, of_heights());
   write_survey(folder, "survey", 100'000, {.epsg = 25832, .start_time = 3e8});
   write_survey(folder, "survey_amplitude", 10'000, {.intensity = LasIntensity::amplitude});
 }

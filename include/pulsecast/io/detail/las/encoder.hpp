@@ -15,6 +15,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/units.hpp>
@@ -53,24 +54,27 @@ struct LasTally {
 /// done before their offset is known.
 class LasEncoder {
  public:
-  using Record = detail::LasBytes<30 + detail::las_packet_size + detail::las_extras_size>;  ///< longest record
+  /// Point record, filled in by offsets.
+  struct Record : std::vector<std::byte> {
+    template <class Number>
+    void put(std::size_t position, Number value) noexcept {
+      std::memcpy(data() + position, &value, sizeof value);
+    }
+  };
 
   /// `settings` must be valid.
   explicit LasEncoder(LasSettings settings)
-      : settings_(std::move(settings)),
-        layout_(settings_.format, settings_.waveforms, settings_.light_kinds),
-        offset_(settings_.offset.value_or(Vec3{})) {}
+      : settings_(std::move(settings)), layout_(settings_), offset_(settings_.offset.value_or(Vec3{})) {}
 
   /// Size of a point record with these settings [byte].
-  [[nodiscard]] static std::size_t record_size(const LasSettings& settings) {
-    return detail::LasLayout(settings.format, settings.waveforms, settings.light_kinds).record();
-  }
+  [[nodiscard]] static std::size_t record_size(const LasSettings& settings) { return detail::LasLayout(settings).record(); }
 
-  /// Calls put(record, point) for every echo of a shot, in order. `record` lacks the coordinates of `point`; its length is
-  /// `layout().record()` bytes. `packet` is the place of the shot's waveform, null without one.
+  /// Calls put(record, point) for every echo of a shot, in order. `record` has `layout().record()` bytes, and lacks the coordinates of
+  /// `point`; it is reused. `packet` is the place of the shot's waveform, null without one.
   template <class Put>
   void encode(const Shot& shot, const EchoBatch& batch, const LasPacket* packet, const Put& put) {
-    Record record{};
+    Record& record = record_;
+    record.assign(layout_.record(), std::byte{0});
     const std::uint32_t returns = std::min(shot.echoes, layout_.max_returns);
     const auto source = static_cast<std::uint16_t>(std::min(shot.leg + 1U, 65535U));
     const double time = settings_.start_time + shot.tick.seconds();
@@ -100,6 +104,8 @@ class LasEncoder {
       record.put(extras + reflectance_at, las_level(echo.reflectance));
       record.put(extras + width_at, static_cast<float>(echo.width * 1e9));
       record.put(extras + object_at, echo.object);
+      if (settings_.colours) put_colour(record, settings_.colours(batch, shot, echo).value_or(PointColour{}));
+      if (settings_.attributes) put_attributes(record, settings_.attributes->of(echo.object));
       if (settings_.light_kinds) record.put(extras + kind_at, static_cast<std::uint8_t>(echo.kind));
       ++tally_.points_by_return[number - 1];
       put(record, point_of(shot, echo));
@@ -195,6 +201,18 @@ class LasEncoder {
       record.put(layout_.packet + 17 + 4 * static_cast<std::size_t>(axis), static_cast<float>(back[axis]));
   }
 
+  /// Writes a colour. Offsets: LAS 1.4 R15, Point Data Record Formats 7 and 8.
+  void put_colour(Record& record, const PointColour& colour) const noexcept {
+    record.put(layout_.colour, colour.red);
+    record.put(layout_.colour + 2, colour.green);
+    record.put(layout_.colour + 4, colour.blue);
+    if (settings_.near_infrared) record.put(layout_.colour + 6, colour.near_infrared);
+  }
+
+  void put_attributes(Record& record, std::span<const double> values) const noexcept {
+    for (std::size_t i = 0; i < values.size(); ++i) record.put(layout_.attributes + i * sizeof(double), values[i]);
+  }
+
   [[nodiscard]] std::uint16_t intensity(const Echo& echo) const noexcept {
     if (automatic_intensity()) return 0;
     const double ranges = echo.range / settings_.intensity_range;
@@ -216,6 +234,7 @@ class LasEncoder {
   detail::LasLayout layout_;
   Vec3 offset_;
   LasTally tally_;
+  Record record_;  // of the point that is encoded
 };
 
 }  // namespace PULSECAST_NAMESPACE::io

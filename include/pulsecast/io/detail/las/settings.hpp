@@ -3,19 +3,27 @@
 #ifndef PULSECAST_IO_DETAIL_LAS_SETTINGS_HPP
 #define PULSECAST_IO_DETAIL_LAS_SETTINGS_HPP
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/io/detail/las/extras.hpp>
+#include <pulsecast/scene/object_attributes.hpp>
+#include <pulsecast/scene/point_colour.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
 /// Version and point format of a LAS file.
 enum class LasFormat : std::uint8_t {
-  las_1_4,         ///< version 1.4, point format 6, or 9 with waveforms
+  las_1_4,         ///< version 1.4, point format 6; 7 with colours, 8 with near infrared; 9 with waveforms
   las_1_4_legacy,  ///< version 1.4, point format 1, or 4 with waveforms: 5 returns, 32 classes, angles in whole degrees
   las_1_0,         ///< version 1.0, point format 1, for old readers: as above, without waveforms, well-known text, and kind of GPS time
 };
@@ -39,9 +47,13 @@ struct LasSettings {
   /// Date of creation.
   using Date = std::chrono::year_month_day;
 
-  LasFormat format = LasFormat::las_1_4;               ///< version and point format
-  bool waveforms = false;                              ///< true to write waveforms to a .wdp file beside it
-  bool light_kinds = false;                            ///< true to write `Echo::kind` as an extra byte: `ReflectionKind` by number
+  LasFormat format = LasFormat::las_1_4;  ///< version and point format
+  bool waveforms = false;                 ///< true to write waveforms to a .wdp file beside it
+  bool light_kinds = false;               ///< true to write `Echo::kind` as an extra byte: `ReflectionKind` by number
+  PointColours colours = {};              ///< colours of the points; an unknown one is black. Empty: points without colours
+  bool near_infrared = false;             ///< true to write the near infrared of the colours, too
+  /// Attributes of objects, one extra value of a point for each name; NaN where unknown. Null for none.
+  std::shared_ptr<const ObjectAttributes> attributes = nullptr;
   double scale = 1e-4;                                 ///< step of the coordinates [m]
   std::optional<Vec3> offset = std::nullopt;           ///< origin [m]; if empty, the multiple of 1e6 steps nearest to the first point
   std::string wkt = {};                                ///< coordinate reference system as OGC well-known text; if empty, `epsg` counts
@@ -58,6 +70,8 @@ struct LasSettings {
   void validate() const {
     if (waveforms && format == LasFormat::las_1_0)
       throw SettingError("LasSettings::waveforms", 1, "", "false for version 1.0, which has no waveforms");
+    validate_colours();
+    if (attributes) validate_attributes();
     require_positive("LasSettings::scale", scale, "m");
     for (int axis = 0; offset && axis < 3; ++axis) require_finite("LasSettings::offset", (*offset)[axis], "m");
     require_within("LasSettings::wkt length", static_cast<double>(wkt.size()), 0, 65534, "bytes");  // with a terminator, counted by 16 bits
@@ -70,6 +84,32 @@ struct LasSettings {
       require_positive("LasSettings::intensity_full_scale", *intensity_full_scale, intensity == LasIntensity::reflectance ? "" : "W");
     require_positive("LasSettings::amplitude_reference", amplitude_reference, "W");
     if (created && !created->ok()) throw SettingError("LasSettings::created day", unsigned{created->day()}, "", "a valid date");
+  }
+
+ private:
+  void validate_colours() const {
+    if (colours && format != LasFormat::las_1_4)
+      throw SettingError("LasSettings::colours", static_cast<double>(format), "",
+                         "empty, unless the format is 0: LAS 1.4 with point format 7 or 8");
+    if (colours && waveforms) throw SettingError("LasSettings::colours", 1, "", "empty with waveforms, which are written without colours");
+    if (near_infrared && !colours) throw SettingError("LasSettings::near_infrared", 1, "", "false without colours");
+  }
+
+  /// Names must remain different from each other and from those of the other extra values.
+  void validate_attributes() const {
+    const std::size_t count = attributes->names().size();
+    require_within("LasSettings::attributes, number of names", static_cast<double>(count), 0,
+                   65535 / detail::las_descriptor_size - detail::las_extras.size(), "");
+    std::vector<std::string_view> known;
+    for (const detail::LasExtra& extra : detail::las_extras) known.push_back(extra.name);
+    for (const std::string& name : attributes->names()) {
+      const std::string_view cut = detail::las_extra_name(name);
+      if (cut.empty() || std::find(known.begin(), known.end(), cut) != known.end())
+        throw SettingError(("LasSettings::attributes, length of name '" + name + "'").c_str(), static_cast<double>(name.size()), "bytes",
+                           "above 0, and names that differ in their first 31 bytes from others and from Range, Amplitude, Reflectance, "
+                           "EchoWidth, PulseIndex, ObjectId, LightKind");
+      known.push_back(cut);
+    }
   }
 };
 

@@ -49,7 +49,8 @@ void las_in_blocks(OutputFile& file, std::uint64_t begin, std::size_t record, co
 /// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; scanner channel is the channel's lowest two bits;
 /// - scan angle counts from down, positive to the right of the flight; GPS time is that of the pulse for all its returns;
 /// - a reference system given by its code alone, other than UTM, is written as GeoTIFF keys, with the WKT bit clear. The specification
-/// demands well-known text with point formats 6 and 9; a code is more useful than none. Legacy formats always take a code as keys;
+/// demands well-known text with point formats 6 to 9; a code is more useful than none. Legacy formats always take a code as keys;
+/// - colours are those of `LasSettings::colours`, black where unknown; attributes of objects are doubles, NaN where unknown;
 /// - flags, scan direction, edge of flight line and user data are 0, as echoes have no such fields.
 ///
 /// A waveform is written once for all echoes of its pulse, see `LasPackets`, and not at all without echoes, as no point could refer to it.
@@ -72,11 +73,11 @@ class LasFileWriter {
       file_.write(packets_->descriptors());
       variable_records_ += LasPackets::descriptor_count;
     }
-    file_.write(Records::descriptors(layout().record()));
+    file_.write(Records::descriptors(layout()));
     variable_records_ += Records::descriptor_count;
     if (layout().start_signature != 0) file_.write(std::string_view("\xDD\xCC", 2));  // source: LAS 1.0, Point Data Start Signature
     points_at_ = file_.position();
-    records_.begin(file_, layout().record(), encoder_.automatic_intensity());
+    records_.begin(file_, layout(), encoder_.automatic_intensity());
     records_at_ = file_.position();
   }
 
@@ -151,7 +152,7 @@ class LasFileWriter {
   }
 
   /// Writes the header in its current state. Offsets: LAS 1.4 R15, Public Header Block. Other bytes are 0, as required of legacy counts
-  /// with formats 6 and 9, and of the start of waveforms in a file of their own. Version 1.0 ends before it, and has no global encoding.
+  /// with formats 6 to 9, and of the start of waveforms in a file of their own. Version 1.0 ends before it, and has no global encoding.
   void write_header() {
     const LasTally& tally = encoder_.tally();
     Header h{};
@@ -195,7 +196,7 @@ class LasFileWriter {
   }
 
   /// Global encoding: bit 0 is the kind of time, bit 2 marks waveforms in a file of their own, bit 4 is set with well-known text, and with
-  /// formats 6 and 9. Source: LAS 1.4 R15, Global Encoding.
+  /// formats 6 to 9. Source: LAS 1.4 R15, Global Encoding.
   [[nodiscard]] std::uint16_t global_encoding() const noexcept {
     const bool wkt = layout().legacy ? !settings().wkt.empty() : !by_keys();
     return static_cast<std::uint16_t>(static_cast<unsigned>(settings().gps_time) | (packets_ ? 1U << 2 : 0U) | (wkt ? 1U << 4 : 0U));
@@ -211,14 +212,19 @@ class LasFileWriter {
   /// Writes the descriptions of the extra bytes. Source: LAS 1.4 R15, Extra Bytes.
   void write_extra_bytes_record() {
     const auto extras = std::span(las_extras).first(layout().extra_count);
-    write_record_header("LASF_Spec", 4, extras.size() * las_descriptor_size, "Extra Bytes");
-    for (const LasExtra& extra : extras) {
-      LasBytes<las_descriptor_size> descriptor{};
-      descriptor.put(2, extra.type);
-      descriptor.put_text(4, extra.name);
-      descriptor.put_text(160, extra.description);
-      file_.write(descriptor);
-    }
+    write_record_header("LASF_Spec", 4, (extras.size() + layout().attribute_count) * las_descriptor_size, "Extra Bytes");
+    for (const LasExtra& extra : extras) write_extra(extra);
+    if (settings().attributes)
+      for (const std::string& name : settings().attributes->names())
+        write_extra({las_extra_name(name), "attribute of the object met", 10, 8});
+  }
+
+  void write_extra(const LasExtra& extra) {
+    LasBytes<las_descriptor_size> descriptor{};
+    descriptor.put(2, extra.type);
+    descriptor.put_text(4, extra.name);
+    descriptor.put_text(160, extra.description);
+    file_.write(descriptor);
   }
 
   /// Writes the well-known text. Source: LAS 1.4 R15, OGC Coordinate System WKT.

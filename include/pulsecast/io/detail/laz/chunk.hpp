@@ -10,9 +10,11 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/io/detail/laz/coder.hpp>
+#include <pulsecast/io/detail/laz/colour.hpp>
 #include <pulsecast/io/detail/laz/integers.hpp>
 #include <pulsecast/io/detail/laz/median.hpp>
 #include <pulsecast/io/detail/laz/point.hpp>
@@ -20,13 +22,14 @@
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// Compressor of a chunk of points of format 6 with extra bytes, as LASzip from its version 3 on. Each attribute is a layer, left out if
-/// constant. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4 (native extension), specification document; files of it, items POINT14 and
-/// BYTE14 in version 3, for details left open there.
+/// Compressor of a chunk of points of formats 6 to 8 with extra bytes, as LASzip from its version 3 on. Each attribute is a layer, left out
+/// if constant. Source: Isenburg 2013, LASzip; LASzip for LAS 1.4 (native extension), specification document; files of it, items POINT14,
+/// RGB14, RGBNIR14 and BYTE14 in version 3, for details left open there.
 class LazChunk {
  public:
-  /// One or more whole records, contiguous.
-  LazChunk(std::span<const std::byte> records, std::size_t record) : records_(records), record_(record) {
+  /// One or more whole records of `record` bytes, contiguous; `colour` bytes of them are a colour: 0, 6 or 8.
+  LazChunk(std::span<const std::byte> records, std::size_t record, std::size_t colour = 0)
+      : records_(records), record_(record), colour_(colour) {
     points_.reserve(records.size() / record);
     for (std::size_t at = 0; at < records.size(); at += record) points_.emplace_back(records.data() + at);
   }
@@ -43,6 +46,8 @@ class LazChunk {
     layers.push_back(users());
     layers.push_back(sources());
     layers.push_back(times());
+    if (colour_ > 0) layers.push_back(layer_by_told<LazColours>(laz_point_size, 6));
+    if (colour_ > 6) layers.push_back(layer_by_told<LazNearInfrared>(laz_point_size + 6, 2));
     add_extra_bytes(layers);
 
     std::vector<std::byte> bytes(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(record_));
@@ -251,11 +256,10 @@ class LazChunk {
 
   /// Adds a layer for each extra byte.
   void add_extra_bytes(std::vector<std::vector<std::byte>>& layers) const {
-    const std::size_t extras = record_ - laz_point_size, count = points_.size();
+    const std::size_t begin = laz_point_size + colour_, extras = record_ - begin, count = points_.size();
     std::vector<std::uint8_t> columns(extras * count);  // contiguous for each byte
     for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t k = 0; k < extras; ++k)
-        columns[k * count + i] = std::to_integer<std::uint8_t>(records_[i * record_ + laz_point_size + k]);
+      for (std::size_t k = 0; k < extras; ++k) columns[k * count + i] = std::to_integer<std::uint8_t>(records_[i * record_ + begin + k]);
     for (std::size_t k = 0; k < extras; ++k) layers.push_back(extra_byte(std::span(columns).subspan(k * count, count)));
   }
 
@@ -283,8 +287,38 @@ class LazChunk {
     return std::move(encoder).finish();
   }
 
+  /// Encodes a layer of `size` bytes at offset `at` of each record, or nothing if they are constant. The value before and the models are
+  /// kept by channel as those of extra bytes are.
+  template <class Models>
+  [[nodiscard]] std::vector<std::byte> layer_by_told(std::size_t at, std::size_t size) const {
+    using Value = typename Models::Value;
+    const auto bytes = [&](std::size_t i) { return records_.subspan(i * record_ + at, size); };
+    const auto same = [&](const Step& step) {
+      return std::ranges::equal(bytes(static_cast<std::size_t>(&step - steps_.data())), bytes(0));
+    };
+    if (std::all_of(steps_.begin(), steps_.end(), same)) return {};
+    std::array<std::unique_ptr<Models>, 4> models;
+    std::array<Value, 4> last{};
+    models[steps_[0].told] = std::make_unique<Models>();
+    last[steps_[0].told] = Models::value(bytes(0));
+    LazEncoder encoder;
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const std::size_t channel = steps_[i].told;
+      std::size_t kept = steps_[i - 1].told;
+      if (!models[channel]) {
+        models[channel] = std::make_unique<Models>();
+        last[channel] = last[kept];
+        kept = channel;
+      }
+      const Value value = Models::value(bytes(i));
+      models[channel]->encode(encoder, last[kept], value);
+      last[kept] = value;
+    }
+    return std::move(encoder).finish();
+  }
+
   std::span<const std::byte> records_;
-  std::size_t record_;
+  std::size_t record_, colour_;  // sizes of a record and of its colour [byte]
   std::vector<LazPoint> points_;
   std::vector<Step> steps_;
 };
