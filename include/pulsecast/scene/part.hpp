@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -191,6 +192,11 @@ struct Attribute {
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 
+/// Named numbers of a part.
+using Attributes = std::vector<Attribute>;
+// completes the type: g++ 12 fails on a designated initializer of a part otherwise
+static_assert(std::is_nothrow_default_constructible_v<Attributes> && std::is_nothrow_destructible_v<Attributes>);
+
 /// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
@@ -200,7 +206,7 @@ struct Part {
   ObjectId object = 0;                             ///< object id of its points
   std::string name{};                              ///< user's name for it
   std::shared_ptr<const PartMotion> motion{};      ///< motion on top of its placement; empty if static; for a `MovingScene`
-  std::vector<Attribute> attributes{};             ///< what its points are told besides, as by `ObjectAttributes`
+  Attributes attributes{};                         ///< what its points are told besides, as by `ObjectAttributes`
 };
 
 }  // namespace PULSECAST_NAMESPACE
