@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -192,10 +191,20 @@ struct Attribute {
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 
-/// Named numbers of a part.
-using Attributes = std::vector<Attribute>;
-// completes the type: g++ 12 fails on a designated initializer of a part otherwise
-static_assert(std::is_nothrow_default_constructible_v<Attributes> && std::is_nothrow_destructible_v<Attributes>);
+/// Named numbers of a part, shareable among parts.
+using Attributes = std::shared_ptr<const std::vector<Attribute>>;
+
+/// Makes the named numbers of parts, as `attributes({{"age", 80}, {"leaf", 1}})`. @throws SettingError for a name that is empty or comes
+/// twice
+[[nodiscard]] inline Attributes attributes(std::vector<Attribute> all) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string& name = all[i].name;
+    const auto before = all.begin() + static_cast<std::ptrdiff_t>(i);
+    if (name.empty() || std::any_of(all.begin(), before, [&](const Attribute& other) { return other.name == name; }))
+      throw_setting_error("Attribute::name (number of '" + name + "')", static_cast<double>(i), "", "not empty, and each name once");
+  }
+  return std::make_shared<const std::vector<Attribute>>(std::move(all));
+}
 
 /// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
