@@ -165,7 +165,8 @@ struct FlatGround {
   std::size_t size;  ///< of the zeros [byte]
 
   void operator()(pulsecast::detail::RasterGrid& grid, auto& levels, std::uint32_t& top, Vec2& per_metre, Vec2& pad, Vec3& centre,
-                  Box& bounds, SharedArray<float>& heights, SharedArray<float>& pyramid, pulsecast::detail::PackedNumbers&) const {
+                  Box& bounds, pulsecast::detail::PixelHeights& heights, SharedArray<float>& pyramid,
+                  pulsecast::detail::PackedNumbers&) const {
     grid = {.columns = columns, .rows = rows};
     per_metre = {1, -1};
     pad = Vec2(1e-6 * columns);
@@ -194,7 +195,8 @@ struct FlatGround {
       REQUIRE(count * sizeof(float) <= size);
       return SharedArray<float>({static_cast<const float*>(zeros.get()), count}, zeros);
     };
-    heights = of(std::size_t{columns} * rows);
+    const auto set = [&](SharedArray<float>& floats, SharedArray<std::uint16_t>&) { floats = of(std::size_t{columns} * rows); };
+    heights.archive(set);
     pyramid = of(floats);
   }
 };

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -230,6 +231,52 @@ TEST_CASE("a raster is read as it was written, whatever its samples, layout, com
               ++forms;
             }
   CHECK(forms > 500);
+}
+
+TEST_CASE("whole numbers of 8 and 16 bits may stay packed, with the heights that they have otherwise") {
+  const File file;
+  const auto same = [](const Raster& a, const Raster& b) {
+    return a.heights.size() == b.heights.size() && std::memcmp(a.heights.data(), b.heights.data(), sizeof(float) * a.heights.size()) == 0 &&
+           a.first == b.first && a.pixel == b.pixel;
+  };
+  const auto packed_like = [&](const std::optional<double>& scale, const std::optional<double>& missing, bool expected) {
+    const Raster wide = read_geotiff(file.path, {.vertical_scale = scale, .missing = missing}).raster;
+    const Raster packed = read_geotiff(file.path, {.vertical_scale = scale, .missing = missing, .packed = true}).raster;
+    CHECK_FALSE(wide.is_packed());
+    CHECK(packed.is_packed() == expected);
+    CHECK(packed.heights.empty() == expected);
+    CHECK(same(packed.unpacked(), wide));
+  };
+  const Heights hills = [](std::uint32_t c, std::uint32_t r, std::uint16_t) { return 20.0 + 3 * c - r; };
+  for (const std::uint16_t format : Codes{SAMPLEFORMAT_INT, SAMPLEFORMAT_UINT})
+    for (const std::uint16_t bits : Codes{8, 16, 32})
+      for (const bool tiled : {false, true})
+        for (const std::uint16_t samples : Codes{1, 2})
+          for (const char* mode : {"wl", "wb"}) {
+            CAPTURE(format);
+            CAPTURE(bits);
+            const Form form{.format = format, .bits = bits, .samples = samples, .tiled = tiled, .mode = mode};
+            write(file.path, form, {.scale = {}, .ties = {}, .matrix = {-2, 0, 0, 1000, 0, 3, 0, 900, 0, 0, 0, 0, 0, 0, 0, 1}}, hills);
+            packed_like({}, {}, bits < 32);
+            packed_like(0.1, {}, bits < 32);
+            packed_like(1.0 / 3, 21, bits < 32);
+            packed_like(1e14, {}, false);
+            write(file.path, form, {.nodata = "40"}, hills);
+            packed_like({}, {}, bits < 32);
+            packed_like(0.3048, -9999, bits < 32);
+            packed_like({}, 20.5, bits < 32);
+          }
+  const Heights below = [](std::uint32_t c, std::uint32_t r, std::uint16_t) { return -32768.0 + 10 * c + r; };
+  write(file.path, {.format = SAMPLEFORMAT_INT, .bits = 16}, {.nodata = "-32768"}, below);
+  packed_like(0.01, {}, true);
+  for (const std::uint16_t bits : Codes{8, 16})
+    for (const std::string nodata : {"", "50"}) {  // two tiles are left out
+      write(file.path, {.format = SAMPLEFORMAT_UINT, .bits = bits, .tiled = true, .left_out = {1, 3}}, {.nodata = nodata}, height);
+      packed_like({}, {}, bits == 8 || !nodata.empty());
+    }
+  const Heights all_missing = [](std::uint32_t, std::uint32_t, std::uint16_t) { return 7.0; };
+  write(file.path, {.format = SAMPLEFORMAT_UINT, .bits = 16}, {.nodata = "7"}, all_missing);
+  CHECK(contains(file.refusal_of({.packed = true}), "has no height"));
 }
 
 TEST_CASE("heights pass through lossy JPEG with little change") {

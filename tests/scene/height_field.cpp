@@ -6,8 +6,11 @@
 
 #include <cmath>
 #include <concepts>
+#include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -71,14 +74,16 @@ class RasterMesh {
   std::vector<PrimitiveIndex> numbers_;
 };
 
-/// An archive that looks where the first array is.
+/// An archive that looks where the first array is that is not empty.
+template <class Number>
 struct Look {
-  const float* found = nullptr;
+  const Number* found = nullptr;
   template <class... Members>
   void operator()(Members&... members) {
     (see(members), ...);
   }
-  void see(SharedArray<float>& array) { found = found == nullptr ? array.data() : found; }
+  void see(SharedArray<Number>& array) { found = found == nullptr ? array.data() : found; }
+  void see(pulsecast::detail::PixelHeights& heights) { heights.archive(*this); }
   void see(auto&) {}
 };
 
@@ -257,6 +262,85 @@ TEST_CASE("a height field answers as the raster's mesh does, bit for bit, for a 
   CHECK(rays >= 1000000);
 }
 
+TEST_CASE("packed heights give the hits of the same heights in floating point, to the last bit") {
+  struct Scale {
+    double step, offset;
+    std::uint16_t zero;
+    std::optional<std::uint16_t> missing;
+  };
+  Generator random(17);
+  std::size_t rays = 0, met = 0;
+  for (const Scale& scale :
+       {Scale{1, 0, 0, 0}, {0.01, 0, 32768, 0}, {0.1, -431.7, 0, 65535}, {1.0 / 3, 8000.123, 7, {}}, {0.3048, 0, 0, 33000}})
+    for (const Vec2 first : {Vec2{}, Vec2{4.7e5 + 0.1, 5.4e6 + 0.3}}) {
+      CAPTURE(scale.step);
+      Raster packed{.columns = 61, .rows = 47, .first = first, .pixel = {9 * scale.step, 7 * scale.step}};
+      packed.packed = {.scale = scale.step, .offset = scale.offset, .zero = scale.zero, .missing = scale.missing};
+      for (std::size_t i = 0; i < packed.pixels(); ++i) {
+        const bool hole = scale.missing && random.whole(9) == 0;
+        packed.packed.numbers.push_back(hole ? *scale.missing : static_cast<std::uint16_t>(32990 + random.whole(40)));
+        packed.materials.push_back(static_cast<std::uint8_t>(i % 3));
+      }
+      const Raster wide = packed.unpacked();
+      CHECK(wide.heights.size() == packed.pixels());
+      const HeightField field(packed), reference(wide);
+      CHECK(field.is_consistent());
+      CHECK(field.bounds() == reference.bounds());
+      for (PrimitiveIndex i = 0; i < 2 * 60 * 46; ++i) {
+        const Triangle a = field.triangle(i), b = reference.triangle(i);
+        CHECK(std::memcmp(&a, &b, sizeof a) == 0);
+        CHECK(field.surface(i, bundle_of({}), 0).material == reference.surface(i, bundle_of({}), 0).material);
+      }
+      const MeshData mesh = packed.mesh();
+      CHECK(mesh.vertices == wide.mesh().vertices);
+      for (int time = 0; time < 4000; ++time) {
+        const RayBundle rays_of = bundle(random, mesh, field.bounds(), time % 2 == 0 ? 1 : 19);
+        ClosestHits a(rays_of), b(rays_of);
+        field.closest(rays_of, a);
+        reference.closest(rays_of, b);
+        for (std::size_t j = 0; j < rays_of.size; ++j) {
+          ++rays;
+          met += b.met(j);
+          if (a.range[j] != b.range[j] || a.id[j] != b.id[j]) FAIL("ray " << j << " of bundle " << time);
+        }
+      }
+    }
+  CHECK(rays > 300'000);
+  CHECK(3 * met > rays);
+}
+
+TEST_CASE("packed heights take two bytes a pixel") {
+  Generator random(3);
+  Raster packed{.columns = 600, .rows = 600, .packed = {.scale = 0.01, .missing = 0}};
+  for (std::size_t i = 0; i < packed.pixels(); ++i) packed.packed.numbers.push_back(static_cast<std::uint16_t>(40'000 + random.whole(300)));
+  packed.packed.numbers[77] = 0;
+  const HeightField wide(packed.unpacked()), field(std::move(packed));
+  CHECK(wide.memory() - field.memory() == 2 * 360'000 - 301 * sizeof(float));  // of 300 heights and a missing one
+}
+
+TEST_CASE("where all packed heights are missing nothing is met, and a table that is too short is noticed") {
+  const HeightField empty(Raster{.columns = 9, .rows = 9, .packed = {.numbers = std::vector<std::uint16_t>(81, 5), .missing = 5}});
+  CHECK(empty.bounds().empty());
+  CHECK(empty.is_consistent());
+  CHECK(height_at(empty, 3, -3) == -1);
+  std::vector<std::uint16_t> numbers(4, 0);
+  for (const std::uint16_t place : std::vector<std::uint16_t>{1, 2}) {
+    numbers[3] = place;
+    HeightField field(Raster{.columns = 2, .rows = 2, .packed = {.numbers = {10, 11, 10, 10}}});
+    const auto set = [&](auto&... members) {
+      const auto change = [&](auto& member) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>, pulsecast::detail::PixelHeights>) {
+          auto spoil = [&](SharedArray<float>&, SharedArray<std::uint16_t>& places) { places = SharedArray<std::uint16_t>(numbers); };
+          member.archive(spoil);
+        }
+      };
+      (change(members), ...);
+    };
+    field.archive(set);
+    CHECK(field.is_consistent() == (place == 1));
+  }
+}
+
 TEST_CASE("triangles and normals are those of the mesh, bit for bit") {
   Generator random(5);
   const Raster raster = raster_of(
@@ -392,10 +476,17 @@ TEST_CASE("a raster is taken over, not copied") {
   raster.heights.shrink_to_fit();
   const float* heights = raster.heights.data();
   const HeightField field(std::move(raster));
-  Look look;
+  Look<float> look;
   HeightField copy = field;
   copy.archive(look);
   CHECK(look.found == heights);
+
+  Raster packed{.columns = 3, .rows = 2, .packed = {.numbers = {1, 2, 3, 4, 5, 6}}};
+  const std::uint16_t* numbers = packed.packed.numbers.data();
+  HeightField compact(std::move(packed));
+  Look<std::uint16_t> other;
+  compact.archive(other);
+  CHECK(other.found == numbers);
 }
 
 TEST_CASE("arrays that are not as long as the grid says are noticed") {

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace pulsecast;
@@ -102,6 +104,29 @@ TEST_CASE("a mosaic of tiles is the raster that they were cut from") {
   CHECK(refused({cut(0, 0, 4, 2), far}).find("mosaic (pixels)") == 0);
 }
 
+TEST_CASE("a mosaic of packed tiles is packed, where they are packed alike and there is a number for gaps") {
+  const auto tile = [](double east, std::vector<std::uint16_t> numbers) {
+    return Raster{.columns = 2, .rows = 2, .first = {east, 0}, .packed = {.numbers = std::move(numbers), .scale = 0.5, .missing = 9}};
+  };
+  const Raster all = mosaic({tile(0, {1, 2, 3, 9}), tile(1, {5, 6, 7, 8}), tile(4, {1, 1, 1, 1})});
+  CHECK(all.packed.numbers == std::vector<std::uint16_t>{1, 2, 6, 9, 1, 1, 3, 7, 8, 9, 1, 1});
+  CHECK(all.packed.scale == 0.5);
+  CHECK(all.unpacked().heights[2] == 3);
+  CHECK(std::isnan(all.unpacked().heights[3]));
+
+  Raster bare = tile(0, {0, 2, 3, 9}), far = tile(3, {1, 4, 5, 5});
+  bare.packed.missing = far.packed.missing = std::nullopt;
+  const Raster apart = mosaic({bare, far});
+  CHECK(apart.packed.missing == 6);  // the least that is free
+  CHECK(apart.packed.numbers == std::vector<std::uint16_t>{0, 2, 6, 1, 4, 3, 9, 6, 5, 5});
+
+  Raster other = tile(2, {1, 1, 1, 1});
+  other.packed.scale = 2;
+  const Raster wide = mosaic({tile(0, {1, 2, 3, 4}), other});
+  CHECK_FALSE(wide.is_packed());
+  CHECK(wide.heights == std::vector<float>{0.5F, 1, 2, 2, 1.5F, 2, 2, 2});
+}
+
 TEST_CASE("a raster takes its materials from one of codes with other pixels") {
   Raster ground = two_cells();  // pixels at 100, 102, 104 m east and 200, 196 m north
   // codes in pixels of 3 m, from 99 to 105 m east and from 201 to 195 m north
@@ -117,6 +142,10 @@ TEST_CASE("a raster takes its materials from one of codes with other pixels") {
   Raster within = two_cells();  // whose pixels are on the edges of those codes
   CHECK(set_materials(within, edges, {{1, 1}, {2, 2}, {3, 3}, {4, 4}}) == 0);
   CHECK(within.materials == std::vector<std::uint8_t>{1, 2, 2, 3, 4, 4});
+  Raster packed{.columns = 2, .rows = 2, .first = {100.5, 199.5}, .pixel = {3, 3}, .packed = {.numbers = {21, 7, 0, 30}, .missing = 0}};
+  Raster both = two_cells();
+  CHECK(set_materials(both, packed, {{7, 2}, {21, 1}, {30, 3}}, 9) == 1);
+  CHECK(both.materials == std::vector<std::uint8_t>{1, 2, 2, 9, 3, 3});
   const MeshData mesh = ground.mesh();
   CHECK(mesh.materials == std::vector<std::uint32_t>{0, 0, 0, 1});
 }
@@ -145,6 +174,19 @@ TEST_CASE("a raster that cannot be is refused, and the refusal says what is wron
     };
     CHECK(with(fine_and_far).find(axis == 0 ? "Raster::pixel.x is 0.5 m" : "Raster::pixel.y is 0.5 m") == 0);
   }
+  CHECK(with([](Raster& r) { r.packed.numbers = {1, 2, 3, 4, 5, 6}; }) ==
+        "Raster::heights (number of them beside `packed`) is 6, but must be from 0 to 0");
+  const auto packed_with = [&](auto change) {
+    return with([&](Raster& r) {
+      r.heights.clear();
+      r.packed.numbers = {1, 2, 3, 4, 5, 6};
+      change(r.packed);
+    });
+  };
+  CHECK(packed_with([](PackedHeights&) {}) == "");
+  CHECK(packed_with([](PackedHeights& p) { p.numbers.pop_back(); }) ==
+        "Raster::packed.numbers is 5, but must be as many as pixels, 6, or none");
+  CHECK(packed_with([](PackedHeights& p) { p.scale = 0; }).find("PackedHeights::scale is 0 m") == 0);
   CHECK(with([](Raster& r) { r.first.x = 1e16; }).find("Raster::first.x is ") == 0);
   CHECK(with([&](Raster& r) { r.first.y = none; }).find("Raster::first.y is nan m") == 0);
 }

@@ -20,6 +20,7 @@ struct GeoTiffSettings {
   std::uint16_t band = 1;                               ///< band of the heights, from 1
   std::optional<double> vertical_scale = std::nullopt;  ///< metres per unit of height; by default from the file's vertical unit, or 1
   std::optional<double> missing = std::nullopt;         ///< value of missing heights; by default from the file (GDAL_NODATA)
+  bool packed = false;                                  ///< whole numbers of 8 and 16 bits as `Raster::packed`, if it can hold them
 
   void validate() const {
     require_within("GeoTiffSettings::band", band, 1, 65535, "");
@@ -36,7 +37,8 @@ struct GeoTiff {
 
 /// Reads a raster of heights in a projected reference system in metres: the first image of a TIFF file, classic or BigTIFF, of either byte
 /// order, in strips or tiles, of integers of 8 to 64 bits or floating-point numbers of 16 to 64, with any compression of libtiff.
-/// Heights become `float`. NaN, values not within 1e15 m, and the value for missing ones become NaN.
+/// Heights become `float`. NaN, values not within 1e15 m, and the value for missing ones become NaN. If `packed` is set, whole numbers of 8
+/// and 16 bits stay so, and give the same heights; but not where tiles are left out of 16 bits without a value for missing heights.
 /// Throws a `FileError`, with the byte if known, for a raster that is incomplete, rotated, sheared, in degrees or feet, or without a
 /// georeference. Memory is the raster and one strip or row of tiles, as far as read, not as claimed by the header.
 /// Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); for GDAL_NODATA and tiles that are left out, the GDAL manual, GTiff driver.

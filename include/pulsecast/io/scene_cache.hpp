@@ -146,7 +146,7 @@ namespace detail {
 struct CacheHeader {
   static constexpr std::array<char, 8> own_mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
   static constexpr std::uint32_t own_order = 0x01020304;  ///< reads differently in another byte order
-  static constexpr std::uint32_t own_format = 7;          ///< version of the layout of the file
+  static constexpr std::uint32_t own_format = 8;          ///< version of the layout of the file
 
   std::array<char, 8> mark = own_mark;
   std::uint32_t order = own_order, format = own_format;

@@ -19,17 +19,19 @@
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/bundle_interval.hpp>
 #include <pulsecast/geometry/triangle.hpp>
+#include <pulsecast/scene/detail/cell_block.hpp>
 #include <pulsecast/scene/detail/height_pyramid.hpp>
 #include <pulsecast/scene/detail/packed_numbers.hpp>
+#include <pulsecast/scene/packed_heights.hpp>
 #include <pulsecast/scene/raster.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell, and of 2, 4, 16 or 256
-/// materials a further 1, 2, 4 or 8 bits. Two-sided. The two triangles of cell i, row by row, are primitives 2 i and 2 i + 1.
-/// A min-max pyramid of heights, eight children per node, bounds the ground for rays. A bundle traverses it as a whole, front to back: row
-/// by row and column by column in the order of passage.
-/// Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights); Wald, Boulos & Shirley 2007 (bundles by interval arithmetic).
+/// Ground of a raster with the hits of `Raster::mesh()`, bit by bit, without stored triangles: 5.2 bytes per cell, 3.2 where the heights
+/// are packed, and of 2, 4, 16 or 256 materials a further 1, 2, 4 or 8 bits. Two-sided. The two triangles of cell i, row by row, are
+/// primitives 2 i and 2 i + 1. A min-max pyramid of heights, eight children per node, bounds the ground for rays. A bundle traverses it as
+/// a whole, front to back: row by row and column by column in the order of passage. Source: Tevs, Ihrke & Seidel 2008 (pyramid of heights);
+/// Wald, Boulos & Shirley 2007 (bundles by interval arithmetic).
 class HeightField {
  public:
   static constexpr bool flat = true;     ///< as the concept FlatGeometry describes
@@ -39,12 +41,12 @@ class HeightField {
   explicit HeightField(Raster raster, const Workers& workers = {}) {
     raster.validate();
     grid_ = raster.grid();
-    heights_ = std::move(raster.heights);
+    heights_ = {std::move(raster.heights), std::move(raster.packed)};
     materials_ = detail::PackedNumbers(raster.materials);
     const detail::PyramidLayout layout(grid_);
     levels_ = layout.levels;
     top_ = layout.top;
-    detail::HeightPyramid built(grid_, heights_.data(), layout, workers);
+    auto built = heights_.read([&](const auto& pixels) { return detail::HeightPyramid(grid_, pixels, layout, workers); });
     pyramid_ = std::move(built.heights);
     bounds_ = built.bounds;
     per_metre_ = {1 / grid_.pixel.x, -1 / grid_.pixel.y};
@@ -63,8 +65,9 @@ class HeightField {
   [[nodiscard]] bool is_consistent() const noexcept {
     if (grid_.columns < 2 || grid_.rows < 2 || grid_.columns > detail::max_pixels || grid_.rows > detail::max_pixels) return false;
     const detail::PyramidLayout layout(grid_);
-    return heights_.size() == std::size_t{grid_.columns} * grid_.rows && pyramid_.size() == layout.size && top_ == layout.top &&
-           levels_ == layout.levels && materials_.is_consistent(heights_.size());
+    const std::size_t pixels = std::size_t{grid_.columns} * grid_.rows;
+    return heights_.is_consistent(pixels) && pyramid_.size() == layout.size && top_ == layout.top && levels_ == layout.levels &&
+           materials_.is_consistent(pixels);
   }
 
   /// Pixels from west to east.
@@ -78,7 +81,7 @@ class HeightField {
   /// Triangle of primitive i [m]; its missing corners are NaN.
   [[nodiscard]] Triangle triangle(PrimitiveIndex i) const noexcept {
     const std::uint32_t cell = i / 2, cells = grid_.columns - 1;
-    return detail::RasterCell(grid_, heights_.data(), cell % cells, cell / cells).triangle(grid_, static_cast<int>(i % 2));
+    return corners(cell % cells, cell / cells).triangle(grid_, static_cast<int>(i % 2));
   }
 
   /// For a bundle or a `BundleOfOne`.
@@ -100,7 +103,7 @@ class HeightField {
     }
     if (cells.count() <= few) {
       for (std::uint32_t row = cells.north; row <= cells.south; ++row)
-        for (std::uint32_t column = cells.west; column <= cells.east; ++column) walk.take(*this, column, row);
+        for (std::uint32_t column = cells.west; column <= cells.east; ++column) walk.take(*this, corners(column, row));
       return walk.test();
     }
     level = std::max(1U, level);
@@ -140,6 +143,7 @@ class HeightField {
     std::array<Triangle, simd::lane_count> triangles;  ///< batch to be tested, with its primitives
     std::array<PrimitiveIndex, simd::lane_count> primitives;
     std::size_t taken = 0;
+    detail::CellBlock block;  ///< of the last node of level 1
 
     Walk(const HeightField& field, const Rays& r, Hits& n) noexcept
         : rays(r), nearest(n), interval(r, field.bounds_, field.centre_), limit(round_up<float>(n.limit(r))) {
@@ -162,9 +166,8 @@ class HeightField {
     using Span = BundleInterval<float>::Span;
 
     /// Adds the triangles of a cell to the batch; tests it when full.
-    void take(const HeightField& field, std::uint32_t column, std::uint32_t row) noexcept {
-      const detail::RasterCell cell(field.grid_, field.heights_.data(), column, row);
-      const auto first = static_cast<PrimitiveIndex>(2 * (std::size_t{row} * (field.grid_.columns - 1) + column));
+    void take(const HeightField& field, const detail::RasterCell& cell) noexcept {
+      const auto first = static_cast<PrimitiveIndex>(2 * (std::size_t{cell.row} * (field.grid_.columns - 1) + cell.column));
       for (const int which : {0, 1})
         if (cell.has(which)) {
           triangles[taken] = cell.triangle(field.grid_, which);
@@ -199,6 +202,10 @@ class HeightField {
     }
   };
 
+  [[nodiscard]] detail::RasterCell corners(std::uint32_t column, std::uint32_t row) const noexcept {
+    return heights_.read([&](const auto& all) { return detail::RasterCell(grid_, all, column, row); });
+  }
+
   /// Slab between two heights.
   static BoundingBox<float> slab(float low, float high) noexcept { return {{-most, -most, low}, {most, most, high}}; }
 
@@ -217,11 +224,7 @@ class HeightField {
     if (level == top_) {
       all.extend(static_cast<float>(bounds_.min.z), static_cast<float>(bounds_.max.z));
     } else if (level == 0) {
-      for (std::uint32_t row = cells.north; row <= cells.south + 1; ++row)
-        for (std::uint32_t column = cells.west; column <= cells.east + 1; ++column) {
-          const float height = heights_[grid_.index(column, row)];
-          all.extend(height, height);
-        }
+      return heights_.is_packed() ? heights(cells, heights_.packed()) : heights(cells, heights_.floats());
     } else {
       const Level &own = levels_[level], &above = levels_[level + 1];
       const Cells nodes = cells.in_nodes(own.shift[0], own.shift[1]);
@@ -234,12 +237,23 @@ class HeightField {
     return all;
   }
 
+  template <class Pixels>
+  [[nodiscard]] Heights heights(const Cells& cells, const Pixels& pixels) const noexcept {
+    Heights all;
+    for (std::uint32_t row = cells.north; row <= cells.south + 1; ++row)
+      for (std::uint32_t column = cells.west; column <= cells.east + 1; ++column) {
+        const float height = pixels[grid_.index(column, row)];
+        all.extend(height, height);
+      }
+    return all;
+  }
+
   template <class Walk>
   void visit(Walk& walk, unsigned level, std::uint32_t column, std::uint32_t row) const noexcept {
     const Level& own = levels_[level];
     Box8<float> boxes;
     put_walls(boxes, walk, own, column, row);
-    const unsigned taken = level == 1 ? put_cells(boxes, column, row) : put_nodes(boxes, level, column, row);
+    const unsigned taken = level == 1 ? walk.block.put(boxes, grid_, heights_, column, row) : put_nodes(boxes, level, column, row);
     std::array<float, 8> entries;
     const unsigned wide = own.wide(), tall = 3 - wide;
     const unsigned turn = walk.turns[wide - 1];
@@ -247,7 +261,7 @@ class HeightField {
       const unsigned place = static_cast<unsigned>(std::countr_zero(open)) ^ turn;
       if (entries[place] > walk.limit) continue;
       const std::uint32_t c = (column << wide) + (place & ((1U << wide) - 1)), r = (row << tall) + (place >> wide);
-      level == 1 ? walk.take(*this, c, r) : visit(walk, level - 1, c, r);
+      level == 1 ? walk.take(*this, walk.block.cell(place, c, r)) : visit(walk, level - 1, c, r);
     }
     if (level == 1) walk.test();
   }
@@ -288,43 +302,6 @@ class HeightField {
     return taken;
   }
 
-  /// Sets the heights of 4 by 2 cells and returns the mask of those in the raster.
-  unsigned put_cells(Box8<float>& boxes, std::uint32_t column, std::uint32_t row) const noexcept {
-    using FourHeights = simd::Vec<float, 4>;
-    const std::uint32_t c = 4 * column, r = 2 * row;
-    const float* rows[3] = {heights_.data() + grid_.index(c, r), nullptr, nullptr};
-    rows[1] = rows[0] + grid_.columns;
-    rows[2] = rows[1] + grid_.columns;
-    float ends[3][5];
-    unsigned taken = 0xFF;
-    if (c + 5 > grid_.columns || r + 3 > grid_.rows) {  // at the raster's edge
-      const std::uint32_t wide = std::min(grid_.columns - c, 5U), high = std::min(grid_.rows - r, 3U);
-      for (std::uint32_t i = 0; i < 3; ++i) {
-        const float* from = rows[0] + std::size_t{std::min(i, high - 1)} * grid_.columns;
-        for (std::uint32_t j = 0; j < 5; ++j) ends[i][j] = from[std::min(j, wide - 1)];
-      }
-      for (std::size_t i = 0; i < 3; ++i) rows[i] = ends[i];
-      const unsigned part = (1U << (wide - 1)) - 1;
-      taken = high == 3 ? part | part << 4 : part;
-    }
-    const FourHeights zero = {};
-    FourHeights low[3], high[3];
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = zero + most;
-      high[i] = zero - most;
-      for (const float* from : {rows[i], rows[i] + 1}) {  // NaN fails every comparison
-        const FourHeights heights = simd::load<FourHeights>(*from);
-        low[i] = heights < low[i] ? heights : low[i];
-        high[i] = heights > high[i] ? heights : high[i];
-      }
-    }
-    for (std::size_t i = 0; i < 2; ++i) {
-      simd::store(FourHeights(low[i] < low[i + 1] ? low[i] : low[i + 1]), boxes.min[2][4 * i]);
-      simd::store(FourHeights(high[i] > high[i + 1] ? high[i] : high[i + 1]), boxes.max[2][4 * i]);
-    }
-    return taken;
-  }
-
   /// Walls of cells, relative to the centre [m].
   [[nodiscard]] float west_of(std::uint32_t column) const noexcept {
     return static_cast<float>((column - 0.5 * grid_.columns) * grid_.pixel.x);
@@ -338,7 +315,8 @@ class HeightField {
   Vec2 pad_{};        ///< error bound of walls in single precision [m]
   Vec3 centre_{};     ///< centre of the raster, at height 0, so that heights are exact
   Box bounds_;
-  SharedArray<float> heights_, pyramid_;
+  detail::PixelHeights heights_;
+  SharedArray<float> pyramid_;
   detail::PackedNumbers materials_;  ///< of the pixels
 };
 

@@ -17,6 +17,7 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/geometry/triangle.hpp>
+#include <pulsecast/scene/packed_heights.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -55,13 +56,18 @@ struct RasterCell {
   std::uint32_t column, row;
   float heights[4];
 
-  RasterCell(const RasterGrid& grid, const float* all, std::uint32_t c, std::uint32_t r) noexcept : column(c), row(r) {
-    const float *north = all + grid.index(c, r), *south = north + grid.columns;
-    heights[0] = north[0];
-    heights[1] = south[0];
-    heights[2] = south[1];
-    heights[3] = north[1];
+  /// `all`: heights by pixel, `const float*` or `PackedPixels`.
+  template <class Heights>
+  RasterCell(const RasterGrid& grid, const Heights& all, std::uint32_t c, std::uint32_t r) noexcept : column(c), row(r) {
+    const std::size_t north = grid.index(c, r), south = north + grid.columns;
+    heights[0] = all[north];
+    heights[1] = all[south];
+    heights[2] = all[south + 1];
+    heights[3] = all[north + 1];
   }
+  /// `north`, `south`: height of the corner in the west of each row; the next is that in the east.
+  RasterCell(const float* north, const float* south, std::uint32_t c, std::uint32_t r) noexcept
+      : column(c), row(r), heights{north[0], south[0], south[1], north[1]} {}
 
   /// True if no corner of a triangle is missing, that is NaN.
   [[nodiscard]] bool has(int triangle) const noexcept {
@@ -89,6 +95,7 @@ struct Raster {
   std::vector<float> heights{};         ///< heights, row by row from the north [m]; NaN if missing
   /// Index of each pixel into the part's table of materials, for the two triangles with their right angle there; empty if all are 0.
   std::vector<std::uint8_t> materials{};
+  PackedHeights packed{};  ///< heights in 16 bits, in place of `heights`
 
   void validate() const {
     require_within("Raster::columns", columns, 2, detail::max_pixels, "");
@@ -101,16 +108,39 @@ struct Raster {
     constexpr double least = 4 * std::numeric_limits<double>::epsilon();
     require_within("Raster::pixel.x", pixel.x, std::max(1e-9, least * std::fabs(first.x)), 1e6, "m");
     require_within("Raster::pixel.y", pixel.y, std::max(1e-9, least * std::fabs(first.y)), 1e6, "m");
-    if (heights.size() != std::size_t{columns} * rows)
-      throw SettingError("Raster::heights", static_cast<double>(heights.size()), "",
-                         "as many as pixels, " + std::to_string(std::size_t{columns} * rows));
-    for (std::size_t i = 0; i < heights.size(); ++i)
-      if (std::fabs(heights[i]) > 1e15F)
-        throw SettingError("Raster::heights", static_cast<double>(heights[i]), "m",
-                           "within 1e15 m, or NaN; see pixel " + std::to_string(i));
-    if (!materials.empty() && materials.size() != heights.size())
+    if (is_packed())
+      check_packed();
+    else
+      check_heights();
+    if (!materials.empty() && materials.size() != pixels())
       throw SettingError("Raster::materials", static_cast<double>(materials.size()), "",
-                         "as many as pixels, " + std::to_string(heights.size()) + ", or none");
+                         "as many as pixels, " + std::to_string(pixels()) + ", or none");
+  }
+
+  /// Number of pixels.
+  [[nodiscard]] std::size_t pixels() const noexcept { return std::size_t{columns} * rows; }
+  /// True if the heights are in 16 bits.
+  [[nodiscard]] bool is_packed() const noexcept { return !packed.numbers.empty(); }
+
+  /// Calls `work` with what gives the height of a pixel by its index [m], NaN if it is missing: a `std::vector<float>` or a value that is
+  /// indexed like it.
+  template <class Work>
+  decltype(auto) read(const Work& work) const {
+    if (!is_packed()) return work(heights);
+    const std::vector<float> table = detail::height_table(packed);
+    return work(detail::PackedPixels{packed.numbers.data(), table.data()});
+  }
+
+  /// The same raster with heights in `float`. @throws SettingError as `validate`
+  [[nodiscard]] Raster unpacked() const {
+    validate();
+    if (!is_packed()) return *this;
+    Raster wide{.columns = columns, .rows = rows, .first = first, .pixel = pixel, .heights = {}, .materials = materials};
+    wide.heights.reserve(pixels());
+    read([&](const auto& height) {
+      for (std::size_t i = 0; i < pixels(); ++i) wide.heights.push_back(height[i]);
+    });
+    return wide;
   }
 
   /// Placement of the pixels.
@@ -121,6 +151,7 @@ struct Raster {
     validate();
     constexpr std::uint32_t missing = std::numeric_limits<std::uint32_t>::max();
     const detail::RasterGrid grid = this->grid();
+    if (is_packed()) return unpacked().mesh();
     MeshData mesh;
     std::vector<std::uint32_t> number(heights.size(), missing);
     for (std::uint32_t row = 0; row + 1 < rows; ++row)
@@ -146,6 +177,24 @@ struct Raster {
       }
     return mesh;
   }
+
+ private:
+  void check_heights() const {
+    if (heights.size() != pixels())
+      throw SettingError("Raster::heights", static_cast<double>(heights.size()), "", "as many as pixels, " + std::to_string(pixels()));
+    for (std::size_t i = 0; i < heights.size(); ++i)
+      if (std::fabs(heights[i]) > 1e15F)
+        throw SettingError("Raster::heights", static_cast<double>(heights[i]), "m",
+                           "within 1e15 m, or NaN; see pixel " + std::to_string(i));
+  }
+
+  void check_packed() const {
+    packed.validate();
+    require_within("Raster::heights (number of them beside `packed`)", static_cast<double>(heights.size()), 0, 0, "");
+    if (packed.numbers.size() != pixels())
+      throw SettingError("Raster::packed.numbers", static_cast<double>(packed.numbers.size()), "",
+                         "as many as pixels, " + std::to_string(pixels()) + ", or none");
+  }
 };
 
 namespace detail {
@@ -158,10 +207,23 @@ namespace detail {
   return static_cast<std::uint32_t>(nearest);
 }
 
+/// Number that no height of any raster has; empty if there is none, or if their heights are not packed alike.
+[[nodiscard]] inline std::optional<std::uint16_t> number_of_gaps(const std::vector<Raster>& tiles) {
+  const PackedHeights& alike = tiles.front().packed;
+  if (!std::all_of(tiles.begin(), tiles.end(), [&](const Raster& r) { return r.is_packed() && r.packed.same_scale(alike); })) return {};
+  if (alike.missing) return alike.missing;
+  std::vector<bool> present(std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1, false);
+  for (const Raster& tile : tiles)
+    for (const std::uint16_t number : tile.packed.numbers) present[number] = true;
+  const auto gap = std::find(present.begin(), present.end(), false);
+  return gap == present.end() ? std::nullopt : std::optional(static_cast<std::uint16_t>(gap - present.begin()));
+}
+
 }  // namespace detail
 
 /// Raster of tiles whose pixels are those of one lattice, to a hundredth. Pixels without a tile are missing; where tiles overlap, the first
-/// one with a height counts. Unlike tiles as parts of their own, a mosaic has no gap of one pixel between them.
+/// one with a height counts. Unlike tiles as parts of their own, a mosaic has no gap of one pixel between them. Its heights are packed
+/// where those of all tiles are, with one scale.
 /// @throws SettingError as `Raster::validate`; for no tile, pixels of different lattices, or tiles on less than a 64th of their extent
 [[nodiscard]] inline Raster mosaic(const std::vector<Raster>& tiles) {
   require_within("mosaic (number of tiles)", static_cast<double>(tiles.size()), 1, 1e6, "");
@@ -173,26 +235,38 @@ namespace detail {
     north = std::max(north, tile.first.y);
     east = std::max(east, tile.first.x + (tile.columns - 1) * pixel.x);
     south = std::min(south, tile.first.y - (tile.rows - 1) * pixel.y);
-    pixels += static_cast<double>(tile.heights.size());
+    pixels += static_cast<double>(tile.pixels());
   }
   const double columns = std::nearbyint((east - west) / pixel.x) + 1, rows = std::nearbyint((north - south) / pixel.y) + 1;
   require_within("mosaic (pixels)", columns * rows, 4, std::min(64 * pixels, 4294967296.0), "");
   Raster all{
       .columns = static_cast<std::uint32_t>(columns), .rows = static_cast<std::uint32_t>(rows), .first = {west, north}, .pixel = pixel};
   const detail::RasterGrid grid = all.grid();
-  all.heights.assign(std::size_t{all.columns} * all.rows, std::numeric_limits<float>::quiet_NaN());
+  const std::optional<std::uint16_t> gap = detail::number_of_gaps(tiles);
+  if (gap) {
+    const PackedHeights& first = tiles.front().packed;
+    all.packed = {.scale = first.scale, .offset = first.offset, .zero = first.zero, .missing = gap};
+    all.packed.numbers.assign(all.pixels(), *gap);
+  } else {
+    all.heights.assign(all.pixels(), std::numeric_limits<float>::quiet_NaN());
+  }
   if (std::any_of(tiles.begin(), tiles.end(), [](const Raster& tile) { return !tile.materials.empty(); }))
-    all.materials.assign(all.heights.size(), 0);
+    all.materials.assign(all.pixels(), 0);
   for (const Raster& tile : tiles) {
     const std::uint32_t column = detail::place_in_mosaic(tile.first.x - west, tile.pixel.x, tile.columns, pixel.x);
     const std::uint32_t row = detail::place_in_mosaic(north - tile.first.y, tile.pixel.y, tile.rows, pixel.y);
-    for (std::uint32_t r = 0; r < tile.rows; ++r)
-      for (std::uint32_t c = 0; c < tile.columns; ++c) {
-        const std::size_t from = tile.grid().index(c, r), to = grid.index(column + c, row + r);
-        if (!std::isnan(all.heights[to])) continue;
-        all.heights[to] = tile.heights[from];
-        if (!tile.materials.empty()) all.materials[to] = tile.materials[from];
-      }
+    tile.read([&](const auto& heights) {
+      for (std::uint32_t r = 0; r < tile.rows; ++r)
+        for (std::uint32_t c = 0; c < tile.columns; ++c) {
+          const std::size_t from = tile.grid().index(c, r), to = grid.index(column + c, row + r);
+          if (gap ? all.packed.numbers[to] != *gap : !std::isnan(all.heights[to])) continue;
+          if (gap)
+            all.packed.numbers[to] = tile.packed.numbers[from];
+          else
+            all.heights[to] = heights[from];
+          if (!tile.materials.empty()) all.materials[to] = tile.materials[from];
+        }
+    });
   }
   all.validate();
   return all;
@@ -212,17 +286,19 @@ inline std::size_t set_materials(Raster& ground, const Raster& codes, const std:
   codes.validate();
   const detail::RasterGrid grid = ground.grid();
   std::size_t unlisted = 0;
-  std::vector<std::uint8_t> materials(ground.heights.size(), otherwise);
-  for (std::uint32_t row = 0; row < ground.rows; ++row)
-    for (std::uint32_t column = 0; column < ground.columns; ++column) {
-      const std::optional<std::size_t> at = codes.grid().pixel_at(grid.vertex(column, row, 0));
-      const auto has_code = [&](const CodeMaterial& one) { return static_cast<double>(codes.heights[*at]) == one.code; };
-      const auto found = at ? std::find_if(listed.begin(), listed.end(), has_code) : listed.end();
-      if (found == listed.end())
-        ++unlisted;
-      else
-        materials[grid.index(column, row)] = found->material;
-    }
+  std::vector<std::uint8_t> materials(ground.pixels(), otherwise);
+  codes.read([&](const auto& code) {
+    for (std::uint32_t row = 0; row < ground.rows; ++row)
+      for (std::uint32_t column = 0; column < ground.columns; ++column) {
+        const std::optional<std::size_t> at = codes.grid().pixel_at(grid.vertex(column, row, 0));
+        const auto has_code = [&](const CodeMaterial& one) { return static_cast<double>(code[*at]) == one.code; };
+        const auto found = at ? std::find_if(listed.begin(), listed.end(), has_code) : listed.end();
+        if (found == listed.end())
+          ++unlisted;
+        else
+          materials[grid.index(column, row)] = found->material;
+      }
+  });
   ground.materials = std::move(materials);
   return unlisted;
 }

@@ -119,7 +119,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const GeoT
     if (!materials.table) materials = ground_materials(source);
     const std::size_t unlisted = materials.codes ? set_materials(raster, *materials.codes, materials.listed) : 0;
     if (unlisted > 0)
-      warn({source.classes.string() + ": " + std::to_string(unlisted) + " of " + std::to_string(raster.heights.size()) +
+      warn({source.classes.string() + ": " + std::to_string(unlisted) + " of " + std::to_string(raster.pixels()) +
             " pixels have no class with a material, and get '" + materials.table->front().name + "'"});
     return {std::make_shared<const HeightField>(std::move(raster), options_.threads), materials.table};
   };
@@ -140,7 +140,7 @@ PULSECAST_INLINE Raster SceneBuilder::raster(const std::filesystem::path& file) 
     warn(grid.warnings);
     return std::move(grid.raster);
   }
-  io::GeoTiff tiff = io::read_geotiff(file);
+  io::GeoTiff tiff = io::read_geotiff(file, {.packed = true});
   warn(tiff.warnings);
   return std::move(tiff.raster);
 }

@@ -92,15 +92,17 @@ struct PyramidLayout {
 };
 
 /// Bounding box of the triangles of a node of level 1: 4 by 2 cells.
-[[nodiscard]] inline Box ground_of(const RasterGrid& grid, const float* heights, std::uint32_t node_column, std::uint32_t node_row) {
+template <class Heights>
+[[nodiscard]] Box ground_of(const RasterGrid& grid, const Heights& heights, std::uint32_t node_column, std::uint32_t node_row) {
   const std::uint32_t west = 4 * node_column, north = 2 * node_row;
   const std::uint32_t east = std::min(west + 4, grid.columns - 1), south = std::min(north + 2, grid.rows - 1);
   HeightInterval range;
   bool whole = true;
   for (std::uint32_t row = north; row <= south; ++row)
-    for (const float* at = heights + grid.index(west, row); at <= heights + grid.index(east, row); ++at) {
-      range.extend(*at, *at);
-      whole = whole && *at == *at;
+    for (std::size_t at = grid.index(west, row); at <= grid.index(east, row); ++at) {
+      const float height = heights[at];
+      range.extend(height, height);
+      whole = whole && height == height;
     }
   Box box;
   if (whole) {
@@ -122,7 +124,8 @@ struct HeightPyramid {
   std::vector<float> heights;
   Box bounds{};
 
-  HeightPyramid(const RasterGrid& grid, const float* pixels, const PyramidLayout& layout, Workers workers) : heights(layout.size) {
+  template <class Heights>
+  HeightPyramid(const RasterGrid& grid, const Heights& pixels, const PyramidLayout& layout, Workers workers) : heights(layout.size) {
     constexpr HeightInterval empty;
     for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = i % 16 < 8 ? empty.least : empty.greatest;
     std::vector<Box> grounds(layout.levels[1].rows);

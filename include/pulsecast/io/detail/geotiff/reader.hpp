@@ -85,9 +85,38 @@ class GeoTiffReader {
 
   template <class Sample>
   [[nodiscard]] GeoTiff finished() {
-    read_heights<Sample>();
-    std::vector<float>& heights = raster_.heights;
-    const auto row = [&](std::uint32_t r) { return heights.begin() + static_cast<std::ptrdiff_t>(std::size_t{r} * layout_.columns); };
+    if constexpr (std::is_integral_v<Sample> && sizeof(Sample) <= 2)
+      if (settings_.packed && pack<Sample>()) return finished<Sample>(raster_.packed.numbers, raster_.packed.missing.value_or(0));
+    return finished<Sample>(raster_.heights, std::numeric_limits<float>::quiet_NaN());
+  }
+
+  /// Sets the scale of packed heights; false if they cannot be packed.
+  template <class Sample>
+  [[nodiscard]] bool pack() {
+    PackedHeights& packed = raster_.packed;
+    packed.scale = scale_;
+    packed.zero = std::is_signed_v<Sample> ? 32768 : 0;
+    using Limits = std::numeric_limits<Sample>;
+    if (missing_ && *missing_ >= Limits::min() && *missing_ <= Limits::max() && std::floor(*missing_) == *missing_)
+      packed.missing = static_cast<std::uint16_t>(*missing_ + packed.zero);
+    else if (sizeof(Sample) == 1)
+      packed.missing = std::numeric_limits<std::uint16_t>::max();
+    return 65536 * scale_ <= 1e15 && (packed.missing || is_complete());
+  }
+
+  /// True if no strip or tile of the band is left out.
+  [[nodiscard]] bool is_complete() {
+    for (std::uint32_t north = 0; north < layout_.rows; north += std::min(layout_.chunk_rows, layout_.rows - north))
+      for (std::uint32_t west = 0; west < layout_.columns; west += std::min(layout_.chunk_columns, layout_.columns - west))
+        if (TIFFGetStrileByteCount(file_.handle(), chunk_at(west, north)) == 0) return false;
+    return true;
+  }
+
+  /// `pixels`: of the raster, to be filled. `absent`: pixel of missing heights.
+  template <class Sample, class Pixel>
+  [[nodiscard]] GeoTiff finished(std::vector<Pixel>& pixels, Pixel absent) {
+    read_pixels<Sample>(pixels, absent);
+    const auto row = [&](std::uint32_t r) { return pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{r} * layout_.columns); };
     for (std::uint32_t r = 0; northward_ && r < layout_.rows / 2; ++r) std::swap_ranges(row(r), row(r + 1), row(layout_.rows - 1 - r));
     for (std::uint32_t r = 0; westward_ && r < layout_.rows; ++r) std::reverse(row(r), row(r + 1));
     if (there_ == 0) file_.fail("has no height: expected at least one pixel with a height");
@@ -96,41 +125,46 @@ class GeoTiffReader {
   }
 
   /// Reads strip by strip, or rows of tiles; the raster grows meanwhile.
-  template <class Sample>
-  void read_heights() {
+  template <class Sample, class Pixel>
+  void read_pixels(std::vector<Pixel>& pixels, Pixel absent) {
     const RasterLayout& l = layout_;
     const std::size_t stride = l.stride(), first = l.planes == PLANARCONFIG_CONTIG ? settings_.band - 1U : 0;
-    std::vector<float>& heights = raster_.heights;
-    const bool in_place = !l.tiled && stride == 1 && std::is_same_v<Sample, float>;
+    const bool in_place = !l.tiled && stride == 1 && std::is_same_v<Sample, Pixel>;
     std::vector<unsigned char> buffer;
     try {
-      heights.reserve(std::size_t{l.columns} * l.rows);
+      pixels.reserve(std::size_t{l.columns} * l.rows);
       if (!in_place) buffer.resize(l.chunk_bytes);
     } catch (const std::bad_alloc&) {
       file_.fail("does not fit into memory: its raster has " + std::to_string(l.columns) + " x " + std::to_string(l.rows) + " pixels");
     }
     for (std::uint32_t north = 0; north < l.rows; north += std::min(l.chunk_rows, l.rows - north)) {
       const std::uint32_t rows = std::min(l.chunk_rows, l.rows - north);
-      heights.resize(std::size_t{l.columns} * (north + rows), std::numeric_limits<float>::quiet_NaN());
+      pixels.resize(std::size_t{l.columns} * (north + rows), absent);
       for (std::uint32_t west = 0; west < l.columns; west += std::min(l.chunk_columns, l.columns - west)) {
         const std::uint32_t columns = std::min(l.chunk_columns, l.columns - west);
-        float* to = heights.data() + std::size_t{north} * l.columns + west;
+        Pixel* to = pixels.data() + std::size_t{north} * l.columns + west;
         auto* from = in_place ? reinterpret_cast<unsigned char*>(to) : buffer.data();
         if (!read_chunk(west, north, from, l.tiled ? l.chunk_bytes : l.chunk_bytes / l.chunk_rows * rows)) continue;
         for (std::uint32_t row = 0; row < rows; ++row) {
           const unsigned char* samples = from + (std::size_t{row} * l.chunk_columns * stride + first) * sizeof(Sample);
           for (std::uint32_t i = 0; i < columns; ++i, samples += stride * sizeof(Sample))
-            to[std::size_t{row} * l.columns + i] = height<Sample>(samples);
+            to[std::size_t{row} * l.columns + i] = pixel<Sample, Pixel>(samples);
         }
       }
     }
   }
 
-  /// Reads a strip or tile; false if it was left out.
-  [[nodiscard]] bool read_chunk(std::uint32_t west, std::uint32_t north, unsigned char* to, std::uint64_t bytes) {
+  /// Number of the strip or tile of the band at a pixel.
+  [[nodiscard]] std::uint32_t chunk_at(std::uint32_t west, std::uint32_t north) const {
     const auto plane = static_cast<std::uint16_t>(layout_.planes == PLANARCONFIG_CONTIG ? 0 : settings_.band - 1);
     TIFF* tiff = file_.handle();
-    const std::uint32_t chunk = layout_.tiled ? TIFFComputeTile(tiff, west, north, 0, plane) : TIFFComputeStrip(tiff, north, plane);
+    return layout_.tiled ? TIFFComputeTile(tiff, west, north, 0, plane) : TIFFComputeStrip(tiff, north, plane);
+  }
+
+  /// Reads a strip or tile; false if it was left out.
+  [[nodiscard]] bool read_chunk(std::uint32_t west, std::uint32_t north, unsigned char* to, std::uint64_t bytes) {
+    TIFF* tiff = file_.handle();
+    const std::uint32_t chunk = chunk_at(west, north);
     const std::uint64_t begin = TIFFGetStrileOffset(tiff, chunk), length = TIFFGetStrileByteCount(tiff, chunk);
     if (length == 0) return false;
     const std::string what = layout_.chunk() + std::to_string(chunk);
@@ -141,6 +175,17 @@ class GeoTiffReader {
     const tmsize_t read = layout_.tiled ? TIFFReadEncodedTile(tiff, chunk, to, size) : TIFFReadEncodedStrip(tiff, chunk, to, size);
     if (read != size) file_.fail_at_byte(begin, what + " cannot be read" + file_.complaint() + ": expected a complete file");
     return true;
+  }
+
+  template <class Sample, class Pixel>
+  [[nodiscard]] Pixel pixel(const unsigned char* bytes) noexcept {
+    if constexpr (std::is_same_v<Pixel, float>) {
+      return height<Sample>(bytes);
+    } else {
+      const auto number = static_cast<Pixel>(sample_at<Sample>(bytes) + raster_.packed.zero);
+      if (raster_.packed.missing != number) ++there_;
+      return number;
+    }
   }
 
   template <class Sample>
