@@ -191,16 +191,21 @@ struct Attribute {
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 
+namespace detail {
+/// No attributes. `{}` in a part is an internal error of g++ 12 where a list of parts is the first to need it.
+[[nodiscard]] inline std::vector<Attribute> no_attributes() { return {}; }
+}  // namespace detail
+
 /// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
-  typename SharedShape<Shapes...>::type geometry;  ///< shared pointer to the shape; a variant of them for several kinds
-  MaterialTable materials = material_table();      ///< materials by the shape's material index
-  Similarity placement{};                          ///< placement in the world
-  ObjectId object = 0;                             ///< object id of its points
-  std::string name{};                              ///< user's name for it
-  std::shared_ptr<const PartMotion> motion{};      ///< motion on top of its placement; empty if static; for a `MovingScene`
-  std::vector<Attribute> attributes{};             ///< what its points are told besides, as by `ObjectAttributes`
+  typename SharedShape<Shapes...>::type geometry;               ///< shared pointer to the shape; a variant of them for several kinds
+  MaterialTable materials = material_table();                   ///< materials by the shape's material index
+  Similarity placement{};                                       ///< placement in the world
+  ObjectId object = 0;                                          ///< object id of its points
+  std::string name{};                                           ///< user's name for it
+  std::shared_ptr<const PartMotion> motion{};                   ///< motion on top of its placement; empty if static; for a `MovingScene`
+  std::vector<Attribute> attributes = detail::no_attributes();  ///< what its points are told besides, as by `ObjectAttributes`
 };
 
 }  // namespace PULSECAST_NAMESPACE
