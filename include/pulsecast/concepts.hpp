@@ -198,6 +198,7 @@ struct HitSurface {
   const Material* material = nullptr;  ///< owned by the target; of no meaning for a miss
   Vec3 normal{};                       ///< unit, either side; zero for a surface without direction
   bool foliage = false;                ///< as in `Surface`
+  std::optional<Vec2> texture{};       ///< texture coordinates, for a material with a map of reflectances; empty without
 };
 
 /// Map that also tells the materials and normals at the hits of a bundle, and answers for rays one by one, as `Scene`: light can go on there.

@@ -84,6 +84,11 @@ struct TrianglePacket {
   }
 };
 
+/// Triangles without holes.
+struct SolidEverywhere {
+  bool operator()(std::size_t, PrimitiveIndex) const noexcept { return true; }
+};
+
 /// Intersects the triangles of these primitives with every ray of a bundle, or with a `BundleOfOne`: the deciding test, always in double
 /// precision.
 ///
@@ -94,14 +99,16 @@ struct TrianglePacket {
 /// at most 32 roundings of the distance, divided by the sine of the angle between ray and plane. Its range errs by that much, times one
 /// more than the triangle's aspect.
 /// A ray within 1e-12 rad of the triangle's plane misses. So does every ray if two edges are parallel to within 8 roundings (no area).
+/// Of the hits it takes those with `solid(j, primitive)`, of ray j, as outside the holes of a mask.
 /// Never inlined, so that every accelerator gets the same bits.
 /// Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin 2007; interval inside the box:
 /// Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
-template <class Rays, class Hits>
+template <class Rays, class Hits, class Solid = SolidEverywhere>
 [[gnu::noinline]] void intersect(const TrianglePacket& triangles, std::span<const PrimitiveIndex> primitives, const Rays& rays,
-                                 Hits& nearest) noexcept {
+                                 Hits& nearest, [[maybe_unused]] const Solid& solid = {}) noexcept {
   static_assert(RayBundle::lanes % simd::lane_count == 0);
   constexpr bool single = Rays::capacity == 1;  // a lane a triangle, not a lane a ray
+  constexpr bool with_holes = !std::is_same_v<Solid, SolidEverywhere>;
   constexpr double unit = std::numeric_limits<double>::epsilon();
   using Corner = TrianglePacket::Corner;
   const auto magnitude = [](const simd::Doubles& v) noexcept { return simd::Doubles(simd::Ids(v) & 0x7FFF'FFFF'FFFF'FFFF); };
@@ -198,6 +205,8 @@ template <class Rays, class Hits>
     const simd::Mask hit = between_edges & (slope * slope > grazing) & (entry <= exit) & (at > rays.near);
     for (candidates &= simd::bits(hit); candidates != 0; candidates &= candidates - 1) {
       const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
+      if constexpr (with_holes)
+        if (!(at[t] <= nearest.limit_of(0)) || !solid(0, primitives[t])) continue;
       nearest.offer(0, at[t], primitives[t]);
     }
   } else {
@@ -227,7 +236,10 @@ template <class Rays, class Hits>
         const simd::Doubles best = simd::load<simd::Doubles>(nearest.range[j]);
         const simd::Ids best_id = simd::load<simd::Ids>(nearest.id[j]), own_id = simd::Ids{} + (nearest.part | primitive);
         const simd::Mask nearer = (at < best) | ((at == best) & (own_id < best_id));
-        const simd::Mask hit = inside & (entry <= exit) & (at > rays.near_of(j)) & nearer;
+        simd::Mask hit = inside & (entry <= exit) & (at > rays.near_of(j)) & nearer;
+        if constexpr (with_holes)
+          for (unsigned lanes = simd::bits(hit); lanes != 0; lanes &= lanes - 1)
+            if (const auto lane = static_cast<std::size_t>(std::countr_zero(lanes)); !solid(j + lane, primitive)) hit[lane] = 0;
         simd::store(hit ? at : best, nearest.range[j]);
         simd::store(hit ? own_id : best_id, nearest.id[j]);
       }
@@ -243,12 +255,13 @@ concept EndsEarly = requires(const Hits& hits) {
 };
 
 /// Intersects as many triangles as there are primitives; `triangle_of(n)` returns the n-th.
-template <class TriangleOf, class Rays, class Hits>
-void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const Rays& rays, Hits& nearest) noexcept {
+template <class TriangleOf, class Rays, class Hits, class Solid = SolidEverywhere>
+void intersect(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of, const Rays& rays, Hits& nearest,
+               const Solid& solid = {}) noexcept {
   for (std::size_t first = 0; first < primitives.size(); first += simd::lane_count) {
     const std::size_t count = std::min(simd::lane_count, primitives.size() - first);
     const TrianglePacket triangles(count, [&](std::size_t n) noexcept { return triangle_of(first + n); });
-    intersect(triangles, primitives.subspan(first, count), rays, nearest);
+    intersect(triangles, primitives.subspan(first, count), rays, nearest, solid);
     if constexpr (EndsEarly<Hits>)
       if (nearest.done()) return;
   }

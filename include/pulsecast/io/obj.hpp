@@ -10,6 +10,7 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/spectra.hpp>
+#include <pulsecast/io/material_pictures.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
@@ -25,13 +26,15 @@ enum class UpAxis : std::uint8_t {
 struct ObjSettings {
   UpAxis up = UpAxis::z;      ///< vertical axis of the file
   SpectralLibrary spectra{};  ///< spectra for `helios_spectra` in MTL files
+  bool texture = false;       ///< true to read texture coordinates also if no material has a picture
 };
 
 /// Content of an OBJ file, all objects and groups together.
 struct ObjModel {
-  MeshData mesh;                      ///< in units of the file, which should be metres; without triangles of zero area
-  std::vector<Material> materials;    ///< materials of triangles, in order of first use
-  std::vector<std::string> warnings;  ///< oddities that could still be read
+  MeshData mesh;                             ///< in units of the file, which should be metres; without triangles of zero area
+  std::vector<Material> materials;           ///< materials of triangles, in order of first use
+  std::vector<MaterialPictures> pictures{};  ///< of each material, not read: see `add_pictures`; empty if there are none
+  std::vector<std::string> warnings;         ///< oddities that could still be read
 };
 
 /// Reads an OBJ file and its MTL files. Polygons, concave ones included, are triangulated. Warns if no face has an area, or an MTL file is

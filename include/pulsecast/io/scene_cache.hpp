@@ -123,8 +123,8 @@ void list_members(Archive& a, Image& image) {
 /// Lists the members of a map of reflectances.
 template <class Archive>
 void list_members(Archive& a, ReflectanceMap& map) {
-  auto& [image, wavelengths, relative] = map;
-  a(image, wavelengths, relative);
+  auto& [image, wavelengths, mean] = map;
+  a(image, wavelengths, mean);
 }
 /// Lists the members of a named number.
 template <class Archive>

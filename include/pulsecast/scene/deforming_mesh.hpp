@@ -126,6 +126,10 @@ class DeformingMesh {
     mesh->first_corners_ = first_corners;
     mesh->triangles_ = triangles;
     sources_ = std::move(sources);
+    if (const auto& before = frames_[now_].mesh) {  // what does not move is not among the data
+      mesh->texture_ = before->texture_;
+      mesh->masks_ = before->masks_;
+    }
     frames_ = {};
     frames_[now_] = {std::move(mesh), corners, {}};
   }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <pulsecast/base/exponential.hpp>
@@ -149,14 +150,23 @@ struct Material {
   [[nodiscard]] double reflectance_at(double wavelength) const noexcept {
     return spectrum ? spectrum->reflectance(wavelength) : reflectance;
   }
+  /// As above, at texture coordinates. A map tells no more than what the surface does not return or mirror otherwise.
+  [[nodiscard]] double reflectance_at(double wavelength, const std::optional<Vec2>& texture) const noexcept {
+    const double even = reflectance_at(wavelength);
+    if (!reflectance_map || !texture) [[likely]]
+      return even;
+    const double taken = retroreflected_share() + (smooth.kind == InterfaceKind::mirror ? smooth.reflectance : 0);
+    return std::min(reflectance_map->reflectance(wavelength, *texture, even), 1 - taken);
+  }
 
   /// Share of the light of a wavelength [m], at a cosine of incidence, that the surface scatters, as an energy ledger counts it.
-  [[nodiscard]] double scattered_share(double wavelength, double cos_incidence) const noexcept {
-    return scattered_share(wavelength, cos_incidence, facets().index);
+  [[nodiscard]] double scattered_share(double wavelength, double cos_incidence, const std::optional<Vec2>& texture = {}) const noexcept {
+    return scattered_share(wavelength, cos_incidence, texture, facets().index);
   }
   /// As above, with the index behind the surface by that before it.
-  [[nodiscard]] double scattered_share(double wavelength, double cos_incidence, double relative_index) const noexcept {
-    const double rest = std::min(std::min(reflectance_at(wavelength), 1.0) + retroreflected_share(), 1.0);
+  [[nodiscard]] double scattered_share(double wavelength, double cos_incidence, const std::optional<Vec2>& texture,
+                                       double relative_index) const noexcept {
+    const double rest = std::min(std::min(reflectance_at(wavelength, texture), 1.0) + retroreflected_share(), 1.0);
     if (scattering != Scattering::microfacet) return rest;
     const double by_facets = fresnel_split(cos_incidence, relative_index).reflected;
     return by_facets + (1 - by_facets) * rest;
@@ -170,8 +180,9 @@ struct Material {
   /// Light scattered from one direction towards another, by that of a white Lambertian surface towards its normal: for light that goes on
   /// from surface to surface, with the Lambertian law for those that are known towards the source alone. Unit vectors away from the
   /// surface; a normal of zero is that of leaves, which scatter into all directions alike.
-  [[nodiscard]] double scattered(const Vec3& from, const Vec3& to, const Vec3& normal, double wavelength) const noexcept {
-    const double diffuse = std::min(reflectance_at(wavelength), 1.0);
+  [[nodiscard]] double scattered(const Vec3& from, const Vec3& to, const Vec3& normal, double wavelength,
+                                 const std::optional<Vec2>& texture = {}) const noexcept {
+    const double diffuse = std::min(reflectance_at(wavelength, texture), 1.0);
     if (normal == Vec3{}) return diffuse / 4;
     const double in = dot(from, normal), out = dot(to, normal);
     if (!(in > 0 && out > 0)) return 0;
@@ -191,9 +202,9 @@ struct Material {
     return 2 / pi * cosine * (std::asin(std::sqrt(open)) - std::sqrt(2 * tangent2 * open));
   }
 
-  /// Reflectance times the angular law, at a wavelength [m].
-  [[nodiscard]] Backscatter backscatter(double wavelength) const noexcept {
-    Backscatter all{.reflectance = reflectance_at(wavelength), .exponent = 0};
+  /// Reflectance times the angular law, at a wavelength [m] and, for a map, at texture coordinates.
+  [[nodiscard]] Backscatter backscatter(double wavelength, const std::optional<Vec2>& texture = {}) const noexcept {
+    Backscatter all{.reflectance = reflectance_at(wavelength, texture), .exponent = 0};
     switch (scattering) {
       case Scattering::lambert:
         all.cosine = 1;

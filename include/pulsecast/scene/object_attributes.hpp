@@ -27,14 +27,16 @@ class ObjectAttributes {
   template <class PartOfScene>
   explicit ObjectAttributes(std::span<const PartOfScene> parts) {
     std::map<ObjectId, std::map<std::string, double>> all;
-    for (const PartOfScene& part : parts)
-      for (const auto& [name, value] : part.attributes) {
+    for (const PartOfScene& part : parts) {
+      if (!part.attributes) continue;
+      for (const auto& [name, value] : *part.attributes) {
         if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.push_back(name);
         const double known = all[part.object].emplace(name, value).first->second;
         if (!(known == value) && !(known != known && value != value))
           throw_setting_error(("Part::attributes '" + name + "' of object " + std::to_string(part.object)).c_str(), value, "",
                               "as of its other parts");
       }
+    }
     for (const auto& [object, values] : all) {
       objects_.push_back(object);
       for (const std::string& name : names_) {

@@ -191,21 +191,31 @@ struct Attribute {
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 
-namespace detail {
-/// No attributes. `{}` in a part is an internal error of g++ 12 where a list of parts is the first to need it.
-[[nodiscard]] inline std::vector<Attribute> no_attributes() { return {}; }
-}  // namespace detail
+/// Named numbers of a part, shareable among parts.
+using Attributes = std::shared_ptr<const std::vector<Attribute>>;
+
+/// Makes the named numbers of parts, as `attributes({{"age", 80}, {"leaf", 1}})`. @throws SettingError for a name that is empty or comes
+/// twice
+[[nodiscard]] inline Attributes attributes(std::vector<Attribute> all) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string& name = all[i].name;
+    const auto before = all.begin() + static_cast<std::ptrdiff_t>(i);
+    if (name.empty() || std::any_of(all.begin(), before, [&](const Attribute& other) { return other.name == name; }))
+      throw_setting_error("Attribute::name (number of '" + name + "')", static_cast<double>(i), "", "not empty, and each name once");
+  }
+  return std::make_shared<const std::vector<Attribute>>(std::move(all));
+}
 
 /// Placed shape. Many parts may share one geometry, one table of materials and one motion.
 template <Geometry... Shapes>
 struct Part {
-  typename SharedShape<Shapes...>::type geometry;               ///< shared pointer to the shape; a variant of them for several kinds
-  MaterialTable materials = material_table();                   ///< materials by the shape's material index
-  Similarity placement{};                                       ///< placement in the world
-  ObjectId object = 0;                                          ///< object id of its points
-  std::string name{};                                           ///< user's name for it
-  std::shared_ptr<const PartMotion> motion{};                   ///< motion on top of its placement; empty if static; for a `MovingScene`
-  std::vector<Attribute> attributes = detail::no_attributes();  ///< what its points are told besides, as by `ObjectAttributes`
+  typename SharedShape<Shapes...>::type geometry;  ///< shared pointer to the shape; a variant of them for several kinds
+  MaterialTable materials = material_table();      ///< materials by the shape's material index
+  Similarity placement{};                          ///< placement in the world
+  ObjectId object = 0;                             ///< object id of its points
+  std::string name{};                              ///< user's name for it
+  std::shared_ptr<const PartMotion> motion{};      ///< motion on top of its placement; empty if static; for a `MovingScene`
+  Attributes attributes{};                         ///< what its points are told besides, as by `ObjectAttributes`
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -21,27 +21,11 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/scene/detail/bundle_budget.hpp>
 #include <pulsecast/scene/detail/ray_queries.hpp>
+#include <pulsecast/scene/detail/surface_notes.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-namespace detail {
-/// What is noted of surfaces where nobody asks for them.
-struct NotesNothing {
-  template <class Normal>
-  void operator()(std::size_t, std::size_t, const Material*, bool, const Normal&) const noexcept {}
-};
-/// Notes the surface of each hit.
-struct NotesSurfaces {
-  std::span<HitSurface> surfaces;
-  template <class Normal>
-  void operator()(std::size_t first, std::size_t end, const Material* material, bool foliage, const Normal& normal) const noexcept {
-    const HitSurface surface{material, normal(), foliage};
-    for (std::size_t j = first; j < end; ++j) surfaces[j] = surface;
-  }
-};
-}  // namespace detail
 
 /// Static parts of the given kinds of geometry, without code for other kinds: `Scene<TriangleMesh<>>`. `MovingScene` moves parts.
 ///
@@ -117,6 +101,9 @@ class Scene {
       for (const Material& material : *part.materials) {
         table += detail::heap_bytes(material.name);
         if (material.spectrum) shared.add(material.spectrum.get(), material.spectrum->memory());
+        if (material.picture) shared.add(material.picture->samples.data(), material.picture->samples.memory());
+        if (material.reflectance_map)
+          shared.add(material.reflectance_map->image.samples.data(), material.reflectance_map->image.samples.memory());
       }
       shared.add(part.materials.get(), table);
     }
@@ -277,24 +264,31 @@ class Scene {
     Vec3 normal{};          ///< divided by the length of the directions, in the part's frame
     double min_cosine = 0;  ///< 1 for a surface without direction
     const Material* material = nullptr;
-    bool flat = false;     ///< same for every ray that met the primitive
-    bool foliage = false;  ///< as in `Surface`
+    bool flat = false;              ///< same for every ray that met the primitive
+    bool foliage = false;           ///< as in `Surface`
+    std::optional<Vec2> texture{};  ///< texture coordinates, for a material with a map
   };
 
   SurfaceSample sample_surface(const Part& part, PrimitiveIndex primitive, const RayBundle& local, std::size_t j) const noexcept {
     const auto look = [&]<class Shape>(const std::shared_ptr<const Shape>& shape) noexcept -> SurfaceSample {
       const Surface surface = shape->surface(primitive, local, j);
-      return {.normal = surface.normal / local.direction_length,
-              .min_cosine = surface.normal == Vec3{} ? 1.0 : 0.0,
-              .material = &(*part.materials)[surface.material],
-              .flat = FlatGeometry<Shape>,
-              .foliage = surface.foliage};
+      SurfaceSample sample{.normal = surface.normal / local.direction_length,
+                           .min_cosine = surface.normal == Vec3{} ? 1.0 : 0.0,
+                           .material = &(*part.materials)[surface.material],
+                           .flat = FlatGeometry<Shape>,
+                           .foliage = surface.foliage};
+      if constexpr (Textured<Shape>)
+        if (sample.material->reflectance_map) [[unlikely]] {
+          sample.flat = false;
+          sample.texture = shape->texture(primitive, shape->triangle(primitive).weights(local.origin, local.direction(j)));
+        }
+      return sample;
     };
     return visit_shape(look, part.geometry);
   }
 
   /// `placement_of(i)` returns the placement of part i.
-  /// `note(first, end, material, foliage, normal)` takes the surface that some rays met, with `normal()` in the world.
+  /// `note(first, end, sample, normal)` takes the surface that some rays met, with `normal()` in the world.
   template <class PlacementOf, class Note>
   void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of,
                 const Note& note) const noexcept {
@@ -316,9 +310,8 @@ class Scene {
       const SurfaceSample sample = this->sample_surface(parts_[at], nearest.primitive_of(first), *local, first);
       while (end < rays.size && nearest.id[end] == nearest.id[first] && sample.flat)
         ++end;  // neighbouring rays often meet the same primitive
-      note(first, end, sample.material, sample.foliage,
-           [&] { return placement_of(at).rotation * (sample.normal * local->direction_length); });
-      const Backscatter law = sample.material->backscatter(rays.wavelength);
+      note(first, end, sample, [&] { return placement_of(at).rotation * (sample.normal * local->direction_length); });
+      const Backscatter law = sample.material->backscatter(rays.wavelength, sample.texture);
       const ObjectId object = parts_[at].object;
       const std::uint16_t classification = sample.material->classification;
       const simd::Doubles one = simd::Doubles{} + 1.0, least = simd::Doubles{} + sample.min_cosine;

@@ -25,63 +25,9 @@
 #include <pulsecast/scene/detail/bundle_budget.hpp>
 #include <pulsecast/scene/detail/corner_table.hpp>
 #include <pulsecast/scene/mask.hpp>
+#include <pulsecast/scene/mesh_data.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-/// Vertices and triangles of a mesh. Texture coordinates are kept in single precision; they may jump at an edge, as in OBJ files.
-struct MeshData {
-  std::vector<Vec3> vertices{};                           ///< positions [m]
-  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< vertex indices of the corners
-  std::vector<std::uint32_t> materials{};                 ///< one per triangle: index into the part's table; empty if all are 0
-  std::vector<std::array<Vec2, 3>> texture{};             ///< one per triangle: texture coordinates of its corners; empty without
-  std::vector<Mask> masks{};                              ///< by material: its holes, by texture coordinates; those beyond have none
-
-  /// @throws SettingError for no triangles, an index out of range, a vertex that is not finite, or columns of different lengths
-  void validate() const {
-    if (triangles.empty()) throw_setting_error("MeshData::triangles", 0, "", "at least one in number");
-    validate_counts(vertices.size(), triangles.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      for (int k = 0; k < 3; ++k)
-        if (!std::isfinite(vertices[i][k])) reject_at("MeshData::vertices", vertices[i][k], "m", "finite; see vertex ", i, "");
-    }
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      for (const std::uint32_t corner : triangles[i])
-        if (corner >= vertices.size())
-          reject_at("MeshData::triangles", corner, "", "less than the number of vertices, ", vertices.size(),
-                    "; see triangle " + std::to_string(i));
-    }
-    if (!materials.empty() && materials.size() != triangles.size())
-      reject_at("MeshData::materials", static_cast<double>(materials.size()), "", "as many as triangles, ", triangles.size(), ", or none");
-    validate_texture();
-  }
-
-  /// Refuses counts beyond 32 bits, before memory is allocated; `ClosestHits::none` is no triangle. @throws SettingError
-  static void validate_counts(std::size_t vertices, std::size_t triangles) {
-    require_within("MeshData::vertices (number)", static_cast<double>(vertices), 0, 4294967295.0, "");
-    require_within("MeshData::triangles (number)", static_cast<double>(triangles), 1, 4294967294.0, "");
-  }
-
-  /// Triangle i [m].
-  [[nodiscard]] Triangle triangle(std::size_t i) const noexcept {
-    const auto& corners = triangles[i];
-    return {vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]};
-  }
-
- private:
-  void validate_texture() const {
-    if (!texture.empty() && texture.size() != triangles.size())
-      reject_at("MeshData::texture", static_cast<double>(texture.size()), "", "as many as triangles, ", triangles.size(), ", or none");
-    for (std::size_t i = 0; i < texture.size(); ++i)
-      for (const Vec2& at : texture[i])
-        for (int k = 0; k < 2; ++k)
-          if (!(std::fabs(at[k]) <= 1e30)) reject_at("MeshData::texture", at[k], "", "from -1e+30 to 1e+30; see triangle ", i, "");
-  }
-
-  [[noreturn]] static void reject_at(const char* field, double value, const char* unit, std::string allowed, std::size_t number,
-                                     const std::string& rest) {
-    throw_setting_error(field, value, unit, allowed.append(std::to_string(number)).append(rest));
-  }
-};
 
 class DeformingMesh;
 
@@ -95,7 +41,8 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 
 /// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are never hit. Triangles
 /// keep their numbers but are stored in the index's order, in blocks with vertices of their own for 16-bit indices. A triangle takes 10
-/// bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials.
+/// bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials. A ray that comes to a hole of a mask
+/// goes on; meshes without masks pay nothing for them.
 /// `Bvh<float>` is Pareto-optimal in docs/tradeoff.md: it finds the hits of `Bvh<double>` in less time and memory, since triangles are
 /// tested in double.
 template <Accelerator Index = Bvh<float>>
@@ -113,12 +60,13 @@ class TriangleMesh {
     else if (material_count_ > 1)
       few_materials_ = numbers<std::uint8_t>(data.materials);
     if (!data.texture.empty()) texture_ = texture_of(data);
+    masks_ = MaskTable(data.masks);
   }
 
   explicit TriangleMesh(DeserializeTag tag) requires std::constructible_from<Index, DeserializeTag> : index_(tag) {}
   template <class Archive>
   void archive(Archive& a) {
-    a(corners_, first_corners_, triangles_, places_, few_materials_, materials_, texture_, index_, material_count_);
+    a(corners_, first_corners_, triangles_, places_, few_materials_, materials_, texture_, masks_, index_, material_count_);
   }
   [[nodiscard]] bool is_consistent() const {
     if (triangles_.size() != index_.order().size() || first_corners_.size() != detail::chunk_count(triangles_.size())) return false;
@@ -133,6 +81,7 @@ class TriangleMesh {
              std::all_of(materials.begin(), materials.end(), [&](std::uint32_t m) { return m < material_count_; });
     };
     if (!texture_.empty() && texture_.size() != size()) return false;
+    if (!masks_.empty() && texture_.empty()) return false;
     if (material_count_ == 0 || !in_table(few_materials_) || !in_table(materials_)) return false;
     static_assert(detail::SelfCheckingAcceleratorCheck<Index>::passed);
     if constexpr (SelfCheckingAccelerator<Index>) return index_.is_consistent(size());
@@ -148,7 +97,7 @@ class TriangleMesh {
   [[nodiscard]] const Box& bounds() const noexcept { return index_.bounds(); }
   [[nodiscard]] std::size_t memory() const noexcept {
     return index_.memory() + corners_.memory() + first_corners_.memory() + triangles_.memory() + places_.memory() +
-           few_materials_.memory() + materials_.memory() + texture_.memory();
+           few_materials_.memory() + materials_.memory() + texture_.memory() + masks_.memory();
   }
 
   /// For a bundle or a `BundleOfOne`, which an accelerator that takes bundles only gets as one.
@@ -189,12 +138,21 @@ class TriangleMesh {
   template <class Rays>
   [[nodiscard]] Surface surface(PrimitiveIndex i, const Rays&, std::size_t) const noexcept {
     const Vec3 normal = triangle(i).normal();
-    const std::uint32_t material = !few_materials_.empty() ? few_materials_[i] : !materials_.empty() ? materials_[i] : 0;
-    return {finite(normal) ? normal : Vec3{}, material};
+    return {finite(normal) ? normal : Vec3{}, material(i)};
   }
 
  private:
   friend class DeformingMesh;
+
+  [[nodiscard]] std::uint32_t material(PrimitiveIndex i) const noexcept {
+    return !few_materials_.empty() ? few_materials_[i] : !materials_.empty() ? materials_[i] : 0;
+  }
+  /// True if ray j meets a triangle outside the holes of its material.
+  template <class Rays>
+  [[nodiscard]] bool solid(PrimitiveIndex i, const Rays& rays, std::size_t j) const noexcept {
+    const std::uint32_t masked = material(i);
+    return !masks_.covers(masked) || masks_.solid(masked, *texture(i, triangle(i).weights(rays.origin, rays.direction(j))));
+  }
 
   using Corners = std::array<std::uint16_t, 3>;  ///< vertex indices of a triangle in its block
   static_assert(3 * detail::chunk_size < 0xFFFF);
@@ -232,9 +190,17 @@ class TriangleMesh {
       const Vec3* const corners = mesh.block_corners(place);
       const Corners* const triangles = mesh.triangles_.data() + place;
       const auto triangle_of = [&](std::size_t n) noexcept { return TriangleMesh::triangle_in(corners, triangles[n]); };
-      if (!alone()) return intersect(primitives, triangle_of, rays, nearest);
+      if (!mesh.masks_.empty()) [[unlikely]]
+        return test(primitives, triangle_of, [this](std::size_t j, PrimitiveIndex i) noexcept { return mesh.solid(i, rays, j); });
+      test(primitives, triangle_of, SolidEverywhere{});
+    }
+    // always inlined, as without masks it is all there is
+    template <class TriangleOf, class Solid>
+    [[gnu::always_inline]] void test(std::span<const PrimitiveIndex> primitives, const TriangleOf& triangle_of,
+                                     const Solid& solid) const noexcept {
+      if (!alone()) return intersect(primitives, triangle_of, rays, nearest, solid);
       const TrianglePacket packet(primitives.size(), triangle_of);
-      if (line.may_meet(packet)) intersect(packet, primitives, rays, nearest);
+      if (line.may_meet(packet)) intersect(packet, primitives, rays, nearest, solid);
     }
     /// Tests up to `room` primitives of one block at a time.
     [[gnu::noinline]] void in_pieces(std::span<const PrimitiveIndex> primitives, std::size_t room) const noexcept {
@@ -341,6 +307,7 @@ class TriangleMesh {
   SharedArray<std::uint8_t> few_materials_;   ///< material of each triangle; empty if all are 0, or if an index exceeds 255
   SharedArray<std::uint32_t> materials_;      ///< material of each triangle if an index exceeds 255, else empty
   SharedArray<TextureCorners> texture_;       ///< texture coordinates of each triangle's corners; empty without
+  MaskTable masks_;                           ///< holes by material
   Index index_;
   std::size_t material_count_ = 1;
 };

@@ -23,6 +23,7 @@
 #include <pulsecast/io/leaf_angles.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
+#include <pulsecast/io/picture.hpp>
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/io/vox.hpp>
@@ -102,6 +103,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjS
   return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
     const io::UpAxis up_axis = source.y_up ? io::UpAxis::y : io::UpAxis::z;
     io::ObjModel model = io::read_obj(file, {.up = up_axis, .spectra = options_.spectra}, options_.threads);
+    io::add_pictures(model.mesh, model.materials, model.pictures, model.warnings);
     warn(model.warnings);
     if (model.mesh.triangles.empty()) {
       warn({file.string() + ": is left out"});

@@ -137,10 +137,10 @@ class PathTracer {
       const auto hit = map_.closest_hit(ray);
       if (!hit) continue;
       const auto at = map_.surface(*hit, ray);
-      surfaces[j] = {at.material, at.normal};
+      surfaces[j] = {at.material, at.normal, at.foliage, at.texture};
       hits[j] = {.range = hit->range, .object = at.object, .classification = at.classification};
       if (at.normal != Vec3{}) hits[j].cos_incidence = std::min(1.0, std::fabs(dot(at.normal, ray.direction)));
-      hits[j].backscatter = at.material->backscatter(hits[j].cos_incidence, p.rays.wavelength);
+      hits[j].backscatter = at.material->backscatter(p.rays.wavelength, at.texture)(hits[j].cos_incidence);
     }
   }
 
@@ -149,7 +149,7 @@ class PathTracer {
   }
 
   double scattered_share(const HitSurface& surface, const Hit& hit) const noexcept {
-    return surface.material->scattered_share(light_.emitter.laser.wavelength, hit.cos_incidence);
+    return surface.material->scattered_share(light_.emitter.laser.wavelength, hit.cos_incidence, surface.texture);
   }
 
   /// Passes on the rays of a level that met smooth surfaces: those on one plane together.

@@ -60,7 +60,7 @@ class RefractedPaths {
     Face face{towards(at.normal, path.ray.direction)};
     if (at.normal != Vec3{}) face.cosine = std::min(1.0, -dot(face.normal, path.ray.direction));
     face.relative = path.behind(*at.material).index / path.medium().index;
-    face.scattered = at.material->scattered_share(light_.emitter.laser.wavelength, face.cosine,
+    face.scattered = at.material->scattered_share(light_.emitter.laser.wavelength, face.cosine, at.texture,
                                                   at.material->smooth.passes_light() ? face.relative : at.material->facets().index);
     return face;
   }
@@ -69,7 +69,7 @@ class RefractedPaths {
   template <class Point>
   void end_at(const LightPath& path, const Point& at, const Face& face) noexcept {
     Hit hit{.range = path.optical, .cos_incidence = face.cosine, .object = at.object, .classification = at.classification};
-    hit.backscatter = at.material->backscatter(hit.cos_incidence, light_.emitter.laser.wavelength);
+    hit.backscatter = at.material->backscatter(light_.emitter.laser.wavelength, at.texture)(hit.cos_incidence);
     const double spread = path.spread(), wide = light_.budget.power_through(path.both, hit.backscatter, spread, path.air);
     const double power = wide * caught(light_.budget, *at.material, spread);
     LightWay way{path.kind, path.sent};

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <pulsecast/base/random.hpp>
@@ -43,7 +44,7 @@ class ScatteredPaths {
         if (!hits[j].met() || !light_.gate.contains(hits[j].range) || !(share > 0) || surfaces[j].material->smooth.passes_light()) continue;
         const Vec3 direction = p.rays.direction(j);
         follow({p.rays.origin + hits[j].range * direction, direction, normal_at(surfaces[j], direction, draw(next_, 0)),
-                surfaces[j].material, p.sent[j] / (share * paths), hits[j].range},
+                surfaces[j].material, p.sent[j] / (share * paths), hits[j].range, surfaces[j].texture},
                next_);
       }
     }
@@ -57,6 +58,7 @@ class ScatteredPaths {
     const Material* material = nullptr;
     double share = 0;  ///< share of the pulse's energy
     double way = 0;    ///< length of the way so far [m]
+    std::optional<Vec2> texture{};
   };
 
   /// Random numbers of a surface on a path: uniform in [0, 1).
@@ -85,7 +87,7 @@ class ScatteredPaths {
       Ray ray{.origin = at.place, .direction = even ? evenly(u, v) : by_cosine(at.normal, u, v), .near = apart, .tick = light_.pulse.tick};
       name(ray);
       const double per_draw = even ? 4 : 1 / dot(ray.direction, at.normal);  // inverse density of the directions
-      at.share *= per_draw * at.material->scattered(-at.direction, ray.direction, at.normal, wavelength);
+      at.share *= per_draw * at.material->scattered(-at.direction, ray.direction, at.normal, wavelength, at.texture);
       if (!(at.share > 0)) return;
       const auto hit = map_.closest_hit(ray);
       if (!hit) return;
@@ -95,7 +97,8 @@ class ScatteredPaths {
             normal_at(next, ray.direction, any),
             next.material,
             at.share * left(ray.origin, ray.direction, hit->range),
-            at.way + hit->range};
+            at.way + hit->range,
+            next.texture};
       if (at.material->smooth.passes_light()) return;
       return_from(at, next.object, next.classification);
     }
@@ -114,7 +117,7 @@ class ScatteredPaths {
     const double distance = length(back);
     const Vec3 direction = back / distance;
     if (!(-dot(axis, direction) >= std::cos(settings_.field_of_view / 2))) return;
-    const double scattered = at.material->scattered(-at.direction, direction, at.normal, light_.emitter.laser.wavelength);
+    const double scattered = at.material->scattered(-at.direction, direction, at.normal, light_.emitter.laser.wavelength, at.texture);
     if (!(scattered > 0)) return;
     Ray ray{.origin = at.place, .direction = direction, .near = apart, .tick = light_.pulse.tick};
     name(ray);

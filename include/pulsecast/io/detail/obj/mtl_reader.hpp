@@ -44,6 +44,7 @@ class MtlReader : private StatementBuffer {
     MaterialLibrary library;
     for (const tinyobj::material_t& m : found)
       if (!m.name.empty()) library.materials.emplace(m.name, material(m, library.warnings));
+    library.pictures = std::move(pictures_);
     return library;
   }
 
@@ -53,6 +54,8 @@ class MtlReader : private StatementBuffer {
     static const std::string exponent = "\nNs " + pulsecast::detail::to_text(Material{}.specular_exponent) + "\n";
     const bool is_first = !std::exchange(begun_, true);
     if (keyword() == "newmtl") current_ = rest();
+    if (keyword() == "newmtl") repeated_ = lines_.contains({current_, "newmtl"});
+    note_picture();
     lines_.try_emplace({current_, std::string(keyword())}, line());
     if (keyword() == "newmtl") {
       require(!rest().empty(), "the name of a material");
@@ -87,6 +90,24 @@ class MtlReader : private StatementBuffer {
       ready += statement();
     // a single number is the value of red, green and blue. Source: MTL specification, Wavefront 1995.
     if (is_colour && is_one) ready.append(" ").append(given[0]).append(" ").append(given[0]);
+  }
+
+  /// Notes the picture that a statement names, for the first material of a name.
+  void note_picture() {
+    const bool colour = keyword() == "map_Kd", opacity = keyword() == "map_d", reflectance = keyword() == "pulsecast_reflectanceMap";
+    if ((!colour && !opacity && !reflectance) || repeated_) return;
+    std::string_view named = rest();
+    MaterialPictures& all = pictures_[current_];
+    if (reflectance && named.starts_with("pattern ")) {
+      all.reflectance_pattern = true;
+      named = text::trimmed(named.substr(8));
+    }
+    std::string name;
+    tinyobj::texture_option_t unused;
+    tinyobj::ParseTextureNameAndOption(&name, &unused, std::string(named).c_str());
+    require(!name.empty(), "the name of a picture");
+    std::replace(name.begin(), name.end(), '\\', '/');
+    (colour ? all.colour : opacity ? all.opacity : all.reflectance).file = std::filesystem::path(path()).parent_path() / name;
   }
 
   [[nodiscard]] Material material(const tinyobj::material_t& m, std::vector<std::string>& warnings) const {
@@ -182,9 +203,10 @@ class MtlReader : private StatementBuffer {
   [[nodiscard]] static std::string nanometres(double metres) { return pulsecast::detail::to_text(std::round(metres * 1e12) / 1e3); }
 
   const SpectralLibrary& spectra_;
-  bool begun_ = false;
+  bool begun_ = false, repeated_ = false;                             // `repeated_`: the current material is not the first of its name
   std::string current_ = "default";                                   // name of the current material
   std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // of each material and keyword
+  std::map<std::string, MaterialPictures, std::less<>> pictures_;     // by material
 };
 
 }  // namespace detail

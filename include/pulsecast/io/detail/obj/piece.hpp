@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -55,7 +56,9 @@ class ObjPiece : private StatementBuffer {
     std::string text;
   };
 
-  ObjPiece(const std::string& path, std::string text, std::size_t lines_before) : StatementBuffer(path, std::move(text), lines_before) {}
+  /// `textured` to read texture coordinates.
+  ObjPiece(const std::string& path, std::string text, std::size_t lines_before, bool textured = false)
+      : StatementBuffer(path, std::move(text), lines_before), textured_(textured) {}
 
   /// Reads up to the first error.
   void read() {
@@ -77,14 +80,16 @@ class ObjPiece : private StatementBuffer {
     }
   }
 
-  /// Triangulates the faces up to the first error. `all` has the vertices of this piece, z up, and the `before` vertices of earlier ones.
-  void triangulate(std::span<const Vec3> all, std::size_t before) {
+  /// Triangulates the faces up to the first error. `all` has the vertices of this piece, z up, and the `before` vertices of earlier ones;
+  /// `all_places` and `places_before` are those of texture coordinates.
+  void triangulate(std::span<const Vec3> all, std::size_t before, std::span<const Vec2> all_places = {}, std::size_t places_before = 0) {
     triangles.reserve(faces_.size());
     triangle_uses.reserve(faces_.size());
-    std::span<const int> rest = corners_;
+    std::size_t first = 0;
     for (const Face& face : faces_) {
-      const auto given = rest.first(face.corners);
-      rest = rest.subspan(face.corners);
+      const auto given = std::span(corners_).subspan(first, face.corners);
+      if (textured_) take_places(face, std::span(place_corners_).subspan(first, face.corners), all_places, places_before);
+      first += face.corners;
       numbers_.clear();
       positions_.clear();
       const auto count = static_cast<std::int64_t>(before + face.above);
@@ -99,10 +104,13 @@ class ObjPiece : private StatementBuffer {
   }
 
   std::vector<Vec3> vertices;                   ///< as in the file
+  std::vector<Vec2> places;                     ///< texture coordinates
   std::vector<Use> uses = std::vector<Use>(1);  ///< the first is in force from earlier pieces
   std::vector<Libraries> libraries;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_uses;  ///< index into `uses` for each triangle
+  std::vector<std::array<Vec2, 3>> texture;  ///< texture coordinates of each triangle, if they are read
+  std::size_t without_place = 0;             ///< corners without texture coordinates, if they are read
   std::vector<Note> crossings;               ///< polygons whose outline crosses itself
   std::optional<Note> first_unknown, first_flat;
   std::size_t unknown = 0, flat = 0;
@@ -114,6 +122,7 @@ class ObjPiece : private StatementBuffer {
   struct Face {
     std::size_t line;
     std::uint32_t corners, above, use;  ///< number of corners; vertices of this piece above it; index into `uses`
+    std::uint32_t places_above;         ///< texture coordinates of this piece above it
   };
 
   /// Statements of the OBJ specification (Wavefront 1995) that do not concern surfaces.
@@ -133,6 +142,9 @@ class ObjPiece : private StatementBuffer {
       require(given.size() >= 3 && given.size() <= max_polygon_corners, "a face of 3 to 4096 corners");
     } else if (keyword() == "usemtl" && given.empty()) {
       uses.push_back({"default", line(), std::nullopt});
+      return;
+    } else if (keyword() == "vt" && textured_) {
+      place(given);
       return;
     } else if (keyword() != "usemtl") {
       if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader would read only the first of several
@@ -168,10 +180,35 @@ class ObjPiece : private StatementBuffer {
     vertices.push_back(p);
   }
 
+  void place(const std::vector<std::string_view>& given) {
+    Vec2 at{};
+    require(!given.empty() && given.size() <= 3, "one to three texture coordinates");
+    for (std::size_t k = 0; k < std::min(given.size(), std::size_t{2}); ++k) {
+      const auto number = number_in<double>(given[k]);
+      require(number && std::fabs(*number) <= max_number, "finite texture coordinates, none beyond 1e12");
+      at[static_cast<int>(k)] = *number;
+    }
+    places.push_back(at);
+  }
+
   void face(std::span<const tinyobj::index_t> given) {
     for (const tinyobj::index_t& corner : given) corners_.push_back(corner.vertex_index);
+    if (textured_)
+      for (const tinyobj::index_t& corner : given) place_corners_.push_back(corner.texcoord_index);
     faces_.push_back({line(), static_cast<std::uint32_t>(given.size()), static_cast<std::uint32_t>(vertices.size()),
-                      static_cast<std::uint32_t>(uses.size() - 1)});
+                      static_cast<std::uint32_t>(uses.size() - 1), static_cast<std::uint32_t>(places.size())});
+  }
+
+  /// Takes the texture coordinates of a face; (0, 0) where it has none, or refers to missing ones.
+  void take_places(const Face& face, std::span<const int> given, std::span<const Vec2> all, std::size_t before) {
+    face_places_.clear();
+    const auto count = static_cast<std::int64_t>(before + face.places_above);
+    for (const int corner : given) {
+      const std::int64_t index = corner < 0 ? count + corner : std::int64_t{corner} - 1;
+      const bool known = index >= 0 && index < count;
+      face_places_.push_back(known ? all[static_cast<std::size_t>(index)] : Vec2{});
+      without_place += known ? 0 : 1;
+    }
   }
 
   /// Records that a face refers to a missing vertex.
@@ -204,11 +241,15 @@ class ObjPiece : private StatementBuffer {
     }
     triangles.push_back({numbers_[a], numbers_[b], numbers_[c]});
     triangle_uses.push_back(face.use);
+    if (textured_) texture.push_back({face_places_[a], face_places_[b], face_places_[c]});
   }
 
+  bool textured_;
   std::vector<Face> faces_;
   std::vector<int> corners_;            ///< of all faces, as numbered in the file
+  std::vector<int> place_corners_;      ///< texture coordinates of those, if they are read
   std::vector<std::uint32_t> numbers_;  ///< vertices of the current face
+  std::vector<Vec2> face_places_;       ///< texture coordinates of the current face
   std::vector<Vec3> positions_;         ///< positions of those
 };
 

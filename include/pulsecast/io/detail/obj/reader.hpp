@@ -41,6 +41,9 @@ class ObjReader {
 
   [[nodiscard]] ObjModel read() {
     while (read_window()) continue;
+    if (without_place_ > 0)
+      model_.warnings.push_back(file_.path() + ": " + std::to_string(without_place_) +
+                                " corners have no texture coordinates: 0, 0 is assumed");
     MeshData& mesh = model_.mesh;
     if (open_line_ > 0) warn(open_line_, "the last line has no line end: the file may be truncated");
     if (unknown_ > 0)
@@ -63,7 +66,7 @@ class ObjReader {
       std::string text = file_.next(piece_bytes_);
       if (text.empty()) break;
       const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-      pieces.push_back(std::make_unique<ObjPiece>(file_.path(), std::move(text), lines_));
+      pieces.push_back(std::make_unique<ObjPiece>(file_.path(), std::move(text), lines_, settings_.texture));
       lines_ += lines;
     }
     for_each_index(pieces.size(), workers_, [&](std::size_t i) {
@@ -72,13 +75,15 @@ class ObjReader {
       for (Vec3& p : pieces[i]->vertices) p = {p.x, -p.z, p.y};
     });
     std::vector<Vec3>& vertices = model_.mesh.vertices;
-    std::vector<std::size_t> before;  // number of vertices before each piece
+    std::vector<std::size_t> before, places_before;  // number of vertices, and of texture coordinates, before each piece
     for (const auto& piece : pieces) {
       before.push_back(vertices.size());
+      places_before.push_back(places_.size());
       vertices.insert(vertices.end(), piece->vertices.begin(), piece->vertices.end());
+      places_.insert(places_.end(), piece->places.begin(), piece->places.end());
       if (vertices.size() > std::numeric_limits<int>::max()) file_.fail("has too many vertices: expected fewer than 2^31");
     }
-    for_each_index(pieces.size(), workers_, [&](std::size_t i) { pieces[i]->triangulate(vertices, before[i]); });
+    for_each_index(pieces.size(), workers_, [&](std::size_t i) { pieces[i]->triangulate(vertices, before[i], places_, places_before[i]); });
     for (const auto& piece : pieces) add(*piece);
     return !pieces.empty();
   }
@@ -99,6 +104,8 @@ class ObjReader {
     piece.uses.front() = use_;
     MeshData& mesh = model_.mesh;
     mesh.triangles.insert(mesh.triangles.end(), piece.triangles.begin(), piece.triangles.end());
+    mesh.texture.insert(mesh.texture.end(), piece.texture.begin(), piece.texture.end());
+    without_place_ += piece.without_place;
     for (const std::uint32_t use : piece.triangle_uses) mesh.materials.push_back(material(piece.uses[use]));
     use_ = piece.uses.back();
     if (unknown_ == 0) first_unknown_ = piece.first_unknown;
@@ -138,6 +145,8 @@ class ObjReader {
     }
     if (!read_.insert(path.string()).second) return;
     MaterialLibrary more = read_mtl(path, settings_.spectra);
+    for (const auto& [material, pictures] : more.pictures)
+      if (!library_.contains(material)) pictures_[material] = pictures;
     library_.merge(more.materials);  // of one name, the first counts
     model_.warnings.insert(model_.warnings.end(), more.warnings.begin(), more.warnings.end());
   }
@@ -148,6 +157,10 @@ class ObjReader {
       if (found == library_.end() && use.line > 0)
         warn(use.line, "no MTL file describes the material '" + use.name + "': a reflectance of 0.5 is assumed");
       model_.materials.push_back(found == library_.end() ? undescribed(use.name) : found->second);
+      const auto pictures = pictures_.find(use.name);
+      if (pictures == pictures_.end()) continue;
+      model_.pictures.resize(model_.materials.size());
+      model_.pictures.back() = pictures->second;
     }
   }
 
@@ -161,20 +174,26 @@ class ObjReader {
   Workers workers_;
   std::size_t piece_bytes_, lines_ = 0;  // `lines_`: number of lines read
   ObjModel model_;
+  std::vector<Vec2> places_;  // texture coordinates, if they are read
   std::map<std::string, Material, std::less<>> library_;
-  std::set<std::string> read_;                    // paths of MTL files
-  Use use_;                                       // in force
-  std::vector<Use> uses_;                         // in use by triangles
-  std::map<std::string, std::uint32_t> numbers_;  // indices into `uses_` by name
+  std::map<std::string, MaterialPictures, std::less<>> pictures_;  // of materials of the library
+  std::set<std::string> read_;                                     // paths of MTL files
+  Use use_;                                                        // in force
+  std::vector<Use> uses_;                                          // in use by triangles
+  std::map<std::string, std::uint32_t> numbers_;                   // indices into `uses_` by name
   std::optional<Note> first_unknown_, first_flat_;
   std::size_t unknown_ = 0, flat_ = 0;
-  std::size_t open_line_ = 0;
+  std::size_t open_line_ = 0, without_place_ = 0;
 };
 
 }  // namespace detail
 
 PULSECAST_INLINE ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings, const Workers& workers) {
-  return detail::ObjReader(path, settings, workers).read();
+  ObjModel model = detail::ObjReader(path, settings, workers).read();
+  if (model.pictures.empty() || settings.texture) return model;
+  ObjSettings textured = settings;  // few files have pictures, so that the others are not read for them
+  textured.texture = true;
+  return detail::ObjReader(path, textured, workers).read();
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_MATERIAL_PICTURES_HPP
+#define PULSECAST_IO_MATERIAL_PICTURES_HPP
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace PULSECAST_NAMESPACE::io {
+
+/// Picture that a material names: a file, or bytes inside the file of the mesh.
+struct PictureSource {
+  std::filesystem::path file{};                              ///< path of the file; of embedded bytes, a name for messages; empty: none
+  std::shared_ptr<const std::vector<std::byte>> embedded{};  ///< content of the file if it is embedded
+
+  [[nodiscard]] bool empty() const noexcept { return file.empty() && !embedded; }
+};
+
+/// Pictures of a material, not read yet: see `add_pictures`.
+struct MaterialPictures {
+  PictureSource colour{};            ///< colour of points
+  PictureSource opacity{};           ///< outline: by its opacity, or by its grey or red without one
+  PictureSource reflectance{};       ///< reflectance
+  bool reflectance_pattern = false;  ///< true if that is a pattern, as of `ReflectanceMap::pattern`
+  bool outlined_by_colour = false;   ///< true if the opacity of the colour picture is the outline; without effect if it has none
+  double cutoff = 0.5;               ///< opacity from which a surface is solid, in [0, 1]
+
+  [[nodiscard]] bool empty() const noexcept { return colour.empty() && opacity.empty() && reflectance.empty(); }
+};
+
+}  // namespace PULSECAST_NAMESPACE::io
+
+#endif
