@@ -3,16 +3,21 @@
 #include <pulsecast/io/ply.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
 
 #include <pulsecast/io/scan_splitter.hpp>
+#include <pulsecast/scene/scene.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
 
 #include "support/random_pulses.hpp"
 #include "support/refused_field.hpp"
@@ -56,6 +61,33 @@ std::string records(const std::string& file) {
 std::string header(const std::string& count, const std::string& properties) {
   return "ply\nformat binary_little_endian 1.0\ncomment written by pulsecast" + std::string(20 - count.size(), ' ') + "\nelement vertex " +
          count + "\n" + properties + "end_header\n";
+}
+
+TEST_CASE("colours and attributes are properties, colours by the names and in the type that readers know") {
+  std::vector<Scene<TriangleMesh<>>::Part> trees(1);
+  trees[0].object = 70'000;
+  trees[0].attributes = {{"age", 80.5}, {"leaf", 1}};
+  const ObjectAttributes attributes{std::span(std::as_const(trees))};
+  const auto colour = [](const EchoBatch&, const Shot&, const Echo& echo) {
+    return PointColour{static_cast<std::uint16_t>(257 * echo.number), 65535, 0};
+  };
+  const PlySettings settings{.layout = PointLayout::packed(layouts::xyz_float())
+                                           .with(layouts::colours())
+                                           .with(layouts::attributes(attributes.names(), FieldType::float32)),
+                             .points = {.colours = colour, .attributes = attributes}};
+  const std::string file = ply(TwoEchoes().batch(), settings);
+  const std::string head = header("2",
+                                  "property float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+                                  "property uchar blue\nproperty float age\nproperty float leaf\n");
+  REQUIRE(file.size() == head.size() + 2 * 23);
+  CHECK(file.substr(0, head.size()) == head);
+  const auto float_at = [&](std::size_t offset) {
+    float number = 0;
+    std::memcpy(&number, file.data() + head.size() + offset, sizeof number);
+    return number;
+  };
+  CHECK((file.substr(head.size() + 12, 3) == std::string("\1\xFF\0", 3) && float_at(15) == 80.5F && float_at(19) == 1));
+  CHECK((file.substr(head.size() + 35, 3) == std::string("\2\xFF\0", 3) && std::isnan(float_at(38)) && std::isnan(float_at(42))));
 }
 
 TEST_CASE("a header names the properties and the number of vertices, and the records follow it") {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/io/point_layout.hpp>
 
+#include <string>
+#include <vector>
+
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/error.hpp>
@@ -21,7 +24,8 @@ TEST_CASE("the layouts of drivers have the sizes and offsets of what they publis
   CHECK(layouts::autoware().fields[6].offset == 16);
   CHECK(layouts::map().fields[3].offset == 24);
   for (const PointLayout& layout : {layouts::velodyne(), layouts::hesai(), layouts::livox(), layouts::ouster(), layouts::autoware(),
-                                    layouts::map(), layouts::velodyne().with(layouts::labels())})
+                                    layouts::map(), layouts::velodyne().with(layouts::labels()), layouts::map().with(layouts::colours()),
+                                    layouts::map().with(layouts::deep_colours()), layouts::xyzi().with(layouts::packed_colour())})
     layout.validate();
 }
 
@@ -30,6 +34,16 @@ TEST_CASE("fields behind a padded layout begin behind its padding") {
   CHECK(layout.fields[9].offset == 48);
   CHECK(layout.has(PointQuantity::normal_x, PointQuantity::velocity_z));
   CHECK_FALSE(layouts::ouster().has(PointQuantity::normal_x, PointQuantity::velocity_z));
+}
+
+TEST_CASE("attributes have a field each, by their names") {
+  const std::vector<std::string> names{"age", "species"};
+  const PointLayout layout = layouts::xyzi().with(layouts::attributes(names, FieldType::uint16)).with(layouts::colours());
+  REQUIRE(layout.fields.size() == 9);
+  CHECK((layout.fields[4].name == "age" && layout.fields[5].name == "species" && layout.fields[6].name == "red"));
+  CHECK((layout.fields[4].offset == 16 && layout.fields[5].offset == 18 && layout.fields[6].offset == 20 && layout.size == 23));
+  CHECK((layout.has(PointQuantity::attribute, PointQuantity::attribute) && layout.has(PointQuantity::red, PointQuantity::blue)));
+  CHECK_FALSE(layout.has(PointQuantity::near_infrared, PointQuantity::packed_rgb_bits));
 }
 
 TEST_CASE("fields that overlap or leave the record are refused") {

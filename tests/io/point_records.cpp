@@ -7,7 +7,10 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -44,7 +47,7 @@ struct TwoEchoes {
 /// Layout of one field a quantity, of one type.
 PointLayout every_quantity(FieldType type) {
   std::vector<PointField> fields;
-  for (int q = 0; q <= static_cast<int>(PointQuantity::kind); ++q)
+  for (int q = 0; q <= static_cast<int>(PointQuantity::packed_rgb_bits); ++q)
     fields.push_back({std::to_string(q), type, static_cast<PointQuantity>(q)});
   return PointLayout::packed(fields);
 }
@@ -80,6 +83,7 @@ TEST_CASE("each quantity of a point is in its field") {
   CHECK((at(0, return_number) == 1 && at(1, return_number) == 2 && at(1, returns) == 2));
   CHECK((at(0, classification) == 6 && at(0, object) == 9 && at(1, kind) == static_cast<double>(ReflectionKind::glass)));
   CHECK((at(0, normal_x) == 0 && at(0, velocity_z) == 0 && std::isinf(at(0, part)) && std::isinf(at(0, material))));
+  CHECK((std::isnan(at(0, red)) && std::isnan(at(0, near_infrared)) && std::isnan(at(0, packed_rgb)) && at(0, packed_rgb_bits) == 0));
 }
 
 TEST_CASE("integers are rounded and limited to the range of their type, and NaN is 0") {
@@ -174,6 +178,99 @@ TEST_CASE("part, material, normal and velocity of a moving board are in the sens
   CHECK((at(part) == 1 && at(material) == 1 && at(object) == 4));
   CHECK(length(Vec3{at(normal_x), at(normal_y), at(normal_z)} - towards) < 1e-12);
   CHECK(length(Vec3{at(velocity_x), at(velocity_y), at(velocity_z)} - along) < 1e-12);
+}
+
+/// Colours by return number: of the first echo, none of the others.
+std::optional<PointColour> of_first(const EchoBatch&, const Shot&, const Echo& echo) {
+  if (echo.number != 1) return std::nullopt;
+  return PointColour{.red = 65535, .green = 257 * 128, .blue = 257 * 3 + 128, .near_infrared = 13107};
+}
+
+TEST_CASE("colours of points are shares of white, numbers of 8 and 16 bits, or packed in one, and unknown ones are NaN or 0") {
+  using enum PointQuantity;
+  const TwoEchoes two;
+  PointBuffer shares(every_quantity(FieldType::float64), {.colours = of_first});
+  shares(two.batch());
+  const auto share = [&](PointQuantity quantity) { return number(shares, 0, quantity); };
+  CHECK((share(red) == 1 && share(green) == 128 / 255.0 && share(blue) == 899 / 65535.0 && share(near_infrared) == 0.2));
+  for (const PointQuantity quantity : {red, green, blue, near_infrared, packed_rgb}) CHECK(std::isnan(number(shares, 1, quantity)));
+
+  const auto check = [&](const std::vector<PointField>& fields, const std::vector<double>& expected) {
+    PointBuffer points(PointLayout::packed(fields), {.colours = of_first});
+    points(two.batch());
+    REQUIRE(fields.size() == expected.size());
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      CAPTURE(fields[k].name);
+      CHECK(points.number(0, points.layout().fields[k]) == expected[k]);
+      CHECK(points.number(1, points.layout().fields[k]) == 0);
+    }
+  };
+  check(layouts::colours(), {255, 128, 3});  // 899 / 257 is 3.498
+  check(layouts::deep_colours(), {65535, 32896, 899, 13107});
+  check({{"rgba", FieldType::uint32, packed_rgb}}, {0xFF8003});
+  PointBuffer packed(PointLayout::packed(layouts::packed_colour()), {.colours = of_first});
+  packed(two.batch());
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, packed.records().data(), sizeof bits);
+  CHECK(bits == 0xFF8003);
+}
+
+TEST_CASE("every colour of 8 and of 16 bits is written exactly") {
+  TwoEchoes two;
+  std::uint16_t level = 0;
+  const PointSettings settings{.colours = [&](const EchoBatch&, const Shot&, const Echo&) { return PointColour{.red = level}; }};
+  PointBuffer deep(PointLayout::packed(layouts::deep_colours()), settings), bytes(PointLayout::packed(layouts::colours()), settings);
+  std::size_t wrong = 0;
+  for (std::uint32_t n = 0; n < 65536; ++n) {
+    level = static_cast<std::uint16_t>(n);
+    deep.begin_scan({});
+    deep(two.batch());
+    wrong += deep.number(0, deep.layout().fields[0]) != n;
+    bytes.begin_scan({});
+    bytes(two.batch());
+    wrong += bytes.number(0, bytes.layout().fields[0]) != std::round(n / 257.0);
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("colours are asked for only if the layout has them") {
+  int asked = 0;
+  const PointSettings settings{.colours = [&](const EchoBatch&, const Shot&, const Echo&) {
+    ++asked;
+    return std::optional(PointColour{});
+  }};
+  const TwoEchoes two;
+  PointBuffer without(layouts::velodyne().with(layouts::labels()), settings);
+  without(two.batch());
+  CHECK(asked == 0);
+  PointBuffer with(layouts::velodyne().with(layouts::packed_colour()), settings);
+  with(two.batch());
+  CHECK(asked == 2);
+}
+
+TEST_CASE("attributes of a point's object are in the fields of their names, in any type, and NaN or 0 where it has none") {
+  std::vector<Scene<TriangleMesh<>>::Part> trees(1);
+  trees[0].object = 9;
+  trees[0].attributes = {{"age", 80.25}, {"species", 3}};
+  const ObjectAttributes attributes{std::span(std::as_const(trees))};
+  const TwoEchoes two;
+  PointBuffer points(PointLayout::packed({{"species", FieldType::uint8, PointQuantity::attribute},
+                                          {"object", FieldType::uint32, PointQuantity::object},
+                                          {"age", FieldType::float64, PointQuantity::attribute, 12}}),
+                     {.attributes = attributes});
+  points(two.batch());
+  const auto at = [&](std::size_t point, std::size_t field) { return points.number(point, points.layout().fields[field]); };
+  CHECK((at(0, 0) == 3 && at(0, 1) == 9 && at(0, 2) == 963));
+  CHECK((at(1, 0) == 0 && at(1, 1) == 0 && std::isnan(at(1, 2))));
+
+  PointBuffer all(layouts::map().with(layouts::attributes(attributes.names())), {.attributes = attributes});
+  all(two.batch());
+  CHECK((all.number(0, all.layout().fields[10]) == 80.25 && all.number(0, all.layout().fields[11]) == 3));
+}
+
+TEST_CASE("a field of an attribute that no object has is refused") {
+  const std::vector<std::string> names{"height"};
+  CHECK_THROWS_WITH_AS(PointBuffer(layouts::map().with(layouts::attributes(names))), doctest::Contains("'height'"), SettingError);
 }
 
 TEST_CASE("a buffer that has grown keeps its memory for further scans") {

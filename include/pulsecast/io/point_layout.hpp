@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,7 +69,14 @@ enum class PointQuantity : std::uint8_t {
   object,           ///< object of the part: the instance
   part,             ///< index of the part in its scene; the type's largest number if unknown
   material,         ///< index of the material in the part's table; the type's largest number if unknown
-  kind              ///< as `Echo::kind`
+  kind,             ///< as `Echo::kind`
+  red,              ///< as `PointColour::red`, from 0 to 1; NaN if unknown, as the other colours
+  green,            ///< as above
+  blue,             ///< as above
+  near_infrared,    ///< as `PointColour::near_infrared`, from 0 to 1; NaN if unknown
+  packed_rgb,       ///< 65536 red + 256 green + blue, of 8 bits each; NaN if unknown
+  packed_rgb_bits,  ///< float32 of the bits of `packed_rgb`, as PCL and ROS have it; 0 if unknown
+  attribute         ///< attribute of the object, by the field's name, as of `PointSettings::attributes`; NaN if it has none
 };
 
 /// Field of a point record: a quantity times a scale.
@@ -212,6 +220,34 @@ namespace layouts {
           {"velocity_x", FieldType::float32, PointQuantity::velocity_x},
           {"velocity_y", FieldType::float32, PointQuantity::velocity_y},
           {"velocity_z", FieldType::float32, PointQuantity::velocity_z}};
+}
+
+/// Red, green and blue of a point in 8 bits each, by the names that readers of PLY know, to go behind another layout's fields. Colours need
+/// `PointSettings::colours`. 0 if unknown, which is black.
+[[nodiscard]] inline std::vector<PointField> colours() {
+  return {{"red", FieldType::uint8, PointQuantity::red, 255},
+          {"green", FieldType::uint8, PointQuantity::green, 255},
+          {"blue", FieldType::uint8, PointQuantity::blue, 255}};
+}
+
+/// Red, green, blue and near infrared of a point in 16 bits each, as LAS has them.
+[[nodiscard]] inline std::vector<PointField> deep_colours() {
+  return {{"red", FieldType::uint16, PointQuantity::red, 65535},
+          {"green", FieldType::uint16, PointQuantity::green, 65535},
+          {"blue", FieldType::uint16, PointQuantity::blue, 65535},
+          {"near_infrared", FieldType::uint16, PointQuantity::near_infrared, 65535}};
+}
+
+/// Red, green and blue of a point in one field, as PCL and the viewers of ROS have them.
+/// Source: PCL, PointXYZRGB: the bits of 0x00RRGGBB as a float.
+[[nodiscard]] inline std::vector<PointField> packed_colour() { return {{"rgb", FieldType::float32, PointQuantity::packed_rgb_bits}}; }
+
+/// Attributes of a point's object, a field each, to go behind another layout's fields: of `ObjectAttributes::names`. NaN where an object
+/// has none, and 0 in integers.
+[[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names, FieldType type = FieldType::float64) {
+  std::vector<PointField> fields;
+  for (const std::string& name : names) fields.push_back({name, type, PointQuantity::attribute});
+  return fields;
 }
 
 }  // namespace layouts

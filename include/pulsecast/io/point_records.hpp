@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -22,6 +24,8 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/point_layout.hpp>
+#include <pulsecast/scene/object_attributes.hpp>
+#include <pulsecast/scene/point_colour.hpp>
 #include <pulsecast/scene/surface_query.hpp>
 
 /// Records of points in a layout, which point files and messages consist of.
@@ -50,6 +54,8 @@ struct PointSettings {
   double start_time = 0;                                 ///< clock time at tick 0 [s]
   Laser laser{};                                         ///< laser, for `PointQuantity::photons`
   SurfaceQuery surfaces{};                               ///< surfaces of echoes, as of `surfaces_of`; empty: they are unknown
+  PointColours colours{};                                ///< colours of echoes, as of `colours_of`; empty: they are unknown
+  ObjectAttributes attributes{};                         ///< attributes of objects, for `PointQuantity::attribute`
 
   void validate() const {
     require_finite("PointSettings::origin (length)", length(origin), "m");
@@ -73,7 +79,7 @@ struct PointSettings {
 namespace detail {
 
 /// Quantities of a point, by `PointQuantity`.
-using PointValues = std::array<double, static_cast<std::size_t>(PointQuantity::kind) + 1>;
+using PointValues = std::array<double, static_cast<std::size_t>(PointQuantity::attribute) + 1>;
 
 /// Writes a number as `Number`: integers are rounded, and limited to their range; NaN becomes 0.
 template <class Number>
@@ -124,13 +130,15 @@ decltype(auto) visit_field_type(FieldType type, const Visitor& visit) {
 /// Encoder of echoes as point records, in pulse order. Allocates nothing but what the vector of the records needs.
 class PointEncoder {
  public:
-  /// @throws SettingError for a layout or settings out of range
+  /// @throws SettingError for a layout or settings out of range, or a field of an attribute that no object has
   explicit PointEncoder(PointLayout layout, PointSettings settings = {})
       : layout_(validated(std::move(layout))), settings_(validated(std::move(settings))) {
     using enum PointQuantity;
     angles_ = layout_.has(azimuth, elevation);
     places_ = angles_ || layout_.has(x, z);
     surfaces_ = layout_.has(normal_x, velocity_z) || layout_.has(part, material);
+    colours_ = layout_.has(red, packed_rgb_bits);
+    find_attributes();
     begin_scan({});
   }
 
@@ -162,7 +170,9 @@ class PointEncoder {
         set_echo(echo, values);
         if (places_) set_place(frame.point(point_of(shot, echo)), values);
         if (surfaces_) set_surface(settings_.surfaces ? settings_.surfaces(batch, shot, echo) : std::nullopt, frame, values);
+        if (colours_) set_colour(settings_.colours ? settings_.colours(batch, shot, echo) : std::nullopt, values);
         store(values, records.data() + at);
+        if (!attributes_.empty()) store_attributes(settings_.attributes.of(echo.object), records.data() + at);
         at += layout_.size;
       }
     }
@@ -226,6 +236,21 @@ class PointEncoder {
     value(values, material) = surface ? surface->material_index : unknown;
   }
 
+  static void set_colour(const std::optional<PointColour>& colour, detail::PointValues& values) noexcept {
+    using enum PointQuantity;
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    const auto share = [&](std::uint16_t PointColour::*channel) { return colour ? (*colour).*channel / 65535.0 : unknown; };
+    const auto byte = [&](double of_white) { return static_cast<std::uint32_t>(std::lround(255 * of_white)); };
+    const double r = share(&PointColour::red), g = share(&PointColour::green), b = share(&PointColour::blue);
+    const std::uint32_t packed = colour ? byte(r) << 16 | byte(g) << 8 | byte(b) : 0;
+    value(values, red) = r;
+    value(values, green) = g;
+    value(values, blue) = b;
+    value(values, near_infrared) = share(&PointColour::near_infrared);
+    value(values, packed_rgb) = colour ? packed : unknown;
+    value(values, packed_rgb_bits) = std::bit_cast<float>(packed);
+  }
+
   static void set_vector(PointQuantity first, const Vec3& v, detail::PointValues& values) noexcept {
     double* const to = &value(values, first);
     to[0] = v.x;
@@ -240,9 +265,31 @@ class PointEncoder {
     }
   }
 
+  /// Finds the attributes of the layout's fields by their names.
+  void find_attributes() {
+    const std::vector<std::string>& names = settings_.attributes.names();
+    for (std::size_t k = 0; k < layout_.fields.size(); ++k) {
+      const PointField& field = layout_.fields[k];
+      if (field.quantity != PointQuantity::attribute) continue;
+      const auto found = std::find(names.begin(), names.end(), field.name);
+      if (found == names.end())
+        throw SettingError("PointSettings::attributes (number of names '" + field.name + "')", 0, "", "1: the layout has such a field");
+      attributes_.emplace_back(k, static_cast<std::size_t>(found - names.begin()));
+    }
+  }
+
+  void store_attributes(std::span<const double> of_object, std::byte* record) const noexcept {
+    for (const auto& [index, attribute] : attributes_) {
+      const PointField& field = layout_.fields[index];
+      const double number = of_object[attribute] * field.scale;
+      detail::visit_field_type(field.type, [&]<class Number>() { detail::store_number<Number>(number, record + field.offset); });
+    }
+  }
+
   PointLayout layout_;
   PointSettings settings_;
-  bool places_ = false, angles_ = false, surfaces_ = false;  // true if the layout holds such quantities
+  bool places_ = false, angles_ = false, surfaces_ = false, colours_ = false;  // true if the layout holds such quantities
+  std::vector<std::pair<std::size_t, std::size_t>> attributes_;                // index of a field, and of its attribute
   Tick start_{};
   Pose<frame::World, frame::Instrument> frame_{};  // of a scan without distortion
 };
