@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -22,7 +23,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
 /// Regular files of a folder and of those below it, for reading.
 class FolderSystem : public Assimp::IOSystem {
  public:
-  /// Calls `opened` with the size of each file [byte] before it is opened.
+  /// Calls `opened` with the size of each file [byte] before it is opened first.
   FolderSystem(std::filesystem::path folder, bool anywhere, std::function<void(std::uint64_t)> opened)
       : folder_(std::move(folder)), anywhere_(anywhere), opened_(std::move(opened)) {}
 
@@ -35,7 +36,7 @@ class FolderSystem : public Assimp::IOSystem {
     if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos || !is_open_to(file)) return nullptr;
     std::error_code ignored;
     const auto size = std::filesystem::file_size(file, ignored);
-    if (!ignored && opened_) opened_(size);
+    if (!ignored && opened_ && known_.insert(file).second) opened_(size);
     return files_.Open(file, mode);
   }
   void Close(Assimp::IOStream* stream) override { files_.Close(stream); }
@@ -53,6 +54,7 @@ class FolderSystem : public Assimp::IOSystem {
   std::filesystem::path folder_;
   bool anywhere_;
   std::function<void(std::uint64_t)> opened_;
+  std::set<std::string> known_;  ///< files that were opened
   mutable std::string refused_;
 };
 
