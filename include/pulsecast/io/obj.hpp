@@ -3,7 +3,6 @@
 #ifndef PULSECAST_IO_OBJ_HPP
 #define PULSECAST_IO_OBJ_HPP
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,16 +10,12 @@
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
 #include <pulsecast/io/detail/spectra.hpp>
+#include <pulsecast/io/detail/up_axis.hpp>
+#include <pulsecast/io/material_pictures.hpp>
 #include <pulsecast/scene/material.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
-
-/// Vertical axis of a file.
-enum class UpAxis : std::uint8_t {
-  z,  ///< coordinates unchanged
-  y,  ///< (x, y, z) becomes (x, -z, y)
-};
 
 /// Settings for OBJ files.
 struct ObjSettings {

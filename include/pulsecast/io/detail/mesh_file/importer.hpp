@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_MESH_FILE_IMPORTER_HPP
+#define PULSECAST_IO_DETAIL_MESH_FILE_IMPORTER_HPP
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <assimp/commonMetaData.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/Importer.hpp>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/parallel.hpp>
+#include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/mesh_file/folder_system.hpp>
+#include <pulsecast/io/detail/mesh_file/raw_material.hpp>
+#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
+#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/mesh_file.hpp>
+
+/// Import of files by assimp.
+namespace PULSECAST_NAMESPACE::io::detail {
+
+class MeshImport {
+ public:
+  MeshImport(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers,
+             std::function<void(std::uint64_t)> opened = {})
+      : path_(path), settings_(settings), workers_(workers), data_(std::make_shared<Data>()) {
+    system_ = new FolderSystem(std::filesystem::absolute(path).parent_path(), settings.files_elsewhere, std::move(opened));
+    data_->importer.SetIOHandler(system_);  // which takes it
+  }
+
+  /// @throws FileError
+  [[nodiscard]] RawScene read() {
+    Assimp::Importer& importer = data_->importer;
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, settings_.up.has_value());
+    const aiScene* const found = importer.ReadFile(std::filesystem::absolute(path_).string(), aiProcess_Triangulate);
+    if (!found || !found->mRootNode) fail(importer.GetErrorString());
+    if (!system_->refused().empty()) fail_elsewhere();
+    format(*found);
+    for (unsigned i = 0; i < found->mNumMaterials; ++i) {
+      materials_.push_back(MaterialImport(*found, *found->mMaterials[i], gltf_).read());
+      scene_.materials.push_back(materials_.back().material);
+      if (materials_.back().moved_picture)
+        warn("material '" + materials_.back().material.name + "' transforms its texture coordinates, which has no effect");
+    }
+    for (unsigned i = 0; i < found->mNumTextures; ++i)
+      scene_.embedded.push_back(std::make_shared<const std::vector<std::byte>>(embedded_picture(*found->mTextures[i])));
+    for (unsigned i = 0; i < found->mNumMeshes; ++i) mesh(*found->mMeshes[i]);
+    nodes(*found->mRootNode);
+    if (left_out_ > 0) warn("points and lines are left out: " + std::to_string(left_out_) + " in all");
+    scene_.owner = data_;
+    return std::move(scene_);
+  }
+
+ private:
+  struct Data {
+    Assimp::Importer importer;
+    std::vector<SharedBuffer<Corners3>> triangles;
+  };
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    if (!system_->refused().empty()) fail_elsewhere();
+    throw FileError(path_.string(), "", "is no mesh file that can be read: " + problem);
+  }
+  [[noreturn]] void fail_elsewhere() const {
+    throw FileError(path_.string(), "", "refers to '" + system_->refused() + "': expected files in its own folder");
+  }
+  void warn(const std::string& what) { scene_.warnings.push_back(path_.string() + ": " + what); }
+
+  /// Unit and axes of the file, as far as assimp does not apply them. Those of DAE files it does, to y up and metres.
+  void format(const aiScene& found) {
+    aiString name;
+    if (found.mMetaData) found.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, name);
+    const std::string_view word = name.C_Str();
+    gltf_ = word.starts_with("glTF");
+    const bool fbx = word.find("FBX") != word.npos, dae = word.starts_with("Collada");
+    const Matrix3 y_up(Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0));
+    if (gltf_ || fbx || dae) scene_.upright = y_up;
+    if (dae && settings_.unit) scene_.applied_unit = dae_unit();
+    if (!fbx) return;
+    const auto whole = [&](const char* key, int otherwise) {
+      std::int32_t value = otherwise;
+      found.mMetaData->Get(key, value);
+      return value;
+    };
+    const int up = whole("UpAxis", 1), right = whole("CoordAxis", 0);
+    if (up != right && up >= 0 && up < 3 && right >= 0 && right < 3) {
+      Vec3 upward{}, rightward{};
+      upward[up] = whole("UpAxisSign", 1) < 0 ? -1 : 1;
+      rightward[right] = whole("CoordAxisSign", 1) < 0 ? -1 : 1;
+      const Vec3 forward = cross(upward, rightward);
+      for (int i = 0; i < 3; ++i) scene_.upright[i] = {rightward[i], forward[i], upward[i]};
+    }
+    float centimetres = 1;
+    double precise = 1;
+    if (found.mMetaData->Get("UnitScaleFactor", precise))
+      scene_.unit = precise / 100;
+    else if (found.mMetaData->Get("UnitScaleFactor", centimetres))
+      scene_.unit = static_cast<double>(centimetres) / 100;
+    else
+      scene_.unit = 0.01;
+  }
+
+  /// Unit of a DAE file, which assimp applies [m].
+  [[nodiscard]] double dae_unit() const {
+    InputFile file(path_, "a DAE file");
+    const std::string_view text = file.take(InputFile::block_size);
+    const std::size_t unit = text.find("<unit"), end = text.find('>', unit);
+    if (unit == text.npos || end == text.npos) return 1;
+    std::string_view words = text.substr(unit, end - unit);
+    const std::size_t at = words.find("meter=\"");
+    if (at == words.npos) return 1;
+    words.remove_prefix(at + 7);
+    return text::number_in<double>(words.substr(0, words.find('"'))).value_or(1);
+  }
+
+  void mesh(const aiMesh& from) {
+    static_assert(sizeof(aiVector3D) == sizeof(Float3) && sizeof(ai_real) == sizeof(float));
+    RawMesh made{.name = from.mName.C_Str(), .material = from.mMaterialIndex};
+    if (from.mMaterialIndex >= materials_.size()) fail("a mesh has a material that is not there");
+    made.vertices = {reinterpret_cast<const Float3*>(from.mVertices), from.mVertices ? from.mNumVertices : 0};
+    SharedBuffer<Corners3> triangles(from.mNumFaces);
+    std::atomic<bool> mixed = false;
+    constexpr std::size_t chunk = std::size_t{1} << 16;
+    for_each_index((from.mNumFaces + chunk - 1) / chunk, workers_, [&](std::size_t c) {
+      const std::size_t end = std::min<std::size_t>((c + 1) * chunk, from.mNumFaces);
+      for (std::size_t i = c * chunk; i < end; ++i) {
+        if (from.mFaces[i].mNumIndices == 3)
+          copy(from.mFaces[i], from.mNumVertices, triangles[i]);
+        else
+          mixed = true;
+      }
+    });
+    std::size_t count = from.mNumFaces;
+    if (mixed) {
+      count = 0;
+      for (std::size_t i = 0; i < from.mNumFaces; ++i)
+        if (from.mFaces[i].mNumIndices == 3) triangles[count++] = triangles[i];
+      left_out_ += from.mNumFaces - count;
+    }
+    if (from.mNumFaces == 0) left_out_ += from.mNumVertices;
+    made.triangles = {triangles.data(), count};
+    data_->triangles.push_back(std::move(triangles));
+    const ImportedMaterial& material = materials_[from.mMaterialIndex];
+    const bool pictured = settings_.texture || !settings_.materials.empty() || !material.material.colour.name.empty() ||
+                          !material.material.opacity.name.empty();
+    const unsigned channel =
+        material.channel < AI_MAX_NUMBER_OF_TEXTURECOORDS && from.HasTextureCoords(material.channel) ? material.channel : 0;
+    if (pictured && from.HasTextureCoords(channel))
+      made.texture = {reinterpret_cast<const Float3*>(from.mTextureCoords[channel]), from.mNumVertices};
+    scene_.meshes.push_back(std::move(made));
+  }
+
+  void copy(const aiFace& face, std::uint32_t vertices, Corners3& to) const {
+    for (unsigned k = 0; k < 3; ++k) {
+      to[k] = face.mIndices[k];
+      if (to[k] >= vertices)
+        fail("a triangle has the vertex " + std::to_string(to[k]) + ", expected less than the number of vertices, " +
+             std::to_string(vertices));
+    }
+  }
+
+  /// Nodes with meshes, each before those below it.
+  void nodes(const aiNode& root) {
+    struct Step {
+      const aiNode* node;
+      Affine above;
+      std::string name;  // of the nodes above
+      unsigned depth;
+    };
+    std::vector<Step> open{{&root, {}, {}, 0}};
+    while (!open.empty()) {
+      const Step step = std::move(open.back());
+      open.pop_back();
+      const aiNode& node = *step.node;
+      if (step.depth > 1000) fail("its nodes are nested more than 1000 deep");
+      const aiMatrix4x4& m = node.mTransformation;
+      RawNode made{.place = step.above * Affine{Matrix3(Vec3(m.a1, m.b1, m.c1), Vec3(m.a2, m.b2, m.c2), Vec3(m.a3, m.b3, m.c3)),
+                                                Vec3(m.a4, m.b4, m.c4)}};
+      if (step.depth > 0) made.name = step.name.empty() ? node.mName.C_Str() : step.name + "/" + node.mName.C_Str();
+      for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+        if (node.mMeshes[i] >= scene_.meshes.size()) fail("a node has a mesh that is not there");
+        made.meshes.push_back(node.mMeshes[i]);
+      }
+      for (unsigned i = node.mNumChildren; i-- > 0;) open.push_back({node.mChildren[i], made.place, made.name, step.depth + 1});
+      if (!made.meshes.empty()) scene_.nodes.push_back(std::move(made));
+    }
+  }
+
+  const std::filesystem::path& path_;
+  const MeshFileSettings& settings_;
+  Workers workers_;
+  std::shared_ptr<Data> data_;
+  FolderSystem* system_;  // of the importer
+  RawScene scene_;
+  std::vector<ImportedMaterial> materials_;
+  bool gltf_ = false;
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace PULSECAST_NAMESPACE::io::detail
+
+#endif

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_MESH_FILE_MESH_MAKER_HPP
+#define PULSECAST_IO_DETAIL_MESH_FILE_MESH_MAKER_HPP
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/parallel.hpp>
+#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
+
+/// Meshes of the library from those of a file.
+namespace PULSECAST_NAMESPACE::io::detail {
+
+/// Joins the meshes of a node to one, with a material each.
+class MeshMaker {
+ public:
+  MeshMaker(std::string path, const RawScene& scene, const Workers& workers) : path_(std::move(path)), scene_(scene), workers_(workers) {}
+
+  /// Mesh of numbers of meshes, each with its place in a table of materials, mapped by `shape`. Empty if no triangle has an area.
+  [[nodiscard]] MeshData operator()(std::span<const std::uint32_t> meshes, std::span<const std::uint32_t> materials, const Matrix3& shape) {
+    MeshData made;
+    std::size_t vertices = 0, triangles = 0;
+    bool textured = false, several = false;
+    for (std::size_t k = 0; k < meshes.size(); ++k) {
+      const RawMesh& from = scene_.meshes[meshes[k]];
+      vertices += from.vertices.size();
+      triangles += from.triangles.size();
+      textured = textured || !from.texture.empty();
+      several = several || materials[k] != 0;
+    }
+    if (triangles == 0) return made;
+    MeshData::validate_counts(vertices, triangles);
+    made.vertices.resize(vertices);
+    made.triangles.resize(triangles);
+    if (several) made.materials.resize(triangles);
+    if (textured) made.texture.resize(triangles);
+    std::size_t vertex = 0, triangle = 0;
+    for (std::size_t k = 0; k < meshes.size(); ++k) {
+      const RawMesh& from = scene_.meshes[meshes[k]];
+      place(from, shape, made.vertices.data() + vertex);
+      index(from, static_cast<std::uint32_t>(vertex), made.triangles.data() + triangle, mirrors(shape));
+      if (several) std::fill_n(made.materials.begin() + static_cast<std::ptrdiff_t>(triangle), from.triangles.size(), materials[k]);
+      if (!from.texture.empty()) texture(from, made.texture.data() + triangle, mirrors(shape));
+      vertex += from.vertices.size();
+      triangle += from.triangles.size();
+    }
+    drop_flat(made);
+    return made;
+  }
+
+  /// Number of triangles left out so far, as they have no area.
+  [[nodiscard]] std::uint64_t flat() const noexcept { return flat_; }
+
+ private:
+  static constexpr std::size_t chunk = std::size_t{1} << 16;
+
+  template <class Work>
+  void each(std::size_t count, const Work& work) const {
+    for_each_index((count + chunk - 1) / chunk, workers_, [&](std::size_t c) {
+      const std::size_t end = std::min((c + 1) * chunk, count);
+      for (std::size_t i = c * chunk; i < end; ++i) work(i);
+    });
+  }
+
+  [[nodiscard]] static bool mirrors(const Matrix3& shape) noexcept { return dot(shape[0], cross(shape[1], shape[2])) < 0; }
+
+  void place(const RawMesh& from, const Matrix3& shape, Vec3* to) const {
+    const bool moved = shape != Matrix3(1);
+    each(from.vertices.size(), [&](std::size_t i) {
+      const Float3& v = from.vertices[i];
+      const Vec3 at(static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
+      if (!(max_norm(at) <= 1e12) || !finite(at))
+        throw FileError(path_, "",
+                        "mesh '" + from.name + "': vertex " + std::to_string(i) + " is not finite, or beyond 1e12: expected a place");
+      to[i] = moved ? shape * at : at;
+    });
+  }
+
+  void index(const RawMesh& from, std::uint32_t first, Corners3* to, bool turned) const {
+    each(from.triangles.size(), [&](std::size_t i) {
+      const Corners3& c = from.triangles[i];
+      to[i] = {c[0] + first, c[turned ? 2 : 1] + first, c[turned ? 1 : 2] + first};
+    });
+  }
+
+  void texture(const RawMesh& from, std::array<Vec2, 3>* to, bool turned) const {
+    const auto at = [&](std::uint32_t vertex) {
+      const Float3& t = from.texture[vertex];
+      const Vec2 place(static_cast<double>(t.x), static_cast<double>(t.y));
+      if (!(std::fabs(place.x) <= 1e30 && std::fabs(place.y) <= 1e30))
+        throw FileError(path_, "", "mesh '" + from.name + "': a texture coordinate of vertex " + std::to_string(vertex) + " is not finite");
+      return place;
+    };
+    each(from.triangles.size(), [&](std::size_t i) {
+      const Corners3& c = from.triangles[i];
+      to[i] = {at(c[0]), at(c[turned ? 2 : 1]), at(c[turned ? 1 : 2])};
+    });
+  }
+
+  void drop_flat(MeshData& mesh) {
+    std::atomic<bool> any = false;
+    const auto is_flat = [&](std::size_t i) {
+      const Triangle t = mesh.triangle(i);
+      return cross(t.b - t.a, t.c - t.a) == Vec3{};
+    };
+    each(mesh.triangles.size(), [&](std::size_t i) {
+      if (is_flat(i)) any = true;
+    });
+    if (!any) return;
+    std::size_t kept = 0;
+    const std::size_t all = mesh.triangles.size();
+    for (std::size_t i = 0; i < all; ++i) {
+      if (is_flat(i)) continue;
+      if (!mesh.materials.empty()) mesh.materials[kept] = mesh.materials[i];
+      if (!mesh.texture.empty()) mesh.texture[kept] = mesh.texture[i];
+      mesh.triangles[kept++] = mesh.triangles[i];
+    }
+    mesh.triangles.resize(kept);
+    if (!mesh.materials.empty()) mesh.materials.resize(kept);
+    if (!mesh.texture.empty()) mesh.texture.resize(kept);
+    flat_ += all - kept;
+  }
+
+  std::string path_;
+  const RawScene& scene_;
+  Workers workers_;
+  std::uint64_t flat_ = 0;
+};
+
+}  // namespace PULSECAST_NAMESPACE::io::detail
+
+#endif

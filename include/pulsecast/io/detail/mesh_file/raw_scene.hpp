@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_MESH_FILE_RAW_SCENE_HPP
+#define PULSECAST_IO_DETAIL_MESH_FILE_RAW_SCENE_HPP
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <pulsecast/base/vector.hpp>
+
+/// Content of a mesh file as an importer has it, before materials and units: what a child process hands over.
+namespace PULSECAST_NAMESPACE::io::detail {
+
+/// Vector of single precision.
+struct Float3 {
+  float x = 0, y = 0, z = 0;
+};
+using Corners3 = std::array<std::uint32_t, 3>;  ///< vertex indices of a triangle
+
+/// Linear map and shift.
+struct Affine {
+  Matrix3 linear{1};  ///< columns are the images of the axes
+  Vec3 shift{};       ///< image of the origin
+
+  [[nodiscard]] Affine operator*(const Affine& inner) const { return {linear * inner.linear, linear * inner.shift + shift}; }
+};
+
+/// Mesh of one material.
+struct RawMesh {
+  std::string name{};
+  std::uint32_t material = 0;
+  std::span<const Float3> vertices{};
+  std::span<const Corners3> triangles{};  ///< indices are below the number of vertices
+  std::span<const Float3> texture{};      ///< of the vertices, upward; empty without
+};
+
+/// Node that shows meshes.
+struct RawNode {
+  std::string name{};                   ///< names of nodes joined by `/`
+  Affine place{};                       ///< to the frame of the root
+  std::vector<std::uint32_t> meshes{};  ///< numbers of meshes
+};
+
+/// Picture that a material names.
+struct RawPicture {
+  std::string name{};          ///< path as in the file, or name of an embedded one; empty: none
+  std::int64_t embedded = -1;  ///< number of an embedded picture; negative: none
+};
+
+/// Numbers of a material that are plain.
+struct RawOptics {
+  std::array<float, 3> colour{1, 1, 1};    ///< base colour, or diffuse colour
+  std::array<float, 3> specular{0, 0, 0};  ///< specular colour of Phong's law
+  float shininess = -1;                    ///< its exponent; negative: not told
+  float opacity = 1;                       ///< of the base colour
+  float transmission = 0;                  ///< share of the light let through
+  float index = 0;                         ///< refractive index; 0: not told
+  float metallic = 0, roughness = -1;      ///< of glTF; negative: not told
+  float cutoff = 0.5F;                     ///< opacity from which pixels are solid
+  bool outlined = false;                   ///< true: holes by the opacity of the colour picture
+  bool linear = false;                     ///< true: the colour is a linear share of light
+  bool has_diffuse = false;                ///< true: the file has a colour
+};
+
+struct RawMaterial {
+  std::string name{};
+  RawOptics optics{};
+  RawPicture colour{}, opacity{};  ///< pictures
+};
+
+struct RawScene {
+  std::vector<RawMesh> meshes{};
+  std::vector<RawNode> nodes{};
+  std::vector<RawMaterial> materials{};
+  std::vector<std::shared_ptr<const std::vector<std::byte>>> embedded{};  ///< pictures, as files
+  std::vector<std::string> warnings{};
+  double unit = 1;                      ///< size of a unit by the file [m]
+  double applied_unit = 1;              ///< unit by the file that the importer applies already [m]
+  Matrix3 upright{1};                   ///< to z up, by the file
+  std::shared_ptr<const void> owner{};  ///< of what the meshes refer to
+};
+
+}  // namespace PULSECAST_NAMESPACE::io::detail
+
+#endif
