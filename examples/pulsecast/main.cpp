@@ -214,6 +214,7 @@ class Session {
         simulation.begin(r);
         tell_notes(simulation);
       }
+      take_columns(simulation);
       all.add(play(simulation, folder, std::exchange(again, std::nullopt).has_value()));
       const fs::path done = folder;
       if (!all.complete) break;
@@ -225,6 +226,13 @@ class Session {
       if (ranks_.first()) RunLog::remove(done);
     }
     return all;
+  }
+
+  /// Takes what writers ask a scene for.
+  void take_columns(const Simulation& simulation) {
+    if (options_.colours) options_.point_colours = simulation.colours();
+    options_.attributes = std::make_shared<const ObjectAttributes>(simulation.attributes());
+    if (options_.attributes->empty()) options_.attributes.reset();
   }
 
   void tell_summary(const RunSummary& all, const std::string& traffic) const {
@@ -281,6 +289,7 @@ class Session {
         << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width << options_.waveform_noise
         << options_.fixed_incidence << options_.library_physics << options_.light_paths << options_.split_by_channel
         << options_.platform_noise << options_.leg_noise;
+    if (options_.colours) out << " colours=" << options_.near_infrared;
     return out.str();
   }
 

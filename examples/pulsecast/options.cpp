@@ -186,6 +186,8 @@ class CommandLine {
     app_.add_flag(both("fixedIncidenceAngle"), o_.fixed_incidence, "Scatter as at normal incidence");
     app_.add_flag(both("libraryPhysics"), o_.library_physics, "Physics of the library in place of that of HELIOS++");
     app_.add_flag(both("lightPaths"), o_.light_paths, "Light goes on from mirrors, glass and water");
+    app_.add_flag("--colours", o_.colours, "Points in LAS with the colours of their surfaces");
+    app_.add_flag(both("nearInfrared"), o_.near_infrared, "Colours with near infrared, by the spectra of surfaces");
     app_.add_flag(both("splitByChannel"), o_.split_by_channel, "Write a file of points for each channel");
     app_.add_flag(both("disablePlatformNoise"), no_platform_noise_, "No platform noise");
     app_.add_flag(both("disableLegNoise"), no_leg_noise_, "No random offset of the start of legs");
@@ -287,6 +289,9 @@ class CommandLine {
       o_.notes.push_back("--format " + o_.format + " has precedence over " + (las_ ? "--lasOutput" : "--zipOutput"));
     if (o_.las_1_0 && o_.format == "laz") return "--las10 and --format laz: only LAS 1.4 is compressed";
     if (o_.las_1_0 && zip_ && o_.format == "las") o_.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
+    o_.colours = o_.colours || o_.near_infrared;
+    if (o_.colours && (!o_.format.starts_with("la") || o_.las_1_0)) return "--colours need LAS 1.4: expected --format las or laz";
+    if (o_.colours && o_.format == "las" && o_.write_waveform) return "--colours and --writeWaveform: LAS has no points of both here";
     if (!epsg_.empty()) o_.epsg = text::number_in<std::uint16_t>(epsg_);
     if (!seed_.empty() && seed_ != "AUTO") o_.seed = text::number_in<std::uint64_t>(seed_);
     o_.platform_noise = !no_platform_noise_;

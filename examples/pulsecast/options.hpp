@@ -4,9 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <pulsecast/scene/object_attributes.hpp>
+#include <pulsecast/scene/point_colour.hpp>
 
 /// Folder of built scenes that are kept between runs, and its use.
 struct SceneStore {
@@ -41,13 +45,17 @@ struct Options {
   bool las_1_0 = false;                 ///< write LAS 1.0
   bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false,
        library_physics = false, light_paths = false;
-  bool page = false, live = false;  ///< page of the points: as a file, and live
+  bool colours = false, near_infrared = false;  ///< columns of points in LAS
+  bool page = false, live = false;              ///< page of the points: as a file, and live
   std::size_t page_points = 1'000'000;
   bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false, verbose = false;
   bool strict = false;  ///< treat notes about the survey and its files as errors
   SceneStore store{};
   ForecastOptions forecast{};
   std::vector<std::string> notes{};  ///< accepted options without effect
+
+  pulsecast::PointColours point_colours{};                          ///< of the scene, once it is loaded; empty unless `colours`
+  std::shared_ptr<const pulsecast::ObjectAttributes> attributes{};  ///< of the scene, once it is loaded; null without
 };
 
 /// Reads a command line. Empty if nothing remains to be done; then `status` is set.

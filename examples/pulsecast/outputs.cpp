@@ -57,6 +57,9 @@ io::LasSettings las_settings(const Options& o, double start_time) {
   io::LasSettings settings{.scale = o.las_scale, .gps_time = io::GpsTime::week, .start_time = start_time};
   settings.epsg = o.epsg.value_or(0);
   settings.light_kinds = o.light_paths;
+  settings.colours = o.point_colours;
+  settings.near_infrared = o.near_infrared && o.point_colours;
+  settings.attributes = o.attributes;
   if (o.format == "las" && o.las_1_0) settings.format = io::LasFormat::las_1_0;
   settings.waveforms = o.format == "las" && o.write_waveform && !o.las_1_0;
   return settings;

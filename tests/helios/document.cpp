@@ -254,6 +254,7 @@ TEST_CASE("settings that a program makes are written and read") {
   survey.scene.id = "c";
   survey.scene.parts = {{.id = "a b", .source = ObjSource{.files = {data / "materials.obj", data / "surveys" / "points.xyz"}}}};
   survey.scene.parts[0].swaps = {{.source = VoxelSource{.files = {data / "crown.vox"}, .leaf_angles = data / "spherical.txt"}}};
+  survey.scene.parts[0].attributes = {{"age", 80}, {"leaf or wood", 0.1}};
   survey.scene.light = {{.passages = 3, .least_share = 0.01, .orders = 2, .paths = 20, .field_of_view = radians(20)}};
   survey.scene.media = {{.absorption = 0.5},
                         {.absorption = 0.1, .scattering = 0.2, .backscatter = 0.01, .min = Vec3{0, 1, 2}, .max = Vec3{3, 4, 5}}};

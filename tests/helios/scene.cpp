@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/scene/object_attributes.hpp>
+
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -31,7 +33,7 @@ struct Files {
            "v -1 1 2\nf 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
   }
   [[nodiscard]] PartSettings part(const char* file, std::string id = {}) const {
-    return {std::move(id), ObjSource{{folder / file}}, {}, 1, {}, {}, {}};
+    return {std::move(id), ObjSource{{folder / file}}, {}, 1, {}, {}, {}, {}};
   }
 };
 
@@ -94,6 +96,32 @@ TEST_CASE("parts that points do not tell apart are told of") {
   SceneBuilder unlike(scene_of({files.part("plane.obj", "3"), files.part("cube.obj", "4")}), {});
   CHECK(unlike.parts().size() == 2);
   CHECK(unlike.warnings().empty());
+}
+
+TEST_CASE("named numbers of a part go to its points by their object") {
+  const Files files;
+  PartSettings cube = files.part("cube.obj", "17");
+  cube.attributes = {{"age", 80}, {"species", 3}};
+  const auto simulation = [&](std::vector<PartSettings> parts) { return SceneBuilder(scene_of(std::move(parts)), {}).parts(); };
+  const std::vector<SurveyPart> parts = simulation({files.part("plane.obj", "0"), cube});
+  const ObjectAttributes all{std::span<const SurveyPart>(parts)};
+  CHECK(all.names() == std::vector<std::string>{"age", "species"});
+  CHECK(all.of(17)[0] == 80);
+  CHECK(all.of(17)[1] == 3);
+  CHECK(std::isnan(all.of(0)[0]));
+  cube.attributes.push_back({"age", 81});
+  CHECK_THROWS_AS(static_cast<void>(simulation({cube})), SettingError);
+}
+
+TEST_CASE("leaves of an OBJ file are where their pictures are solid") {
+  const Files files;
+  std::ofstream(files.folder / "leaf.mtl") << "newmtl leaf\nmap_d leaf.pgm\n";
+  std::ofstream(files.folder / "leaf.pgm", std::ios::binary) << "P5 2 1 255\n" << '\xFF' << '\0';
+  std::ofstream(files.folder / "leaf.obj") << "mtllib leaf.mtl\nusemtl leaf\nv -1 -1 5\nv 1 -1 5\nv 1 1 5\nv -1 1 5\n"
+                                              "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+  const SurveyScene scene = built(scene_of({files.part("leaf.obj", "1"), files.part("plane.obj", "0")}));
+  CHECK(below(scene, -0.5, 0.2).object == 1);
+  CHECK(below(scene, 0.5, 0.2).object == 0);
 }
 
 TEST_CASE("a part is let down onto the ground") {

@@ -243,6 +243,13 @@ TEST_CASE("a damaged MTL file gives one error with its line") {
   }
 }
 
+TEST_CASE("Kd is the colour of points, white without one") {
+  const MaterialLibrary library = mtl("newmtl a\nKd 0.5 0.25 3\nnewmtl b\nKs 1 1 1\nnewmtl c\nKd 0.5\n");
+  CHECK(library.materials.at("a").colour == Vec3{0.5, 0.25, 1});
+  CHECK(library.materials.at("b").colour == Vec3{1, 1, 1});
+  CHECK(library.materials.at("c").colour == Vec3{0.5, 0.5, 0.5});
+}
+
 TEST_CASE("pictures are named beside the file, without their options, and for the first of equal names") {
   const MaterialLibrary library =
       mtl("newmtl leaf\nmap_Kd -s 2 2 1 pictures\\my leaf.png\nmap_d -clamp on mask.png\npulsecast_reflectanceMap pattern bark.jpg\n"

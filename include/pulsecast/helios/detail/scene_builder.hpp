@@ -287,7 +287,7 @@ PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSour
     warn({"part '" + part.id + "': its id is not a number; the object id of its points is its place in the scene, " +
           std::to_string(place)});
   for (const Loaded& loaded : load(source)) {
-    all.push_back({loaded.geometry, loaded.materials, placement, object++, part.id, {}, {}});
+    all.push_back({loaded.geometry, loaded.materials, placement, object++, part.id, {}, part.named_numbers()});
     const Box box = box_of(all.back());
     const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
     if (!(extent <= 1e18)) throw SettingError("part '" + part.id + "': place", extent, "m", "within 1e18 m of the origin");

@@ -20,8 +20,8 @@
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Files of a scene in all runs, each once: those in its settings, the material files of OBJ files, and their pictures. Missing files are left out; the
-/// builder of the scene reports them.
+/// Files of a scene in all runs, each once: those in its settings, the material files of OBJ files, and their pictures. Missing files are
+/// left out; the builder of the scene reports them.
 [[nodiscard]] std::vector<std::filesystem::path> scene_files(const SceneSettings& scene);
 
 /// True if an MTL file declares a ground material, in any run, or cannot be read. A scene without one has no height for `onGround`.

@@ -331,6 +331,15 @@ TEST_CASE("of a scene, what cannot be is told") {
   CHECK(fault(loads + R"(<swap keepCRS="true"/>)").empty());
 }
 
+TEST_CASE("a part has named numbers, each with a name and a value, and each name once") {
+  const auto scene = [](const std::string& inside) { return "<scene id=\"s\"><part>" + (mesh + inside) + "</part></scene>"; };
+  const auto made = from<SceneSettings>(scene(R"(<attribute name="age" value="80"/><attribute name="dbh" value="-2e3"/>)"));
+  CHECK(made.parts.at(0).attributes == std::vector<AttributeSettings>{{"age", 80}, {"dbh", -2000}});
+  CHECK(contains(told<SceneSettings>(scene(R"(<attribute name="age"/>)")), "has no attribute 'value'"));
+  CHECK(contains(told<SceneSettings>(scene(R"(<attribute value="1"/>)")), "has no attribute 'name'"));
+  CHECK(contains(told<SceneSettings>(scene(R"(<attribute name="a" value="1"/><attribute name="a" value="2"/>)")), "each name once"));
+}
+
 TEST_CASE("a part's number counts parts without geometry") {
   SceneSettings scene;
   CHECK(contains(told<SceneSettings>("<scene id=\"s\"><part/><part>" + std::string(mesh) + "</part></scene>", scene), "it is left out"));

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 #include <pulsecast/scene/media.hpp>
+#include <pulsecast/scene/part.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -193,6 +195,13 @@ struct SwapSettings {
   bool operator==(const SwapSettings&) const = default;
 };
 
+/// Named number that the points of a part are told: `<attribute>`, of this library.
+struct AttributeSettings {
+  std::string name{};  ///< name of the column; `name`
+  double value = 0;    ///< number; `value`
+  bool operator==(const AttributeSettings&) const = default;
+};
+
 /// `<part>`
 struct PartSettings {
   std::string id{};                               ///< `id`, default the number of parts and files before it
@@ -202,6 +211,7 @@ struct PartSettings {
   std::optional<double> dynamic_interval{};       ///< interval of motion steps, if the scene has one; `dynTimeStep` [s]
   std::vector<MotionSequenceSettings> motions{};  ///< the first one begins; none: at rest
   std::vector<SwapSettings> swaps{};              ///< in sequence
+  std::vector<AttributeSettings> attributes{};    ///< named numbers, each name once
 
   void validate() const {
     detail::validate_source(source);
@@ -209,6 +219,13 @@ struct PartSettings {
     if (dynamic_interval) require_positive("dynTimeStep", *dynamic_interval, "s");
     for (const MotionSequenceSettings& sequence : motions) sequence.validate();
     for (const SwapSettings& swap : swaps) swap.validate();
+    static_cast<void>(named_numbers());
+  }
+  /// The attributes for the parts of a scene; empty without. @throws SettingError for a name that is empty or comes twice
+  [[nodiscard]] Attributes named_numbers() const {
+    std::vector<Attribute> all;
+    for (const auto& [name, value] : attributes) all.push_back({name, value});
+    return all.empty() ? Attributes() : pulsecast::attributes(std::move(all));
   }
 
   bool operator==(const PartSettings&) const = default;

@@ -127,6 +127,13 @@ void fields(Io& io, Of<Io, SwapSettings>& swap) {
   }
 }
 
+template <class Io>
+void fields(Io& io, Of<Io, AttributeSettings>& attribute) {
+  if constexpr (Io::reads) io.require({"name", "value"});
+  io.text("name", attribute.name);
+  io.number("value", attribute.value, units::one, -any, any);
+}
+
 /// Attributes and children of a part, except its geometry and id.
 template <class Io>
 void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
@@ -134,7 +141,13 @@ void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
   io.number("dynTimeStep", part.dynamic_interval, units::second, 1e-9, 1e6);
   io.children("dmotion", part.motions, [](auto& inner, auto& sequence) { fields(inner, sequence); });
   io.children("swap", part.swaps, [](auto& inner, auto& swap) { fields(inner, swap); });
+  io.children("attribute", part.attributes, [](auto& inner, auto& attribute) { fields(inner, attribute); });
   if constexpr (Io::reads) {
+    try {
+      static_cast<void>(part.named_numbers());
+    } catch (const SettingError& wrong) {
+      io.report().fault(io.place(), wrong.what());
+    }
     io.without_effect({"kdtDynStep", "kdtDynTimeStep"}, "has no effect: each pulse meets a part at its pose of that time");
     pugi::xml_node node = io.node().child("dmotion");
     if (part.motions.size() > 1000) io.report().fault(io.place(), "<part> holds more than 1000 <dmotion>");

@@ -128,6 +128,7 @@ class MtlReader : private StatementBuffer {
     } else if (diffuse > 0) {
       made.scattering = Scattering::lambert;
     }
+    for (int k = 0; diffuse > 0 && k < 3; ++k) made.colour[k] = std::min(m.diffuse[k], 1.0);
     made.specular_exponent = m.shininess;
     if (made.scattering == Scattering::phong && text::trimmed(extra("pulsecast_normalizedPhong")) == "true")
       made.scattering = Scattering::normalized_phong;
