@@ -148,7 +148,7 @@ TEST_CASE("a missing picture, and a mesh without texture coordinates, are warnin
   write(folder / "leaf.obj", "mtllib leaf.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nusemtl leaf\nf 1 2 3\n");
   model = read_obj(folder / "leaf.obj");
   REQUIRE(model.warnings.size() == 1);
-  CHECK(contains(model.warnings[0], "3 corners have no texture coordinates: 0, 0 is assumed"));
+  CHECK(contains(model.warnings[0], "3 corners of material 'leaf' have no texture coordinates: 0, 0 is assumed"));
   model.mesh.texture.clear();
   model.warnings.clear();
   add_pictures(model.mesh, model.materials, model.pictures, model.warnings);

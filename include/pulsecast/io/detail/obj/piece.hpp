@@ -110,7 +110,7 @@ class ObjPiece : private StatementBuffer {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_uses;  ///< index into `uses` for each triangle
   std::vector<std::array<Vec2, 3>> texture;  ///< texture coordinates of each triangle, if they are read
-  std::size_t without_place = 0;             ///< corners without texture coordinates, if they are read
+  std::vector<std::size_t> without_place;    ///< by index into `uses`: corners without texture coordinates, if they are read
   std::vector<Note> crossings;               ///< polygons whose outline crosses itself
   std::optional<Note> first_unknown, first_flat;
   std::size_t unknown = 0, flat = 0;
@@ -203,11 +203,12 @@ class ObjPiece : private StatementBuffer {
   void take_places(const Face& face, std::span<const int> given, std::span<const Vec2> all, std::size_t before) {
     face_places_.clear();
     const auto count = static_cast<std::int64_t>(before + face.places_above);
+    without_place.resize(uses.size());
     for (const int corner : given) {
       const std::int64_t index = corner < 0 ? count + corner : std::int64_t{corner} - 1;
       const bool known = index >= 0 && index < count;
       face_places_.push_back(known ? all[static_cast<std::size_t>(index)] : Vec2{});
-      without_place += known ? 0 : 1;
+      without_place[face.use] += known ? 0 : 1;
     }
   }
 

@@ -41,9 +41,6 @@ class ObjReader {
 
   [[nodiscard]] ObjModel read() {
     while (read_window()) continue;
-    if (without_place_ > 0)
-      model_.warnings.push_back(file_.path() + ": " + std::to_string(without_place_) +
-                                " corners have no texture coordinates: 0, 0 is assumed");
     MeshData& mesh = model_.mesh;
     if (open_line_ > 0) warn(open_line_, "the last line has no line end: the file may be truncated");
     if (unknown_ > 0)
@@ -105,7 +102,7 @@ class ObjReader {
     MeshData& mesh = model_.mesh;
     mesh.triangles.insert(mesh.triangles.end(), piece.triangles.begin(), piece.triangles.end());
     mesh.texture.insert(mesh.texture.end(), piece.texture.begin(), piece.texture.end());
-    without_place_ += piece.without_place;
+    for (std::size_t use = 0; use < piece.without_place.size(); ++use) without_place_[piece.uses[use].name] += piece.without_place[use];
     for (const std::uint32_t use : piece.triangle_uses) mesh.materials.push_back(material(piece.uses[use]));
     use_ = piece.uses.back();
     if (unknown_ == 0) first_unknown_ = piece.first_unknown;
@@ -159,6 +156,9 @@ class ObjReader {
       model_.materials.push_back(found == library_.end() ? undescribed(use.name) : found->second);
       const auto pictures = pictures_.find(use.name);
       if (pictures == pictures_.end()) continue;
+      if (const std::size_t count = without_place_[use.name]; count > 0)
+        model_.warnings.push_back(file_.path() + ": " + std::to_string(count) + " corners of material '" + use.name +
+                                  "' have no texture coordinates: 0, 0 is assumed");
       model_.pictures.resize(model_.materials.size());
       model_.pictures.back() = pictures->second;
     }
@@ -183,7 +183,8 @@ class ObjReader {
   std::map<std::string, std::uint32_t> numbers_;                   // indices into `uses_` by name
   std::optional<Note> first_unknown_, first_flat_;
   std::size_t unknown_ = 0, flat_ = 0;
-  std::size_t open_line_ = 0, without_place_ = 0;
+  std::map<std::string, std::size_t> without_place_;  // corners without texture coordinates, if they are read, by material
+  std::size_t open_line_ = 0;
 };
 
 }  // namespace detail
