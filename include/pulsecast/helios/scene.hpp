@@ -67,6 +67,11 @@ class SceneBuilder {
     decltype(SurveyPart::geometry) geometry;
     MaterialTable materials;
   };
+  /// Raster of a file, and its colour table, if any.
+  struct LoadedRaster {
+    Raster raster;
+    std::vector<Vec3> colours{};
+  };
   /// Materials of rasters, and the raster of classes that chooses them, if any.
   struct GroundMaterials {
     MaterialTable table;
@@ -83,7 +88,8 @@ class SceneBuilder {
   std::vector<Loaded> read(const XyzSource& source);
   std::vector<Loaded> read(const VoxelSource& source);
   void drop_bare(const std::filesystem::path& file, io::PointCloud& cloud);
-  Raster raster(const std::filesystem::path& file);
+  LoadedRaster raster(const std::filesystem::path& file, const GeoTiffSource& source);
+  Raster ground(const std::filesystem::path& file, const GeoTiffSource& source);
   GroundMaterials ground_materials(const GeoTiffSource& source);
   Material material(const MaterialSource& source);
   MaterialTable table(std::vector<Material> materials) const;
@@ -107,6 +113,7 @@ class SceneBuilder {
 }  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINITIONS
+#include <pulsecast/helios/detail/ground_builder.hpp>
 #include <pulsecast/helios/detail/scene_builder.hpp>
 #endif
 
