@@ -349,6 +349,12 @@ TEST_CASE("a raster of heights may be a PNG file, with scale, offset and a numbe
   std::ofstream(folder / "dem.pgw") << "1\n0\n0\n-1\n10\n20\n";
   CHECK(below(built(scene), 10.25, 19.5).range == relative(93, 1e-12));
   CHECK(scene_files(scene).size() == 2);
+  scene.parts[0].transform.translation = {0, 0, 5};
+  const std::vector<PlacedRaster> rasters = SceneBuilder(scene, {}).rasters();
+  REQUIRE(rasters.size() == 1);
+  CHECK(rasters[0].raster.unpacked().heights[0] == 7);
+  CHECK(rasters[0].placement.translation == Vec3{0, 0, 5});
+  scene.parts[0].transform.translation = {};
   // the same keys for a grid of text
   std::ofstream(folder / "dem.asc") << "ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n1000 1000\n1000 1000\n";
   source.files = {folder / "dem.asc"};

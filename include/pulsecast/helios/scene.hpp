@@ -44,6 +44,12 @@ struct SceneBuildOptions {
   void validate() const { require_within("SceneBuildOptions::threads", threads, 0, max_threads, ""); }
 };
 
+/// Raster of heights in the world.
+struct PlacedRaster {
+  Raster raster;
+  Similarity placement{};
+};
+
 /// Builds the parts of a scene, with warnings about its files. Files and grids are kept, so that another scene of the same files costs
 /// little.
 class SceneBuilder {
@@ -57,6 +63,9 @@ class SceneBuilder {
 
   /// Parts in a run, from 0.
   [[nodiscard]] std::vector<SurveyPart> parts(int run = 0);
+
+  /// Reads the rasters of heights alone, placed as in the first run; those that stand on other ground are not lifted.
+  [[nodiscard]] std::vector<PlacedRaster> rasters();
 
   /// Warnings so far, each once.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
@@ -96,6 +105,7 @@ class SceneBuilder {
   MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels);
   void add(const PartSettings& part, const PartSource& source, const TransformSettings& transform, std::size_t place,
            std::vector<SurveyPart>& all);
+  static Similarity placement_of(const PartSettings& part, const TransformSettings& transform);
   void tell_shared_objects(const std::vector<SurveyPart>& all);
   static Box box_of(const SurveyPart& part);
   void stand_on_ground(std::vector<SurveyPart>& all, const std::vector<int>& lifted);

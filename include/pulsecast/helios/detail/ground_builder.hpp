@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <pulsecast/helios/scene.hpp>
@@ -64,6 +65,14 @@ PULSECAST_INLINE SceneBuilder::LoadedRaster SceneBuilder::raster(const std::file
   io::GeoTiff tiff = io::read_geotiff(file, {.vertical_scale = source.height_scale, .missing = source.missing, .packed = true});
   warn(tiff.warnings);
   return {std::move(tiff.raster), std::move(tiff.colours)};
+}
+
+PULSECAST_INLINE std::vector<PlacedRaster> SceneBuilder::rasters() {
+  std::vector<PlacedRaster> all;
+  for (const PartSettings& part : settings_.parts)
+    if (const auto* const source = std::get_if<GeoTiffSource>(&part.source))
+      for (const std::filesystem::path& file : source->files) all.push_back({ground(file, *source), placement_of(part, part.transform)});
+  return all;
 }
 
 /// Reads a raster of heights.

@@ -220,12 +220,17 @@ PULSECAST_INLINE MaterialTable SceneBuilder::assign_materials(const MaterialSour
   return table(std::move(all));
 }
 
-PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSource& source, const TransformSettings& transform,
-                                        std::size_t place, std::vector<SurveyPart>& all) {
+PULSECAST_INLINE Similarity SceneBuilder::placement_of(const PartSettings& part, const TransformSettings& transform) {
   Similarity placement{.scale = transform.scale, .translation = transform.translation};
   for (const RotationList& turns : transform.rotations) placement.rotation = turns.rotation() * placement.rotation;
   placement.rotation = normalize(placement.rotation);
   naming("part '" + part.id + "'", [&] { placement.validate(); });
+  return placement;
+}
+
+PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSource& source, const TransformSettings& transform,
+                                        std::size_t place, std::vector<SurveyPart>& all) {
+  const Similarity placement = placement_of(part, transform);
   const auto number = text::number_in<ObjectId>(part.id);
   ObjectId object = number.value_or(static_cast<ObjectId>(place));
   if (!number && !part.id.empty())
