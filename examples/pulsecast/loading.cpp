@@ -10,6 +10,7 @@
 #include <variant>
 
 #include <pulsecast/helios/make_simulation.hpp>
+#include <pulsecast/helios/scene.hpp>
 
 #include "scene_store.hpp"
 #include "survey_inputs.hpp"
@@ -67,4 +68,8 @@ std::unique_ptr<Simulation> load(const SurveySettings& survey, const Loading& ho
     return std::move(kept.built);
   };
   return helios::make_simulation(survey, known.settings, parts);
+}
+
+void for_each_raster(const SurveySettings& survey, const std::function<void(const Raster&, const Similarity&)>& use) {
+  for (const auto& [raster, placement] : helios::SceneBuilder(survey.scene, {}).rasters()) use(raster, placement);
 }

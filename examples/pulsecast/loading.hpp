@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/simulation.hpp>
+#include <pulsecast/scene/part.hpp>
+#include <pulsecast/scene/raster.hpp>
 
 #include "options.hpp"
 
@@ -30,3 +33,7 @@ std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::Sur
 /// Overload with a scene kept between runs and shared by processes. Adds notes on that to `notes`, which must outlive the simulation.
 std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::SurveySettings& survey, const Loading& how,
                                                     std::vector<std::string>& notes);
+
+/// Calls `use` with each raster of heights in a scene, and its placement.
+void for_each_raster(const pulsecast::helios::SurveySettings& survey,
+                     const std::function<void(const pulsecast::Raster&, const pulsecast::Similarity&)>& use);

@@ -452,6 +452,7 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
   PulseIndex stride = std::max<PulseIndex>(1, slots / enough);
   if (stride > 1) stride |= 1;  // odd, to be out of step with the channels
   Picture picture(path);
+  for_each_raster(file.survey, [&](const Raster& raster, const Similarity& placement) { picture.add_ground(raster, placement); });
   const RunSummary summary = simulation.run({.threads = options.threads, .stride = stride}, picture);
   picture.close();
   if (!options.quiet)

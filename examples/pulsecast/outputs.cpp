@@ -14,6 +14,7 @@
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/io/text_files.hpp>
 #include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/scene/hillshade.hpp>
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
@@ -116,4 +117,7 @@ struct Picture::Inside {
 Picture::Picture(const fs::path& path) : inside_(new Inside{io::ImageWriter(path)}) {}
 Picture::~Picture() = default;
 void Picture::operator()(const EchoBatch& batch) { inside_->writer(batch); }
+void Picture::add_ground(const Raster& raster, const Similarity& placement) {
+  inside_->writer.add_ground(raster, hillshade(raster), placement);
+}
 void Picture::close() { inside_->writer.close(); }

@@ -10,6 +10,8 @@
 #include <pulsecast/echo.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/las.hpp>
+#include <pulsecast/scene/part.hpp>
+#include <pulsecast/scene/raster.hpp>
 
 #include "options.hpp"
 
@@ -53,6 +55,8 @@ class Picture {
   Picture& operator=(const Picture&) = delete;
   void operator()(const pulsecast::EchoBatch& batch);
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
+  /// Draws the hillshade of a raster behind the points.
+  void add_ground(const pulsecast::Raster& raster, const pulsecast::Similarity& placement);
   void close();
 
  private:

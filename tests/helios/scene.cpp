@@ -3,21 +3,27 @@
 #include <pulsecast/helios/scene.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <tiffio.h>
 
+#include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 
+#include "support/png_builder.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace pulsecast::helios {
 namespace {
 
+using support::grey_png;
 using support::relative;
 using support::TemporaryFolder;
 
@@ -290,6 +296,36 @@ TEST_CASE("a cloud becomes voxels; those in which no plane fits are left out if 
   CHECK_THROWS_WITH_AS((void)built(scene_of({cloud})), doctest::Contains("holds no material 'brick'; it has ground, wall"), FileError);
 }
 
+/// Writes a GeoTIFF of 8 bits with a colour table, whose entry n is (n, 255 - n, 255), in pixels of 1 m from (0, rows - 1) on.
+void write_palette(const std::filesystem::path& path, std::uint32_t columns, std::uint32_t rows, std::vector<std::uint8_t> codes) {
+  TIFF* tiff = TIFFOpen(path.c_str(), "w");
+  REQUIRE(tiff != nullptr);
+  static const std::vector<TIFFFieldInfo> fields{{33550, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("scale")},
+                                                 {33922, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("ties")},
+                                                 {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("keys")}};
+  TIFFMergeFieldInfo(tiff, fields.data(), static_cast<std::uint32_t>(fields.size()));
+  std::vector<std::uint16_t> red(256), green(256), blue(256, 65535);
+  for (std::size_t i = 0; i < 256; ++i) {
+    red[i] = static_cast<std::uint16_t>(257 * i);
+    green[i] = static_cast<std::uint16_t>(257 * (255 - i));
+  }
+  const std::array<double, 3> scale{1, 1, 0};
+  const std::array<double, 6> ties{0, 0, 0, -0.5, rows - 0.5, 0};
+  const std::array<std::uint16_t, 8> keys{1, 1, 0, 1, 1024, 0, 1, 1};
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, columns);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, rows);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_PALETTE);
+  TIFFSetField(tiff, TIFFTAG_COLORMAP, red.data(), green.data(), blue.data());
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, rows);
+  TIFFSetField(tiff, 33550, 3, scale.data());
+  TIFFSetField(tiff, 33922, 6, ties.data());
+  TIFFSetField(tiff, 34735, 8, keys.data());
+  const auto size = static_cast<tmsize_t>(codes.size());
+  REQUIRE(TIFFWriteEncodedStrip(tiff, 0, codes.data(), size) == size);
+  TIFFClose(tiff);
+}
+
 TEST_CASE("a raster of classes chooses the materials of a raster of heights") {
   const Files files;
   const TemporaryFolder& folder = files.folder;
@@ -323,6 +359,66 @@ TEST_CASE("a raster of classes chooses the materials of a raster of heights") {
   CHECK(told.parts().size() == 1);
   REQUIRE(told.warnings().size() == 1);
   CHECK(told.warnings()[0].find("land.ASC: 2 of 6 pixels have no class with a material, and get 'ground'") != std::string::npos);
+}
+
+TEST_CASE("a raster of heights may be a PNG file, with scale, offset and a number for what is missing") {
+  const Files files;
+  const TemporaryFolder& folder = files.folder;
+  std::ofstream(folder / "dem.png", std::ios::binary) << grey_png(3, 2, 16, {1000, 1000, 1000, 1000, 1000, 0});
+  SceneSettings scene = scene_of(
+      {{"1", GeoTiffSource{.files = {folder / "dem.png"}, .height_scale = 0.01, .height_offset = -3, .missing = 0}, {}, 1, {}, {}, {}}});
+  GeoTiffSource& source = std::get<GeoTiffSource>(scene.parts[0].source);
+  CHECK_THROWS_WITH_AS((void)built(scene), doctest::Contains("has no place: expected a world file"), FileError);
+  source.pixel_size = 1;
+  CHECK(below(built(scene), 0.25, -0.5).range == relative(93, 1e-12));
+  CHECK_FALSE(below(built(scene), 1.75, -0.75).met());
+  source.pixel_size.reset();
+  std::ofstream(folder / "dem.pgw") << "1\n0\n0\n-1\n10\n20\n";
+  CHECK(below(built(scene), 10.25, 19.5).range == relative(93, 1e-12));
+  CHECK(scene_files(scene).size() == 2);
+  scene.parts[0].transform.translation = {0, 0, 5};
+  const std::vector<PlacedRaster> rasters = SceneBuilder(scene, {}).rasters();
+  REQUIRE(rasters.size() == 1);
+  CHECK(rasters[0].raster.unpacked().heights[0] == 7);
+  CHECK(rasters[0].placement.translation == Vec3{0, 0, 5});
+  scene.parts[0].transform.translation = {};
+  // the same keys for a grid of text
+  std::ofstream(folder / "dem.asc") << "ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n1000 1000\n1000 1000\n";
+  source.files = {folder / "dem.asc"};
+  CHECK(below(built(scene), 0.25, 0.25).range == relative(93, 1e-12));
+}
+
+TEST_CASE("the colour table of a raster of classes colours the ground, if it is asked for") {
+  const Files files;
+  const TemporaryFolder& folder = files.folder;
+  std::ofstream(folder / "dem.asc") << "ncols 3\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n7 7 7\n7 7 7\n";
+  write_palette(folder / "land.tif", 3, 2, {6, 6, 200, 6, 6, 200});  // pixels of 1 m, the first at (0, 1)
+  SceneSettings scene =
+      scene_of({{"1",
+                 GeoTiffSource{.files = {folder / "dem.asc"}, .material = {folder / "m.mtl", "ground"}, .classes = folder / "land.tif"},
+                 {},
+                 1,
+                 {},
+                 {},
+                 {}}});
+  const auto materials = [&] {
+    SceneBuilder builder(scene, {});
+    return *builder.parts().at(0).materials;
+  };
+  for (const Material& one : materials()) CHECK(one.colour == Vec3{1, 1, 1});
+  std::get<GeoTiffSource>(scene.parts[0].source).class_colours = true;
+  const std::vector<Material> coloured = materials();
+  REQUIRE(coloured.back().name == "ground 200");
+  CHECK(coloured.back().colour == Vec3{200 / 255.0, 55 / 255.0, 1});
+  const auto wall = std::find_if(coloured.begin() + 1, coloured.end(), [](const Material& one) { return one.classification == 6; });
+  REQUIRE(wall != coloured.end());
+  CHECK(wall->colour == Vec3{6 / 255.0, 249 / 255.0, 1});
+  CHECK(coloured.front().colour == Vec3{1, 1, 1});
+  std::get<GeoTiffSource>(scene.parts[0].source).classes = folder / "dem.asc";
+  SceneBuilder told(scene, {});
+  CHECK(told.parts().size() == 1);
+  CHECK(std::any_of(told.warnings().begin(), told.warnings().end(),
+                    [](const std::string& text) { return text.find("has no colour table: classcolours has no effect") != text.npos; }));
 }
 
 TEST_CASE("what a file comes to, and cannot be, is told with the file; what a part is asked for, with the part") {

@@ -45,6 +45,7 @@ struct Form {
   bool tiled = false;
   const char* mode = "w";
   std::set<std::uint32_t> left_out{};  ///< tiles
+  std::vector<std::uint16_t> red{}, green{}, blue{};
 };
 
 /// What a file says of where its pixels are.
@@ -105,6 +106,7 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
   TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, form.format);
   TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, form.photometric);
   TIFFSetField(tiff, TIFFTAG_COMPRESSION, form.compression);
+  if (!form.red.empty()) TIFFSetField(tiff, TIFFTAG_COLORMAP, form.red.data(), form.green.data(), form.blue.data());
   if (form.compression == COMPRESSION_LZMA) TIFFSetField(tiff, TIFFTAG_LZMAPRESET, 0);  // without 100 MB of memory for each strip
   if (form.compression == COMPRESSION_ZSTD) TIFFSetField(tiff, TIFFTAG_ZSTD_LEVEL, 1);
   if (form.predictor != 1) TIFFSetField(tiff, TIFFTAG_PREDICTOR, form.predictor);
@@ -277,6 +279,38 @@ TEST_CASE("whole numbers of 8 and 16 bits may stay packed, with the heights that
   const Heights all_missing = [](std::uint32_t, std::uint32_t, std::uint16_t) { return 7.0; };
   write(file.path, {.format = SAMPLEFORMAT_UINT, .bits = 16}, {.nodata = "7"}, all_missing);
   CHECK(contains(file.refusal_of({.packed = true}), "has no height"));
+}
+
+TEST_CASE("a picture with a colour table is a raster of its numbers, with the colours of the table") {
+  const File file;
+  const Heights codes = [](std::uint32_t c, std::uint32_t r, std::uint16_t) { return (c + 5 * r) % 7 * 3.0; };
+  for (const std::uint16_t bits : Codes{8, 16})
+    for (const std::uint16_t most : Codes{255, 65535})
+      for (const bool tiled : {false, true})
+        for (const char* mode : {"wl", "wb"}) {
+          CAPTURE(bits);
+          CAPTURE(most);
+          const std::size_t count = std::size_t{1} << bits;
+          Form form{.format = SAMPLEFORMAT_UINT, .bits = bits, .photometric = PHOTOMETRIC_PALETTE, .tiled = tiled, .mode = mode};
+          form.red.resize(count, 0);
+          form.green.resize(count, 0);
+          form.blue.resize(count, 0);
+          form.red[3] = form.blue[18] = form.blue[255] = most;
+          form.green[3] = most / 5;
+          const GeoTiff found = file.read(form, {.nodata = "18"}, codes, {.packed = true});
+          REQUIRE(found.colours.size() == count);
+          CHECK(found.colours[0] == Vec3{});
+          CHECK(found.colours[3] == Vec3{1, 0.2, 0});
+          CHECK(found.colours[18] == Vec3{0, 0, 1});
+          CHECK(found.colours[255] == Vec3{0, 0, 1});
+          const Heights expected = [&](std::uint32_t c, std::uint32_t r, std::uint16_t s) {
+            return codes(c, r, s) == 18 ? none : codes(c, r, s);
+          };
+          CHECK(wrong(found.raster.unpacked(), expected) == 0);
+        }
+  CHECK(file.read().colours.empty());
+  // a palette without a table, which libtiff adds no default for
+  CHECK(file.read({.format = SAMPLEFORMAT_UINT, .bits = 8, .photometric = PHOTOMETRIC_PALETTE}).colours.empty());
 }
 
 TEST_CASE("heights pass through lossy JPEG with little change") {

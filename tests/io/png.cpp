@@ -310,3 +310,42 @@ TEST_CASE("classes have colours of their own") {
   CHECK(of_class(64) != of_class(65));
   CHECK(of_class(0) == of_class(63));
 }
+
+TEST_CASE("ground is drawn behind the points, in its shades, wherever it is in depth") {
+  // a map with north up of 40 m by 40 m: the west half of the ground is dark, the east half bright, the south is missing
+  Raster raster{.columns = 41, .rows = 41, .first = {-20, 20}, .heights = std::vector<float>(41 * 41, 50)};
+  std::vector<std::uint8_t> shades;
+  for (std::size_t i = 0; i < 41 * 41; ++i) shades.push_back(i / 41 > 30 ? 0 : i % 41 < 20 ? 40 : 200);
+  const ImageSettings map{.width = 100, .height = 100, .azimuth = 0, .elevation = pi / 2, .field_of_view = 0, .point_size = 3};
+  ImageWriter writer(path, map);
+  writer.add_ground(raster, shades);
+  // points under the ground, at the corners of the framed square and in its middle
+  give(writer, {{{-20, -20, 0}}, {{20, 20, 0}}, {{-20, 20, 0}}, {{20, -20, 0}}, {{0, 5, 0}}});
+  writer.close();
+  int width = 0, height = 0, channels = 0;
+  stbi_uc* const pixels = stbi_load(path.c_str(), &width, &height, &channels, 3);
+  REQUIRE(pixels != nullptr);
+  const auto at = [&](double east, double north) {  // 95 px are 40 m
+    const auto x = static_cast<int>(50 + east * 95 / 40), y = static_cast<int>(50 - north * 95 / 40);
+    const stbi_uc* const p = pixels + 3 * (y * width + x);
+    return std::vector<int>{p[0], p[1], p[2]};
+  };
+  CHECK(at(-10, 10) == std::vector<int>{40, 40, 40});
+  CHECK(at(10, 10) == std::vector<int>{200, 200, 200});
+  CHECK(at(10, -15) == std::vector<int>{13, 17, 23});
+  const std::vector<int> point = at(0, 5);
+  CHECK(!(point[0] == point[1] && point[1] == point[2]));  // the colour of a point
+  stbi_image_free(pixels);
+
+  // without points, the ground frames the picture
+  ImageWriter bare(path, map);
+  bare.add_ground(raster, shades, {.translation = {4e5, 5e6, 0}});
+  bare.close();
+  stbi_uc* const again = stbi_load(path.c_str(), &width, &height, &channels, 3);
+  REQUIRE(again != nullptr);
+  CHECK(again[3 * (50 * width + 10)] == 40);
+  CHECK(again[3 * (50 * width + 90)] == 200);
+  stbi_image_free(again);
+  ImageWriter wrong(path, map);
+  CHECK_THROWS_AS(wrong.add_ground(raster, std::vector<std::uint8_t>(5)), SettingError);
+}

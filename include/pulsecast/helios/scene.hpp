@@ -44,6 +44,12 @@ struct SceneBuildOptions {
   void validate() const { require_within("SceneBuildOptions::threads", threads, 0, max_threads, ""); }
 };
 
+/// Raster of heights in the world.
+struct PlacedRaster {
+  Raster raster;
+  Similarity placement{};
+};
+
 /// Builds the parts of a scene, with warnings about its files. Files and grids are kept, so that another scene of the same files costs
 /// little.
 class SceneBuilder {
@@ -58,6 +64,9 @@ class SceneBuilder {
   /// Parts in a run, from 0.
   [[nodiscard]] std::vector<SurveyPart> parts(int run = 0);
 
+  /// Reads the rasters of heights alone, placed as in the first run; those that stand on other ground are not lifted.
+  [[nodiscard]] std::vector<PlacedRaster> rasters();
+
   /// Warnings so far, each once.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
@@ -66,6 +75,11 @@ class SceneBuilder {
   struct Loaded {
     decltype(SurveyPart::geometry) geometry;
     MaterialTable materials;
+  };
+  /// Raster of a file, and its colour table, if any.
+  struct LoadedRaster {
+    Raster raster;
+    std::vector<Vec3> colours{};
   };
   /// Materials of rasters, and the raster of classes that chooses them, if any.
   struct GroundMaterials {
@@ -83,13 +97,15 @@ class SceneBuilder {
   std::vector<Loaded> read(const XyzSource& source);
   std::vector<Loaded> read(const VoxelSource& source);
   void drop_bare(const std::filesystem::path& file, io::PointCloud& cloud);
-  Raster raster(const std::filesystem::path& file);
+  LoadedRaster raster(const std::filesystem::path& file, const GeoTiffSource& source);
+  Raster ground(const std::filesystem::path& file, const GeoTiffSource& source);
   GroundMaterials ground_materials(const GeoTiffSource& source);
   Material material(const MaterialSource& source);
   MaterialTable table(std::vector<Material> materials) const;
   MaterialTable assign_materials(const MaterialSource& source, VoxelData& voxels);
   void add(const PartSettings& part, const PartSource& source, const TransformSettings& transform, std::size_t place,
            std::vector<SurveyPart>& all);
+  static Similarity placement_of(const PartSettings& part, const TransformSettings& transform);
   void tell_shared_objects(const std::vector<SurveyPart>& all);
   static Box box_of(const SurveyPart& part);
   void stand_on_ground(std::vector<SurveyPart>& all, const std::vector<int>& lifted);
@@ -107,6 +123,7 @@ class SceneBuilder {
 }  // namespace PULSECAST_NAMESPACE::helios
 
 #if PULSECAST_DEFINITIONS
+#include <pulsecast/helios/detail/ground_builder.hpp>
 #include <pulsecast/helios/detail/scene_builder.hpp>
 #endif
 

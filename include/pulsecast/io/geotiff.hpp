@@ -11,6 +11,7 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/vector.hpp>
 #include <pulsecast/scene/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -32,6 +33,7 @@ struct GeoTiffSettings {
 struct GeoTiff {
   Raster raster;                        ///< heights [m]
   std::optional<std::uint16_t> epsg{};  ///< code of the projected reference system, if any
+  std::vector<Vec3> colours{};          ///< colour table (sRGB, channels from 0 to 1) by the value of a pixel; empty without
   std::vector<std::string> warnings{};  ///< oddities that could still be read
 };
 
@@ -41,6 +43,7 @@ struct GeoTiff {
 /// and 16 bits stay so, and give the same heights; but not where tiles are left out of 16 bits without a value for missing heights.
 /// Throws a `FileError`, with the byte if known, for a raster that is incomplete, rotated, sheared, in degrees or feet, or without a
 /// georeference. Memory is the raster and one strip or row of tiles, as far as read, not as claimed by the header.
+/// A picture with a colour table, as a map of land cover, is a raster of the numbers in the table.
 /// Source: TIFF 6.0; OGC GeoTIFF 1.1 (19-008r4); for GDAL_NODATA and tiles that are left out, the GDAL manual, GTiff driver.
 [[nodiscard]] GeoTiff read_geotiff(const std::filesystem::path& path, const GeoTiffSettings& settings = {});
 

@@ -24,19 +24,27 @@
 #include <pulsecast/io/detail/png/camera.hpp>
 #include <pulsecast/io/detail/png/settings.hpp>
 #include <pulsecast/io/output_file.hpp>
+#include <pulsecast/scene/part.hpp>
+#include <pulsecast/scene/raster.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
 /// Canvas of points as discs, with depth buffer and shading by the relief of the depth; twice the picture's resolution, for smooth edges.
+/// `ground` is seen where there is no point; its values are shades of grey.
 class Canvas {
  public:
-  Canvas(const ImageSettings& s, std::span<const ImagePoint> points) : settings_(s), points_(points), camera_(s, points) {
-    depth_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), nothing);
-    nearest_.resize(depth_.size());
-    const double diameter = s.point_size > 0 ? s.point_size : closing_diameter();
-    for (std::size_t i = 0; i < points.size(); ++i) draw(static_cast<std::uint32_t>(i), diameter);
+  Canvas(const ImageSettings& s, std::span<const ImagePoint> points, std::span<const ImagePoint> ground)
+      : settings_(s), points_(points), camera_(s, points.empty() ? ground : points) {
+    nearest_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+    if (!ground.empty()) {
+      draw(ground, closing_diameter(ground));
+      behind_.assign(nearest_.size(), 0);
+      for (std::size_t i = 0; i < nearest_.size(); ++i)
+        if (depth_[i] != nothing) behind_[i] = static_cast<std::uint8_t>(ground[nearest_[i]].value);
+    }
+    draw(points, s.point_size > 0 ? s.point_size : closing_diameter(points));
   }
 
   /// Pixels of the picture, row by row from the top.
@@ -51,7 +59,7 @@ class Canvas {
         for (const int dy : {0, 1})
           for (const int dx : {0, 1}) {
             const std::size_t i = index(x + dx, y + dy);
-            sum += depth_[i] == nothing ? background : colours[nearest_[i]] * light(x + dx, y + dy);
+            sum += depth_[i] == nothing ? behind(i, background) : colours[nearest_[i]] * light(x + dx, y + dy);
           }
         pixels.push_back(to_srgb(sum * 0.25));
       }
@@ -66,13 +74,19 @@ class Canvas {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
+  /// Colour of the ground, or the background without.
+  [[nodiscard]] Colour behind(std::size_t i, const Colour& background) const {
+    const std::uint8_t shade = behind_.empty() ? std::uint8_t{0} : behind_[i];
+    return shade == 0 ? background : from_srgb({shade, shade, shade});
+  }
+
   /// Diameter at which discs in the middle of the scene just touch: square root of the covered area per point [px].
-  [[nodiscard]] double closing_diameter() const {
+  [[nodiscard]] double closing_diameter(std::span<const ImagePoint> all) const {
     constexpr int cell = 4;  // small enough to follow an outline, large enough for a closed appearance [px]
     const int columns = settings_.width / cell + 1, rows = settings_.height / cell + 1;
     std::vector<bool> taken(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     std::size_t cells = 0, points = 0;
-    for (const ImagePoint& point : points_) {
+    for (const ImagePoint& point : all) {
       const Vec3 p = camera_.pixel(point);
       if (!(p.x >= 0 && p.x < settings_.width && p.y >= 0 && p.y < settings_.height)) continue;
       const std::size_t i = static_cast<std::size_t>(p.y / cell) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(p.x / cell);
@@ -84,8 +98,14 @@ class Canvas {
     return std::clamp(2.2 * spacing, 1.2, 8.0);  // by eye
   }
 
-  void draw(std::uint32_t i, double diameter) {
-    const Vec3 p = camera_.pixel(points_[i]) * Vec3{2, 2, 1};
+  /// Draws points on an empty canvas.
+  void draw(std::span<const ImagePoint> all, double diameter) {
+    depth_.assign(nearest_.size(), nothing);
+    for (std::size_t i = 0; i < all.size(); ++i) draw(all[i], static_cast<std::uint32_t>(i), diameter);
+  }
+
+  void draw(const ImagePoint& point, std::uint32_t i, double diameter) {
+    const Vec3 p = camera_.pixel(point) * Vec3{2, 2, 1};
     if (!(p.x > -max_disc && p.x < width_ + max_disc && p.y > -max_disc && p.y < height_ + max_disc)) return;
     const double radius = std::clamp(diameter * camera_.magnification(p.z), 0.75, max_disc);
     const auto first = [](double low) { return std::max(0, static_cast<int>(std::ceil(low - 0.5))); };
@@ -163,6 +183,7 @@ class Canvas {
   int width_ = 2 * settings_.width, height_ = 2 * settings_.height;
   std::vector<float> depth_;            // along the view [m]
   std::vector<std::uint32_t> nearest_;  // index of the point
+  std::vector<std::uint8_t> behind_;    // shade of the ground, 0 without
 };
 
 }  // namespace detail
@@ -180,20 +201,40 @@ class ImageWriter {
       for (const Echo& echo : batch.echoes_of(shot)) {
         const Vec3 point = point_of(shot, echo);
         if (!finite(point) || seen_++ % every_ != 0) continue;
-        if (points_.empty()) origin_ = point;
-        const Vec3 p = point - origin_;
-        points_.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), value(echo)});
+        points_.push_back(image_point(point, value(echo)));
         if (points_.size() >= settings_.points_max) thin();
       }
   }
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
+  /// Draws a raster behind the points, in shades of grey from 1 to 255, as of `hillshade`; pixels of shade 0 are left out. Of more than a
+  /// million pixels, it draws those of every k-th row and column. Without points it frames the picture.
+  /// @throws SettingError as `Raster::validate` and `Similarity::validate`, or for another number of shades
+  void add_ground(const Raster& raster, std::span<const std::uint8_t> shades, const Similarity& placement = {}) {
+    raster.validate();
+    placement.validate();
+    const auto pixels = static_cast<double>(raster.pixels());
+    require_within("ImageWriter::add_ground (number of shades)", static_cast<double>(shades.size()), pixels, pixels, "");
+    const auto step = static_cast<std::size_t>(std::ceil(std::sqrt(pixels / 1e6)));
+    const auto grid = raster.grid();
+    raster.read([&](const auto& heights) {
+      for (std::size_t row = 0; row < raster.rows; row += step)
+        for (std::size_t column = 0; column < raster.columns; column += step) {
+          const auto c = static_cast<std::uint32_t>(column), r = static_cast<std::uint32_t>(row);
+          const std::size_t i = grid.index(c, r);
+          if (shades[i] == 0) continue;
+          const Vec3 point = placement.point(grid.vertex(c, r, heights[i]));
+          if (finite(point)) ground_.push_back(image_point(point, shades[i]));
+        }
+    });
+  }
+
   /// Draws and writes the picture; the file does not exist before. Throws a `FileError`.
   void close() {
     ImageSettings settings = settings_;
-    if (settings.eye) *settings.eye -= origin_;
-    const std::vector<Srgb> pixels = detail::Canvas(settings, points_).picture();
+    if (settings.eye) *settings.eye -= origin_.value_or(Vec3{});
+    const std::vector<Srgb> pixels = detail::Canvas(settings, points_, ground_).picture();
     std::vector<std::byte> png;
     const auto append = [](void* to, void* data, int size) {
       const auto* bytes = static_cast<const std::byte*>(data);
@@ -206,6 +247,12 @@ class ImageWriter {
   }
 
  private:
+  [[nodiscard]] detail::ImagePoint image_point(const Vec3& point, float value) {
+    if (!origin_) origin_ = point;
+    const Vec3 p = point - *origin_;
+    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), value};
+  }
+
   [[nodiscard]] float value(const Echo& echo) const {
     switch (settings_.colour_by) {
       case ColourBy::intensity:
@@ -235,10 +282,10 @@ class ImageWriter {
 
   ImageSettings settings_;
   OutputFile file_;
-  std::vector<detail::ImagePoint> points_;
-  Vec3 origin_{};            // of the points: the first of them [m]
-  std::uint64_t seen_ = 0;   // number of points so far
-  std::uint64_t every_ = 1;  // number of points for each one kept
+  std::vector<detail::ImagePoint> points_, ground_;
+  std::optional<Vec3> origin_{};  // of points and ground: the first of them [m]
+  std::uint64_t seen_ = 0;        // number of points so far
+  std::uint64_t every_ = 1;       // number of points for each one kept
 };
 
 static_assert(EchoSink<ImageWriter>);

@@ -285,15 +285,18 @@ inline std::size_t set_materials(Raster& ground, const Raster& codes, const std:
   ground.validate();
   codes.validate();
   const detail::RasterGrid grid = ground.grid();
+  const auto by_code = [](const CodeMaterial& a, const CodeMaterial& b) { return a.code < b.code; };
+  std::vector<CodeMaterial> sorted = listed;  // of equal codes, the first counts
+  std::stable_sort(sorted.begin(), sorted.end(), by_code);
   std::size_t unlisted = 0;
   std::vector<std::uint8_t> materials(ground.pixels(), otherwise);
   codes.read([&](const auto& code) {
     for (std::uint32_t row = 0; row < ground.rows; ++row)
       for (std::uint32_t column = 0; column < ground.columns; ++column) {
         const std::optional<std::size_t> at = codes.grid().pixel_at(grid.vertex(column, row, 0));
-        const auto has_code = [&](const CodeMaterial& one) { return static_cast<double>(code[*at]) == one.code; };
-        const auto found = at ? std::find_if(listed.begin(), listed.end(), has_code) : listed.end();
-        if (found == listed.end())
+        const double own = at ? static_cast<double>(code[*at]) : std::numeric_limits<double>::quiet_NaN();
+        const auto found = std::lower_bound(sorted.begin(), sorted.end(), CodeMaterial{own, 0}, by_code);
+        if (found == sorted.end() || found->code != own)
           ++unlisted;
         else
           materials[grid.index(column, row)] = found->material;

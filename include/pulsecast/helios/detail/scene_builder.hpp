@@ -18,8 +18,6 @@
 #include <pulsecast/helios/detail/part_motion.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/settings.hpp>
-#include <pulsecast/io/ascii_grid.hpp>
-#include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/leaf_angles.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
@@ -30,7 +28,6 @@
 #include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/moving_scene.hpp>
 #include <pulsecast/scene/on_ground.hpp>
-#include <pulsecast/scene/raster.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 #include <pulsecast/scene/variation.hpp>
 #include <pulsecast/scene/voxel_grid.hpp>
@@ -111,58 +108,6 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjS
     }
     all.push_back({std::make_shared<const TriangleMesh<>>(std::move(model.mesh), options_.threads), table(std::move(model.materials))});
   });
-}
-
-PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const GeoTiffSource& source) {
-  GroundMaterials materials;  // read after the first raster
-  const auto ground = [&](Raster raster) -> Loaded {
-    if (!materials.table) materials = ground_materials(source);
-    const std::size_t unlisted = materials.codes ? set_materials(raster, *materials.codes, materials.listed) : 0;
-    if (unlisted > 0)
-      warn({source.classes.string() + ": " + std::to_string(unlisted) + " of " + std::to_string(raster.pixels()) +
-            " pixels have no class with a material, and get '" + materials.table->front().name + "'"});
-    return {std::make_shared<const HeightField>(std::move(raster), options_.threads), materials.table};
-  };
-  std::vector<Raster> tiles;
-  std::vector<Loaded> loaded = each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-    if (source.mosaic)
-      tiles.push_back(raster(file));
-    else
-      all.push_back(ground(raster(file)));
-  });
-  if (source.mosaic && !tiles.empty()) naming(source.files.front().string(), [&] { loaded.push_back(ground(mosaic(tiles))); });
-  return loaded;
-}
-
-PULSECAST_INLINE Raster SceneBuilder::raster(const std::filesystem::path& file) {
-  if (io::is_ascii_grid(file)) {
-    io::AsciiGrid grid = io::read_ascii_grid(file);
-    warn(grid.warnings);
-    return std::move(grid.raster);
-  }
-  io::GeoTiff tiff = io::read_geotiff(file, {.packed = true});
-  warn(tiff.warnings);
-  return std::move(tiff.raster);
-}
-
-/// The material of pixels without a class, and then of each class the first, by name, with this number.
-PULSECAST_INLINE SceneBuilder::GroundMaterials SceneBuilder::ground_materials(const GeoTiffSource& source) {
-  std::vector<Material> all{material(source.material)};
-  GroundMaterials made;
-  if (!source.classes.empty()) {
-    std::map<std::uint16_t, Material> by_class;
-    if (!source.material.file.empty())
-      for (const auto& [name, one] : io::read_mtl(source.material.file, options_.spectra).materials)
-        by_class.try_emplace(one.classification, one);
-    require_within("classes with a material (number)", static_cast<double>(by_class.size()), 0, 255, "");
-    for (const auto& [number, one] : by_class) {
-      made.listed.push_back({static_cast<double>(number), static_cast<std::uint8_t>(all.size())});
-      all.push_back(one);
-    }
-    made.codes = raster(source.classes);
-  }
-  made.table = table(std::move(all));
-  return made;
 }
 
 PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const XyzSource& source) {
@@ -275,12 +220,17 @@ PULSECAST_INLINE MaterialTable SceneBuilder::assign_materials(const MaterialSour
   return table(std::move(all));
 }
 
-PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSource& source, const TransformSettings& transform,
-                                        std::size_t place, std::vector<SurveyPart>& all) {
+PULSECAST_INLINE Similarity SceneBuilder::placement_of(const PartSettings& part, const TransformSettings& transform) {
   Similarity placement{.scale = transform.scale, .translation = transform.translation};
   for (const RotationList& turns : transform.rotations) placement.rotation = turns.rotation() * placement.rotation;
   placement.rotation = normalize(placement.rotation);
   naming("part '" + part.id + "'", [&] { placement.validate(); });
+  return placement;
+}
+
+PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSource& source, const TransformSettings& transform,
+                                        std::size_t place, std::vector<SurveyPart>& all) {
+  const Similarity placement = placement_of(part, transform);
   const auto number = text::number_in<ObjectId>(part.id);
   ObjectId object = number.value_or(static_cast<ObjectId>(place));
   if (!number && !part.id.empty())

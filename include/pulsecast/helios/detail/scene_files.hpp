@@ -17,6 +17,7 @@
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
+#include <pulsecast/io/world_file.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -54,7 +55,11 @@ class SceneFiles {
             if (add(file) && std::is_same_v<decltype(s), const ObjSource&>) add_materials(file);
           if constexpr (WithMaterial<decltype(s)>) add_material(s.material.file);
           if constexpr (WithLeafAngles<decltype(s)>) add(s.leaf_angles);
-          if constexpr (WithClasses<decltype(s)>) add(s.classes);
+          if constexpr (WithClasses<decltype(s)>) {
+            add(s.classes);
+            for (const std::filesystem::path& file : s.files) add(io::world_file_of(file));
+            add(io::world_file_of(s.classes));
+          }
         },
         source);
   }

@@ -396,6 +396,18 @@ TEST_CASE("a raster of heights may be of tiles, and have one of classes") {
   CHECK_FALSE(raster.mosaic);
   CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="mosaic" value="true"/>)", raster).empty());
   CHECK(raster.mosaic);
+  CHECK_FALSE(raster.height_scale);
+  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="classcolours" value="true"/>
+      <param key="heightScale" value="0.01"/><param key="heightOffset" value="-50"/><param key="noDataValue" value="-9999"/>
+      <param key="pixelSize" value="2"/>)",
+                    raster)
+            .empty());
+  CHECK(raster.class_colours);
+  CHECK(raster.height_scale == 0.01);
+  CHECK(raster.height_offset == -50);
+  CHECK(raster.missing == -9999);
+  CHECK(raster.pixel_size == 2);
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="heightScale" value="0"/>)", raster), "from "));
   CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="classfile" value="no.tif"/>)", raster),
                  "does not exist"));
 }

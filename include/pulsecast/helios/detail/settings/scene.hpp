@@ -47,12 +47,22 @@ struct ObjSource {
 
 /// Elevation raster: filter `geotiffloader`.
 struct GeoTiffSource {
-  std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name; `.asc` is an Esri ASCII grid
+  std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name: `.asc` and `.png` tell other formats
   MaterialSource material{};                   ///< that of pixels without a class
   bool mosaic = false;                         ///< true: the files are tiles of one raster. `mosaic`
   std::filesystem::path classes{};             ///< raster of classes, which choose materials; empty: none. `classfile`
+  bool class_colours = false;                  ///< true: its colour table colours the materials. `classcolours`
+  std::optional<double> height_scale{};        ///< metres per unit of height; by default that of the file [m]. `heightScale`
+  double height_offset = 0;                    ///< added to the heights [m]. `heightOffset`
+  std::optional<double> missing{};             ///< number of missing heights; by default that of the file. `noDataValue`
+  std::optional<double> pixel_size{};          ///< of PNG files without a world file [m]. `pixelSize`
 
-  void validate() const { material.validate(); }
+  void validate() const {
+    material.validate();
+    if (height_scale) require_within("GeoTiffSource::height_scale", *height_scale, 1e-9, 1e6, "m");
+    require_within("GeoTiffSource::height_offset", height_offset, -1e9, 1e9, "m");
+    if (pixel_size) require_within("GeoTiffSource::pixel_size", *pixel_size, 1e-6, 1e6, "m");
+  }
 
   bool operator==(const GeoTiffSource&) const = default;
 };

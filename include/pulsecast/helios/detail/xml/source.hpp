@@ -72,6 +72,11 @@ void fields(Io& io, Of<Io, GeoTiffSource>& source) {
   fields(io, source.material);
   io.flag("mosaic", source.mosaic);
   io.file("classfile", source.classes);
+  io.flag("classcolours", source.class_colours);
+  io.number("heightScale", source.height_scale, units::metre, 1e-9, 1e6);
+  io.number("heightOffset", source.height_offset, units::metre, -1e9, 1e9);
+  io.number("noDataValue", source.missing, units::one, -1e300, 1e300);
+  io.number("pixelSize", source.pixel_size, units::metre, 1e-6, 1e6);
 }
 
 template <class Io>

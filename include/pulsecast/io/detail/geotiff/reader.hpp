@@ -20,6 +20,7 @@
 #include <tiffio.h>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/io/detail/geotiff/colour_table.hpp>
 #include <pulsecast/io/detail/geotiff/georeference.hpp>
 #include <pulsecast/io/detail/geotiff/raster_layout.hpp>
 #include <pulsecast/io/detail/geotiff/samples.hpp>
@@ -121,7 +122,7 @@ class GeoTiffReader {
     for (std::uint32_t r = 0; westward_ && r < layout_.rows; ++r) std::reverse(row(r), row(r + 1));
     if (there_ == 0) file_.fail("has no height: expected at least one pixel with a height");
     if (strange_ > 0) file_.warn(std::to_string(strange_) + " values beyond 1e15 m, or infinite, count as missing");
-    return {.raster = std::move(raster_), .epsg = epsg_, .warnings = file_.take_warnings()};
+    return {.raster = std::move(raster_), .epsg = epsg_, .colours = colour_table(file_), .warnings = file_.take_warnings()};
   }
 
   /// Reads strip by strip, or rows of tiles; the raster grows meanwhile.

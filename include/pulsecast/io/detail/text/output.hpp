@@ -60,6 +60,12 @@ class TextOutput {
     return *this;
   }
 
+  /// Adds a word without blanks.
+  TextOutput& word(std::string_view word) {
+    row_.add(word);
+    return *this;
+  }
+
   void end_row() {
     file_.write(row_.end());
     ++rows_;

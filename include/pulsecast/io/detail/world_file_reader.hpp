@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_WORLD_FILE_READER_HPP
+#define PULSECAST_IO_DETAIL_WORLD_FILE_READER_HPP
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/text/table.hpp>
+#include <pulsecast/io/world_file.hpp>
+
+/// Reading of world files.
+namespace PULSECAST_NAMESPACE::io {
+
+PULSECAST_INLINE WorldFile read_world_file(const std::filesystem::path& path) {
+  TextTable table(path, "a world file of six lines");
+  std::array<double, 6> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!table.next()) table.fail("ends after " + std::to_string(i) + " numbers: expected six, a line each");
+    const std::optional<double> value = text::finite_number_in(table.text());
+    if (!value) table.fail_here(text::quoted(table.text()) + ": expected a number, with a decimal point");
+    const bool is_place = i >= 4, is_size = i == 0 || i == 3;
+    if (is_place && !(std::fabs(*value) <= 1e15)) table.fail_here(text::quoted(table.text()) + ": expected a place within 1e15 m");
+    if (is_size && !(std::fabs(*value) >= 1e-9 && std::fabs(*value) <= 1e6))
+      table.fail_here(text::quoted(table.text()) + ": expected the size of a pixel, from 1e-9 m to 1e6 m");
+    if (i == 0 && *value < 0) table.fail_here("has columns that go west: expected a positive width of the pixels");
+    if (!is_place && !is_size && *value != 0) table.fail_here("is rotated or sheared: expected 0; resampling to north up makes it so");
+    values[i] = *value;
+  }
+  if (table.next()) table.fail_here("is a line too many: expected six");
+  return {.first = {values[4], values[5]}, .step = {values[0], values[3]}};
+}
+
+PULSECAST_INLINE std::filesystem::path world_file_of(const std::filesystem::path& picture) {
+  const std::string extension = picture.extension().string();
+  std::filesystem::path beside = picture;
+  std::error_code ignored;
+  if (extension.size() >= 3)
+    for (const bool is_upper : {false, true}) {
+      const std::string w(1, is_upper ? 'W' : 'w');
+      for (const std::string& name :
+           {extension.substr(0, 2) + extension.back() + w, extension + w, std::string(is_upper ? ".WLD" : ".wld")})
+        if (std::filesystem::exists(beside.replace_extension(name), ignored)) return beside;
+    }
+  return {};
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
+#endif

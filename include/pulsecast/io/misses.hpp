@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_MISSES_HPP
+#define PULSECAST_IO_MISSES_HPP
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/require.hpp>
+#include <pulsecast/concepts.hpp>
+#include <pulsecast/echo.hpp>
+#include <pulsecast/io/detail/text/output.hpp>
+#include <pulsecast/io/output_file.hpp>
+#include <pulsecast/io/text_files.hpp>
+
+/// Pulses without echoes: as points, and as a table.
+namespace PULSECAST_NAMESPACE::io {
+
+/// Settings of points for pulses without echoes.
+struct MissSettings {
+  double range = 1000;                ///< distance of the points along the beam [m]
+  std::uint16_t classification = 64;  ///< class of the points. Source of the default: LAS 1.4 R15, table 17, first class of a user
+  ObjectId object = 0;                ///< object number of the points
+
+  void validate() const { require_within("MissSettings::range", range, 0, 1e9, "m"); }
+};
+
+/// Adds a point to each pulse of a batch that was sent and has no echo: at a set range along the beam, with amplitude and reflectance 0 and
+/// a class of its own, as return 1 of 1. Such a shot keeps its fate, which is not `Fate::returned`; shots with echoes, waveforms and
+/// recorded subrays stay as they are.
+class MissPoints {
+ public:
+  /// @throws SettingError for settings out of range
+  explicit MissPoints(const MissSettings& settings = {}) : settings_(validated(settings)) {}
+
+  /// Batch with the points, valid until the next call, and as long as the other one. Errors: std::bad_alloc.
+  [[nodiscard]] EchoBatch operator()(const EchoBatch& batch) {
+    shots_.assign(batch.shots.begin(), batch.shots.end());
+    echoes_.clear();
+    for (Shot& shot : shots_) {
+      const auto own = batch.echoes_of(shot);
+      shot.first_echo = static_cast<std::uint32_t>(echoes_.size());
+      echoes_.insert(echoes_.end(), own.begin(), own.end());
+      if (!own.empty()) continue;
+      echoes_.push_back({.range = settings_.range, .object = settings_.object, .classification = settings_.classification});
+      shot.echoes = 1;
+    }
+    EchoBatch all = batch;
+    all.shots = shots_;
+    all.echoes = echoes_;
+    return all;
+  }
+
+ private:
+  MissSettings settings_;
+  std::vector<Shot> shots_;
+  std::vector<Echo> echoes_;
+};
+
+/// Sink that must be closed.
+template <class S>
+concept ClosableSink = requires(S& sink) {
+  sink.close();
+};
+
+/// Sink around another, which gets a point for each pulse without echoes, too: see `MissPoints`. `Sink` may be a reference.
+template <class Sink>
+requires EchoSink<std::remove_reference_t<Sink>>
+class WithMisses {
+ public:
+  /// @throws SettingError for settings out of range
+  explicit WithMisses(Sink sink, const MissSettings& settings = {}) : sink_(std::forward<Sink>(sink)), points_(settings) {}
+
+  void operator()(const EchoBatch& batch) { sink_(points_(batch)); }
+
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return true; }  ///< as the concept ChoosesShots describes
+
+  /// Closes the other sink.
+  void close() requires ClosableSink<std::remove_reference_t<Sink>> { sink_.close(); }
+
+  [[nodiscard]] const std::remove_reference_t<Sink>& sink() const noexcept { return sink_; }  ///< the other sink
+
+ private:
+  Sink sink_;
+  MissPoints points_;
+};
+template <class Sink>
+WithMisses(Sink&&, MissSettings) -> WithMisses<std::remove_cvref_t<Sink>>;
+template <class Sink>
+WithMisses(Sink&&) -> WithMisses<std::remove_cvref_t<Sink>>;
+
+/// Name of a fate.
+[[nodiscard]] constexpr std::string_view name_of(Fate fate) noexcept {
+  constexpr std::array<std::string_view, fate_count> names{"returned", "blocked", "missed", "out_of_range", "below_threshold", "absorbed"};
+  return names[static_cast<std::size_t>(fate)];
+}
+
+/// Writes the pulses that were sent and gave no echo as text, one a line, in these columns, separated by blanks, without a header line:
+///
+///     pulseIndex time ox oy oz dx dy dz fate leg deviceIndex
+///
+/// pulseIndex: slot, the fullwaveIndex of points and waveforms; time: departure [s], 9 decimals; ox, oy, oz: origin [m], 4 decimals; dx,
+/// dy, dz: unit direction, 9 decimals; fate: `missed`, `out_of_range`, `below_threshold` or `absorbed`, see `Fate`; leg and deviceIndex
+/// (emitter), from 0. Pulses blocked by the optic were never sent, and have no line.
+/// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+class MissTextWriter {
+ public:
+  /// Opens the file. @throws SettingError for settings out of range @throws FileError
+  explicit MissTextWriter(std::filesystem::path path, const TextFileSettings& settings = {})
+      : MissTextWriter(OutputFile(std::move(path)), settings) {}
+  /// Writes to an open file, which may be a compressing one: see `gzip_file`.
+  explicit MissTextWriter(OutputFile file, const TextFileSettings& settings = {})
+      : settings_(validated(settings)), text_(std::move(file)) {}
+
+  void operator()(const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots)
+      if (shot.fate != Fate::returned) write(shot);
+  }
+
+  [[nodiscard]] static bool reads_empty_shots() noexcept { return true; }  ///< as the concept ChoosesShots describes
+  void close() { text_.close(); }
+
+ private:
+  void write(const Shot& shot) {
+    text_.wholes(shot.index).reals(9, settings_.start_time + shot.tick.seconds());
+    text_.vector("the origin of a pulse", shot.origin, 4).vector("the direction of a pulse", shot.direction, 9);
+    text_.word(name_of(shot.fate)).wholes(shot.leg, shot.channel).end_row();
+  }
+
+  TextFileSettings settings_;
+  TextOutput text_;
+};
+static_assert(EchoSink<MissTextWriter> && EchoSink<WithMisses<XyzWriter>> && EchoSink<WithMisses<XyzWriter&>>);
+
+}  // namespace PULSECAST_NAMESPACE::io
+
+#endif
