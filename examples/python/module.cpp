@@ -301,9 +301,10 @@ void bind_simulation(py::module_& m) {
           "triangles", [](const Simulation& s) { return s.scene().triangles; }, "Number of triangles in the scene.")
       .def_property_readonly(
           "memory", [](const Simulation& s) { return s.scene().memory; }, "Memory of the scene [byte].");
-  python::bind_run(simulation, [](const Simulation& s) {
+  const auto runner = [](const Simulation& s) {
     return [&s](const RunOptions& options, const auto& sink) { return s.run(options, [&](const EchoBatch& batch) { sink(batch); }); };
-  });
+  };
+  python::bind_run(simulation, runner, [](const Simulation&) { return python::PointExtras{}; });
 }
 
 }  // namespace
