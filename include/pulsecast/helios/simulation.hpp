@@ -20,6 +20,7 @@
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/run.hpp>
 #include <pulsecast/scene/material.hpp>
+#include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
@@ -60,9 +61,10 @@ class Simulation {
  public:
   /// Triangles of one material, in addition to the survey's own parts.
   struct Mesh {
-    MeshData data{};      ///< triangles, in the world [m]
-    Material material{};  ///< material of all triangles
-    ObjectId object = 0;  ///< object number of its points
+    MeshData data{};          ///< triangles, in the world [m]
+    Material material{};      ///< material of all triangles
+    ObjectId object = 0;      ///< object number of its points
+    Attributes attributes{};  ///< named numbers of its points; empty without
   };
 
   /// Options of a simulation.
