@@ -62,7 +62,7 @@ void warn(const std::vector<std::string>& warnings) {
 
 /// What a mesh looks like, and what its points are told.
 struct MeshLooks {
-  Vec3 colour{1, 1, 1};
+  std::optional<std::array<double, 3>> colour{};
   std::optional<py::array_t<std::uint8_t, py::array::c_style>> picture{};
   std::optional<std::map<std::string, double>> attributes{};
 };
@@ -80,7 +80,7 @@ std::shared_ptr<const Image> picture_of(const py::array_t<std::uint8_t, py::arra
 }
 
 void set_looks(const MeshLooks& looks, Simulation::Mesh& mesh) {
-  mesh.material.colour = looks.colour;
+  if (looks.colour) mesh.material.colour = {(*looks.colour)[0], (*looks.colour)[1], (*looks.colour)[2]};
   if (looks.picture) mesh.material.picture = picture_of(*looks.picture);
   std::vector<Attribute> all;
   for (const auto& [name, value] : looks.attributes.value_or(std::map<std::string, double>())) all.push_back({name, value});
@@ -91,7 +91,8 @@ void set_looks(const MeshLooks& looks, Simulation::Mesh& mesh) {
 Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices, const py::object& triangles_given,
                          ObjectId object, double reflectance, std::uint16_t classification, bool ground,
                          const std::optional<python::NumberArray>& texture, const std::optional<SmoothInterface>& smooth,
-                         const std::array<double, 3>& colour, std::optional<py::array_t<std::uint8_t, py::array::c_style>> picture,
+                         const std::optional<std::array<double, 3>>& colour,
+                         std::optional<py::array_t<std::uint8_t, py::array::c_style>> picture,
                          std::optional<std::map<std::string, double>> attributes) {
   const auto require_rows_of_three = [](const py::array& array, const std::string& field) {
     if (array.ndim() != 2) throw SettingError(field + " (dimensions)", static_cast<double>(array.ndim()), "", "2: shape (n, 3)");
@@ -106,7 +107,7 @@ Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::arra
   const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles(numbers);
   Simulation::Mesh mesh{.material = {.reflectance = reflectance, .classification = classification, .ground = ground}, .object = object};
   if (smooth) mesh.material.smooth = *smooth;
-  set_looks({{colour[0], colour[1], colour[2]}, std::move(picture), std::move(attributes)}, mesh);
+  set_looks({colour, std::move(picture), std::move(attributes)}, mesh);
   mesh.material.validate();
   for (py::ssize_t i = 0; i < vertices.shape(0); ++i)
     mesh.data.vertices.push_back({vertices.at(i, 0), vertices.at(i, 1), vertices.at(i, 2)});
@@ -270,8 +271,8 @@ void bind_mesh(py::module_& m) {
   py::class_<Simulation::Mesh>(m, "Mesh", "Triangles in the scene, in addition to the survey's own parts.")
       .def(
           py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
-          "ground"_a = false, "texture"_a = py::none(), "smooth"_a = py::none(), "colour"_a = std::array{1.0, 1.0, 1.0},
-          "picture"_a = py::none(), "attributes"_a = py::none(),
+          "ground"_a = false, "texture"_a = py::none(), "smooth"_a = py::none(), "colour"_a = py::none(), "picture"_a = py::none(),
+          "attributes"_a = py::none(),
           "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), vertex indices from 0; object: object id of its "
           "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry platforms; "
           "texture: shape (m, 3, 2), texture coordinates of the corners, which ray queries interpolate; "
