@@ -20,7 +20,8 @@
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/run.hpp>
 #include <pulsecast/scene/material.hpp>
-#include <pulsecast/scene/part.hpp>
+#include <pulsecast/scene/object_attributes.hpp>
+#include <pulsecast/scene/point_colour.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
@@ -132,6 +133,10 @@ class Simulation {
   [[nodiscard]] virtual const CompiledSurvey& compiled() const = 0;
   /// Size of the current scene.
   [[nodiscard]] virtual Scene scene() const = 0;
+  /// Named numbers of the objects of the current scene. @throws SettingError if two parts of one object have different ones
+  [[nodiscard]] virtual ObjectAttributes attributes() const = 0;
+  /// Colours of points of the current scene, by one more ray a point; valid until `begin`.
+  [[nodiscard]] virtual PointColours colours() const = 0;
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;  ///< warnings of scene, legs and receivers, each once
 
   /// Simulates the pulses as `pulsecast::run` does. The sink gets the echoes in the order of their pulses.

@@ -189,6 +189,9 @@ class LoadedSimulation final : public Simulation {
     return out;
   }
 
+  [[nodiscard]] ObjectAttributes attributes() const override { return ObjectAttributes(scene_->parts()); }
+  [[nodiscard]] PointColours colours() const override { return colours_of(*scene_); }
+
   RunSummary run(const RunOptions& options, const Sink& sink) const override { return pulsecast::run(*pipeline_, options, sink); }
 
   void receive(const Receiving& how) override {
