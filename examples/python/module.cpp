@@ -4,9 +4,12 @@
 // The Python module `pulsecast`: surveys as people describe them, run as the survey program runs them. Pipelines of one's own are for
 // `bind_survey`; see `own_scanner.cpp`.
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,10 +60,40 @@ void warn(const std::vector<std::string>& warnings) {
     if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
+/// What a mesh looks like, and what its points are told.
+struct MeshLooks {
+  std::optional<std::array<double, 3>> colour{};
+  std::optional<py::array_t<std::uint8_t, py::array::c_style>> picture{};
+  std::optional<std::map<std::string, double>> attributes{};
+};
+
+/// Picture of an array of shape (rows, columns) or (rows, columns, channels), from the top.
+std::shared_ptr<const Image> picture_of(const py::array_t<std::uint8_t, py::array::c_style>& array) {
+  if (array.ndim() != 2 && array.ndim() != 3)
+    throw SettingError("Mesh::picture (dimensions)", static_cast<double>(array.ndim()), "", "2 or 3: shape (rows, columns, channels)");
+  const auto size = [](py::ssize_t count) { return static_cast<std::uint32_t>(std::min<py::ssize_t>(count, 1'000'000)); };
+  const std::vector<std::uint8_t> samples(array.data(), array.data() + array.size());
+  auto picture = std::make_shared<const Image>(
+      Image{size(array.shape(1)), size(array.shape(0)), array.ndim() == 2 ? 1 : size(array.shape(2)), samples});
+  picture->validate();
+  return picture;
+}
+
+void set_looks(const MeshLooks& looks, Simulation::Mesh& mesh) {
+  if (looks.colour) mesh.material.colour = {(*looks.colour)[0], (*looks.colour)[1], (*looks.colour)[2]};
+  if (looks.picture) mesh.material.picture = picture_of(*looks.picture);
+  std::vector<Attribute> all;
+  for (const auto& [name, value] : looks.attributes.value_or(std::map<std::string, double>())) all.push_back({name, value});
+  if (!all.empty()) mesh.attributes = attributes(std::move(all));
+}
+
 /// Triangles of arrays, with one material.
 Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices, const py::object& triangles_given,
                          ObjectId object, double reflectance, std::uint16_t classification, bool ground,
-                         const std::optional<python::NumberArray>& texture, const std::optional<SmoothInterface>& smooth) {
+                         const std::optional<python::NumberArray>& texture, const std::optional<SmoothInterface>& smooth,
+                         const std::optional<std::array<double, 3>>& colour,
+                         std::optional<py::array_t<std::uint8_t, py::array::c_style>> picture,
+                         std::optional<std::map<std::string, double>> attributes) {
   const auto require_rows_of_three = [](const py::array& array, const std::string& field) {
     if (array.ndim() != 2) throw SettingError(field + " (dimensions)", static_cast<double>(array.ndim()), "", "2: shape (n, 3)");
     if (array.shape(1) != 3) throw SettingError(field + " (columns)", static_cast<double>(array.shape(1)), "", "3: shape (n, 3)");
@@ -74,6 +107,7 @@ Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::arra
   const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> triangles(numbers);
   Simulation::Mesh mesh{.material = {.reflectance = reflectance, .classification = classification, .ground = ground}, .object = object};
   if (smooth) mesh.material.smooth = *smooth;
+  set_looks({colour, std::move(picture), std::move(attributes)}, mesh);
   mesh.material.validate();
   for (py::ssize_t i = 0; i < vertices.shape(0); ++i)
     mesh.data.vertices.push_back({vertices.at(i, 0), vertices.at(i, 1), vertices.at(i, 2)});
@@ -107,7 +141,8 @@ std::unique_ptr<RaycastingScene> raycasting_scene_of(const std::vector<Simulatio
   for (const Simulation::Mesh& mesh : meshes)
     parts.push_back({.geometry = std::make_shared<const TriangleMesh<>>(mesh.data, threads),
                      .materials = material_table({mesh.material}),
-                     .object = mesh.object});
+                     .object = mesh.object,
+                     .attributes = mesh.attributes});
   return std::make_unique<RaycastingScene>(std::move(parts));
 }
 
@@ -234,12 +269,16 @@ void bind_light(py::module_& m) {
 
 void bind_mesh(py::module_& m) {
   py::class_<Simulation::Mesh>(m, "Mesh", "Triangles in the scene, in addition to the survey's own parts.")
-      .def(py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
-           "ground"_a = false, "texture"_a = py::none(), "smooth"_a = py::none(),
-           "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), vertex indices from 0; object: object id of its "
-           "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry platforms; "
-           "texture: shape (m, 3, 2), texture coordinates of the corners, which ray queries interpolate; "
-           "smooth: SmoothInterface that passes light on, in a simulation with light_paths.")
+      .def(
+          py::init(&mesh_of), "vertices"_a, "triangles"_a, "object"_a = 0, "reflectance"_a = 0.5, "classification"_a = 0,
+          "ground"_a = false, "texture"_a = py::none(), "smooth"_a = py::none(), "colour"_a = py::none(), "picture"_a = py::none(),
+          "attributes"_a = py::none(),
+          "vertices: shape (n, 3) [m, world]; triangles: shape (m, 3), vertex indices from 0; object: object id of its "
+          "points; reflectance: Lambertian, in [0, 1]; classification: ASPRS class; ground: True if it may carry platforms; "
+          "texture: shape (m, 3, 2), texture coordinates of the corners, which ray queries interpolate; "
+          "smooth: SmoothInterface that passes light on, in a simulation with light_paths; colour: red, green and blue of its points, in "
+          "[0, 1]; picture: array of uint8, shape (rows, columns) or (rows, columns, channels), from the top, by which texture coordinates "
+          "multiply the colour; attributes: named numbers of its points, as in {'age': 80}.")
       .def_property_readonly(
           "size", [](const Simulation::Mesh& mesh) { return mesh.data.triangles.size(); }, "Number of triangles.")
       .def("__repr__", [](const Simulation::Mesh& mesh) {
@@ -301,9 +340,10 @@ void bind_simulation(py::module_& m) {
           "triangles", [](const Simulation& s) { return s.scene().triangles; }, "Number of triangles in the scene.")
       .def_property_readonly(
           "memory", [](const Simulation& s) { return s.scene().memory; }, "Memory of the scene [byte].");
-  python::bind_run(simulation, [](const Simulation& s) {
+  const auto runner = [](const Simulation& s) {
     return [&s](const RunOptions& options, const auto& sink) { return s.run(options, [&](const EchoBatch& batch) { sink(batch); }); };
-  });
+  };
+  python::bind_run(simulation, runner, [](const Simulation& s) { return python::PointExtras{s.colours(), s.attributes()}; });
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ std::string header(const std::string& count, const std::string& properties) {
 TEST_CASE("colours and attributes are properties, colours by the names and in the type that readers know") {
   std::vector<Scene<TriangleMesh<>>::Part> trees(1);
   trees[0].object = 70'000;
-  trees[0].attributes = {{"age", 80.5}, {"leaf", 1}};
+  trees[0].attributes = pulsecast::attributes({{"age", 80.5}, {"leaf", 1}});
   const ObjectAttributes attributes{std::span(std::as_const(trees))};
   const auto colour = [](const EchoBatch&, const Shot&, const Echo& echo) {
     return PointColour{static_cast<std::uint16_t>(257 * echo.number), 65535, 0};

@@ -251,7 +251,7 @@ TEST_CASE("colours are asked for only if the layout has them") {
 TEST_CASE("attributes of a point's object are in the fields of their names, in any type, and NaN or 0 where it has none") {
   std::vector<Scene<TriangleMesh<>>::Part> trees(1);
   trees[0].object = 9;
-  trees[0].attributes = {{"age", 80.25}, {"species", 3}};
+  trees[0].attributes = pulsecast::attributes({{"age", 80.25}, {"species", 3}});
   const ObjectAttributes attributes{std::span(std::as_const(trees))};
   const TwoEchoes two;
   PointBuffer points(PointLayout::packed({{"species", FieldType::uint8, PointQuantity::attribute},

@@ -7,11 +7,17 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
+
+#include <pulsecast/scene/scene.hpp>
+#include <pulsecast/scene/triangle_mesh.hpp>
 
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
@@ -44,6 +50,32 @@ TEST_CASE("a point is a line of eleven columns") {
   CHECK(points_of(folder, {shot}, {first, second}, {.start_time = 1000}) ==
         "100.0000 200.0000 39.9998 2.5000 1.2500 1 2 41 12 5 1007.250000000\n"
         "100.0000 200.0000 0.0000 0.1000 0.0000 2 2 41 3 2 1007.250000000\n");
+}
+
+TEST_CASE("colours and attributes are further columns of a point, in this order, and nan where they are unknown") {
+  const TemporaryFolder folder;
+  std::vector<Scene<TriangleMesh<>>::Part> trees(1);
+  trees[0].object = 12;
+  trees[0].attributes = pulsecast::attributes({{"age", 80.125}, {"species", 3}, {"share", 0.1}});
+  const PointTextColumns more{.colours = [](const EchoBatch&, const Shot&, const Echo& echo) -> std::optional<PointColour> {
+                                if (echo.number == 2) return std::nullopt;
+                                return PointColour{65535, 257 * 128, 899, 0};  // 899 / 257 is 3.498
+                              },
+                              .attributes = ObjectAttributes{std::span(std::as_const(trees))}};
+  const std::vector<Shot> shots{{.tick = {7, 0.25}, .direction = {0, 0, -1}, .echoes = 2}};
+  const std::vector<Echo> echoes{{.range = 10, .object = 12}, {.range = 20, .object = 3, .number = 2}};
+  const auto written = [&](const PointTextColumns& columns) {
+    XyzWriter writer(folder / "points.xyz", {}, columns);
+    writer(EchoBatch{shots, echoes, {}, 0});
+    writer.close();
+    return content(folder / "points.xyz");
+  };
+  const std::string first = "0.0000 0.0000 -10.0000 0.0000 0.0000 1 2 0 12 0 7.250000000";
+  const std::string second = "0.0000 0.0000 -20.0000 0.0000 0.0000 2 2 0 3 0 7.250000000";
+  CHECK(written({}) == first + '\n' + second + '\n');
+  CHECK(written({.colours = more.colours}) == first + " 255 128 3\n" + second + " nan nan nan\n");
+  CHECK(written({.attributes = more.attributes}) == first + " 80.125 3 0.1\n" + second + " nan nan nan\n");
+  CHECK(written(more) == first + " 255 128 3 80.125 3 0.1\n" + second + " nan nan nan nan nan nan\n");
 }
 
 TEST_CASE("pulses without echoes make no lines, and no points make an empty file") {

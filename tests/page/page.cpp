@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/page/page.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -20,8 +21,8 @@ namespace {
 const support::TemporaryFolder folder;
 const std::filesystem::path path = folder.path() / "page.html";
 
-/// Gives n shots of one echo each.
-void give(PageWriter& writer, std::size_t n, std::size_t a_batch) {
+/// Gives n shots of one echo each to a sink.
+void give(auto& writer, std::size_t n, std::size_t a_batch) {
   for (std::size_t begin = 0; begin < n; begin += a_batch) {
     std::vector<Shot> shots;
     std::vector<Echo> echoes;
@@ -101,6 +102,19 @@ TEST_CASE("the same echoes give the same bytes, however they come") {
   CHECK(page_of({}, settings, 5000, 17) == html);
   CHECK(page_of({}, settings, 5000, 5000) == html);
   CHECK(page_of({}, {.points_max = 999}) != html);
+}
+
+TEST_CASE("a page has the colours of its points, if its settings have them") {
+  const PointColours colours = [](const EchoBatch&, const Shot& shot, const Echo&) {
+    return PointColour{.red = static_cast<std::uint16_t>(shot.index * 10), .green = 257, .blue = 65535};
+  };
+  const std::string plain = page_of({}, {.points_max = 1000}), coloured = page_of({}, {.points_max = 1000, .colours = colours});
+  PageSample sample(1000, colours);
+  give(sample, 5000, 1000);
+  const std::string points = base64(page_columns(sample.points()));
+  CHECK(count(coloured, points) == 1);
+  CHECK(count(plain, points) == 0);
+  CHECK(coloured.size() > plain.size());
 }
 
 TEST_CASE("no points give a page as well, and without close there is none") {

@@ -139,6 +139,20 @@ TEST_CASE("news are what came since, and how far the run is") {
   CHECK(has(news(a, "run=2&after=1009"), "\"more\":true"));
 }
 
+TEST_CASE("points have colours in every run of a server that has them") {
+  const auto red = [](const EchoBatch&, const Shot&, const Echo&) { return PointColour{.red = 65535}; };
+  PageServer server({}, {.colours = red}), plain;
+  for (int run = 0; run < 2; ++run) {
+    server.begin({});
+    give(server, 0, 10);
+    const Address a(server.address());
+    CHECK(has(body(ask(a, "GET", a.path + "points?run=&after=")), "\"name\":\"colour\""));
+  }
+  give(plain, 0, 10);
+  const Address a(plain.address());
+  CHECK_FALSE(has(body(ask(a, "GET", a.path + "points?run=&after=")), "\"name\":\"colour\""));
+}
+
 TEST_CASE("whoever watches gets the end, and nobody is waited for who does not") {
   PageServer server;
   const auto began = std::chrono::steady_clock::now();

@@ -26,9 +26,9 @@ namespace {
 using Map = Scene<TriangleMesh<>>;
 
 /// Triangle of an object with attributes.
-Map::Part part(ObjectId object, std::vector<Attribute> attributes) {
+Map::Part part(ObjectId object, std::vector<Attribute> all) {
   static const auto triangle = std::make_shared<const TriangleMesh<>>(MeshData{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
-  return {.geometry = triangle, .object = object, .attributes = std::move(attributes)};
+  return {.geometry = triangle, .object = object, .attributes = all.empty() ? Attributes{} : attributes(std::move(all))};
 }
 
 std::vector<double> values_of(const ObjectAttributes& all, ObjectId object) {
@@ -40,33 +40,33 @@ std::vector<double> values_of(const ObjectAttributes& all, ObjectId object) {
 
 TEST_CASE("an object has the attributes of its parts, in the order of their first use in the scene") {
   const Map scene({part(7, {{"species", 3}, {"age", 120}}), part(2, {{"leaf", 1}, {"age", 8.5}}), part(9, {})});
-  const ObjectAttributes attributes(scene.parts());
-  REQUIRE(attributes.names() == std::vector<std::string>{"species", "age", "leaf"});
-  CHECK_FALSE(attributes.empty());
-  CHECK(attributes.of(7)[0] == 3);
-  CHECK(attributes.of(7)[1] == 120);
-  CHECK(std::isnan(attributes.of(7)[2]));
-  CHECK(std::isnan(attributes.of(2)[0]));
-  CHECK(attributes.of(2)[1] == 8.5);
-  CHECK(attributes.of(2)[2] == 1);
+  const ObjectAttributes known(scene.parts());
+  REQUIRE(known.names() == std::vector<std::string>{"species", "age", "leaf"});
+  CHECK_FALSE(known.empty());
+  CHECK(known.of(7)[0] == 3);
+  CHECK(known.of(7)[1] == 120);
+  CHECK(std::isnan(known.of(7)[2]));
+  CHECK(std::isnan(known.of(2)[0]));
+  CHECK(known.of(2)[1] == 8.5);
+  CHECK(known.of(2)[2] == 1);
 }
 
 TEST_CASE("objects without attributes, and those that no part has, have NaN for each name") {
   const std::vector<Map::Part> parts{part(5, {{"age", 1}}), part(8, {})};
-  const ObjectAttributes attributes{std::span(std::as_const(parts))};
+  const ObjectAttributes known{std::span(std::as_const(parts))};
   for (const ObjectId object : {0u, 4u, 6u, 8u, std::numeric_limits<ObjectId>::max()}) {
     CAPTURE(object);
-    REQUIRE(attributes.of(object).size() == 1);
-    CHECK(std::isnan(attributes.of(object)[0]));
+    REQUIRE(known.of(object).size() == 1);
+    CHECK(std::isnan(known.of(object)[0]));
   }
 }
 
 TEST_CASE("scenes without attributes have no names, and no values of any object") {
   const std::vector<Map::Part> parts{part(5, {})};
-  for (const ObjectAttributes& attributes : {ObjectAttributes(), ObjectAttributes(std::span(std::as_const(parts)))}) {
-    CHECK(attributes.empty());
-    CHECK(attributes.names().empty());
-    CHECK(attributes.of(5).empty());
+  for (const ObjectAttributes& known : {ObjectAttributes(), ObjectAttributes(std::span(std::as_const(parts)))}) {
+    CHECK(known.empty());
+    CHECK(known.names().empty());
+    CHECK(known.of(5).empty());
   }
 }
 
@@ -93,12 +93,20 @@ TEST_CASE("several parts of an object give it all their attributes, and may repe
 TEST_CASE("of very many objects, each has its own values") {
   std::vector<Map::Part> parts;
   for (ObjectId n = 0; n < 1000; ++n) parts.push_back(part(n * 2654435761u, {{"number", 1.0 * n}, {n % 2 == 0 ? "even" : "odd", 1}}));
-  const ObjectAttributes attributes{std::span(std::as_const(parts))};
-  REQUIRE(attributes.names().size() == 3);
+  const ObjectAttributes known{std::span(std::as_const(parts))};
+  REQUIRE(known.names().size() == 3);
   for (ObjectId n = 0; n < 1000; ++n) {
-    const std::vector<double> values = values_of(attributes, n * 2654435761u);
+    const std::vector<double> values = values_of(known, n * 2654435761u);
     CHECK(values[0] == n);
     CHECK(std::isnan(values[n % 2 == 0 ? 2 : 1]));
     CHECK(values[n % 2 == 0 ? 1 : 2] == 1);
   }
+}
+
+TEST_CASE("attributes without a name, and two of one name, are refused") {
+  const auto refused = [](std::vector<Attribute> all) { return refused_field([&] { (void)attributes(std::move(all)); }); };
+  CHECK(refused({}).empty());
+  CHECK(refused({{"age", 1}, {"Age", 1}}).empty());
+  CHECK(refused({{"", 1}}) == "Attribute::name (number of '')");
+  CHECK(refused({{"age", 1}, {"leaf", 1}, {"age", 1}}) == "Attribute::name (number of 'age')");
 }

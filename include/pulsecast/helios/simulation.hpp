@@ -62,9 +62,10 @@ class Simulation {
  public:
   /// Triangles of one material, in addition to the survey's own parts.
   struct Mesh {
-    MeshData data{};      ///< triangles, in the world [m]
-    Material material{};  ///< material of all triangles
-    ObjectId object = 0;  ///< object number of its points
+    MeshData data{};          ///< triangles, in the world [m]
+    Material material{};      ///< material of all triangles
+    ObjectId object = 0;      ///< object number of its points
+    Attributes attributes{};  ///< named numbers of its points; empty without
   };
 
   /// Options of a simulation.

@@ -6,11 +6,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/text/output.hpp>
 #include <pulsecast/io/output_file.hpp>
+#include <pulsecast/scene/object_attributes.hpp>
+#include <pulsecast/scene/point_colour.hpp>
 
 /// Text files of points, pulses, subrays and waveforms.
 namespace PULSECAST_NAMESPACE::io {
@@ -22,6 +26,12 @@ struct TextFileSettings {
   void validate() const { require_finite("TextFileSettings::start_time", start_time, "s"); }
 };
 
+/// Columns of a text file of points behind its own.
+struct PointTextColumns {
+  PointColours colours{};         ///< colours of echoes, as of `colours_of`; empty: no columns of colours
+  ObjectAttributes attributes{};  ///< attributes of objects, a column each
+};
+
 /// Writes points as text, one a line, in these columns, separated by blanks, without a header line:
 ///
 ///     x y z intensity echo_width returnNumber pulseReturnNumber fullwaveIndex hitObjectId classification gpsTime
@@ -29,18 +39,21 @@ struct TextFileSettings {
 /// x, y, z [m], intensity (amplitude of the echo [nW]) and echo_width [ns], nan if none was found, have 4 decimals; gpsTime [s] has 9. The
 /// others are integers: return number, returns of the pulse, index of the pulse, object, class.
 /// These are the columns of HELIOS++ point files, so that their readers work; only the unit of intensity is stated here.
+/// Further columns follow if they are asked for: red, green and blue, from 0 to 255, nan if unknown; and the attributes of the point's
+/// object in order of their names, in the shortest form that reads back the same, nan if it has none.
 /// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
 class XyzWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
-  explicit XyzWriter(std::filesystem::path path, const TextFileSettings& settings = {})
-      : settings_(validated(settings)), text_(OutputFile(std::move(path))) {}
+  explicit XyzWriter(std::filesystem::path path, const TextFileSettings& settings = {}, PointTextColumns more = {})
+      : settings_(validated(settings)), more_(std::move(more)), text_(OutputFile(std::move(path))) {}
   /// Writes to an open file.
-  explicit XyzWriter(OutputFile file, const TextFileSettings& settings = {}) : settings_(validated(settings)), text_(std::move(file)) {}
+  explicit XyzWriter(OutputFile file, const TextFileSettings& settings = {}, PointTextColumns more = {})
+      : settings_(validated(settings)), more_(std::move(more)), text_(std::move(file)) {}
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots) {
-      for (const Echo& echo : batch.echoes_of(shot)) write(shot, echo);
+      for (const Echo& echo : batch.echoes_of(shot)) write(batch, shot, echo);
     }
   }
 
@@ -48,14 +61,24 @@ class XyzWriter {
   void close() { text_.close(); }
 
  private:
-  void write(const Shot& shot, const Echo& echo) {
+  void write(const EchoBatch& batch, const Shot& shot, const Echo& echo) {
     constexpr double nano = 1e9;  // per unit
     text_.vector("the position of an echo", point_of(shot, echo), 4).reals(4, echo.amplitude * nano, echo.width * nano);
     text_.wholes(echo.number, shot.echoes, shot.index, echo.object, echo.classification);
-    text_.reals(9, settings_.start_time + shot.tick.seconds()).end_row();
+    text_.reals(9, settings_.start_time + shot.tick.seconds());
+    if (more_.colours) write_colour(more_.colours(batch, shot, echo));
+    for (const double value : more_.attributes.of(echo.object)) text_.shortest(value);
+    text_.end_row();
+  }
+
+  void write_colour(const std::optional<PointColour>& colour) {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    for (const auto channel : {&PointColour::red, &PointColour::green, &PointColour::blue})
+      text_.reals(0, colour ? 255 * ((*colour).*channel / 65535.0) : unknown);
   }
 
   TextFileSettings settings_;
+  PointTextColumns more_;
   TextOutput text_;
 };
 static_assert(EchoSink<XyzWriter>);

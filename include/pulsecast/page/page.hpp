@@ -22,6 +22,7 @@
 #include <pulsecast/page/detail/columns.hpp>
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/page/detail/sample.hpp>
+#include <pulsecast/scene/point_colour.hpp>
 #include <pulsecast/version.hpp>
 
 #if !__has_include(<pulsecast/page/detail/assets.hpp>)
@@ -68,6 +69,7 @@ struct PageSettings {
   std::size_t points_max = 1'000'000;  ///< from 2 to 2^27; larger clouds are thinned
   double position_step = 0;            ///< step of coordinates; 0: chosen from the extent by `page_step` [m]
   int effort = 6;                      ///< compression level, 1 to 9
+  PointColours colours{};              ///< colours of points, as of `colours_of`; empty: without
 
   void validate() const {
     require_within("PageSettings::points_max", static_cast<double>(points_max), 2, 134'217'728, "");
@@ -144,7 +146,10 @@ class PageWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError
   explicit PageWriter(std::filesystem::path path, PageSurvey survey = {}, const PageSettings& settings = {})
-      : settings_(validated(settings)), survey_(std::move(survey)), file_(std::move(path)), sample_(settings.points_max) {}
+      : settings_(validated(settings)),
+        survey_(std::move(survey)),
+        file_(std::move(path)),
+        sample_(settings.points_max, settings.colours) {}
 
   void operator()(const EchoBatch& batch) { sample_(batch); }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes

@@ -41,7 +41,7 @@ class PageServer {
  public:
   /// Throws a `std::runtime_error` if nothing can be served. `port` is 0 for any free one.
   explicit PageServer(PageSurvey survey = {}, const PageSettings& settings = {}, int port = 0)
-      : settings_(validated(settings)), token_(secret()), survey_(std::move(survey)), sample_(settings.points_max) {
+      : settings_(validated(settings)), token_(secret()), survey_(std::move(survey)), sample_(settings.points_max, settings.colours) {
     server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       if (is_ours(request)) return httplib::Server::HandlerResponse::Unhandled;
       response.status = 403;
@@ -79,7 +79,7 @@ class PageServer {
   void begin(PageSurvey survey) {
     const std::lock_guard lock(mutex_);
     survey_ = std::move(survey);
-    sample_ = PageSample(settings_.points_max);
+    sample_ = PageSample(settings_.points_max, settings_.colours);
     progress_ = {};
     state_ = "running";
     ++run_;

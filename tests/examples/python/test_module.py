@@ -189,6 +189,50 @@ def test_meshes_stand_beside_the_survey_s_own_parts(survey):
     assert np.abs(steep["reflectance"] / steep["cos_incidence"] - 0.25).max() < 0.01
 
 
+def test_meshes_and_parts_have_colours_and_attributes(survey):
+    survey.scene.parts[0].attributes = [pulsecast.AttributeSettings(name="age", value=80), pulsecast.AttributeSettings(name="leaf", value=1)]
+    wall = np.array([[-50, 3, -50], [50, 3, -50], [50, 3, 50], [-50, 3, 50]], float)
+    corners = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
+    red_and_blue = np.array([[[255, 0, 0], [0, 0, 255]]], np.uint8)  # from west to east
+    mesh = pulsecast.Mesh(wall, SQUARE[1], object=9, reflectance=0.25, texture=corners, picture=red_and_blue, colour=(1, 1, 0.2),
+                          attributes={"storeys": 4, "age": 12.5})
+    batch = simulation(survey, meshes=[mesh]).run(colours=True)
+    columns = batch.columns
+    assert list(columns)[-7:] == ["red", "green", "blue", "near_infrared", "age", "leaf", "storeys"]
+    of_mesh, west = columns["object"] == 9, columns["x"] < 0
+    assert min(of_mesh.sum(), (~of_mesh).sum(), (of_mesh & west).sum(), (of_mesh & ~west).sum()) > 100
+    assert (columns["age"] == np.where(of_mesh, 12.5, 80)).all()
+    assert (columns["storeys"][of_mesh] == 4).all() and np.isnan(columns["storeys"][~of_mesh]).all()
+    assert (columns["leaf"][~of_mesh] == 1).all() and np.isnan(columns["leaf"][of_mesh]).all()
+    assert (columns["red"][of_mesh] == np.where(west[of_mesh], 65535, 0)).mean() > 0.99  # footprints on the seam
+    assert (columns["blue"][of_mesh] == np.where(west[of_mesh], 0, 13107)).mean() > 0.99
+    assert (columns["near_infrared"][of_mesh] == round(0.25 * 65535)).mean() > 0.99
+
+
+@pytest.mark.parametrize(("asked", "error"), [
+    ({"colour": (1, 2, 1)}, ValueError), ({"colour": (1, 1)}, TypeError), ({"picture": np.zeros(4, np.uint8)}, ValueError),
+    ({"picture": np.zeros((2, 2, 5), np.uint8)}, ValueError), ({"picture": np.zeros((0, 2, 3), np.uint8)}, ValueError),
+    ({"picture": np.zeros((2, 2, 3))}, TypeError), ({"attributes": {"": 1}}, ValueError), ({"attributes": {"age": "old"}}, TypeError),
+    ({"attributes": {3: 3}}, TypeError),
+])
+def test_colours_and_attributes_that_cannot_be_are_refused(asked, error):
+    with pytest.raises(error):
+        pulsecast.Mesh(*SQUARE, **asked)
+
+
+def test_an_attribute_of_the_name_of_a_column_is_refused(survey):
+    mesh = pulsecast.Mesh(*SQUARE, object=9, attributes={"intensity": 4})
+    with pytest.raises(pulsecast.SettingError, match="intensity"):
+        simulation(survey, meshes=[mesh]).run()
+
+
+def test_points_by_column_are_those_of_the_rows(survey):
+    rows, columns = simulation(survey).run().points, simulation(survey).run(columns=True).columns
+    assert list(columns) == list(rows.dtype.names)
+    for name in rows.dtype.names:
+        assert columns[name].tobytes() == rows[name].tobytes(), name
+
+
 def test_a_mesh_that_passes_light_on_shows_ghosts(survey):
     survey.scene.parts = []
     for leg in survey.legs:

@@ -73,8 +73,8 @@ const open = async url => {
   await tell('Page.navigate', { url })
   await until('!!window.pulsecast', 'the page is read')
 }
-/// The pixels that are not the background, their mean brightness and how many colours they have.
-const seen = () => page(`(() => {
+/// The pixels that are not the background, or, if colours are given, have one of these; their share, and how many colours they have.
+const seen = known => page(`((known) => {
   pulsecast.view.drawFrame(performance.now())  // what WebGL has shown before is gone
   const { canvas } = pulsecast.view, copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d')
   copy.drawImage(canvas, 0, 0)
@@ -83,11 +83,11 @@ const seen = () => page(`(() => {
   for (let y = 0, i = 0; y < canvas.height; ++y) {
     const back = [data[i], data[i + 1], data[i + 2]]  // at the left edge
     for (let x = 0; x < canvas.width; ++x, i += 4)
-      if (back.reduce((sum, v, k) => sum + Math.abs(v - data[i + k]), 0) > 12)
+      if (known ? known.has(data[i] << 16 | data[i + 1] << 8 | data[i + 2]) : back.reduce((sum, v, k) => sum + Math.abs(v - data[i + k]), 0) > 12)
         ++n, colours.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2])
   }
   return { share: n / canvas.width / canvas.height, colours: colours.size, colour: [...colours].join().slice(0, 4000) }
-})()`)
+})(${known ? `new Set(${JSON.stringify(known)})` : 'null'})`)
 
 async function checkFile() {
   execFileSync(program, [folder])
@@ -98,12 +98,14 @@ async function checkFile() {
 
   // what was written is read, attribute by attribute
   const names = ['x', 'y', 'z', 'time', 'pulse', 'amplitude', 'reflectance', 'width', 'incidence', 'scan_angle', 'object', 'class', 'leg',
-                 'return_number', 'returns', 'channel', 'range', 'kind']
-  const errors = [0.00026, 0.00026, 0.00026, 0.6e-7, 0, null, 0.00101, 0.00051, 0.26, 0.026, 0, 0, 0, 0, 0, 0, 0.001, 0]
+                 'return_number', 'returns', 'channel', 'range', 'kind', 'colour']
+  const errors = [0.00026, 0.00026, 0.00026, 0.6e-7, 0, null, 0.00101, 0.00051, 0.26, 0.026, 0, 0, 0, 0, 0, 0, 0.001, 0, 0]
   const { length } = truth, read = JSON.parse(await page(
     `JSON.stringify(${JSON.stringify(names)}.map(name => [...pulsecast.points.arrays[name].subarray(0, ${length})]))`))
-  truth.forEach((point, i) => names.forEach((name, k) =>
-    near(read[k][i], point[k], errors[k] ?? 0.0102 * point[k], `${name} of point ${i}`)))
+  truth.forEach((point, i) => names.forEach((name, k) => {
+    if (point[k] === null) expect(read[k][i] === null, `${name} of point ${i} is unknown`)  // JSON writes NaN as null
+    else near(read[k][i], point[k], errors[k] ?? 0.0102 * point[k], `${name} of point ${i}`)
+  }))
 
   // no word of the survey became more than a word
   expect(await page('window.hurt') === undefined && await page(`document.querySelectorAll('img').length`) === 0, 'texts are texts')
@@ -138,7 +140,13 @@ async function checkFile() {
     expect(await page(`document.querySelector('[aria-checked=true]').dataset.name`) === name, `${name} is chosen`)
     pictures.add((await seen()).colour)
   }
-  expect(pictures.size >= 14, `${pictures.size} kinds of colours`)
+  expect(pictures.size >= 15, `${pictures.size} kinds of colours`)
+  await page(`pulsecast.choose('colour'), pulsecast.view.shading = false, pulsecast.view.redraw()`)
+  await rest()
+  expect(await page(`document.getElementById('kinds').hidden && document.getElementById('amounts').hidden`), 'colours have no list and no histogram')
+  const { share: own, colours } = await seen([...new Set(truth.map(p => p[18]))])
+  expect(own > 0.8 * all.share && colours > 100, `points have their own colours: ${colours} on ${own} of the picture, of ${all.share}`)
+  await page('pulsecast.view.shading = true')
   await page(`pulsecast.choose('object')`)
   await rest()
   expect((await page(`document.getElementById('kinds').textContent`)).includes('</script><img'), 'objects have their names')
@@ -184,7 +192,9 @@ async function checkFile() {
   near(parseFloat(value.Intensity) * (value.Intensity.endsWith('µW') ? 1e-6 : 1e-9), point[5], 0.016 * point[5], 'Intensity')
   expect(value.Return === `${point[13]} of ${point[14]}`, 'the return is told')
   expect(value.Pulse.replace(/\D/g, '') === String(point[4]), 'the pulse is told')
-  expect(value.Class.startsWith(`${point[11]} `) && told.length === 17, `all attributes are told: ${JSON.stringify(value)}`)
+  expect(value.Class.startsWith(`${point[11]} `) && told.length === 18, `all attributes are told: ${JSON.stringify(value)}`)
+
+  expect(value.Colour === (point[18] === null ? '–' : '#' + point[18].toString(16).padStart(6, '0')), `the colour is told: ${value.Colour}`)
 
   // hands and keys move the view
   const azimuth = await page('pulsecast.view.camera.azimuth'), distance = await page('pulsecast.view.camera.distance')
@@ -199,7 +209,7 @@ async function checkFile() {
   expect(await page('pulsecast.state.selected') === -1, 'Escape lets go')
   await key('Home')
   await page(`document.querySelector('[data-name=returns]').remove()`)  // as where all pulses have as many
-  for (const [k, name] of [[6, 'reflectance'], [1, 'z']]) {
+  for (const [k, name] of [[7, 'reflectance'], [1, 'z']]) {
     await key(String(k), `Digit${k}`)
     expect(await page('pulsecast.colouring.name') === name, `${k} colours by ${name}, as the ${k}th button does`)
   }

@@ -7,9 +7,11 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -69,6 +71,14 @@ struct Shots {
   [[nodiscard]] EchoBatch batch() const { return {shots, echoes, {}, 0}; }
 };
 
+/// Red and green by the place in a batch of all shots; unknown of every 50th shot.
+std::optional<PointColour> colour_of_shot(const EchoBatch&, const Shot& shot, const Echo& echo) {
+  if (shot.index % 50 == 0) return std::nullopt;
+  return PointColour{.red = static_cast<std::uint16_t>(shot.leg == 0 ? 65535 : 0),
+                     .green = static_cast<std::uint16_t>(shot.leg == 0 ? 0 : 257 * (shot.index % 200)),
+                     .blue = static_cast<std::uint16_t>(257 * echo.number)};
+}
+
 void write_truth(const std::string& path, std::span<const page::PagePoint> points) {
   std::ofstream out(path);
   out.precision(17);
@@ -78,7 +88,9 @@ void write_truth(const std::string& path, std::span<const page::PagePoint> point
     out << '[' << p.position.x << ',' << p.position.y << ',' << p.position.z << ',' << p.time << ',' << p.pulse << ',' << p.amplitude << ','
         << p.reflectance << ',' << p.width * 1e9f << ',' << p.incidence * 180 / pi << ',' << p.scan_angle * 180 / pi << ',' << p.object
         << ',' << p.classification << ',' << p.leg << ',' << int{p.number} << ',' << int{p.returns} << ',' << int{p.channel} << ','
-        << std::hypot(p.to_instrument[0], p.to_instrument[1], p.to_instrument[2]) << ',' << static_cast<int>(p.kind) << ']';
+        << std::hypot(p.to_instrument[0], p.to_instrument[1], p.to_instrument[2]) << ',' << static_cast<int>(p.kind) << ',';
+    const auto& [red, green, blue] = p.colour;
+    out << (p.coloured ? std::to_string(65536 * red + 256 * green + blue) : "null") << ']';
   }
   out << "]\n";
 }
@@ -112,8 +124,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   const Shots shots(0, 60'000, 60'000);
-  page::PageWriter writer(folder + "/page.html", survey(), {.points_max = 70'000});
-  page::PageSample sample(70'000);
+  page::PageWriter writer(folder + "/page.html", survey(), {.points_max = 70'000, .colours = colour_of_shot});
+  page::PageSample sample(70'000, colour_of_shot);
   writer(shots.batch());
   sample(shots.batch());
   writer.close();

@@ -177,6 +177,26 @@ TEST_CASE("widths, kinds of light and keys are left out unless they are wanted")
   CHECK_FALSE(all.columns.contains("key"));
 }
 
+TEST_CASE("colours are told to the bit, those that are unknown as such, and none are told of a cloud without") {
+  auto points = random_points(3000, 8);
+  CHECK_FALSE(decoded(page_columns(points), points.size()).columns.contains("colour"));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto draw = [&](std::uint32_t k) { return static_cast<std::uint8_t>(256 * uniform({.seed = 9, .pulse = i, .subray = k})); };
+    points[i].coloured = i % 5 != 0;
+    points[i].colour = {draw(0), draw(1), draw(2)};
+  }
+  points[1].colour = {255, 255, 255};
+  points[2].colour = {0, 0, 0};
+  const std::vector<double> found = decoded(page_columns(points), points.size()).columns.at("colour");
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& [red, green, blue] = points[i].colour;
+    wrong += points[i].coloured ? found[i] != 65536.0 * red + 256 * green + blue : !std::isnan(found[i]);
+  }
+  CHECK(wrong == 0);
+  CHECK((found[1] == 0xFFFFFF && found[2] == 0));
+}
+
 TEST_CASE("no points, one point, and points far away can be told") {
   CHECK(decoded(page_columns({}), 0).columns.at("x").empty());
   auto points = random_points(1, 4);

@@ -3,7 +3,10 @@
 #include <pulsecast/page/detail/sample.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -83,6 +86,27 @@ TEST_CASE("what fits is kept, in pulse order, with all that its shot and echo we
   CHECK(sample.points()[1].number == 2);
   CHECK(sample.points()[1].kind == ReflectionKind::water);
   CHECK(sample.seen() == 2);
+}
+
+TEST_CASE("points have the colours of their echoes, rounded to a byte, and keep them when others are dropped") {
+  std::size_t asked = 0;
+  const PointColours colours = [&](const EchoBatch&, const Shot& shot, const Echo& echo) -> std::optional<PointColour> {
+    ++asked;
+    if (echo.number == 2) return std::nullopt;
+    return PointColour{.red = static_cast<std::uint16_t>(257 * (shot.index % 256)), .green = 65535, .blue = 899};
+  };
+  PageSample few(500, colours);
+  give(few, 9000, 100);
+  CHECK(few.points().size() == 500);
+  CHECK(asked < few.seen());  // only of those that were kept for a moment
+  for (const PagePoint& p : few.points()) {
+    CHECK(p.coloured == (p.number != 2));
+    if (p.coloured) CHECK(p.colour == std::array<std::uint8_t, 3>{static_cast<std::uint8_t>(p.pulse % 256), 255, 3});  // 899 / 257 is 3.498
+  }
+  PageSample without(500);
+  give(without, 9000, 100);
+  CHECK(names(few) == names(without));
+  CHECK(std::none_of(without.points().begin(), without.points().end(), [](const PagePoint& p) { return p.coloured; }));
 }
 
 TEST_CASE("of too many, those of the least keys are kept, however they came") {

@@ -65,6 +65,25 @@ test('a point is told with all its attributes, the width of its echo and the way
   assert.deepEqual([more['Echo width'], more.Light], ['4.000 ns', 'By a mirror'])
 })
 
+test('points are drawn in their own colours, those without one in grey, and none is hidden', () => {
+  take({ colour: [0xff0000, 0x00ff01, NaN, 0x0a0bff, 0] })
+  const colouring = colouringBy('colour'), out = new Uint8Array(20)
+  colouring.fill({ first: 0, count: 5 }, [4, 0, 1, 2, 3], out)
+  assert.deepEqual([...out], [0, 0, 0, 255, 255, 0, 0, 255, 0, 255, 1, 255, 128, 128, 128, 255, 10, 11, 255, 255])
+  assert.ok(![...points.arrays.colour].some(value => colouring.hides(value)))
+  assert.deepEqual([0xff0000, 0x0a0bff, 1, NaN].map(value => written('colour', value)), ['#ff0000', '#0a0bff', '#000001', '–'])
+  assert.equal(Object.fromEntries(description(3)).Colour, '#0a0bff')
+  colouring.take('z')  // and back to an amount
+  colouring.fill({ first: 0, count: 1 }, [0], out)
+  assert.equal(out[3], 255)
+})
+
+test('every colour is exact in the arrays of the page', () => {
+  const all = [0xffffff, 0xfffffe, 0xff00fe, 0x010203]
+  take({ colour: all })
+  assert.deepEqual([...points.arrays.colour.subarray(0, 4)], all)
+})
+
 test('bars count all usual values of an amount, and kinds are told by their number', () => {
   take({ z: Array.from({ length: 1000 }, (_, i) => i) })
   const { bins, ends } = colouringBy('z')

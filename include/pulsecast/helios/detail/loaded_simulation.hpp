@@ -151,7 +151,8 @@ class LoadedSimulation final : public Simulation {
     for (const Mesh& mesh : settings.meshes)
       meshes_.push_back({.geometry = std::make_shared<const TriangleMesh<>>(mesh.data, settings.threads),
                          .materials = material_table({mesh.material}),
-                         .object = mesh.object});
+                         .object = mesh.object,
+                         .attributes = mesh.attributes});
     begin(0);
   }
 

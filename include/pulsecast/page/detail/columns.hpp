@@ -109,6 +109,16 @@ PageCodes listed_codes(std::string name, std::span<const PagePoint> points, cons
   return out;
 }
 
+/// Codes of colours: 1 + 65536 red + 256 green + blue.
+inline PageCodes colour_codes(std::span<const PagePoint> points) {
+  PageCodes out{.name = "colour", .kind = "linear", .step = 1, .differences = false};
+  for (const PagePoint& p : points) {
+    const auto& [red, green, blue] = p.colour;
+    out.codes.push_back(p.coloured ? 1 + (std::uint64_t{red} << 16 | std::uint64_t{green} << 8 | blue) : 0);
+  }
+  return out;
+}
+
 /// Mean time between pulses [s].
 inline double time_of_a_pulse(std::span<const PagePoint> points) {
   if (points.empty() || points.back().pulse <= points.front().pulse) return 0;
@@ -211,7 +221,8 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
 /// - 1) step), or the (code - 1)th of `values`. Code 0 means no value. Differences are to the previous code, doubled, less one if negative.
 /// `per_pulse`, times the pulse's number, is added to a value. Values are exact to half a step. Positions have that of the settings, also
 /// the origins of pulses (`from_x` and so on). Steps of others: time 0.1 us, scan angle 0.05 deg, incidence 0.5 deg, reflectance 0.002,
-/// width 1 ps. Amplitudes are exact to 1 %, integers exactly.
+/// width 1 ps. Amplitudes are exact to 1 %, integers exactly. A colour is the
+/// number 65536 red + 256 green + blue.
 [[nodiscard]] inline std::string page_columns(std::span<const PagePoint> points, const PageColumnSettings& settings = {}) {
   settings.validate();
   using detail::linear_codes, detail::logarithmic_codes, detail::listed_codes;
@@ -246,6 +257,7 @@ inline double position_step(std::span<const PagePoint> points, const PageColumnS
     block.add(listed_codes("kind", points, [](Point p) { return static_cast<std::uint32_t>(p.kind); }));
   if (std::any_of(points.begin(), points.end(), [](Point p) { return p.width != 0; }))
     block.add(linear_codes("width", points, 0.001, [](Point p) { return static_cast<double>(p.width) * 1e9; }));
+  if (std::any_of(points.begin(), points.end(), [](Point p) { return p.coloured; })) block.add(detail::colour_codes(points));
   if (settings.keys) block.add(unlike(linear_codes("key", points, 1, [](Point p) { return p.key; })));
   return block.finish(settings.effort);
 }

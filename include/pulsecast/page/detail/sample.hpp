@@ -9,12 +9,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/echo.hpp>
+#include <pulsecast/scene/point_colour.hpp>
 
 namespace PULSECAST_NAMESPACE::page {
 
@@ -34,6 +37,8 @@ struct PagePoint {
   std::uint8_t number = 1, returns = 1;           ///< number of the echo, total of its pulse
   std::uint16_t channel = 0;                      ///< as in `Shot`
   ReflectionKind kind = ReflectionKind::surface;  ///< as in `Echo`
+  bool coloured = false;                          ///< true if its colour is known
+  std::array<std::uint8_t, 3> colour{};           ///< red, green and blue, as displays take them (sRGB)
 };
 
 /// Pseudo-random number of an echo, independent of the rest of the cloud. Source: Appleby 2011, MurmurHash3, fmix64.
@@ -48,8 +53,10 @@ struct PagePoint {
 /// skips points that are not finite. Memory: a little more than a hundred bytes per point kept.
 class PageSample {
  public:
-  /// `most` is from 2 to 2^27.
-  explicit PageSample(std::size_t most) : most_(most) { require_within("PageSample::most", static_cast<double>(most), 2, 134'217'728, ""); }
+  /// `most` is from 2 to 2^27. Points have `colours`, which are asked for those that are kept for the moment.
+  explicit PageSample(std::size_t most, PointColours colours = {}) : most_(most), colours_(std::move(colours)) {
+    require_within("PageSample::most", static_cast<double>(most), 2, 134'217'728, "");
+  }
 
   void operator()(const EchoBatch& batch) {
     for (const Shot& shot : batch.shots)
@@ -76,6 +83,7 @@ class PageSample {
                            .returns = static_cast<std::uint8_t>(std::min<std::uint32_t>(shot.echoes, 255)),
                            .channel = shot.channel,
                            .kind = echo.kind});
+        if (colours_) set_colour(colours_(batch, shot, echo), points_.back());
         if (points_.size() >= most_ + most_ / 4 + 1) thin();
       }
   }
@@ -91,6 +99,13 @@ class PageSample {
   [[nodiscard]] std::uint32_t largest_key() const noexcept { return largest_key_; }
 
  private:
+  static void set_colour(const std::optional<PointColour>& colour, PagePoint& point) noexcept {
+    if (!colour) return;
+    const auto byte = [](std::uint16_t share) noexcept { return static_cast<std::uint8_t>((share + 128) / 257); };
+    point.coloured = true;
+    point.colour = {byte(colour->red), byte(colour->green), byte(colour->blue)};
+  }
+
   /// Keeps the points with the least keys; of equal keys, the earliest.
   void thin() {
     keys_.clear();
@@ -104,6 +119,7 @@ class PageSample {
   }
 
   std::size_t most_;
+  PointColours colours_;
   std::vector<PagePoint> points_;
   std::vector<std::uint32_t> keys_;
   std::uint64_t seen_ = 0;

@@ -12,12 +12,15 @@ const classNames = { 0: 'Never classified', 1: 'Unassigned', 2: 'Ground', 3: 'Lo
 
 const kindNames = ['Direct', 'Through glass', 'From water', 'By a mirror', 'From the air', 'Scattered to and fro']
 
-/// Attributes of a point, in display order. Those with a `list` are categorical, the others numeric.
+const hexOf = v => `#${v.toString(16).padStart(6, '0')}`
+
+/// Attributes of a point, in display order. Those with a `list` are categorical, one that is `direct` is a colour, the others numeric.
 const attributes = {
   z: { label: 'Height', unit: 'm', main: true },
   amplitude: { label: 'Intensity', unit: 'W', logarithmic: true, main: true, scale: 'greys' },
   object: { label: 'Object', list: true, main: true, name: v => survey.objects[v] ?? String(v),
             colour: v => survey.colours.hues[Math.round(256 * ((0.3 + v * 0.6180339887) % 1)) % 256] },  // golden ratio, as in pictures
+  colour: { label: 'Colour', direct: true, name: hexOf, colour: v => Number.isFinite(v) ? [v >> 16, v >> 8 & 255, v & 255] : [128, 128, 128] },
   class: { label: 'Class', list: true, main: true, colour: v => survey.colours.classes[v < 64 ? v : 64 + (v - 64) % 6],
            name: v => v in classNames ? `${v} ${classNames[v]}` : String(v) },
   return_number: { label: 'Return', list: true, main: true },
@@ -49,7 +52,7 @@ function power(value) {
 function written(name, value) {
   const attribute = attributes[name] ?? {}
   if (!Number.isFinite(value)) return '–'
-  if (attribute.list) return attribute.name(value)
+  if (attribute.list || attribute.direct) return attribute.name(value)
   if (attribute.unit === 'W') return power(value)
   const decimals = Math.max(0, Math.min(7, Math.ceil(-Math.log10(points.steps[name] ?? 1) - 1e-9)))
   return `${value.toFixed(decimals)}${attribute.unit === '°' ? '' : attribute.unit ? ' ' : ''}${attribute.unit ?? ''}`
@@ -69,6 +72,7 @@ function description(i) {
   for (const name of ['range', 'amplitude', 'reflectance']) rows.push([attributes[name].label, written(name, value(name))])
   rows.push(['Return', `${value('return_number')} of ${value('returns')}`])
   rows.push(['Object', written('object', value('object'))], ['Class', written('class', value('class'))])
+  if (points.arrays.colour) rows.push(['Colour', written('colour', value('colour'))])
   if (points.arrays.kind) rows.push(['Light', written('kind', value('kind'))])
   rows.push(['Time', written('time', value('time'))], ['Pulse', whole(value('pulse'))])
   for (const name of ['incidence', 'scan_angle', 'leg', 'channel']) rows.push([attributes[name].label, written(name, value(name))])
@@ -101,6 +105,7 @@ class Colouring {
   /// Counts the values of all points.
   count() {
     const values = points.arrays[this.name], n = values ? points.count : 0
+    if (this.attribute.direct) return
     if (this.attribute.list) {
       const counts = new Map()
       for (let i = 0; i < n; ++i) counts.set(values[i], (counts.get(values[i]) ?? 0) + 1)
@@ -128,6 +133,13 @@ class Colouring {
   /// Bytes of the colours of a chunk's points; hidden points are transparent.
   fill(chunk, order, out) {
     const values = points.arrays[this.name]
+    if (this.attribute.direct) {
+      for (let i = 0; i < chunk.count; ++i) {
+        out.set(this.attribute.colour(values[chunk.first + order[i]]), 4 * i)
+        out[4 * i + 3] = 255
+      }
+      return
+    }
     if (this.attribute.list) {
       const colours = new Map()
       for (let i = 0; i < chunk.count; ++i) {

@@ -68,7 +68,8 @@ function showAttributes() {
 function showHistogram() {
   const { attribute } = colouring, list = byId('kinds'), amounts = byId('amounts')
   list.hidden = !attribute.list
-  amounts.hidden = !!attribute.list
+  amounts.hidden = !!attribute.list || !!attribute.direct
+  if (attribute.direct) return
   if (!attribute.list) {
     colouring.draw(byId('histogram'), theme.ink)
     const ends = (colouring.shown ?? colouring.ends).map(v => brief(colouring.name, colouring.unplotted(v)))

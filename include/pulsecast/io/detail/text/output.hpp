@@ -53,6 +53,12 @@ class TextOutput {
     return *this;
   }
 
+  /// Adds a number in the shortest form that reads back the same.
+  TextOutput& shortest(double value) {
+    std::isnan(value) ? row_.add("nan") : row_.add(value);
+    return *this;
+  }
+
   /// Adds integers.
   template <std::integral... Integers>
   TextOutput& wholes(Integers... values) {

@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_PYTHON_DETAIL_BATCH_HPP
+#define PULSECAST_PYTHON_DETAIL_BATCH_HPP
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include <pulsecast/python/detail/arrow.hpp>
+#include <pulsecast/python/detail/point_columns.hpp>
+#include <pulsecast/python/detail/point_rows.hpp>
+#include <pulsecast/python/detail/rows.hpp>
+#include <pulsecast/run.hpp>
+
+// hidden, as pybind11's own names, so that modules of different builds can coexist
+namespace PULSECAST_NAMESPACE {
+namespace [[gnu::visibility("hidden")]] python {
+
+/// Names of the values of `Fate`, in order.
+inline constexpr std::array<const char*, fate_count> fate_names{"returned",     "blocked",         "missed",
+                                                                "out_of_range", "below_threshold", "absorbed"};
+
+/// Results of a run, for Python.
+struct Batch {
+  pybind11::array_t<PointRow> points;  ///< one row an echo
+  pybind11::array_t<PulseRow> pulses;  ///< one row a pulse sent
+  pybind11::array_t<float> waveforms;  ///< samples of all pulses, concatenated [W]
+  double sample_interval = 0;          ///< between samples [s]
+  pybind11::dict columns{};            ///< arrays by name, of a number an echo; without those of the rows unless `by_column` is set
+  bool by_column = false;              ///< true if points are kept by column, and not as rows
+  RunSummary summary{};                ///< of the whole run; empty in a batch for a callback
+};
+
+/// Kinds of data that a `RowSink` keeps.
+struct KeptData {
+  bool pulses = true;    ///< true for pulses and waveforms
+  bool columns = false;  ///< true for points by column in place of rows
+  PointExtras extras{};  ///< columns besides
+};
+
+/// Sink that keeps echoes, as rows or by column, and pulses.
+class RowSink {
+ public:
+  /// @throws SettingError for an attribute of the name of another column
+  explicit RowSink(KeptData kept) : keeps_pulses_(kept.pulses), by_column_(kept.columns), columns_(kept.columns, std::move(kept.extras)) {}
+
+  void operator()(const EchoBatch& batch) {
+    sample_interval_ = batch.sample_interval;
+    pulse_count_ += batch.shots.size();
+    for (const Shot& s : batch.shots) {
+      if (keeps_pulses_) {
+        pulses_.push_back({static_cast<std::int64_t>(s.index), s.tick.seconds(), s.origin.x, s.origin.y, s.origin.z, s.direction.x,
+                           s.direction.y, s.direction.z, s.scan_angle, s.waveform_start, static_cast<std::int64_t>(samples_.size()),
+                           static_cast<std::int64_t>(point_count_), s.samples, s.echoes, s.leg, s.channel,
+                           static_cast<std::uint8_t>(s.fate)});
+        for (const float sample : batch.waveform_of(s)) samples_.push_back(sample);
+      }
+      for (const Echo& e : batch.echoes_of(s)) {
+        const PointRow row = point_row(s, e);
+        if (!by_column_) points_.push_back(row);
+        columns_.push_back(batch, s, e, row);
+        ++point_count_;
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t pulses() const noexcept { return pulse_count_; }  ///< pulses sent since the last `take`
+  /// Data so far, as NumPy arrays; leaves this empty. Requires the GIL.
+  [[nodiscard]] Batch take() {
+    pulse_count_ = point_count_ = 0;
+    return {points_.take(), pulses_.take(), samples_.take(), sample_interval_, columns_.take(), by_column_};
+  }
+
+ private:
+  bool keeps_pulses_, by_column_;
+  std::size_t pulse_count_ = 0, point_count_ = 0;
+  Rows<PointRow> points_;
+  Rows<PulseRow> pulses_;
+  Rows<float> samples_;
+  PointColumns columns_;
+  double sample_interval_ = 0;
+};
+
+/// Samples of the pulse in a row of a `Batch`, as its method `waveform_of`.
+[[nodiscard]] inline pybind11::array_t<float> waveform_of(const pybind11::object& self, pybind11::ssize_t row) {
+  namespace py = pybind11;
+  const auto& pulses = self.cast<const Batch&>().pulses;
+  if (row < 0 || row >= pulses.size())
+    throw py::index_error("row " + std::to_string(row) + " of " + std::to_string(pulses.size()) + " pulses");
+  const PulseRow& p = pulses.data()[row];
+  return self.attr("waveforms")[py::slice(p.first_sample, p.first_sample + p.samples, 1)].cast<py::array_t<float>>();
+}
+
+/// State of a `Batch` for `pickle`.
+[[nodiscard]] inline pybind11::tuple state_of(const Batch& b) {
+  return pybind11::make_tuple(b.points, b.pulses, b.waveforms, b.sample_interval,
+                              pybind11::bytes(reinterpret_cast<const char*>(&b.summary), sizeof b.summary), b.columns, b.by_column);
+}
+
+/// Inverse of `state_of`. Throws a `ValueError` for the state of another version.
+[[nodiscard]] inline Batch batch_of(const pybind11::tuple& state) {
+  namespace py = pybind11;
+  if (state.size() != 7) throw py::value_error("a Batch of another version of pulsecast");
+  const auto summary = state[4].cast<std::string>();
+  Batch b{state[0].cast<py::array_t<PointRow>>(),
+          state[1].cast<py::array_t<PulseRow>>(),
+          state[2].cast<py::array_t<float>>(),
+          state[3].cast<double>(),
+          state[5].cast<py::dict>(),
+          state[6].cast<bool>()};
+  if (summary.size() != sizeof b.summary) throw py::value_error("a Batch of another version of pulsecast");
+  std::memcpy(&b.summary, summary.data(), sizeof b.summary);
+  return b;
+}
+
+/// Rows of the points. Throws an `AttributeError` if they are kept by column.
+[[nodiscard]] inline pybind11::array_t<PointRow> points_of(const Batch& b) {
+  if (b.by_column) throw pybind11::attribute_error("points are kept by column: take `columns`, or run without columns=True");
+  return b.points;
+}
+
+/// All columns of the points, as arrays by name: views of the rows, if there are any.
+[[nodiscard]] inline pybind11::dict columns_of(const Batch& b) {
+  pybind11::dict all;
+  if (!b.by_column) std::apply([&](const auto&... member) { ((all[member.name] = b.points[member.name]), ...); }, point_members);
+  for (const auto& [name, column] : b.columns) all[name] = column;
+  return all;
+}
+
+/// Number of points.
+[[nodiscard]] inline std::size_t point_count(const Batch& b) {
+  return b.by_column ? pybind11::len(b.columns["x"]) : static_cast<std::size_t>(b.points.size());
+}
+
+/// Capsule of the columns, as `__arrow_c_stream__` returns it. The schema that a consumer asks for is a wish, which is not granted.
+/// Throws a `ValueError` if points are kept as rows, of which Arrow takes no columns without copies.
+[[nodiscard]] inline pybind11::object arrow_stream_of(const Batch& b, const pybind11::object& requested_schema) {
+  if (!requested_schema.is_none() && PyCapsule_IsValid(requested_schema.ptr(), "arrow_schema") == 0)
+    throw pybind11::type_error("__arrow_c_stream__ requested_schema: expected a capsule 'arrow_schema', not " +
+                               std::string(pybind11::repr(requested_schema)));
+  if (!b.by_column) throw pybind11::value_error("points are kept as rows, which Arrow cannot take without copies: run with columns=True");
+  return ArrowStream::capsule(b.columns);
+}
+
+/// Terms of a ledger by name [J].
+[[nodiscard]] inline pybind11::dict dict_of(const EnergyLedger& energy) {
+  using namespace pybind11::literals;
+  return pybind11::dict("sent"_a = energy.sent, "missed"_a = energy.missed, "out_of_range"_a = energy.out_of_range,
+                        "absorbed"_a = energy.absorbed, "scattered"_a = energy.scattered, "cut"_a = energy.cut,
+                        "received"_a = energy.received);
+}
+
+/// Adds the class `Batch` to a module.
+inline void bind_batch(pybind11::module_& m) {
+  namespace py = pybind11;
+  const auto fates = [](const Batch& b) {
+    py::dict all;
+    for (std::size_t f = 0; f < fate_count; ++f) all[fate_names[f]] = b.summary.fates[f];
+    return all;
+  };
+  py::class_<Batch>(m, "Batch", py::module_local(), "Results of a run, or, in a callback, those since the last call.")
+      .def_property_readonly(
+          "points", &points_of,
+          "Structured array, one row per echo: x, y, z [m, world]; time [s]; range [m]; intensity [W]; reflectance; echo_width [s]; "
+          "cos_incidence; pulse; object; classification; leg; return_number; number_of_returns; channel; kind of light: "
+          "0 direct, 1 through glass, 2 from water, 3 by a mirror, 4 from the air, 5 scattered more than once. AttributeError after "
+          "run(columns=True).")
+      .def_property_readonly("columns", &columns_of,
+                             "Arrays of a number per echo, by name: those of `points`, then red, green, blue and near_infrared (from 0 to "
+                             "65535) after run(colours=True), and the attributes of objects, NaN where an object has none. After "
+                             "run(columns=True) each is contiguous, else those of `points` are views of its rows.")
+      .def("__arrow_c_stream__", &arrow_stream_of, py::arg("requested_schema") = py::none(),
+           "Capsule of an Arrow C stream of the columns, which shares their memory, for run(columns=True). Raises ValueError otherwise.")
+      .def_readonly("pulses", &Batch::pulses,
+                    "Structured array, one row per pulse sent: pulse; time [s]; x, y, z [m, world]; direction_x, direction_y, "
+                    "direction_z; scan_angle [rad]; waveform_start [s]; first_sample, samples; first_point, points; leg; channel; fate, "
+                    "an index into FATES.")
+      .def_readonly("waveforms", &Batch::waveforms, "Samples of all pulses, concatenated, shape (n,) [W].")
+      .def_readonly("sample_interval", &Batch::sample_interval, "Sample spacing of the waveforms [s]; 0 without waveforms.")
+      .def_property_readonly(
+          "slots", [](const Batch& b) { return b.summary.slots; }, "Pulse slots done.")
+      .def_property_readonly(
+          "rays", [](const Batch& b) { return b.summary.rays; }, "Subrays traced.")
+      .def_property_readonly(
+          "seconds", [](const Batch& b) { return b.summary.seconds; }, "Elapsed time of the run [s].")
+      .def_property_readonly(
+          "complete", [](const Batch& b) { return b.summary.complete; }, "False if the run was stopped.")
+      .def_property_readonly("fates", fates, "Pulse slots by fate.")
+      .def_property_readonly(
+          "energy", [](const Batch& b) { return dict_of(b.summary.energy); },
+          "Energy sent, and its parts by the end of their paths [J]: missed, out_of_range, absorbed, scattered, cut. received: energy at "
+          "the "
+          "receiver, of that scattered.")
+      .def("waveform_of", &waveform_of, py::arg("row"), "Samples of the pulse in a row of `pulses`, shape (n,) [W].")
+      .def("__repr__",
+           [](const Batch& b) {
+             return "<Batch of " + std::to_string(point_count(b)) + " points, " + std::to_string(b.pulses.size()) + " pulses, " +
+                    std::to_string(b.waveforms.size()) + " samples>";
+           })
+      .def(py::pickle(&state_of, &batch_of));
+}
+
+}  // namespace gnu::visibility("hidden")]]python
+}  // namespace PULSECAST_NAMESPACE
+
+#endif
