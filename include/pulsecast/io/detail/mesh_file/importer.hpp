@@ -179,6 +179,13 @@ class MeshImport {
     }
   }
 
+  /// Name of a node with those above it. The root is often one that assimp makes, or one without a meaning.
+  [[nodiscard]] std::string name_of(const aiNode& node, const std::string& above, bool is_root) const {
+    const std::string name = node.mName.C_Str();
+    if (is_root && (name.starts_with('<') || (node.mNumMeshes == 0 && !(gltf_ && name != "ROOT")))) return {};
+    return above.empty() ? name : above + "/" + name;
+  }
+
   /// Nodes with meshes, each before those below it.
   void nodes(const aiNode& root) {
     struct Step {
@@ -196,7 +203,7 @@ class MeshImport {
       const aiMatrix4x4& m = node.mTransformation;
       RawNode made{.place = step.above * Affine{Matrix3(Vec3(m.a1, m.b1, m.c1), Vec3(m.a2, m.b2, m.c2), Vec3(m.a3, m.b3, m.c3)),
                                                 Vec3(m.a4, m.b4, m.c4)}};
-      if (step.depth > 0) made.name = step.name.empty() ? node.mName.C_Str() : step.name + "/" + node.mName.C_Str();
+      made.name = name_of(node, step.name, step.depth == 0);
       for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         if (node.mMeshes[i] >= scene_.meshes.size()) fail("a node has a mesh that is not there");
         made.meshes.push_back(node.mMeshes[i]);
