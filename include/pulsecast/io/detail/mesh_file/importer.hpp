@@ -4,12 +4,12 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_IMPORTER_HPP
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -79,7 +79,12 @@ class MeshImport {
 
   [[noreturn]] void fail(const std::string& problem) const {
     if (!system_->refused().empty()) fail_elsewhere();
-    throw FileError(path_.string(), "", "is no mesh file that can be read: " + problem);
+    if (problem.find("bad_alloc") != problem.npos) throw std::bad_alloc();
+    std::string text = problem.substr(0, 300);
+    if (text.starts_with("No suitable reader")) text = "assimp finds none of its formats in it";
+    for (char& c : text)  // which may have bytes of the file
+      if (c < ' ' || c > '~') c = '?';
+    throw FileError(path_.string(), "", "is no mesh file that can be read: " + text);
   }
   [[noreturn]] void fail_elsewhere() const {
     throw FileError(path_.string(), "", "refers to '" + system_->refused() + "': expected files in its own folder");
@@ -139,19 +144,20 @@ class MeshImport {
     if (from.mMaterialIndex >= materials_.size()) fail("a mesh has a material that is not there");
     made.vertices = {reinterpret_cast<const Float3*>(from.mVertices), from.mVertices ? from.mNumVertices : 0};
     SharedBuffer<Corners3> triangles(from.mNumFaces);
-    std::atomic<bool> mixed = false;
     constexpr std::size_t chunk = std::size_t{1} << 16;
-    for_each_index((from.mNumFaces + chunk - 1) / chunk, workers_, [&](std::size_t c) {
+    const std::size_t chunks = (from.mNumFaces + chunk - 1) / chunk;
+    std::vector<unsigned char> has_others(chunks, 0);
+    for_each_index(chunks, workers_, [&](std::size_t c) {
       const std::size_t end = std::min<std::size_t>((c + 1) * chunk, from.mNumFaces);
       for (std::size_t i = c * chunk; i < end; ++i) {
         if (from.mFaces[i].mNumIndices == 3)
           copy(from.mFaces[i], from.mNumVertices, triangles[i]);
         else
-          mixed = true;
+          has_others[c] = 1;
       }
     });
     std::size_t count = from.mNumFaces;
-    if (mixed) {
+    if (std::find(has_others.begin(), has_others.end(), 1) != has_others.end()) {
       count = 0;
       for (std::size_t i = 0; i < from.mNumFaces; ++i)
         if (from.mFaces[i].mNumIndices == 3) triangles[count++] = triangles[i];
