@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -194,7 +195,7 @@ class ChildProcess {
 #if defined(__linux__)
       number = ::memfd_create("pulsecast", MFD_CLOEXEC);
 #else
-      std::string name = "/tmp/pulsecast_XXXXXX";
+      std::string name = (std::filesystem::temp_directory_path() / "pulsecast_XXXXXX").string();
       number = ::mkstemp(name.data());
       ::unlink(name.c_str());
 #endif

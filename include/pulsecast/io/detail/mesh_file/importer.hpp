@@ -4,12 +4,12 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_IMPORTER_HPP
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -79,7 +79,12 @@ class MeshImport {
 
   [[noreturn]] void fail(const std::string& problem) const {
     if (!system_->refused().empty()) fail_elsewhere();
-    throw FileError(path_.string(), "", "is no mesh file that can be read: " + problem);
+    if (problem.find("bad_alloc") != problem.npos) throw std::bad_alloc();
+    std::string text = problem.substr(0, 300);
+    if (text.starts_with("No suitable reader")) text = "assimp finds none of its formats in it";
+    for (char& c : text)  // which may have bytes of the file
+      if (c < ' ' || c > '~') c = '?';
+    throw FileError(path_.string(), "", "is no mesh file that can be read: " + text);
   }
   [[noreturn]] void fail_elsewhere() const {
     throw FileError(path_.string(), "", "refers to '" + system_->refused() + "': expected files in its own folder");
@@ -139,19 +144,20 @@ class MeshImport {
     if (from.mMaterialIndex >= materials_.size()) fail("a mesh has a material that is not there");
     made.vertices = {reinterpret_cast<const Float3*>(from.mVertices), from.mVertices ? from.mNumVertices : 0};
     SharedBuffer<Corners3> triangles(from.mNumFaces);
-    std::atomic<bool> mixed = false;
     constexpr std::size_t chunk = std::size_t{1} << 16;
-    for_each_index((from.mNumFaces + chunk - 1) / chunk, workers_, [&](std::size_t c) {
+    const std::size_t chunks = (from.mNumFaces + chunk - 1) / chunk;
+    std::vector<unsigned char> has_others(chunks, 0);
+    for_each_index(chunks, workers_, [&](std::size_t c) {
       const std::size_t end = std::min<std::size_t>((c + 1) * chunk, from.mNumFaces);
       for (std::size_t i = c * chunk; i < end; ++i) {
         if (from.mFaces[i].mNumIndices == 3)
           copy(from.mFaces[i], from.mNumVertices, triangles[i]);
         else
-          mixed = true;
+          has_others[c] = 1;
       }
     });
     std::size_t count = from.mNumFaces;
-    if (mixed) {
+    if (std::find(has_others.begin(), has_others.end(), 1) != has_others.end()) {
       count = 0;
       for (std::size_t i = 0; i < from.mNumFaces; ++i)
         if (from.mFaces[i].mNumIndices == 3) triangles[count++] = triangles[i];
@@ -179,6 +185,13 @@ class MeshImport {
     }
   }
 
+  /// Name of a node with those above it. The root is often one that assimp makes, or one without a meaning.
+  [[nodiscard]] std::string name_of(const aiNode& node, const std::string& above, bool is_root) const {
+    const std::string name = node.mName.C_Str();
+    if (is_root && (name.starts_with('<') || (node.mNumMeshes == 0 && !(gltf_ && name != "ROOT")))) return {};
+    return above.empty() ? name : above + "/" + name;
+  }
+
   /// Nodes with meshes, each before those below it.
   void nodes(const aiNode& root) {
     struct Step {
@@ -196,7 +209,7 @@ class MeshImport {
       const aiMatrix4x4& m = node.mTransformation;
       RawNode made{.place = step.above * Affine{Matrix3(Vec3(m.a1, m.b1, m.c1), Vec3(m.a2, m.b2, m.c2), Vec3(m.a3, m.b3, m.c3)),
                                                 Vec3(m.a4, m.b4, m.c4)}};
-      if (step.depth > 0) made.name = step.name.empty() ? node.mName.C_Str() : step.name + "/" + node.mName.C_Str();
+      made.name = name_of(node, step.name, step.depth == 0);
       for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         if (node.mMeshes[i] >= scene_.meshes.size()) fail("a node has a mesh that is not there");
         made.meshes.push_back(node.mMeshes[i]);

@@ -4,7 +4,7 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_MESH_MAKER_HPP
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -108,15 +108,15 @@ class MeshMaker {
   }
 
   void drop_flat(MeshData& mesh) {
-    std::atomic<bool> any = false;
     const auto is_flat = [&](std::size_t i) {
       const Triangle t = mesh.triangle(i);
       return cross(t.b - t.a, t.c - t.a) == Vec3{};
     };
+    std::vector<unsigned char> has_flat((mesh.triangles.size() + chunk - 1) / chunk, 0);  // by chunk
     each(mesh.triangles.size(), [&](std::size_t i) {
-      if (is_flat(i)) any = true;
+      if (is_flat(i)) has_flat[i / chunk] = 1;
     });
-    if (!any) return;
+    if (std::find(has_flat.begin(), has_flat.end(), 1) == has_flat.end()) return;
     std::size_t kept = 0;
     const std::size_t all = mesh.triangles.size();
     for (std::size_t i = 0; i < all; ++i) {

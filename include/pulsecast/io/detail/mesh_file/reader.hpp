@@ -93,8 +93,10 @@ class MeshFileMaker {
 
   [[nodiscard]] std::optional<std::size_t> made(const std::vector<std::uint32_t>& meshes, const Matrix3& shape) {
     FileMesh one;
-    std::vector<std::uint32_t> materials;
+    std::vector<std::uint32_t> materials, shown;
     for (const std::uint32_t mesh : meshes) {
+      if (scene_.meshes[mesh].triangles.empty()) continue;
+      shown.push_back(mesh);
       const std::uint32_t material = scene_.meshes[mesh].material;
       const auto [number, is_new] = numbers_.try_emplace(material, static_cast<std::uint32_t>(used_.size()));
       if (is_new) used_.push_back(material);
@@ -102,7 +104,7 @@ class MeshFileMaker {
       materials.push_back(static_cast<std::uint32_t>(place - one.materials.begin()));
       if (place == one.materials.end()) one.materials.push_back(number->second);
     }
-    one.mesh = maker_(meshes, materials, shape);
+    one.mesh = maker_(shown, materials, shape);
     if (one.mesh.triangles.empty()) return std::nullopt;
     file_.meshes.push_back(std::move(one));
     return file_.meshes.size() - 1;
