@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,7 +32,6 @@ namespace {
 
 using support::content;
 using support::CopcFile;
-using support::CopcName;
 using support::Generator;
 using support::read_copc;
 using support::TemporaryFolder;
@@ -118,6 +116,11 @@ Points random_points(std::uint64_t seed) {
   return points;
 }
 
+/// A number of a point, of four bytes at some offset.
+std::int32_t whole(const support::CopcReadNode& node, std::size_t i, const CopcFile& file, std::size_t at) {
+  return static_cast<std::int32_t>(support::detail::laz_whole(node.records, i * file.record + at, 4));
+}
+
 TEST_CASE("of a square grid with four points in each cell, the root has one of each, and the next level all others") {
   Points points;
   for (int y = 0; y < 256; ++y)
@@ -132,6 +135,23 @@ TEST_CASE("of a square grid with four points in each cell, the root has one of e
     CHECK(name.level == (node.is_leaf ? 1 : 0));
     CHECK(node.points == (node.is_leaf ? 128 * 128 * 3 / 4 : 128 * 128));
     CHECK(name.z == 0);
+    std::size_t nearest = 0;  // cells are 16 steps long: 8 is nearer to their middle than 0 and 16 are
+    for (std::size_t i = 0; i < node.points; ++i)
+      if (whole(node, i, file, 0) % 16 == 8 && whole(node, i, file, 4) % 16 == 8) ++nearest;
+    CHECK(nearest == (node.is_leaf ? 0 : node.points));
+  }
+}
+
+TEST_CASE("points of a node are in order of their times, as they compress best") {
+  for (const std::uint64_t seed : {0U, 2U}) {
+    const CopcFile file = checked(random_points(seed), {.start_time = -0.1});  // some times are below 0
+    for (const auto& [name, node] : file.nodes)
+      for (std::size_t i = 1; i < node.points; ++i) {
+        const auto time = [&](std::size_t k) {
+          return std::bit_cast<double>(support::detail::laz_whole(node.records, k * file.record + 22, 8));
+        };
+        CHECK(time(i) > time(i - 1));
+      }
   }
 }
 
