@@ -488,10 +488,15 @@ int work(const Options& options, Ranks& ranks) {
   } else {
     (void)helios::check_without_scene(file.survey, file.leg_places);  // before expensive work
     Options settled = options;
-    if (!options.epsg && options.format.starts_with("la")) settled.epsg = reference_system_of(file.survey.scene);
+    const bool has_reference = options.format == "las" || options.format.ends_with("laz");
+    if (!options.epsg && has_reference) settled.epsg = reference_system_of(file.survey.scene);
     if (ranks.count() > 1 && (options.page || options.live)) {
       settled.page = settled.live = false;
       if (ranks.first()) notes.say("--page and --live have no effect under mpirun: they need all points in one process");
+    }
+    if (ranks.count() > 1 && options.format == "copc.laz") {
+      settled.format = "laz";
+      if (ranks.first()) notes.say("--format copc.laz needs all points in one process: under mpirun, laz is written");
     }
     return Session(settled, file, *seed, ranks, notes).run();
   }

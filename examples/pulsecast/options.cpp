@@ -148,9 +148,9 @@ class CommandLine {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app_.add_option("-o,--output", o_.output, "Folder for the results")->type_name("DIR")->capture_default_str();
-    app_.add_option("--format", o_.format, "Format of the points: las, laz, xyz or xyz.gz; default: xyz")
+    app_.add_option("--format", o_.format, "Format of the points: las, laz, copc.laz, xyz or xyz.gz; default: xyz")
         ->type_name("FORMAT")
-        ->transform(CLI::IsMember({"las", "laz", "xyz", "xyz.gz"}, CLI::ignore_case));
+        ->transform(CLI::IsMember({"las", "laz", "copc.laz", "xyz", "xyz.gz"}, CLI::ignore_case));
     app_.add_option("--seed", seed_, "Seed of all random numbers; default: the survey's own, or a new one each time")
         ->type_name("N")
         ->check([](const std::string& text) {
@@ -287,7 +287,7 @@ class CommandLine {
       o_.format = asked_by_flags;
     else if ((las_ || zip_) && o_.format != asked_by_flags)
       o_.notes.push_back("--format " + o_.format + " has precedence over " + (las_ ? "--lasOutput" : "--zipOutput"));
-    if (o_.las_1_0 && o_.format == "laz") return "--las10 and --format laz: only LAS 1.4 is compressed";
+    if (o_.las_1_0 && o_.format.ends_with("laz")) return "--las10 and --format " + o_.format + ": only LAS 1.4 is compressed";
     if (o_.las_1_0 && zip_ && o_.format == "las") o_.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
     o_.colours = o_.colours || o_.near_infrared;
     if (o_.colours && (!o_.format.starts_with("la") || o_.las_1_0)) return "--colours need LAS 1.4: expected --format las or laz";

@@ -36,7 +36,7 @@ struct Options {
   std::filesystem::path survey{};
   std::vector<std::filesystem::path> assets{};  ///< those given, then those of the program
   std::filesystem::path output = "output";
-  std::string format{};  ///< las, laz, xyz or xyz.gz
+  std::string format{};  ///< las, laz, copc.laz, xyz or xyz.gz
   std::optional<std::uint64_t> seed{};
   unsigned threads = 0;  ///< 0: all
   std::string gps_start_time{};

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include <pulsecast/io/copc.hpp>
 #include <pulsecast/io/gzip.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/laz.hpp>
@@ -21,9 +22,10 @@ using namespace pulsecast;
 
 namespace {
 
-using PointWriter = std::variant<io::XyzWriter, io::LasWriter, io::LazWriter>;
+using PointWriter = std::variant<io::XyzWriter, io::LasWriter, io::LazWriter, io::CopcWriter>;
 
 PointWriter point_writer(const fs::path& path, const Options& o, double start_time) {
+  if (o.format == "copc.laz") return PointWriter(std::in_place_type<io::CopcWriter>, path, las_settings(o, start_time), o.threads);
   if (o.format == "laz") return PointWriter(std::in_place_type<io::LazWriter>, path, las_settings(o, start_time), o.threads);
   if (o.format == "las") return PointWriter(std::in_place_type<io::LasWriter>, path, las_settings(o, start_time));
   if (o.format == "xyz.gz")

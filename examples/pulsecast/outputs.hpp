@@ -23,7 +23,7 @@ std::vector<std::filesystem::path> point_files(const std::filesystem::path& fold
 std::vector<std::filesystem::path> leg_files(const std::filesystem::path& folder, const std::string& prefix, const Options& options,
                                              const std::vector<std::string>& channels);
 
-/// Settings for LAS and LAZ files.
+/// Settings for LAS, LAZ and COPC files.
 pulsecast::io::LasSettings las_settings(const Options& options, double start_time);
 
 /// Files of one leg, or of all legs of a strip. A file appears only when it is complete.

@@ -9,6 +9,9 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -179,6 +182,88 @@ TEST_CASE("the values beyond the standard ones are named and described") {
         "PulseIndex 7 number of the pulse, from 0\n"
         "ObjectId 5 number of the object met\n");
   CHECK(Survey{}.written({.light_kinds = true}).extras.back().name == "LightKind");
+}
+
+/// Part of a scene, as far as attributes are asked for.
+struct Tree {
+  ObjectId object = 0;
+  Attributes attributes{};
+};
+
+std::shared_ptr<const ObjectAttributes> attributes_of(const std::vector<Tree>& trees) {
+  return std::make_shared<const ObjectAttributes>(std::span<const Tree>(trees));
+}
+
+TEST_CASE("colours make point format 7, with near infrared 8; an unknown colour is black, and all else is as without") {
+  const Survey survey = Survey::random(7, 200, 1e3);
+  const LasFile without = survey.written({.light_kinds = true});
+  for (const bool near_infrared : {false, true}) {
+    const LasFile file = survey.written({.light_kinds = true,
+                                         .colours = [](const EchoBatch&, const Shot&, const Echo& echo) -> std::optional<PointColour> {
+                                           if (echo.object % 2 == 0) return std::nullopt;
+                                           const auto low = static_cast<std::uint16_t>(echo.object);
+                                           return PointColour{low, 65535, echo.number, static_cast<std::uint16_t>(echo.object >> 16)};
+                                         },
+                                         .near_infrared = near_infrared});
+    CHECK(file.format == (near_infrared ? 8 : 7));
+    CHECK(file.global_encoding == 17);
+    REQUIRE(file.points.size() == without.points.size());
+    for (std::size_t i = 0; i < file.points.size(); ++i) {
+      const LasPoint &p = file.points[i], &q = without.points[i];
+      const auto object = static_cast<unsigned>(las_whole(file, p, "ObjectId"));
+      const unsigned number = static_cast<unsigned>(survey.echoes[i].number);
+      const std::array<unsigned, 4> known{object & 65535, 65535, number, near_infrared ? object >> 16 : 0};
+      CHECK((p.colour == (object % 2 == 0 ? std::array<unsigned, 4>{} : known)));
+      CHECK(p.bytes.substr(0, 30) == q.bytes.substr(0, 30));
+      CHECK(p.bytes.substr(near_infrared ? 38 : 36) == q.bytes.substr(30));
+    }
+  }
+}
+
+TEST_CASE("attributes of objects follow the other extra values, by the object of the echo; NaN where unknown") {
+  const std::string long_name(40, 'n'), umlaut = std::string(30, 'u') + "\u00e4";  // cut within a character of two bytes
+  const auto known = attributes_of({{3, attributes({{"age", 80}, {long_name, -1.5}})}, {5, attributes({{"age", 12}, {umlaut, 1e300}})}});
+  for (const LasSettings& settings :
+       {LasSettings{.attributes = known}, LasSettings{.waveforms = true, .light_kinds = true, .attributes = known},
+        LasSettings{.format = LasFormat::las_1_0, .attributes = known}}) {
+    Survey survey;
+    for (const ObjectId object : {3U, 4U, 5U}) survey.add({.direction = {0, 0, 1}}, {Echo{.range = 1, .object = object}});
+    const LasFile file = survey.written(settings);
+    REQUIRE(file.points.size() == 3);
+    REQUIRE(file.extras.size() == (settings.light_kinds ? 10 : 9));
+    const std::string n(31, 'n'), u(30, 'u');
+    CHECK((file.extras.end() - 2)->name == n);
+    CHECK(file.extras.back().name == u);
+    CHECK(file.extras.back().description == "attribute of the object met");
+    CHECK(las_real(file, file.points[0], "age") == 80);
+    CHECK(las_real(file, file.points[0], n) == -1.5);
+    CHECK(std::isnan(las_real(file, file.points[0], u)));
+    for (const std::string& name : {std::string("age"), n, u}) CHECK(std::isnan(las_real(file, file.points[1], name)));
+    CHECK(las_real(file, file.points[2], "age") == 12);
+    CHECK(las_real(file, file.points[2], u) == 1e300);
+  }
+}
+
+TEST_CASE("colours that the format has no room for, and names of attributes that cannot be told apart, are refused") {
+  const TemporaryFolder folder;
+  const auto refused = [&](const LasSettings& settings, const char* part) {
+    CHECK_THROWS_WITH_AS(LasWriter(folder / "points.las", settings), doctest::Contains(part), SettingError);
+  };
+  const PointColours black = [](const EchoBatch&, const Shot&, const Echo&) { return PointColour{}; };
+  refused({.format = LasFormat::las_1_4_legacy, .colours = black}, "LasSettings::colours");
+  refused({.format = LasFormat::las_1_0, .colours = black}, "LasSettings::colours");
+  refused({.waveforms = true, .colours = black}, "LasSettings::colours");
+  refused({.near_infrared = true}, "LasSettings::near_infrared");
+  refused({.attributes = attributes_of({{1, attributes({{"Range", 1}})}})}, "'Range'");
+  refused({.attributes = attributes_of({{1, attributes({{"LightKind", 1}})}})}, "'LightKind'");
+  refused({.attributes = attributes_of({{1, std::make_shared<const std::vector<Attribute>>(1)}})}, "''");
+  refused({.attributes = attributes_of({{1, attributes({{std::string(31, 'a') + "b", 1}, {std::string(31, 'a') + "c", 2}})}})}, "aaac'");
+  std::vector<Attribute> many;
+  for (int i = 0; i < 335; ++i) many.push_back({std::to_string(i), 1});
+  refused({.attributes = attributes_of({{1, attributes(many)}})}, "number of names");
+  CHECK(folder.empty());
+  many.pop_back();
+  CHECK(Survey::of_points({{1, 2, 3}}).written({.attributes = attributes_of({{1, attributes(many)}})}).extras.size() == 340);
 }
 
 TEST_CASE("a coordinate reference system is written as given, even the longest that can be") {

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -97,6 +99,54 @@ TEST_CASE("and with several scanner channels, and with whatever else may be set"
   Pulses(3'000).same({.scale = 1e-2, .offset = Vec3{1, 2, 3}, .wkt = "LOCAL_CS[]", .gps_time = GpsTime::week, .start_time = 1e8});
   Pulses(3'000).same({.light_kinds = true});
   Pulses(3'000).same({.epsg = 31467, .intensity = LasIntensity::amplitude, .intensity_full_scale = 1e-7});
+}
+
+/// Settings with colours of all kinds: grey, none, in 8 bits, in 16 bits.
+LasSettings of_colours(bool near_infrared) {
+  return {.colours = [](const EchoBatch&, const Shot& shot, const Echo& echo) -> std::optional<PointColour> {
+            const auto a = static_cast<std::uint16_t>(echo.reflectance * 65535), b = static_cast<std::uint16_t>(shot.index * 7);
+            switch (shot.index / 500 % 4) {
+              case 0:
+                return PointColour{a, a, a, b};
+              case 1:
+                return std::nullopt;
+              case 2:
+                return PointColour{static_cast<std::uint16_t>(a % 256 * 256), static_cast<std::uint16_t>(b % 256 * 256), 256, 0};
+              default:
+                return PointColour{a, b, static_cast<std::uint16_t>(a + b), a};
+            }
+          },
+          .near_infrared = near_infrared};
+}
+
+TEST_CASE("colours and the near infrared are those of the LAS file, with one scanner channel and with several") {
+  for (const bool near_infrared : {false, true})
+    for (const unsigned channels : {1U, 4U}) {
+      CAPTURE(near_infrared);
+      CAPTURE(channels);
+      const LazFile file = Pulses(20'000, channels).same(of_colours(near_infrared));
+      CHECK(file.las[104] == (near_infrared ? 8 : 7));
+      CHECK(file.chunks.at(0).layers.at(9) > 10'000);
+      if (near_infrared) CHECK(file.chunks.at(0).layers.at(10) > 5'000);
+    }
+}
+
+TEST_CASE("a colour that never changes takes no byte, nor does an attribute") {
+  LasSettings settings{.colours =
+                           [](const EchoBatch&, const Shot&, const Echo&) {
+                             return PointColour{1, 2, 3, 4};
+                           },
+                       .near_infrared = true};
+  struct Tree {
+    ObjectId object = 1000;  // no echo is of it
+    Attributes attributes = pulsecast::attributes({{"age", 80}});
+  } tree;
+  settings.attributes = std::make_shared<const ObjectAttributes>(std::span<const Tree>(&tree, 1));
+  const LazFile file = Pulses(3'000).same(settings);
+  const std::vector<std::size_t>& layers = file.chunks.at(0).layers;
+  REQUIRE(layers.size() == 9 + 2 + 32 + 8);
+  CHECK((layers[9] == 0 && layers[10] == 0));
+  CHECK(std::all_of(layers.end() - 8, layers.end(), [](std::size_t size) { return size == 0; }));
 }
 
 TEST_CASE("intensities that are scaled to the greatest amplitude are those of the LAS file") {

@@ -46,6 +46,7 @@ struct LasPoint {
   unsigned intensity = 0, return_number = 0, returns = 0, flags = 0, channel = 0, scan_direction = 0, edge = 0, classification = 0,
            user_data = 0, source = 0;
   double scan_angle_deg = 0, gps_time = 0;
+  std::array<unsigned, 4> colour{};  ///< red, green, blue, near infrared; 0 where the format has none
   LasWavePacket wave;
   std::string bytes;  ///< the whole record
 };
@@ -129,7 +130,7 @@ class LasReader {
   [[nodiscard]] LasFile read() {
     read_header();
     record_ = in_.whole(105, 2);
-    standard_ = (old_ ? 28 : 30) + std::size_t{waves_ ? 29U : 0U};
+    standard_ = (old_ ? 28 : 30) + (file_.format == 7 ? 6U : file_.format == 8 ? 8U : 0U) + std::size_t{waves_ ? 29U : 0U};
     expected_record_ = standard_;
     at_ = file_.minor == 0 ? 227 : 375;
     read_records();
@@ -147,7 +148,7 @@ class LasReader {
     file_.format = static_cast<unsigned>(in_.whole(104, 1));
     las_expect(in_.whole(24, 1) == 1 && (file_.minor == 0 || file_.minor == 4), "version");
     las_expect(in_.whole(94, 2) == (file_.minor == 0 ? 227 : 375), "header size");
-    las_expect(file_.format == 1 || (file_.minor == 4 && (file_.format == 4 || file_.format == 6 || file_.format == 9)), "point format");
+    las_expect(file_.format == 1 || (file_.minor == 4 && (file_.format == 4 || (file_.format >= 6 && file_.format <= 9))), "point format");
     old_ = file_.format < 6;
     waves_ = file_.format == 4 || file_.format == 9;
     file_.global_encoding = static_cast<unsigned>(in_.whole(6, 2));
@@ -229,7 +230,7 @@ class LasReader {
     las_expect(record_ == expected_record_, "record length");
     const bool wkt_bit = (file_.global_encoding & 16U) != 0;
     las_expect(wkt_bit == (old_ ? !file_.wkt.empty() : file_.epsg == 0),
-               "the WKT bit belongs to formats 6 and 9, unless there are GeoTIFF keys");
+               "the WKT bit belongs to formats 6 to 9, unless there are GeoTIFF keys");
     const std::uint64_t count = file_.minor == 0 ? in_.whole(107, 4) : in_.whole(247, 8);
     las_expect(!old_ || in_.whole(107, 4) == count, "legacy number of points");
     las_expect(in_.size() >= at_ && (in_.size() - at_) % record_ == 0 && (in_.size() - at_) / record_ == count, "number of points");
@@ -282,6 +283,8 @@ class LasReader {
       p.scan_angle_deg = static_cast<std::int16_t>(in_.whole(at_ + 18, 2)) * 0.006;
       p.source = static_cast<unsigned>(in_.whole(at_ + 20, 2));
       p.gps_time = in_.real(at_ + 22);
+      for (std::size_t c = 0; c < (file_.format == 7 ? 3U : file_.format == 8 ? 4U : 0U); ++c)
+        p.colour[c] = static_cast<unsigned>(in_.whole(at_ + 30 + 2 * c, 2));
     }
   }
 
@@ -315,7 +318,7 @@ class LasReader {
 
 }  // namespace detail
 
-/// Reads a LAS file, version 1.4 with point format 1, 4, 6 or 9 or version 1.0 with point format 1, and checks all that it says twice:
+/// Reads a LAS file, version 1.4 with point format 1, 4 or 6 to 9 or version 1.0 with point format 1, and checks all that it says twice:
 /// sizes against the file's length, numbers and bounds in the header against the points, return numbers against their count. Throws
 /// `std::runtime_error` at the first thing that is not so. Written from the ASPRS LAS Specification 1.4 R15; shares nothing with the
 /// writer.

@@ -296,7 +296,8 @@ inline constexpr std::array<std::array<int, 16>, 16> laz_return_kinds{{{0, 1, 2,
 /// Reader of one chunk: all that is learnt is kept by channel and by what it depends on.
 class LazChunkReader {
  public:
-  LazChunkReader(const std::string& bytes, std::size_t at, std::size_t record) : p_(open(bytes, at, record)) {
+  LazChunkReader(const std::string& bytes, std::size_t at, std::size_t record, std::size_t colour)
+      : colour_(colour), p_(open(bytes, at, record)) {
     last_of_.emplace(p_.channel, p_);
     first_before_.emplace(p_.channel, p_);
     told_ = p_.channel;
@@ -325,7 +326,7 @@ class LazChunkReader {
 
   /// Takes layers and the first point, which is not compressed.
   Point open(const std::string& bytes, std::size_t at, std::size_t record) {
-    const std::size_t begin = at, layer_count = 9 + record - 30;
+    const std::size_t begin = at, layer_count = 9 + layers_of_colour() + record - 30 - colour_;
     chunk_.records = bytes.substr(at, record);
     chunk_.points = laz_whole(bytes, at + record, 4);
     laz_expect(chunk_.points > 0, "a chunk without a point");
@@ -435,13 +436,19 @@ class LazChunkReader {
     if ((news & 32) != 0) p_.source = number(7, 16, "source", before.source, 0) & 65535;
   }
 
-  /// Decodes the extra bytes, learnt by `told`, and puts down the point.
+  [[nodiscard]] std::size_t layers_of_colour() const { return colour_ == 0 ? 0 : colour_ == 6 ? 1 : 2; }
+
+  /// Decodes colour and extra bytes, learnt by `told`, and puts down the point.
   void extra_bytes(std::int64_t told) {
     const std::int64_t told_before = std::exchange(told_, told);
     const bool known = extras_of_.try_emplace(told, extras_of_.at(told_before)).second == false;
     std::string& extras = extras_of_.at(known ? told_before : told);
-    for (std::size_t k = 0; k < extras.size(); ++k)
-      if (chunk_.layers[9 + k] > 0) extras[k] = static_cast<char>(extras[k] + symbol(9 + k, 256, "extra " + std::to_string(k), told, 0));
+    if (colour_ > 0 && chunk_.layers[9] > 0) colours(extras, told);
+    if (colour_ > 6 && chunk_.layers[10] > 0) near_infrared(extras, told);
+    const std::size_t begin = 9 + layers_of_colour();
+    for (std::size_t k = 0; k + colour_ < extras.size(); ++k)
+      if (chunk_.layers[begin + k] > 0)
+        extras[colour_ + k] = static_cast<char>(extras[colour_ + k] + symbol(begin + k, 256, "extra " + std::to_string(k), told, 0));
     const auto put = [&](std::uint64_t value, int n) {
       for (; n > 0; --n, value >>= 8) chunk_.records.push_back(static_cast<char>(value));
     };
@@ -457,6 +464,38 @@ class LazChunkReader {
     chunk_.records += extras;
   }
 
+  /// Steps of a byte, from the one that is expected; the sum is kept within a byte, if `expected` is given.
+  void step(std::string& extras, std::size_t byte, std::size_t layer, std::int64_t told, int expected = 0) {
+    const int from = std::min(255, std::max(0, static_cast<unsigned char>(extras[byte]) + expected));
+    extras[byte] = static_cast<char>(from + symbol(layer, 256, "colour " + std::to_string(byte), told, 0));
+  }
+
+  /// Bytes 0 to 5 are red, green and blue, the low byte of each first.
+  void colours(std::string& extras, std::int64_t told) {
+    const std::string old = extras;
+    const std::int64_t changed = symbol(9, 128, "colour changes", told, 0);
+    const auto change_of = [&](std::size_t byte) {
+      return int{static_cast<unsigned char>(extras[byte])} - static_cast<unsigned char>(old[byte]);
+    };
+    if ((changed & 1) != 0) step(extras, 0, 9, told);
+    if ((changed & 2) != 0) step(extras, 1, 9, told);
+    if ((changed & 64) == 0) {
+      for (const std::size_t byte : {2U, 3U, 4U, 5U}) extras[byte] = extras[byte % 2];
+      return;
+    }
+    for (const std::size_t low : {0U, 1U}) {
+      if ((changed >> (2 + low) & 1) != 0) step(extras, 2 + low, 9, told, change_of(low));
+      if ((changed >> (4 + low) & 1) != 0) step(extras, 4 + low, 9, told, (change_of(low) + change_of(2 + low)) / 2);
+    }
+  }
+
+  void near_infrared(std::string& extras, std::int64_t told) {
+    const std::int64_t changed = symbol(10, 4, "near infrared changes", told, 0);
+    if ((changed & 1) != 0) step(extras, 6, 10, told);
+    if ((changed & 2) != 0) step(extras, 7, 10, told);
+  }
+
+  std::size_t colour_;  ///< its size in a record [byte]
   LazReadChunk chunk_;
   std::vector<LazDecoder> decoders_;  ///< of the layers
   std::map<std::tuple<std::string, std::int64_t, std::int64_t>, LazShares> shares_;
@@ -472,9 +511,10 @@ class LazChunkReader {
 
 }  // namespace detail
 
-/// Reads the chunk that begins at some byte, of points of format 6 with records of so many bytes.
-[[nodiscard]] inline LazReadChunk read_laz_chunk(const std::string& bytes, std::size_t at, std::size_t record) {
-  return detail::LazChunkReader(bytes, at, record).read();
+/// Reads the chunk that begins at some byte, with records of so many bytes, `colour` of them for a colour: 0, 6 and 8 with the point
+/// formats 6, 7 and 8.
+[[nodiscard]] inline LazReadChunk read_laz_chunk(const std::string& bytes, std::size_t at, std::size_t record, std::size_t colour = 0) {
+  return detail::LazChunkReader(bytes, at, record, colour).read();
 }
 
 /// A LAZ file, and the LAS file that it is when it is not compressed.
@@ -483,11 +523,27 @@ struct LazFile {
   std::vector<LazReadChunk> chunks;
 };
 
-/// Reads a LAZ file of point format 6, and checks what it says of its compression: record, chunk table, places and sizes.
+/// Checks the record on the compression that begins at some byte: items of the point format, and points of a chunk.
+inline void check_laz_record(const std::string& bytes, std::size_t at, std::uint64_t chunk) {
+  using detail::laz_expect;
+  using detail::laz_whole;
+  const std::size_t d = at + 54, record = laz_whole(bytes, 105, 2), format = laz_whole(bytes, 104, 1) - 128;
+  const std::uint64_t colour = format == 7 ? 6 : format == 8 ? 8 : 0, items = colour > 0 ? 3 : 2;
+  laz_expect(laz_whole(bytes, at + 20, 2) == 34 + 6 * items, "size of the record");
+  laz_expect(laz_whole(bytes, d, 2) == 3 && laz_whole(bytes, d + 2, 2) == 0, "layered chunks by the arithmetic coder");
+  laz_expect(laz_whole(bytes, d + 8, 4) == 0 && laz_whole(bytes, d + 12, 4) == chunk, "options and points of a chunk");
+  laz_expect(laz_whole(bytes, d + 32, 2) == items, "number of items");
+  laz_expect(laz_whole(bytes, d + 34, 6) == 10 + (30ULL << 16) + (3ULL << 32), "POINT14, version 3");
+  if (colour > 0) laz_expect(laz_whole(bytes, d + 40, 6) == 4 + format + (colour << 16) + (3ULL << 32), "RGB14 or RGBNIR14, version 3");
+  laz_expect(laz_whole(bytes, d + 28 + 6 * items, 6) == 14 + ((record - 30 - colour) << 16) + (3ULL << 32), "BYTE14, version 3");
+}
+
+/// Reads a LAZ file of point formats 6 to 8, and checks what it says of its compression: record, chunk table, places and sizes.
 [[nodiscard]] inline LazFile read_laz(const std::string& bytes) {
   using detail::laz_expect;
   using detail::laz_whole;
-  laz_expect(bytes.substr(0, 4) == "LASF" && laz_whole(bytes, 104, 1) == 134, "signature and point format");
+  const std::size_t format = laz_whole(bytes, 104, 1) - 128, colour = format == 7 ? 6 : format == 8 ? 8 : 0;
+  laz_expect(bytes.substr(0, 4) == "LASF" && format >= 6 && format <= 8, "signature and point format");
   const std::size_t record = laz_whole(bytes, 105, 2), begin = laz_whole(bytes, 96, 4), descriptors = laz_whole(bytes, 100, 4);
   LazFile file;
   file.las = bytes.substr(0, 375);
@@ -495,20 +551,15 @@ struct LazFile {
   for (std::size_t i = 0; i < descriptors; ++i) {
     const std::size_t size = 54 + laz_whole(bytes, at + 20, 2);
     if (bytes.compare(at + 2, 15, std::string("laszip encoded\0", 15)) == 0 && laz_whole(bytes, at + 18, 2) == 22204) {
-      const std::size_t d = at + 54;
-      laz_expect(++described == 1 && size == 54 + 46, "one record of two items");
-      laz_expect(laz_whole(bytes, d, 2) == 3 && laz_whole(bytes, d + 2, 2) == 0, "layered chunks by the arithmetic coder");
-      laz_expect(laz_whole(bytes, d + 8, 4) == 0 && laz_whole(bytes, d + 12, 4) == 50000, "options and points of a chunk");
-      laz_expect(laz_whole(bytes, d + 32, 2) == 2, "number of items");
-      laz_expect(laz_whole(bytes, d + 34, 6) == 10 + (30ULL << 16) + (3ULL << 32), "POINT14, version 3");
-      laz_expect(laz_whole(bytes, d + 40, 6) == 14 + (std::uint64_t{record - 30} << 16) + (3ULL << 32), "BYTE14, version 3");
+      laz_expect(++described == 1, "one record");
+      check_laz_record(bytes, at, 50000);
     } else {
       file.las += bytes.substr(at, size);
     }
     at += size;
   }
   laz_expect(described == 1 && at == begin, "records of variable length");
-  file.las[104] = 6;
+  file.las[104] = static_cast<char>(format);
   const auto put = [&](std::size_t place, std::size_t value) {
     for (std::size_t i = 0; i < 4; ++i) file.las[place + i] = static_cast<char>(value >> (8 * i));
   };
@@ -529,7 +580,7 @@ struct LazFile {
   }
   at = begin + 8;
   for (std::size_t i = 0; i < count; ++i) {
-    file.chunks.push_back(read_laz_chunk(bytes, at, record));
+    file.chunks.push_back(read_laz_chunk(bytes, at, record, colour));
     laz_expect(file.chunks.back().size == sizes[i], "size of chunk " + std::to_string(i));
     laz_expect(i + 1 == count || file.chunks.back().points == 50000, "points of chunk " + std::to_string(i));
     file.las += file.chunks.back().records;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/io/detail/las/encoder.hpp>
 #include <pulsecast/io/detail/las/layout.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/las/writer.hpp>
@@ -23,8 +24,9 @@ namespace detail {
 /// Point records of a LAS file, uncompressed.
 class LasRecords {
  public:
-  static constexpr std::uint8_t format_bits = 0;        ///< flags in the header's point format
-  static constexpr std::uint32_t descriptor_count = 0;  ///< variable-length records for the decoding of points
+  static constexpr std::uint8_t format_bits = 0;                                    ///< flags in the header's point format
+  static constexpr std::uint32_t first_descriptor_count = 0, descriptor_count = 0;  ///< variable-length records about the points
+  [[nodiscard]] static std::vector<std::byte> first_descriptors() { return {}; }    ///< those before all others
   [[nodiscard]] static std::vector<std::byte> descriptors(const LasLayout& /*layout*/) { return {}; }
 
   /// Begins the points at the file's position; `changed` says if `change` will be called.
@@ -44,7 +46,8 @@ class LasRecords {
     });
   }
 
-  void finish(OutputFile& /*file*/) {}
+  void finish(OutputFile& /*file*/, const LasEncoder& /*encoder*/) {}
+  [[nodiscard]] static LasExtendedRecords extended() noexcept { return {}; }  ///< valid once finished
 
  private:
   std::uint64_t begin_ = 0;  // [byte]

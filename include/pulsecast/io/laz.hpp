@@ -16,6 +16,7 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/io/detail/las/bytes.hpp>
+#include <pulsecast/io/detail/las/encoder.hpp>
 #include <pulsecast/io/detail/las/layout.hpp>
 #include <pulsecast/io/detail/las/settings.hpp>
 #include <pulsecast/io/detail/las/writer.hpp>
@@ -63,19 +64,22 @@ inline constexpr std::size_t laz_chunk_points = 50000;  ///< default of LASzip
   return bytes;
 }
 
-/// Chunk table: sizes of all chunks [byte], for random access. Source: Isenburg 2013, LASzip, 3 (chunk table).
-[[nodiscard]] inline std::vector<std::byte> laz_chunk_table(std::span<const std::size_t> sizes) {
+/// Chunk table: sizes of all chunks [byte], for random access, and their numbers of points, unless `points` is empty and all but the last
+/// have as many. Source: Isenburg 2013, LASzip, 3 (chunk table).
+[[nodiscard]] inline std::vector<std::byte> laz_chunk_table(std::span<const std::size_t> sizes,
+                                                            std::span<const std::uint32_t> points = {}) {
   LasBytes<8> head{};  // version, 0, and number of chunks
   head.put(4, static_cast<std::uint32_t>(sizes.size()));
   std::vector<std::byte> bytes(head.begin(), head.end());
   if (sizes.empty()) return bytes;
   LazEncoder encoder;
-  LazIntegers integers(32, 2);  // the first context is for point counts, where they vary
-  std::int32_t last = 0;
-  for (const std::size_t size : sizes) {
-    const auto next = static_cast<std::int32_t>(size);
-    integers.encode(encoder, last, next, 1);
-    last = next;
+  LazIntegers integers(32, 2);  // contexts: numbers of points, sizes
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const auto step = [&](const auto& values, std::size_t context) {
+      integers.encode(encoder, i == 0 ? 0 : static_cast<std::int32_t>(values[i - 1]), static_cast<std::int32_t>(values[i]), context);
+    };
+    if (!points.empty()) step(points, 0);
+    step(sizes, 1);
   }
   const std::vector<std::byte> coded = std::move(encoder).finish();
   bytes.insert(bytes.end(), coded.begin(), coded.end());
@@ -89,7 +93,8 @@ class LazRecords {
   explicit LazRecords(unsigned threads) : threads_(std::min(thread_count(threads), 16U)) {}
 
   static constexpr std::uint8_t format_bits = 128;
-  static constexpr std::uint32_t descriptor_count = 1;
+  static constexpr std::uint32_t first_descriptor_count = 0, descriptor_count = 1;
+  [[nodiscard]] static std::vector<std::byte> first_descriptors() { return {}; }
   [[nodiscard]] static std::vector<std::byte> descriptors(const LasLayout& layout) { return laz_descriptor(layout); }
 
   void begin(OutputFile& file, const LasLayout& layout, bool changed) {
@@ -116,11 +121,14 @@ class LazRecords {
   /// Takes over chunks of these sizes [byte], written by others.
   void adopt(std::vector<std::size_t> sizes) { sizes_ = std::move(sizes); }
 
+  void finish(OutputFile& file, const LasEncoder& /*encoder*/) { finish(file); }
   void finish(OutputFile& file) {
     compress(file);
     file.overwrite(table_position_at_, table_position(static_cast<std::int64_t>(file.position())));
     file.write(laz_chunk_table(sizes_));
   }
+
+  [[nodiscard]] static LasExtendedRecords extended() noexcept { return {}; }
 
  private:
   [[nodiscard]] static LasBytes<8> table_position(std::int64_t position) noexcept {

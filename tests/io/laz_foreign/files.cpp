@@ -137,7 +137,7 @@ void write_survey(const fs::path& folder, const std::string& name, PulseIndex pu
 /// Colours by height, none of every third pulse, and attributes of the one object.
 LasSettings of_heights() {
   Part<TriangleMesh<>> part;
-  part.attributes = {{"height of the trunk", 17.5}, {"age", 80}};
+  part.attributes = attributes({{"height of the trunk", 17.5}, {"age", 80}});
   return {.colours = [](const EchoBatch&, const Shot& shot, const Echo& echo) -> std::optional<PointColour> {
             if (shot.index % 3 == 0) return std::nullopt;
             const auto high = static_cast<std::uint16_t>(200 * point_of(shot, echo).z + 2000);

@@ -41,8 +41,15 @@ void las_in_blocks(OutputFile& file, std::uint64_t begin, std::size_t record, co
   }
 }
 
-/// Writes points as LAS with extra bytes, in pulse order. `Records`, as `LasRecords` or `LazRecords`, stores the point records, and may
-/// change them once all are known. Source of every field: ASPRS LAS Specification 1.4 R15. Choices that it leaves open:
+/// Extended variable-length records of a file: offset of the first [byte], and number.
+struct LasExtendedRecords {
+  std::uint64_t begin = 0;
+  std::uint32_t count = 0;
+};
+
+/// Writes points as LAS with extra bytes. `Records`, as `LasRecords`, `LazRecords` or `CopcRecords`, stores the point records, in pulse
+/// order or another, and may change them once all are known. Source of every field: ASPRS LAS Specification 1.4 R15. Choices that it leaves
+/// open:
 /// - coordinates are rounded to the nearest step; one beyond 32 bits, or not finite, is a `FileError`;
 /// - intensity is linear in the quantity of `LasIntensity`; extra bytes Amplitude and Reflectance are levels [dB], -200 for zero;
 /// - return numbers and counts end at 15, or 5, by format: later returns are written as the last;
@@ -65,6 +72,8 @@ class LasFileWriter {
       : encoder_(settled(validated(std::move(how)))), records_(std::move(records)), file_(std::move(path)) {
     if (settings().waveforms) packets_.emplace(packets_path());
     write_header();
+    file_.write(Records::first_descriptors());
+    variable_records_ += Records::first_descriptor_count;
     write_extra_bytes_record();
     if (!settings().wkt.empty()) write_wkt_record();
     if (by_keys()) write_keys_record();
@@ -109,7 +118,7 @@ class LasFileWriter {
     if (layout().minor == 0 && encoder_.tally().points > std::numeric_limits<std::uint32_t>::max())
       throw FileError(file_.path().string(), "", "has too many points; expected fewer than 2^32, with version 1.0");
     if (encoder_.automatic_intensity()) records_.change(file_, [this](std::span<std::byte> some) { encoder_.scale_intensities(some); });
-    records_.finish(file_);
+    records_.finish(file_, encoder_);
     write_header();
     if (packets_) {
       file_.overwrite(descriptors_at_, packets_->descriptors());
@@ -186,6 +195,8 @@ class LasFileWriter {
       h.put(179 + 16 * axis, tally.most[axis] * settings().scale + offset);
       h.put(187 + 16 * axis, tally.least[axis] * settings().scale + offset);
     }
+    h.put(235, records_.extended().begin);
+    h.put(243, records_.extended().count);
     h.put(247, tally.points);
     for (std::size_t i = 0; i < tally.points_by_return.size(); ++i) h.put(255 + 8 * i, tally.points_by_return[i]);
     const std::span<const std::byte> bytes = std::span(h).first(layout().header);
