@@ -181,6 +181,11 @@ class CommandLine {
   void add_results() {
     app_.add_flag(both("writeWaveform"), o_.write_waveform, "Write waveforms, too");
     app_.add_flag(both("writePulse"), o_.write_pulse, "Write a table of all pulses, too");
+    app_.add_flag(both("writeMisses"), o_.write_misses, "Write a table of the pulses without echoes, too");
+    app_.add_option(both("missesAt"), misses_at_, "Write a point for each pulse without echoes, at this range [m]")
+        ->type_name("M")
+        ->check(number_check<double>([](double range) { return range >= 0 && range <= 1e9; }, "range from 0 to 1e9 m"));
+    app_.add_flag("--geojson", o_.geojson, "Write trajectories and footprints as GeoJSON, too");
     app_.add_flag(both("calcEchowidth"), o_.echo_width, "Measure the width of echoes");
     app_.add_flag(both("fullwaveNoise"), o_.waveform_noise, "Add receiver noise");
     app_.add_flag(both("fixedIncidenceAngle"), o_.fixed_incidence, "Scatter as at normal incidence");
@@ -293,6 +298,7 @@ class CommandLine {
     if (o_.colours && (!o_.format.starts_with("la") || o_.las_1_0)) return "--colours need LAS 1.4: expected --format las or laz";
     if (o_.colours && o_.format == "las" && o_.write_waveform) return "--colours and --writeWaveform: LAS has no points of both here";
     if (!epsg_.empty()) o_.epsg = text::number_in<std::uint16_t>(epsg_);
+    if (!misses_at_.empty()) o_.misses_at = text::number_in<double>(misses_at_);
     if (!seed_.empty() && seed_ != "AUTO") o_.seed = text::number_in<std::uint64_t>(seed_);
     o_.platform_noise = !no_platform_noise_;
     o_.leg_noise = !no_leg_noise_;
@@ -313,7 +319,7 @@ class CommandLine {
       "  pulsecast catalogue             lists the scanners and platforms of the catalogue\n",
       "pulsecast"};
   Options o_;
-  std::string seed_, epsg_, range_error_, intensity_error_, time_, memory_, apply_to_, swallowed_;
+  std::string seed_, epsg_, misses_at_, range_error_, intensity_error_, time_, memory_, apply_to_, swallowed_;
   bool las_ = false, zip_ = false, no_platform_noise_ = false, no_leg_noise_ = false, rebuild_scene_ = false, no_scene_writing_ = false;
   std::vector<CLI::Option*> of_forecast_, unused_;
 };

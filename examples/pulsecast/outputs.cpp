@@ -8,10 +8,15 @@
 #include <utility>
 #include <variant>
 
+<<<<<<< Updated upstream
 #include <pulsecast/io/copc.hpp>
+=======
+#include <pulsecast/io/geojson.hpp>
+>>>>>>> Stashed changes
 #include <pulsecast/io/gzip.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/laz.hpp>
+#include <pulsecast/io/misses.hpp>
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/io/text_files.hpp>
 #include <pulsecast/io/trajectory.hpp>
@@ -53,6 +58,8 @@ std::vector<fs::path> leg_files(const fs::path& folder, const std::string& prefi
   all.push_back(folder / (prefix + "_trajectory.txt"));
   if (o.write_waveform) all.push_back(folder / (prefix + "_fullwave.txt"));
   if (o.write_pulse) all.push_back(folder / (prefix + "_pulse.txt"));
+  if (o.write_misses) all.push_back(folder / (prefix + "_misses.txt"));
+  if (o.geojson) all.push_back(folder / (prefix + "_map.geojson"));
   return all;
 }
 
@@ -73,24 +80,32 @@ struct LegFiles::Inside {
   io::TrajectoryWriter trajectory;
   std::optional<io::WaveformTextWriter> waveforms;
   std::optional<io::PulseTextWriter> pulses;
+  std::optional<io::MissTextWriter> misses;
+  std::optional<io::MissPoints> miss_points;
+  std::optional<io::GeoJsonWriter> map;
   std::vector<Shot> shots;
 };
 
 LegFiles::LegFiles(const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
                    const std::vector<std::string>& channels)
-    : inside_(new Inside{{}, io::TrajectoryWriter(folder / (prefix + "_trajectory.txt"), {.start_time = start_time}), {}, {}, {}}) {
+    : inside_(
+          new Inside{{}, io::TrajectoryWriter(folder / (prefix + "_trajectory.txt"), {.start_time = start_time}), {}, {}, {}, {}, {}, {}}) {
   for (const fs::path& path : point_files(folder, prefix, o, channels)) inside_->points.push_back(point_writer(path, o, start_time));
   if (o.write_waveform) inside_->waveforms.emplace(folder / (prefix + "_fullwave.txt"), io::TextFileSettings{start_time});
   if (o.write_pulse) inside_->pulses.emplace(folder / (prefix + "_pulse.txt"), io::TextFileSettings{start_time});
+  if (o.write_misses) inside_->misses.emplace(folder / (prefix + "_misses.txt"), io::TextFileSettings{start_time});
+  if (o.misses_at) inside_->miss_points.emplace(io::MissSettings{.range = *o.misses_at});
+  if (o.geojson) inside_->map.emplace(folder / (prefix + "_map.geojson"), io::GeoJsonSettings{.epsg = o.epsg.value_or(0)});
 }
 LegFiles::~LegFiles() = default;
 
 void LegFiles::operator()(const EchoBatch& batch) {
+  const EchoBatch points = inside_->miss_points ? (*inside_->miss_points)(batch) : batch;
   for (std::size_t k = 0; k < inside_->points.size(); ++k) {
-    EchoBatch part = batch;
+    EchoBatch part = points;
     if (inside_->points.size() > 1) {
       inside_->shots.clear();
-      for (const Shot& shot : batch.shots)
+      for (const Shot& shot : points.shots)
         if (shot.channel == k) inside_->shots.push_back(shot);
       part.shots = inside_->shots;
     }
@@ -98,9 +113,11 @@ void LegFiles::operator()(const EchoBatch& batch) {
   }
   if (inside_->waveforms) (*inside_->waveforms)(batch);
   if (inside_->pulses) (*inside_->pulses)(batch);
+  if (inside_->misses) (*inside_->misses)(batch);
+  if (inside_->map) (*inside_->map)(batch);
 }
 
-bool LegFiles::reads_empty_shots() const noexcept { return inside_->pulses.has_value(); }
+bool LegFiles::reads_empty_shots() const noexcept { return inside_->pulses || inside_->misses || inside_->miss_points || inside_->map; }
 
 void LegFiles::add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) {
   if (interval > 0) inside_->trajectory.add(leg.path(), start, leg.duration(), interval);
@@ -109,6 +126,8 @@ void LegFiles::add_trajectory(const helios::SurveyLeg& leg, Tick start, double i
 void LegFiles::close() {
   if (inside_->waveforms) inside_->waveforms->close();
   if (inside_->pulses) inside_->pulses->close();
+  if (inside_->misses) inside_->misses->close();
+  if (inside_->map) inside_->map->close();
   inside_->trajectory.close();
   for (PointWriter& writer : inside_->points) std::visit([](auto& w) { w.close(); }, writer);
 }

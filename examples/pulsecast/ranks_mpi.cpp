@@ -16,6 +16,7 @@
 #include <sstream>
 
 #include <pulsecast/io/gzip.hpp>
+#include <pulsecast/io/misses.hpp>
 #include <pulsecast/io/text_files.hpp>
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/mpi/run.hpp>
@@ -58,6 +59,10 @@ class SharedLegRun final : public LegRun {
     if (o.write_pulse)
       add(std::make_unique<mpi::MpiRows<io::PulseTextWriter, io::TextFileSettings>>(group, folder / (prefix + "_pulse.txt"),
                                                                                     io::TextFileSettings{start_time}));
+    if (o.write_misses)
+      add(std::make_unique<mpi::MpiRows<io::MissTextWriter, io::TextFileSettings>>(group, folder / (prefix + "_misses.txt"),
+                                                                                   io::TextFileSettings{start_time}));
+    if (o.misses_at) miss_points_.emplace(io::MissSettings{.range = *o.misses_at});
   }
 
   void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override {
@@ -67,7 +72,10 @@ class SharedLegRun final : public LegRun {
   RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override {
     std::vector<MpiOutput*> outputs;
     for (const auto& output : outputs_) outputs.push_back(output.get());
-    const auto simulate = [&](const RunOptions& part, const mpi::MpiPartSink& sink) { return simulation.run(part, sink); };
+    const auto simulate = [&](const RunOptions& part, const mpi::MpiPartSink& sink) {
+      if (!miss_points_) return simulation.run(part, sink);
+      return simulation.run(part, [&](const EchoBatch& batch) { sink((*miss_points_)(batch)); });
+    };
     return mpi::run_parts(group_, options.end, options, simulate, outputs);
   }
 
@@ -81,6 +89,7 @@ class SharedLegRun final : public LegRun {
   MpiOutput* add(std::unique_ptr<MpiOutput> output) { return outputs_.emplace_back(std::move(output)).get(); }
 
   MpiGroup& group_;
+  std::optional<io::MissPoints> miss_points_;
   std::optional<io::TrajectoryWriter> trajectory_;  // on the first process
   std::vector<std::unique_ptr<MpiOutput>> outputs_;
 };

@@ -18,6 +18,7 @@
 #include <pulsecast/io/ascii_grid.hpp>
 #include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/output_file.hpp>
+#include <pulsecast/io/png_heights.hpp>
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
@@ -40,7 +41,7 @@ std::uint16_t reference_system_of(const helios::SceneSettings& scene) {
     const auto* const rasters = std::get_if<helios::GeoTiffSource>(&part.source);
     if (rasters == nullptr || part.transform != helios::TransformSettings{}) continue;
     for (const fs::path& path : rasters->files)
-      codes.insert(io::is_ascii_grid(path) ? std::uint16_t{0} : io::read_geotiff_epsg(path).value_or(0));
+      codes.insert(io::is_ascii_grid(path) || io::is_png(path) ? std::uint16_t{0} : io::read_geotiff_epsg(path).value_or(0));
   }
   const bool is_one = codes.size() == 1 && *codes.begin() >= 1024 && *codes.begin() <= 32766;  // source: OGC GeoTIFF 1.1, codes of EPSG
   return is_one ? *codes.begin() : std::uint16_t{0};

@@ -43,7 +43,7 @@ for ranks in "1 2" "2 1" "2 2" "3 1" "5 2"; do
   same $ranks las --writeWaveform --writePulse --calcEchowidth
 done
 same 3 2 laz
-same 2 1 xyz --writeWaveform
+same 2 1 xyz --writeWaveform --writeMisses --missesAt 50
 same 3 1 xyz.gz --splitByChannel
 grep -q 'of its own' notes && fail "the scene is not shared: $(cat notes)"
 

@@ -34,9 +34,9 @@ namespace detail {
 /// Heights about a pixel [m]. What is missing, or beyond the edge, is as on a plane through the pixel and its opposite neighbour, or its
 /// neighbours to the sides; level without these.
 template <class Heights>
-class Neighbours {
+class PixelSurroundings {
  public:
-  Neighbours(const Heights& heights, const RasterGrid& grid, std::uint32_t column, std::uint32_t row) noexcept
+  PixelSurroundings(const Heights& heights, const RasterGrid& grid, std::uint32_t column, std::uint32_t row) noexcept
       : heights_(heights), grid_(grid), column_(column), row_(row), own_(at(0, 0)) {}
 
   [[nodiscard]] double own() const noexcept { return own_; }
@@ -80,7 +80,7 @@ class Neighbours {
   raster.read([&](const auto& heights) {
     for (std::uint32_t row = 0; row < grid.rows; ++row)
       for (std::uint32_t column = 0; column < grid.columns; ++column) {
-        const detail::Neighbours z(heights, grid, column, row);
+        const detail::PixelSurroundings z(heights, grid, column, row);
         if (std::isnan(z.own())) continue;
         const double east = (z(1, -1) + 2 * z(1, 0) + z(1, 1)) - (z(-1, -1) + 2 * z(-1, 0) + z(-1, 1));
         const double north = (z(-1, -1) + 2 * z(0, -1) + z(1, -1)) - (z(-1, 1) + 2 * z(0, 1) + z(1, 1));
