@@ -288,13 +288,9 @@ class Session {
         << " scale=" << options_.las_scale << " epsg=" << options_.epsg.value_or(0) << " las10=" << options_.las_1_0
         << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width << options_.waveform_noise
         << options_.fixed_incidence << options_.library_physics << options_.light_paths << options_.split_by_channel
-<<<<<<< Updated upstream
-        << options_.platform_noise << options_.leg_noise;
-    if (options_.colours) out << " colours=" << options_.near_infrared;
-=======
         << options_.platform_noise << options_.leg_noise << options_.write_misses << options_.geojson;
+    if (options_.colours) out << " colours=" << options_.near_infrared;
     if (options_.misses_at) out << " misses=" << *options_.misses_at;
->>>>>>> Stashed changes
     return out.str();
   }
 
@@ -493,25 +489,19 @@ int work(const Options& options, Ranks& ranks) {
   } else {
     (void)helios::check_without_scene(file.survey, file.leg_places);  // before expensive work
     Options settled = options;
-<<<<<<< Updated upstream
-    const bool has_reference = options.format == "las" || options.format.ends_with("laz");
+    const bool has_reference = options.geojson || options.format == "las" || options.format.ends_with("laz");
     if (!options.epsg && has_reference) settled.epsg = reference_system_of(file.survey.scene);
-=======
-    if (!options.epsg && (options.geojson || options.format.starts_with("la"))) settled.epsg = reference_system_of(file.survey.scene);
->>>>>>> Stashed changes
     if (ranks.count() > 1 && (options.page || options.live)) {
       settled.page = settled.live = false;
       if (ranks.first()) notes.say("--page and --live have no effect under mpirun: they need all points in one process");
     }
-<<<<<<< Updated upstream
     if (ranks.count() > 1 && options.format == "copc.laz") {
       settled.format = "laz";
       if (ranks.first()) notes.say("--format copc.laz needs all points in one process: under mpirun, laz is written");
-=======
+    }
     if (ranks.count() > 1 && options.geojson) {
       settled.geojson = false;
       if (ranks.first()) notes.say("--geojson has no effect under mpirun: it needs all points in one process");
->>>>>>> Stashed changes
     }
     return Session(settled, file, *seed, ranks, notes).run();
   }

@@ -45,15 +45,11 @@ struct Options {
   bool las_1_0 = false;                 ///< write LAS 1.0
   bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false,
        library_physics = false, light_paths = false;
-<<<<<<< Updated upstream
   bool colours = false, near_infrared = false;  ///< columns of points in LAS
+  bool write_misses = false;                    ///< write a table of the pulses without echoes
+  std::optional<double> misses_at{};            ///< range of points for pulses without echoes; default: no such points [m]
+  bool geojson = false;                         ///< write trajectories and footprints
   bool page = false, live = false;              ///< page of the points: as a file, and live
-=======
-  bool write_misses = false;          ///< write a table of the pulses without echoes
-  std::optional<double> misses_at{};  ///< range of points for pulses without echoes; default: no such points [m]
-  bool geojson = false;               ///< write trajectories and footprints
-  bool page = false, live = false;    ///< page of the points: as a file, and live
->>>>>>> Stashed changes
   std::size_t page_points = 1'000'000;
   bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false, verbose = false;
   bool strict = false;  ///< treat notes about the survey and its files as errors

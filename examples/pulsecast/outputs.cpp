@@ -8,11 +8,8 @@
 #include <utility>
 #include <variant>
 
-<<<<<<< Updated upstream
 #include <pulsecast/io/copc.hpp>
-=======
 #include <pulsecast/io/geojson.hpp>
->>>>>>> Stashed changes
 #include <pulsecast/io/gzip.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/laz.hpp>
