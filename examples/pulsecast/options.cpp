@@ -295,7 +295,8 @@ class CommandLine {
     if (o_.las_1_0 && o_.format.ends_with("laz")) return "--las10 and --format " + o_.format + ": only LAS 1.4 is compressed";
     if (o_.las_1_0 && zip_ && o_.format == "las") o_.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
     o_.colours = o_.colours || o_.near_infrared;
-    if (o_.colours && (!o_.format.starts_with("la") || o_.las_1_0)) return "--colours need LAS 1.4: expected --format las or laz";
+    const bool has_colours = o_.format == "las" || o_.format.ends_with("laz");
+    if (o_.colours && (!has_colours || o_.las_1_0)) return "--colours need LAS 1.4: expected --format las, laz or copc.laz";
     if (o_.colours && o_.format == "las" && o_.write_waveform) return "--colours and --writeWaveform: LAS has no points of both here";
     if (!epsg_.empty()) o_.epsg = text::number_in<std::uint16_t>(epsg_);
     if (!misses_at_.empty()) o_.misses_at = text::number_in<double>(misses_at_);
