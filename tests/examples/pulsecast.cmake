@@ -125,6 +125,22 @@ foreach(name leg000_points.xyz leg000_trajectory.txt leg000_pulse.txt leg000_ful
   endif()
 endforeach()
 
+# Points have the colours of surfaces: point formats 7 and 8.
+expect(2 "--colours need LAS 1.4" ${SURVEY} --colours)
+expect(2 "--colours need LAS 1.4" ${SURVEY} --las10 --nearInfrared)
+expect(2 "LAS has no points of both" ${SURVEY} --format las --colours --writeWaveform)
+foreach(case "las;--colours;07" "las;--nearInfrared;08" "laz;--colours;87" "copc.laz;--nearInfrared;88")
+  list(GET case 0 format)
+  list(GET case 1 option)
+  list(GET case 2 expected)
+  expect(0 "" ${SURVEY} --format ${format} ${option} --output coloured_${format}${option})
+  file(GLOB_RECURSE file ${FOLDER}/coloured_${format}${option}/leg000_points.${format})
+  file(READ ${file} point_format OFFSET 104 LIMIT 1 HEX)
+  if(NOT point_format STREQUAL expected)
+    message(SEND_ERROR "${option} leaves ${format} of point format 0x${point_format}, expected 0x${expected}")
+  endif()
+endforeach()
+
 # Pulses without echoes are points and rows; trajectories and footprints are on a map. Terrain is drawn in the preview.
 expect(2 "missesAt: '-1': expected a range from 0" ${SURVEY} --missesAt -1)
 expect(0 "" ${SURVEY} --output misses ${start} --writePulse --writeMisses --missesAt 50 --geojson)
