@@ -39,7 +39,7 @@ class Canvas {
       : settings_(s), points_(points), camera_(s, points.empty() ? ground : points) {
     nearest_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
     if (!ground.empty()) {
-      draw(ground, closing_diameter(ground));
+      draw(ground, 1.5 * closing_diameter(ground));  // by eye: closed on slopes, too
       behind_.assign(nearest_.size(), 0);
       for (std::size_t i = 0; i < nearest_.size(); ++i)
         if (depth_[i] != nothing) behind_[i] = static_cast<std::uint8_t>(ground[nearest_[i]].value);
