@@ -41,6 +41,15 @@ Raster hills(std::uint32_t columns, std::uint32_t rows) {
   return raster;
 }
 
+/// The same in 16 bits, in steps of a centimetre.
+Raster packed(const Raster& wide) {
+  constexpr double step = 0.01;
+  Raster raster{.columns = wide.columns, .rows = wide.rows, .first = wide.first, .pixel = wide.pixel, .packed = {.scale = step}};
+  for (const float height : wide.heights)
+    raster.packed.numbers.push_back(static_cast<std::uint16_t>(std::lround(static_cast<double>(height) / step)));
+  return raster;
+}
+
 RayBundle pulse(const Vec3& place, const Rotation& aim, std::size_t subrays) {
   const SunflowerFootprint footprint(subrays);
   RayBundle rays;
@@ -122,6 +131,10 @@ void measure_small(bench::Report& report) {
   constexpr double cells = 1040.0 * 712.0;
   report.row("memory, field", {{"bytes/cell", static_cast<double>(field.memory()) / cells}});
   report.row("memory, mesh", {{"bytes/cell", static_cast<double>(mesh.memory()) / cells}});
+  const HeightField in_16_bits(packed(hills(1041, 713)));
+  report.heading("1,041 x 713 pixels of 16 bits");
+  measure_all(report, in_16_bits, nullptr);
+  report.row("memory, field", {{"bytes/cell", static_cast<double>(in_16_bits.memory()) / cells}});
 }
 
 }  // namespace

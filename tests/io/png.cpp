@@ -331,6 +331,8 @@ TEST_CASE("ground is drawn behind the points, in its shades, wherever it is in d
     return std::vector<int>{p[0], p[1], p[2]};
   };
   CHECK(at(-10, 10) == std::vector<int>{40, 40, 40});
+  CHECK(at(-0.5, 12) > std::vector<int>{70, 70, 70});  // between the shades of two pixels
+  CHECK(at(-0.5, 12) < std::vector<int>{150, 150, 150});
   CHECK(at(10, 10) == std::vector<int>{200, 200, 200});
   CHECK(at(10, -15) == std::vector<int>{13, 17, 23});
   const std::vector<int> point = at(0, 5);
@@ -346,6 +348,16 @@ TEST_CASE("ground is drawn behind the points, in its shades, wherever it is in d
   CHECK(again[3 * (50 * width + 10)] == 40);
   CHECK(again[3 * (50 * width + 90)] == 200);
   stbi_image_free(again);
+
+  // so does a raster of few pixels, without gaps
+  ImageWriter coarse(path, map);
+  coarse.add_ground({.columns = 2, .rows = 2, .first = {-20, 20}, .pixel = {40, 40}, .heights = {1, 1, 1, 1}},
+                    std::vector<std::uint8_t>{10, 10, 250, 250});
+  coarse.close();
+  stbi_uc* const few = stbi_load(path.c_str(), &width, &height, &channels, 3);
+  REQUIRE(few != nullptr);
+  for (int y = 8; y < 92; ++y) CHECK(std::abs(few[3 * (y * width + 37)] - (10 + 240 * (y - 2.5) / 95)) < 3);
+  stbi_image_free(few);
   ImageWriter wrong(path, map);
   CHECK_THROWS_AS(wrong.add_ground(raster, std::vector<std::uint8_t>(5)), SettingError);
 }

@@ -205,6 +205,8 @@ TEST_CASE("height fields and grids of voxels come back, too") {
   Generator random(4);
   Raster raster{.columns = 70, .rows = 60, .first = {-35, 30}};
   for (std::uint32_t i = 0; i < raster.columns * raster.rows; ++i) raster.heights.push_back(static_cast<float>(random.uniform(-20, -15)));
+  Raster packed{.columns = 70, .rows = 60, .first = {-35, 30}, .packed = {.scale = 0.01, .offset = -30, .missing = 0}};
+  for (std::size_t i = 0; i < packed.pixels(); ++i) packed.packed.numbers.push_back(static_cast<std::uint16_t>(random.whole(200)));
   VoxelData voxels{.corner = {-10, -10, -10}, .edge = 0.5};
   for (std::uint32_t i = 0; i < 40; ++i)
     for (std::uint32_t j = 0; j < 40; ++j) {
@@ -218,6 +220,7 @@ TEST_CASE("height fields and grids of voxels come back, too") {
   const MaterialTable materials = some_materials();
   const TransmissiveVoxels leaves{.leaf_angles = LeafAngles::planophile()};
   const S scene({{.geometry = std::make_shared<const HeightField>(raster), .materials = materials},
+                 {.geometry = std::make_shared<const HeightField>(packed), .materials = materials},
                  {.geometry = std::make_shared<const VoxelGrid<OpaqueVoxels>>(voxels), .materials = materials},
                  {.geometry = std::make_shared<const VoxelGrid<ScaledVoxels>>(voxels),
                   .materials = materials,

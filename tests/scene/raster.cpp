@@ -133,7 +133,7 @@ TEST_CASE("a raster takes its materials from one of codes with other pixels") {
   const Raster codes{.columns = 2, .rows = 2, .first = {100.5, 199.5}, .pixel = {3, 3}, .heights = {21, 7, missing, 30}};
   CHECK(set_materials(ground, codes, {{7, 2}, {21, 1}, {30, 3}}, 9) == 1);
   CHECK(ground.materials == std::vector<std::uint8_t>{1, 2, 2, 9, 3, 3});
-  CHECK(set_materials(ground, codes, {{30, 3}}) == 4);
+  CHECK(set_materials(ground, codes, {{30, 3}, {static_cast<double>(missing), 5}, {30, 4}}) == 4);  // of equal codes, the first counts
   CHECK(ground.materials == std::vector<std::uint8_t>{0, 0, 0, 0, 3, 3});
   const Raster elsewhere{.columns = 2, .rows = 2, .first = {103, 197}, .pixel = {1, 1}, .heights = {5, 5, 5, 5}};
   CHECK(set_materials(ground, elsewhere, {{5, 1}}) == 5);  // of pixels from 102.5 to 104.5 m east and from 197.5 to 195.5 m north

@@ -39,7 +39,7 @@ class Canvas {
       : settings_(s), points_(points), camera_(s, points.empty() ? ground : points) {
     nearest_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
     if (!ground.empty()) {
-      draw(ground, closing_diameter(ground));
+      draw(ground, 1.5 * closing_diameter(ground));  // by eye: closed on slopes, too
       behind_.assign(nearest_.size(), 0);
       for (std::size_t i = 0; i < nearest_.size(); ++i)
         if (depth_[i] != nothing) behind_[i] = static_cast<std::uint8_t>(ground[nearest_[i]].value);
@@ -208,25 +208,22 @@ class ImageWriter {
 
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
 
-  /// Draws a raster behind the points, in shades of grey from 1 to 255, as of `hillshade`; pixels of shade 0 are left out. Of more than a
-  /// million pixels, it draws those of every k-th row and column. Without points it frames the picture.
+  /// Draws a raster behind the points, in shades of grey from 1 to 255, as of `hillshade`: some million places, between pixels too; none
+  /// beside a pixel of shade 0. Without points it frames the picture.
   /// @throws SettingError as `Raster::validate` and `Similarity::validate`, or for another number of shades
   void add_ground(const Raster& raster, std::span<const std::uint8_t> shades, const Similarity& placement = {}) {
     raster.validate();
     placement.validate();
     const auto pixels = static_cast<double>(raster.pixels());
     require_within("ImageWriter::add_ground (number of shades)", static_cast<double>(shades.size()), pixels, pixels, "");
-    const auto step = static_cast<std::size_t>(std::ceil(std::sqrt(pixels / 1e6)));
-    const auto grid = raster.grid();
+    const double density = std::sqrt(1e6 / pixels);  // places by pixel, along a row or column
+    const auto places = [&](std::uint32_t count) { return static_cast<std::uint32_t>(std::ceil((count - 1) * density)) + 1; };
+    const std::uint32_t columns = places(raster.columns), rows = places(raster.rows);
     raster.read([&](const auto& heights) {
-      for (std::size_t row = 0; row < raster.rows; row += step)
-        for (std::size_t column = 0; column < raster.columns; column += step) {
-          const auto c = static_cast<std::uint32_t>(column), r = static_cast<std::uint32_t>(row);
-          const std::size_t i = grid.index(c, r);
-          if (shades[i] == 0) continue;
-          const Vec3 point = placement.point(grid.vertex(c, r, heights[i]));
-          if (finite(point)) ground_.push_back(image_point(point, shades[i]));
-        }
+      for (std::uint32_t row = 0; row < rows; ++row)
+        for (std::uint32_t column = 0; column < columns; ++column)
+          add_ground(raster.grid(), heights, shades, placement, (raster.columns - 1.0) * column / (columns - 1),
+                     (raster.rows - 1.0) * row / (rows - 1));
     });
   }
 
@@ -253,6 +250,27 @@ class ImageWriter {
     return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), value};
   }
 
+  /// Adds a place of a raster, in columns and rows from its first pixel.
+  template <class Heights>
+  void add_ground(const pulsecast::detail::RasterGrid& grid, const Heights& heights, std::span<const std::uint8_t> shades,
+                  const Similarity& placement, double column, double row) {
+    const auto c = std::min(static_cast<std::uint32_t>(column), grid.columns - 2),
+               r = std::min(static_cast<std::uint32_t>(row), grid.rows - 2);
+    double height = 0, shade = 0;
+    for (const std::uint32_t south : {0U, 1U})
+      for (const std::uint32_t east : {0U, 1U}) {
+        const std::size_t i = grid.index(c + east, r + south);
+        const double weight = (east == 1 ? column - c : 1 - (column - c)) * (south == 1 ? row - r : 1 - (row - r));
+        if (shades[i] == 0) return;
+        height += weight * static_cast<double>(heights[i]);
+        shade += weight * shades[i];
+      }
+    const Vec3 point = placement.point({grid.first.x + column * grid.pixel.x, grid.first.y - row * grid.pixel.y, height});
+    if (!finite(point)) return;
+    ground_.push_back(image_point(point, static_cast<float>(std::lround(shade))));
+    if (ground_.size() >= settings_.points_max) drop_every_other(ground_);
+  }
+
   [[nodiscard]] float value(const Echo& echo) const {
     switch (settings_.colour_by) {
       case ColourBy::intensity:
@@ -274,10 +292,14 @@ class ImageWriter {
 
   /// Drops every other point, and halves the share of points kept from now on.
   void thin() {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < points_.size(); i += 2) points_[kept++] = points_[i];
-    points_.resize(kept);
+    drop_every_other(points_);
     every_ *= 2;
+  }
+
+  static void drop_every_other(std::vector<detail::ImagePoint>& points) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < points.size(); i += 2) points[kept++] = points[i];
+    points.resize(kept);
   }
 
   ImageSettings settings_;

@@ -287,6 +287,7 @@ inline std::size_t set_materials(Raster& ground, const Raster& codes, const std:
   const detail::RasterGrid grid = ground.grid();
   const auto by_code = [](const CodeMaterial& a, const CodeMaterial& b) { return a.code < b.code; };
   std::vector<CodeMaterial> sorted = listed;  // of equal codes, the first counts
+  std::erase_if(sorted, [](const CodeMaterial& one) { return std::isnan(one.code); });
   std::stable_sort(sorted.begin(), sorted.end(), by_code);
   std::size_t unlisted = 0;
   std::vector<std::uint8_t> materials(ground.pixels(), otherwise);
