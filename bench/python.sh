@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Figures of the Python module: its time against C++'s for the same survey, turn by turn, in user mode; the memory of 10 million points; the
-# memory of many surveys in a loop. Usage: python.sh [BUILD [SURVEY.xml [ASSETS]...]], as in
+# Figures of the Python module: its time against C++'s for the same survey, turn by turn, in user mode; the memory of 10 million points, as
+# rows and by column; the memory of many surveys in a loop. Usage: python.sh [BUILD [SURVEY.xml [ASSETS]...]], as in
 #   bench/python.sh build/release benchmark/surveys/als_hills.xml .
 # ROUNDS, THREADS and SURVEYS say how many of each (5, 2, 200).
 set -euo pipefail
@@ -22,4 +22,5 @@ assets=("${@:3}")
 "$python" "$here/python_figures.py" time "$build/examples/pulsecast" "$build/examples/python/python_rows" \
   "$folder/survey.xml" "${THREADS:-2}" "${ROUNDS:-5}" "$folder/output" "${assets[@]}"
 "$python" "$here/python_figures.py" memory 10000000
+"$python" "$here/python_figures.py" memory 10000000 columns
 "$python" "$here/python_figures.py" loop "${SURVEYS:-200}" "$here/../tests/examples/pulsecast"

@@ -66,14 +66,22 @@ def time(program, rows, document, threads, rounds, folder, *assets):
           f"memory, {more[1]} with pulses; all of it {more[2]} of the program with LAS, {more[3]} with pulses")
 
 
-def points(count):
-    """The most memory that so many points take, against their own bytes."""
+def points(count, kept="rows"):
+    """The most memory that so many points take, as rows or by column, against their own bytes; and the time in user mode."""
     scanner = own_scanner.RosetteSurvey(int(count))
-    before = memory("VmRSS")
-    result = scanner.run()
-    taken, own = memory("VmHWM") - before, (result.points.nbytes + result.pulses.nbytes) / 1e6
-    print(f"memory: {len(result.points):,} points take {taken:.0f} MB at most, arrays of {result.points.nbytes / 1e6:.0f} MB and, of pulses, "
-          f"{result.pulses.nbytes / 1e6:.0f} MB: {taken / own:.3f} of their bytes")
+    before, start = memory("VmRSS"), user_seconds()
+    result = scanner.run(columns=kept == "columns")
+    taken, seconds = memory("VmHWM") - before, user_seconds() - start
+    of_points = sum(column.nbytes for column in result.columns.values()) if kept == "columns" else result.points.nbytes
+    own = (of_points + result.pulses.nbytes) / 1e6
+    stream = ""
+    if kept == "columns":
+        peak = memory("VmHWM")
+        capsule = result.__arrow_c_stream__()
+        stream = f"; their Arrow stream takes {memory('VmHWM') - peak:.1f} MB more"
+        del capsule
+    print(f"memory: {len(result.columns['x']):,} points as {kept} take {taken:.0f} MB at most, arrays of {of_points / 1e6:.0f} MB and, of pulses, "
+          f"{result.pulses.nbytes / 1e6:.0f} MB: {taken / own:.3f} of their bytes; {seconds:.2f} s{stream}")
 
 
 def loop(count, folder):

@@ -364,7 +364,7 @@ class Session {
     for (const auto& leg : compiled.legs)
       if (leg.active && !skipped[prefix_of(leg)]) total += leg.end - leg.first;
 
-    if (total > 0) pages_.begin(folder, compiled);
+    if (total > 0) pages_.begin(folder, compiled, options_.point_colours);
     std::map<std::string, std::unique_ptr<LegRun>> open;
     RunSummary all;
     ProgressLine line;

@@ -23,7 +23,8 @@ class Pages {
   [[nodiscard]] std::string address() const;
 
   /// Starts a run with results in a folder.
-  void begin(const std::filesystem::path& folder, const pulsecast::helios::CompiledSurvey& compiled);
+  void begin(const std::filesystem::path& folder, const pulsecast::helios::CompiledSurvey& compiled,
+             const pulsecast::PointColours& colours);
   void operator()(const pulsecast::EchoBatch& batch);
   void tell(const pulsecast::Progress& progress);
   [[nodiscard]] bool stop_requested() const;

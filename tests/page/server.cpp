@@ -148,8 +148,12 @@ TEST_CASE("points have colours in every run of a server that has them") {
     const Address a(server.address());
     CHECK(has(body(ask(a, "GET", a.path + "points?run=&after=")), "\"name\":\"colour\""));
   }
-  give(plain, 0, 10);
   const Address a(plain.address());
+  plain.begin({}, red);
+  give(plain, 0, 10);
+  CHECK(has(body(ask(a, "GET", a.path + "points?run=&after=")), "\"name\":\"colour\""));
+  plain.begin({}, {});
+  give(plain, 0, 10);
   CHECK_FALSE(has(body(ask(a, "GET", a.path + "points?run=&after=")), "\"name\":\"colour\""));
 }
 

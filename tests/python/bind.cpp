@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -49,8 +52,20 @@ LostSurvey lost_survey() {
 /// Throws what a reader throws.
 void fail_to_read() { throw FileError("scene.obj", "line 3", "expected a number"); }
 
+/// Extras of the wall's points: its height, and red above 2 m.
+python::PointExtras wall_extras(const WallSurvey&) {
+  std::vector<Scene<TriangleMesh<>>::Part> parts(1);
+  parts[0].object = 42;
+  parts[0].attributes = attributes({{"height", 5}});
+  const auto colour = [](const EchoBatch&, const Shot& shot, const Echo& echo) {
+    return PointColour{.red = static_cast<std::uint16_t>(point_of(shot, echo).z > 2 ? 65535 : 0)};
+  };
+  return {colour, ObjectAttributes{std::span(std::as_const(parts))}};
+}
+
 PYBIND11_EMBEDDED_MODULE(scans, m) {
-  python::bind_survey<WallSurvey>(m, "WallSurvey").def(py::init(&survey_of), py::arg("pulses") = 200, py::arg("record") = 0.0);
+  python::bind_survey<WallSurvey>(m, "WallSurvey", &wall_extras)
+      .def(py::init(&survey_of), py::arg("pulses") = 200, py::arg("record") = 0.0);
   python::bind_survey<LostSurvey>(m, "LostSurvey").def(py::init(&lost_survey));
   m.def("fail_to_read", &fail_to_read);
   m.def("interrupt", [] { std::raise(SIGINT); });
@@ -199,4 +214,56 @@ TEST_CASE("the energy of a batch is the ledger of its run") {
   CHECK(e.missed > 0);
   CHECK(e.scattered > 0);
   CHECK(e.received > 0);
+}
+
+TEST_CASE("points by column are those of the rows, with their extras") {
+  py::dict scope = names();
+  py::exec(
+      "survey = scans.WallSurvey(200)\n"
+      "rows = survey.run(colours=True)\n"
+      "columns = survey.run(columns=True, colours=True).columns\n"
+      "extras = ['red', 'green', 'blue', 'near_infrared', 'height']",
+      scope);
+  CHECK(said(scope, "list(columns) == list(rows.columns) == [*rows.points.dtype.names, *extras]") == "True");
+  CHECK(said(scope, "all(columns[name].tobytes() == rows.columns[name].tobytes() for name in columns)") == "True");
+  CHECK(said(scope, "len(rows.points) > 20 and set(columns['height']) == {5.0}") == "True");
+  CHECK(said(scope, "(columns['red'] == numpy.where(columns['z'] > 2, 65535, 0)).all() and len(set(columns['red']))") == "2");
+}
+
+TEST_CASE("a consumer of the Arrow stream may take it apart and keep a column after all else is gone") {
+  py::dict scope = names();
+  py::exec("batch = scans.WallSurvey(200).run(columns=True)\nexpected = batch.columns['range'].tobytes()", scope);
+  const py::object capsule = py::eval("batch.__arrow_c_stream__()", scope);
+  auto* const source = static_cast<ArrowArrayStream*>(PyCapsule_GetPointer(capsule.ptr(), "arrow_array_stream"));
+  ArrowArrayStream stream = *source;
+  source->release = nullptr;
+  ArrowSchema schema{};
+  REQUIRE(stream.get_schema(&stream, &schema) == 0);
+  CHECK_FALSE(static_cast<bool>(stream.get_last_error(&stream)));
+  REQUIRE(schema.n_children == 18);  // 17 and the height
+  CHECK(std::string(schema.children[4]->name) == "range");
+  CHECK(std::string(schema.children[4]->format) == "g");
+  ArrowSchema name = *schema.children[17];
+  schema.children[17]->release = nullptr;
+  schema.release(&schema);
+  CHECK_FALSE(static_cast<bool>(schema.release));
+  CHECK(std::string(name.name) == "height");
+  name.release(&name);
+
+  ArrowArray table{}, end{};
+  REQUIRE(stream.get_next(&stream, &table) == 0);
+  REQUIRE(stream.get_next(&stream, &end) == 0);
+  CHECK_FALSE(static_cast<bool>(end.release));
+  const auto* const memory = static_cast<const char*>(table.children[4]->buffers[1]);
+  const void* const of_array = scope["batch"].attr("columns")["range"].cast<py::array_t<double>>().data();
+  CHECK(static_cast<const void*>(memory) == of_array);
+  ArrowArray range = *table.children[4];
+  table.children[4]->release = nullptr;
+  table.release(&table);
+  stream.release(&stream);
+  py::exec("del batch", scope);
+  const auto expected = scope["expected"].cast<std::string>();
+  CHECK(std::string(memory, static_cast<std::size_t>(range.length) * sizeof(double)) == expected);
+  range.release(&range);
+  CHECK_FALSE(static_cast<bool>(range.release));
 }

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -29,9 +30,11 @@ using Doors = MovingScene<TriangleMesh<>>;
 std::unique_ptr<Doors> door() {
   const MeshData mesh{.vertices = {{-1, 10, 0}, {1, 10, 0}, {0, 10, 2}}, .triangles = {{0, 1, 2}}};
   const auto slide = std::make_shared<const PartMotion>(SteadyMotion{.velocity = {2, 0, 0}});
-  return std::make_unique<Doors>(
-      std::vector<Doors::Part>{{.geometry = std::make_shared<const TriangleMesh<>>(mesh), .object = 5, .motion = slide}},
-      MovingIndexSettings{.to = 10});
+  return std::make_unique<Doors>(std::vector<Doors::Part>{{.geometry = std::make_shared<const TriangleMesh<>>(mesh),
+                                                           .object = 5,
+                                                           .motion = slide,
+                                                           .attributes = attributes({{"age", 7.5}, {"wood", 1}})}},
+                                 MovingIndexSettings{.to = 10});
 }
 
 PYBIND11_EMBEDDED_MODULE(doors, m) {
@@ -51,4 +54,19 @@ TEST_CASE("rays of several times meet a moving part of a scene of one's own") {
   CHECK(py::eval("hits['object'].tolist()", scope).cast<std::vector<int>>() == std::vector<int>{5, 0, 5});
   CHECK(py::eval("doors.Door().occluded([[6, 0, 0.5, 0, 1, 0]], time=3).tolist()", scope).cast<std::vector<bool>>() ==
         std::vector<bool>{true});
+}
+
+TEST_CASE("attributes of hits are those of their objects, in the shape of the question") {
+  py::dict scope = support::python_names("import doors, numpy");
+  py::exec("door = doors.Door()\nhits = door.closest_hits([[0, 0, 0.5], [6, 0, 0.5]], [[0, 1, 0]] * 2, time=0)", scope);
+  py::exec("told = door.attributes_of(hits['object'])", scope);
+  CHECK(py::eval("list(told)", scope).cast<std::vector<std::string>>() == std::vector<std::string>{"age", "wood"});
+  CHECK(py::eval("told['age'][0]", scope).cast<double>() == 7.5);
+  CHECK(py::eval("bool(numpy.isnan(told['age'][1]))", scope).cast<bool>());  // a miss has object 0
+  py::exec("told = door.attributes_of([[5, 4, -1], [5 + 2**32, 0, 5]])", scope);
+  CHECK(py::eval("numpy.nan_to_num(told['wood'], nan=-1).tolist()", scope).cast<std::vector<std::vector<double>>>() ==
+        std::vector<std::vector<double>>{{1, -1, -1}, {-1, -1, 1}});
+  CHECK(py::eval("door.attributes_of(numpy.zeros(0, int))['age'].shape == (0,)", scope).cast<bool>());
+  for (const char* wrong : {"[1.5]", "None", "[[1], [2, 3]]", "'door'"})
+    CHECK_THROWS_AS(py::eval(std::string("door.attributes_of(") + wrong + ")", scope), py::error_already_set);
 }

@@ -75,9 +75,12 @@ class PageServer {
   /// URL of the page.
   [[nodiscard]] std::string address() const { return "http://127.0.0.1" + host_ + '/' + token_ + '/'; }
 
-  /// Removes all points and starts another run.
-  void begin(PageSurvey survey) {
+  /// Removes all points and starts another run, whose points have the colours of the settings.
+  void begin(PageSurvey survey) { begin(std::move(survey), settings_.colours); }
+  /// As above, with other colours of points, as of another scene.
+  void begin(PageSurvey survey, PointColours colours) {
     const std::lock_guard lock(mutex_);
+    settings_.colours = std::move(colours);
     survey_ = std::move(survey);
     sample_ = PageSample(settings_.points_max, settings_.colours);
     progress_ = {};

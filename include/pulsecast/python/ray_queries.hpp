@@ -25,6 +25,7 @@
 #include <pulsecast/python/detail/exceptions.hpp>
 #include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/scene/closest_hits.hpp>
+#include <pulsecast/scene/object_attributes.hpp>
 #include <pulsecast/scene/ray_hit.hpp>
 #include <pulsecast/scene/run_batch.hpp>
 
@@ -227,7 +228,32 @@ template <class World>
   return ranges;
 }
 
-/// Adds the methods `closest_hits`, `all_hits`, `occluded` and `run_batch` to a class of scenes, as `Scene` and `MovingScene`.
+/// Attributes of objects, such as those of hits: an array a name, of the shape of `objects`, NaN where an object has none.
+/// @throws SettingError as `ObjectAttributes` @throws TypeError for numbers that are not whole
+template <class World>
+[[nodiscard]] pybind11::dict attributes_of(const World& scene, const pybind11::object& given) {
+  using Numbers = pybind11::array_t<std::int64_t, pybind11::array::c_style | pybind11::array::forcecast>;
+  const auto numbers = pybind11::array::ensure(given);
+  if (const char kind = numbers ? numbers.dtype().kind() : ' '; kind != 'i' && kind != 'u' && !(numbers && numbers.size() == 0))
+    throw pybind11::type_error("attributes_of objects: expected whole numbers, not " + std::string(pybind11::repr(given)));
+  const Numbers objects(numbers);
+  const ObjectAttributes all(scene.parts());
+  const std::vector<pybind11::ssize_t> shape(objects.shape(), objects.shape() + objects.ndim());
+  std::vector<pybind11::array_t<double>> columns;
+  for (std::size_t k = 0; k < all.names().size(); ++k) columns.emplace_back(shape);
+  for (pybind11::ssize_t i = 0; i < objects.size(); ++i) {
+    const std::int64_t object = objects.data()[i];
+    const bool is_object = object >= 0 && object <= std::numeric_limits<ObjectId>::max();
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      columns[k].mutable_data()[i] = is_object ? all.of(static_cast<ObjectId>(object))[k] : std::numeric_limits<double>::quiet_NaN();
+  }
+  pybind11::dict named;
+  for (std::size_t k = 0; k < columns.size(); ++k) named[all.names()[k].c_str()] = columns[k];
+  return named;
+}
+
+/// Adds the methods `closest_hits`, `all_hits`, `occluded`, `run_batch` and `attributes_of` to a class of scenes, as `Scene` and
+/// `MovingScene`.
 template <class Class>
 Class& bind_ray_queries(Class&& bound) {
   namespace py = pybind11;
@@ -273,6 +299,9 @@ Class& bind_ray_queries(Class&& bound) {
       "Array of float32, shape (n, m): range of each of m rays of a sensor at each of n poses [m]; infinite without a hit. poses: shape "
       "(n, 4, 4), homogeneous transforms from the sensor's frame to the world; rays, directions: in the sensor's frame; else as "
       "`closest_hits`. seed: with the index in the array, the key of leaves met at random.");
+  bound.def("attributes_of", &python::attributes_of<World>, py::arg("objects"),
+            "Dict of arrays of the shape of objects, a name each: attributes of these objects, NaN where one has none. objects: whole "
+            "numbers, as the column `object` of hits.");
   return bound;
 }
 

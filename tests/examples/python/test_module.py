@@ -220,6 +220,14 @@ def test_colours_and_attributes_that_cannot_be_are_refused(asked, error):
         pulsecast.Mesh(*SQUARE, **asked)
 
 
+def test_hits_have_the_attributes_of_their_objects():
+    low = pulsecast.Mesh(*SQUARE, object=3, attributes={"age": 80})
+    scene = pulsecast.RaycastingScene([low, pulsecast.Mesh(np.array(SQUARE[0], float) + [200, 0, 0], SQUARE[1], object=4)])
+    hits = scene.closest_hits([[0, 0, 5], [200, 0, 5], [500, 0, 5]], [[0, 0, -1]] * 3)
+    told = scene.attributes_of(hits["object"])
+    assert list(told) == ["age"] and told["age"][0] == 80 and np.isnan(told["age"][1:]).all()
+
+
 def test_an_attribute_of_the_name_of_a_column_is_refused(survey):
     mesh = pulsecast.Mesh(*SQUARE, object=9, attributes={"intensity": 4})
     with pytest.raises(pulsecast.SettingError, match="intensity"):
