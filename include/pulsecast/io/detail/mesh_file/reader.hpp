@@ -18,7 +18,6 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
-#include <pulsecast/io/detail/child_process.hpp>
 #include <pulsecast/io/detail/mesh_file/importer.hpp>
 #include <pulsecast/io/detail/mesh_file/material_rules.hpp>
 #include <pulsecast/io/detail/mesh_file/mesh_maker.hpp>
@@ -132,15 +131,6 @@ class MeshFileMaker {
   std::uint64_t reshaped_ = 0, flattened_ = 0;
 };
 
-/// Content of a file of a size [byte] by a child process.
-[[nodiscard]] inline RawScene imported_apart(const std::filesystem::path& path, const MeshFileSettings& settings, std::uint64_t size) {
-  const ImportLimits& limits = settings.limits;
-  const auto opened = [&](std::uint64_t bytes) { ChildOutput::allow(limits.memory_per_byte * static_cast<double>(bytes)); };
-  return taken_over(
-      ChildProcess::result(path.string(), {.memory = limits.memory, .time = limits.time + limits.time_per_byte * static_cast<double>(size)},
-                           [&](ChildOutput& output) { hand_over(output, MeshImport(path, settings, Workers(1), opened).read()); }));
-}
-
 /// Content of an OBJ file: one mesh.
 [[nodiscard]] inline MeshFile file_of(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers) {
   ObjModel model =
@@ -199,9 +189,11 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
   if (text::lower(path.extension().string()) == ".obj") {
     file = detail::file_of(path, settings, workers);
   } else {
-    const std::uint64_t size = InputFile(path, "a mesh file").size();  // which explains one that is missing or empty
-    const detail::RawScene scene =
-        settings.isolated ? detail::imported_apart(path, settings, size) : detail::MeshImport(path, settings, workers).read();
+    (void)InputFile(path, "a mesh file");  // which explains one that is missing or empty
+    const auto import = [&](const Workers& by, const auto& opened) { return detail::MeshImport(path, settings, by, opened).read(); };
+    const detail::RawScene scene = settings.isolated
+                                       ? detail::imported_apart(path, settings.limits, [&](const auto& o) { return import(Workers(1), o); })
+                                       : import(workers, nullptr);
     file = detail::MeshFileMaker(path, scene, settings, workers).make();
   }
   detail::replace_materials(file, settings);
