@@ -71,10 +71,12 @@ class SceneBuilder {
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
-  /// Geometry and materials of a file.
+  /// Geometry and materials of a file, or of one of its nodes, placed in the part.
   struct Loaded {
     decltype(SurveyPart::geometry) geometry;
     MaterialTable materials;
+    Similarity placement{};
+    std::string name{};  ///< of the node
   };
   /// Raster of a file, and its colour table, if any.
   struct LoadedRaster {
@@ -96,6 +98,7 @@ class SceneBuilder {
   std::vector<Loaded> read(const GeoTiffSource& source);
   std::vector<Loaded> read(const XyzSource& source);
   std::vector<Loaded> read(const VoxelSource& source);
+  std::vector<Loaded> read(const MeshSource& source);
   void drop_bare(const std::filesystem::path& file, io::PointCloud& cloud);
   LoadedRaster raster(const std::filesystem::path& file, const GeoTiffSource& source);
   Raster ground(const std::filesystem::path& file, const GeoTiffSource& source);
@@ -124,6 +127,7 @@ class SceneBuilder {
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/helios/detail/ground_builder.hpp>
+#include <pulsecast/helios/detail/mesh_parts.hpp>
 #include <pulsecast/helios/detail/scene_builder.hpp>
 #endif
 

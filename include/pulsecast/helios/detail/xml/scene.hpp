@@ -33,7 +33,7 @@ inline void filters(XmlOutput& io, const PartSource* source, const TransformSett
     node.append_attribute("type").set_value(type);
     return XmlOutput(node, true);
   };
-  static constexpr std::array loaders{"objloader", "geotiffloader", "xyzloader", "detailedvoxels"};
+  static constexpr std::array loaders{"objloader", "geotiffloader", "xyzloader", "detailedvoxels", "meshloader"};
   if (source) {
     XmlOutput loader = filter(loaders[source->index()]);
     std::visit([&](const auto& of_kind) { fields(loader, of_kind); }, *source);
@@ -54,7 +54,8 @@ inline void filters(XmlOutput& io, const PartSource* source, const TransformSett
 
 /// Reads the filters of a part or swap.
 inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSettings& transform) {
-  static const std::vector<std::string> types{"objloader", "geotiffloader", "xyzloader", "detailedvoxels", "scale", "rotate", "translate"};
+  static const std::vector<std::string> types{"objloader",  "geotiffloader", "xyzloader", "detailedvoxels",
+                                              "meshloader", "scale",         "rotate",    "translate"};
   io.know({}, {"filter"});
   bool is_scaled = false, is_translated = false;
   const auto once = [&](pugi::xml_node node, bool& before) {
@@ -78,6 +79,8 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       load(XyzSource{});
     } else if (is("detailedvoxels")) {
       load(VoxelSource{});
+    } else if (is("meshloader")) {
+      load(MeshSource{});
     } else if (is("scale")) {
       once(node, is_scaled);
       filter.require({"scale"});
