@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
+#include <pulsecast/helios/detail/city_reader.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/spectral_library.hpp>
@@ -40,6 +41,7 @@ struct SceneBuildOptions {
   bool fixed_incidence = false;   ///< perpendicular incidence on all surfaces, for scattering
   bool tilted_leaves = false;     ///< leaves of voxels send back as tilted surfaces do, see `TransmissiveVoxels`
   unsigned threads = 0;           ///< threads for reading and building, at most `max_threads`; 0: all of the machine
+  CityReader city_models{};       ///< reader of CityGML files; empty: they are an error
 
   void validate() const { require_within("SceneBuildOptions::threads", threads, 0, max_threads, ""); }
 };

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <optional>
 
-#include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/io/detail/spectra.hpp>
@@ -52,8 +51,6 @@ struct CityGml {
 
 }  // namespace PULSECAST_NAMESPACE::io
 
-#if PULSECAST_DEFINITIONS
 #include <pulsecast/io/detail/citygml_reader.hpp>
-#endif
 
 #endif

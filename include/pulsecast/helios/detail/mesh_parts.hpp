@@ -3,11 +3,14 @@
 #ifndef PULSECAST_HELIOS_DETAIL_MESH_PARTS_HPP
 #define PULSECAST_HELIOS_DETAIL_MESH_PARTS_HPP
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/mesh_file.hpp>
@@ -21,7 +24,10 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Mesh
   io::MeshFileSettings settings{.unit = source.unit, .materials = source.materials, .spectra = options_.spectra, .isolated = true};
   if (source.up != MeshUp::file) settings.up = source.up == MeshUp::y ? io::UpAxis::y : io::UpAxis::z;
   return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
-    io::MeshFile read = io::read_mesh_file(file, settings, options_.threads);
+    const bool city = text::lower(file.extension().string()) == ".gml" || text::lower(file.extension().string()) == ".citygml";
+    if (city && !options_.city_models) throw FileError(file.string(), "", "is a CityGML file, which this program was built without");
+    io::MeshFile read =
+        city ? options_.city_models(file, settings, options_.threads) : io::read_mesh_file(file, settings, options_.threads);
     warn(read.warnings);
     if (read.placements.empty()) warn({file.string() + ": is left out"});
     std::vector<Loaded> meshes;

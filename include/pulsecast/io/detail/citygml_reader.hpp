@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <new>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,8 +31,8 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/citygml.hpp>
+#include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
-#include <pulsecast/io/detail/mesh_file/reader.hpp>
 #include <pulsecast/io/detail/mesh_file/transfer.hpp>
 #include <pulsecast/io/input_file.hpp>
 
@@ -311,12 +312,12 @@ class CityGmlImport {
 
 }  // namespace detail
 
-PULSECAST_INLINE bool is_citygml(const std::filesystem::path& path) {
+inline bool is_citygml(const std::filesystem::path& path) {
   const std::string ending = text::lower(path.extension().string());
   return ending == ".gml" || ending == ".citygml";
 }
 
-PULSECAST_INLINE CityGml read_citygml(const std::filesystem::path& path, const CityGmlSettings& settings, const Workers& workers) {
+inline CityGml read_citygml(const std::filesystem::path& path, const CityGmlSettings& settings, const Workers& workers) {
   settings.validate();
   const auto import = [&](const auto&) { return detail::CityGmlImport(path, settings).read(); };
   const detail::RawScene scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(0);
