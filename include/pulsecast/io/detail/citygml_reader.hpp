@@ -108,7 +108,7 @@ struct CityClassRule {
 }
 
 /// Keeps messages of libcitygml.
-class CityGmlLog : public citygml::CityGMLLogger {
+class CityGmlLog final : public citygml::CityGMLLogger {
  public:
   CityGmlLog() : CityGMLLogger(LOGLEVEL::LL_WARNING) {}
   void log(LOGLEVEL level, const std::string& message, const char* /*file*/, int /*line*/) const override {
