@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Scanner on a tripod: scans the OBJ files of the command line, by default a wood, from several set-ups. Writes cloud.las, cloud.png,
-// trajectory.txt, and cloud.xyz on request.
+// Scanner on a tripod: scans the mesh files of the command line (OBJ, PLY, glTF, GLB, STL, DAE or FBX), by default a wood, from several
+// set-ups. Writes cloud.las, cloud.png, trajectory.txt, and cloud.xyz on request.
 
 #include <cmath>
 #include <cstddef>
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <pulsecast/io/las.hpp>
-#include <pulsecast/io/obj.hpp>
+#include <pulsecast/io/mesh_file.hpp>
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/io/text_files.hpp>
 #include <pulsecast/io/trajectory.hpp>
@@ -37,14 +37,15 @@ auto set_up(const Vec3& foot, double step) {
   return Platform{Tripod{.position = foot}, Mount{.lever_arm = {0, 0, 1.7}}, Deflector{head, Deflector{mirror, scanner}}};
 }
 
-wood::Scene read_scene(const std::vector<std::string>& files, io::UpAxis up_axis) {
+/// Scene of mesh files, a part for each node. Formats other than OBJ are read by a child process, as they may come from anywhere.
+wood::Scene read_scene(const std::vector<std::string>& files, bool y_up) {
+  io::MeshFileSettings settings{.isolated = true};
+  if (y_up) settings.up = io::UpAxis::y;
   std::vector<wood::Scene::Part> parts;
   for (const std::string& file : files) {
-    io::ObjModel model = io::read_obj(file, {.up = up_axis});
+    io::MeshFile model = io::read_mesh_file(file, settings);
     for (const std::string& warning : model.warnings) std::cerr << "warning: " << warning << '\n';
-    parts.push_back({.geometry = std::make_shared<const wood::Mesh>(std::move(model.mesh)),
-                     .materials = material_table(std::move(model.materials)),
-                     .object = static_cast<ObjectId>(parts.size())});
+    for (wood::Scene::Part& part : io::parts_of(std::move(model), static_cast<ObjectId>(parts.size()))) parts.push_back(std::move(part));
   }
   return wood::Scene(std::move(parts));
 }
@@ -72,19 +73,19 @@ io::ImageSettings view_of_hut(std::uint64_t seed) {
 }
 
 int main(int argc, char** argv) {
-  CommandLine line("Scans the given OBJ files, or a generated wood, with a scanner on a tripod.");
+  CommandLine line("Scans the given mesh files, or a generated wood, with a scanner on a tripod.");
   std::vector<std::string> files;
   std::vector<Vec3> positions;
   double step_deg = 0.25;
   bool xyz = false, y_up = false;
-  line.add_files("scene", files, "OBJ", "OBJ files of the scene [m]; without any, a generated wood");
+  line.add_files("scene", files, "FILE", "OBJ, PLY, glTF, GLB, STL, DAE or FBX files of the scene; without any, a generated wood");
   line.add_positions("-p,--position", positions, "Position of the tripod [m]; repeatable for further set-ups");
   line.add_number("-r,--resolution", step_deg, 0.005, 10, "DEG", "Angular step between pulses and between lines");
-  line.add_flag("--y-up", y_up, "Vertical axis of the OBJ files is y, not z");
+  line.add_flag("--y-up", y_up, "Vertical axis of the files is y; by default z, or as the file says");
   line.add_flag("--xyz", xyz, "Write the points as text, too");
 
   return line.run(argc, argv, [&] {
-    const auto scene = files.empty() ? wood::scene(line.seed) : read_scene(files, y_up ? io::UpAxis::y : io::UpAxis::z);
+    const auto scene = files.empty() ? wood::scene(line.seed) : read_scene(files, y_up);
     if (positions.empty()) positions = files.empty() ? wood::glades(line.seed) : places_around(scene.bounds());
     std::vector<decltype(set_up({}, 1))> set_ups;
     for (const Vec3& place : positions) set_ups.push_back(set_up(place, radians(step_deg)));

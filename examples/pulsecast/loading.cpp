@@ -12,6 +12,7 @@
 #include <pulsecast/helios/make_simulation.hpp>
 #include <pulsecast/helios/scene.hpp>
 
+#include "city_models.hpp"
 #include "scene_store.hpp"
 #include "survey_inputs.hpp"
 
@@ -55,11 +56,14 @@ SceneInputs inputs_of(const SurveySettings& survey, const Loading& how, int run)
 }  // namespace
 
 std::unique_ptr<Simulation> load(const SurveySettings& survey, const Simulation::Settings& settings) {
-  return helios::make_simulation(survey, settings);
+  Simulation::Settings all = settings;
+  all.city_models = city_models();
+  return helios::make_simulation(survey, all);
 }
 
 std::unique_ptr<Simulation> load(const SurveySettings& survey, const Loading& how, std::vector<std::string>& notes) {
   Loading known = how;
+  known.settings.city_models = city_models();
   if (!known.inputs) known.inputs = std::make_shared<SurveyInputs>(survey, how.settings.assets);
   const auto parts = [survey, known, &notes](int run, const std::function<helios::BuiltParts()>& build) {
     const SceneInputs inputs = inputs_of(survey, known, run);

@@ -253,7 +253,9 @@ TEST_CASE("settings that a program makes are written and read") {
   survey.platform.id = "p";
   survey.scene.id = "c";
   survey.scene.parts = {{.id = "a b", .source = ObjSource{.files = {data / "materials.obj", data / "surveys" / "points.xyz"}}}};
-  survey.scene.parts[0].swaps = {{.source = VoxelSource{.files = {data / "crown.vox"}, .leaf_angles = data / "spherical.txt"}}};
+  survey.scene.parts[0].swaps = {
+      {.source = VoxelSource{.files = {data / "crown.vox"}, .leaf_angles = data / "spherical.txt"}},
+      {.source = MeshSource{.files = {data / "materials.obj"}, .up = MeshUp::y, .unit = 0.01, .materials = data / "materials.mtl"}}};
   survey.scene.parts[0].attributes = {{"age", 80}, {"leaf or wood", 0.1}};
   survey.scene.light = {{.passages = 3, .least_share = 0.01, .orders = 2, .paths = 20, .field_of_view = radians(20)}};
   survey.scene.media = {{.absorption = 0.5},

@@ -16,6 +16,7 @@
 #include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 
+#include "support/gltf.hpp"
 #include "support/png_builder.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
@@ -439,6 +440,42 @@ TEST_CASE("what a file comes to, and cannot be, is told with the file; what a pa
   cloud.source = XyzSource{.files = {files.folder / "none.xyz"}, .voxel_size = -1};
   CHECK_THROWS_AS((void)built(scene_of({cloud})), SettingError);
   CHECK_THROWS_WITH_AS((void)built(scene_of({}), {.threads = 1025}), doctest::Contains("SceneBuildOptions::threads is 1025"), SettingError);
+}
+
+TEST_CASE("nodes of a mesh file are parts of their own, placed in their part, which share their mesh") {
+  const Files files;
+  std::ofstream(files.folder / "crates.mtl") << "newmtl red\nKd 1 0 0\nhelios_classification 64\n";
+  support::Gltf gltf;  // a horizontal triangle, y up
+  gltf.primitive({{0, 1, 0}, {1, 1, 0}, {0, 1, -1}}, {{0, 1, 2}}, R"(,"material":0)");
+  gltf.mesh("lid");
+  gltf.material(R"("name":"red")");
+  gltf.node(R"("mesh":0,"name":"first")");
+  gltf.node(R"("mesh":0,"name":"second","translation":[10,0,0],"scale":[3,3,3])");
+  gltf.roots = "0,1";
+  std::ofstream(files.folder / "crates.gltf") << gltf.text();
+  PartSettings crates{.id = "7", .source = MeshSource{.files = {files.folder / "crates.gltf"}, .materials = files.folder / "crates.mtl"}};
+  crates.transform = {.scale = 2, .translation = {100, 0, 0}, .on_ground = 1};
+  SceneBuilder builder(scene_of({files.part("plane.obj", "1"), crates}), {});
+  const std::vector<SurveyPart> parts = builder.parts();
+  REQUIRE(parts.size() == 3);
+  CHECK(parts[1].name == "7/first");
+  CHECK(parts[2].name == "7/second");
+  CHECK(parts[1].object == 7);
+  CHECK(parts[2].object == 8);
+  CHECK(parts[1].geometry == parts[2].geometry);
+  CHECK((*parts[1].materials)[0].classification == 64);
+  const auto warned = [&](const std::string& text) {
+    return std::any_of(builder.warnings().begin(), builder.warnings().end(), [&](const auto& w) { return w.find(text) != w.npos; });
+  };
+  CHECK(warned("onGround has no effect on a mesh file of several nodes"));
+  const SurveyScene scene(parts, {.to = 1});
+  CHECK(below(scene, 100.5, 0.5).range == relative(98, 1e-12));  // 2 m high
+  CHECK(below(scene, 120.5, 0.5).range == relative(94, 1e-12));  // 3 times as high
+  CHECK(below(scene, 120.5, 0.5).object == 8);
+
+  std::ofstream(files.folder / "bad.glb") << "glTF and no more";
+  SceneBuilder bad(scene_of({{.id = "1", .source = MeshSource{.files = {files.folder / "bad.glb"}}}}), {});
+  CHECK_THROWS_AS((void)bad.parts(), FileError);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
+#include <pulsecast/helios/detail/city_reader.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/point_cloud.hpp>
 #include <pulsecast/io/spectral_library.hpp>
@@ -40,6 +41,7 @@ struct SceneBuildOptions {
   bool fixed_incidence = false;   ///< perpendicular incidence on all surfaces, for scattering
   bool tilted_leaves = false;     ///< leaves of voxels send back as tilted surfaces do, see `TransmissiveVoxels`
   unsigned threads = 0;           ///< threads for reading and building, at most `max_threads`; 0: all of the machine
+  CityReader city_models{};       ///< reader of CityGML files; empty: they are an error
 
   void validate() const { require_within("SceneBuildOptions::threads", threads, 0, max_threads, ""); }
 };
@@ -71,10 +73,12 @@ class SceneBuilder {
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
-  /// Geometry and materials of a file.
+  /// Geometry and materials of a file, or of one of its nodes, placed in the part.
   struct Loaded {
     decltype(SurveyPart::geometry) geometry;
     MaterialTable materials;
+    Similarity placement{};
+    std::string name{};  ///< of the node
   };
   /// Raster of a file, and its colour table, if any.
   struct LoadedRaster {
@@ -96,6 +100,7 @@ class SceneBuilder {
   std::vector<Loaded> read(const GeoTiffSource& source);
   std::vector<Loaded> read(const XyzSource& source);
   std::vector<Loaded> read(const VoxelSource& source);
+  std::vector<Loaded> read(const MeshSource& source);
   void drop_bare(const std::filesystem::path& file, io::PointCloud& cloud);
   LoadedRaster raster(const std::filesystem::path& file, const GeoTiffSource& source);
   Raster ground(const std::filesystem::path& file, const GeoTiffSource& source);
@@ -124,6 +129,7 @@ class SceneBuilder {
 
 #if PULSECAST_DEFINITIONS
 #include <pulsecast/helios/detail/ground_builder.hpp>
+#include <pulsecast/helios/detail/mesh_parts.hpp>
 #include <pulsecast/helios/detail/scene_builder.hpp>
 #endif
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <pulsecast/base/compiled.hpp>
+#include <pulsecast/helios/detail/city_reader.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/run.hpp>
@@ -85,6 +86,7 @@ class Simulation {
     std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages; may be empty
     std::string place{};                          ///< place of the survey in its document, for messages; may be empty
     unsigned threads = 0;                         ///< threads that build the scene; 0: all
+    CityReader city_models{};                     ///< reader of CityGML files; empty: they are an error
   };
 
   /// Sink of a run: any `EchoSink`. One that is passed by reference must outlive the run.

@@ -54,6 +54,18 @@ TEST_CASE("an MTL file brings the pictures that it names") {
   CHECK(folder.files(ObjSource{{folder / "x.obj"}}) == Names{"x.obj", "a.mtl", "leaf.png", "bark.jpg"});
 }
 
+TEST_CASE("a mesh file brings the buffers and pictures that it names, in text and in binary, and its table of materials") {
+  const Folder folder({"a.bin", "leaf one.png", "bark.JPG", "sky.png", "t.mtl", "b.mtl"});
+  folder.put("a.gltf", R"({"buffers":[{"uri":"a.bin"}],"images":[{"uri":"leaf%20one.png"},{"uri":"none.png"}]})");
+  folder.put("b.fbx", std::string("S\x15\0\0\0", 5) + "C:\\old\\folder\\bark.JPG" + std::string(3, '\0'));
+  folder.put("c.dae", "<init_from>./sky.png</init_from>");
+  CHECK(folder.files(MeshSource{.files = {folder / "a.gltf"}, .materials = folder / "t.mtl"}) ==
+        Names{"a.gltf", "t.mtl", "a.bin", "leaf one.png"});
+  CHECK(folder.files(MeshSource{.files = {folder / "b.fbx", folder / "c.dae"}}) == Names{"b.fbx", "c.dae", "bark.JPG", "sky.png"});
+  folder.put("d.obj", "mtllib b.mtl\n");
+  CHECK(folder.files(MeshSource{.files = {folder / "d.obj"}}) == Names{"d.obj", "b.mtl"});
+}
+
 TEST_CASE("a scene has ground if any of its MTL files says so") {
   const Folder folder({"p.xyz", "v.vox"});
   folder.put("a.mtl", "newmtl a\nKd 1 1 1\n# helios_isGround true\nhelios_isGround false\n");

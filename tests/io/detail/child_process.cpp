@@ -69,6 +69,7 @@ TEST_CASE("an error in a child is the same in its parent") {
   const FileError other = error_of([](ChildOutput&) { throw std::runtime_error("no idea"); });
   CHECK(other.path() == "some.file");
   CHECK(other.problem() == "no idea");
+  CHECK(contains(error_of([](ChildOutput&) { throw 1; }).problem(), "without a reason"));
 }
 
 TEST_CASE("the death of a child is explained") {

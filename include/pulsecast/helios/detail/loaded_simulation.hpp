@@ -146,7 +146,8 @@ class LoadedSimulation final : public Simulation {
                                 .seed = settings.seed,
                                 .fixed_incidence = settings.fixed_incidence,
                                 .tilted_leaves = settings.library_physics,
-                                .threads = settings.threads}),
+                                .threads = settings.threads,
+                                .city_models = settings.city_models}),
         limits_(survey, settings) {
     for (const Mesh& mesh : settings.meshes)
       meshes_.push_back({.geometry = std::make_shared<const TriangleMesh<>>(mesh.data, settings.threads),

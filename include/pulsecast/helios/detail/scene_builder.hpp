@@ -62,8 +62,12 @@ PULSECAST_INLINE std::vector<SurveyPart> SceneBuilder::parts(int run) {
       begin += swap.step;
     }
     if (removed) continue;
+    const std::size_t before = all.size();
     add(part, *source, *transform, i, all);
-    lifted.resize(all.size(), transform->on_ground);
+    const bool has_nodes = std::holds_alternative<MeshSource>(*source) && all.size() > before + 1;
+    if (has_nodes && transform->on_ground != 0)
+      warn({"part '" + part.id + "': onGround has no effect on a mesh file of several nodes, which keep their places"});
+    lifted.resize(all.size(), has_nodes ? 0 : transform->on_ground);
   }
   warn(options_.spectra.warnings);
   tell_shared_objects(all);
@@ -236,8 +240,14 @@ PULSECAST_INLINE void SceneBuilder::add(const PartSettings& part, const PartSour
   if (!number && !part.id.empty())
     warn({"part '" + part.id + "': its id is not a number; the object id of its points is its place in the scene, " +
           std::to_string(place)});
+  const Attributes numbers = part.named_numbers();
   for (const Loaded& loaded : load(source)) {
-    all.push_back({loaded.geometry, loaded.materials, placement, object++, part.id, {}, part.named_numbers()});
+    const Similarity& inner = loaded.placement;
+    const Similarity placed = inner.identity() ? placement
+                                               : Similarity{normalize(placement.rotation * inner.rotation), placement.scale * inner.scale,
+                                                            placement.point(inner.translation)};
+    const std::string name = loaded.name.empty() ? part.id : part.id.empty() ? loaded.name : part.id + "/" + loaded.name;
+    all.push_back({loaded.geometry, loaded.materials, placed, object++, name, {}, numbers});
     const Box box = box_of(all.back());
     const double extent = std::fmax(max_norm(box.min), max_norm(box.max));
     if (!(extent <= 1e18)) throw SettingError("part '" + part.id + "': place", extent, "m", "within 1e18 m of the origin");

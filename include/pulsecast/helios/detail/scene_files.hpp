@@ -14,6 +14,8 @@
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/helios/detail/named_files.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
@@ -42,6 +44,10 @@ concept WithLeafAngles = requires(Source source) {
   source.leaf_angles;
 };
 template <class Source>
+concept WithNameTable = requires(Source source) {
+  source.materials;
+};
+template <class Source>
 concept WithClasses = requires(Source source) {
   source.classes;
 };
@@ -52,9 +58,15 @@ class SceneFiles {
     std::visit(
         [this](const auto& s) {
           for (const std::filesystem::path& file : s.files)
-            if (add(file) && std::is_same_v<decltype(s), const ObjSource&>) add_materials(file);
+            if (add(file) && (std::is_same_v<decltype(s), const ObjSource&> || text::lower(file.extension().string()) == ".obj"))
+              add_materials(file);
           if constexpr (WithMaterial<decltype(s)>) add_material(s.material.file);
           if constexpr (WithLeafAngles<decltype(s)>) add(s.leaf_angles);
+          if constexpr (WithNameTable<decltype(s)>) {
+            add_material(s.materials);
+            for (const std::filesystem::path& file : s.files)
+              for (const std::filesystem::path& named : files_named_in(file)) add(named);
+          }
           if constexpr (WithClasses<decltype(s)>) {
             add(s.classes);
             for (const std::filesystem::path& file : s.files) add(io::world_file_of(file));

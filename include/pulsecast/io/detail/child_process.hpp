@@ -236,6 +236,10 @@ class ChildProcess {
         output.clear();
         for (const char* part : {"", "", error.what()}) output.text(part);
         output.end(failed);
+      } catch (...) {
+        output.clear();
+        for (const char* part : {"", "", "its import failed without a reason"}) output.text(part);
+        output.end(failed);
       }
     } catch (...) {
       ::_exit(out_of_memory);

@@ -106,8 +106,29 @@ struct VoxelSource {
   bool operator==(const VoxelSource&) const = default;
 };
 
+/// Vertical axis of a mesh file: `up`.
+enum class MeshUp : std::uint8_t {
+  file,  ///< by the file, as of `io::read_mesh_file`
+  z,     ///< z
+  y,     ///< y
+};
+
+/// Mesh file: filter `meshloader`, of this library. Its nodes become parts.
+struct MeshSource {
+  std::vector<std::filesystem::path> files{};  ///< `filepath`, or matches of `efilepath`, by name
+  MeshUp up = MeshUp::file;                    ///< `up`
+  std::optional<double> unit{};                ///< size of a unit, default by the file; `unit` [m]
+  std::filesystem::path materials{};           ///< MTL file whose materials replace those of the same names; empty: none. `materials`
+
+  void validate() const {
+    if (unit) require_within("unit", *unit, 1e-9, 1e9, "m");
+  }
+
+  bool operator==(const MeshSource&) const = default;
+};
+
 /// Any source of geometry.
-using PartSource = std::variant<ObjSource, GeoTiffSource, XyzSource, VoxelSource>;
+using PartSource = std::variant<ObjSource, GeoTiffSource, XyzSource, VoxelSource, MeshSource>;
 
 namespace detail {
 

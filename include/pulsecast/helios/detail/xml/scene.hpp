@@ -26,6 +26,10 @@
 /// `<scene>`, its parts, and their placing filters.
 namespace PULSECAST_NAMESPACE::helios::xml {
 
+/// Types of loading filters, in the order of `PartSource`.
+inline constexpr std::array loaders{"objloader", "geotiffloader", "xyzloader", "detailedvoxels", "meshloader"};
+static_assert(loaders.size() == std::variant_size_v<PartSource>);
+
 /// Writes the filters of a part or swap.
 inline void filters(XmlOutput& io, const PartSource* source, const TransformSettings& transform) {
   const auto filter = [&](const char* type) {
@@ -33,7 +37,6 @@ inline void filters(XmlOutput& io, const PartSource* source, const TransformSett
     node.append_attribute("type").set_value(type);
     return XmlOutput(node, true);
   };
-  static constexpr std::array loaders{"objloader", "geotiffloader", "xyzloader", "detailedvoxels"};
   if (source) {
     XmlOutput loader = filter(loaders[source->index()]);
     std::visit([&](const auto& of_kind) { fields(loader, of_kind); }, *source);
@@ -52,9 +55,20 @@ inline void filters(XmlOutput& io, const PartSource* source, const TransformSett
   translate.whole("onGround", transform.on_ground, 0, 0);
 }
 
+/// Source of a loading filter by its type; empty for another filter.
+template <std::size_t kind = 0>
+[[nodiscard]] std::optional<PartSource> source_of(std::string_view type) {
+  if constexpr (kind < loaders.size()) {
+    if (text::is_same_word(type, loaders[kind])) return PartSource(std::in_place_index<kind>);
+    return source_of<kind + 1>(type);
+  }
+  return std::nullopt;
+}
+
 /// Reads the filters of a part or swap.
 inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSettings& transform) {
-  static const std::vector<std::string> types{"objloader", "geotiffloader", "xyzloader", "detailedvoxels", "scale", "rotate", "translate"};
+  static const std::vector<std::string> types{"objloader",  "geotiffloader", "xyzloader", "detailedvoxels",
+                                              "meshloader", "scale",         "rotate",    "translate"};
   io.know({}, {"filter"});
   bool is_scaled = false, is_translated = false;
   const auto once = [&](pugi::xml_node node, bool& before) {
@@ -66,18 +80,10 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
     XmlInput filter(io.document(), node, io.report(), io.search(), true);
     const std::string_view type = node.attribute("type").value();
     const auto is = [&](std::string_view name) { return text::is_same_word(type, name); };
-    const auto load = [&](auto kind) {
+    if (std::optional<PartSource> made = source_of(type)) {
       if (source) io.report().fault(io.document().place(node), "a second loading filter: expected one per part");
-      fields(filter, source.emplace(std::move(kind)).template emplace<decltype(kind)>());
-    };
-    if (is("objloader")) {
-      load(ObjSource{});
-    } else if (is("geotiffloader")) {
-      load(GeoTiffSource{});
-    } else if (is("xyzloader")) {
-      load(XyzSource{});
-    } else if (is("detailedvoxels")) {
-      load(VoxelSource{});
+      source = std::move(made);
+      std::visit([&](auto& of_kind) { fields(filter, of_kind); }, *source);
     } else if (is("scale")) {
       once(node, is_scaled);
       filter.require({"scale"});

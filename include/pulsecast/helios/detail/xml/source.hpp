@@ -118,6 +118,14 @@ void fields(Io& io, Of<Io, VoxelSource>& source) {
   io.number("clumping", source.clumping, units::one, 0.01, 10);
 }
 
+template <class Io>
+void fields(Io& io, Of<Io, MeshSource>& source) {
+  files(io, source.files);
+  io.choice("up", source.up, {{"file", MeshUp::file}, {"z", MeshUp::z}, {"y", MeshUp::y}});
+  io.number("unit", source.unit, units::metre, 1e-9, 1e9);
+  io.file("materials", source.materials);
+}
+
 }  // namespace PULSECAST_NAMESPACE::helios::xml
 
 #endif

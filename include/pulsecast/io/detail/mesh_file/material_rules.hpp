@@ -59,6 +59,8 @@ class MaterialRules {
     }
     // luminance. Source: IEC 61966-2-1 (sRGB), ITU-R BT.709
     if (reflectance_of_colour_) made.reflectance = dot(linear, Vec3(0.2126, 0.7152, 0.0722));
+    made.classification = o.classification;
+    made.ground = o.ground;
     gloss(o, made);
     clear(o, made);
     return made;

@@ -33,7 +33,7 @@ class MeshMaker {
     bool textured = false, several = false;
     for (std::size_t k = 0; k < meshes.size(); ++k) {
       const RawMesh& from = scene_.meshes[meshes[k]];
-      vertices += from.vertices.size();
+      vertices += from.vertex_count();
       triangles += from.triangles.size();
       textured = textured || !from.texture.empty();
       several = several || materials[k] != 0;
@@ -51,7 +51,7 @@ class MeshMaker {
       index(from, static_cast<std::uint32_t>(vertex), made.triangles.data() + triangle, mirrors(shape));
       if (several) std::fill_n(made.materials.begin() + static_cast<std::ptrdiff_t>(triangle), from.triangles.size(), materials[k]);
       if (!from.texture.empty()) texture(from, made.texture.data() + triangle, mirrors(shape));
-      vertex += from.vertices.size();
+      vertex += from.vertex_count();
       triangle += from.triangles.size();
     }
     drop_flat(made);
@@ -76,9 +76,13 @@ class MeshMaker {
 
   void place(const RawMesh& from, const Matrix3& shape, Vec3* to) const {
     const bool moved = shape != Matrix3(1);
-    each(from.vertices.size(), [&](std::size_t i) {
+    const auto vertex = [&](std::size_t i) {
+      if (!from.precise.empty()) return from.precise[i];
       const Float3& v = from.vertices[i];
-      const Vec3 at(static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
+      return Vec3(static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
+    };
+    each(from.vertex_count(), [&](std::size_t i) {
+      const Vec3 at = vertex(i);
       if (!(max_norm(at) <= 1e12) || !finite(at))
         throw FileError(path_, "",
                         "mesh '" + from.name + "': vertex " + std::to_string(i) + " is not finite, or beyond 1e12: expected a place");

@@ -56,7 +56,7 @@ struct SplitTransform {
   }
   const double sign = determinant < 0 ? -1 : 1;
   SplitTransform made;
-  made.placement = {.rotation = normalize(rotation_of(turn * sign)), .scale = scale, .translation = transform.shift};
+  made.placement = {.rotation = normalize(pulsecast::rotation_of(turn * sign)), .scale = scale, .translation = transform.shift};
   made.shape = transposed(turn) * unit * sign;
   made.is_similarity = determinant > 0 && greatest(made.shape - Matrix3(1)) <= tolerance;
   if (made.is_similarity) made.shape = Matrix3(1);

@@ -35,8 +35,11 @@ struct RawMesh {
   std::string name{};
   std::uint32_t material = 0;
   std::span<const Float3> vertices{};
+  std::span<const Vec3> precise{};        ///< vertices of double precision, in place of those
   std::span<const Corners3> triangles{};  ///< indices are below the number of vertices
   std::span<const Float3> texture{};      ///< of the vertices, upward; empty without
+
+  [[nodiscard]] std::size_t vertex_count() const noexcept { return precise.empty() ? vertices.size() : precise.size(); }
 };
 
 /// Node that shows meshes.
@@ -64,6 +67,8 @@ struct RawOptics {
   float cutoff = 0.5F;                     ///< opacity from which pixels are solid
   bool outlined = false;                   ///< true: holes by the opacity of the colour picture
   bool linear = false;                     ///< true: the colour is a linear share of light
+  std::uint16_t classification = 0;        ///< ASPRS class
+  bool ground = false;                     ///< true if it may carry set-ups
   bool has_diffuse = false;                ///< true: the file has a colour
 };
 
@@ -82,6 +87,7 @@ struct RawScene {
   double unit = 1;                      ///< size of a unit by the file [m]
   double applied_unit = 1;              ///< unit by the file that the importer applies already [m]
   Matrix3 upright{1};                   ///< to z up, by the file
+  std::string reference{};              ///< name of a reference system
   std::shared_ptr<const void> owner{};  ///< of what the meshes refer to
 };
 

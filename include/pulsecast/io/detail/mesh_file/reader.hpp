@@ -8,138 +8,25 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
-#include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
-#include <pulsecast/io/detail/child_process.hpp>
+#include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/importer.hpp>
-#include <pulsecast/io/detail/mesh_file/material_rules.hpp>
-#include <pulsecast/io/detail/mesh_file/mesh_maker.hpp>
-#include <pulsecast/io/detail/mesh_file/placement.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/detail/mesh_file/transfer.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mesh_file.hpp>
-#include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
 
 /// Reading of mesh files.
 namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
-
-/// Content of a file, from what an importer has of it.
-class MeshFileMaker {
- public:
-  MeshFileMaker(const std::filesystem::path& path, const RawScene& scene, const MeshFileSettings& settings, const Workers& workers)
-      : path_(path), scene_(scene), settings_(settings), maker_(path.string(), scene, workers) {}
-
-  [[nodiscard]] MeshFile make() {
-    file_.warnings = scene_.warnings;
-    const Matrix3 y_up(Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0));
-    const Matrix3 upright = !settings_.up ? scene_.upright : *settings_.up == UpAxis::y ? y_up : Matrix3(1);
-    const double unit = settings_.unit ? *settings_.unit / scene_.applied_unit : scene_.unit;
-    const Affine world{upright * unit, {}};
-    for (const RawNode& node : scene_.nodes) add(node, world * node.place);
-    if (maker_.flat() > 0) warn(std::to_string(maker_.flat()) + " triangles without area are left out");
-    if (reshaped_ > 0)
-      warn(std::to_string(reshaped_) + " nodes shear, mirror or stretch their meshes, which become " + std::to_string(shaped_.size()) +
-           " meshes of their own");
-    if (flattened_ > 0) warn(std::to_string(flattened_) + " nodes whose transforms flatten their meshes are left out");
-    if (file_.placements.empty()) warn("holds no triangle with an area");
-    describe();
-    return std::move(file_);
-  }
-
- private:
-  void warn(const std::string& what) { file_.warnings.push_back(path_.string() + ": " + what); }
-
-  void add(const RawNode& node, const Affine& transform) {
-    std::optional<SplitTransform> split = detail::split(transform);
-    if (!split) {
-      ++flattened_;
-      return;
-    }
-    const std::optional<std::size_t> mesh = split->is_similarity ? plain(node.meshes) : shaped(node.meshes, split->shape);
-    if (!mesh) return;
-    reshaped_ += split->is_similarity ? 0 : 1;
-    std::string name = node.name;
-    if (name.empty() || name.ends_with('/')) name += scene_.meshes[node.meshes.front()].name;
-    if (name.empty()) name = path_.stem().string();
-    file_.placements.push_back({*mesh, split->placement, std::move(name)});
-  }
-
-  [[nodiscard]] std::optional<std::size_t> plain(const std::vector<std::uint32_t>& meshes) {
-    const auto [known, is_new] = plain_.try_emplace(meshes);
-    if (is_new) known->second = made(meshes, Matrix3(1));
-    return known->second;
-  }
-
-  /// Mesh of a shape, one for all shapes that are equal within 1e-6.
-  [[nodiscard]] std::optional<std::size_t> shaped(const std::vector<std::uint32_t>& meshes, const Matrix3& shape) {
-    std::array<std::int64_t, 9> key;
-    for (std::size_t i = 0; i < 9; ++i) key[i] = std::llround(shape[static_cast<int>(i / 3)][static_cast<int>(i % 3)] * 1e6);
-    const auto [known, is_new] = shaped_.try_emplace({meshes, key});
-    if (is_new) known->second = made(meshes, shape);
-    return known->second;
-  }
-
-  [[nodiscard]] std::optional<std::size_t> made(const std::vector<std::uint32_t>& meshes, const Matrix3& shape) {
-    FileMesh one;
-    std::vector<std::uint32_t> materials, shown;
-    for (const std::uint32_t mesh : meshes) {
-      if (scene_.meshes[mesh].triangles.empty()) continue;
-      shown.push_back(mesh);
-      const std::uint32_t material = scene_.meshes[mesh].material;
-      const auto [number, is_new] = numbers_.try_emplace(material, static_cast<std::uint32_t>(used_.size()));
-      if (is_new) used_.push_back(material);
-      const auto place = std::find(one.materials.begin(), one.materials.end(), number->second);
-      materials.push_back(static_cast<std::uint32_t>(place - one.materials.begin()));
-      if (place == one.materials.end()) one.materials.push_back(number->second);
-    }
-    one.mesh = maker_(shown, materials, shape);
-    if (one.mesh.triangles.empty()) return std::nullopt;
-    file_.meshes.push_back(std::move(one));
-    return file_.meshes.size() - 1;
-  }
-
-  /// Materials in use, and their pictures.
-  void describe() {
-    const MaterialRules rules(settings_.reflectance_of_colour);
-    const PictureFinder find(path_, scene_, settings_.files_elsewhere, file_.warnings);
-    for (const std::uint32_t number : used_) {
-      file_.materials.push_back(rules(scene_.materials[number]));
-      file_.pictures.push_back(find(scene_.materials[number]));
-    }
-  }
-
-  const std::filesystem::path& path_;
-  const RawScene& scene_;
-  const MeshFileSettings& settings_;
-  MeshMaker maker_;
-  MeshFile file_;
-  std::map<std::uint32_t, std::uint32_t> numbers_;  ///< of materials in use, by those of the file
-  std::vector<std::uint32_t> used_;
-  std::map<std::vector<std::uint32_t>, std::optional<std::size_t>> plain_;  ///< meshes by what they are made of
-  std::map<std::pair<std::vector<std::uint32_t>, std::array<std::int64_t, 9>>, std::optional<std::size_t>> shaped_;
-  std::uint64_t reshaped_ = 0, flattened_ = 0;
-};
-
-/// Content of a file of a size [byte] by a child process.
-[[nodiscard]] inline RawScene imported_apart(const std::filesystem::path& path, const MeshFileSettings& settings, std::uint64_t size) {
-  const ImportLimits& limits = settings.limits;
-  const auto opened = [&](std::uint64_t bytes) { ChildOutput::allow(limits.memory_per_byte * static_cast<double>(bytes)); };
-  return taken_over(
-      ChildProcess::result(path.string(), {.memory = limits.memory, .time = limits.time + limits.time_per_byte * static_cast<double>(size)},
-                           [&](ChildOutput& output) { hand_over(output, MeshImport(path, settings, Workers(1), opened).read()); }));
-}
 
 /// Content of an OBJ file: one mesh.
 [[nodiscard]] inline MeshFile file_of(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers) {
@@ -153,21 +40,6 @@ class MeshFileMaker {
   for (std::uint32_t i = 0; i < file.materials.size(); ++i) one.materials.push_back(i);
   file.placements.push_back({0, {.scale = settings.unit.value_or(1)}, path.stem().string()});
   return file;
-}
-
-/// Replaces materials, and their pictures, by those of the same names in an MTL file.
-inline void replace_materials(MeshFile& file, const MeshFileSettings& settings) {
-  if (settings.materials.empty()) return;
-  const MaterialLibrary library = read_mtl(settings.materials, settings.spectra);
-  file.warnings.insert(file.warnings.end(), library.warnings.begin(), library.warnings.end());
-  for (std::size_t i = 0; i < file.materials.size(); ++i) {
-    const auto found = library.materials.find(file.materials[i].name);
-    if (found == library.materials.end()) continue;
-    const Vec3 colour = file.materials[i].colour;
-    file.materials[i] = found->second;
-    file.materials[i].colour = colour;
-    if (const auto pictures = library.pictures.find(found->first); pictures != library.pictures.end()) file.pictures[i] = pictures->second;
-  }
 }
 
 /// Reads the pictures of a file, each once, into its materials and the masks of its meshes.
@@ -199,9 +71,11 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
   if (text::lower(path.extension().string()) == ".obj") {
     file = detail::file_of(path, settings, workers);
   } else {
-    const std::uint64_t size = InputFile(path, "a mesh file").size();  // which explains one that is missing or empty
-    const detail::RawScene scene =
-        settings.isolated ? detail::imported_apart(path, settings, size) : detail::MeshImport(path, settings, workers).read();
+    (void)InputFile(path, "a mesh file");  // which explains one that is missing or empty
+    const auto import = [&](const Workers& by, const auto& opened) { return detail::MeshImport(path, settings, by, opened).read(); };
+    const detail::RawScene scene = settings.isolated
+                                       ? detail::imported_apart(path, settings.limits, [&](const auto& o) { return import(Workers(1), o); })
+                                       : import(workers, nullptr);
     file = detail::MeshFileMaker(path, scene, settings, workers).make();
   }
   detail::replace_materials(file, settings);

@@ -5,13 +5,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <pulsecast/io/detail/child_process.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
+#include <pulsecast/io/mesh_file.hpp>
 
 /// What a child process has read, handed to its parent.
 namespace PULSECAST_NAMESPACE::io::detail {
@@ -27,6 +30,7 @@ inline void hand_over(ChildOutput& to, const RawScene& scene) {
     to.text(mesh.name);
     to.value(mesh.material);
     to.array(mesh.vertices);
+    to.array(mesh.precise);
     to.array(mesh.triangles);
     to.array(mesh.texture);
   }
@@ -50,6 +54,7 @@ inline void hand_over(ChildOutput& to, const RawScene& scene) {
   to.value(scene.unit);
   to.value(scene.applied_unit);
   to.value(scene.upright);
+  to.text(scene.reference);
 }
 
 [[nodiscard]] inline RawPicture taken_picture(ChildResult& from) {
@@ -63,12 +68,13 @@ inline void hand_over(ChildOutput& to, const RawScene& scene) {
   RawMesh mesh{.name = from.text()};
   mesh.material = from.value<std::uint32_t>();
   mesh.vertices = from.array<Float3>();
+  mesh.precise = from.array<Vec3>();
   mesh.triangles = from.array<Corners3>();
   mesh.texture = from.array<Float3>();
-  if (!mesh.texture.empty() && mesh.texture.size() != mesh.vertices.size()) from.fail();
+  if (!mesh.texture.empty() && mesh.texture.size() != mesh.vertex_count()) from.fail();
   for (const Corners3& corners : mesh.triangles)
     for (const std::uint32_t corner : corners)
-      if (corner >= mesh.vertices.size()) from.fail();
+      if (corner >= mesh.vertex_count()) from.fail();
   return mesh;
 }
 
@@ -102,8 +108,21 @@ inline void hand_over(ChildOutput& to, const RawScene& scene) {
   scene.unit = from.value<double>();
   scene.applied_unit = from.value<double>();
   scene.upright = from.value<Matrix3>();
+  scene.reference = from.text();
   scene.owner = from.owner();
   return scene;
+}
+
+/// What an import, by a child process, finds in a file. It is told a function to call with the size of each other file [byte].
+template <class Import>
+[[nodiscard]] RawScene imported_apart(const std::filesystem::path& path, const ImportLimits& limits, const Import& import) {
+  std::error_code ignored;
+  const auto size = static_cast<double>(std::filesystem::file_size(path, ignored));
+  const auto opened = [&](std::uint64_t bytes) { ChildOutput::allow(limits.memory_per_byte * static_cast<double>(bytes)); };
+  return taken_over(ChildProcess::result(path.string(),
+                                         {.memory = limits.memory + (ignored ? 0 : limits.memory_per_byte * size),
+                                          .time = limits.time + (ignored ? 0 : limits.time_per_byte * size)},
+                                         [&](ChildOutput& output) { hand_over(output, import(opened)); }));
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

@@ -1,0 +1,332 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_CITYGML_READER_HPP
+#define PULSECAST_IO_DETAIL_CITYGML_READER_HPP
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <new>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <citygml/citygml.h>
+#include <citygml/citygmllogger.h>
+#include <citygml/citymodel.h>
+#include <citygml/geometry.h>
+#include <citygml/implictgeometry.h>
+#include <citygml/polygon.h>
+#include <citygml/transformmatrix.h>
+
+#include <pulsecast/base/error.hpp>
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/citygml.hpp>
+#include <pulsecast/io/detail/mesh_file/file_maker.hpp>
+#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
+#include <pulsecast/io/detail/mesh_file/transfer.hpp>
+#include <pulsecast/io/input_file.hpp>
+
+/// Reading of CityGML files.
+namespace PULSECAST_NAMESPACE::io {
+
+namespace detail {
+
+using CityClass = citygml::CityObject::CityObjectsType;
+
+/// ASPRS class of a class of CityGML, and how it is read.
+struct CityClassRule {
+  std::uint16_t classification = 0;
+  bool ground = false;    ///< may carry set-ups
+  bool interior = false;  ///< is inside a building
+};
+[[nodiscard]] inline CityClassRule rule_of(CityClass type) {
+  using C = CityClass;
+  switch (type) {
+    case C::COT_Room:
+    case C::COT_BuildingFurniture:
+    case C::COT_InteriorWallSurface:
+    case C::COT_CeilingSurface:
+    case C::COT_FloorSurface:
+    case C::COT_IntBuildingInstallation:
+      return {.classification = 6, .interior = true};
+    case C::COT_Building:
+    case C::COT_BuildingPart:
+    case C::COT_BuildingInstallation:
+    case C::COT_Door:
+    case C::COT_Window:
+    case C::COT_WallSurface:
+    case C::COT_RoofSurface:
+    case C::COT_OuterCeilingSurface:
+    case C::COT_OuterFloorSurface:
+      return {.classification = 6};
+    case C::COT_GroundSurface:
+      return {.classification = 2};
+    case C::COT_ReliefFeature:
+    case C::COT_ReliefComponent:
+    case C::COT_TINRelief:
+    case C::COT_LandUse:
+      return {.classification = 2, .ground = true};
+    case C::COT_PlantCover:
+    case C::COT_SolitaryVegetationObject:
+      return {.classification = 5};
+    case C::COT_WaterBody:
+      return {.classification = 9};
+    case C::COT_Railway:
+      return {.classification = 10, .ground = true};
+    case C::COT_Road:
+    case C::COT_Track:
+    case C::COT_Square:
+    case C::COT_TransportationObject:
+      return {.classification = 11, .ground = true};
+    case C::COT_Bridge:
+    case C::COT_BridgePart:
+    case C::COT_BridgeInstallation:
+    case C::COT_BridgeConstructionElement:
+      return {.classification = 17, .ground = true};
+    default:
+      return {};
+  }
+}
+
+/// EPSG code of the horizontal system of a name, as of `urn:ogc:def:crs,crs:EPSG:6.12:25832,crs:EPSG::5783`.
+[[nodiscard]] inline std::optional<std::uint16_t> epsg_of(std::string_view name) {
+  const std::size_t at = name.find("EPSG");
+  if (at == name.npos) return std::nullopt;
+  name = name.substr(at, std::min(name.find(',', at), name.find('+', at)) - at);
+  const std::size_t last = name.find_last_of(":/#");
+  return last == name.npos ? std::nullopt : text::number_in<std::uint16_t>(name.substr(last + 1));
+}
+
+/// Keeps messages of libcitygml.
+class CityGmlLog final : public citygml::CityGMLLogger {
+ public:
+  CityGmlLog() : CityGMLLogger(LOGLEVEL::LL_WARNING) {}
+  void log(LOGLEVEL level, const std::string& message, const char* /*file*/, int /*line*/) const override {
+    if (messages.size() < 20) messages.push_back(message);
+    if (level == LOGLEVEL::LL_ERROR && error.empty()) error = message;
+  }
+  mutable std::vector<std::string> messages;
+  mutable std::string error;
+};
+
+class CityGmlImport {
+ public:
+  CityGmlImport(const std::filesystem::path& path, const CityGmlSettings& settings) : path_(path), settings_(settings) {}
+
+  /// @throws FileError
+  [[nodiscard]] RawScene read() {
+    check_prolog();
+    citygml::ParserParams params;
+    params.maxLOD = settings_.max_lod;
+    const auto log = std::make_shared<CityGmlLog>();
+    std::shared_ptr<const citygml::CityModel> model;
+    try {
+      model = citygml::load(path_.string(), params, log);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      fail(error.what());
+    } catch (...) {  // of Xerces
+      fail(log->error.empty() ? "its XML is malformed" : log->error);
+    }
+    if (!model) fail(log->error.empty() ? "no reason is given" : log->error);
+    name_ = model->getSRSName().empty() ? model->getEnvelope().srsName() : model->getSRSName();
+    for (unsigned i = 0; i < model->getNumRootCityObjects(); ++i) {
+      const citygml::CityObject& object = model->getRootCityObject(static_cast<int>(i));
+      if (name_.empty()) name_ = object.getEnvelope().srsName();
+      root(object);
+    }
+    if (const auto code = epsg_of(name_); name_.find("CRS84") != name_.npos || code == 4326 || code == 4258 || code == 4979)
+      fail("its coordinates are in degrees, by '" + name_ + "': expected a projected system in metres");
+    for (const std::string& message : log->messages) scene_.warnings.push_back(path_.string() + ": libcitygml: " + readable(message));
+    scene_.reference = name_;
+    scene_.owner = data_;
+    return std::move(scene_);
+  }
+
+ private:
+  struct Data {
+    std::deque<std::vector<Vec3>> vertices;
+    std::deque<std::vector<Corners3>> triangles;
+  };
+  /// Surfaces of one class.
+  struct Surfaces {
+    std::vector<Vec3> vertices{};
+    std::vector<Corners3> triangles{};
+  };
+  using ByClass = std::map<CityClass, Surfaces>;
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw FileError(path_.string(), "", "is no CityGML file that can be read: " + readable(problem));
+  }
+  [[nodiscard]] static std::string readable(std::string text) {
+    text.resize(std::min<std::size_t>(text.size(), 300));
+    for (char& c : text)
+      if (c < ' ' || c > '~') c = '?';
+    return text;
+  }
+
+  /// Refuses document types, by which XML files open others and grow without end, and encodings that could hide one.
+  void check_prolog() const {
+    InputFile file(path_, "a CityGML file");
+    std::string before;
+    bool first = true;
+    for (std::string_view text = file.take(InputFile::block_size / 2); !text.empty(); text = file.take(InputFile::block_size / 2)) {
+      if (std::exchange(first, false)) {
+        const std::string_view begin = text::without_byte_order_mark(text);
+        const std::size_t start = begin.find_first_not_of(" \t\r\n");
+        if (start == begin.npos || begin[start] != '<' || begin.substr(0, 64).find('\0') != begin.npos)
+          fail("it does not begin as XML in UTF-8");
+      }
+      before += text;
+      if (before.find("<!DOCTYPE") != before.npos || before.find("<!ENTITY") != before.npos) fail("it has a document type: expected none");
+      before.erase(0, before.size() - std::min<std::size_t>(before.size(), 16));
+    }
+  }
+
+  void root(const citygml::CityObject& object) {
+    std::optional<unsigned> lod;
+    highest(object, lod, 0);
+    if (!lod) return;
+    ByClass all;
+    collect(object, *lod, all, object.getId(), 0);
+    if (all.empty()) return;
+    Vec3 origin{};
+    for (const auto& [type, surfaces] : all) {
+      if (surfaces.vertices.empty()) continue;
+      origin = surfaces.vertices.front();
+      break;
+    }
+    for (int k = 0; k < 3; ++k) origin[k] = std::floor(origin[k]);
+    RawNode node{.name = object.getId(), .place = {Matrix3(1), origin}};
+    for (auto& [type, surfaces] : all) {
+      for (Vec3& vertex : surfaces.vertices) vertex -= origin;
+      if (!surfaces.triangles.empty()) node.meshes.push_back(mesh(type, std::move(surfaces)));
+    }
+    if (!node.meshes.empty()) scene_.nodes.push_back(std::move(node));
+  }
+
+  [[nodiscard]] bool is_left_out(const citygml::CityObject& object) const {
+    return object.getType() == CityClass::COT_ClosureSurface || (!settings_.interior && rule_of(object.getType()).interior);
+  }
+
+  void check_depth(int depth) const {
+    if (depth > 200) fail("its objects are nested more than 200 deep");
+  }
+
+  /// Highest level of detail of an object and those in it, up to the limit, which libcitygml does not keep for boundary surfaces.
+  void highest(const citygml::CityObject& object, std::optional<unsigned>& lod, int depth) const {
+    check_depth(depth);
+    if (is_left_out(object)) return;
+    const auto offer = [&](unsigned level) {
+      if (level <= settings_.max_lod) lod = std::max(lod.value_or(0), level);
+    };
+    for (unsigned i = 0; i < object.getGeometriesCount(); ++i) offer(object.getGeometry(i).getLOD());
+    for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i)
+      for (unsigned k = 0; k < object.getImplicitGeometry(i).getGeometriesCount(); ++k)
+        offer(object.getImplicitGeometry(i).getGeometry(k).getLOD());
+    for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i) highest(object.getChildCityObject(i), lod, depth + 1);
+  }
+
+  void collect(const citygml::CityObject& object, unsigned lod, ByClass& all, const std::string& id, int depth) {
+    if (is_left_out(object)) return;
+    for (unsigned i = 0; i < object.getGeometriesCount(); ++i)
+      if (object.getGeometry(i).getLOD() == lod) add(object.getGeometry(i), all[object.getType()], 0);
+    for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i) implicit(object.getImplicitGeometry(i), object.getType(), id, lod);
+    for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i) collect(object.getChildCityObject(i), lod, all, id, depth + 1);
+  }
+
+  void add(const citygml::Geometry& geometry, Surfaces& to, int depth) const {
+    check_depth(depth);
+    for (unsigned i = 0; i < geometry.getPolygonsCount(); ++i) {
+      const std::shared_ptr<const citygml::Polygon> polygon = geometry.getPolygon(i);
+      const std::size_t first = to.vertices.size(), count = polygon->getVertices().size();
+      if (first + count > 0xFFFFFFFFU) fail("an object has too many vertices: expected fewer than 2^32");
+      for (const TVec3d& v : polygon->getVertices()) to.vertices.emplace_back(v.x, v.y, v.z);
+      const std::vector<unsigned>& indices = polygon->getIndices();
+      for (std::size_t k = 0; k + 2 < indices.size(); k += 3) {
+        Corners3 corners{};
+        for (std::size_t c = 0; c < 3; ++c) {
+          if (indices[k + c] >= count) fail("a polygon has a vertex that is not there");
+          corners[c] = static_cast<std::uint32_t>(first + indices[k + c]);
+        }
+        to.triangles.push_back(corners);
+      }
+    }
+    for (unsigned i = 0; i < geometry.getGeometriesCount(); ++i) add(geometry.getGeometry(i), to, depth + 1);
+  }
+
+  /// A geometry in a frame of its own, which several objects may show.
+  void implicit(const citygml::ImplicitGeometry& geometry, CityClass type, const std::string& id, unsigned lod) {
+    std::vector<const citygml::Geometry*> shown;
+    for (unsigned i = 0; i < geometry.getGeometriesCount(); ++i)
+      if (geometry.getGeometry(i).getLOD() == lod) shown.push_back(&geometry.getGeometry(i));
+    const auto [known, is_new] = shared_.try_emplace({shown, type});
+    if (is_new) {
+      Surfaces surfaces;
+      for (const citygml::Geometry* const one : shown) add(*one, surfaces, 0);
+      if (!surfaces.triangles.empty()) known->second = mesh(type, std::move(surfaces));
+    }
+    if (!known->second) return;
+    const double* const m = geometry.getTransformMatrix().getMatrix();  // row by row
+    const TVec3d at = geometry.getReferencePoint();
+    scene_.nodes.push_back({.name = id,
+                            .place = {Matrix3(Vec3(m[0], m[4], m[8]), Vec3(m[1], m[5], m[9]), Vec3(m[2], m[6], m[10])),
+                                      Vec3(m[3] + at.x, m[7] + at.y, m[11] + at.z)},
+                            .meshes = {*known->second}});
+  }
+
+  std::uint32_t mesh(CityClass type, Surfaces surfaces) {
+    const auto [number, is_new] = materials_.try_emplace(type, static_cast<std::uint32_t>(scene_.materials.size()));
+    if (is_new) {
+      const CityClassRule rule = rule_of(type);
+      RawMaterial& material = scene_.materials.emplace_back();
+      material.name = type == CityClass::COT_TINRelief ? "TINRelief" : citygml::cityObjectsTypeToString(type);
+      material.optics.classification = rule.classification;
+      material.optics.ground = rule.ground;
+    }
+    data_->vertices.push_back(std::move(surfaces.vertices));
+    data_->triangles.push_back(std::move(surfaces.triangles));
+    scene_.meshes.push_back({.material = number->second, .precise = data_->vertices.back(), .triangles = data_->triangles.back()});
+    return static_cast<std::uint32_t>(scene_.meshes.size() - 1);
+  }
+
+  const std::filesystem::path& path_;
+  const CityGmlSettings& settings_;
+  std::string name_;  ///< of the reference system
+  RawScene scene_;
+  std::shared_ptr<Data> data_ = std::make_shared<Data>();
+  std::map<CityClass, std::uint32_t> materials_;
+  std::map<std::pair<std::vector<const citygml::Geometry*>, CityClass>, std::optional<std::uint32_t>> shared_;
+};
+
+}  // namespace detail
+
+inline bool is_citygml(const std::filesystem::path& path) {
+  const std::string ending = text::lower(path.extension().string());
+  return ending == ".gml" || ending == ".citygml";
+}
+
+inline CityGml read_citygml(const std::filesystem::path& path, const CityGmlSettings& settings, const Workers& workers) {
+  settings.validate();
+  const auto import = [&](const auto&) { return detail::CityGmlImport(path, settings).read(); };
+  const detail::RawScene scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(0);
+  const MeshFileSettings plain{.materials = settings.materials, .spectra = settings.spectra};
+  CityGml city{.file = detail::MeshFileMaker(path, scene, plain, workers).make(), .epsg = detail::epsg_of(scene.reference)};
+  detail::replace_materials(city.file, plain);
+  return city;
+}
+
+}  // namespace PULSECAST_NAMESPACE::io
+
+#endif
