@@ -209,6 +209,21 @@ TEST_CASE("any number of points in one place is divided down to nodes of 128 ste
   CHECK(checked(two).levels() > 15);
 }
 
+TEST_CASE("a node that has given all its points to the one above is still listed, for the leaves below it") {
+  Generator random(9);
+  Points points;
+  for (int place = 0; place < 40; ++place) {
+    const Vec3 middle = random.point(2);
+    for (int i = 0; i < 80; ++i) points.push_back(middle);
+  }
+  detail::CopcSizes sizes = small;
+  sizes.block_points = 150;
+  const CopcFile file = checked(points, {}, sizes);
+  std::size_t empty = 0;
+  for (const auto& [name, node] : file.nodes) empty += node.points == 0 ? 1 : 0;
+  CHECK(empty > 5);
+}
+
 TEST_CASE("points on the borders of nodes are in one of them") {
   Points points;
   for (int x = -8; x <= 8; ++x)
