@@ -25,6 +25,7 @@ struct CopcName {
   std::int32_t level = 0, x = 0, y = 0, z = 0;
   friend auto operator<=>(const CopcName&, const CopcName&) = default;
   [[nodiscard]] CopcName above() const { return {level - 1, x / 2, y / 2, z / 2}; }
+  [[nodiscard]] bool is_below(const CopcName& other) const { return *this == other || (level > other.level && above().is_below(other)); }
 };
 
 /// A node: its point records, one behind another.
@@ -174,6 +175,7 @@ class CopcReader {
       const std::uint64_t offset = whole(e + 16, 8);
       const std::int32_t bytes = number(e + 24), points = number(e + 28);
       laz_expect(e > at || name == root, "a page begins with its root");
+      laz_expect(name.is_below(root), "a page lists what is below its root");
       for (const std::int32_t c : {name.x, name.y, name.z})
         laz_expect(c >= 0 && (name.level == 31 || c >> name.level == 0), "name of a node");
       if (points == -1) {

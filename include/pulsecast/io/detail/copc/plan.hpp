@@ -33,29 +33,44 @@ struct CopcBlock {
   std::vector<CopcExtent> extents{};
 };
 
-/// Division of all points: a cube about them, and blocks in the order of `copc_before`.
+/// Division of points to blocks in the order of `copc_before`.
 class CopcPlan {
  public:
+  /// Division of all points, with a cube about them as root.
   CopcPlan(const CopcRuns& runs, const CopcSizes& sizes) : sizes_(sizes) {
     gather_cells(runs);
     choose_root(runs.bits());
-    for (Cell& cell : cells_) cell.path = copc_morton(from_corner(cell.key));
-    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.path < b.path; });
-    divide(cells_, {});
-    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.key < b.key; });
-    find_extents(runs);
-    cells_ = {};
+    divide_all(runs);
   }
 
+  /// Division of the points of one node, whose cells are smaller than the node.
+  CopcPlan(const CopcRuns& runs, const CopcSizes& sizes, const CopcRoot& root, const CopcKey& top) : sizes_(sizes), top_(top), root_(root) {
+    gather_cells(runs);
+    corner_ = root.corner_of(top);
+    for (std::int64_t& c : corner_) c >>= runs.bits();
+    depth_ = root.bits - runs.bits();
+    divide_all(runs);
+  }
+
+  [[nodiscard]] const CopcKey& top() const noexcept { return top_; }  ///< node that is divided
   [[nodiscard]] const CopcRoot& root() const noexcept { return root_; }
   [[nodiscard]] std::span<const CopcBlock> blocks() const noexcept { return blocks_; }
 
  private:
   struct Cell {
-    std::uint64_t key = 0, path = 0;  // Morton numbers: in all space, and from the root's corner
+    std::uint64_t key = 0, path = 0;  // Morton numbers: in all space, and from the corner of what is divided
     std::uint64_t count = 0;
     std::size_t block = 0;
   };
+
+  void divide_all(const CopcRuns& runs) {
+    for (Cell& cell : cells_) cell.path = copc_morton(from_corner(cell.key));
+    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.path < b.path; });
+    divide(cells_, top_);
+    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.key < b.key; });
+    find_extents(runs);
+    cells_ = {};
+  }
 
   void gather_cells(const CopcRuns& runs) {
     for (const auto& run : runs.cells())
@@ -137,8 +152,9 @@ class CopcPlan {
   CopcSizes sizes_;
   std::vector<Cell> cells_;
   std::vector<CopcBlock> blocks_;
+  CopcKey top_{};
   CopcRoot root_;
-  CopcPlace corner_{};  // of the root, in cells
+  CopcPlace corner_{};  // of what is divided, in cells
   unsigned depth_ = 0;  // level of a cell
 };
 

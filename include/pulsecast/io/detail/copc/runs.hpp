@@ -45,6 +45,7 @@ class CopcRuns {
       : file_(path),
         record_(record),
         threads_(threads),
+        run_bytes_(run_bytes),
         run_points_(std::max<std::size_t>(run_bytes / record, 256)),
         most_cells_(most_cells) {}
 
@@ -62,7 +63,21 @@ class CopcRuns {
     file_.read(0, {});  // passes on what is buffered
   }
 
+  /// Runs of some of the points, in a file of their own, with cells as small as can be. @throws FileError
+  [[nodiscard]] CopcRuns finer(std::span<const CopcExtent> extents) const {
+    CopcRuns runs(file_.path().string() + ".finer", record_, threads_, run_bytes_, most_cells_);
+    for (const CopcExtent& e : extents)
+      for (std::uint64_t at = 0; at < e.count; at += run_points_) {
+        const CopcExtent some{e.begin + at, std::min<std::uint64_t>(run_points_, e.count - at)};
+        const std::vector<std::byte> bytes = read(std::span(&some, 1));
+        for (std::size_t i = 0; i < bytes.size(); i += record_) runs.add(std::span(bytes).subspan(i, record_));
+      }
+    runs.end();
+    return runs;
+  }
+
   [[nodiscard]] std::uint64_t points() const noexcept { return points_; }
+  static constexpr unsigned least_bits = 32 - copc_morton_bits;   ///< of cells, at first
   [[nodiscard]] unsigned bits() const noexcept { return bits_; }  ///< side of the cells: 2^bits steps
 
   /// Cells of each run, in the order of the file: ascending within a run.
@@ -88,8 +103,6 @@ class CopcRuns {
   }
 
  private:
-  static constexpr unsigned least_bits = 32 - copc_morton_bits;
-
   void end_run() {
     const std::size_t count = gathered_.size() / record_;
     if (count == 0) return;
@@ -146,7 +159,7 @@ class CopcRuns {
   OutputFile file_;
   std::size_t record_;  // [byte]
   unsigned threads_, bits_ = least_bits;
-  std::size_t run_points_, most_cells_;
+  std::size_t run_bytes_, run_points_, most_cells_;
   std::vector<std::byte> gathered_, sorted_;
   std::vector<CopcRank> ranks_;
   std::vector<std::vector<CopcCell>> cells_;

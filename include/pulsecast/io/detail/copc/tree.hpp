@@ -41,26 +41,7 @@ class CopcTree {
 
   /// Writes all. @throws FileError
   void write(const CopcRuns& runs, const CopcPlan& plan) {
-    const std::span<const CopcBlock> blocks = plan.blocks();
-    const std::uint64_t at_once = std::uint64_t{std::max(4U, 2 * threads_)} * sizes_.block_points;
-    for (std::size_t first = 0, end = 0; first < blocks.size(); first = end) {
-      for (std::uint64_t points = 0; end < blocks.size() && (end == first || points + blocks[end].points <= at_once); ++end)
-        points += blocks[end].points;
-      std::vector<Built> built(end - first);
-      for_each_index(built.size(), threads_, [&](std::size_t i) { built[i] = build(runs, plan.root(), blocks[first + i]); });
-      for (std::size_t i = first; i < end; ++i) {
-        Built& one = built[i - first];
-        for (const Chunk& chunk : one.chunks) put(chunk);
-        open_.push_back(std::move(one.root));
-        one = {};
-        const CopcKey& key = blocks[i].key;
-        for (std::int32_t level = key.level; level-- > 0;) {
-          const CopcKey above = key.ancestor(level);
-          if (i + 1 < blocks.size() && blocks[i + 1].key.level > level && blocks[i + 1].key.ancestor(level) == above) break;
-          merge(plan.root(), above);
-        }
-      }
-    }
+    write_below(runs, plan);
     for (const OpenNode& root : open_) put(chunk_of(root));
     open_ = {};
   }
@@ -87,6 +68,52 @@ class CopcTree {
     std::vector<Chunk> chunks{};
     OpenNode root{};
   };
+
+  /// Writes what is below the node that is divided, and leaves it open.
+  void write_below(const CopcRuns& runs, const CopcPlan& plan) {
+    const std::span<const CopcBlock> blocks = plan.blocks();
+    const std::uint64_t at_once = std::uint64_t{std::max(4U, 2 * threads_)} * sizes_.block_points;
+    const auto dense = [&](const CopcBlock& block) { return block.points > sizes_.block_points && runs.bits() > CopcRuns::least_bits; };
+    for (std::size_t first = 0, end = 0; first < blocks.size(); first = end) {
+      if (dense(blocks[first])) {
+        write_dense(runs, plan.root(), blocks[first]);
+        close_above(plan, end++);
+        continue;
+      }
+      for (std::uint64_t points = 0; end < blocks.size() && (end == first || points + blocks[end].points <= at_once); ++end) {
+        if (dense(blocks[end])) break;
+        points += blocks[end].points;
+      }
+      std::vector<Built> built(end - first);
+      for_each_index(built.size(), threads_, [&](std::size_t i) { built[i] = build(runs, plan.root(), blocks[first + i]); });
+      for (std::size_t i = first; i < end; ++i) {
+        Built& one = built[i - first];
+        for (const Chunk& chunk : one.chunks) put(chunk);
+        open_.push_back(std::move(one.root));
+        one = {};
+        close_above(plan, i);
+      }
+    }
+  }
+
+  /// Writes what is below a block of a cell with more points than others, by smaller cells.
+  void write_dense(const CopcRuns& runs, const CopcRoot& root, const CopcBlock& block) {
+    const CopcRuns finer = runs.finer(block.extents);
+    if (finer.bits() < runs.bits()) return write_below(finer, CopcPlan(finer, sizes_, root, block.key));
+    Built built = build(runs, root, block);
+    for (const Chunk& chunk : built.chunks) put(chunk);
+    open_.push_back(std::move(built.root));
+  }
+
+  /// Picks the points of the nodes above a block that have no block to come.
+  void close_above(const CopcPlan& plan, std::size_t i) {
+    const std::span<const CopcBlock> blocks = plan.blocks();
+    for (std::int32_t level = blocks[i].key.level; level-- > plan.top().level;) {
+      const CopcKey above = blocks[i].key.ancestor(level);
+      if (i + 1 < blocks.size() && blocks[i + 1].key.level > level && blocks[i + 1].key.ancestor(level) == above) return;
+      merge(plan.root(), above);
+    }
+  }
 
   [[nodiscard]] Built build(const CopcRuns& runs, const CopcRoot& root, const CopcBlock& block) const {
     std::vector<std::byte> records = runs.read(block.extents);
