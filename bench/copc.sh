@@ -17,5 +17,6 @@ for ((round = 0; round < rounds; ++round)); do
     rm "$folder/points.laz"
   done | tee "$folder/told"
   awk '{ time[$1] = $4; processors[$1] = $12 }
-       END { printf "copc takes %.2f times the time of laz, and %.2f times that of processors\n", time["copc"] / time["laz"], processors["copc"] / processors["laz"] }' "$folder/told"
+       END { printf "copc takes %.2f times the time of laz, and %.2f times that of processors\n",
+                    time["copc"] / time["laz"], processors["copc"] / processors["laz"] }' "$folder/told"
 done

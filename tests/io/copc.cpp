@@ -229,6 +229,18 @@ TEST_CASE("a node that has given all its points to the one above is still listed
   CHECK(empty > 5);
 }
 
+TEST_CASE("a dense place in a wide cloud is divided by cells of its own") {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed);
+    Points points;
+    for (int i = 0; i < 2000; ++i) points.push_back(random.point(500));
+    const Vec3 dense = random.point(400);
+    for (int i = 0; i < 8000; ++i) points.push_back(dense + random.point(1) * random.log_uniform(0.01, 1));
+    CHECK(checked(points).levels() > 10);
+  }
+}
+
 TEST_CASE("points on the borders of nodes are in one of them") {
   Points points;
   for (int x = -8; x <= 8; ++x)

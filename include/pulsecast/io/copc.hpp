@@ -134,13 +134,13 @@ class CopcRecords {
 }  // namespace detail
 
 /// Writes points as COPC 1.0, a LAZ file with an octree for maps and viewers that read a part of it: as `LazWriter`, but for the order of
-/// the points. Each level of the octree holds a point in each of 128^3 cells of a node, that nearest to its centre, and the lowest all
-/// others; so all points down to some level are an even sample of the cloud. A leaf has at most 50,000 points, unless more are within 128
-/// steps of the coordinates. The bytes of the file are the same for any number of threads.
+/// the points. A node with children has at most one point in each of its 128^3 cells, that nearest to the centre, so all points down to
+/// some level are an even sample of the cloud. Another node has at most 50,000, or one in each cell, unless its side is 128 steps of the
+/// coordinates. The bytes of the file are the same for any number of threads.
 ///
 /// `close()` does most of the work; until then, points wait in `NAME.points.part`, uncompressed. The disk must have room for them and the
-/// file. Memory is independent of the number of points: some 250 MB, and 50 MB more for each thread, but all points within one cell of a
-/// coarse grid are held at once. The grid has about a thousandth as many cells as there are points, or a million.
+/// file. Memory is independent of the number of points: some 200 MB, and 60 MB more for each thread, of which at most 16 are used. But
+/// points within a cube of 2048 steps are held at once. `docs/performance.md` has the figures.
 class CopcWriter : public detail::LasFileWriter<detail::CopcRecords> {
  public:
   /// @throws SettingError for settings out of range, or that LAZ cannot meet

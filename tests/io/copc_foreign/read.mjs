@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Has a program write LAS and COPC files in pairs, reads every level and every node of each .copc.laz file with copc, and compares all of it
-// with the .las file beside it. Usage: node read.mjs NODE_MODULES PROGRAM, where NODE_MODULES is the folder with laz-perf and copc, and
+// Has a program write LAS and COPC files in pairs, reads every level and every node of each .copc.laz file with copc, and compares all of
+// it with the .las file beside it. Usage: node read.mjs NODE_MODULES PROGRAM, where NODE_MODULES is the folder with laz-perf and copc, and
 // `PROGRAM FOLDER` writes the files.
 
 import { execFileSync } from 'node:child_process'
@@ -95,8 +95,9 @@ async function compare(name) {
     expectSame(Buffer.from(await Las.PointData.decompressFile(readFileSync(path), lazPerf)), points, record, 'the file as a whole')
   }
   if (name.startsWith('pages')) expect(pages > 5 && levels.size > 3, `${pages} pages, ${levels.size} levels`)
-  if (name.startsWith('colours')) expect(names.includes('Red') && !names.includes('Infrared') && names.includes('age'), `dimensions: ${names}`)
-  if (name.startsWith('near')) expect(names.includes('Blue') && names.includes('Infrared') && names.includes('age'), `dimensions: ${names}`)
+  const has = (name) => names.includes(name)
+  if (name.startsWith('colours')) expect(has('Red') && !has('Infrared') && has('age'), `dimensions: ${names}`)
+  if (name.startsWith('near')) expect(has('Blue') && has('Infrared') && has('age'), `dimensions: ${names}`)
   const byLevel = [...levels].sort(([a], [b]) => a - b).map(([, count]) => count)
   console.log(`${name}: ${header.pointCount} points in ${Object.keys(nodes).length} nodes, ${pages} pages, by level ${byLevel}`)
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/io/detail/laz/chunk.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -22,15 +23,15 @@ using support::Generator;
 using support::LazReadChunk;
 using support::read_laz_chunk;
 
-std::string compressed(const std::string& records, std::size_t record) {
-  const std::vector<std::byte> bytes = LazChunk(std::as_bytes(std::span(records)), record).compressed();
+std::string compressed(const std::string& records, std::size_t record, std::size_t colour = 0) {
+  const std::vector<std::byte> bytes = LazChunk(std::as_bytes(std::span(records)), record, colour).compressed();
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// Compresses, reads again, and checks that nothing else came back, and that nothing stands behind it.
-LazReadChunk through(const std::string& records, std::size_t record) {
-  const std::string bytes = compressed(records, record);
-  LazReadChunk chunk = read_laz_chunk(bytes, 0, record);
+LazReadChunk through(const std::string& records, std::size_t record, std::size_t colour = 0) {
+  const std::string bytes = compressed(records, record, colour);
+  LazReadChunk chunk = read_laz_chunk(bytes, 0, record, colour);
   CHECK(chunk.points == records.size() / record);
   CHECK(chunk.size == bytes.size());
   std::size_t same = 0;
@@ -91,6 +92,18 @@ TEST_CASE("a layer is there if its attribute changes, and only then") {
   CHECK(layers(31) == Layers{10});
 }
 
+TEST_CASE("a grey that changes costs no more than red alone, and less than half of a colour that changes") {
+  const auto colours = [](const std::function<std::array<std::uint16_t, 3>(std::size_t)>& colour) {
+    return through(points(10'000, 36, [&](std::string& p, std::size_t i) { put(p, 30, colour(i)); }), 36, 6).layers.at(9);
+  };
+  const auto any = [](std::size_t i) { return static_cast<std::uint16_t>(i * i * 40'503 >> 4 & 255); };
+  const auto grey = colours([&](std::size_t i) { return std::array{any(i), any(i), any(i)}; });
+  const auto red = colours([&](std::size_t i) { return std::array{any(i), std::uint16_t{7}, std::uint16_t{7}}; });
+  const auto all = colours([&](std::size_t i) { return std::array{any(i), any(i + 1), any(i + 2)}; });
+  CHECK(grey < red + red / 50);
+  CHECK(all > 2 * red);
+}
+
 TEST_CASE("points in even steps cost less than two bits") {
   const auto chunk = through(points(50'000, 30,
                                     [](std::string& p, std::size_t i) {
@@ -125,8 +138,8 @@ TEST_CASE("points of any bytes come back, of one scanner channel and of several"
     CAPTURE(seed);
     Generator random(seed);
     const Change change{random.log_uniform(1e-3, 1), 1 + random.whole(4)};
-    const std::size_t record = 30 + random.whole(40);
-    through(change(1 + random.whole(3'000), record, seed), record);
+    const std::size_t record = 38 + random.whole(32), colour = std::array{0U, 6U, 8U}[seed % 3];
+    through(change(1 + random.whole(3'000), record, seed), record, colour);
   }
 }
 

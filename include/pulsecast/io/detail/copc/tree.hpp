@@ -72,7 +72,7 @@ class CopcTree {
   /// Writes what is below the node that is divided, and leaves it open.
   void write_below(const CopcRuns& runs, const CopcPlan& plan) {
     const std::span<const CopcBlock> blocks = plan.blocks();
-    const std::uint64_t at_once = std::uint64_t{std::max(4U, 2 * threads_)} * sizes_.block_points;
+    const std::uint64_t at_once = std::uint64_t{threads_ + 3} * sizes_.block_points;
     const auto dense = [&](const CopcBlock& block) { return block.points > sizes_.block_points && runs.bits() > CopcRuns::least_bits; };
     for (std::size_t first = 0, end = 0; first < blocks.size(); first = end) {
       if (dense(blocks[first])) {
