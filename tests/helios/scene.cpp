@@ -478,5 +478,28 @@ TEST_CASE("nodes of a mesh file are parts of their own, placed in their part, wh
   CHECK_THROWS_AS((void)bad.parts(), FileError);
 }
 
+TEST_CASE("CityGML files are read by the reader of the program, or refused without one") {
+  const Files files;
+  std::ofstream(files.folder / "city.GML") << "<CityModel/>";
+  const MeshSource source{.files = {files.folder / "city.GML"}, .materials = files.folder / "m.mtl"};
+  const SceneSettings settings = scene_of({{.id = "4", .source = source}});
+  CHECK_THROWS_AS((void)SceneBuilder(settings, {}).parts(), FileError);
+  const auto reader = [&](const std::filesystem::path& path, const io::MeshFileSettings& by, unsigned threads) {
+    CHECK(path == source.files[0]);
+    CHECK(by.materials == source.materials);
+    CHECK(by.isolated);
+    CHECK(threads == 3);
+    io::MeshFile city;
+    city.meshes.push_back({{{{0, 0, 5}, {1, 0, 5}, {0, 1, 5}}, {{{0, 1, 2}}}}, {0}});
+    city.materials = {{.classification = 6}};
+    city.placements = {{0, {}, "house"}};
+    return city;
+  };
+  const std::vector<SurveyPart> parts = SceneBuilder(settings, {.threads = 3, .city_models = reader}).parts();
+  REQUIRE(parts.size() == 1);
+  CHECK(parts[0].name == "4/house");
+  CHECK((*parts[0].materials)[0].classification == 6);
+}
+
 }  // namespace
 }  // namespace pulsecast::helios

@@ -167,8 +167,9 @@ TEST_CASE("glTF files that lie are read or explained") {
       {R"("version":"2.0")", R"("version":2)"},
       {R"("asset")", R"("images":[{"uri":"../../../etc/passwd"}],"textures":[{"source":0}],"asset")"}};
   Tally tally;
-  for (const auto& [from, to] : lies) {
-    CAPTURE(to);
+  for (const auto& lie : lies) {
+    const auto& [from, to] = lie;
+    CAPTURE(lie.second);
     REQUIRE(sound.find(from) != std::string::npos);
     std::string text = sound;
     text.replace(text.find(from), from.size(), to);

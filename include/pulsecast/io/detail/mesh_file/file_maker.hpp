@@ -18,9 +18,9 @@
 
 #include <pulsecast/io/detail/mesh_file/material_rules.hpp>
 #include <pulsecast/io/detail/mesh_file/mesh_maker.hpp>
+#include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/placement.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
-#include <pulsecast/io/mesh_file.hpp>
 #include <pulsecast/io/mtl.hpp>
 
 /// Content of mesh files, from what an importer has of them.

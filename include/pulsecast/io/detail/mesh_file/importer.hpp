@@ -26,10 +26,10 @@
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/mesh_file/folder_system.hpp>
+#include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/input_file.hpp>
-#include <pulsecast/io/mesh_file.hpp>
 
 /// Import of files by assimp.
 namespace PULSECAST_NAMESPACE::io::detail {

@@ -18,9 +18,9 @@
 #include <tiny_obj_loader.h>
 
 #include <pulsecast/io/detail/mesh_file/inside.hpp>
+#include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/detail/obj/mtl_light.hpp>
-#include <pulsecast/io/mesh_file.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/scene/material.hpp>
 

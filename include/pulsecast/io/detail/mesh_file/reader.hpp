@@ -22,6 +22,7 @@
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mesh_file.hpp>
 #include <pulsecast/io/obj.hpp>
+#include <pulsecast/io/picture.hpp>
 
 /// Reading of mesh files.
 namespace PULSECAST_NAMESPACE::io {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include <pulsecast/io/detail/child_process.hpp>
+#include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
-#include <pulsecast/io/mesh_file.hpp>
 
 /// What a child process has read, handed to its parent.
 namespace PULSECAST_NAMESPACE::io::detail {
