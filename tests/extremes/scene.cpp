@@ -195,7 +195,7 @@ struct FlatGround {
       REQUIRE(count * sizeof(float) <= size);
       return SharedArray<float>({static_cast<const float*>(zeros.get()), count}, zeros);
     };
-    const auto set = [&](SharedArray<float>& floats, SharedArray<std::uint16_t>&) { floats = of(std::size_t{columns} * rows); };
+    const auto set = [&](SharedArray<float>& all, SharedArray<std::uint16_t>&) { all = of(std::size_t{columns} * rows); };
     heights.archive(set);
     pyramid = of(floats);
   }

@@ -26,7 +26,8 @@ namespace {
 /// Answer of the file that includes this one. The namespace has no name, so that each file has a function of its own.
 [[nodiscard, maybe_unused]] AnswerOfFile answer_of_this_file() {
   using Mesh = TriangleMesh<>;
-  using Intersect = void(const TrianglePacket&, std::span<const PrimitiveIndex>, const RayBundle&, ClosestHits&) noexcept;
+  using Intersect =
+      void(const TrianglePacket&, std::span<const PrimitiveIndex>, const RayBundle&, ClosestHits&, const SolidEverywhere&) noexcept;
   MeshData ridge;
   for (std::uint32_t i = 0; i < 60; ++i) {
     const double x = 2.0 * i - 60, height = 3 * (i % 7) + 0.25 * (i % 3);
@@ -40,7 +41,7 @@ namespace {
                           Mount{.boresight = rotation_about(axis::right, -1.4)},
                           Deflector{OscillatingMirror{.cycles_per_second = 20, .half_angle = 0.3},
                                     Scanner{.pulse_rate = 1000, .pulses = 2000, .laser = laser}}};
-  AnswerOfFile answer{{}, reinterpret_cast<const void*>(static_cast<Intersect*>(&intersect<RayBundle, ClosestHits>))};
+  AnswerOfFile answer{{}, reinterpret_cast<const void*>(static_cast<Intersect*>(&intersect<RayBundle, ClosestHits, SolidEverywhere>))};
   const Survey survey{airplane, SunflowerFootprint{19}, scene, Receiver{}, FullWaveform{WaveformSettings{}, GaussianFit{}}};
   run(survey, {.threads = 1}, [&](const EchoBatch& batch) {
     for (const Echo& echo : batch.echoes)
