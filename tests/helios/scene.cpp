@@ -14,6 +14,7 @@
 #include <tiffio.h>
 
 #include <pulsecast/helios/detail/scene_files.hpp>
+#include <pulsecast/io/mesh_file.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 
 #include "support/gltf.hpp"

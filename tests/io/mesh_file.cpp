@@ -19,6 +19,8 @@
 #include <assimp/Exporter.hpp>
 #include <assimp/Importer.hpp>
 
+#include <pulsecast/io/detail/mesh_file/placement.hpp>
+#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/pulsecast.hpp>
 
 #include "support/fbx.hpp"

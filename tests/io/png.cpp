@@ -316,8 +316,8 @@ TEST_CASE("ground is drawn behind the points, in its shades, wherever it is in d
   Raster raster{.columns = 41, .rows = 41, .first = {-20, 20}, .heights = std::vector<float>(41 * 41, 50)};
   std::vector<std::uint8_t> shades;
   for (std::size_t i = 0; i < 41 * 41; ++i) shades.push_back(i / 41 > 30 ? 0 : i % 41 < 20 ? 40 : 200);
-  const ImageSettings map{.width = 100, .height = 100, .azimuth = 0, .elevation = pi / 2, .field_of_view = 0, .point_size = 3};
-  ImageWriter writer(path, map);
+  const ImageSettings from_above{.width = 100, .height = 100, .azimuth = 0, .elevation = pi / 2, .field_of_view = 0, .point_size = 3};
+  ImageWriter writer(path, from_above);
   writer.add_ground(raster, shades);
   // points under the ground, at the corners of the framed square and in its middle
   give(writer, {{{-20, -20, 0}}, {{20, 20, 0}}, {{-20, 20, 0}}, {{20, -20, 0}}, {{0, 5, 0}}});
@@ -340,7 +340,7 @@ TEST_CASE("ground is drawn behind the points, in its shades, wherever it is in d
   stbi_image_free(pixels);
 
   // without points, the ground frames the picture
-  ImageWriter bare(path, map);
+  ImageWriter bare(path, from_above);
   bare.add_ground(raster, shades, {.translation = {4e5, 5e6, 0}});
   bare.close();
   stbi_uc* const again = stbi_load(path.c_str(), &width, &height, &channels, 3);
@@ -350,7 +350,7 @@ TEST_CASE("ground is drawn behind the points, in its shades, wherever it is in d
   stbi_image_free(again);
 
   // so does a raster of few pixels, without gaps
-  ImageWriter coarse(path, map);
+  ImageWriter coarse(path, from_above);
   coarse.add_ground({.columns = 2, .rows = 2, .first = {-20, 20}, .pixel = {40, 40}, .heights = {1, 1, 1, 1}},
                     std::vector<std::uint8_t>{10, 10, 250, 250});
   coarse.close();
@@ -358,6 +358,6 @@ TEST_CASE("ground is drawn behind the points, in its shades, wherever it is in d
   REQUIRE(few != nullptr);
   for (int y = 8; y < 92; ++y) CHECK(std::abs(few[3 * (y * width + 37)] - (10 + 240 * (y - 2.5) / 95)) < 3);
   stbi_image_free(few);
-  ImageWriter wrong(path, map);
+  ImageWriter wrong(path, from_above);
   CHECK_THROWS_AS(wrong.add_ground(raster, std::vector<std::uint8_t>(5)), SettingError);
 }

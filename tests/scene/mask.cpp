@@ -112,7 +112,7 @@ TEST_CASE("light goes on through the holes of a mask, and meets what is behind")
 }
 
 TEST_CASE("masked leaves are met as the same leaves cut out, by bundles of any size and by single rays") {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {std::uint64_t{1}, std::uint64_t{2}, std::uint64_t{3}}) {
     Generator random(seed);
     const Mask mask = Mask::of(grey(13, 9, [&](std::size_t) { return static_cast<std::uint8_t>(random.uniform(0, 256)); }), 0);
     // two sheets, one behind another

@@ -413,18 +413,18 @@ TEST_CASE("a raster of heights may be of tiles, and have one of classes") {
 }
 
 TEST_CASE("a mesh file has axes, a unit and a table of materials, of its own unless they are told") {
-  MeshSource mesh;
-  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/>)", mesh).empty());
-  CHECK(mesh == MeshSource{.files = mesh.files});
+  MeshSource model;
+  CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/>)", model).empty());
+  CHECK(model == MeshSource{.files = model.files});
   CHECK(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="up" value="y"/><param key="unit" value="0.01"/>
       <param key="materials" value="a.xml"/>)",
-                    mesh)
+                    model)
             .empty());
-  CHECK(mesh.up == MeshUp::y);
-  CHECK(mesh.unit == 0.01);
-  CHECK(mesh.materials.filename() == "a.xml");
-  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="unit" value="0"/>)", mesh), "from "));
-  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="up" value="x"/>)", mesh), "up=\"x\" is not known"));
+  CHECK(model.up == MeshUp::y);
+  CHECK(model.unit == 0.01);
+  CHECK(model.materials.filename() == "a.xml");
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="unit" value="0"/>)", model), "from "));
+  CHECK(contains(filter_told(R"(<param key="filepath" value="mesh.obj"/><param key="up" value="x"/>)", model), "up=\"x\" is not known"));
 }
 
 TEST_CASE("voxels have a mode, a table and a material") {
