@@ -21,6 +21,10 @@
 #include "support/spoilt_text.hpp"
 #include "support/temporary_folder.hpp"
 
+/// Leaks of the XML parser of libcitygml at damaged files, for the address sanitizer.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libxerces-c\n"; }
+
 using namespace pulsecast;
 using namespace pulsecast::io;
 using support::contains;

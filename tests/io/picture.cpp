@@ -94,7 +94,8 @@ TEST_CASE("damaged pictures are explained or read") {
   for (int n = 0; n < 300; ++n) {
     std::string spoilt = whole;
     for (int k = 0; k < 3; ++k)
-      spoilt[static_cast<std::size_t>(random.uniform(0, double(whole.size())))] = static_cast<char>(random.uniform(0, 256));
+      spoilt[static_cast<std::size_t>(random.uniform(0, double(whole.size())))] =
+          static_cast<char>(static_cast<std::uint8_t>(random.uniform(0, 256)));
     attempt(spoilt);
   }
   for (const char size : {'\x7f', '\x00', '\x01'}) {  // widths of two thousand million, none, and sixteen million pixels
