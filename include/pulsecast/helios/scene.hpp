@@ -48,8 +48,8 @@ struct SceneBuildOptions {
 
 /// Raster of heights in the world.
 struct PlacedRaster {
-  Raster raster;
-  Similarity placement{};
+  Raster raster;           ///< heights, in the frame of the part
+  Similarity placement{};  ///< from there to the world
 };
 
 /// Builds the parts of a scene, with warnings about its files. Files and grids are kept, so that another scene of the same files costs

@@ -91,8 +91,10 @@ class WithMisses {
   Sink sink_;
   MissPoints points_;
 };
+/// Holds a sink of its own.
 template <class Sink>
 WithMisses(Sink&&, MissSettings) -> WithMisses<std::remove_cvref_t<Sink>>;
+/// As above.
 template <class Sink>
 WithMisses(Sink&&) -> WithMisses<std::remove_cvref_t<Sink>>;
 
