@@ -59,19 +59,27 @@ TEST_CASE("pictures of one to four channels are read as they were written") {
     for (std::size_t i = 0; i < bytes.size(); ++i) embedded[i] = static_cast<std::byte>(bytes[i]);
     const Image again = read_picture({"inside.glb", std::make_shared<const std::vector<std::byte>>(embedded)});
     CHECK(Samples(again.samples.begin(), again.samples.end()) == samples);
+
+    const Image apart = read_picture({path}, {.isolated = true});
+    CHECK(apart.width == 3);
+    CHECK(apart.height == 2);
+    CHECK(Samples(apart.samples.begin(), apart.samples.end()) == samples);
   }
 }
 
 TEST_CASE("a picture that cannot be read is explained") {
   const support::TemporaryFolder folder;
   const auto error = [&](const std::string& name, std::size_t most = 1 << 20) {
-    return support::file_error([&] { (void)read_picture({folder / name}, most); });
+    return support::file_error([&] { (void)read_picture({folder / name}, {.max_pixels = most}); });
   };
   CHECK(contains(error("none.png").what(), "does not exist"));
   write(folder / "text.png", "no picture at all");
   CHECK(contains(error("text.png").what(), "expected PNG, JPEG"));
   png(folder / "a.png", 3, 2, 1, Samples(6));
   CHECK(contains(error("a.png", 5).what(), "has 3 x 2 pixels, expected at most 5"));
+  const FileError apart = support::file_error([&] { (void)read_picture({folder / "text.png"}, {.isolated = true}); });
+  CHECK(apart.path() == (folder / "text.png").string());
+  CHECK(contains(apart.problem(), "expected PNG, JPEG"));
 }
 
 TEST_CASE("damaged pictures are explained or read") {
@@ -84,7 +92,7 @@ TEST_CASE("damaged pictures are explained or read") {
   const auto attempt = [&](const std::string& bytes) {
     write(folder / "damaged.png", bytes);
     try {
-      read_picture({folder / "damaged.png"}).validate();
+      read_picture({folder / "damaged.png"}, {.isolated = (read + explained) % 8 == 0}).validate();
       ++read;
     } catch (const FileError&) {
       ++explained;

@@ -104,7 +104,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjS
   return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
     const io::UpAxis up_axis = source.y_up ? io::UpAxis::y : io::UpAxis::z;
     io::ObjModel model = io::read_obj(file, {.up = up_axis, .spectra = options_.spectra}, options_.threads);
-    io::add_pictures(model.mesh, model.materials, model.pictures, model.warnings);
+    io::add_pictures(model.mesh, model.materials, model.pictures, model.warnings, {.isolated = true});
     warn(model.warnings);
     if (model.mesh.triangles.empty()) {
       warn({file.string() + ": is left out"});

@@ -20,7 +20,7 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/detail/child_process.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/picture.hpp>
 
@@ -32,7 +32,7 @@ namespace detail {
 /// Pictures by file, each read once.
 class PictureShelf {
  public:
-  explicit PictureShelf(std::vector<std::string>& warnings) : warnings_(warnings) {}
+  PictureShelf(std::vector<std::string>& warnings, const PictureSettings& settings) : warnings_(warnings), settings_(settings) {}
 
   /// Picture, or null with a warning.
   [[nodiscard]] std::shared_ptr<const Image> get(const PictureSource& source) {
@@ -40,7 +40,7 @@ class PictureShelf {
     if (const auto known = pictures_.find(key); known != pictures_.end()) return known->second;
     std::shared_ptr<const Image> picture;
     try {
-      picture = std::make_shared<const Image>(read_picture(source));
+      picture = std::make_shared<const Image>(read_picture(source, settings_));
     } catch (const FileError& e) {
       warnings_.push_back(std::string(e.what()) + "; it is left out");
     }
@@ -49,6 +49,7 @@ class PictureShelf {
 
  private:
   std::vector<std::string>& warnings_;
+  const PictureSettings& settings_;
   std::map<std::pair<std::filesystem::path, const void*>, std::shared_ptr<const Image>> pictures_;
 };
 
@@ -63,9 +64,8 @@ class PictureShelf {
   return mask.solid_share() < 1 ? std::move(mask) : Mask{};
 }
 
-}  // namespace detail
-
-PULSECAST_INLINE Image read_picture(const PictureSource& source, std::size_t max_pixels) {
+/// Picture by stb_image, in this process.
+[[nodiscard]] inline Image decoded(const PictureSource& source, std::size_t max_pixels) {
   const std::string path = source.file.string();
   std::optional<MappedFile> file;
   if (!source.embedded) file.emplace(source.file);
@@ -93,9 +93,29 @@ PULSECAST_INLINE Image read_picture(const PictureSource& source, std::size_t max
   return image;
 }
 
+}  // namespace detail
+
+PULSECAST_INLINE Image read_picture(const PictureSource& source, const PictureSettings& settings) {
+  if (!settings.isolated) return detail::decoded(source, settings.max_pixels);
+  const detail::ChildLimits limits{.memory = 1.5e9, .time = 30};
+  detail::ChildResult found = detail::ChildProcess::result(source.file.string(), limits, [&](detail::ChildOutput& output) {
+    const Image image = detail::decoded(source, settings.max_pixels);
+    for (const std::uint32_t number : {image.width, image.height, image.channels}) output.value(number);
+    output.array(std::span(image.samples.data(), image.samples.size()));
+  });
+  Image image{found.value<std::uint32_t>(), found.value<std::uint32_t>(), found.value<std::uint32_t>()};
+  image.samples = {found.array<std::uint8_t>(), found.owner()};
+  try {
+    image.validate();
+  } catch (const SettingError&) {
+    found.fail();
+  }
+  return image;
+}
+
 PULSECAST_INLINE void add_pictures(MeshData& mesh, std::vector<Material>& materials, std::span<const MaterialPictures> pictures,
-                                   std::vector<std::string>& warnings) {
-  detail::PictureShelf shelf(warnings);
+                                   std::vector<std::string>& warnings, const PictureSettings& settings) {
+  detail::PictureShelf shelf(warnings, settings);
   for (std::size_t i = 0; i < std::min(materials.size(), pictures.size()); ++i) {
     const MaterialPictures& of = pictures[i];
     if (of.empty()) continue;

@@ -44,9 +44,9 @@ namespace detail {
 }
 
 /// Reads the pictures of a file, each once, into its materials and the masks of its meshes.
-inline void read_pictures(MeshFile& file) {
+inline void read_pictures(MeshFile& file, bool isolated) {
   MeshData table{.texture = {{}}};  // whose masks are those of the file's materials
-  add_pictures(table, file.materials, file.pictures, file.warnings);
+  add_pictures(table, file.materials, file.pictures, file.warnings, {.isolated = isolated});
   for (FileMesh& one : file.meshes) {
     if (one.mesh.texture.empty()) continue;
     for (std::size_t i = 0; i < one.materials.size(); ++i) {
@@ -80,7 +80,7 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
     file = detail::MeshFileMaker(path, scene, settings, workers).make();
   }
   detail::replace_materials(file, settings);
-  if (settings.pictures) detail::read_pictures(file);
+  if (settings.pictures) detail::read_pictures(file, settings.isolated);
   return file;
 }
 
