@@ -38,7 +38,7 @@ namespace detail {
 /// COPC 1.0, info VLR and hierarchy VLR.
 class CopcRecords {
  public:
-  explicit CopcRecords(unsigned threads, CopcSizes sizes = {}) : threads_(std::min(thread_count(threads), 16U)), sizes_(sizes) {}
+  explicit CopcRecords(unsigned threads, CopcSizes sizes = {}) : threads_(std::min(thread_count(threads), 12U)), sizes_(sizes) {}
 
   static constexpr std::uint8_t format_bits = 128;
   static constexpr std::uint32_t first_descriptor_count = 1, descriptor_count = 1;
@@ -139,8 +139,8 @@ class CopcRecords {
 /// coordinates. The bytes of the file are the same for any number of threads.
 ///
 /// `close()` does most of the work; until then, points wait in `NAME.points.part`, uncompressed. The disk must have room for them and the
-/// file. Memory is independent of the number of points: some 200 MB, and 60 MB more for each thread, of which at most 16 are used. But
-/// points within a cube of 2048 steps are held at once. `docs/performance.md` has the figures.
+/// file. Memory is independent of the number of points: some 200 MB, and 60 MB more for each thread, of which at most 12 are used, so that
+/// it stays below 1 GB. But points within a cube of 2048 steps are held at once. `docs/performance.md` has the figures.
 class CopcWriter : public detail::LasFileWriter<detail::CopcRecords> {
  public:
   /// @throws SettingError for settings out of range, or that LAZ cannot meet
