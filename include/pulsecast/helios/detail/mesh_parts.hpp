@@ -3,9 +3,7 @@
 #ifndef PULSECAST_HELIOS_DETAIL_MESH_PARTS_HPP
 #define PULSECAST_HELIOS_DETAIL_MESH_PARTS_HPP
 
-#include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -30,15 +28,9 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Mesh
         city ? options_.city_models(file, settings, options_.threads) : io::read_mesh_file(file, settings, options_.threads);
     warn(read.warnings);
     if (read.placements.empty()) warn({file.string() + ": is left out"});
-    std::vector<Loaded> meshes;
-    for (io::FileMesh& one : read.meshes) {
-      std::vector<Material> materials;
-      for (const std::uint32_t number : one.materials) materials.push_back(read.materials[number]);
-      meshes.push_back(
-          {std::make_shared<const TriangleMesh<>>(std::exchange(one.mesh, {}), options_.threads), table(std::move(materials))});
-    }
-    for (io::MeshPlacement& one : read.placements)
-      all.push_back({meshes[one.mesh].geometry, meshes[one.mesh].materials, one.placement, std::move(one.name)});
+    read.materials = *table(std::move(read.materials));
+    for (Part<TriangleMesh<>>& part : io::parts_of(std::move(read), 0, options_.threads))
+      all.push_back({std::move(part.geometry), std::move(part.materials), part.placement, std::move(part.name)});
   });
 }
 
