@@ -131,6 +131,14 @@ void measure_small(bench::Report& report) {
   constexpr double cells = 1040.0 * 712.0;
   report.row("memory, field", {{"bytes/cell", static_cast<double>(field.memory()) / cells}});
   report.row("memory, mesh", {{"bytes/cell", static_cast<double>(mesh.memory()) / cells}});
+  Raster of_classes = hills(1041, 713);
+  for (std::size_t i = 0; i < of_classes.pixels(); ++i) of_classes.materials.push_back(i / 53 % 2 == 0);
+  const TriangleMesh<> mesh_of_classes(of_classes.mesh());
+  const HeightField classes(std::move(of_classes));
+  report.row("memory, field of 2 materials", {{"bytes/cell", static_cast<double>(classes.memory()) / cells}});
+  report.row("memory, mesh of 2 materials",
+             {{"bytes/cell", static_cast<double>(mesh_of_classes.memory()) / cells},
+              {"times that of the field", static_cast<double>(mesh_of_classes.memory()) / static_cast<double>(classes.memory())}});
   const HeightField in_16_bits(packed(hills(1041, 713)));
   report.heading("1,041 x 713 pixels of 16 bits");
   measure_all(report, in_16_bits, nullptr);
