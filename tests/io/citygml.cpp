@@ -31,14 +31,7 @@ using support::contains;
 
 namespace {
 
-class Folder : public support::TemporaryFolder {
- public:
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::filesystem::remove(path() / name);
-    std::ofstream(path() / name, std::ios::binary) << text;
-    return path() / name;
-  }
-};
+using Folder = support::TemporaryFolder;
 
 std::string ring(const std::string& positions) {
   return "<gml:LinearRing><gml:posList srsDimension=\"3\">" + positions + "</gml:posList></gml:LinearRing>";

@@ -37,13 +37,7 @@ using support::Gltf;
 
 namespace {
 
-class Folder : public support::TemporaryFolder {
- public:
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path() / name, std::ios::binary) << text;
-    return path() / name;
-  }
-};
+using Folder = support::TemporaryFolder;
 
 const std::vector<Gltf::Place> corners{{1, 2, 3}, {2, 2, 3}, {1, 4, 3}};
 const std::vector<Gltf::Corners> one_triangle{{0, 1, 2}};

@@ -36,11 +36,6 @@ namespace {
 /// A folder for the files of one test.
 class Folder : public support::TemporaryFolder {
  public:
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::filesystem::remove(path() / name);  // to write anew is quick; to cut off what stands there may wait for the disk
-    std::ofstream(path() / name, std::ios::binary) << text;
-    return path() / name;
-  }
   ObjModel obj(const std::string& text, const ObjSettings& settings = {}) const { return read_obj(write("a.obj", text), settings); }
 
   /// The error of an OBJ file with this text.

@@ -34,8 +34,6 @@ std::filesystem::path png(const std::filesystem::path& path, int width, int heig
   return path;
 }
 
-void write(const std::filesystem::path& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
-
 /// A square of 2 m about the origin with a picture on it, of a material "leaf".
 const std::string leaf_obj =
     "mtllib leaf.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl leaf\nf 1/1 2/2 3/3 4/4\n";
@@ -73,7 +71,7 @@ TEST_CASE("a picture that cannot be read is explained") {
     return support::file_error([&] { (void)read_picture({folder / name}, {.max_pixels = most}); });
   };
   CHECK(contains(error("none.png").what(), "does not exist"));
-  write(folder / "text.png", "no picture at all");
+  folder.write("text.png", "no picture at all");
   CHECK(contains(error("text.png").what(), "expected PNG, JPEG"));
   png(folder / "a.png", 3, 2, 1, Samples(6));
   CHECK(contains(error("a.png", 5).what(), "has 3 x 2 pixels, expected at most 5"));
@@ -90,7 +88,7 @@ TEST_CASE("damaged pictures are explained or read") {
   const std::string whole = support::content(png(folder / "a.png", 16, 16, 4, samples));
   std::size_t explained = 0, read = 0;
   const auto attempt = [&](const std::string& bytes) {
-    write(folder / "damaged.png", bytes);
+    folder.write("damaged.png", bytes);
     try {
       read_picture({folder / "damaged.png"}, {.isolated = (read + explained) % 8 == 0}).validate();
       ++read;
@@ -119,10 +117,10 @@ TEST_CASE("damaged pictures are explained or read") {
 
 TEST_CASE("an OBJ file brings its pictures: colour, outline and reflectance") {
   const support::TemporaryFolder folder;
-  write(folder / "leaf.obj", leaf_obj);
-  write(folder / "leaf.mtl",
-        "newmtl leaf\nKd 1 1 1\nmap_Kd colour.png\nmap_d -clamp on outline.png\npulsecast_reflectanceMap pattern colour.png\n"
-        "newmtl leaf\nmap_Kd other.png\n");
+  folder.write("leaf.obj", leaf_obj);
+  folder.write("leaf.mtl",
+               "newmtl leaf\nKd 1 1 1\nmap_Kd colour.png\nmap_d -clamp on outline.png\npulsecast_reflectanceMap pattern colour.png\n"
+               "newmtl leaf\nmap_Kd other.png\n");
   png(folder / "colour.png", 1, 2, 3, {255, 0, 0, 0, 0, 255});  // red above blue
   png(folder / "outline.png", 2, 1, 1, {255, 0});               // solid on the left
   ObjModel model = read_obj(folder / "leaf.obj");
@@ -145,8 +143,8 @@ TEST_CASE("an OBJ file brings its pictures: colour, outline and reflectance") {
 
 TEST_CASE("a missing picture, and a mesh without texture coordinates, are warnings") {
   const support::TemporaryFolder folder;
-  write(folder / "leaf.obj", leaf_obj);
-  write(folder / "leaf.mtl", "newmtl leaf\nmap_Kd none.png\nmap_d none.png\n");
+  folder.write("leaf.obj", leaf_obj);
+  folder.write("leaf.mtl", "newmtl leaf\nmap_Kd none.png\nmap_d none.png\n");
   ObjModel model = read_obj(folder / "leaf.obj");
   add_pictures(model.mesh, model.materials, model.pictures, model.warnings);
   REQUIRE(model.warnings.size() == 1);  // each file is read once
@@ -154,7 +152,7 @@ TEST_CASE("a missing picture, and a mesh without texture coordinates, are warnin
   CHECK_FALSE(model.materials[0].picture);
   CHECK(model.mesh.masks.empty());
 
-  write(folder / "leaf.obj", "mtllib leaf.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nusemtl leaf\nf 1 2 3\n");
+  folder.write("leaf.obj", "mtllib leaf.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nusemtl leaf\nf 1 2 3\n");
   model = read_obj(folder / "leaf.obj");
   REQUIRE(model.warnings.size() == 1);
   CHECK(contains(model.warnings[0], "3 corners of material 'leaf' have no texture coordinates: 0, 0 is assumed"));

@@ -18,14 +18,7 @@
 #include <unistd.h>
 
 #include "support/file_errors.hpp"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define PULSECAST_TEST_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define PULSECAST_TEST_SANITIZED
-#endif
-#endif
+#include "support/sanitized.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::io::detail;

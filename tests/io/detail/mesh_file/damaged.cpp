@@ -23,16 +23,9 @@
 #include "support/file_errors.hpp"
 #include "support/generators.hpp"
 #include "support/gltf.hpp"
+#include "support/sanitized.hpp"
 #include "support/spoilt_text.hpp"
 #include "support/temporary_folder.hpp"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define PULSECAST_TEST_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define PULSECAST_TEST_SANITIZED
-#endif
-#endif
 
 using namespace pulsecast;
 using namespace pulsecast::io;
