@@ -90,6 +90,10 @@ notices 'every header has its test' 'rm tests/base/frame.cpp'
 notices 'CMakeLists.txt knows what a header needs' "$add #include <pugixml.hpp>\" include/pulsecast/io/las.hpp"
 notices 'the code in the README is compiled' "printf '\140\140\140cpp\nint x;\n\140\140\140\n' >> README.md"
 notices 'the README shows examples/embed.cpp' 'echo "// more" >> examples/embed.cpp'
+versions='every page and recipe states the version of version.hpp'
+notices "$versions" 'sed -i "s/find_package(pulsecast [0-9.]*/find_package(pulsecast 0.0/" README.md'
+notices "$versions" 'sed -i "0,/^## [0-9.]*/s//## 0.0.1/" CHANGELOG.md'
+notices "$versions" 'sed -i "s/version = .*/version = \"0.0.1\"/" docs/packaging/conan/conanfile.py'
 
 # commas LINE: what commas.awk prints of a line of C++.
 commas() {

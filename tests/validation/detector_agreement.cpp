@@ -5,11 +5,9 @@
 
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -20,10 +18,10 @@
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/detector/analytic_waveform.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
-#include <pulsecast/io/obj.hpp>
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/scene/triangle_mesh.hpp>
 
+#include "../../examples/tree.hpp"
 #include "support/generators.hpp"
 #include "validation/one_pulse.hpp"
 #include "validation/table.hpp"
@@ -69,11 +67,9 @@ Difference on_planes(EchoTiming timing) {
 }
 
 Scene<TriangleMesh<>> tree() {
-  io::ObjModel model = io::read_obj(std::filesystem::path(__FILE__).parent_path() / "data/tree.obj");
-  Scene<TriangleMesh<>>::Part part;
-  part.geometry = std::make_shared<const TriangleMesh<>>(std::move(model.mesh));
-  part.materials = material_table(std::move(model.materials));
-  return Scene<TriangleMesh<>>({part});
+  const MeshData mesh = wood::broadleaf({}, wood::Dice(1, 1));
+  return Scene<TriangleMesh<>>({{.geometry = std::make_shared<const TriangleMesh<>>(mesh),
+                                 .materials = material_table(std::vector<Material>(wood::shingle + 1, {.reflectance = 0.5}))}});
 }
 
 }  // namespace
