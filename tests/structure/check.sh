@@ -21,7 +21,7 @@ rule() {
 
 headers=$(find include -name '*.hpp' | sort)
 sources=$(find include examples tests bench .ci CMakeLists.txt -type f \
-          \( -name '*.[ch]pp' -o -name '*.cmake' -o -name '*.sh' -o -name CMakeLists.txt -o -name run \
+          \( -name '*.[ch]pp' -o -name '*.cmake' -o -name '*.sh' -o -name CMakeLists.txt -o -path '.ci/*' \
              -o -name '*.js' -o -name '*.mjs' -o -name '*.css' -o -name '*.glsl' -o -name '*.html' \) | sort)
 
 # Which rooms a room may include; its own is understood. Rooms of one layer meet through concepts.hpp.
