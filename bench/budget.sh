@@ -2,10 +2,10 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Counts the instructions of every part of instructions.cpp, which do not depend on what else the machine does, and fails if there are more
-# than budget.txt allows. Each part is counted at the x86-64 baseline and with AVX2. Usage: budget.sh [--update], which writes budget.txt
-# anew and keeps its limit. Needs g++ and valgrind. Counts of different compilers cannot be compared: with another than the one on record,
-# nothing is checked.
+# Counts the instructions of every part of the programs below, which do not depend on what else the machine does, and fails if there are
+# more than budget.txt allows. Each part is counted at the x86-64 baseline and with AVX2. Usage: budget.sh [--update], which writes
+# budget.txt anew and keeps its limit. Needs g++ and valgrind. Counts of different compilers cannot be compared: with another than the one
+# on record, nothing is checked.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 compiler=${CXX:-g++}
@@ -28,6 +28,8 @@ fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
+programs='instructions call_instructions'
+
 # count LEVEL: writes lines "PART COUNT". The mathematical functions of the C library differ by processor. The baseline is counted with
 # those that every processor has; for AVX2, valgrind shows the same processor wherever there is AVX2, and the C library chooses for it.
 count() {
@@ -35,19 +37,24 @@ count() {
   if [ "$1" = AVX2 ]; then
     flags='-mavx2 -mfma' tunables=''
   fi
-  # shellcheck disable=SC2086
-  "$compiler" -std=c++20 -O2 -DNDEBUG $flags -Iinclude bench/instructions.cpp -o "$folder/$1" -pthread
-  GLIBC_TUNABLES=$tunables LD_BIND_NOW=1 valgrind --tool=callgrind --callgrind-out-file="$folder/$1.out" --toggle-collect='budget_*' \
-    "$folder/$1" > "$folder/$1.said" 2>&1 || { cat "$folder/$1.said" >&2; return 1; }
-  callgrind_annotate --inclusive=yes --threshold=100 "$folder/$1.out" |
-    sed -nE 's/^ *([0-9,]+) .*:budget_([a-z_]+)( .*|$)/\2 \1/p' | tr -d , | sort > "$folder/$1.counts"
+  local of
+  for program in $programs; do
+    of=$folder/$program.$1
+    # shellcheck disable=SC2086
+    "$compiler" -std=c++20 -O2 -DNDEBUG $flags -Iinclude "bench/$program.cpp" -o "$of" -pthread
+    GLIBC_TUNABLES=$tunables LD_BIND_NOW=1 valgrind --tool=callgrind --callgrind-out-file="$of.out" --toggle-collect='budget_*' \
+      "$of" > "$of.said" 2>&1 || { cat "$of.said" >&2; return 1; }
+    callgrind_annotate --inclusive=yes --threshold=100 "$of.out" |
+      sed -nE 's/^ *([0-9,]+) .*:budget_([a-z_]+)( .*|$)/\2 \1/p' | tr -d , >> "$folder/$1.counts"
+  done
 }
 count baseline & baseline=$!
 case $levels in *AVX2) count AVX2 ;; esac
 wait $baseline
 
 # One line a part: its name, and its count at each level.
-parts=$(sed -nE 's/.*\bbudget_([a-z_]+)\(const.*/\1/p' bench/instructions.cpp)
+# shellcheck disable=SC2046,SC2086
+parts=$(sed -nE 's/.*\bbudget_([a-z_]+)\(const.*/\1/p' $(printf 'bench/%s.cpp ' $programs))
 for part in $parts; do
   line=$part
   for level in $levels; do

@@ -292,6 +292,19 @@ concept ChoosesShots = requires(const S& sink) {
 PULSECAST_OPTIONAL_MEMBER(ChoosesShots, "bool reads_empty_shots() const noexcept", reads_empty_shots, (), reads_empty, reads_misses,
                           wants_empty_shots, wants_misses)
 
+struct Outcome;
+
+/// Survey that simulates slots in order, from i up to `end`, so that it may prepare several at once, as `Survey`. `next(outcome)` takes the
+/// outcome of a slot, and returns the slot to go on with, which is a later one.
+/// Law: outcomes are those of single calls, bit for bit; what trajectory, map or clock said is not kept for another call.
+template <class S>
+concept SimulatesInOrder = requires(const S& s, PulseIndex i, decltype(s.workspace())& workspace, PulseIndex (&next)(const Outcome&)) {
+  { s.simulate_in_order(i, i, workspace, next) } -> std::same_as<void>;
+};
+PULSECAST_OPTIONAL_MEMBER(SimulatesInOrder, "void simulate_in_order(PulseIndex, PulseIndex, Workspace&, const Next&) const", simulate_in_order,
+                          (PulseIndex{}, PulseIndex{}, std::declval<decltype(t.workspace())&>(), std::declval<PulseIndex (&)(const Outcome&)>()),
+                          simulates_in_order, simulate_slots, simulate_all, outcomes_in_order)
+
 /// Survey that can be told from others, so that an executor may keep its workspaces from one run to the next.
 /// Law: two surveys of one type share an identity, which is not null, only if each may use the other's workspaces.
 template <class S>

@@ -209,17 +209,23 @@ template <class Sink>
 template <class Survey, class Workspace>
 void simulate(const Survey& survey, const RunSlots& slots, PulseIndex n, PulseIndex end, Workspace& workspace, bool empty_shots,
               ResultChunk& chunk) {
-  static_assert(detail::SkipsBlockedCheck<Survey>::passed);
-  while (n < end && chunk.error == PulseError::none) {
-    const Outcome outcome = survey(slots[n++], workspace);
+  static_assert(SkipsBlockedCheck<Survey>::passed && SimulatesInOrderCheck<Survey>::passed);
+  const auto add = [&](const Outcome& outcome) {  // returns the next slot
     chunk.add(outcome, empty_shots);
+    n = chunk.error == PulseError::none ? n + 1 : end;
     if constexpr (SkipsBlocked<Survey>)
       if (outcome.shot.fate == Fate::blocked && n < end) {
         const PulseIndex next = std::min(end, slots.number_from(survey.next_pulse(slots[n])));
         chunk.append_blocked(next - n);
         n = next;
       }
-  }
+    return slots[n];
+  };
+  while (n < end)
+    if constexpr (SimulatesInOrder<Survey>)
+      survey.simulate_in_order(slots[n], slots.stride == 1 ? slots[end] : slots[n] + 1, workspace, add);
+    else
+      add(survey(slots[n], workspace));
 }
 
 /// Reports a pulse with an error.

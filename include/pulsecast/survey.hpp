@@ -101,8 +101,6 @@ class Survey {
     std::vector<Reflection> reflections;  ///< reflections of a pulse, with room for all
     std::vector<SubrayHit> subrays;       ///< all of a pulse, if recorded
     std::vector<OfDetector> detectors;    ///< workspace of each receiver's detector
-    PulseLanes<frame::World> pulses{};    ///< pulses made last
-    PulseIndex first = 0;                 ///< slot of the first of them
     std::uint16_t emitter = 0;            ///< emitter of the last pulse
     WhiteTarget white_target{};           ///< white target of that emitter
   };
@@ -139,10 +137,26 @@ class Survey {
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> { return source_.next_pulse(i); }
 
   /// Simulates pulse i.
-  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
+  [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept { return outcome(i, source_.pulse(i), w); }
+
+  /// As the concept SimulatesInOrder requires: pulses are made by the register, which does not outlive the call.
+  template <class Next>
+  void simulate_in_order(PulseIndex i, PulseIndex end, Workspace& w, const Next& next) const {
+    PulseLanes<frame::World> pulses;
+    for (PulseIndex first = i; i < end; i = next(outcome(i, pulses[i - first], w)))
+      if (i - first >= pulses.size) {
+        first = i;
+        pulses = find_pulses(source_, i, end - i < simd::lane_count ? end - i : simd::lane_count);
+      }
+  }
+
+ private:
+  using Unit = ReceiverUnit<Pattern, Instrument>;
+
+  /// Result of slot i, whose pulse is empty if it is blocked.
+  [[nodiscard]] Outcome outcome(PulseIndex i, const std::optional<Pulse<frame::World>>& pulse, Workspace& w) const noexcept {
     Outcome out;
     out.shot.index = i;
-    const auto pulse = pulse_of(i, w);
     if (!pulse) {
       out.shot.fate = Fate::blocked;
       return out;
@@ -191,9 +205,6 @@ class Survey {
     if (!detection.echoes.empty()) out.shot.fate = Fate::returned;
     return out;
   }
-
- private:
-  using Unit = ReceiverUnit<Pattern, Instrument>;
 
   /// Constants of an emitter, computed once for all pulses.
   struct EmitterConstants {
@@ -269,19 +280,6 @@ class Survey {
         std::swap(echoes[e - 1], echoes[e]);
         std::swap(echoes[e - 1].number, echoes[e].number);
       }
-  }
-
-  /// Pulse of slot i. Slots in order are made by the register; one that follows no other, alone.
-  [[nodiscard]] std::optional<Pulse<frame::World>> pulse_of(PulseIndex i, Workspace& w) const noexcept {
-    const PulseIndex end = w.first + w.pulses.size;
-    if (i < w.first || i >= end) {
-      const bool in_order =
-          i == end || (i > end && w.pulses.size > 0 && w.pulses.sent[w.pulses.size - 1] == 0);  // blocked slots are skipped
-      const PulseIndex left = source_.size() - i;
-      w.pulses = find_pulses(source_, i, in_order ? (left < simd::lane_count ? left : simd::lane_count) : 1);
-      w.first = i;
-    }
-    return w.pulses[i - w.first];
   }
 
   static_assert(detail::SurveyMembers<Pattern, Instrument>::checked);
