@@ -62,7 +62,7 @@ enum class Fate : std::uint8_t {
   blocked,          ///< the optic let no pulse out
   missed,           ///< no subray hit anything
   out_of_range,     ///< hits, but none inside the range gate
-  below_threshold,  ///< light from inside the range gate, but nothing that the detector takes for an echo
+  below_threshold,  ///< light from inside the range gate, but no echo: too weak, or measured outside the gate
   absorbed,         ///< hits inside the range gate, but no light: black, edge-on, or too far in the haze
 };
 inline constexpr std::size_t fate_count = 6;  ///< number of fates
@@ -100,7 +100,7 @@ struct EnergyLedger {
   friend bool operator==(const EnergyLedger&, const EnergyLedger&) = default;
 };
 
-/// Distances inside which a receiver listens, both included [m].
+/// Distances inside which a receiver listens, and outside of which it reports no range; both included [m].
 struct RangeGate {
   double near = 0;                                       ///< start [m]
   double far = std::numeric_limits<double>::infinity();  ///< end [m]

@@ -184,11 +184,12 @@ class Survey {
       echo.reflectance = echo.amplitude / w.white_target.power(constants.budget, echo.range);
       if (!errors.none()) echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
     }
-    if (detection.echoes.size() > 1 && !errors.none()) sort_by_range(detection.echoes);
-    out.echoes = detection.echoes;
+    const std::span<Echo> echoes = inside(heard.gate, detection.echoes);
+    if (echoes.size() > 1 && !errors.none()) sort_by_range(echoes);
+    out.echoes = echoes;
     out.waveform = detection.waveform;
     out.shot.waveform_start = detection.waveform_start;
-    if (!detection.echoes.empty()) out.shot.fate = Fate::returned;
+    if (!echoes.empty()) out.shot.fate = Fate::returned;
     return out;
   }
 
@@ -260,6 +261,20 @@ class Survey {
       ++alike;
     *constants = {emitter, LinkBudget(unit.receiver, emitter.laser),
                   alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam};
+  }
+
+  /// Echoes whose reported range is inside the gate, in order: a device gates what it measures. Numbers stay in place.
+  static std::span<Echo> inside(const RangeGate& gate, std::span<Echo> echoes) noexcept {
+    std::size_t kept = 0;
+    for (std::size_t e = 0; e < echoes.size(); ++e) {
+      if (!gate.contains(echoes[e].range)) continue;
+      if (e != kept) {
+        std::swap(echoes[e], echoes[kept]);
+        std::swap(echoes[e].number, echoes[kept].number);
+      }
+      ++kept;
+    }
+    return echoes.first(kept);
   }
 
   /// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are renumbered in order.
