@@ -51,8 +51,9 @@ struct Echo {
   std::uint16_t classification = 0;               ///< class of the strongest contributor
   std::uint8_t number = 1;                        ///< return number, from 1 in order of `range`
   ReflectionKind kind = ReflectionKind::surface;  ///< way of the light of the strongest contributor
-  double velocity = std::numeric_limits<double>::quiet_NaN();         ///< radial velocity, positive away; NaN if not measured [m/s]
-  double shape_deviation = std::numeric_limits<double>::quiet_NaN();  ///< of `ShapeDeviation`; NaN if not measured [1/1000]
+  double velocity = std::numeric_limits<double>::quiet_NaN();       ///< radial velocity, positive away; NaN if not measured [m/s]
+  float shape_deviation = std::numeric_limits<float>::quiet_NaN();  ///< of `ShapeDeviation`; NaN if not measured [1/1000]
+  bool ambiguous = false;  ///< true if the instrument cannot exclude another range and velocity: of `Fmcw`
 };
 
 /// Fate of a pulse slot. A sink sees all pulses, with or without echoes, unless it `ChoosesShots`. Blocked slots are counted, not passed
