@@ -20,6 +20,7 @@
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/detector/first_hit.hpp>
 #include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/detector/returns.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/scanner/channels.hpp>
@@ -552,6 +553,75 @@ TEST_CASE("echoes stand in order of the ranges that are reported, each with its 
   CHECK(overtaken < 160);
 }
 
+TEST_CASE("echoes whose errors lead out of the gate are not reported, and the others are those of a wider gate") {
+  /// Two halves of the beam, 2 m apart.
+  struct Plates {
+    std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+      return Hit{(ray.direction.x > 0 ? 10 : 12) / ray.direction.y, 1, 0.5, ray.direction.x > 0 ? 1U : 2U, 0};
+    }
+  };
+  const Plates plates;
+  const RangeErrors noise{.deviation = 1};
+  const auto survey_with = [&](double near, double far) {
+    return Survey{still({}, no_rotation, 2000),
+                  SunflowerFootprint{100},
+                  plates,
+                  Receiver{.range_min = near, .range_max = far, .range_errors = noise},
+                  FullWaveform{{.record_length = 100_ns}},
+                  5};
+  };
+  const auto open = survey_with(0, 100), gated = survey_with(9.5, 12.25);
+  auto u = open.workspace(), v = gated.workspace();
+  std::size_t all = 0, kept = 0;
+  for (PulseIndex i = 0; i < gated.size(); ++i) {
+    CAPTURE(i);
+    const auto without = open(i, u), out = gated(i, v);
+    std::size_t next = 0;
+    for (const Echo& echo : without.echoes) {
+      if (echo.range < 9.5 || echo.range > 12.25) continue;
+      REQUIRE(next < out.echoes.size());
+      CHECK(out.echoes[next].range == echo.range);
+      CHECK(out.echoes[next].object == echo.object);
+      CHECK(out.echoes[next].reflectance == echo.reflectance);
+      ++next;
+      CHECK(out.echoes[next - 1].number == next);
+    }
+    CHECK(out.echoes.size() == next);
+    CHECK(out.shot.fate == (next > 0 ? Fate::returned : Fate::below_threshold));
+    CHECK(out.waveform.size() == without.waveform.size());
+    all += without.echoes.size();
+    kept += next;
+  }
+  // the normal distribution from -0.5 to 2.25 of the near plate and from -2.5 to 0.25 of the far one: 0.6793 + 0.5925
+  CHECK(all == 4000);
+  CHECK(std::fabs(static_cast<double>(kept) - 2000 * (0.6793 + 0.5925)) < 4 * std::sqrt(2000 * (0.2179 + 0.2414)));
+}
+
+TEST_CASE("a scanner whose noise exceeds the distance of a wall reports nothing behind itself") {
+  const Plane wall{.point = {0, 0.4, 0}, .normal = {0, -1, 0}};
+  const Survey near{still({}, no_rotation, 2000), SingleRay{}, wall, Receiver{.range_errors = {.deviation = 0.5}}, FirstHit{}, 5};
+  auto w = near.workspace();
+  std::size_t reported = 0;
+  for (PulseIndex i = 0; i < near.size(); ++i)
+    for (const Echo& echo : near(i, w).echoes) {
+      CHECK(echo.range >= 0);
+      ++reported;
+    }
+  CHECK(std::fabs(static_cast<double>(reported) - 2000 * 0.7881) < 4 * std::sqrt(2000 * 0.7881 * 0.2119));  // of the normal distribution
+}
+
+TEST_CASE("a range that a detector folds to before the gate is not reported") {
+  const Plane far{.point = {0, 1800, 0}, .normal = {0, -1, 0}};
+  const auto folding = [&](double gate) {
+    return Survey{still({}, no_rotation, 1), SingleRay{}, far, Receiver{.range_min = gate}, MultiplePulsesInAir{100_kHz, FirstHit{}}};
+  };
+  const auto all_folded = folding(0), early = folding(400);
+  auto a = all_folded.workspace(), b = early.workspace();
+  REQUIRE(all_folded(0, a).echoes.size() == 1);
+  CHECK(all_folded(0, a).echoes[0].range == support::relative(1800 - 0.5 * speed_of_light / 1e5, 1e-12));
+  CHECK(early(0, b).echoes.empty());
+}
+
 TEST_CASE("the true pose casts the ray, and the reported one writes the point") {
   struct Mistaken {
     [[nodiscard]] PulseIndex size() const noexcept { return 1; }
@@ -754,7 +824,7 @@ struct DarkCounts : support::LeastDetector {
   Detection detect(const Heard& heard, Workspace& w) const noexcept {
     if (asked) asked->push_back(heard);
     if (heard.key.pulse % 3 != 0) return support::LeastDetector::detect(heard, w);
-    w[0] = Echo{.range = 1, .amplitude = 1e-9};
+    w[0] = Echo{.range = 3, .amplitude = 1e-9};
     return {w, {}, 0};
   }
 };

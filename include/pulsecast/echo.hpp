@@ -51,8 +51,9 @@ struct Echo {
   std::uint16_t classification = 0;               ///< class of the strongest contributor
   std::uint8_t number = 1;                        ///< return number, from 1 in order of `range`
   ReflectionKind kind = ReflectionKind::surface;  ///< way of the light of the strongest contributor
-  double velocity = std::numeric_limits<double>::quiet_NaN();         ///< radial velocity, positive away; NaN if not measured [m/s]
-  double shape_deviation = std::numeric_limits<double>::quiet_NaN();  ///< of `ShapeDeviation`; NaN if not measured [1/1000]
+  double velocity = std::numeric_limits<double>::quiet_NaN();       ///< radial velocity, positive away; NaN if not measured [m/s]
+  float shape_deviation = std::numeric_limits<float>::quiet_NaN();  ///< of `ShapeDeviation`; NaN if not measured [1/1000]
+  bool ambiguous = false;  ///< true if the instrument cannot exclude another range and velocity: of `Fmcw`
 };
 
 /// Fate of a pulse slot. A sink sees all pulses, with or without echoes, unless it `ChoosesShots`. Blocked slots are counted, not passed
@@ -62,7 +63,7 @@ enum class Fate : std::uint8_t {
   blocked,          ///< the optic let no pulse out
   missed,           ///< no subray hit anything
   out_of_range,     ///< hits, but none inside the range gate
-  below_threshold,  ///< light from inside the range gate, but nothing that the detector takes for an echo
+  below_threshold,  ///< light from inside the range gate, but no echo: too weak, or measured outside the gate
   absorbed,         ///< hits inside the range gate, but no light: black, edge-on, or too far in the haze
 };
 inline constexpr std::size_t fate_count = 6;  ///< number of fates
@@ -100,7 +101,7 @@ struct EnergyLedger {
   friend bool operator==(const EnergyLedger&, const EnergyLedger&) = default;
 };
 
-/// Distances inside which a receiver listens, both included [m].
+/// Distances inside which a receiver listens, and outside of which it reports no range; both included [m].
 struct RangeGate {
   double near = 0;                                       ///< start [m]
   double far = std::numeric_limits<double>::infinity();  ///< end [m]

@@ -194,15 +194,18 @@ class Survey {
     const Heard heard{emitter, unit.receiver.gate(), {w.reflections.data(), result.reflections}, {.seed = seed_, .pulse = i}};
     const Detection detection = unit.detector.detect(heard, w.detectors[emitter.receiver]);
     const RangeErrors& errors = unit.receiver.range_errors;
+    bool all_inside = true;
     for (Echo& echo : detection.echoes) {
       echo.reflectance = echo.amplitude / w.white_target.power(constants.budget, echo.range);
-      if (!errors.none()) echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
+      if (constants.errs) echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
+      all_inside &= heard.gate.contains(echo.range);
     }
-    if (detection.echoes.size() > 1 && !errors.none()) sort_by_range(detection.echoes);
-    out.echoes = detection.echoes;
+    const std::span<Echo> echoes = all_inside ? detection.echoes : inside(heard.gate, detection.echoes);
+    if (constants.errs) sort_by_range(echoes);
+    out.echoes = echoes;
     out.waveform = detection.waveform;
     out.shot.waveform_start = detection.waveform_start;
-    if (!detection.echoes.empty()) out.shot.fate = Fate::returned;
+    if (!echoes.empty()) out.shot.fate = Fate::returned;
     return out;
   }
 
@@ -211,6 +214,7 @@ class Survey {
     Emitter emitter;
     LinkBudget budget;      // link budget of its laser and receiver
     SubrayDirections beam;  // subrays, shared with emitters of equal beams
+    bool errs = false;      // true if its receiver has range errors
   };
 
   /// Refuses a footprint whose shares do not sum to the whole beam.
@@ -270,7 +274,21 @@ class Survey {
     while (alike != constants && !(alike->emitter.receiver == emitter.receiver && SubrayDirections::equal(alike->emitter, emitter)))
       ++alike;
     *constants = {emitter, LinkBudget(unit.receiver, emitter.laser),
-                  alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam};
+                  alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam, !unit.receiver.range_errors.none()};
+  }
+
+  /// Echoes whose reported range is inside the gate, in order: a device gates what it measures. Numbers stay in place.
+  static std::span<Echo> inside(const RangeGate& gate, std::span<Echo> echoes) noexcept {
+    std::size_t kept = 0;
+    for (std::size_t e = 0; e < echoes.size(); ++e) {
+      if (!gate.contains(echoes[e].range)) continue;
+      if (e != kept) {
+        std::swap(echoes[e], echoes[kept]);
+        std::swap(echoes[e].number, echoes[kept].number);
+      }
+      ++kept;
+    }
+    return echoes.first(kept);
   }
 
   /// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are renumbered in order.

@@ -70,6 +70,60 @@ TEST_CASE("a moving surface before a still one: each has its own velocity") {
   CHECK(std::fabs(found[1].velocity) < 1e-3);
 }
 
+TEST_CASE("a car before a wall is paired by its power, at any speed; where powers are equal, both are flagged") {
+  const Fmcw detector;
+  for (const double speed : {-30.0, -5.0, 0.0, 5.0, 14.0, 30.0}) {
+    CAPTURE(speed);
+    const auto found = echoes(detector, {{.range = 50, .power = 2e-6, .velocity = speed}, {.range = 53, .power = 1e-6}});
+    REQUIRE(found.size() == 2);
+    CHECK(std::fabs(found[0].range - 50) < 1e-3);
+    CHECK(std::fabs(found[1].range - 53) < 1e-3);
+    CHECK(std::fabs(found[0].velocity - speed) < 1e-3);
+    CHECK(std::fabs(found[1].velocity) < 1e-3);
+    CHECK_FALSE(found[0].ambiguous);
+    CHECK_FALSE(found[1].ambiguous);
+    const auto equal = echoes(detector, {{.range = 50, .power = 1e-6, .velocity = speed}, {.range = 53, .power = 1e-6}});
+    REQUIRE(equal.size() == 2);
+    CHECK(equal[0].ambiguous);
+    CHECK(equal[1].ambiguous);
+  }
+}
+
+TEST_CASE("two peaks that are one in the other sweep are flagged") {
+  const FmcwSettings settings;
+  const double speed = settings.velocity_resolution(laser.wavelength), metres = settings.resolution();
+  const auto found =
+      echoes(Fmcw{settings}, {{.range = 50, .power = 2e-6, .velocity = 20 * speed}, {.range = 50 + 20 * metres, .power = 1e-6}});
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].ambiguous);
+}
+
+TEST_CASE("surfaces of random speeds and powers: whatever is not flagged is right, and little is flagged") {
+  constexpr std::uint64_t seed = 3;
+  constexpr int pulses = 3000;
+  support::Generator any(seed);
+  constexpr double photon = 6.62607015e-34 * 299'792'458 / 1.55e-6, noise = photon / 10e-6;  // power of the noise in a period [W]
+  for (const bool shot_noise : {false, true}) {
+    const Fmcw detector({.threshold = 30 * noise, .shot_noise = shot_noise});
+    int sure = 0, right = 0;
+    for (int i = 0; i < pulses; ++i) {
+      std::vector<Reflection> true_ones;
+      for (int k = 0; k < 2; ++k)
+        true_ones.push_back(
+            {.range = any.uniform(20, 80), .power = any.log_uniform(300, 30'000) * noise, .velocity = any.uniform(-30, 30)});
+      for (const Echo& echo : echoes(detector, true_ones, static_cast<std::uint64_t>(i))) {
+        if (echo.ambiguous) continue;
+        ++sure;
+        for (const Reflection& r : true_ones)
+          right += std::fabs(echo.range - r.range) < 0.05 && std::fabs(echo.velocity - r.velocity) < 0.05;
+      }
+    }
+    INFO("seed ", seed, ": ", sure, " sure of ", 2 * pulses, ", ", right, " right");
+    CHECK(sure > (shot_noise ? 1.5 : 1.8) * pulses);
+    CHECK(right >= (shot_noise ? 0.995 : 1) * sure);
+  }
+}
+
 // The deviation of a peak's frequency: that of the maximum of a windowed transform in white noise, to first order. The window is 1 + cos.
 TEST_CASE("shot noise of the reference beam: deviation of range and velocity") {
   constexpr double photon = 6.62607015e-34 * 299'792'458 / 1.55e-6;

@@ -119,6 +119,37 @@ TEST_CASE("an afterpulse may have one of its own") {
         doctest::Approx(1 / (1 - share)).epsilon(3 * std::sqrt(share) / (1 - share) / std::sqrt(1.0 * pulses)));
 }
 
+TEST_CASE("nothing is detected outside the gate: afterpulses, dark counts, jitter, and the ends of pulses") {
+  constexpr int pulses = 4000;
+  const double share = 0.3, dead = 20e-9, late = 100e-9, gate = 60;
+  std::size_t after = 0;
+  for (const auto& echoes : pulses_of({.dead_time = dead, .afterpulse = share, .afterpulse_time = late, .bin = 1e-10, .returns_max = 255},
+                                      GaussianPulse{}, {{.range = 40, .power = power_for(50, 0.3)}}, pulses, {0, gate}))
+    for (const Echo& echo : echoes) {
+      CHECK(echo.range <= gate);
+      after += echo.number == 2;
+    }
+  const double inside = share * (1 - std::exp(-(2 * (gate - 40) / speed_of_light - dead) / late));  // of the exponential distribution
+  CHECK(std::fabs(static_cast<double>(after) / pulses - inside) < 4 * std::sqrt(inside * (1 - inside) / pulses));
+
+  // the pulse of a wall at the start of the gate arrives half before it, as a Gaussian; that of one at its end, half after it
+  for (const double wall : {30.0, 60.0}) {
+    int detected = 0;
+    for (const auto& echoes :
+         pulses_of({.dead_time = geiger}, GaussianPulse{}, {{.range = wall, .power = power_for(1, 0.3)}}, pulses, {30, gate}))
+      detected += !echoes.empty();
+    const double expected = 1 - std::exp(-0.5);
+    CHECK(std::fabs(detected / static_cast<double>(pulses) - expected) < 4 * std::sqrt(expected * (1 - expected) / pulses));
+  }
+
+  for (const auto& echoes :
+       pulses_of({.dark_rate = 1e8, .jitter = 20e-9, .bin = 1e-10, .returns_max = 255}, GammaPulse{}, {}, 200, {30, 60}))
+    for (const Echo& echo : echoes) {
+      CHECK(echo.range >= 30);
+      CHECK(echo.range <= 60);
+    }
+}
+
 TEST_CASE("a histogram of many shots finds a weak echo in sunlight") {
   const PhotonCountingSettings settings{.background = power_for(1, 0.3) * laser.pulse_length / 1e-6, .shots = 400, .threshold = 20};
   for (const auto& echoes : pulses_of(settings, GammaPulse{}, {{.range = 300, .power = power_for(0.3, 0.3), .object = 5}}, 20, {0, 600})) {

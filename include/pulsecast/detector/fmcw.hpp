@@ -51,11 +51,13 @@ struct FmcwSettings {
 
 /// Detector of a coherent scanner, whose laser sweeps its frequency up and down. The light that returns beats with a share of the light
 /// that leaves: the delay and the Doppler shift add in one sweep, and differ in the other, so that both range and radial velocity are
-/// known. The spectrum of each sweep, weighted by a window of Hann, is searched for peaks. The sweeps' peaks are paired in order of
-/// frequency, or of power if their numbers differ, which may pair those of two surfaces of different velocities. Surfaces do not move from
-/// one sweep to the next. The range is that in the middle. The laser's peak power is its power while it measures. Amplitudes are the powers
-/// of both sweeps' peaks, in the mean. It needs a target that knows velocities, as `Scene` and `MovingScene`. Source: Amann, Bosch,
-/// Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
+/// known. Beats have a sign, as of a receiver of both quadratures. The spectrum of each sweep, weighted by a window of Hann, is searched
+/// for peaks. The sweeps' peaks are paired in order of power, and in order of frequency where powers are alike: the latter are wrong if
+/// surfaces of different velocities overtake each other in a spectrum, and are flagged as `Echo::ambiguous`. So are pairs of different
+/// powers, as where two peaks are one in the other sweep. Surfaces do not move from one sweep to the next. The range is that in the middle.
+/// The laser's peak power is its power while it measures. Amplitudes are the powers of both sweeps' peaks, in the mean. It needs a target
+/// that knows velocities, as `Scene` and `MovingScene`. Source: Amann, Bosch, Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu &
+/// Boser 2017.
 class Fmcw {
  public:
   /// @throws SettingError for settings out of range
@@ -101,19 +103,17 @@ class Fmcw {
       set_lines(heard, sweep == 0 ? 1 / speed : -1 / speed, w);
       find_peaks(w.lines, noise_of(heard, sweep), w.peaks[sweep]);
     }
-    auto& [up, down] = w.peaks;
+    const auto& [up, down] = w.peaks;
     const std::size_t pairs = std::min(up.size(), down.size());
-    for (std::vector<Peak>* peaks : {&up, &down})
-      if (peaks->size() > pairs) {
-        std::sort(peaks->begin(), peaks->end(), [](const Peak& a, const Peak& b) { return a.power > b.power; });
-        peaks->resize(pairs);
-        std::sort(peaks->begin(), peaks->end(), [](const Peak& a, const Peak& b) { return a.beat < b.beat; });
-      }
     w.echoes.clear();
-    for (std::size_t e = 0; e < pairs; ++e) {
-      Echo echo = echo_from(*up[e].strongest, 0.5 * (up[e].beat + down[e].beat) * metres, 0.5 * (up[e].power + down[e].power));
-      echo.velocity = 0.5 * (up[e].beat - down[e].beat) * speed;
-      if (echo.range >= 0) w.echoes.push_back(echo);
+    for (std::size_t first = 0, last = 0; first < pairs; first = last) {
+      const bool sure = pair_next(first, last, noise_of(heard, 0).deviation, w.peaks);
+      for (std::size_t e = first; e < last; ++e) {
+        Echo echo = echo_from(*up[e].strongest, 0.5 * (up[e].beat + down[e].beat) * metres, 0.5 * (up[e].power + down[e].power));
+        echo.velocity = 0.5 * (up[e].beat - down[e].beat) * speed;
+        echo.ambiguous = !sure;
+        if (echo.range >= 0) w.echoes.push_back(echo);
+      }
     }
     std::sort(w.echoes.begin(), w.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
     number_echoes(w.echoes);
@@ -162,6 +162,29 @@ class Fmcw {
     return simd::sincos(pi * x).sin / (pi * x * (1 - square));
   }
 
+  /// Pairs the peaks from `first` on, both in descending order of power, up to `last`, the first of less power in both sweeps. True if
+  /// there is one pair, of one power.
+  static bool pair_next(std::size_t first, std::size_t& last, double deviation, std::array<std::vector<Peak>, 2>& peaks) noexcept {
+    auto& [up, down] = peaks;
+    const std::size_t pairs = std::min(up.size(), down.size());
+    const auto amplitude = [](const std::vector<Peak>& of, std::size_t k) { return k < of.size() ? std::sqrt(of[k].power) : 0; };
+    // Powers of a surface differ by side lobes of the window, of -32 dB (source: Harris 1978), and by three deviations of the difference of
+    // two amplitudes. The noise through the window has 1 + 1/4 + 1/4 times its variance.
+    const double high = std::max(amplitude(up, first), amplitude(down, first));
+    const double alike = 2 * std::pow(10, -32.0 / 20) * high + 3 * std::sqrt(2 * 1.5) * deviation;
+    const auto low = [&](std::size_t k) { return std::min(amplitude(up, k), amplitude(down, k)); };
+    const auto apart = [&](std::size_t k) { return low(k - 1) - std::max(amplitude(up, k), amplitude(down, k)) > alike; };
+    last = first + 1;
+    while (last < pairs && !apart(last)) ++last;
+    if (last == first + 1) return apart(last) && high - low(first) <= alike;
+    for (std::vector<Peak>* of : {&up, &down})
+      std::sort(of->begin() + static_cast<std::ptrdiff_t>(first), of->begin() + static_cast<std::ptrdiff_t>(last), by_beat);
+    return false;
+  }
+
+  static bool by_beat(const Peak& a, const Peak& b) noexcept { return a.beat < b.beat; }
+  static bool by_power(const Peak& a, const Peak& b) noexcept { return a.power > b.power; }
+
   /// Sets the lines of a sweep, for periods by radial velocity [s/m].
   void set_lines(const Heard& heard, double per_velocity, Workspace& w) const noexcept {
     w.lines.clear();
@@ -200,7 +223,7 @@ class Fmcw {
     return real * real + imaginary * imaginary;
   }
 
-  /// Peaks of a sweep's spectrum, in order of frequency: the strongest ones of at least the threshold, near lines.
+  /// Peaks of a sweep's spectrum, in descending order of power: the strongest ones of at least the threshold, near lines.
   void find_peaks(std::span<const Line> lines, const Noise& noise, std::vector<Peak>& peaks) const noexcept {
     peaks.clear();
     for (std::size_t first = 0, last = 0; first < lines.size(); first = last) {
@@ -215,7 +238,7 @@ class Fmcw {
         keep({(g - 2 + top.offset) * grid, top.height, nullptr}, lines, peaks);
       }
     }
-    std::sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.beat < b.beat; });
+    std::sort(peaks.begin(), peaks.end(), by_power);
   }
 
   /// Keeps a peak, with the strongest line within half the window, unless there are enough stronger ones.
@@ -229,8 +252,7 @@ class Fmcw {
     }
     if (!peak.strongest) return;
     peaks.push_back(peak);
-    if (peaks.size() > s_.returns_max)
-      peaks.erase(std::min_element(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.power < b.power; }));
+    if (peaks.size() > s_.returns_max) peaks.erase(std::max_element(peaks.begin(), peaks.end(), by_power));
   }
 
   FmcwSettings s_;

@@ -153,20 +153,13 @@ class FullWaveform {
         w.window.take(n, power, more, search, w.peaks);
       }
     }
-    if constexpr (listens_always) {  // the samples before and behind the gate complete the pulses at its ends
-      const double half = 0.25 * speed_of_light * laser.pulse_length;
-      std::erase_if(w.peaks, [&](const Peak& peak) {
-        const double range = 0.5 * speed_of_light * peak.time;
-        return range < heard.gate.near - half || range > heard.gate.far + half;
-      });
-    }
+    if (const Correction* correction = corrections_.find(laser))
+      for (Peak& peak : w.peaks) peak.mark = correction->arrival(peak.mark, s_.sample_interval);
+    if constexpr (listens_always)  // the samples before and after the gate complete the pulses at its ends
+      std::erase_if(w.peaks, [&](const Peak& peak) { return !heard.gate.contains(0.5 * speed_of_light * peak.mark); });
     keep_echoes(s_, w.peaks);
     const EchoTiming timing = samples.independent_noise() && s_.timing == EchoTiming::true_range ? EchoTiming::peak : s_.timing;
-    const Correction* correction = corrections_.find(laser);
-    for (Peak& peak : w.peaks) {
-      if (correction) peak.mark = correction->arrival(peak.mark, s_.sample_interval);
-      w.echoes.push_back(echo_of(peak, reflections, samples.shape(), timing, w.echoes.size() + 1));
-    }
+    for (const Peak& peak : w.peaks) w.echoes.push_back(echo_of(peak, reflections, samples.shape(), timing, w.echoes.size() + 1));
     return {w.echoes, w.record, samples.start() * s_.sample_interval};
   }
 

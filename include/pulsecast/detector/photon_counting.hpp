@@ -58,7 +58,8 @@ struct PhotonCountingSettings {
 /// Detector that draws single photons. Photoelectrons of each reflection, of sunlight and of dark counts are Poisson processes. Detections
 /// of all shots make a histogram; each of its peaks is an echo, whose range is the mean time of the detections in the bin and its
 /// neighbours. The amplitude is the power that would give as many counts without dead time. With one shot and a threshold of 1, each
-/// isolated detection is an echo. A gate without an end has neither sunlight nor dark counts behind the last reflection.
+/// isolated detection is an echo. Nothing is detected outside the gate, but a gate without an end has neither sunlight nor dark counts
+/// after the last reflection.
 ///
 /// At most 65,536 detections of a pulse are kept. Source: Gatt, Johnson & Nichols 2009 (detection statistics).
 template <PulseForm Form = GammaPulse>
@@ -109,7 +110,7 @@ class PhotonCounting {
     for (std::size_t shot = 0; shot < s_.shots; ++shot) {
       w.shot.clear();
       draw_photoelectrons(heard, *quantiles, draws, w.shot);
-      keep_detections(draws, w);
+      keep_detections(heard.gate, draws, w);
     }
     const auto earlier = [](const Count& a, const Count& b) { return a.time < b.time; };
     std::sort(w.counts.begin(), w.counts.end(), earlier);
@@ -187,22 +188,23 @@ class PhotonCounting {
     std::sort(shot.begin(), shot.end(), [](const Count& a, const Count& b) { return a.time < b.time; });
   }
 
-  /// Appends the photoelectrons of a shot that pixels detect, with afterpulses and jitter.
-  void keep_detections(Draws& draws, Workspace& w) const noexcept {
+  /// Appends the photoelectrons of a shot that pixels detect, with afterpulses and jitter. Pixels are armed during the gate alone, and the
+  /// histogram has its length.
+  void keep_detections(const RangeGate& gate, Draws& draws, Workspace& w) const noexcept {
+    const auto armed = [&](double time) { return gate.contains(0.5 * speed_of_light * time); };
     std::fill(w.blind.begin(), w.blind.end(), -std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < w.shot.size(); ++i) {
       const Count count = w.shot[i];
       double& blind = w.blind[count.pixel];
-      if (count.time < blind) continue;
+      if (count.time < blind || !armed(count.time)) continue;
       blind = count.time + s_.dead_time;
       if (s_.afterpulse > 0 && std::isfinite(s_.dead_time) && draws.uniform() < s_.afterpulse && w.shot.size() < counts_max) {
         const Count after{blind + s_.afterpulse_time * draws.exponential(), count.pixel, none};
         const auto later = [&](const Count& other) { return other.time > after.time; };
         w.shot.insert(std::find_if(w.shot.begin() + static_cast<std::ptrdiff_t>(i) + 1, w.shot.end(), later), after);
       }
-      if (w.counts.size() == counts_max) continue;
-      w.counts.push_back(count);
-      if (s_.jitter > 0) w.counts.back().time += s_.jitter * normal_quantile(draws.uniform());
+      const double time = s_.jitter > 0 ? count.time + s_.jitter * normal_quantile(draws.uniform()) : count.time;
+      if (w.counts.size() < counts_max && armed(time)) w.counts.push_back({time, count.pixel, count.label});
     }
   }
 

@@ -42,7 +42,7 @@ class ShapeDeviation : public DetectorAdaptor<Inner> {
   [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
     const Detection d = this->inner.detect(heard, w);
     if (const std::vector<double>* shape = shapes_.find(heard.emitter.laser))
-      for (Echo& echo : d.echoes) echo.shape_deviation = deviation(d, echo, heard.emitter.laser.pulse_length, *shape);
+      for (Echo& echo : d.echoes) echo.shape_deviation = static_cast<float>(deviation(d, echo, heard.emitter.laser.pulse_length, *shape));
     return d;
   }
 
