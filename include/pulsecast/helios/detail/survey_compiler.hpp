@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -42,7 +40,6 @@ class SurveyCompiler {
     PulseIndex first = 0;
     Tick start{};
     double optic_time = 0;
-    std::unordered_map<std::string, std::size_t> strips;  // first leg of each strip
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
       paths_.of_leg(k, [&] { leg.validate(); });
@@ -68,8 +65,7 @@ class SurveyCompiler {
         noise.position = survey_.platform.position_noise;
         noise.attitude = survey_.platform.attitude_noise;
       }
-      legs.push_back(
-          {SurveyLeg(paths_[k].path, mount, std::move(instrument), std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
+      legs.push_back({SurveyLeg(paths_[k].path, mount, std::move(instrument), std::move(noise)), leg.scanner.active});
       const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
       compiled.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size;
@@ -87,11 +83,6 @@ class SurveyCompiler {
 
   /// Time for messages, rounded to the millisecond.
   [[nodiscard]] static std::string brief(double seconds) { return pulsecast::detail::to_text(std::round(seconds * 1e3) / 1e3); }
-
-  /// Strip number of the leg's pulses: index of the first leg of the strip.
-  [[nodiscard]] static std::uint16_t strip_of(std::size_t k, const LegSettings& leg, std::unordered_map<std::string, std::size_t>& first) {
-    return static_cast<std::uint16_t>(leg.strip ? first.try_emplace(*leg.strip, k).first->second : k);
-  }
 
   /// Duration of a leg: until the platform has arrived and the head has turned, but at most `duration_max` [s].
   [[nodiscard]] double duration_of(std::size_t k) const {
