@@ -322,10 +322,8 @@ void bind_simulation(py::module_& m) {
       .def("trajectory", &trajectory_of, "interval"_a,
            "Poses of the platform every `interval` seconds (from 1e-6) of each leg and at its end: a structured array of time [s], "
            "x, y, z [m, world], roll, pitch, yaw [rad; yaw clockwise from north] and leg.")
-      .def_property_readonly(
-          "legs", &legs_of,
-          "Structured array: number, active, start [s], duration [s], pulse_rate [Hz]; first, end: its slots. Points and pulses of a "
-          "strip have the number of its first leg; their slots distinguish the legs.")
+      .def_property_readonly("legs", &legs_of,
+                             "Structured array: number, active, start [s], duration [s], pulse_rate [Hz]; first, end: its slots.")
       .def_property_readonly("repetitions", &Simulation::runs, "Number of repetitions, each with its own scene.")
       .def_property_readonly(
           "bounds",

@@ -95,8 +95,8 @@ struct PulseOnPlatform {};
 template <>
 struct PulseOnPlatform<frame::World> {
   std::optional<Pose<frame::Beam, frame::World>> reported{};  ///< pose as known to the instrument; empty if exact
-  ScanAngle scan_angle{};                                     ///< angle of the beam about the body's forward axis, a number [rad]
-  std::uint16_t leg = 0;                                      ///< number of its leg or strip, from 0
+  ScanAngle scan_angle{};                                     ///< angle of the beam from the vertical, to the right, a number [rad]
+  std::uint16_t leg = 0;                                      ///< number of its leg, from 0
 };
 
 }  // namespace detail

@@ -271,6 +271,35 @@ TEST_CASE("settings that a program makes are written and read") {
   CHECK(again.scanner.channels[0].optic == survey.scanner.channels[0].optic);
 }
 
+TEST_CASE("a survey is never written that would not be read") {
+  SurveySettings survey;
+  survey.scanner.channels = {{.optic = RotatingOptic{}, .scan_angle_max = 1}};
+  survey.scene.parts = {{.source = ObjSource{.files = {data / "materials.obj"}}}};
+  survey.legs = {{.duration_max = 0.1, .scanner = {.pulse_rate = 5000, .scan_frequency = 10}}};
+  write_survey(folder / "own.xml", survey);
+  CHECK(read_survey(folder / "own.xml").survey.scanner.pulse_rates == std::vector<double>{5000});
+  CHECK(read_survey(folder / "own.xml").warnings.empty());
+  const auto refused = [&](const auto& change, const char* says) {
+    SurveySettings other = survey;
+    change(other);
+    CHECK_THROWS_WITH_AS(write_survey(folder / "no.xml", other), doctest::Contains(says), SettingError);
+    CHECK_FALSE(std::filesystem::exists(folder / "no.xml"));
+  };
+  refused([](SurveySettings& s) { s.legs[0].scanner.vertical_angle_min = -40; }, "leg 0: verticalAngleMin_deg");
+  refused([](SurveySettings& s) { s.legs[0].duration_max.reset(); }, "leg 0: maxDuration_s");
+  refused([](SurveySettings& s) { s.legs.clear(); }, "legs (number)");
+  refused([](SurveySettings& s) { s.scene.parts.clear(); }, "scene: parts (number)");
+  refused([](SurveySettings& s) { s.scene.parts[0].source = XyzSource{}; }, "part '': files (number)");
+  refused([](SurveySettings& s) { s.scene.parts[0].transform.scale = 1e-31; }, "part '': scale is 1e-31");
+  refused([](SurveySettings& s) { s.scene.parts[0].transform.translation.x = 2e9; }, "part '': offset is 2e+09");
+  refused([](SurveySettings& s) { s.scene.dynamic_interval = 1e7; }, "dynTimeStep is 1e+07 s");
+  refused([](SurveySettings& s) { s.scene.parts[0].motions = {{.id = "a", .next = "b"}}; }, "part '': next=\"b\": there is no such");
+  refused([](SurveySettings& s) { s.scene.parts[0].motions = {{.id = "a", .motions = {{.kind = ReflectionMotion{.normal = {}}}}}}; },
+          "ortho is too short");
+  refused([](SurveySettings& s) { s.scanner.pulse_rates = {1e-9}; }, "pulseFreqs_Hz is 1e-09 Hz");
+  refused([](SurveySettings& s) { s.scanner.channels[0].head_axis = {}; }, "headRotateAxis has no direction");
+}
+
 TEST_CASE("a survey without a name has that of its file") {
   CHECK(read_text(survey_text("", leg(""))).survey.name == "survey");
   CHECK(read_text(survey_text(R"(name="")", leg(""))).survey.name == "survey");

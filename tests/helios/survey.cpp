@@ -84,7 +84,8 @@ TEST_CASE("a tripod stands where each leg says, until the head has turned") {
     CHECK(none.legs[1].end == none.legs[1].first);
   }
   SUBCASE("nor of more pulses than can be counted") {
-    s.legs[1].duration_max = 1e14;
+    s.legs[1].duration_max = 1e9;
+    s.legs[1].scanner.pulse_rate = 1e8;
     s.legs[1].scanner.head_speed = 0;
     s.legs[1].scanner.head_stop = 0;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1 (pulses) is 1e+17"), SettingError);
@@ -92,7 +93,8 @@ TEST_CASE("a tripod stands where each leg says, until the head has turned") {
   SUBCASE("nor faster than a laser can be") {
     s.legs[1].scanner.pulse_rate = 1e13;
     s.legs[1].duration_max = 1;
-    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: Scanner::pulse_rate is 1e+13"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: pulseFreq_hz is 1e+13 Hz, but must be from 0 to 1"),
+                         SettingError);
     s.legs[1].scanner.pulse_rate = -1;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: pulseFreq_hz is -1"), SettingError);
   }
@@ -101,7 +103,7 @@ TEST_CASE("a tripod stands where each leg says, until the head has turned") {
     s.legs[1].scanner.head_stop = 0;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: maxDuration_s"), SettingError);
     s.legs[1].scanner.head_stop = 1;
-    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: headRotatePerSec_deg"), SettingError);
+    CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: headRotateStop_deg: the leg never ends"), SettingError);
     s.legs[1].scanner.head_speed = -1;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: headRotateStop_deg"), SettingError);
   }
@@ -152,10 +154,10 @@ TEST_CASE("a straight flight goes from leg to leg, and its lever arms turn with 
     s.legs[1].platform.speed = 0;
     CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: movePerSec_m"), SettingError);
   }
-  SUBCASE("legs of one strip have one number") {
+  SUBCASE("legs of one strip keep their numbers") {
     s.legs[0].strip = s.legs[1].strip = "a";
     const CompiledSurvey strips = compile_survey(s, flat);
-    CHECK(strips.source.pulse(strips.legs[1].first)->leg == 0);
+    CHECK(strips.source.pulse(strips.legs[1].first)->leg == 1);
   }
 }
 
@@ -427,8 +429,61 @@ TEST_CASE("a leg has at most 1e9 records of its trajectory, and as many pulses a
   s.legs[1].scanner.active = true;
   s.legs[1].scanner.trajectory_interval = 1e-3;
   CHECK(compile_survey(s, flat, options).legs[1].trajectory_interval == 1e-3);
-  s.legs[1].duration_max = 1e13;
-  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options), doctest::Contains("a.xml:4:5: leg 1 (pulses) is 1e+16"), SettingError);
+  s.legs[1].duration_max = 1e9;
+  s.legs[1].scanner.pulse_rate = 1e8;
+  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options), doctest::Contains("a.xml:4:5: leg 1 (pulses) is 1e+17"), SettingError);
+}
+
+TEST_CASE("settings of a program have the limits of a document's") {
+  SurveySettings s = survey_of(PlatformKind::stationary, {{}, {}});
+  for (LegSettings& leg : s.legs) leg.duration_max = 1;
+  REQUIRE_NOTHROW((void)compile_survey(s, flat));
+  const auto refused = [&](const auto& change, const char* says) {
+    SurveySettings other = s;
+    change(other);
+    CHECK_THROWS_WITH_AS((void)compile_survey(other, flat), doctest::Contains(says), SettingError);
+  };
+  const auto scanner = [](SurveySettings& o) -> LegScannerSettings& { return o.legs[1].scanner; };
+  const auto device = [](SurveySettings& o) -> ChannelSettings& { return o.scanner.channels[0]; };
+  refused([&](SurveySettings& o) { scanner(o).vertical_angle_min = -40; },
+          "leg 1: verticalAngleMin_deg is -2291.831180523293 deg, but must be from -360 to 360: given in degrees, not radians?");
+  refused([&](SurveySettings& o) { scanner(o).pulse_rate = 1e12; }, "leg 1: pulseFreq_hz is 1e+12 Hz");
+  refused([&](SurveySettings& o) { scanner(o).scan_frequency = 1e3; },
+          "leg 1: scanFreq_hz is 1000 Hz: expected less than pulseFreq_hz, 1000 Hz");
+  refused([&](SurveySettings& o) { scanner(o).vertical_angle_min = scanner(o).vertical_angle_max = 0.5; },
+          "leg 1: verticalAngleMin_deg: no");
+  refused([&](SurveySettings& o) { o.legs[0].platform.position.y = 2e9; },
+          "leg 0: y is 2e+09 m, but must be from -1000000000 to 1000000000");
+  refused([&](SurveySettings& o) { device(o).efficiency = 1.5; }, "opticalEfficiency is 1.5, but must be from 0 to 1");
+  refused([&](SurveySettings& o) { device(o).range_min = device(o).range_max = 5; }, "rangeMax_m is not beyond rangeMin_m");
+  refused([&](SurveySettings& o) { device(o).scan_frequency_min = 9, device(o).scan_frequency_max = 8; }, "scanFreqMax_Hz is below");
+  refused([&](SurveySettings& o) { device(o).errors.range = "1/0*THETA"; }, "expr=\"1/0*THETA\" is not finite for any THETA");
+  refused([&](SurveySettings& o) { o.scanner.channels.push_back(device(o)), o.scanner.channels[1].wavelength = 1; },
+          "channel 1: wavelength_nm is 1e+09 nm");
+  refused([](SurveySettings& o) { o.platform.position_noise[1] = NoiseSettings{.clipped = true, .clip_low = 2}; },
+          "clipMax is below clipMin");
+  refused([](SurveySettings& o) { o.leg_offset = LegOffsetSettings{.deviation = -1}; }, "legRandomOffsetStdev is -1 m");
+  refused([](SurveySettings& o) { o.scanner.channels.clear(); }, "scanner: channels (number) is 0");
+}
+
+TEST_CASE("settings of a program get the notes of a document's, but those that were read from one do not get them again") {
+  SurveySettings s = survey_of(PlatformKind::stationary, {{}});
+  s.legs[0].duration_max = 0.1;
+  LegScannerSettings& leg = s.legs[0].scanner;
+  REQUIRE(compile_survey(s, flat).warnings.empty());
+  leg.pulse_rate = 123;
+  leg.head_speed = 30;
+  leg.head_stop = 360;
+  leg.scan_angle = radians(70);
+  s.scanner.channels[0].waveform.bin_size = 9e-9;
+  const std::vector<std::string> notes = compile_survey(s, flat).warnings;
+  CHECK(notes == std::vector<std::string>{
+                     "binSize_ns is 9 ns, and pulses are 4 ns long: it is limited to 4 ns; expected bins from 0.0004 ns to 4 ns",
+                     "leg 0: headRotateStop_deg is 20626.480625, 57.29578 turns of the head: given in degrees, not radians?",
+                     "leg 0: headRotatePerSec_deg exceeds the scanner's maximum: it is limited to 360",
+                     "leg 0: pulseFreq_hz of 123 Hz is not one of the scanner's pulse rates",
+                     "leg 0: scanAngle_deg exceeds the scanner's maximum: it is limited to 60"});
+  CHECK(compile_survey(s, flat, {.leg_places = {"a.xml:3:5"}}).warnings.empty());
 }
 
 TEST_CASE("a leg that is too slow to end, or too fast for its platform, is told by its speed") {

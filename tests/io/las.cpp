@@ -81,7 +81,7 @@ struct Survey {
                   .direction = random.unit(),
                   .scan_angle = random.uniform(-pi, pi),
                   .leg = static_cast<std::uint16_t>(random.whole(65536)),
-                  .channel = static_cast<std::uint8_t>(random.whole(64))},
+                  .channel = static_cast<std::uint16_t>(random.whole(400))},
                  echoes);
     }
     return survey;
@@ -432,10 +432,11 @@ TEST_CASE("whatever is written reads back, field by field, and its header is exa
                 0.5 * settings.scale + 1e-15 * std::fabs(place[axis]) + 1e-9);
         }
         CHECK(std::fabs(p.intensity - std::min(echo.reflectance, 1.0) * 65535) <= 0.5 + 1e-9);
-        CHECK((p.flags == 0 && p.scan_direction == 0 && p.edge == 0 && p.user_data == 0));
+        CHECK((p.flags == 0 && p.scan_direction == 0 && p.edge == 0));
         CHECK(p.return_number == std::min<unsigned>(echo.number, 15));
         CHECK(p.returns == std::min<unsigned>(shot.echoes, 15));
         CHECK(p.channel == shot.channel % 4);
+        CHECK(p.user_data == std::min<unsigned>(shot.channel, 255));
         CHECK(p.classification == std::min<unsigned>(echo.classification, 255));
         CHECK(std::fabs(p.scan_angle_deg - degrees(shot.scan_angle)) <= 0.003 + 1e-9);
         CHECK(p.source == std::min(shot.leg + 1, 65535));
@@ -470,7 +471,7 @@ TEST_CASE("the bytes of a file do not depend on how the pulses are cut into batc
 // ---------------------------------------------------------------------------------------------------------------- formats
 
 TEST_CASE("points of legacy formats hold what they can, and headers say which they are") {
-  const Shot sideways{.direction = {0, 0, -1}, .scan_angle = pi};
+  const Shot sideways{.direction = {0, 0, -1}, .scan_angle = pi, .channel = 77};
   for (const LasFormat format : {LasFormat::las_1_4_legacy, LasFormat::las_1_0}) {
     const auto [file, p] = one(sideways, {.range = 1, .classification = 300}, {.format = format});
     CHECK(file.minor == (format == LasFormat::las_1_0 ? 0 : 4));
@@ -478,7 +479,7 @@ TEST_CASE("points of legacy formats hold what they can, and headers say which th
     CHECK(file.global_encoding == (format == LasFormat::las_1_0 ? 0 : 1));
     CHECK(p.classification == 31);
     CHECK(p.scan_angle_deg == 90);
-    CHECK((p.flags == 0 && p.scan_direction == 0 && p.edge == 0 && p.user_data == 0));
+    CHECK((p.flags == 0 && p.scan_direction == 0 && p.edge == 0 && p.user_data == 77));
     CHECK(one({.direction = {0, 0, -1}, .scan_angle = radians(-12.6)}, {.range = 1}, {.format = format}).point.scan_angle_deg == -13);
     Survey survey;
     std::vector<Echo> echoes(7);

@@ -117,14 +117,6 @@ TEST_CASE("a leg that is not active takes its time and its number, but holds no 
   CHECK(Legs(std::vector<Leg<Pass>>{{set_up(1, 4, 6), false}}).size() == 0);
 }
 
-TEST_CASE("legs of one strip carry its number") {
-  const Legs legs(
-      std::vector<Leg<Pass>>{{set_up(1, 4, 6), true, 7}, {set_up(2, 1, 5), false}, {set_up(3, 2, 3), true, 7}, {set_up(4, 1, 2)}});
-  CHECK(legs.pulse(0)->leg == 7);
-  CHECK(legs.pulse(6)->leg == 7);
-  CHECK(legs.pulse(9)->leg == 3);
-}
-
 TEST_CASE("legs share equal tables of emitters, and the pulses of each keep their own") {
   const auto pass = [](std::vector<double> wavelengths, PulseIndex pulses = 4) {
     std::vector<Deflector<FixedBeam, Scanner>> channels;

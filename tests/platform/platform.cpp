@@ -94,6 +94,33 @@ TEST_CASE("a scan angle is zero below the body, positive to its right, and does 
   }
 }
 
+TEST_CASE("a scan angle is that of the beam from the vertical, with the roll of the body and whatever its heading and pitch") {
+  struct Attitude {
+    Rotation rotation;
+    Pose<frame::Body, frame::World> at(Tick) const noexcept { return {rotation, {}}; }
+  };
+  const Rotation down = rotation_about(axis::right, -90_deg);
+  const auto scan_angle = [&](const Rotation& body, double aside) {
+    const Mount mount{.boresight = rotation_about(axis::forward, -aside) * down};
+    return double(Platform{Attitude{body}, mount, Deflector{Fixed{}, Scanner{.pulses = 1}}}.pulse(0)->scan_angle);
+  };
+  // the nadir beam of a body that rolls to its right looks to the left
+  CHECK(scan_angle(rotation_about(axis::forward, 15_deg), 0) == support::relative(-15_deg, 1e-14));
+  CHECK(scan_angle(rotation_about(axis::forward, 15_deg), 20_deg) == support::relative(5_deg, 1e-14));
+  CHECK(std::fabs(scan_angle(rotation_about(axis::right, 40_deg), 0)) < 1e-15);
+  // forward straight up or down has no heading
+  for (const double pitch : {-90_deg, 90_deg}) CHECK(std::isfinite(scan_angle(rotation_about(axis::right, pitch), 10_deg)));
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const double heading = any.uniform(-3, 3), pitch = any.uniform(-1.4, 1.4), roll = any.uniform(-3, 3), aside = any.uniform(-3, 3);
+    const Rotation rolled = rotation_about(axis::forward, roll), nosed = rotation_about(axis::right, pitch) * rolled;
+    const Vec3 beam = nosed * (rotation_about(axis::forward, -aside) * (down * axis::forward));
+    CHECK(scan_angle(rotation_about(axis::up, heading) * nosed, aside) == support::relative(std::atan2(beam.x, -beam.z), 1e-12));
+    CHECK(std::fabs(std::sin(scan_angle(rotation_about(axis::up, heading) * rolled, aside) - (aside - roll))) < 1e-12);
+  }
+}
+
 TEST_CASE("a blocked slot stays blocked on a platform") {
   const Platform platform{Tripod{}, Mount{},
                           Deflector{PolygonMirror{.lines_per_second = 1, .angle_min = 0}, Scanner{.pulse_rate = 4, .pulses = 4}}};

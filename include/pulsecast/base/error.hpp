@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <initializer_list>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -41,11 +42,18 @@ class SettingError : public std::invalid_argument {
         allowed_(std::move(allowed)),
         value_(value) {}
 
+  /// `problem` follows `field` in the message, as in `tEnd` and ` is not after tStart`, where no number by itself is at fault.
+  SettingError(std::string field, std::string problem)
+      : std::invalid_argument(detail::joined({field, problem})), field_(std::move(field)), problem_(std::move(problem)) {}
+
   /// Copy of this error whose field is prefixed by a name, as in `leg 3: Scanner::pulse_rate`.
-  [[nodiscard]] SettingError of(const std::string& name) const { return {detail::joined({name, ": ", field_}), value_, unit_, allowed_}; }
+  [[nodiscard]] SettingError of(const std::string& name) const {
+    std::string field = detail::joined({name, ": ", field_});
+    return problem_.empty() ? SettingError(std::move(field), value_, unit_, allowed_) : SettingError(std::move(field), problem_);
+  }
 
   [[nodiscard]] const std::string& field() const noexcept { return field_; }      ///< name of the setting, as in `Scanner::pulse_rate`
-  [[nodiscard]] double value() const noexcept { return value_; }                  ///< value that was refused, in `unit()`
+  [[nodiscard]] double value() const noexcept { return value_; }                  ///< value that was refused, in `unit()`; NaN if none
   [[nodiscard]] const std::string& unit() const noexcept { return unit_; }        ///< SI symbol; empty for a pure number
   [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }  ///< allowed range, in words
 
@@ -54,8 +62,8 @@ class SettingError : public std::invalid_argument {
     return detail::joined({field, " is ", detail::to_text(value), unit.empty() ? "" : " ", unit, ", but must be ", allowed});
   }
 
-  std::string field_, unit_, allowed_;
-  double value_;
+  std::string field_, unit_, allowed_, problem_;
+  double value_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Calls a function. Prefixes `name` to the field of its `SettingError`, unless it is there already.

@@ -10,8 +10,9 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Angle about the body's forward axis: 0 down, positive to the right, in [-pi, pi] [rad]. Made from a direction, it is computed where it
-/// is read.
+/// Angle of a beam from the vertical, about the level heading of the body: 0 straight down, positive to the right, in [-pi, pi] [rad]. It
+/// includes the roll of the body. Made from a direction, it is computed where it is read. Source: ASPRS LAS 1.4 R15, Scan Angle, formats 6
+/// to 10.
 class ScanAngle {
  public:
   ScanAngle() = default;

@@ -19,9 +19,8 @@ namespace PULSECAST_NAMESPACE {
 /// Pass of a platform. An inactive leg takes its time, as a turn between two strips, but has no slots.
 template <WorldSource P>
 struct Leg {
-  P platform;                            ///< carrier of the instrument
-  bool active = true;                    ///< true if pulses are emitted
-  std::optional<std::uint16_t> strip{};  ///< number carried by its pulses, equal for legs of one strip; by default the index in the list
+  P platform;          ///< carrier of the instrument
+  bool active = true;  ///< true if pulses are emitted
 };
 
 /// Passes in sequence, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's own clock starts at zero; the survey's
@@ -37,7 +36,7 @@ class Legs {
     PulseIndex first = 0;
     Tick start{};
     for (Leg<P>& leg : legs) {
-      starts_.push_back({first, start, leg.strip.value_or(static_cast<std::uint16_t>(starts_.size()))});
+      starts_.push_back({first, start});
       if (leg.active && leg.platform.size() > 0) {
         require_within("Legs::legs (slots)", static_cast<double>(first) + static_cast<double>(leg.platform.size()), 0, 0x1p60, "");
         first += leg.platform.size();
@@ -67,7 +66,7 @@ class Legs {
     const PulseIndex slot = i - starts_[k].pulse, left = legs_[k].size() - slot;
     auto p = find_pulses(legs_[k], slot, left < count ? left : count);
     p.tick = p.tick + starts_[k].tick;
-    p.leg.fill(starts_[k].number);
+    p.leg.fill(static_cast<std::uint16_t>(k));
     for (std::uint16_t& emitter : p.emitter) emitter = static_cast<std::uint16_t>(starts_[k].first_emitter + emitter);
     return p;
   }
@@ -93,7 +92,6 @@ class Legs {
   struct Start {
     PulseIndex pulse;
     Tick tick;
-    std::uint16_t number = 0;
     std::uint16_t first_emitter = 0;  // index of its table in that of all legs
   };
 

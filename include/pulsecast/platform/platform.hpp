@@ -65,10 +65,11 @@ class Platform {
     PoseLanes<frame::Body, frame::World> world_from_body;
     [[maybe_unused]] const simd::Mask moved = find_poses(path_, inner.tick, inner.sent, world_from_body);
     PULSECAST_ASSERT(rigid_lanes(world_from_body, moved));
-    const PoseLanes body_from_instrument(mount_.pose());
-    PulseLanes<frame::World> out(world_from_body * body_from_instrument, inner);
-    const Vec3Lanes on_body = body_from_instrument.rotation * (inner.pose.rotation * Vec3Lanes(axis::forward));
-    for (std::size_t lane = 0; lane < simd::lane_count; ++lane) out.scan_angle[lane] = {on_body.x[lane], -on_body.z[lane]};
+    PulseLanes<frame::World> out(world_from_body * PoseLanes(mount_.pose()), inner);
+    const Vec3Lanes beam = out.pose.rotation * Vec3Lanes(axis::forward), ahead = world_from_body.rotation * Vec3Lanes(axis::forward);
+    // the components to the right of the level heading and down, both times the length of the heading on the map
+    const simd::Doubles right = beam.x * ahead.y - beam.y * ahead.x, on_map = simd::sqrt(ahead.x * ahead.x + ahead.y * ahead.y);
+    for (std::size_t lane = 0; lane < simd::lane_count; ++lane) out.scan_angle[lane] = {right[lane], -beam.z[lane] * on_map[lane]};
     return out;
   }
 

@@ -425,7 +425,7 @@ def test_trajectories_and_legs(survey):
     poses, legs = run.trajectory(0.25), run.legs
     assert list(legs["number"]) == [0, 1, 2] and legs["end"][-1] == len(run)
     pulses = run.run().pulses
-    for leg, number in zip(legs, [0, 1, 1], strict=True):  # the last two are a strip
+    for leg, number in zip(legs, [0, 1, 2], strict=True):  # the last two share a strip
         of_leg = (pulses["pulse"] >= leg["first"]) & (pulses["pulse"] < leg["end"])
         assert of_leg.sum() == 2000 and (pulses["leg"][of_leg] == number).all()
     assert (np.diff(poses["time"]) >= 0).all()

@@ -45,7 +45,6 @@ class LegPaths {
  public:
   LegPaths(const SurveySettings& survey, const GroundHeight& ground, const SurveyBuildOptions& options)
       : survey_(survey), options_(options) {
-    if (survey_.legs.empty()) throw SettingError("legs (number)", 0, "", "at least 1");
     place(ground);
     plan_paths(ground);
   }
@@ -57,9 +56,7 @@ class LegPaths {
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
   /// Name of a leg for messages.
-  [[nodiscard]] std::string leg_name(std::size_t k) const {
-    return (k < options_.leg_places.size() ? options_.leg_places[k] + ": leg " : "leg ") + std::to_string(k);
-  }
+  [[nodiscard]] std::string leg_name(std::size_t k) const { return options_.leg_name(k); }
 
   /// Calls a function; prefixes the name of the leg to a `SettingError` of it.
   template <class Function>

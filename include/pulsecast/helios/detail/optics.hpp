@@ -38,6 +38,14 @@ struct OpticClock {
 
 namespace detail {
 
+/// Bins of a channel, limited to the pulse length, as pulses would fall between longer ones, and a pulse to `WaveformSettings::max_samples`
+/// of them [s].
+[[nodiscard]] inline double limited_bin(const ChannelSettings& channel) {
+  constexpr double most = WaveformSettings::max_samples;
+  const double bin = channel.waveform.bin_size, length = channel.pulse_length;
+  return bin > length ? length : length > most * bin ? std::nextafter(length / most, length) : bin;
+}
+
 [[nodiscard]] inline double scan_angle_of(const ChannelSettings& channel, const LegScannerSettings& leg) {
   const double angle = leg.scan_angle.value_or(channel.scan_angle_max);
   return channel.scan_angle_max > 0 ? std::min(angle, channel.scan_angle_max) : angle;
@@ -252,7 +260,7 @@ namespace detail {
                                                       bool library_physics = false, bool follows_light = false) {
   const FullWaveformSettings& s = channel.waveform;
   WaveformSettings out;
-  out.sample_interval = s.bin_size;
+  out.sample_interval = detail::limited_bin(channel);
   out.threshold = channel.received_power_min;
   if (!library_physics) {
     if (!follows_light) out.timing = EchoTiming::true_range;

@@ -54,7 +54,7 @@ struct ReceiverGroups {
 /// Smallest bins of the channels: all are sampled by them, as a batch has one sample interval [s].
 [[nodiscard]] inline double finest_bin(const ScannerSettings& scanner) {
   double finest = std::numeric_limits<double>::infinity();
-  for (const ChannelSettings& channel : scanner.channels) finest = std::min(finest, channel.waveform.bin_size);
+  for (const ChannelSettings& channel : scanner.channels) finest = std::min(finest, detail::limited_bin(channel));
   return finest;
 }
 

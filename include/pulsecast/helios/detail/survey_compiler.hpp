@@ -6,15 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/leg_paths.hpp>
 #include <pulsecast/helios/detail/optics.hpp>
+#include <pulsecast/helios/detail/xml/writer.hpp>
 #include <pulsecast/helios/instrument.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/survey.hpp>
@@ -33,19 +32,14 @@ class SurveyCompiler {
       : survey_(survey), paths_(paths), options_(options) {}
 
   [[nodiscard]] CompiledSurvey compile() const {
-    if (survey_.scanner.channels.empty()) throw SettingError("channels (number)", 0, "", "at least 1");
-    survey_.scanner.validate();
-    survey_.platform.validate();
     std::vector<Leg<SurveyLeg>> legs;
     std::vector<CompiledSurvey::Leg> compiled;
     std::vector<std::string> warnings = paths_.warnings();
     PulseIndex first = 0;
     Tick start{};
     double optic_time = 0;
-    std::unordered_map<std::string, std::size_t> strips;  // first leg of each strip
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
-      paths_.of_leg(k, [&] { leg.validate(); });
       const double rate = paths_.of_leg(k, [&] { return pulse_rate_of(survey_.scanner, leg.scanner); });
       const double duration = duration_of(k), way = paths_[k].duration;
       if (way > 0 && duration > 1.1 * way && leg.scanner.active)
@@ -68,8 +62,7 @@ class SurveyCompiler {
         noise.position = survey_.platform.position_noise;
         noise.attitude = survey_.platform.attitude_noise;
       }
-      legs.push_back(
-          {SurveyLeg(paths_[k].path, mount, std::move(instrument), std::move(noise)), leg.scanner.active, strip_of(k, leg, strips)});
+      legs.push_back({SurveyLeg(paths_[k].path, mount, std::move(instrument), std::move(noise)), leg.scanner.active});
       const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
       compiled.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size;
@@ -88,11 +81,6 @@ class SurveyCompiler {
   /// Time for messages, rounded to the millisecond.
   [[nodiscard]] static std::string brief(double seconds) { return pulsecast::detail::to_text(std::round(seconds * 1e3) / 1e3); }
 
-  /// Strip number of the leg's pulses: index of the first leg of the strip.
-  [[nodiscard]] static std::uint16_t strip_of(std::size_t k, const LegSettings& leg, std::unordered_map<std::string, std::size_t>& first) {
-    return static_cast<std::uint16_t>(leg.strip ? first.try_emplace(*leg.strip, k).first->second : k);
-  }
-
   /// Duration of a leg: until the platform has arrived and the head has turned, but at most `duration_max` [s].
   [[nodiscard]] double duration_of(std::size_t k) const {
     const LegSettings& leg = survey_.legs[k];
@@ -101,14 +89,7 @@ class SurveyCompiler {
     const bool stands = paths_[k].duration == 0;
     double duration = paths_[k].duration;
     if (only_ends(survey_, k)) return 0;
-    if (speed != 0 && turn / speed > 0)
-      duration = std::max(duration, turn / speed - s.warm_up);
-    else if (turns_away(s))
-      throw SettingError(paths_.leg_name(k) + ": headRotateStop_deg", degrees(s.head_stop), "deg",
-                         "ahead of headRotateStart_deg in the head's direction of rotation");
-    else if (head_never_stops(survey_.scanner.channels.front(), leg) && s.active)
-      throw SettingError(paths_.leg_name(k) + ": headRotatePerSec_deg", degrees(s.head_speed), "deg/s",
-                         "other than 0, like headRotatePerSecMax_deg, as the leg would never end otherwise");
+    if (speed != 0 && turn / speed > 0) duration = std::max(duration, turn / speed - s.warm_up);
     if (leg.duration_max) {
       const double most = *leg.duration_max;
       return stands && duration == 0 ? most : std::min(duration, most);
@@ -129,8 +110,12 @@ class SurveyCompiler {
 
 PULSECAST_INLINE CompiledSurvey compile_survey(const SurveySettings& survey, const GroundHeight& ground,
                                                const SurveyBuildOptions& options) {
+  const std::vector<std::string> notes = detail::document_of(survey, [&](std::size_t k) { return options.leg_name(k); }).notes();
   const LegPaths paths(survey, ground, options);
-  return detail::SurveyCompiler(survey, paths, options).compile();
+  CompiledSurvey compiled = detail::SurveyCompiler(survey, paths, options).compile();
+  if (options.leg_places.empty())
+    compiled.warnings.insert(compiled.warnings.begin(), notes.begin(), notes.end());  // else told by the reader
+  return compiled;
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SURVEY_OPTIONS_HPP
 #define PULSECAST_HELIOS_DETAIL_SURVEY_OPTIONS_HPP
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -18,7 +19,13 @@ struct SurveyBuildOptions {
   std::uint64_t seed = 0;                 ///< seed of leg offsets and noise
   bool platform_noise = true;             ///< true: platform noise as in the survey; false: none
   bool leg_noise = true;                  ///< true: random leg offsets as in the survey; false: none
-  std::vector<std::string> leg_places{};  ///< place of each leg in its document, for messages: `survey.xml:12:5`. May be empty
+  std::vector<std::string> leg_places{};  ///< place of each leg in its document, for messages: `survey.xml:12:5`. May be empty,
+                                          ///< for settings of a program: then the notes of `read_survey` are given with the others
+
+  /// Name of a leg for messages.
+  [[nodiscard]] std::string leg_name(std::size_t k) const {
+    return (k < leg_places.size() ? leg_places[k] + ": leg " : "leg ") + std::to_string(k);
+  }
 };
 
 /// Height of the ground at a place [m], none where there is no ground.

@@ -33,6 +33,8 @@ void components(Io& io, Of<Io, Vec3>& v, double largest = max_coordinate) {
 /// Child with the components of a direction.
 template <class Io>
 void direction(Io& io, const char* name, Of<Io, Vec3>& v) {
+  if constexpr (!Io::reads)
+    if (!(length(v) > 0)) io.fault(name, std::string(name) + " has no direction");
   io.child(name, [&](auto& inner) {
     if constexpr (Io::reads) {
       Vec3 found{};
@@ -43,7 +45,7 @@ void direction(Io& io, const char* name, Of<Io, Vec3>& v) {
         inner.report().warn(inner.place(), "<" + std::string(name) + "> is shorter than 0.1 and has no effect");
       }
     } else {
-      components(inner, v);
+      components(inner, length(v) > 0.1 ? v : normalize(v));
     }
   });
 }

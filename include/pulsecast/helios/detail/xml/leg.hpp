@@ -12,8 +12,14 @@
 #include <pulsecast/helios/detail/xml/fields.hpp>
 #include <pulsecast/helios/settings.hpp>
 
-/// `<platformSettings>` and `<scannerSettings>` of a leg.
+/// `<platformSettings>` and `<scannerSettings>` of a leg, and the offsets of all.
 namespace PULSECAST_NAMESPACE::helios::xml {
+
+template <class Io>
+void fields(Io& io, Of<Io, LegOffsetSettings>& offset) {
+  io.number("legRandomOffsetMean", offset.mean, units::metre, -1e6, 1e6);
+  io.number("legRandomOffsetStdev", offset.deviation, units::metre, 0, 1e6);
+}
 
 template <class Io>
 void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
@@ -51,8 +57,7 @@ void fields(Io& io, Of<Io, TrajectorySettings>& trajectory) {
   }
   io.number("tStart", trajectory.start, units::second, -1e12, 1e12);
   io.number("tEnd", trajectory.end, units::second, -1e12, 1e12);
-  if constexpr (Io::reads)
-    if (trajectory.start && trajectory.end && !(*trajectory.start < *trajectory.end)) io.fault("tEnd", "tEnd is not after tStart");
+  if (trajectory.start && trajectory.end && !(*trajectory.start < *trajectory.end)) io.fault("tEnd", "tEnd is not after tStart");
 }
 
 template <class Io>

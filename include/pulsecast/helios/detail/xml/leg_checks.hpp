@@ -8,30 +8,61 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
-
-#include <pugixml.hpp>
 
 #include <pulsecast/helios/detail/optics.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
-#include <pulsecast/helios/detail/xml/library.hpp>
+#include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/settings.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Checks the legs of a survey against its scanner and platform. Faults: legs that never end, give no pulse, or exceed the device.
+/// Checks the legs of a survey against its scanner and platform, as they are read from a document or, for settings of a program, written to
+/// one. Faults: legs that never end, give no pulse, or exceed the device.
 class LegChecks {
  public:
   /// `survey` must have a scanner with a channel.
-  LegChecks(const XmlLibraryDocument& document, const SurveySettings& survey, XmlReport& report)
-      : document_(document), survey_(survey), report_(report) {}
+  explicit LegChecks(const SurveySettings& survey) : survey_(survey) {}
 
-  /// Checks one leg and its path; `leg` is its element, `resolution` its `verticalResolution_deg`, 0 if it has none [rad].
-  void check(pugi::xml_node leg, std::size_t i, double resolution = 0) const {
-    check_platform(leg, i);
-    if (!only_ends(survey_, i)) check_scanner(leg, i, resolution);
+  /// Checks the path of a leg; `io` is that of its `<platformSettings>`.
+  template <class Io>
+  void check_platform(Io& io, std::size_t i) const {
+    const LegSettings& settings = survey_.legs[i];
+    const LegPlatformSettings& platform = settings.platform;
+    const bool follows = survey_.platform.kind == PlatformKind::interpolated;
+    if (follows) {
+      if (!platform.trajectory || platform.trajectory->file.empty())
+        io.fault("trajectory", "<platformSettings> has no attribute 'trajectory', which platform=\"interpolated\" follows");
+      return;
+    }
+    if (platform.trajectory) io.warn("trajectory", "trajectory attributes have no effect unless platform=\"interpolated\"");
+    if constexpr (Io::reads) check_ground(io, platform);
+    if (survey_.platform.kind != PlatformKind::multicopter) {
+      const char* const why = " has no effect with this type of platform";
+      if (platform.smooth_turn) io.warn("smoothTurn", std::string("a smooth turn") + why);
+      if (platform.yaw_at_departure) io.warn("yawAtDeparture_deg", std::string("yawAtDeparture_deg") + why);
+    }
+    if (legs_connect(survey_.platform.kind)) check_way(io, i);
+  }
+
+  /// Checks the scanner's part of a leg; `io` is that of its `<scannerSettings>`, `resolution` its `verticalResolution_deg`, 0 if it has
+  /// none [rad].
+  template <class Io>
+  void check_scanner(Io& io, std::size_t i, double resolution = 0) const {
+    if (only_ends(survey_, i)) return;
+    const LegSettings& settings = survey_.legs[i];
+    const LegScannerSettings& s = settings.scanner;
+    const ChannelSettings& device = survey_.scanner.channels.front();
+    check_head(io, device, settings, i);
+    if (!s.active) return;
+    check_rates(io, device, s, resolution);
+    if (s.scan_angle && detail::scan_angle_of(device, s) < *s.scan_angle)
+      io.warn("scanAngle_deg",
+              "scanAngle_deg exceeds the scanner's maximum: it is limited to " + xml_number(units::degree.number(device.scan_angle_max)));
+    check_gate(io, device, s);
   }
 
  private:
@@ -41,39 +72,23 @@ class LegChecks {
   /// Computed number, to six decimals.
   [[nodiscard]] static std::string brief(double value) { return xml_number(std::round(value * 1e6) / 1e6); }
 
-  void check_platform(pugi::xml_node leg, std::size_t i) const {
+  template <class Io>
+  void check_way(Io& io, std::size_t i) const {
     const LegSettings& settings = survey_.legs[i];
-    const LegPlatformSettings& platform = settings.platform;
-    const XmlInput io(document_.document(), leg.child("platformSettings"), report_, document_.search());
-    const bool follows = survey_.platform.kind == PlatformKind::interpolated;
-    if (follows) {
-      if (!platform.trajectory || platform.trajectory->file.empty())
-        io.fault("trajectory", "<platformSettings> has no attribute 'trajectory', which platform=\"interpolated\" follows");
-      return;
-    }
-    if (platform.trajectory) io.warn("trajectory", "trajectory attributes have no effect unless platform=\"interpolated\"");
-    check_ground(io, platform);
-    if (survey_.platform.kind != PlatformKind::multicopter) {
-      const char* const why = " has no effect with this type of platform";
-      if (platform.smooth_turn) io.warn("smoothTurn", std::string("a smooth turn") + why);
-      if (platform.yaw_at_departure) io.warn("yawAtDeparture_deg", std::string("yawAtDeparture_deg") + why);
-    }
-    if (!legs_connect(survey_.platform.kind)) return;
     const std::size_t legs = survey_.legs.size();
     const bool turns = settings.scanner.head_stop != settings.scanner.head_start;
     if (legs == 1 && !settings.duration_max && !turns)
-      io.report().fault(io.place(),
-                        "the only leg of a moving platform: expected another <leg> as its destination, or maxDuration_s "
-                        "of its stay here");
+      io.fault("maxDuration_s",
+               "the only leg of a moving platform: expected another <leg> as its destination, or maxDuration_s of its stay here");
     if (only_ends(survey_, i) && settings.duration_max && settings.scanner.active)
-      io.report().warn(io.place(),
-                       "the last leg of a moving platform is the end of its path, and has no pulses: to stay there for "
-                       "maxDuration_s, expected another <leg> at the same position");
+      io.warn("",
+              "the last leg of a moving platform is the end of its path, and has no pulses: to stay there for "
+              "maxDuration_s, expected another <leg> at the same position");
     if (i + 1 == legs) return;
     if (stays_in_place(survey_.legs, i)) {
       if (!settings.duration_max && !turns)
         io.warn("x", "the next leg begins at the same position, so this one ends at once: maxDuration_s would be the duration of a stay");
-    } else if (platform.speed == 0) {
+    } else if (settings.platform.speed == 0) {
       io.fault("movePerSec_m", "the leg never ends: movePerSec_m is 0; expected a speed");
     }
   }
@@ -85,14 +100,9 @@ class LegChecks {
       io.fault("onGround", "nothing in the scene is ground: expected a material with helios_isGround in an MTL file of it");
   }
 
-  void check_scanner(pugi::xml_node leg, std::size_t i, double resolution) const {
-    const LegSettings& settings = survey_.legs[i];
-    const LegScannerSettings& s = settings.scanner;
-    const pugi::xml_node own = leg.child("scannerSettings");
-    const XmlInput io(document_.document(), own ? own : leg, report_, document_.search());
-    const ChannelSettings& device = survey_.scanner.channels.front();
-    check_head(io, device, settings, i);
-    if (!s.active) return;
+  template <class Io>
+  void check_rates(Io& io, const ChannelSettings& device, const LegScannerSettings& s, double resolution) const {
+    const double pulse_rate = pulse_rate_of(survey_.scanner, s);
     const auto hertz = [](double value) { return xml_number(value) + " Hz"; };
     const auto limit = [&](const char* expected, const char* name, double frequency) {
       if (resolution == 0) {
@@ -101,7 +111,7 @@ class LegChecks {
         return;
       }
       io.fault("verticalResolution_deg", "verticalResolution_deg of " + brief(degrees(resolution)) + " takes " + brief(s.scan_frequency) +
-                                             " lines a second at " + hertz(s.pulse_rate) + ": expected " + expected + ' ' +
+                                             " lines a second at " + hertz(pulse_rate) + ": expected " + expected + ' ' +
                                              brief(degrees(resolution) * frequency / s.scan_frequency) + ", for the scanner's " + name +
                                              " is " + hertz(frequency));
     };
@@ -109,18 +119,15 @@ class LegChecks {
     if (detail::scans_too_fast(device, s)) limit("at most", "scanFreqMax_Hz", device.scan_frequency_max);
     if (s.scan_frequency == 0 && std::holds_alternative<OscillatingOptic>(device.optic))
       io.fault("scanFreq_hz", "scanFreq_hz is 0, so the mirror does not swing: expected a frequency");
-    if (s.scan_frequency >= s.pulse_rate)
-      io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected less than pulseFreq_hz, " + hertz(s.pulse_rate));
+    if (s.scan_frequency >= pulse_rate)
+      io.fault("scanFreq_hz", "scanFreq_hz is " + hertz(s.scan_frequency) + ": expected less than pulseFreq_hz, " + hertz(pulse_rate));
     const std::vector<double>& rates = survey_.scanner.pulse_rates;
-    if (std::find(rates.begin(), rates.end(), s.pulse_rate) == rates.end())
-      io.warn("pulseFreq_hz", "pulseFreq_hz of " + hertz(s.pulse_rate) + " is not one of the scanner's pulse rates");
-    if (s.scan_angle && detail::scan_angle_of(device, s) < *s.scan_angle)
-      io.warn("scanAngle_deg",
-              "scanAngle_deg exceeds the scanner's maximum: it is limited to " + xml_number(units::degree.number(device.scan_angle_max)));
-    check_gate(io, device, s);
+    if (!rates.empty() && std::find(rates.begin(), rates.end(), pulse_rate) == rates.end())
+      io.warn("pulseFreq_hz", "pulseFreq_hz of " + hertz(pulse_rate) + " is not one of the scanner's pulse rates");
   }
 
-  void check_gate(const XmlInput& io, const ChannelSettings& device, const LegScannerSettings& s) const {
+  template <class Io>
+  void check_gate(Io& io, const ChannelSettings& device, const LegScannerSettings& s) const {
     const auto* const rotating = std::get_if<RotatingOptic>(&device.optic);
     if (!rotating) {
       if (s.vertical_angle_min || s.vertical_angle_max)
@@ -139,9 +146,14 @@ class LegChecks {
                                           " deg: they are limited to " + in_degrees(low) + " and " + in_degrees(high) + " deg");
   }
 
-  void check_head(const XmlInput& io, const ChannelSettings& device, const LegSettings& settings, std::size_t i) const {
+  template <class Io>
+  void check_head(Io& io, const ChannelSettings& device, const LegSettings& settings, std::size_t i) const {
     const LegScannerSettings& s = settings.scanner;
     const double speed = head_rate(device, s);
+    for (const auto& [name, angle] : {std::pair("headRotateStart_deg", s.head_start), std::pair("headRotateStop_deg", s.head_stop)})
+      if (looks_like_degrees(angle))
+        io.warn(name, std::string(name) + " is " + brief(degrees(angle)) + ", " + brief(angle / (2 * pi)) +
+                          " turns of the head: given in degrees, not radians?");
     if (s.head_speed != speed)
       io.warn("headRotatePerSec_deg", device.head_speed_max == 0
                                           ? "headRotatePerSec_deg has no effect: the scanner's headRotatePerSecMax_deg is 0"
@@ -158,15 +170,13 @@ class LegChecks {
     if (!stays(i) || s.head_stop != s.head_start) return;
     if (speed == 0 && legs_connect(survey_.platform.kind)) return;  // reported already
     if (speed == 0)
-      io.report().fault(io.place(), "the leg never ends: neither platform nor head moves; expected maxDuration_s" +
-                                        std::string(i == 0 ? "" : " for each leg"));
+      io.fault("maxDuration_s",
+               "the leg never ends: neither platform nor head moves; expected maxDuration_s" + std::string(i == 0 ? "" : " for each leg"));
     else
       io.warn("headRotateStop_deg", "headRotateStop_deg equals headRotateStart_deg: the leg ends at once");
   }
 
-  const XmlLibraryDocument& document_;
   const SurveySettings& survey_;
-  XmlReport& report_;
   mutable std::optional<bool> has_ground_{};
 };
 

@@ -46,10 +46,16 @@ class LegReader {
     }
     if (nodes.empty()) report_.fault(io.place(), "<survey> holds no <leg>: nothing would be scanned");
     if (!report_.is_clean()) return places;
-    const LegChecks checks(document_, survey_, report_);
+    const LegChecks checks(survey_);
     bool is_active = false;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      checks.check(nodes[i], i, resolutions[i]);
+      const auto in = [&](const char* element) {
+        const pugi::xml_node own = nodes[i].child(element);
+        return XmlInput(document, own ? own : nodes[i], report_, document_.search());
+      };
+      const XmlInput platform = in("platformSettings"), scanner = in("scannerSettings");
+      checks.check_platform(platform, i);
+      checks.check_scanner(scanner, i, resolutions[i]);
       if (survey_.platform.kind != PlatformKind::interpolated) survey_.legs[i].platform.trajectory.reset();
       is_active = is_active || survey_.legs[i].scanner.active;
     }

@@ -27,7 +27,8 @@ void axis(Io& io, const char* name, Of<Io, Vec3>& v) {
 }
 
 /// Reports an axis or normal without a direction.
-inline void check_axis(const XmlInput& io, const char* name, const Vec3& v) {
+template <class Io>
+void check_axis(const Io& io, const char* name, const Vec3& v) {
   if (!has_direction(v)) io.fault(name, std::string(name) + " is too short for a direction");
 }
 
@@ -60,27 +61,24 @@ bool rotation_fields(Io& io, Of<Io, RotationMotion>& rotation, MotionKind kind) 
     if constexpr (Io::reads) rotation.glide = 0;
     io.number("glide", *rotation.glide, units::one, -1e9, 1e9);
   }
-  if constexpr (Io::reads) {
-    if (!has_direction(rotation.axis) && rotation.angle == 0) {
-      io.warn("axis", "axis is too short for a direction, and angle is 0: the motion does nothing");
-      return false;
-    }
-    check_axis(io, "axis", rotation.axis);
+  if (!has_direction(rotation.axis) && rotation.angle == 0) {
+    io.warn("axis", "axis is too short for a direction, and angle is 0: the motion does nothing");
+    return false;
   }
+  check_axis(io, "axis", rotation.axis);
   return true;
 }
 
 template <class Io>
 void reflection_fields(Io& io, Of<Io, ReflectionMotion>& plane, MotionKind kind) {
   axis(io, "ortho", plane.normal);
-  if constexpr (Io::reads) check_axis(io, "ortho", plane.normal);
+  check_axis(io, "ortho", plane.normal);
   if (kind != MotionKind::glide_plane) return;
   io.require({"shift"});
   if constexpr (Io::reads) plane.shift = Vec3{};
   io.vector("shift", *plane.shift, max_coordinate);
-  if constexpr (Io::reads)
-    if (std::abs(dot(*plane.shift, plane.normal)) > 1e-6 * length(*plane.shift) * length(plane.normal))
-      io.fault("shift", "shift is not along the plane: expected it at right angles to ortho");
+  if (std::abs(dot(*plane.shift, plane.normal)) > 1e-6 * length(*plane.shift) * length(plane.normal))
+    io.fault("shift", "shift is not along the plane: expected it at right angles to ortho");
 }
 
 template <class Io>
@@ -107,7 +105,7 @@ void fields(Io& io, Of<Io, MotionSettings>& motion) {
     reflection_fields(io, *p, kind);
   } else if (auto* s = std::get_if<RotoreflectionMotion>(&motion.kind)) {
     axis(io, "axis", s->axis);
-    if constexpr (Io::reads) check_axis(io, "axis", s->axis);
+    check_axis(io, "axis", s->axis);
     io.require({"angle"});
     io.number("angle", s->angle, units::degree, -36000, 36000);
     io.vector("center", s->center, max_coordinate);
@@ -123,9 +121,8 @@ void fields(Io& io, Of<Io, MotionSequenceSettings>& sequence) {
   io.whole("loop", sequence.loop, 0, 2'000'000'000);
   io.text("next", sequence.next);
   io.children("motion", sequence.motions, [](auto& inner, auto& motion) { fields(inner, motion); });
-  if constexpr (Io::reads)
-    if (const std::string problem = motion_problem(sequence); !problem.empty())
-      io.report().fault(io.place(), "<dmotion id=" + text::quoted(sequence.id) + "> is not supported: expected " + problem);
+  if (const std::string problem = motion_problem(sequence); !problem.empty())
+    io.fault("", "<dmotion id=" + text::quoted(sequence.id) + "> is not supported: expected " + problem);
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios::xml

@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/base/require.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/base/vector.hpp>
 
@@ -55,6 +56,9 @@ inline constexpr XmlUnit one{}, metre{"m"}, second{"s"}, hertz{"Hz"}, radian{"ra
 inline constexpr XmlUnit degree{"deg", std::numbers::pi / 180}, kilometre{"km", 1e3}, nanosecond{"ns", 1, 1e9}, nanometre{"nm", 1, 1e9},
     nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", std::numbers::pi / 180};
 }  // namespace units
+
+/// True for an angle beyond a turn that is whole in radians, as one that was given in degrees [rad].
+[[nodiscard]] inline bool looks_like_degrees(double angle) noexcept { return std::fabs(angle) > max_angle && angle == std::round(angle); }
 
 /// Number as text, without an exponent where that is legible.
 [[nodiscard]] inline std::string xml_number(double value) {

@@ -24,10 +24,8 @@ void fields(Io& io, Of<Io, NoiseSettings>& noise) {
   io.number("clipMin", noise.clip_low, units::one, -1e6, 1e6);
   io.number("clipMax", noise.clip_high, units::one, -1e6, 1e6);
   io.whole("fixedLifespan", noise.lifespan, 0, 1'000'000'000);
-  if constexpr (Io::reads) {
-    if (noise.distribution == NoiseDistribution::uniform && !(noise.low <= noise.high)) io.fault("max", "max is below min");
-    if (noise.clipped && !(noise.clip_low <= noise.clip_high)) io.fault("clipMax", "clipMax is below clipMin");
-  }
+  if (noise.distribution == NoiseDistribution::uniform && !(noise.low <= noise.high)) io.fault("max", "max is below min");
+  if (noise.clipped && !(noise.clip_low <= noise.clip_high)) io.fault("clipMax", "clipMax is below clipMin");
 }
 
 /// Six noise elements, of a platform or of a survey; a later one replaces an earlier one.

@@ -90,7 +90,8 @@ void fields(Io& io, Of<Io, OpticSettings>& optic) {
 }
 
 /// Reports a formula that is invalid, or not finite between two values of its variable.
-inline void check_formula(const XmlInput& io, const char* name, const std::string& text, const char* variable, double low, double high) {
+template <class Io>
+void check_formula(const Io& io, const char* name, const std::string& text, const char* variable, double low, double high) {
   constexpr int places = 256;
   try {
     if (text.empty()) return;
@@ -109,7 +110,7 @@ void formula(Io& io, const char* name, Of<Io, std::string>& text, More more) {
   const auto all = [&](auto& inner) {
     inner.require({"expr"});
     inner.text("expr", text);
-    if constexpr (Io::reads) check_formula(inner, "expr", text, "THETA", -std::numbers::pi, std::numbers::pi);
+    check_formula(inner, "expr", text, "THETA", -std::numbers::pi, std::numbers::pi);
     more(inner);
   };
   if constexpr (Io::reads) {
@@ -137,19 +138,32 @@ void detector_fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("rangeMax_m", channel.range_max, units::metre, 0, any);
 }
 
-/// Reads the factor of the noise, after `detector_fields`.
-inline void range_noise(XmlInput& io, ChannelSettings& channel) {
+/// Factor of the noise, after `detector_fields`.
+template <class Io>
+void range_noise(Io& io, Of<Io, ChannelSettings>& channel) {
   static constexpr const char* name = "distanceMeasurementError";
-  io.text(name, channel.errors.range_noise);
+  if (Io::reads || !channel.errors.range_noise.empty()) io.text(name, channel.errors.range_noise);
   if (channel.errors.range_noise.empty()) return;
-  const std::size_t faults = io.report().faults();
+  [[maybe_unused]] std::size_t faults = 0;
+  if constexpr (Io::reads) faults = io.report().faults();
   check_formula(io, name, channel.errors.range_noise, "t", channel.range_min, std::min(channel.range_max, 1e6));
-  if (io.report().faults() != faults || !(channel.range_min < channel.range_max)) return;
+  if constexpr (Io::reads)
+    if (io.report().faults() != faults) return;
+  if (!(channel.range_min < channel.range_max)) return;
   try {
     (void)survey_receiver(channel);
   } catch (const SettingError& error) {
     io.fault(name, error.what());
   }
+}
+
+/// Note on bins that are limited; empty for others.
+inline std::string bin_note(const ChannelSettings& channel) {
+  const double bin = channel.waveform.bin_size, length = channel.pulse_length, limited = detail::limited_bin(channel);
+  const auto ns = [](double seconds) { return xml_number(units::nanosecond.number(seconds)) + " ns"; };
+  return bin == limited ? ""
+                        : "binSize_ns is " + ns(bin) + ", and pulses are " + ns(length) + " long: it is limited to " + ns(limited) +
+                              "; expected bins from " + ns(length / WaveformSettings::max_samples) + " to " + ns(length);
 }
 
 /// Attributes of a scanner or of each of its channels.
@@ -177,31 +191,29 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("receivedEnergyMin_W", channel.received_power_min, units::nanowatt, 0, 1e12);
   io.child("FWFSettings", [&](auto& inner) { fields(inner, channel.waveform); });
   fields(io, channel.errors);
-  // Extension: a survey has it in <detectorSettings>.
-  if constexpr (Io::reads) {
-    range_noise(io, channel);
-  } else if (!channel.errors.range_noise.empty()) {
-    io.text("distanceMeasurementError", channel.errors.range_noise);
-  }
+  range_noise(io, channel);  // extension: a survey has it in <detectorSettings>
 }
 
 /// Checks limits against each other.
-inline void check(const XmlInput& io, ChannelSettings& channel) {
+template <class Io>
+void check(Io& io, Of<Io, ChannelSettings>& channel) {
   if (!(channel.range_min < channel.range_max)) io.fault("rangeMax_m", "rangeMax_m is not beyond rangeMin_m: nothing could be measured");
   if (channel.scan_frequency_max > 0 && channel.scan_frequency_max < channel.scan_frequency_min)
     io.fault("scanFreqMax_Hz", "scanFreqMax_Hz is below scanFreqMin_Hz");
   const auto* const rotating = std::get_if<RotatingOptic>(&channel.optic);
   if (!rotating && (!channel.errors.deflection.empty() || !channel.errors.head.empty())) {
     io.warn("optics", "<deflectionError> and <headError> have no effect with these optics");
-    channel.errors.deflection.clear();
-    channel.errors.head.clear();
+    if constexpr (Io::reads) channel.errors.deflection = channel.errors.head = "";
   }
   if (rotating && rotating->effective_angle_max.value_or(1) == 0)
     io.fault("scanAngleEffectiveMax_deg", "scanAngleEffectiveMax_deg is 0: no pulse is emitted");
   const auto* const risley = std::get_if<RisleyOptic>(&channel.optic);
   if (risley && risley->prisms[0].angle == 0 && risley->prisms[1].angle == 0 && risley->prisms[2].angle == 0)
-    io.report().warn(io.place("optics"), "no prism has an angle: the beam is not deflected");
+    io.warn("optics", "no prism has an angle: the beam is not deflected");
 }
+
+inline constexpr double least_rate = 1e-3, most_rate = 1e8;  ///< pulse rates of a scanner [Hz]
+inline constexpr std::size_t most_rates = 1000;              ///< number of them
 
 /// `pulseFreqs_Hz`: numbers separated by commas.
 template <class Io>
@@ -219,9 +231,9 @@ void pulse_rates(Io& io, Of<Io, std::vector<double>>& rates) {
         rest.remove_prefix(end + 1);
         continue;
       }
-      if (!rate || !(*rate >= 1e-3 && *rate <= 1e8) || rates.size() == 1000) {
-        io.fault("pulseFreqs_Hz",
-                 XmlInput::said("pulseFreqs_Hz", *text) + ": expected numbers from 0.001 to 100000000 Hz, with commas between");
+      if (!rate || !(*rate >= least_rate && *rate <= most_rate) || rates.size() == most_rates) {
+        io.fault("pulseFreqs_Hz", XmlInput::said("pulseFreqs_Hz", *text) + ": expected numbers from " + xml_number(least_rate) + " to " +
+                                      xml_number(most_rate) + " Hz, with commas between");
         return;
       }
       rates.push_back(*rate);
@@ -230,6 +242,8 @@ void pulse_rates(Io& io, Of<Io, std::vector<double>>& rates) {
     }
   } else {
     std::string text;
+    require_within("pulseFreqs_Hz (number)", static_cast<double>(rates.size()), 0, most_rates, "");
+    for (const double rate : rates) require_within("pulseFreqs_Hz", rate, least_rate, most_rate, "Hz");
     for (const double rate : rates) text.append(text.empty() ? "" : ",").append(xml_number(rate));
     io.text("pulseFreqs_Hz", text);
   }
@@ -257,6 +271,7 @@ void fields(Io& io, Of<Io, ScannerSettings>& scanner) {
     if (!has_channels || scanner.channels.empty()) check(io, scanner.channels.emplace_back(std::move(common)));
   } else if (scanner.channels.size() == 1 && scanner.channels.front().id.empty()) {
     fields(io, scanner.channels.front());
+    check(io, scanner.channels.front());
   } else {
     if (!scanner.channels.empty())
       fields(io, optic_of(scanner.channels.front().optic.index(), std::make_index_sequence<std::variant_size_v<OpticSettings>>()));
@@ -264,6 +279,7 @@ void fields(Io& io, Of<Io, ScannerSettings>& scanner) {
       list.children("channel", scanner.channels, [](auto& inner, const ChannelSettings& channel) {
         inner.text("id", channel.id);
         fields(inner, channel);
+        check(inner, channel);
       });
     });
   }

@@ -30,6 +30,9 @@ namespace PULSECAST_NAMESPACE::helios::xml {
 inline constexpr std::array loaders{"objloader", "geotiffloader", "xyzloader", "detailedvoxels", "meshloader"};
 static_assert(loaders.size() == std::variant_size_v<PartSource>);
 
+inline constexpr double least_scale = 1e-30, most_scale = 1e9;  ///< of a part, except 0, which has no effect
+inline constexpr int most_on_ground = 1'000'000;                ///< `onGround` of a part
+
 /// Writes the filters of a part or swap.
 inline void filters(XmlOutput& io, const PartSource* source, const TransformSettings& transform) {
   const auto filter = [&](const char* type) {
@@ -41,7 +44,7 @@ inline void filters(XmlOutput& io, const PartSource* source, const TransformSett
     XmlOutput loader = filter(loaders[source->index()]);
     std::visit([&](const auto& of_kind) { fields(loader, of_kind); }, *source);
   }
-  if (transform.scale != 1) filter("scale").number("scale", transform.scale, units::one, 0, any);
+  if (transform.scale != 1) filter("scale").number("scale", transform.scale, units::one, least_scale, most_scale);
   for (const RotationList& rotation : transform.rotations) {
     pugi::xml_node param = filter("rotate").node().append_child("param");
     param.append_attribute("type").set_value("rotation");
@@ -52,7 +55,7 @@ inline void filters(XmlOutput& io, const PartSource* source, const TransformSett
   if (transform.translation == Vec3{} && transform.on_ground == 0) return;
   XmlOutput translate = filter("translate");
   translate.vector("offset", transform.translation, max_coordinate);
-  translate.whole("onGround", transform.on_ground, 0, 0);
+  translate.whole("onGround", transform.on_ground, -most_on_ground, most_on_ground);
 }
 
 /// Source of a loading filter by its type; empty for another filter.
@@ -88,10 +91,10 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       once(node, is_scaled);
       filter.require({"scale"});
       double scale = 0;
-      filter.number("scale", scale, units::one, 0, 1e9);
+      filter.number("scale", scale, units::one, 0, most_scale);
       if (scale != 0) transform.scale = scale;
       if (scale == 0 && filter.has("scale")) filter.warn("scale", "a scale of 0 has no effect");
-      if (scale > 0 && scale < 1e-30) filter.fault("scale", "the scale is less than 1e-30: expected 0, or from there to 1e9");
+      if (scale > 0 && scale < least_scale) filter.fault("scale", "the scale is less than 1e-30: expected 0, or from there to 1e9");
     } else if (is("rotate")) {
       filter.require({"rotation"});
       filter.know({"rotation"});
@@ -107,7 +110,7 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
       transform.translation = {};
       transform.on_ground = 0;
       filter.vector("offset", transform.translation, max_coordinate);
-      filter.whole("onGround", transform.on_ground, -1'000'000, 1'000'000);
+      filter.whole("onGround", transform.on_ground, -most_on_ground, most_on_ground);
     } else {
       io.report().fault(io.document().place(node, "type"),
                         XmlInput::said("type", type) + " of a filter is not known" + text::suggestion(type, types));
@@ -116,6 +119,21 @@ inline void filters(XmlInput& io, std::optional<PartSource>& source, TransformSe
     }
     filter.finish();
   }
+}
+
+/// Reports the `SettingError` of a check, of which that of a writer is the fault itself.
+template <class Check>
+void valid(const XmlInput& io, const Check& check) {
+  try {
+    check();
+  } catch (const SettingError& wrong) {
+    io.fault("", wrong.what());
+  }
+}
+/// As above.
+template <class Check>
+void valid(const XmlOutput&, const Check& check) {
+  check();
 }
 
 template <class Io>
@@ -140,31 +158,42 @@ void fields(Io& io, Of<Io, AttributeSettings>& attribute) {
   io.number("value", attribute.value, units::one, -any, any);
 }
 
+/// Steps of moving parts, of a scene or a part.
+template <class Io, class Settings>
+void timing_fields(Io& io, Settings& settings) {
+  io.whole("dynStep", settings.dynamic_step, 1, 1'000'000'000);
+  io.number("dynTimeStep", settings.dynamic_interval, units::second, 1e-9, 1e6);
+}
+
+/// True if the successor of a sequence is not one of its part.
+inline bool lacks_next(const PartSettings& part, const MotionSequenceSettings& sequence) {
+  const auto is_next = [&](const MotionSequenceSettings& other) { return other.id == sequence.next; };
+  return sequence.next && std::none_of(part.motions.begin(), part.motions.end(), is_next);
+}
+
 /// Attributes and children of a part, except its geometry and id.
 template <class Io>
 void dynamic_fields(Io& io, Of<Io, PartSettings>& part) {
-  io.whole("dynStep", part.dynamic_step, 1, 1'000'000'000);
-  io.number("dynTimeStep", part.dynamic_interval, units::second, 1e-9, 1e6);
+  timing_fields(io, part);
   io.children("dmotion", part.motions, [](auto& inner, auto& sequence) { fields(inner, sequence); });
   io.children("swap", part.swaps, [](auto& inner, auto& swap) { fields(inner, swap); });
   io.children("attribute", part.attributes, [](auto& inner, auto& attribute) { fields(inner, attribute); });
+  valid(io, [&] { static_cast<void>(part.named_numbers()); });
   if constexpr (Io::reads) {
-    try {
-      static_cast<void>(part.named_numbers());
-    } catch (const SettingError& wrong) {
-      io.report().fault(io.place(), wrong.what());
-    }
     io.without_effect({"kdtDynStep", "kdtDynTimeStep"}, "has no effect: each pulse meets a part at its pose of that time");
     pugi::xml_node node = io.node().child("dmotion");
     if (part.motions.size() > 1000) io.report().fault(io.place(), "<part> holds more than 1000 <dmotion>");
     if (io.report().is_full() || part.motions.size() > 1000) return;
     for (const MotionSequenceSettings& sequence : part.motions) {
-      const auto is_next = [&](const MotionSequenceSettings& other) { return other.id == sequence.next; };
-      if (sequence.next && std::none_of(part.motions.begin(), part.motions.end(), is_next))
+      if (lacks_next(part, sequence))
         io.report().fault(io.document().place(node, "next"),
                           XmlInput::said("next", *sequence.next) + ": there is no such <dmotion> in this part");
       node = node.next_sibling("dmotion");
     }
+  } else {
+    for (const MotionSequenceSettings& sequence : part.motions)
+      if (lacks_next(part, sequence))
+        io.fault("next", XmlInput::said("next", *sequence.next) + ": there is no such <dmotion> in this part");
   }
 }
 
@@ -193,13 +222,7 @@ void fields(Io& io, Of<Io, MediumSettings>& medium) {
   io.number("backscatter_perMSr", medium.backscatter, units::one, 0, 1e6);
   io.vector("min", medium.min, max_coordinate);
   io.vector("max", medium.max, max_coordinate);
-  if constexpr (Io::reads) {
-    try {
-      medium.validate();
-    } catch (const SettingError& wrong) {
-      io.report().fault(io.place(), wrong.what());
-    }
-  }
+  valid(io, [&] { medium.validate(); });
 }
 
 /// Light and media of a scene.
@@ -207,14 +230,9 @@ template <class Io>
 void light_fields(Io& io, Of<Io, SceneSettings>& scene) {
   io.children("light", scene.light, [](auto& inner, auto& light) { fields(inner, light); });
   io.children("medium", scene.media, [](auto& inner, auto& medium) { fields(inner, medium); });
-  if constexpr (Io::reads) {
+  if constexpr (Io::reads)
     if (!io.report().is_clean()) return;
-    try {
-      (void)scene.air(MediumSettings::known_wavelength);
-    } catch (const SettingError& overlap) {
-      io.report().fault(io.place(), overlap.what());
-    }
-  }
+  valid(io, [&] { (void)scene.air(MediumSettings::known_wavelength); });
 }
 
 /// Reads a scene. A part of several files and no id becomes several parts, each with a number.
@@ -222,8 +240,7 @@ inline void fields(XmlInput& io, SceneSettings& scene) {
   io.require({"id"});
   io.text("id", scene.id);
   io.text("name", scene.name);
-  io.whole("dynStep", scene.dynamic_step, 1, 1'000'000'000);
-  io.number("dynTimeStep", scene.dynamic_interval, units::second, 1e-9, 1e6);
+  timing_fields(io, scene);
   io.know({}, {"part"});
   light_fields(io, scene);
   if (scene.light.size() > 1) io.report().warn(io.place(), "<scene> holds a second <light>: the first is used");
@@ -261,14 +278,14 @@ inline void fields(XmlInput& io, SceneSettings& scene) {
 inline void fields(XmlOutput& io, const SceneSettings& scene) {
   io.text("id", scene.id);
   io.text("name", scene.name);
-  io.whole("dynStep", scene.dynamic_step, 1, 1);
-  io.number("dynTimeStep", scene.dynamic_interval, units::second, 0, any);
+  timing_fields(io, scene);
   light_fields(io, scene);
-  io.children("part", scene.parts, [](XmlOutput& inner, const PartSettings& part) {
-    inner.text("id", part.id);
-    filters(inner, &part.source, part.transform);
-    dynamic_fields(inner, part);
-  });
+  for (const PartSettings& part : scene.parts)
+    io.child_of("part", "part '" + part.id + "'", [&](XmlOutput& inner) {
+      inner.text("id", part.id);
+      filters(inner, &part.source, part.transform);
+      dynamic_fields(inner, part);
+    });
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios::xml

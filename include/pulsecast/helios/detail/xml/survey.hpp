@@ -18,7 +18,6 @@
 
 #include <pugixml.hpp>
 
-#include <pulsecast/detector/waveform_settings.hpp>
 #include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/fields.hpp>
@@ -94,8 +93,7 @@ class SurveyReader {
     bool is_offset = false;
     LegOffsetSettings offset;
     io.flag("legRandomOffset", is_offset);
-    io.number("legRandomOffsetMean", offset.mean, units::metre, -1e6, 1e6);
-    io.number("legRandomOffsetStdev", offset.deviation, units::metre, 0, 1e6);
+    xml::fields(io, offset);
     if (is_offset) survey_.leg_offset = offset;
     io.require({"scanner", "platform", "scene"});
     read_platform(io);
@@ -206,18 +204,12 @@ class SurveyReader {
     limit_bins(io);
   }
 
-  /// Limits bins to the pulse length, as pulses would fall between longer ones, and a pulse to `WaveformSettings::max_samples` bins.
   void limit_bins(const XmlInput& io) {
-    constexpr double most = WaveformSettings::max_samples;
     const pugi::xml_node own = io.node().child("FWFSettings");
     for (ChannelSettings& channel : survey_.scanner.channels) {
-      const double bin = channel.waveform.bin_size, length = channel.pulse_length;
-      if (bin <= length && length <= most * bin) continue;
-      const auto ns = [](double seconds) { return xml_number(units::nanosecond.number(seconds)) + " ns"; };
-      channel.waveform.bin_size = bin > length ? length : std::nextafter(length / most, length);
-      report_.warn(own ? document_.document().place(own) : io.place("scanner"),
-                   "binSize_ns is " + ns(bin) + ", and pulses are " + ns(length) + " long: it is limited to " +
-                       ns(channel.waveform.bin_size) + "; expected bins from " + ns(length / most) + " to " + ns(length));
+      const std::string note = xml::bin_note(channel);
+      if (!note.empty()) report_.warn(own ? document_.document().place(own) : io.place("scanner"), note);
+      channel.waveform.bin_size = limited_bin(channel);
     }
   }
 

@@ -7,10 +7,13 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <pugixml.hpp>
 
 #include <pulsecast/helios/detail/xml/leg.hpp>
+#include <pulsecast/helios/detail/xml/leg_checks.hpp>
 #include <pulsecast/helios/detail/xml/output.hpp>
 #include <pulsecast/helios/detail/xml/platform.hpp>
 #include <pulsecast/helios/detail/xml/scanner.hpp>
@@ -20,7 +23,7 @@
 
 namespace PULSECAST_NAMESPACE::helios::detail {
 
-/// Writes a document with one root element.
+/// Writes a document with one root element, and keeps the notes that reading it would give.
 class DocumentWriter {
  public:
   DocumentWriter() {
@@ -30,13 +33,20 @@ class DocumentWriter {
     root_ = document_.append_child("document");
   }
 
-  [[nodiscard]] pugi::xml_node root() const noexcept { return root_; }
-
   template <class Settings>
   void add(const char* element, const Settings& settings) {
-    XmlOutput io(root_.append_child(element));
-    xml::fields(io, settings);
+    write(element, [&](XmlOutput& io) { xml::fields(io, settings); });
   }
+
+  /// Adds an element by `fields(XmlOutput&)`.
+  template <class Fields>
+  void write(const char* element, const Fields& fields) {
+    XmlOutput io(root_.append_child(element));
+    fields(io);
+    notes_.insert(notes_.end(), io.notes().begin(), io.notes().end());
+  }
+
+  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   [[nodiscard]] std::string text() const {
     struct Writer : pugi::xml_writer {
@@ -56,13 +66,22 @@ class DocumentWriter {
  private:
   pugi::xml_document document_;
   pugi::xml_node root_;
+  std::vector<std::string> notes_;
 };
 
-inline void write_leg(XmlOutput& io, const LegSettings& leg) {
+inline void write_leg(XmlOutput& io, const SurveySettings& survey, std::size_t i) {
+  const LegSettings& leg = survey.legs[i];
+  const LegChecks checks(survey);
   io.text("stripId", leg.strip);
   io.number("maxDuration_s", leg.duration_max, units::second, 0, 1e9);
-  io.child("platformSettings", [&](XmlOutput& inner) { xml::fields(inner, leg.platform); });
-  io.child("scannerSettings", [&](XmlOutput& inner) { xml::fields(inner, leg.scanner); });
+  io.child("platformSettings", [&](XmlOutput& inner) {
+    xml::fields(inner, leg.platform);
+    checks.check_platform(inner, i);
+  });
+  io.child("scannerSettings", [&](XmlOutput& inner) {
+    xml::fields(inner, leg.scanner);
+    checks.check_scanner(inner, i);
+  });
 }
 
 /// Gives settings without an id one for references.
@@ -72,33 +91,51 @@ Settings with_id(Settings settings, const char* id) {
   return settings;
 }
 
-inline DocumentWriter document_of(const SurveySettings& survey) {
+/// Document of a survey. @throws SettingError for what `read_survey` would refuse of it, files and ground aside; `leg_name(i)` begins the
+/// messages about a leg
+template <class LegName>
+DocumentWriter document_of(const SurveySettings& survey, const LegName& leg_name) {
   DocumentWriter document;
-  const ScannerSettings scanner = with_id(survey.scanner, "scanner");
+  if (survey.scanner.channels.empty()) throw SettingError("scanner: channels (number)", 0, "", "at least 1");
+  if (survey.legs.empty()) throw SettingError("legs (number)", 0, "", "at least 1");
+  ScannerSettings scanner = with_id(survey.scanner, "scanner");
+  if (scanner.pulse_rates.empty()) scanner.pulse_rates = {first_pulse_rate(survey)};
   const PlatformSettings platform = with_id(survey.platform, "platform");
   const SceneSettings scene = with_id(survey.scene, "scene");
   document.add("scanner", scanner);
   document.add("platform", platform);
   document.add("scene", scene);
-  XmlOutput io(document.root().append_child("survey"));
-  io.text("name", survey.name);
-  io.text("scene", "#" + scene.id);
-  io.text("scanner", "#" + scanner.id);
-  if (platform.kind == PlatformKind::interpolated) {
-    io.text("platform", std::string("interpolated"));
-    io.text("basePlatform", "#" + platform.id);
-    io.choice("rotationSpec", platform.rotation_spec, {{"ARINC 705", RotationSpec::arinc_705}, {"CANONICAL", RotationSpec::canonical}});
-  } else {
-    io.text("platform", "#" + platform.id);
-  }
-  if (survey.seed) io.text("seed", std::to_string(*survey.seed));
-  if (survey.leg_offset) {
-    io.flag("legRandomOffset", true);
-    io.number("legRandomOffsetMean", survey.leg_offset->mean, units::metre, 0, 0);
-    io.number("legRandomOffsetStdev", survey.leg_offset->deviation, units::metre, 0, 0);
-  }
-  io.children("leg", survey.legs, [](XmlOutput& inner, const LegSettings& leg) { write_leg(inner, leg); });
+  document.write("survey", [&](XmlOutput& io) {
+    io.text("name", survey.name);
+    io.text("scene", "#" + scene.id);
+    io.text("scanner", "#" + scanner.id);
+    if (platform.kind == PlatformKind::interpolated) {
+      io.text("platform", std::string("interpolated"));
+      io.text("basePlatform", "#" + platform.id);
+      io.choice("rotationSpec", platform.rotation_spec, {{"ARINC 705", RotationSpec::arinc_705}, {"CANONICAL", RotationSpec::canonical}});
+    } else {
+      io.text("platform", "#" + platform.id);
+    }
+    if (survey.seed) io.text("seed", std::to_string(*survey.seed));
+    if (survey.leg_offset) {
+      io.flag("legRandomOffset", true);
+      xml::fields(io, *survey.leg_offset);
+    }
+    for (const ChannelSettings& channel : scanner.channels)
+      if (const std::string note = xml::bin_note(channel); !note.empty()) io.warn("binSize_ns", note);
+    for (std::size_t i = 0; i < survey.legs.size(); ++i)
+      io.child_of("leg", leg_name(i), [&](XmlOutput& inner) { write_leg(inner, survey, i); });
+  });
   return document;
+}
+
+/// As above, to be read again.
+inline DocumentWriter document_of(const SurveySettings& survey) {
+  if (survey.scene.parts.empty()) throw SettingError("scene: parts (number)", 0, "", "at least 1");
+  for (const PartSettings& part : survey.scene.parts)
+    if (std::visit([](const auto& source) { return source.files.empty(); }, part.source))
+      throw SettingError("part '" + part.id + "': files (number)", 0, "", "at least 1");
+  return document_of(survey, [](std::size_t i) { return "leg " + std::to_string(i); });
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios::detail

@@ -78,6 +78,7 @@ class LasEncoder {
     const std::uint32_t returns = std::min(shot.echoes, layout_.max_returns);
     const auto source = static_cast<std::uint16_t>(std::min(shot.leg + 1U, 65535U));
     const double time = settings_.start_time + shot.tick.seconds();
+    record.put(17, static_cast<std::uint8_t>(std::min<std::uint16_t>(shot.channel, 255)));
     if (layout_.legacy) {  // offsets: LAS 1.4 R15, Point Data Record Format 1
       record.put(16, detail::las_rounded<std::int8_t>(degrees(shot.scan_angle), -90, 90));
       record.put(18, source);

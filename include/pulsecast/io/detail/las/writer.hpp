@@ -53,12 +53,13 @@ struct LasExtendedRecords {
 /// - coordinates are rounded to the nearest step; one beyond 32 bits, or not finite, is a `FileError`;
 /// - intensity is linear in the quantity of `LasIntensity`; extra bytes Amplitude and Reflectance are levels [dB], -200 for zero;
 /// - return numbers and counts end at 15, or 5, by format: later returns are written as the last;
-/// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; scanner channel is the channel's lowest two bits;
-/// - scan angle counts from down, positive to the right of the flight; GPS time is that of the pulse for all its returns;
+/// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; user data is the channel, at most 255, and scanner
+/// channel its lowest two bits: pulses of one GPS time differ in them;
+/// - scan angle is that of `Pulse`; GPS time is that of the pulse for all its returns;
 /// - a reference system given by its code alone, other than UTM, is written as GeoTIFF keys, with the WKT bit clear. The specification
 /// demands well-known text with point formats 6 to 9; a code is more useful than none. Legacy formats always take a code as keys;
 /// - colours are those of `LasSettings::colours`, black where unknown; attributes of objects are doubles, NaN where unknown;
-/// - flags, scan direction, edge of flight line and user data are 0, as echoes have no such fields.
+/// - flags, scan direction and edge of flight line are 0, as echoes have no such fields.
 ///
 /// A waveform is written once for all echoes of its pulse, see `LasPackets`, and not at all without echoes, as no point could refer to it.
 /// The return point waveform location L is the two-way time from the first sample to the echo [ps]. The vector d points back to the
