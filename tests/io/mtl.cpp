@@ -260,7 +260,7 @@ TEST_CASE("standard keys are limited or ignored with a note, and never refuse a 
                                          {"Kd nan 0 0", "is ignored"},
                                          {"Kd -1 0.5 0.5", "takes 0 for -1", {0, 0.5, 0.5}},
                                          {"Ns -1.96", "takes 0 for -1.96", {1, 1, 1}, 0},
-                                         {"Ns 1e13", "takes 1000000000000 for 1e13", {1, 1, 1}, 1e12},
+                                         {"Ns 1e13", "takes 1e+12 for 1e13", {1, 1, 1}, 1e12},
                                          {"Ns many", "is ignored"},
                                          {"Ns 20 30", "has words after its numbers", {1, 1, 1}, 20},
                                          {"illum 4\nNi 0", "glass is assumed"},
