@@ -63,6 +63,15 @@ TEST_CASE("a grid of one line longer than a block is read, words across the ends
   }
 }
 
+TEST_CASE("a grid that may be in degrees is read with a question") {
+  const auto warnings = [&](const std::string& place) { return read("ncols 2\nnrows 2\n" + place + "\n1 2\n3 4\n").warnings; };
+  const std::vector<std::string> globe = warnings("xllcorner 8.5\nyllcorner 49.4\ncellsize 0.000278");
+  REQUIRE(globe.size() == 1);
+  CHECK(globe[0].ends_with("is it in degrees? Expected metres"));
+  CHECK(warnings("xllcorner 500000\nyllcorner 5400000\ncellsize 0.005").empty());
+  CHECK(warnings("xllcorner 8\nyllcorner 49\ncellsize 0.5").empty());
+}
+
 TEST_CASE("counts that the file cannot hold are refused before memory is taken") {
   const FileError error =
       support::file_error([] { (void)read("ncols 134217728\nnrows 134217728\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n"); });

@@ -44,6 +44,9 @@ struct Form {
                 planes = PLANARCONFIG_CONTIG, photometric = PHOTOMETRIC_MINISBLACK;
   bool tiled = false;
   const char* mode = "w";
+  std::uint32_t padding = 0;           ///< rows after the last, which the header does not count
+  std::vector<std::uint16_t> extra{};  ///< kinds of the samples after the first
+  bool mask = false;                   ///< a second image that is a mask
   std::set<std::uint32_t> left_out{};  ///< tiles
   std::vector<std::uint16_t> red{}, green{}, blue{};
 };
@@ -52,7 +55,7 @@ struct Form {
 struct Place {
   std::vector<double> scale{2, 3, 0}, ties{0, 0, 0, 1000, 2000, 0}, matrix{};
   std::vector<std::uint16_t> keys{1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32633};
-  std::string nodata{};
+  std::string nodata{}, metadata{};
 };
 
 /// Fits every kind of sample, and has all its values different from those of its neighbours.
@@ -96,10 +99,12 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
                                                  {33922, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("ties")},
                                                  {34264, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("matrix")},
                                                  {34735, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("keys")},
+                                                 {42112, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("metadata")},
                                                  {42113, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("nodata")}};
   TIFFMergeFieldInfo(tiff, fields.data(), static_cast<std::uint32_t>(fields.size()));
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, columns);
-  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, rows);
+  const std::uint32_t all_rows = rows + form.padding;
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, all_rows);
   TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, form.samples);
   TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, form.planes);
   TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, form.bits);
@@ -114,6 +119,8 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
   if (!place.ties.empty()) TIFFSetField(tiff, 33922, static_cast<int>(place.ties.size()), place.ties.data());
   if (!place.matrix.empty()) TIFFSetField(tiff, 34264, static_cast<int>(place.matrix.size()), place.matrix.data());
   if (!place.keys.empty()) TIFFSetField(tiff, 34735, static_cast<int>(place.keys.size()), place.keys.data());
+  if (!form.extra.empty()) TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, static_cast<int>(form.extra.size()), form.extra.data());
+  if (!place.metadata.empty()) TIFFSetField(tiff, 42112, place.metadata.c_str());
   if (!place.nodata.empty()) TIFFSetField(tiff, 42113, place.nodata.c_str());
   const std::uint32_t wide = form.tiled ? 16 : columns, high = form.tiled ? 16 : 5;
   if (form.tiled) {
@@ -123,13 +130,13 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
     TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, high);
   const bool apart = form.planes == PLANARCONFIG_SEPARATE;
   for (std::uint16_t plane = 0; plane < (apart ? form.samples : 1); ++plane)
-    for (std::uint32_t north = 0; north < rows; north += high)
+    for (std::uint32_t north = 0; north < all_rows; north += high)
       for (std::uint32_t west = 0; west < columns; west += wide) {
         std::vector<unsigned char> bytes;
-        for (std::uint32_t r = north; r < (form.tiled ? north + high : std::min(north + high, rows)); ++r)
+        for (std::uint32_t r = north; r < (form.tiled ? north + high : std::min(north + high, all_rows)); ++r)
           for (std::uint32_t c = west; c < west + wide; ++c)
             for (std::uint16_t s = 0; s < (apart ? 1 : form.samples); ++s)
-              put_sample(bytes, form, heights(std::min(c, columns - 1), std::min(r, rows - 1), apart ? plane : s));
+              put_sample(bytes, form, heights(std::min(c, columns - 1), std::min(r, all_rows - 1), apart ? plane : s));
         if (form.predictor == PREDICTOR_FLOATINGPOINT && std::string_view(form.mode).ends_with('b'))  // libtiff 4.5 writes these wrongly:
           for (auto at = bytes.begin(); at != bytes.end(); at += form.bits / 8)
             std::reverse(at, at + form.bits / 8);  // turned once too often
@@ -139,7 +146,24 @@ void write(const std::filesystem::path& path, const Form& form = {}, const Place
         REQUIRE((form.tiled ? TIFFWriteEncodedTile(tiff, chunk, bytes.data(), size)
                             : TIFFWriteEncodedStrip(tiff, chunk, bytes.data(), size)) == size);
       }
+  if (form.mask) {
+    TIFFWriteDirectory(tiff);
+    TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, FILETYPE_MASK);
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 8);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 1);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MASK);
+    unsigned char bits = 0;
+    REQUIRE(TIFFWriteEncodedStrip(tiff, 0, &bits, 1) == 1);
+  }
   TIFFClose(tiff);
+  if (form.padding == 0) return;
+  std::string bytes = support::content(path);
+  const std::size_t entry = bytes.find(std::string("\x01\x01\x03\0\x01\0\0\0", 8) + static_cast<char>(all_rows));
+  REQUIRE(entry != bytes.npos);
+  bytes[entry + 8] = static_cast<char>(rows);
+  std::filesystem::remove(path);
+  std::ofstream(path, std::ios::binary) << bytes;
 }
 
 struct File {
@@ -443,6 +467,147 @@ TEST_CASE("keys tell the reference system; one that is not in metres is refused"
   CHECK(heights_of(9003, {.vertical_scale = 0.5}) == 30);
   CHECK(file.read({}, with(1, {4099, 0, 1, 9003})).warnings.size() == 1);
   CHECK(file.read({}, with(1, {4099, 0, 1, 9036})).warnings.size() == 1);
+
+  CHECK(file.read({}, with(1, {3072, 0, 1, 25832})).warnings.empty());
+  CHECK(file.read({}, with(1, {3072, 0, 1, 2263, 3076, 0, 1, 9001})).warnings.empty());
+  const GeoTiff silent = file.read({}, with(1, {3072, 0, 1, 2263}));  // in feet by the register
+  REQUIRE(silent.warnings.size() == 1);
+  CHECK(contains(silent.warnings[0], "does not tell the unit of its coordinates, in the projected system 2263"));
+}
+
+TEST_CASE("a vertical system tells the unit of the heights, where no key does, and is noted") {
+  const File file;
+  const auto in = [](std::vector<std::uint16_t> more) {
+    Place place{.keys = {1, 1, 0, static_cast<std::uint16_t>(1 + more.size() / 4), 1024, 0, 1, 1}};
+    place.keys.insert(place.keys.end(), more.begin(), more.end());
+    return place;
+  };
+  struct Case {
+    std::uint16_t system;
+    double unit;
+  };
+  for (const Case& c : {Case{6360, 1200.0 / 3937},
+                        {5702, 1200.0 / 3937},
+                        {8052, 1200.0 / 3937},
+                        {8228, 0.3048},
+                        {6130, 0.3048},
+                        {6131, 0.3048},
+                        {6132, 0.3048},
+                        {8050, 0.3048},
+                        {5754, 0.3048007491},
+                        {7837, 1},
+                        {32767, 1}}) {
+    CAPTURE(c.system);
+    const GeoTiff found = file.read({}, in({4096, 0, 1, c.system}));
+    CHECK(static_cast<double>(found.raster.heights[0]) == support::relative(60 * c.unit, 1e-7));
+    CHECK(found.warnings.size() == (c.unit == 1 ? 1 : 2));
+    CHECK(contains(found.warnings[0], "vertical system " + std::to_string(c.system)));
+    CHECK(contains(found.warnings[0], "metres are assumed") == (c.unit == 1));
+    CHECK_FALSE(contains(file.read({}, in({4096, 0, 1, c.system, 4099, 0, 1, 9001})).warnings.at(0), "metres are assumed"));
+    CHECK(file.read({}, in({4096, 0, 1, c.system, 4099, 0, 1, 9001})).raster.heights[0] == 60);
+  }
+  CHECK(contains(file.refusal({}, in({4096, 0, 1, 5715})), "has depths, by its vertical system EPSG:5715"));
+  CHECK(file.refusal({}, in({4096, 0, 1, 5715}), {.vertical_scale = 1}).empty());
+}
+
+TEST_CASE("scale, offset and unit of a band are applied, to packed heights alike") {
+  const File file;
+  const auto item = [](const std::string& role, const std::string& value, int band = 0) {
+    return "  <Item name=\"" + role + "\" sample=\"" + std::to_string(band) + "\" role=\"" + role + "\">" + value + "</Item>\n";
+  };
+  const auto told = [](const std::string& items) { return Place{.metadata = "<GDALMetadata>\n" + items + "</GDALMetadata>\n"}; };
+  struct Case {
+    std::string items;
+    double scale = 1, offset = 0;
+    std::size_t notes = 0;
+  };
+  const std::string other = "  <Item name=\"AREA\">Alps</Item>\n";
+  for (const Case& c : {Case{other},
+                        {other + item("scale", "0.0100000000000000002"), 0.01},
+                        {item("offset", "-100") + item("scale", "0.1"), 0.1, -100},
+                        {item("offset", "12.5"), 1, 12.5},
+                        {item("scale", "5", 1)},
+                        {item("unittype", "m")},
+                        {item("unittype", "ft"), 0.3048, 0, 1},
+                        {item("unittype", "US survey foot") + item("offset", "10"), 1200.0 / 3937, 12000.0 / 3937, 1},
+                        {item("unittype", "cm"), 0.01},
+                        {item("unittype", "ell"), 1, 0, 1},
+                        {item("scale", "-1"), -1}})
+    for (const std::uint16_t format : Codes{SAMPLEFORMAT_INT, SAMPLEFORMAT_IEEEFP}) {
+      CAPTURE(c.items);
+      const Form form{.format = format, .bits = 16};
+      const auto expected = [&](std::uint32_t x, std::uint32_t y, std::uint16_t s) { return c.offset + c.scale * height(x, y, s); };
+      const GeoTiff found = file.read(form, told(c.items));
+      for (std::uint32_t x = 0; x < columns; ++x)
+        CHECK(static_cast<double>(found.raster.heights[x]) == support::relative(expected(x, 0, 0), 1e-6));
+      CHECK(found.warnings.size() == c.notes);
+      const Raster packed = read_geotiff(file.path, {.packed = true}).raster.unpacked();
+      CHECK(std::memcmp(packed.heights.data(), found.raster.heights.data(), sizeof(float) * packed.heights.size()) == 0);
+    }
+  const Place centimetres = told(item("scale", "0.01"));
+  CHECK(file.read({}, centimetres, height, {.vertical_scale = 2}).raster.heights[0] == 120);  // of the numbers as they are
+  Place hole = centimetres;
+  hole.nodata = "60";  // a number, not a height
+  CHECK(std::isnan(file.read({}, hole).raster.heights[0]));
+  for (const char* bad : {"0", "one", "1e400"}) CHECK(contains(file.refusal({}, told(item("scale", bad))), "of heights: expected"));
+}
+
+TEST_CASE("a mask, an alpha band, colours and numbers that may be missing heights are noted") {
+  const File file;
+  const auto note = [&](const Form& form, const Heights& heights = height) {
+    const GeoTiff found = file.read(form, {}, heights);
+    CHECK(wrong(found.raster, heights) == 0);
+    return found.warnings.size() == 1 ? found.warnings[0] : std::to_string(found.warnings.size()) + " notes";
+  };
+  const Form plain{.format = SAMPLEFORMAT_INT, .bits = 16};
+  CHECK(contains(note({.mask = true}), "has a mask, which is not applied"));
+  CHECK(contains(note({.samples = 2, .extra = {EXTRASAMPLE_UNASSALPHA}}), "has an alpha band"));
+  CHECK(note({.samples = 2, .extra = {EXTRASAMPLE_UNSPECIFIED}}) == "0 notes");
+  CHECK(contains(note({.format = SAMPLEFORMAT_UINT, .bits = 8, .samples = 3, .photometric = PHOTOMETRIC_RGB}), "is a picture of colours"));
+  for (const double number : {-9999.0, -32768.0}) {
+    const auto holed = [number](std::uint32_t c, std::uint32_t r, std::uint16_t) { return c == 3 ? number : height(c, r, 0); };
+    CHECK(contains(note(plain, holed), "23 heights are a number that often marks missing ones"));
+    CHECK(read_geotiff(file.path, {.packed = true}).warnings.size() == 1);
+    CHECK(read_geotiff(file.path, {.missing = number}).warnings.empty());
+  }
+  std::ofstream(file.path.string() + ".msk") << "mask";
+  CHECK(contains(note(plain), "has a mask"));
+}
+
+TEST_CASE("a strip with more rows than the raster needs gives the raster's heights") {
+  const auto steps = [](std::uint32_t, std::uint32_t r, std::uint16_t) { return r < 20 ? 50.0 : 7.0; };  // long runs: long matches
+  const File file;
+  for (const std::uint16_t compression : Codes{COMPRESSION_NONE, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_DEFLATE, COMPRESSION_LZW})
+    for (const std::uint16_t format : Codes{SAMPLEFORMAT_INT, SAMPLEFORMAT_IEEEFP})
+      for (const std::uint32_t padding : {1, 2}) {
+        CAPTURE(compression);
+        const Form form{.format = format, .compression = compression, .padding = padding};
+        CHECK(wrong(file.read(form, {}, steps).raster, steps) == 0);
+        CHECK(wrong(file.read(form).raster, height) == 0);
+      }
+}
+
+TEST_CASE("a world file places a raster without tags; pixels that may be in degrees are noted") {
+  const File file;
+  const auto world = [&](const std::string& text) { std::ofstream(file.folder / "terrain.tfw") << text; };
+  world("2\n0\n0\n-3\n1001\n1998.5\n");
+  const Place nowhere{.scale = {}, .ties = {}, .keys = {}};
+  for (const std::uint16_t kind : Codes{1, 2}) {
+    Place place = nowhere;
+    place.keys = {1, 1, 0, 1, 1025, 0, 1, kind};
+    const GeoTiff found = file.read({}, place);
+    CHECK(found.raster.first == Vec2{1001, 1998.5});
+    CHECK(found.raster.pixel == Vec2{2, 3});
+    CHECK(found.warnings.empty());
+  }
+  CHECK(wrong(file.read({}, nowhere).raster, height) == 0);
+  CHECK(file.read().raster.first == Vec2{1001, 1998.5});  // tags count before the file
+  world("2\n0.5\n0\n-3\n1001\n1998.5\n");
+  write(file.path, {}, nowhere);
+  CHECK_THROWS_AS((void)read_geotiff(file.path), FileError);
+  const GeoTiff globe = file.read({}, {.scale = {0.000278, 0.000278, 0}, .ties = {0, 0, 0, 8.5, 49.5, 0}, .keys = {}});
+  REQUIRE(globe.warnings.size() == 1);
+  CHECK(contains(globe.warnings[0], "is it in degrees?"));
 }
 
 TEST_CASE("what is missing is NaN: by GDAL_NODATA, by the setting, by being none") {

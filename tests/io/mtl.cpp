@@ -133,7 +133,7 @@ TEST_CASE("light that goes on has the keys of the format, and keys of the librar
        {"pulsecast_interface", "pulsecast_interface mirror", "pulsecast_interface mirror 1.1", "pulsecast_interface pane -1",
         "pulsecast_interface door", "pulsecast_interface glass 2", "pulsecast_medium 0.9", "pulsecast_medium", "pulsecast_medium 1.3 0.5",
         "pulsecast_medium 1.3 1.4 -1", "pulsecast_medium 1.3 1.4 1 1 1 1", "pulsecast_roughness 0", "pulsecast_retroreflector cat",
-        "pulsecast_retroreflector prisms", "pulsecast_retroreflector prisms 0.5", "pulsecast_retroreflector beads 1", "illum 7\nNi 0.9"}) {
+        "pulsecast_retroreflector prisms", "pulsecast_retroreflector prisms 0.5", "pulsecast_retroreflector beads 1"}) {
     CAPTURE(wrong);
     CHECK_THROWS_AS((void)mtl(std::string("newmtl a\n") + wrong + "\n"), FileError);
   }
@@ -233,13 +233,48 @@ TEST_CASE("a damaged MTL file gives one error with its line") {
   for (const char* statement :
        {"helios_reflectance", "helios_reflectance abc", "helios_reflectance nan", "helios_reflectance -0.1", "helios_reflectance 100.5",
         "helios_reflectance 0.5 0.5", "helios_reflectance inf", "helios_classification 2.5", "helios_classification -1",
-        "helios_classification 65536", "Kd", "Kd 0.1 0.2", "Kd 0.1 x 0.3", "Ks nan 0 0", "Kd -1 0 0", "Ns -2", "Ns many", "newmtl"}) {
+        "helios_classification 65536", "newmtl", "pulsecast_reflectanceMap"}) {
     CAPTURE(statement);
     const FileError error = support::file_error([&] { (void)mtl("newmtl a\n" + std::string(statement) + "\nKd 1 1 1\n"); });
     CAPTURE(error.what());
     CHECK(error.path() == path.string());
     CHECK(error.place() == "line 2");
     CHECK(contains(error.problem(), "expected"));
+  }
+}
+
+TEST_CASE("standard keys are limited or ignored with a note, and never refuse a file") {
+  struct Case {
+    std::string statement, note;
+    Vec3 colour{1, 1, 1};
+    double exponent = 10;
+  };
+  for (const Case& c : std::vector<Case>{{"Kd 0.8 0.7 0.6 1.0", "has words after its numbers", {0.8, 0.7, 0.6}},
+                                         {"Kd 0.8 0.7 0.6 // wood", "has words after its numbers", {0.8, 0.7, 0.6}},
+                                         {"Kd 0.8 // wood", "has words after its numbers", {0.8, 0.8, 0.8}},
+                                         {"Kd xyz 0.3 0.3 0.3", "is ignored"},
+                                         {"Kd spectral wood.rfl", "is ignored"},
+                                         {"Kd", "is ignored"},
+                                         {"Kd 0.1 0.2", "is ignored"},
+                                         {"Kd 0.1 x 0.3", "is ignored"},
+                                         {"Kd nan 0 0", "is ignored"},
+                                         {"Kd -1 0.5 0.5", "takes 0 for -1", {0, 0.5, 0.5}},
+                                         {"Ns -1.96", "takes 0 for -1.96", {1, 1, 1}, 0},
+                                         {"Ns 1e13", "takes 1e+12 for 1e13", {1, 1, 1}, 1e12},
+                                         {"Ns many", "is ignored"},
+                                         {"Ns 20 30", "has words after its numbers", {1, 1, 1}, 20},
+                                         {"illum 4\nNi 0", "glass is assumed"},
+                                         {"map_Kd", "names no picture"},
+                                         {"map_d", "names no picture"}}) {
+    CAPTURE(c.statement);
+    const MaterialLibrary library = mtl("newmtl a\n" + c.statement + "\n");
+    REQUIRE(library.warnings.size() == 1);
+    CHECK(contains(library.warnings[0], c.note));
+    CHECK(contains(library.warnings[0], ", line "));
+    CHECK(max_norm(library.materials.at("a").colour - c.colour) < 1e-12);
+    CHECK(library.materials.at("a").specular_exponent == c.exponent);
+    CHECK(library.pictures.empty());
+    CHECK_NOTHROW(library.materials.at("a").validate());
   }
 }
 
@@ -260,5 +295,4 @@ TEST_CASE("pictures are named beside the file, without their options, and for th
   CHECK(leaf.opacity.file == folder.path() / "mask.png");
   CHECK(leaf.reflectance.file == folder.path() / "bark.jpg");
   CHECK(leaf.reflectance_pattern);
-  CHECK_THROWS_AS(static_cast<void>(mtl("newmtl a\nmap_d\n")), FileError);
 }

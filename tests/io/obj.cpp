@@ -398,7 +398,7 @@ TEST_CASE("a file that is not there, or is a folder, is an error that names it")
 
 TEST_CASE("a damaged MTL file is an error with its own path and line") {
   const Folder folder;
-  folder.write("m.mtl", "newmtl a\nKd 1 1\n");
+  folder.write("m.mtl", "newmtl a\nhelios_reflectance many\n");
   const FileError error = folder.error("mtllib m.mtl\n" + corners + "f 1 2 3\n");
   CHECK(error.path() == (folder.path() / "m.mtl").string());
   CHECK(error.place() == "line 2");

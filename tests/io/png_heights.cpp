@@ -98,6 +98,9 @@ TEST_CASE("a world file beside the picture places its pixels, with rows to the s
   CHECK(read_png_heights(files.path, {.pixel = Vec2{7, 8}}).first == Vec2{});
   files.put_world("0.5\n0\n0\n-2\n");
   CHECK(contains(files.refusal({}), "dem.pgw: ends after 4 numbers"));
+  files.put_world("0.000278\n0\n0\n-0.000278\n8.5\n49.5\n");
+  CHECK(contains(files.refusal({}), "is it in degrees?"));
+  CHECK(read_png_heights(files.path, {.pixel = Vec2{30, 30}}).pixel == Vec2{30, 30});
   files.put_world("1e-9\n0\n0\n-1\n1e15\n0\n");
   CHECK(contains(files.refusal({}), "dem.png: Raster::pixel.x is 1e-09 m"));
 }

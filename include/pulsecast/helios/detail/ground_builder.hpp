@@ -77,7 +77,9 @@ PULSECAST_INLINE std::vector<PlacedRaster> SceneBuilder::rasters() {
 
 /// Reads a raster of heights.
 PULSECAST_INLINE Raster SceneBuilder::ground(const std::filesystem::path& file, const GeoTiffSource& source) {
-  Raster raster = this->raster(file, source).raster;
+  LoadedRaster read = this->raster(file, source);
+  if (!read.colours.empty()) warn({file.string() + ": has a colour table, as a map of classes; its numbers are taken as heights"});
+  Raster raster = std::move(read.raster);
   raster.packed.offset += source.height_offset;
   if (source.height_offset != 0)
     for (float& height : raster.heights) height = static_cast<float>(static_cast<double>(height) + source.height_offset);

@@ -21,6 +21,7 @@
 #include <pulsecast/base/suggestion.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/ascii_grid.hpp>
+#include <pulsecast/io/detail/degrees.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/scene/raster.hpp>
@@ -95,6 +96,8 @@ class AsciiGridReader {
     } catch (const SettingError& error) {
       words_.file().fail(error.what());
     }
+    if (const std::string question = degrees_question(grid_.raster); !question.empty())
+      grid_.warnings.push_back(words_.file().path() + ": " + question);
     return std::move(grid_);
   }
 

@@ -19,6 +19,7 @@
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/io/detail/degrees.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/png_heights.hpp>
 #include <pulsecast/io/world_file.hpp>
@@ -104,6 +105,8 @@ class PngHeightReader {
     const bool is_northward = world.step.y > 0;
     raster_.pixel = {world.step.x, std::fabs(world.step.y)};
     if (!settings_.first) raster_.first = {world.first.x, world.first.y + (is_northward ? (raster_.rows - 1) * world.step.y : 0)};
+    if (const std::string question = degrees_question(raster_); !question.empty())
+      fail("by its world file " + question + ", or the size of pixels as a setting");
     return is_northward;
   }
 

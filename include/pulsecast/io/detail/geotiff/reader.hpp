@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -20,8 +21,10 @@
 #include <tiffio.h>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/io/detail/degrees.hpp>
 #include <pulsecast/io/detail/geotiff/colour_table.hpp>
 #include <pulsecast/io/detail/geotiff/georeference.hpp>
+#include <pulsecast/io/detail/geotiff/height_scale.hpp>
 #include <pulsecast/io/detail/geotiff/raster_layout.hpp>
 #include <pulsecast/io/detail/geotiff/samples.hpp>
 #include <pulsecast/io/detail/geotiff/tiff_file.hpp>
@@ -38,12 +41,14 @@ class GeoTiffReader {
  public:
   GeoTiffReader(const std::filesystem::path& path, const GeoTiffSettings& settings)
       : settings_(validated(settings)), file_(path), layout_(file_, settings_.band), epsg_(projected_epsg(file_)) {
-    scale_ = settings_.vertical_scale ? *settings_.vertical_scale : metres_per_height(file_);
+    scale_ = settings_.vertical_scale ? HeightScale{*settings_.vertical_scale} : height_scale(file_, settings_.band);
     const RasterCorner corner = raster_corner(file_, layout_);
     westward_ = corner.step_x < 0;
     northward_ = corner.step_y > 0;
     raster_ = placed_raster(file_, layout_, corner);
+    if (const std::string question = degrees_question(raster_); !question.empty()) file_.warn(question);
     missing_ = settings_.missing ? settings_.missing : missing_value();
+    note_picture();
   }
 
   [[nodiscard]] GeoTiff read() {
@@ -68,6 +73,23 @@ class GeoTiffReader {
     if (const auto value = text::take_number<double>(word)) return value;
     if (!word.empty()) file_.warn("its value for missing heights is not a number, and is ignored");
     return std::nullopt;
+  }
+
+  /// Notes what a file says of its pixels that has no effect. Source: TIFF 6.0, PhotometricInterpretation and ExtraSamples.
+  void note_picture() {
+    const auto meaning = file_.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    if (meaning != PHOTOMETRIC_MINISBLACK && meaning != PHOTOMETRIC_MINISWHITE && meaning != PHOTOMETRIC_PALETTE)
+      file_.warn("is a picture of colours (photometric interpretation " + std::to_string(meaning) + "); the numbers of band " +
+                 std::to_string(settings_.band) + " are taken as heights");
+    std::uint16_t count = 0;
+    const std::uint16_t* kinds = nullptr;
+    const bool has_extra = TIFFGetField(file_.handle(), TIFFTAG_EXTRASAMPLES, &count, &kinds) == 1 && kinds != nullptr;
+    const bool has_alpha =
+        has_extra && std::any_of(kinds, kinds + count, [](auto k) { return k == EXTRASAMPLE_ASSOCALPHA || k == EXTRASAMPLE_UNASSALPHA; });
+    std::error_code ignored;
+    if (has_alpha || file_.has_mask() || std::filesystem::exists(file_.path() + ".msk", ignored))
+      file_.warn(std::string("has ") + (has_alpha ? "an alpha band" : "a mask") + ", which is not applied: pixels without a height keep " +
+                 "their numbers, unless these are those of missing heights");
   }
 
   template <class One, class Two, class Four, class Eight>
@@ -95,14 +117,15 @@ class GeoTiffReader {
   template <class Sample>
   [[nodiscard]] bool pack() {
     PackedHeights& packed = raster_.packed;
-    packed.scale = scale_;
+    packed.scale = scale_.scale;
+    packed.offset = scale_.offset;
     packed.zero = std::is_signed_v<Sample> ? 32768 : 0;
     using Limits = std::numeric_limits<Sample>;
     if (missing_ && *missing_ >= Limits::min() && *missing_ <= Limits::max() && std::floor(*missing_) == *missing_)
       packed.missing = static_cast<std::uint16_t>(*missing_ + packed.zero);
     else if (sizeof(Sample) == 1)
       packed.missing = std::numeric_limits<std::uint16_t>::max();
-    return 65536 * scale_ <= 1e15 && (packed.missing || is_complete());
+    return scale_.scale > 0 && std::fabs(scale_.offset) + 65536 * scale_.scale <= 1e15 && (packed.missing || is_complete());
   }
 
   /// True if no strip or tile of the band is left out.
@@ -121,6 +144,10 @@ class GeoTiffReader {
     for (std::uint32_t r = 0; northward_ && r < layout_.rows / 2; ++r) std::swap_ranges(row(r), row(r + 1), row(layout_.rows - 1 - r));
     for (std::uint32_t r = 0; westward_ && r < layout_.rows; ++r) std::reverse(row(r), row(r + 1));
     if (there_ == 0) file_.fail("has no height: expected at least one pixel with a height");
+    if (unmarked_ > 0)
+      file_.warn(std::to_string(unmarked_) +
+                 " heights are a number that often marks missing ones, as -9999 or -32768, and the file names no " +
+                 "number for these; a number of missing heights is a setting");
     if (strange_ > 0) file_.warn(std::to_string(strange_) + " values beyond 1e15 m, or infinite, count as missing");
     return {.raster = std::move(raster_), .epsg = epsg_, .colours = colour_table(file_), .warnings = file_.take_warnings()};
   }
@@ -183,8 +210,10 @@ class GeoTiffReader {
     if constexpr (std::is_same_v<Pixel, float>) {
       return height<Sample>(bytes);
     } else {
-      const auto number = static_cast<Pixel>(sample_at<Sample>(bytes) + raster_.packed.zero);
+      const double value = sample_at<Sample>(bytes);
+      const auto number = static_cast<Pixel>(value + raster_.packed.zero);
       if (raster_.packed.missing != number) ++there_;
+      if (!missing_ && may_be_missing(value)) ++unmarked_;
       return number;
     }
   }
@@ -194,7 +223,8 @@ class GeoTiffReader {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     double value = sample_at<Sample>(bytes);
     if (std::isnan(value) || (missing_ && is_missing<Sample>(value, *missing_))) return nan;
-    value *= scale_;
+    if (!missing_ && may_be_missing(value)) ++unmarked_;
+    value = scale_.offset + scale_.scale * value;
     if (!(std::fabs(value) <= 1e15)) {
       ++strange_;
       return nan;
@@ -208,10 +238,11 @@ class GeoTiffReader {
   RasterLayout layout_;
   std::optional<std::uint16_t> epsg_;
   Raster raster_;
-  double scale_ = 1;                           ///< metres per unit of height
+  HeightScale scale_;
   std::optional<double> missing_;              ///< value of missing heights
   bool westward_ = false, northward_ = false;  ///< direction of columns and rows in the file
   std::uint64_t there_ = 0, strange_ = 0;      ///< number of heights, and of values out of bounds
+  std::uint64_t unmarked_ = 0;                 ///< number of heights that may be missing ones, without a word of the file
 };
 
 }  // namespace detail

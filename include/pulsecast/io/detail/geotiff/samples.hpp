@@ -49,6 +49,12 @@ template <class Sample>
   return value == missing;
 }
 
+/// True for numbers that often mark missing heights. Source: Esri, NODATA_value (-9999); Rodriguez et al. 2005, An assessment of the SRTM
+/// topographic products, JPL D-31639 (-32768); GDAL manual, DTED driver (-32767).
+[[nodiscard]] inline bool may_be_missing(double value) noexcept {
+  return value == -9999 || value == -32768 || value == -32767 || value == -99999 || value == -999999;
+}
+
 }  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

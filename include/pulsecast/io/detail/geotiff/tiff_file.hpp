@@ -31,7 +31,11 @@ class TiffFile {
   TiffFile& operator=(const TiffFile&) = delete;
 
   [[nodiscard]] TIFF* handle() const noexcept { return tiff_.get(); }
+  [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
   [[nodiscard]] std::uint64_t size() const noexcept { return file_.size(); }  ///< size of the file [byte]
+
+  /// True if a further image is the mask of the first. Source: TIFF 6.0, NewSubfileType; GDAL manual, GTiff driver, internal masks.
+  [[nodiscard]] bool has_mask() const noexcept { return has_mask_; }
 
   [[noreturn]] void fail(const std::string& problem) const { file_.fail(problem); }
   [[noreturn]] void fail_at_byte(std::uint64_t byte, const std::string& problem) const { file_.fail_at_byte(byte, problem); }
@@ -95,10 +99,30 @@ class TiffFile {
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), static_cast<tmsize_t>(max_bytes()));
     Handle tiff(TIFFOpenExt(file_.path().c_str(), "rm", options.get()));  // not memory-mapped, as the file may be truncated meanwhile
     if (!tiff) fail("is not a TIFF file that can be read" + complaint() + ": expected a GeoTIFF");
+    look_for_mask(*tiff);
+    // libdeflate leaves the end of a strip or tile unread, without an error, if more is compressed than it needs; zlib reads all of it
+    std::uint16_t scheme = COMPRESSION_NONE;
+    TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_COMPRESSION, &scheme);
+    if (scheme == COMPRESSION_ADOBE_DEFLATE || scheme == COMPRESSION_DEFLATE)
+      TIFFSetField(tiff.get(), TIFFTAG_DEFLATE_SUBCODEC, DEFLATE_SUBCODEC_ZLIB);
     return tiff;
   }
 
+  /// Looks at the images after the first, which are overviews as a rule. An error of theirs is none of the first image.
+  void look_for_mask(TIFF& tiff) {
+    if (TIFFLastDirectory(&tiff) != 0) return;
+    constexpr int most = 64;
+    for (int i = 0; i < most && !has_mask_ && TIFFReadDirectory(&tiff) == 1; ++i) {
+      std::uint32_t kind = 0;
+      TIFFGetFieldDefaulted(&tiff, TIFFTAG_SUBFILETYPE, &kind);
+      has_mask_ = (kind & FILETYPE_MASK) != 0;
+    }
+    complaint_ = {};
+    if (TIFFSetDirectory(&tiff, 0) != 1) fail("cannot be read again" + complaint());
+  }
+
   std::array<char, 256> complaint_{};  ///< first error of libtiff
+  bool has_mask_ = false;
   std::vector<std::string> warnings_;
   InputFile file_;
   Handle tiff_;

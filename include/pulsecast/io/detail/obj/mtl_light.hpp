@@ -71,7 +71,7 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Sets what a material passes on from the standard keys: `illum` 3, 5 and 8, and `Pm`, are mirrors; 4, 6, 7 and 9 bodies of glass with the
 /// index `Ni`. Source: MTL specification, Wavefront 1995; `Pm`: the common extension for physically based shading.
-/// Returns false for an index below 1.
+/// Returns false for an index out of range, in place of which that of glass is set.
 [[nodiscard]] inline bool set_standard_light(Material& made, const tinyobj::material_t& m) {
   const double rest = 1 - std::min(made.reflectance, 1.0), specular = (m.specular[0] + m.specular[1] + m.specular[2]) / 3;
   if (m.metallic > 0)

@@ -42,6 +42,7 @@ class MtlReader : private StatementBuffer {
     std::vector<tinyobj::material_t> found;
     tinyobj::LoadMtl(&ignored_numbers, &found, &stream, nullptr, nullptr);
     MaterialLibrary library;
+    library.warnings = std::move(warnings_);
     for (const tinyobj::material_t& m : found)
       if (!m.name.empty()) library.materials.emplace(m.name, material(m, library.warnings));
     library.pictures = std::move(pictures_);
@@ -73,9 +74,7 @@ class MtlReader : private StatementBuffer {
       const double value = number_in<double>(word).value_or(0);
       return value >= 1 && value <= 85;
     };
-    const bool is_one = given.size() == 1, is_colour = keyword() == "Kd" || keyword() == "Ks";
-    if (is_colour) require((is_one || given.size() == 3) && are_within(max_number), "one or three numbers that are not negative");
-    if (keyword() == "Ns") require(is_one && are_within(max_number), "a number that is not negative");
+    const bool is_one = given.size() == 1;
     if (keyword() == "helios_reflectance") require(is_one && are_within(100), "a fraction from 0 to 1, or up to 100 percent");
     if (keyword() == "helios_classification") require(is_one && number_in<std::uint16_t>(given[0]), "a whole number from 0 to 65535");
     if (keyword() == "pulsecast_retroreflection")
@@ -84,12 +83,41 @@ class MtlReader : private StatementBuffer {
     if (keyword() == "pulsecast_normalizedPhong") require(is_one && (given[0] == "true" || given[0] == "false"), "true or false");
     if (const char* const expected = expected_of_light_key(keyword(), given)) require(false, expected);
     if (is_first) ready = "newmtl default" + exponent;
+    if (keyword() == "Kd" || keyword() == "Ks")
+      ready += standard_numbers(given, 3);
+    else if (keyword() == "Ns")
+      ready += standard_numbers(given, 1);
     // with textures, tinyobjloader would change the colour, depending on the order
-    if (is_colour || keyword() == "Ns" || (is_light_key(keyword()) && !given.empty() && number_in<double>(given[0])) ||
-        keyword().starts_with("helios_") || keyword().starts_with("pulsecast_"))
+    else if ((is_light_key(keyword()) && !given.empty() && number_in<double>(given[0])) || keyword().starts_with("helios_") ||
+             keyword().starts_with("pulsecast_"))
       ready += statement();
-    // a single number is the value of red, green and blue. Source: MTL specification, Wavefront 1995.
-    if (is_colour && is_one) ready.append(" ").append(given[0]).append(" ").append(given[0]);
+  }
+
+  /// Statement of a standard key with `count` numbers, limited to those from 0 to 1e12; empty if its words are others. A single number is
+  /// the value of red, green and blue. What differs from the format is noted. Source: MTL specification, Wavefront 1995.
+  [[nodiscard]] std::string standard_numbers(const std::vector<std::string_view>& given, std::size_t count) {
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < std::min(given.size(), count); ++i) {
+      const auto number = number_in<double>(given[i]);
+      if (!number) break;
+      numbers.push_back(std::clamp(*number, 0.0, max_number));
+      if (numbers.back() != *number) note("takes " + pulsecast::detail::to_text(numbers.back()) + " for " + std::string(given[i]));
+    }
+    const bool is_comment = given.size() > 1 && given[1].starts_with('/');
+    if (numbers.size() != count && !(numbers.size() == 1 && (given.size() == 1 || is_comment))) {
+      note("is ignored: expected " + std::string(count == 1 ? "a number" : "one or three numbers"));
+      return {};
+    }
+    if (given.size() > numbers.size()) note("has words after its numbers, which are ignored");
+    std::string made(keyword());
+    for (std::size_t i = 0; i < count; ++i) made += ' ' + pulsecast::detail::to_text(numbers[std::min(i, numbers.size() - 1)]);
+    return made;
+  }
+
+  /// Notes an oddity of the current statement.
+  void note(const std::string& oddity) {
+    warnings_.push_back(path() + ", line " + std::to_string(line()) + ": material '" + current_ + "': " + text::quoted(statement()) + " " +
+                        oddity);
   }
 
   /// Notes the picture that a statement names, for the first material of a name.
@@ -97,16 +125,16 @@ class MtlReader : private StatementBuffer {
     const bool colour = keyword() == "map_Kd", opacity = keyword() == "map_d", reflectance = keyword() == "pulsecast_reflectanceMap";
     if ((!colour && !opacity && !reflectance) || repeated_) return;
     std::string_view named = rest();
-    MaterialPictures& all = pictures_[current_];
-    if (reflectance && named.starts_with("pattern ")) {
-      all.reflectance_pattern = true;
-      named = text::trimmed(named.substr(8));
-    }
+    const bool is_pattern = reflectance && named.starts_with("pattern ");
+    if (is_pattern) named = text::trimmed(named.substr(8));
     std::string name;
     tinyobj::texture_option_t unused;
     tinyobj::ParseTextureNameAndOption(&name, &unused, std::string(named).c_str());
-    require(!name.empty(), "the name of a picture");
+    if (reflectance) require(!name.empty(), "the name of a picture");
+    if (name.empty()) return note("names no picture");
     std::replace(name.begin(), name.end(), '\\', '/');
+    MaterialPictures& all = pictures_[current_];
+    all.reflectance_pattern = all.reflectance_pattern || is_pattern;
     (colour ? all.colour : opacity ? all.opacity : all.reflectance).file = std::filesystem::path(path()).parent_path() / name;
   }
 
@@ -166,8 +194,7 @@ class MtlReader : private StatementBuffer {
 
   template <class Extra, class Warn>
   void set_light(Material& made, const tinyobj::material_t& m, const Extra& extra, const Warn& warn) const {
-    if (!set_standard_light(made, m))
-      throw FileError(path(), "line " + std::to_string(lines_.at({m.name, "Ni"})), "the index Ni of a clear body: expected from 1 to 4");
+    if (!set_standard_light(made, m)) warn("Ni", "has the index Ni of a clear body out of range: expected from 1 to 4; glass is assumed");
     std::deque<std::string> texts;
     const auto words_of = [&](const char* key) {
       texts.push_back(extra(key));
@@ -204,6 +231,7 @@ class MtlReader : private StatementBuffer {
   [[nodiscard]] static std::string nanometres(double metres) { return pulsecast::detail::to_text(std::round(metres * 1e12) / 1e3); }
 
   const SpectralLibrary& spectra_;
+  std::vector<std::string> warnings_;
   bool begun_ = false, repeated_ = false;                             // `repeated_`: the current material is not the first of its name
   std::string current_ = "default";                                   // name of the current material
   std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // of each material and keyword
