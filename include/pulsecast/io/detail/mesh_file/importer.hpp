@@ -52,7 +52,8 @@ class MeshImport {
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, settings_.up.has_value());
-    const aiScene* const found = importer.ReadFile(std::filesystem::absolute(path_).string(), aiProcess_Triangulate);
+    const std::string main = std::filesystem::absolute(path_).string();
+    const aiScene* const found = importer.ReadFile(main, aiProcess_Triangulate);
     if (!found || !found->mRootNode) fail(importer.GetErrorString());
     if (!system_->refused().empty()) fail_elsewhere();
     format(*found);
@@ -67,6 +68,8 @@ class MeshImport {
     for (unsigned i = 0; i < found->mNumMeshes; ++i) mesh(*found->mMeshes[i]);
     nodes(*found->mRootNode);
     if (left_out_ > 0) warn("points and lines are left out: " + std::to_string(left_out_) + " in all");
+    for (const std::string& file : system_->looked_for())
+      if (file != main) scene_.files.push_back(file);
     scene_.owner = data_;
     return std::move(scene_);
   }

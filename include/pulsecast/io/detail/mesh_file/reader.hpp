@@ -33,7 +33,11 @@ namespace detail {
 [[nodiscard]] inline MeshFile file_of(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers) {
   ObjModel model =
       read_obj(path, {.up = settings.up.value_or(UpAxis::z), .spectra = settings.spectra, .texture = settings.texture}, workers);
-  MeshFile file{.materials = std::move(model.materials), .pictures = std::move(model.pictures), .warnings = std::move(model.warnings)};
+  MeshFile file{.materials = std::move(model.materials),
+                .pictures = std::move(model.pictures),
+                .warnings = std::move(model.warnings),
+                .files = std::move(model.files)};
+  for (const MaterialPictures& pictures : file.pictures) pictures.append_to(file.files);
   file.pictures.resize(file.materials.size());
   if (model.mesh.triangles.empty()) return file;
   FileMesh& one = file.meshes.emplace_back();
