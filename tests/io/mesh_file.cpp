@@ -424,6 +424,8 @@ TEST_CASE("axes and units are those of the file, or of the settings") {
   const auto z_up = replaced(dae, {{"Y_UP", "Z_UP"}, {"meter=\"1\"", "meter=\"0.01\""}});
   CHECK(near(first("b.dae", z_up), {0.01, 0.02, 0.03}));
   CHECK(near(first("b.dae", z_up, {.unit = 2}), {2, 4, 6}));
+  CHECK(near(first("b.dae", replaced(z_up, {{"meter=\"0.01\"", "meter='0.01'"}}), {.unit = 2}), {2, 4, 6}));
+  CHECK(near(first("b.dae", replaced(z_up, {{"<asset>", "<!-- <unit meter=\"7\"/> --><asset>"}}), {.unit = 2}), {2, 4, 6}));
   CHECK(near(first("b.dae", z_up, {.up = UpAxis::y}), {0.01, -0.03, 0.02}));
   CHECK(near(first("b.dae", replaced(dae, {{"Y_UP", "X_UP"}})), {-2, -3, 1}));
 
