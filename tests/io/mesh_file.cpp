@@ -468,6 +468,11 @@ TEST_CASE("a mesh file that is missing, empty or unknown is explained, and so ar
   const Folder folder;
   const auto error = [&](const std::filesystem::path& path) { return support::file_error([&] { (void)read_mesh_file(path); }); };
   CHECK(contains(error(folder / "none.ply").problem(), "does not exist"));
+  const std::string begin = "ply\nformat ascii 1.0\n";
+  std::string comments;
+  while (comments.size() < 3'300'000) comments += "comment so it goes on\n";
+  for (const std::string& rest : {comments, std::string(40'000'000, 'x'), "element vertex 3" + std::string(70'000, '\n') + "end_header\n"})
+    CHECK(contains(error(folder.write("a.ply", begin + rest)).problem(), "its PLY header has no end_header within 64 KiB"));
   CHECK(contains(error(folder.write("a.ply", "")).problem(), "is empty"));
   CHECK(contains(error(folder.write("a.xyz", "hello")).problem(), "no mesh file that can be read"));
   CHECK(error(folder.write("b.ply", "ply\nformat")).path() == (folder / "b.ply").string());
