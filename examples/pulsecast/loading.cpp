@@ -69,6 +69,7 @@ std::unique_ptr<Simulation> load(const SurveySettings& survey, const Loading& ho
     const SceneInputs inputs = inputs_of(survey, known, run);
     KeptParts kept =
         known.sharing ? shared_parts(*known.sharing, known.store, inputs, build, notes) : stored_parts(known.store, inputs, build, notes);
+    known.inputs->add(kept.built.files);
     return std::move(kept.built);
   };
   return helios::make_simulation(survey, known.settings, parts);

@@ -135,19 +135,19 @@ class Session {
     const double start_time = gps_week_seconds(std::stoll(ranks_.from_first(std::to_string(unix_time_of(options_.gps_start_time)))));
     const auto inputs = std::make_shared<SurveyInputs>(survey_, options_.assets);
     log_.how = how();
-    if (ranks_.first())
-      for (const auto& [path, fingerprint] : inputs->fingerprints()) log_.inputs.emplace(written_name(path), fingerprint);
     if (again)
-      go_on_from(*again);
+      go_on_from(*again, *inputs);
     else
       log_.start_time = start_time;
+    note_inputs(*inputs);
     const std::unique_ptr<Simulation> simulation = loaded(inputs);
+    note_inputs(*inputs);
     if (again) require_run(*again, simulation->runs());
     settle_start_time(*simulation, again, start_time);
     if (again) forget_run_before(parent);
     tell_notes(*simulation);
     if (!pages_.address().empty()) std::cout << "watch this run at " << pages_.address() << std::endl;
-    const RunSummary all = play_all(*simulation, parent, again);
+    const RunSummary all = play_all(*simulation, *inputs, parent, again);
     pages_.finish(all.complete);
     if (all.complete && all.echoes == 0 && all.pulses() > 0) tell_of_nothing(*simulation);
     const std::string traffic = ranks_.traffic();
@@ -205,13 +205,14 @@ class Session {
   }
 
   /// Simulates all remaining repetitions, each into its own folder.
-  RunSummary play_all(Simulation& simulation, const fs::path& parent, std::optional<fs::path> again) {
+  RunSummary play_all(Simulation& simulation, SurveyInputs& inputs, const fs::path& parent, std::optional<fs::path> again) {
     RunSummary all;
     fs::path folder = again ? *again : new_folder(parent);
     for (int r = log_.run; r < simulation.runs() && all.complete; ++r) {
       log_.run = r;
       if (r > 0) {
         simulation.begin(r);
+        if (note_inputs(inputs)) log_.write(folder);
         tell_notes(simulation);
       }
       take_columns(simulation);
@@ -306,26 +307,30 @@ class Session {
     return text.str();
   }
 
-  void require_same_inputs(const fs::path& folder, const RunLog& then) const {
+  /// Adds the inputs known so far to the log. Returns true if there are new ones.
+  bool note_inputs(SurveyInputs& inputs) {
+    const std::size_t before = log_.inputs.size();
+    if (ranks_.first())
+      for (const auto& [path, fingerprint] : inputs.fingerprints()) log_.inputs.emplace(written_name(path), fingerprint);
+    return log_.inputs.size() > before;
+  }
+
+  static void require_same_inputs(const fs::path& folder, const RunLog& then, SurveyInputs& inputs) {
+    static const std::string missing = hex(io::Fingerprint{});
     std::string changed;
-    const auto tell = [&](const std::string& path, const char* fate) { changed += (changed.empty() ? "" : ", ") + path + fate; };
-    for (const auto& [path, fingerprint] : log_.inputs) {
-      const auto before = then.inputs.find(path);
-      if (before == then.inputs.end())
-        tell(path, " is new");
-      else if (before->second != fingerprint)
-        tell(path, " has changed");
+    for (const auto& [path, before] : then.inputs) {
+      const std::string now = hex(inputs.fingerprint(name_written(path)));
+      if (now != before)
+        changed += (changed.empty() ? "" : ", ") + path + (before == missing ? " is new" : now == missing ? " is gone" : " has changed");
     }
-    for (const auto& [path, fingerprint] : then.inputs)
-      if (!log_.inputs.contains(path)) tell(path, " is gone");
     if (!changed.empty()) throw FileError(folder.string(), "", "cannot be resumed: since its start, " + changed);
   }
 
-  void go_on_from(const fs::path& folder) {
+  void go_on_from(const fs::path& folder, SurveyInputs& inputs) {
     const std::string text = ranks_.from_first(ranks_.first() ? RunLog::text_in(folder) : std::string());
     RunLog log = RunLog::parse(text, (folder / RunLog::name).string());
     require_same(folder, log.how, log_.how);
-    if (ranks_.first()) require_same_inputs(folder, log);
+    if (ranks_.first()) require_same_inputs(folder, log, inputs);
     if (options_.seed) require_same(folder, "--seed " + std::to_string(log.seed), "--seed " + std::to_string(*options_.seed));
     log_ = std::move(log);
   }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -77,6 +78,18 @@ std::string written_name(const std::string& name) {
       text.append("\\x").append({digits[c >> 4], digits[c & 15]});
   }
   return text;
+}
+
+std::string name_written(std::string_view text) {
+  std::string name;
+  for (; !text.empty(); text.remove_prefix(1)) {
+    unsigned c = 0;
+    const bool is_escape =
+        text.starts_with("\\x") && text.size() >= 4 && std::from_chars(text.data() + 2, text.data() + 4, c, 16).ptr == text.data() + 4;
+    name += is_escape ? static_cast<char>(c) : text.front();
+    if (is_escape) text.remove_prefix(3);
+  }
+  return name;
 }
 
 std::string RunLog::text() const {

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <optional>
 #include <random>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -18,6 +20,7 @@
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/io/scene_cache.hpp>
 
+#include "run_folder.hpp"
 #include "survey_inputs.hpp"
 
 namespace fs = std::filesystem;
@@ -59,16 +62,37 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
-/// Reads the warnings of a scene from their own file, headed by the key of the scene.
-std::optional<std::vector<std::string>> read_warnings(const fs::path& path, const Fingerprint& key) {
-  try {
-    const std::vector<std::string> lines = lines_of(io::InputFile(path, "the warnings of a scene").take_rest());
-    if (lines.size() < 2 || lines.front() != hex(key) || lines.back() != "end") return std::nullopt;
-    return std::vector(lines.begin() + 1, lines.end() - 1);
+/// Notes on a scene in the store, in a file of their own.
+struct SceneNotes {
+  Fingerprint key{};           ///< of the scene
+  std::set<fs::path> files{};  ///< that its builder looked for
+  std::vector<std::string> warnings{};
+
+  void write(const fs::path& path) const {
+    io::OutputFile file(path);
+    file.write(hex(key) + '\n' + std::to_string(files.size()) + '\n');
+    for (const fs::path& one : files) file.write(written_name(one.string()) + '\n');
+    for (const std::string& warning : warnings) file.write(warning + '\n');
+    file.write(std::string_view("end\n"));
+    file.commit();
+  }
+
+  /// Notes whose key is that of their files, by `key_of`.
+  template <class KeyOf>
+  [[nodiscard]] static std::optional<SceneNotes> read(const fs::path& path, const KeyOf& key_of) try {
+    const std::vector<std::string> lines = lines_of(io::InputFile(path, "notes on a scene").take_rest());
+    if (lines.size() < 3 || lines.back() != "end") return std::nullopt;
+    const auto count = text::number_in<std::size_t>(lines[1]);
+    if (!count || *count > lines.size() - 3) return std::nullopt;
+    const auto first = lines.begin() + 2, last = first + static_cast<std::ptrdiff_t>(*count);
+    SceneNotes notes{.warnings = {last, lines.end() - 1}};
+    for (auto line = first; line != last; ++line) notes.files.insert(name_written(*line));
+    notes.key = key_of(notes.files);
+    return lines.front() == hex(notes.key) ? std::optional(std::move(notes)) : std::nullopt;
   } catch (const FileError&) {
     return std::nullopt;
   }
-}
+};
 
 /// Replaces a file atomically: `write` makes it under a unique name, so that programs that start at the same time do no harm.
 template <class Write>
@@ -111,36 +135,40 @@ void tidy(const fs::path& folder, const fs::path& newest) {
 }  // namespace
 
 KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const BuildParts& build, std::vector<std::string>& notes) {
-  std::uintmax_t size = 0;
-  for (const fs::path& file : inputs.files) {
-    std::error_code error;
-    const std::uintmax_t one = fs::file_size(file, error);
-    size += error ? 0 : one;
-  }
-  if (store.folder.empty() || (!store.read && !store.write) || size < worth_keeping) return {.built = build()};
-
-  const fs::path path = store.folder / (place_of(inputs) + ".scene"), warnings_path = fs::path(path).replace_extension(".notes");
-  io::SceneSources sources{inputs.files, inputs.settings + this_program()};
-  sources.files.insert(sources.files.end(), inputs.more.begin(), inputs.more.end());
-  Fingerprint key;
-  try {
-    key = io::scene_key(sources, inputs.content);
-  } catch (const FileError&) {  // the builder of the scene reports it
-    return {.built = build()};
-  }
+  if (store.folder.empty() || (!store.read && !store.write)) return {.built = build()};
+  const fs::path path = store.folder / (place_of(inputs) + ".scene"), notes_path = fs::path(path).replace_extension(".notes");
+  const std::string program = this_program();
+  const auto key_of = [&](const std::set<fs::path>& looked_for) {
+    std::set<fs::path> all = inputs.files;
+    all.insert(looked_for.begin(), looked_for.end());
+    io::SceneSources sources{{all.begin(), all.end()}, inputs.settings + program};
+    sources.files.insert(sources.files.end(), inputs.more.begin(), inputs.more.end());
+    return io::scene_key(sources, inputs.content);
+  };
   if (store.read) {
-    auto warnings = read_warnings(warnings_path, key);
-    auto opened = warnings ? io::open_scene<SurveyScene>(path, key, MovingIndexSettings{.to = 1}) : io::OpenedScene<SurveyScene>{};
+    auto known = SceneNotes::read(notes_path, key_of);
+    auto opened = known ? io::open_scene<SurveyScene>(path, known->key, MovingIndexSettings{.to = 1}) : io::OpenedScene<SurveyScene>{};
     if (opened.scene) {
       std::error_code ignored;
-      for (const fs::path& used : {path, warnings_path}) fs::last_write_time(used, fs::file_time_type::clock::now(), ignored);
+      for (const fs::path& used : {path, notes_path}) fs::last_write_time(used, fs::file_time_type::clock::now(), ignored);
       notes.push_back("the scene is read from its cache, " + path.string());
-      return {{{opened.scene->parts().begin(), opened.scene->parts().end()}, *std::move(warnings)}, path, key};
+      return {{{opened.scene->parts().begin(), opened.scene->parts().end()}, std::move(known->warnings), std::move(known->files)},
+              path,
+              known->key};
     }
   }
+  for (const fs::path& file : inputs.files) (void)inputs.content(file);  // so that a change during the build is noticed
   KeptParts made{.built = build()};
   if (!store.write) return made;
   try {
+    std::uintmax_t size = 0;
+    for (const fs::path& file : made.built.files) {
+      std::error_code error;
+      const std::uintmax_t one = fs::file_size(file, error);
+      size += error ? 0 : one;
+    }
+    if (size < worth_keeping) return made;
+    const Fingerprint key = key_of(made.built.files);
     std::error_code error;
     fs::create_directories(store.folder, error);
     if (error) throw FileError(store.folder.string(), "", "the folder cannot be created: " + error.message());
@@ -148,13 +176,7 @@ KeptParts stored_parts(const SceneStore& store, const SceneInputs& inputs, const
     const std::uintmax_t room = fs::space(store.folder, error).available;
     if (scene.memory() > (error ? max_kept : std::min(max_kept, room)) / 2)
       throw FileError(store.folder.string(), "", "the scene is too large for this folder");
-    replace(warnings_path, [&](const fs::path& own) {
-      io::OutputFile file(own);
-      file.write(hex(key) + '\n');
-      for (const std::string& warning : made.built.warnings) file.write(warning + '\n');
-      file.write(std::string_view("end\n"));
-      file.commit();
-    });
+    replace(notes_path, [&](const fs::path& own) { SceneNotes{key, made.built.files, made.built.warnings}.write(own); });
     replace(path, [&](const fs::path& own) { io::save_scene(own, scene, key); });
     tidy(store.folder, path);
     notes.push_back("the scene is cached for the next run in " + path.string());

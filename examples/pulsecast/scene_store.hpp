@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,11 @@ using BuildParts = std::function<pulsecast::helios::BuiltParts()>;
 
 /// Inputs of a scene.
 struct SceneInputs {
-  std::vector<std::filesystem::path> files{};  ///< files of the scene
-  std::vector<std::filesystem::path> more{};   ///< further files and folders; they do not count towards the size that is worth storing
-  std::string settings{};                      ///< all other inputs, as text
-  std::string name{};                          ///< for file names
-  std::function<pulsecast::io::Fingerprint(const std::filesystem::path&)> content =
-      pulsecast::io::content_fingerprint;  ///< fingerprint of a file
+  std::set<std::filesystem::path> files{};    ///< files in the settings of the scene; `BuiltParts` has all
+  std::vector<std::filesystem::path> more{};  ///< further files and folders; they do not count towards the size that is worth storing
+  std::string settings{};                     ///< all other inputs, as text
+  std::string name{};                         ///< for file names
+  std::function<pulsecast::io::Fingerprint(const std::filesystem::path&)> content{};  ///< fingerprint of a file, zero for a missing one
 };
 
 /// Parts from `build`, or from an earlier build with equal inputs: scenes of large files are stored. Adds notes on the store to `notes`. If

@@ -5,10 +5,11 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <system_error>
+#include <utility>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
@@ -20,41 +21,39 @@ using io::Fingerprint;
 SurveyInputs::SurveyInputs(const helios::SurveySettings& survey, const std::vector<fs::path>& assets)
     : scene_(helios::scene_files(survey.scene)), spectra_(helios::spectra_folders(assets)) {
   for (const helios::LegSettings& leg : survey.legs)
-    if (leg.platform.trajectory) trajectories_.push_back(leg.platform.trajectory->file);
+    if (leg.platform.trajectory) others_.insert(leg.platform.trajectory->file);
 }
 
 Fingerprint SurveyInputs::fingerprint(const fs::path& path) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return io::content_fingerprint(path);
+  if (::stat(path.c_str(), &status) != 0) status = {};
   Mark mark;
   for (const auto number :
        {static_cast<std::intmax_t>(status.st_dev), static_cast<std::intmax_t>(status.st_ino), static_cast<std::intmax_t>(status.st_size),
         static_cast<std::intmax_t>(status.st_mtim.tv_sec), static_cast<std::intmax_t>(status.st_mtim.tv_nsec),
         static_cast<std::intmax_t>(status.st_ctim.tv_sec), static_cast<std::intmax_t>(status.st_ctim.tv_nsec)})
     mark.push_back(static_cast<std::uint64_t>(number));
-  auto& [known_mark, known] = known_[path];
-  if (known_mark != mark) {
-    known = io::content_fingerprint(path);
-    known_mark = std::move(mark);
-  }
-  return known;
+  const bool is_folder = S_ISDIR(status.st_mode) && std::find(spectra_.begin(), spectra_.end(), path) != spectra_.end();
+  const auto [known, is_new] = known_.try_emplace(path);
+  if (!is_new && !is_folder && known->second.first == mark) return known->second.second;
+  Fingerprint now{};
+  if (is_folder || S_ISREG(status.st_mode)) try {
+      now = io::content_fingerprint(path);
+    } catch (const FileError&) {  // unreadable: as if it were missing
+    }
+  if (!is_new && now != known->second.second) throw FileError(path.string(), "", "has changed since this program looked at it first");
+  known->second = {std::move(mark), now};
+  return now;
 }
 
 std::map<std::string, std::string> SurveyInputs::fingerprints() {
   std::map<std::string, std::string> all;
-  const auto add = [&](const fs::path& path) {
-    try {
-      all.emplace(path.string(), hex(fingerprint(path)));
-    } catch (const FileError&) {  // missing or unreadable
-    }
+  const auto add_all = [&](const auto& paths) {
+    for (const fs::path& path : paths) all.emplace(path.string(), hex(fingerprint(path)));
   };
-  for (const fs::path& path : scene_) add(path);
-  for (const fs::path& path : trajectories_) add(path);
-  for (const fs::path& folder : spectra_) {
-    std::error_code error;
-    for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error))
-      if (std::error_code ignored; i->is_regular_file(ignored)) add(i->path());
-  }
+  add_all(scene_);
+  add_all(others_);
+  add_all(spectra_);
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,21 +18,25 @@ class SurveyInputs {
  public:
   SurveyInputs(const pulsecast::helios::SurveySettings& survey, const std::vector<std::filesystem::path>& assets);
 
-  [[nodiscard]] const std::vector<std::filesystem::path>& scene() const noexcept { return scene_; }      ///< files
+  [[nodiscard]] const std::set<std::filesystem::path>& scene() const noexcept { return scene_; }         ///< files in its settings
   [[nodiscard]] const std::vector<std::filesystem::path>& spectra() const noexcept { return spectra_; }  ///< folders
 
-  /// Fingerprint of the content of a file or folder. Rereads a file only if its size or times have changed. Throws a `FileError` if it
-  /// cannot be read.
+  /// Adds the files that a builder of the scene has looked for.
+  void add(const std::set<std::filesystem::path>& files) { others_.insert(files.begin(), files.end()); }
+
+  /// Fingerprint of the content of a file, or of a folder of spectra; zero if it cannot be read. Rereads a file only if its size or times
+  /// have changed. Throws a `FileError` if it is not what it was when it was asked for first.
   [[nodiscard]] pulsecast::io::Fingerprint fingerprint(const std::filesystem::path& path);
 
-  /// Fingerprint of each file, in hexadecimal digits. Skips unreadable files: their readers report them.
+  /// Fingerprint of each file and folder of spectra, in hexadecimal digits.
   [[nodiscard]] std::map<std::string, std::string> fingerprints();
 
  private:
   /// Device, inode, size and times of a file: equal marks mean an equal file.
   using Mark = std::vector<std::uint64_t>;
 
-  std::vector<std::filesystem::path> scene_, spectra_, trajectories_;
+  std::set<std::filesystem::path> scene_, others_;  // `others_`: trajectories, and what the builder has looked for
+  std::vector<std::filesystem::path> spectra_;
   std::map<std::filesystem::path, std::pair<Mark, pulsecast::io::Fingerprint>> known_;
 };
 

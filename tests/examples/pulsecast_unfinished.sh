@@ -94,7 +94,7 @@ refuses "another OBJ, too" "cannot be resumed: since its start, .*plane.mtl has 
 cp kept/plane.obj kept/plane.mtl own
 mkdir spectra
 printf '0.5 0.1\n2.0 0.2\n' > spectra/grass.txt
-refuses "a new spectrum" "since its start, .*spectra/grass.txt is new$"
+refuses "a new spectrum" "since its start, .*spectra is new$"
 rm -r spectra
 rm own/plane.mtl
 refuses "no MTL" "since its start, .*plane.mtl is gone$"
@@ -121,6 +121,44 @@ fly --resume && fail "another trajectory was taken"
 grep -q 'since its start, .*way.csv has changed$' messages || fail "of another trajectory it said: $(cat messages)"
 sed -i 's/,9,/,8,/' own/way.csv
 fly "${start[@]}" --resume || fail "a flight by the clock of its trajectory cannot be resumed: $(cat messages)"
+
+# Buffers and pictures of glTF files, by whatever name: neither is an earlier scene taken from the cache, nor are two worlds mixed in one run.
+cp "$(dirname "$survey")/survey.xml" own/lids.xml
+sed -i 's| onGround="true"||; s|</part>|</part><part id="8"><filter type="meshloader"><param type="string" key="filepath" value="lid.gltf"/></filter></part>|' own/lids.xml
+{ cat kept/plane.obj; yes '# nothing to see here, but many bytes of it' | head -n 400000; } > own/plane.obj
+lids() { timeout 100 "$program" own/lids.xml --threads 2 --format xyz --output lids "$@" > messages 2>&1; }
+lay() { # lay FILE HEIGHT: corners of a triangle at that height, 32 bits each, as for printf
+  local far='\x00\x00\xc8\x42' near='\x00\x00\xc8\xc2' none='\x00\x00\x00\x00'
+  printf "$near$2$far$far$2$far$none$2$near" > "own/$1"
+}
+low='\x00\x00\x00\x3f' high='\x00\x00\x80\x3f'
+for uri in b.bin b.dat b "b'c.bin" 'b\u00e4.bin'; do
+  name=${uri/'\u00e4'/$'\xc3\xa4'}
+  cat > own/lid.gltf << EOF
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"uri": "$uri", "byteLength": 36}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-100, 0, -100], "max": [100, 9, 100]}]}
+EOF
+  rm -rf lids cache
+  lay "$name" "$low"
+  lids || fail "$name: ended with $(cat messages)"
+  before=$(sums lids)
+  rm -rf lids
+  lids && grep -q "is read from its cache" messages && [ "$(sums lids)" = "$before" ] || fail "$name: the scene is not cached: $(cat messages)"
+  rm -rf lids
+  lay "$name" "$high"
+  lids && grep -q "is cached" messages || fail "$name: with another buffer it said: $(cat messages)"
+  [ "$(sums lids)" != "$before" ] || fail "$name: another buffer makes no difference"
+  rm -rf lids
+  (ulimit -f 60 && lids) && fail "the limit has no effect"
+  lay "$name" "$low"
+  lids --resume && fail "$name: another buffer was taken"
+  grep -qF "$name has changed" messages || fail "$name: of another buffer it said: $(cat messages)"
+  lay "$name" "$high"
+  lids --resume || fail "$name: the run cannot be resumed: $(cat messages)"
+done
+cp kept/plane.obj own
 
 # Logs that no run has left.
 mkdir -p victim

@@ -7,13 +7,14 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 #include <tiffio.h>
 
-#include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/io/mesh_file.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
 
@@ -363,6 +364,52 @@ TEST_CASE("a raster of classes chooses the materials of a raster of heights") {
   CHECK(told.warnings()[0].find("land.ASC: 2 of 6 pixels have no class with a material, and get 'ground'") != std::string::npos);
 }
 
+TEST_CASE("a builder tells each file that it looked for, by whatever name, and those that are missing, too") {
+  const Files files;
+  const TemporaryFolder& folder = files.folder;
+  const auto put = [&](const std::string& name, const std::string& text) { std::ofstream(folder / name, std::ios::binary) << text; };
+  using Names = std::set<std::string>;
+  const auto told = [&](const PartSource& source) {
+    SceneBuilder builder(scene_of({{.id = "1", .source = source}}), {});
+    (void)builder.parts();
+    Names names;
+    for (const std::filesystem::path& path : builder.files()) names.insert(path.lexically_relative(folder.path()).string());
+    return names;
+  };
+  put("leaf.png", grey_png(1, 1, 8, {0}));
+  put("a.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd leaf.png\nmap_d missing.png\n");
+  put("tree.obj", "mtllib none.mtl a.mtl\nusemtl wall\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+  const Names tree{"tree.obj", "none.mtl a.mtl", "none.mtl", "a.mtl", "leaf.png", "missing.png"};
+  CHECK(told(ObjSource{{folder / "tree.obj"}}) == tree);
+  CHECK(told(MeshSource{.files = {folder / "tree.obj"}}) == tree);
+
+  support::Gltf gltf;
+  gltf.primitive({{0, 0, 0}, {1, 0, 0}, {0, 0, -1}}, {{0, 1, 2}}, R"(,"material":0)", {{0, 0}, {1, 0}, {0, 1}});
+  gltf.mesh("lid");
+  gltf.material(R"("name":"wall","pbrMetallicRoughness":{"baseColorTexture":{"index":0}})");
+  gltf.node(R"("mesh":0)");
+  for (const auto& [uri, buffer] :
+       {std::pair("b.bin", "b.bin"), std::pair("b.dat", "b.dat"), std::pair("b", "b"), std::pair("b.buffer", "b.buffer"),
+        std::pair("b'c.bin", "b'c.bin"), std::pair("b\\u00e4.bin", "b\xC3\xA4.bin")})
+    for (const std::string picture : {"sky.hdr", "sky.pic", "sky.jfif", "sky"}) {
+      CAPTURE(uri);
+      put(buffer, gltf.buffer());
+      gltf.more = R"("images":[{"uri":")" + picture + R"("}],"textures":[{"source":0}],)";
+      put("a.gltf", gltf.text(uri));
+      CHECK(told(MeshSource{.files = {folder / "a.gltf"}, .materials = folder / "m.mtl"}) == Names{"a.gltf", buffer, picture, "m.mtl"});
+    }
+
+  put("dem.png", grey_png(2, 2, 16, {1, 1, 1, 1}));
+  put("class.asc", "ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n2 2\n2 2\n");
+  const Names ground = told(GeoTiffSource{
+      .files = {folder / "dem.png"}, .material = {folder / "m.mtl", "ground"}, .classes = folder / "class.asc", .pixel_size = 1});
+  for (const char* name : {"dem.png", "dem.pgw", "dem.pngw", "dem.wld", "dem.WLD", "m.mtl", "class.asc"})
+    CHECK_MESSAGE(ground.contains(name), name);
+
+  put("p.xyz", "0 0 0\n1 1 1\n");
+  CHECK(told(XyzSource{.files = {folder / "p.xyz"}, .material = {folder / "m.mtl", "wall"}, .voxel_size = 1}) == Names{"p.xyz", "m.mtl"});
+}
+
 TEST_CASE("a raster of heights may be a PNG file, with scale, offset and a number for what is missing") {
   const Files files;
   const TemporaryFolder& folder = files.folder;
@@ -377,7 +424,6 @@ TEST_CASE("a raster of heights may be a PNG file, with scale, offset and a numbe
   source.pixel_size.reset();
   std::ofstream(folder / "dem.pgw") << "1\n0\n0\n-1\n10\n20\n";
   CHECK(below(built(scene), 10.25, 19.5).range == relative(93, 1e-12));
-  CHECK(scene_files(scene).size() == 2);
   scene.parts[0].transform.translation = {0, 0, 5};
   const std::vector<PlacedRaster> rasters = SceneBuilder(scene, {}).rasters();
   REQUIRE(rasters.size() == 1);

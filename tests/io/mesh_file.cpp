@@ -424,6 +424,8 @@ TEST_CASE("axes and units are those of the file, or of the settings") {
   const auto z_up = replaced(dae, {{"Y_UP", "Z_UP"}, {"meter=\"1\"", "meter=\"0.01\""}});
   CHECK(near(first("b.dae", z_up), {0.01, 0.02, 0.03}));
   CHECK(near(first("b.dae", z_up, {.unit = 2}), {2, 4, 6}));
+  CHECK(near(first("b.dae", replaced(z_up, {{"meter=\"0.01\"", "meter='0.01'"}}), {.unit = 2}), {2, 4, 6}));
+  CHECK(near(first("b.dae", replaced(z_up, {{"<asset>", "<!-- <unit meter=\"7\"/> --><asset>"}}), {.unit = 2}), {2, 4, 6}));
   CHECK(near(first("b.dae", z_up, {.up = UpAxis::y}), {0.01, -0.03, 0.02}));
   CHECK(near(first("b.dae", replaced(dae, {{"Y_UP", "X_UP"}})), {-2, -3, 1}));
 
@@ -466,6 +468,11 @@ TEST_CASE("a mesh file that is missing, empty or unknown is explained, and so ar
   const Folder folder;
   const auto error = [&](const std::filesystem::path& path) { return support::file_error([&] { (void)read_mesh_file(path); }); };
   CHECK(contains(error(folder / "none.ply").problem(), "does not exist"));
+  const std::string begin = "ply\nformat ascii 1.0\n";
+  std::string comments;
+  while (comments.size() < 3'300'000) comments += "comment so it goes on\n";
+  for (const std::string& rest : {comments, std::string(40'000'000, 'x'), "element vertex 3" + std::string(70'000, '\n') + "end_header\n"})
+    CHECK(contains(error(folder.write("a.ply", begin + rest)).problem(), "its PLY header has no end_header within 64 KiB"));
   CHECK(contains(error(folder.write("a.ply", "")).problem(), "is empty"));
   CHECK(contains(error(folder.write("a.xyz", "hello")).problem(), "no mesh file that can be read"));
   CHECK(error(folder.write("b.ply", "ply\nformat")).path() == (folder / "b.ply").string());

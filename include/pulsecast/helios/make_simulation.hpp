@@ -3,8 +3,10 @@
 #ifndef PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 #define PULSECAST_HELIOS_MAKE_SIMULATION_HPP
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,8 +19,9 @@ namespace PULSECAST_NAMESPACE::helios {
 
 /// Parts of a scene and the warnings from building it.
 struct BuiltParts {
-  std::vector<SurveyPart> parts{};      ///< parts of the scene
-  std::vector<std::string> warnings{};  ///< warnings of the construction
+  std::vector<SurveyPart> parts{};          ///< parts of the scene
+  std::vector<std::string> warnings{};      ///< warnings of the construction
+  std::set<std::filesystem::path> files{};  ///< files that were looked for, those that are missing, too
 };
 
 /// Gives the parts of the scene in a repetition: the result of `build`, or an equal earlier one.

@@ -72,6 +72,9 @@ class SceneBuilder {
   /// Warnings so far, each once.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
+  /// Files that `parts` has looked for so far, those that are missing, too; without the folders of spectra.
+  [[nodiscard]] const std::set<std::filesystem::path>& files() const noexcept { return files_; }
+
  private:
   /// Geometry and materials of a file, or of one of its nodes, placed in the part.
   struct Loaded {
@@ -94,8 +97,9 @@ class SceneBuilder {
   using Load = std::function<void(const std::filesystem::path&, std::vector<Loaded>&)>;
 
   void warn(const std::vector<std::string>& what);
+  void add_files(const std::vector<std::filesystem::path>& looked_for);
   const std::vector<Loaded>& load(const PartSource& source);  // each source once
-  static std::vector<Loaded> each(const std::vector<std::filesystem::path>& files, const Load& load);
+  std::vector<Loaded> each(const std::vector<std::filesystem::path>& files, const Load& load);
   std::vector<Loaded> read(const ObjSource& source);
   std::vector<Loaded> read(const GeoTiffSource& source);
   std::vector<Loaded> read(const XyzSource& source);
@@ -123,6 +127,7 @@ class SceneBuilder {
   std::vector<const PartSettings*> settings_of_;  // one per part of the last run
   std::vector<std::string> warnings_;
   std::set<std::string> warned_;
+  std::set<std::filesystem::path> files_;
 };
 
 }  // namespace PULSECAST_NAMESPACE::helios

@@ -25,10 +25,11 @@ struct ObjSettings {
 
 /// Content of an OBJ file, all objects and groups together.
 struct ObjModel {
-  MeshData mesh;                             ///< in units of the file, which should be metres; without triangles of zero area
-  std::vector<Material> materials;           ///< materials of triangles, in order of first use
-  std::vector<MaterialPictures> pictures{};  ///< of each material, not read: see `add_pictures`; empty if there are none
-  std::vector<std::string> warnings;         ///< oddities that could still be read
+  MeshData mesh;                               ///< in units of the file, which should be metres; without triangles of zero area
+  std::vector<Material> materials;             ///< materials of triangles, in order of first use
+  std::vector<MaterialPictures> pictures{};    ///< of each material, not read: see `add_pictures`; empty if there are none
+  std::vector<std::string> warnings;           ///< oddities that could still be read
+  std::vector<std::filesystem::path> files{};  ///< MTL files that were looked for, those that are missing, too
 };
 
 /// Reads an OBJ file and its MTL files. Polygons, concave ones included, are triangulated. Warns if no face has an area, or an MTL file is

@@ -4,6 +4,7 @@
 #define PULSECAST_IO_WORLD_FILE_HPP
 
 #include <filesystem>
+#include <vector>
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/base/vector.hpp>
@@ -22,8 +23,11 @@ struct WorldFile {
 /// Source: Esri, ArcGIS documentation, "World files for raster datasets".
 [[nodiscard]] WorldFile read_world_file(const std::filesystem::path& path);
 
-/// Path of the world file beside a picture: the picture's path with the first and last letter of its extension and a `w`, as in `dem.pgw`,
-/// its whole extension and a `w`, or `.wld`; empty if there is none.
+/// Paths of world files beside a picture, in the order in which they are looked for: the picture's path with the first and last letter of
+/// its extension and a `w`, as in `dem.pgw`, its whole extension and a `w`, or `.wld`; then in capitals.
+[[nodiscard]] std::vector<std::filesystem::path> world_files_of(const std::filesystem::path& picture);
+
+/// The first of them that exists; empty if there is none.
 [[nodiscard]] std::filesystem::path world_file_of(const std::filesystem::path& picture);
 
 }  // namespace PULSECAST_NAMESPACE::io

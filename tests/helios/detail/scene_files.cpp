@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/helios/detail/scene_files.hpp>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,47 +23,34 @@ struct Folder : TemporaryFolder {
   }
   void put(const std::string& name, const std::string& text) const { std::ofstream(*this / name, std::ios::binary) << text; }
 
-  [[nodiscard]] std::vector<std::string> files(const PartSource& source) const {
+  [[nodiscard]] std::set<std::string> files(const PartSource& source) const {
     SceneSettings scene;
     scene.parts.push_back({.source = source});
     return names(scene_files(scene));
   }
-  [[nodiscard]] static std::vector<std::string> names(const std::vector<std::filesystem::path>& paths) {
-    std::vector<std::string> all;
-    for (const std::filesystem::path& path : paths) all.push_back(path.filename().string());
+  [[nodiscard]] static std::set<std::string> names(const std::set<std::filesystem::path>& paths) {
+    std::set<std::string> all;
+    for (const std::filesystem::path& path : paths) all.insert(path.filename().string());
     return all;
   }
 };
 
-using Names = std::vector<std::string>;
+using Names = std::set<std::string>;
 
-TEST_CASE("an OBJ file brings the materials that it names, as one name and as several") {
-  const Folder folder({"a.mtl", "b.mtl", "c d.mtl", "e.mtl", "f.mtl", "not me.mtl"});
-  folder.put("x.obj", "# mtllib\nmtllib a.mtl b.mtl\r\n  mtllib c d.mtl\nv 0 0 0\nmtllib .\\a.mtl missing.mtl \\\n e.mtl\nmtllib f.mtl");
-  const Names found = folder.files(ObjSource{{folder / "x.obj"}});
-  for (const char* name : {"x.obj", "a.mtl", "b.mtl", "c d.mtl", "e.mtl", "f.mtl"})
-    CHECK_MESSAGE(std::find(found.begin(), found.end(), name) != found.end(), name);
-  CHECK(std::find(found.begin(), found.end(), "not me.mtl") == found.end());
-  CHECK(std::find(found.begin(), found.end(), "missing.mtl") == found.end());
-}
-
-TEST_CASE("an MTL file brings the pictures that it names") {
-  const Folder folder({"leaf.png", "bark.jpg"});
-  folder.put("a.mtl", "newmtl a\nmap_Kd .\\leaf.png\nmap_d missing.png\nnewmtl b\npulsecast_reflectanceMap bark.jpg\n");
-  folder.put("x.obj", "mtllib a.mtl\n");
-  CHECK(folder.files(ObjSource{{folder / "x.obj"}}) == Names{"x.obj", "a.mtl", "leaf.png", "bark.jpg"});
-}
-
-TEST_CASE("a mesh file brings the buffers and pictures that it names, in text and in binary, and its table of materials") {
-  const Folder folder({"a.bin", "leaf one.png", "bark.JPG", "sky.png", "t.mtl", "b.mtl"});
-  folder.put("a.gltf", R"({"buffers":[{"uri":"a.bin"}],"images":[{"uri":"leaf%20one.png"},{"uri":"none.png"}]})");
-  folder.put("b.fbx", std::string("S\x15\0\0\0", 5) + "C:\\old\\folder\\bark.JPG" + std::string(3, '\0'));
-  folder.put("c.dae", "<init_from>./sky.png</init_from>");
-  CHECK(folder.files(MeshSource{.files = {folder / "a.gltf"}, .materials = folder / "t.mtl"}) ==
-        Names{"a.gltf", "t.mtl", "a.bin", "leaf one.png"});
-  CHECK(folder.files(MeshSource{.files = {folder / "b.fbx", folder / "c.dae"}}) == Names{"b.fbx", "c.dae", "bark.JPG", "sky.png"});
-  folder.put("d.obj", "mtllib b.mtl\n");
-  CHECK(folder.files(MeshSource{.files = {folder / "d.obj"}}) == Names{"d.obj", "b.mtl"});
+TEST_CASE("an OBJ file has ground if one of the MTL files that it names has, as one name and as several") {
+  const std::string text =
+      "# mtllib\nmtllib a.mtl b.mtl\r\n  mtllib c d.mtl\nv 0 0 0\nmtllib .\\g.mtl missing.mtl \\\n e.mtl\nmtllib f.mtl";
+  for (const std::string name : {"a.mtl", "b.mtl", "c d.mtl", "e.mtl", "f.mtl", "g.mtl", "not me.mtl"}) {
+    CAPTURE(name);
+    const Folder folder({});
+    folder.put("x.obj", text);
+    folder.put(name, "newmtl a\nKd 1 1 1\nhelios_isGround true\n");
+    SceneSettings scene;
+    scene.parts.push_back({.source = ObjSource{{folder / "x.obj"}}});
+    CHECK(has_ground(scene) == (name != "not me.mtl"));
+    scene.parts[0].source = MeshSource{.files = {folder / "x.obj"}};
+    CHECK(has_ground(scene) == (name != "not me.mtl"));
+  }
 }
 
 TEST_CASE("a scene has ground if any of its MTL files says so") {
@@ -88,12 +75,13 @@ TEST_CASE("a scene has ground if any of its MTL files says so") {
   CHECK(ground(XyzSource{.files = {folder / "p.xyz"}, .material = {.file = folder / "c.mtl"}}));
 }
 
-TEST_CASE("other sources bring the files that their settings name; each counts once, and those that are not there do not") {
+TEST_CASE("sources bring the files that their settings name, there or not, each once") {
   const Folder folder({"a.tif", "b.tif", "c.asc", "m.mtl", "v.vox", "l.txt", "p.xyz", "y.obj"});
   CHECK(folder.files(GeoTiffSource{{folder / "a.tif", folder / "b.tif"}, {folder / "m.mtl", {}}}) == Names{"a.tif", "b.tif", "m.mtl"});
   CHECK(folder.files(GeoTiffSource{.files = {folder / "a.tif"}, .classes = folder / "c.asc"}) == Names{"a.tif", "c.asc"});
-  CHECK(folder.files(XyzSource{.files = {folder / "p.xyz", folder / "q.xyz"}}) == Names{"p.xyz"});
+  CHECK(folder.files(XyzSource{.files = {folder / "p.xyz", folder / "q.xyz"}}) == Names{"p.xyz", "q.xyz"});
   CHECK(folder.files(VoxelSource{.files = {folder / "v.vox"}, .leaf_angles = folder / "l.txt"}) == Names{"v.vox", "l.txt"});
+  CHECK(folder.files(MeshSource{.files = {folder / "a.gltf"}, .materials = folder / "m.mtl"}) == Names{"a.gltf", "m.mtl"});
   SceneSettings scene;
   scene.parts.resize(3, {.source = ObjSource{{folder / "y.obj"}}});
   scene.parts[1].source = XyzSource{.files = {folder / "p.xyz"}};

@@ -3,6 +3,7 @@
 #include <pulsecast/io/detail/child_process.hpp>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include "support/file_errors.hpp"
@@ -73,7 +75,24 @@ TEST_CASE("an error in a child is the same in its parent") {
   CHECK(contains(error_of([](ChildOutput&) { throw 1; }).problem(), "without a reason"));
 }
 
+TEST_CASE("a child has no network, and its parent keeps it") {
+#if defined(__linux__) && (defined(__x86_64__) || defined(__aarch64__))
+  for (const int family : {AF_INET, AF_INET6, AF_UNIX}) {
+    ChildResult result = ChildProcess::result("some.file", {}, [&](ChildOutput& to) {
+      to.value(::socket(family, SOCK_STREAM, 0));
+      to.value(errno);
+    });
+    CHECK(result.value<int>() == -1);
+    CHECK(result.value<int>() == EACCES);
+  }
+#endif
+  const int mine = ::socket(AF_INET, SOCK_STREAM, 0);
+  CHECK(mine >= 0);
+  ::close(mine);
+}
+
 TEST_CASE("the death of a child is explained") {
+  CHECK(contains(error_of([](ChildOutput&) { std::raise(SIGKILL); }).problem(), "was killed, as the system does when memory runs out"));
   CHECK(contains(error_of([](ChildOutput&) { std::raise(SIGSEGV); }).problem(), "ended by signal 11"));
   CHECK(contains(error_of([](ChildOutput&) { std::abort(); }).problem(), "ended by signal 6"));
   CHECK(contains(error_of([](ChildOutput& to) {

@@ -20,6 +20,7 @@
 #include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/png_heights.hpp>
+#include <pulsecast/io/world_file.hpp>
 #include <pulsecast/scene/class_materials.hpp>
 #include <pulsecast/scene/height_field.hpp>
 #include <pulsecast/scene/raster.hpp>
@@ -50,6 +51,8 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const GeoT
 
 /// Reads a raster by the extension of its file. Numbers of missing heights, scale and size of pixels are those of `source`.
 PULSECAST_INLINE SceneBuilder::LoadedRaster SceneBuilder::raster(const std::filesystem::path& file, const GeoTiffSource& source) {
+  add_files({file});
+  add_files(io::world_files_of(file));
   if (io::is_ascii_grid(file)) {
     io::AsciiGrid grid = io::read_ascii_grid(file, {.vertical_scale = source.height_scale.value_or(1), .missing = source.missing});
     warn(grid.warnings);

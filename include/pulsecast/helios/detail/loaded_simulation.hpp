@@ -47,6 +47,8 @@ namespace detail {
 [[nodiscard]] inline io::SpectralLibrary spectra_of(const SurveySettings& survey, const std::vector<std::filesystem::path>& folders) {
   io::SpectralLibrary all;
   for (const std::filesystem::path& folder : folders) {
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored)) continue;
     try {
       io::SpectralLibrary here = io::read_spectral_library(folder);
       all.spectra.merge(here.spectra);
@@ -249,7 +251,7 @@ class LoadedSimulation final : public Simulation {
   }
 
   std::vector<SurveyPart> parts(int run) {
-    const auto build = [&] { return BuiltParts{builder_.parts(run), builder_.warnings()}; };
+    const auto build = [&] { return BuiltParts{builder_.parts(run), builder_.warnings(), builder_.files()}; };
     BuiltParts built = provider_ ? provider_(run, build) : build();
     add_new(scene_warnings_, built.warnings);
     return std::move(built.parts);

@@ -27,6 +27,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Mesh
     io::MeshFile read =
         city ? options_.city_models(file, settings, options_.threads) : io::read_mesh_file(file, settings, options_.threads);
     warn(read.warnings);
+    add_files(read.files);
     if (read.placements.empty()) warn({file.string() + ": is left out"});
     read.materials = *table(std::move(read.materials));
     for (Part<TriangleMesh<>>& part : io::parts_of(std::move(read), 0, options_.threads))

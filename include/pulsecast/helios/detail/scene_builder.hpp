@@ -81,6 +81,10 @@ PULSECAST_INLINE void SceneBuilder::warn(const std::vector<std::string>& what) {
     if (warned_.insert(text).second) warnings_.push_back(text);
 }
 
+PULSECAST_INLINE void SceneBuilder::add_files(const std::vector<std::filesystem::path>& looked_for) {
+  files_.insert(looked_for.begin(), looked_for.end());
+}
+
 /// Reads each source once.
 PULSECAST_INLINE const std::vector<SceneBuilder::Loaded>& SceneBuilder::load(const PartSource& source) {
   for (const auto& [known, loaded] : loaded_)
@@ -92,6 +96,7 @@ PULSECAST_INLINE const std::vector<SceneBuilder::Loaded>& SceneBuilder::load(con
 /// Loads files in order. A `SettingError` becomes a `FileError` of that file.
 PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::each(const std::vector<std::filesystem::path>& files, const Load& load) {
   std::vector<Loaded> all;
+  add_files(files);
   for (const std::filesystem::path& file : files) try {
       load(file, all);
     } catch (const SettingError& error) {
@@ -106,6 +111,8 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const ObjS
     io::ObjModel model = io::read_obj(file, {.up = up_axis, .spectra = options_.spectra}, options_.threads);
     io::add_pictures(model.mesh, model.materials, model.pictures, model.warnings, {.isolated = true});
     warn(model.warnings);
+    for (const io::MaterialPictures& pictures : model.pictures) pictures.append_to(model.files);
+    add_files(model.files);
     if (model.mesh.triangles.empty()) {
       warn({file.string() + ": is left out"});
       return;
@@ -167,6 +174,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Voxe
                                                  : io::VoxelUse::scaled;
   if (source.random_shift) s.shift = options_.seed;
   s.validate();
+  if (!source.leaf_angles.empty()) add_files({source.leaf_angles});
   const LeafAngles leaves = source.leaf_angles.empty() ? LeafAngles::spherical() : io::read_leaf_angles(source.leaf_angles);
   return each(source.files, [&](const std::filesystem::path& file, std::vector<Loaded>& all) {
     io::VoxelFile voxels = io::read_voxel_file(file, s);
@@ -191,6 +199,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::read(const Voxe
 
 PULSECAST_INLINE Material SceneBuilder::material(const MaterialSource& source) {
   if (source.file.empty()) return io::undescribed("default");
+  add_files({source.file});
   const io::MaterialLibrary library = io::read_mtl(source.file, options_.spectra);
   warn(library.warnings);
   if (library.materials.empty() && !source.name) {

@@ -9,28 +9,24 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
 #include <variant>
 #include <vector>
 
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
-#include <pulsecast/helios/detail/named_files.hpp>
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
-#include <pulsecast/io/world_file.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
-/// Files of a scene in all runs, each once: those in its settings, the material files of OBJ files, and their pictures. Missing files are
-/// left out; the builder of the scene reports them.
-[[nodiscard]] std::vector<std::filesystem::path> scene_files(const SceneSettings& scene);
+/// Files in the settings of a scene, in all runs, there or not. Those that these files name are told by `SceneBuilder::files`.
+[[nodiscard]] std::set<std::filesystem::path> scene_files(const SceneSettings& scene);
 
 /// True if an MTL file declares a ground material, in any run, or cannot be read. A scene without one has no height for `onGround`.
 [[nodiscard]] bool has_ground(const SceneSettings& scene);
 
-/// Folders of spectra: `spectra` in each folder of assets that has it.
+/// Folders of spectra, there or not: `spectra` in each folder of assets.
 [[nodiscard]] std::vector<std::filesystem::path> spectra_folders(const std::vector<std::filesystem::path>& assets);
 
 namespace detail {
@@ -52,89 +48,37 @@ concept WithClasses = requires(Source source) {
   source.classes;
 };
 
+/// Files in the settings of scenes.
 class SceneFiles {
  public:
   void add(const PartSource& source) {
     std::visit(
         [this](const auto& s) {
-          for (const std::filesystem::path& file : s.files)
-            if (add(file) && (std::is_same_v<decltype(s), const ObjSource&> || text::lower(file.extension().string()) == ".obj"))
-              add_materials(file);
+          for (const std::filesystem::path& file : s.files) {
+            add(file);
+            if (std::is_same_v<decltype(s), const ObjSource&> || text::lower(file.extension().string()) == ".obj") objs.insert(file);
+          }
           if constexpr (WithMaterial<decltype(s)>) add_material(s.material.file);
           if constexpr (WithLeafAngles<decltype(s)>) add(s.leaf_angles);
-          if constexpr (WithNameTable<decltype(s)>) {
-            add_material(s.materials);
-            for (const std::filesystem::path& file : s.files)
-              for (const std::filesystem::path& named : files_named_in(file)) add(named);
-          }
-          if constexpr (WithClasses<decltype(s)>) {
-            add(s.classes);
-            for (const std::filesystem::path& file : s.files) add(io::world_file_of(file));
-            add(io::world_file_of(s.classes));
-          }
+          if constexpr (WithNameTable<decltype(s)>) add_material(s.materials);
+          if constexpr (WithClasses<decltype(s)>) add(s.classes);
         },
         source);
   }
 
-  [[nodiscard]] std::vector<std::filesystem::path> take() { return std::move(files_); }
-  [[nodiscard]] const std::vector<std::filesystem::path>& materials() const noexcept { return materials_; }  ///< MTL files among them
+  std::set<std::filesystem::path> all{}, objs{}, mtls{};  ///< OBJ and MTL files are among them
 
  private:
-  /// Adds a file. Returns true if it exists and is new.
-  bool add(const std::filesystem::path& file) {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored) || !seen_.insert(file).second) return false;
-    files_.push_back(file);
-    return true;
+  void add(const std::filesystem::path& file) {
+    if (!file.empty()) all.insert(file);
   }
-
-  /// Adds an MTL file, and the pictures that it names.
   void add_material(const std::filesystem::path& file) {
-    if (!add(file)) return;
-    materials_.push_back(file);
-    try {
-      for (const auto& [name, pictures] : io::read_mtl(file).pictures)
-        for (const io::PictureSource* picture : {&pictures.colour, &pictures.opacity, &pictures.reflectance}) add(picture->file);
-    } catch (const FileError&) {  // unreadable
-    }
+    add(file);
+    if (!file.empty()) mtls.insert(file);
   }
-
-  /// Adds the files that `mtllib` in an OBJ file may name.
-  void add_materials(const std::filesystem::path& obj) {
-    try {
-      const io::MappedFile file(obj);
-      const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()), keyword = "mtllib";
-      for (std::size_t at = text.find(keyword); at != text.npos; at = text.find(keyword, at)) {
-        at += keyword.size();
-        std::size_t end = std::min(text.find('\n', at), text.size());
-        while (end < text.size() && text.substr(at, end - at).find_last_of('\\') != text.npos &&
-               text.substr(at, end - at).find_last_not_of(" \t\r") == text.substr(at, end - at).find_last_of('\\'))
-          end = std::min(text.find('\n', end + 1), text.size());  // continued line
-        add_named(obj.parent_path(), std::string(text.substr(at, end - at)));
-      }
-    } catch (const FileError&) {  // unreadable
-    }
-  }
-
-  /// Adds names separated by blanks, and the whole as one name with blanks.
-  void add_named(const std::filesystem::path& folder, std::string names) {
-    constexpr const char* blanks = " \t\r\n";
-    std::replace(names.begin(), names.end(), '\\', '/');
-    const std::size_t first = names.find_first_not_of(blanks);
-    if (first == names.npos) return;
-    add_material(folder / names.substr(first, names.find_last_not_of(blanks) + 1 - first));
-    for (std::size_t word = first; word != names.npos;) {
-      const std::size_t end = std::min(names.find_first_of(blanks, word), names.size());
-      add_material(folder / names.substr(word, end - word));
-      word = names.find_first_not_of(blanks, end);
-    }
-  }
-
-  std::vector<std::filesystem::path> files_, materials_;
-  std::set<std::filesystem::path> seen_;
 };
 
-inline SceneFiles files_of(const SceneSettings& scene) {
+[[nodiscard]] inline SceneFiles files_of(const SceneSettings& scene) {
   SceneFiles files;
   for (const PartSettings& part : scene.parts) {
     files.add(part.source);
@@ -144,8 +88,41 @@ inline SceneFiles files_of(const SceneSettings& scene) {
   return files;
 }
 
-/// True if an MTL file has a ground material, or cannot be read.
+/// Adds the files of names separated by blanks, and of the whole as one name with blanks.
+inline void add_named(std::set<std::filesystem::path>& files, const std::filesystem::path& folder, std::string names) {
+  constexpr const char* blanks = " \t\r\n";
+  std::replace(names.begin(), names.end(), '\\', '/');
+  const std::size_t first = names.find_first_not_of(blanks);
+  if (first == names.npos) return;
+  files.insert(folder / names.substr(first, names.find_last_not_of(blanks) + 1 - first));
+  for (std::size_t word = first; word != names.npos;) {
+    const std::size_t end = std::min(names.find_first_of(blanks, word), names.size());
+    files.insert(folder / names.substr(word, end - word));
+    word = names.find_first_not_of(blanks, end);
+  }
+}
+
+/// Adds the files that `mtllib` in an OBJ file may name.
+inline void add_libraries(std::set<std::filesystem::path>& files, const std::filesystem::path& obj) {
+  try {
+    const io::MappedFile file(obj);
+    const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()), keyword = "mtllib";
+    for (std::size_t at = text.find(keyword); at != text.npos; at = text.find(keyword, at)) {
+      at += keyword.size();
+      std::size_t end = std::min(text.find('\n', at), text.size());
+      while (end < text.size() && text.substr(at, end - at).find_last_of('\\') != text.npos &&
+             text.substr(at, end - at).find_last_not_of(" \t\r") == text.substr(at, end - at).find_last_of('\\'))
+        end = std::min(text.find('\n', end + 1), text.size());  // continued line
+      add_named(files, obj.parent_path(), std::string(text.substr(at, end - at)));
+    }
+  } catch (const FileError&) {  // unreadable
+  }
+}
+
+/// True if an MTL file that is there has a ground material, or cannot be read.
 inline bool declares_ground(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return false;
   try {
     const auto materials = io::read_mtl(file).materials;
     return std::any_of(materials.begin(), materials.end(), [](const auto& named) { return named.second.ground; });
@@ -156,20 +133,18 @@ inline bool declares_ground(const std::filesystem::path& file) {
 
 }  // namespace detail
 
-inline std::vector<std::filesystem::path> scene_files(const SceneSettings& scene) { return detail::files_of(scene).take(); }
+inline std::set<std::filesystem::path> scene_files(const SceneSettings& scene) { return detail::files_of(scene).all; }
 
 inline std::vector<std::filesystem::path> spectra_folders(const std::vector<std::filesystem::path>& assets) {
   std::vector<std::filesystem::path> folders;
-  for (const std::filesystem::path& folder : assets) {
-    std::error_code error;
-    if (std::filesystem::is_directory(folder / "spectra", error)) folders.push_back(folder / "spectra");
-  }
+  for (const std::filesystem::path& folder : assets) folders.push_back(folder / "spectra");
   return folders;
 }
 
 inline bool has_ground(const SceneSettings& scene) {
-  const detail::SceneFiles files = detail::files_of(scene);
-  return std::any_of(files.materials().begin(), files.materials().end(), detail::declares_ground);
+  detail::SceneFiles files = detail::files_of(scene);
+  for (const std::filesystem::path& obj : files.objs) detail::add_libraries(files.mtls, obj);
+  return std::any_of(files.mtls.begin(), files.mtls.end(), detail::declares_ground);
 }
 
 }  // namespace PULSECAST_NAMESPACE::helios

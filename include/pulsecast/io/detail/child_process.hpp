@@ -39,6 +39,7 @@
 #endif
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/io/detail/no_network.hpp>
 
 /// Calls of foreign libraries in a child process, so that what kills or hangs them is an error.
 namespace PULSECAST_NAMESPACE::io::detail {
@@ -172,7 +173,8 @@ struct ChildLimits {
 };
 
 /// Child process that does one piece of work: a fork, which starts no program, so that a library without a program of its own can have it.
-/// The child has one thread. It must not use locks that other threads may hold, which those of memory and of streams are not.
+/// The child has one thread and no network. It must not use locks that other threads may hold, which those of memory and of streams are
+/// not.
 class ChildProcess {
  public:
   using Work = std::function<void(ChildOutput&)>;
@@ -221,6 +223,7 @@ class ChildProcess {
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, std::ceil(limits.time) + 1);
     limit(RLIMIT_AS, memory_in_use() + limits.memory);
+    leave_network();
     try {
       ChildOutput output(file);
       try {
@@ -285,6 +288,8 @@ class ChildProcess {
     const std::string consequence = ": the file is damaged, or too large for the limit";
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
       fail("its import took more than " + pulsecast::detail::to_text(limits.time) + " s" + consequence);
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+      fail("its import was killed, as the system does when memory runs out: expected more free memory, or another try");
     if (WIFSIGNALED(status)) fail("its import ended by signal " + std::to_string(WTERMSIG(status)) + ": the file is damaged");
     if (WIFEXITED(status) && WEXITSTATUS(status) == out_of_memory) fail("its import took more memory than is allowed" + consequence);
     struct stat size {};

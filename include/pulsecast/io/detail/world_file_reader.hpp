@@ -10,6 +10,8 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
@@ -37,17 +39,20 @@ PULSECAST_INLINE WorldFile read_world_file(const std::filesystem::path& path) {
   return {.first = {values[4], values[5]}, .step = {values[0], values[3]}};
 }
 
-PULSECAST_INLINE std::filesystem::path world_file_of(const std::filesystem::path& picture) {
+PULSECAST_INLINE std::vector<std::filesystem::path> world_files_of(const std::filesystem::path& picture) {
   const std::string extension = picture.extension().string();
-  std::filesystem::path beside = picture;
+  std::vector<std::filesystem::path> all;
+  if (extension.size() < 3) return all;
+  for (const char* const w : {"w", "W"})
+    for (const std::string& name : {extension.substr(0, 2) + extension.back() + w, extension + w, std::string(*w == 'w' ? ".wld" : ".WLD")})
+      all.push_back(std::filesystem::path(picture).replace_extension(name));
+  return all;
+}
+
+PULSECAST_INLINE std::filesystem::path world_file_of(const std::filesystem::path& picture) {
   std::error_code ignored;
-  if (extension.size() >= 3)
-    for (const bool is_upper : {false, true}) {
-      const std::string w(1, is_upper ? 'W' : 'w');
-      for (const std::string& name :
-           {extension.substr(0, 2) + extension.back() + w, extension + w, std::string(is_upper ? ".WLD" : ".wld")})
-        if (std::filesystem::exists(beside.replace_extension(name), ignored)) return beside;
-    }
+  for (std::filesystem::path& beside : world_files_of(picture))
+    if (std::filesystem::exists(beside, ignored)) return std::move(beside);
   return {};
 }
 

@@ -34,6 +34,7 @@ class MeshFileMaker {
 
   [[nodiscard]] MeshFile make() {
     file_.warnings = scene_.warnings;
+    file_.files.assign(scene_.files.begin(), scene_.files.end());
     const Matrix3 y_up(Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0));
     const Matrix3 upright = !settings_.up ? scene_.upright : *settings_.up == UpAxis::y ? y_up : Matrix3(1);
     const double unit = settings_.unit ? *settings_.unit / scene_.applied_unit : scene_.unit;
@@ -104,7 +105,7 @@ class MeshFileMaker {
   /// Materials in use, and their pictures.
   void describe() {
     const MaterialRules rules(settings_.reflectance_of_colour);
-    const PictureFinder find(path_, scene_, settings_.files_elsewhere, file_.warnings);
+    const PictureFinder find(path_, scene_, settings_.files_elsewhere, file_.warnings, file_.files);
     for (const std::uint32_t number : used_) {
       file_.materials.push_back(rules(scene_.materials[number]));
       file_.pictures.push_back(find(scene_.materials[number]));
@@ -127,6 +128,7 @@ class MeshFileMaker {
 inline void replace_materials(MeshFile& file, const MeshFileSettings& settings) {
   if (settings.materials.empty()) return;
   const MaterialLibrary library = read_mtl(settings.materials, settings.spectra);
+  file.files.push_back(settings.materials);
   file.warnings.insert(file.warnings.end(), library.warnings.begin(), library.warnings.end());
   for (std::size_t i = 0; i < file.materials.size(); ++i) {
     const auto found = library.materials.find(file.materials[i].name);
@@ -134,7 +136,10 @@ inline void replace_materials(MeshFile& file, const MeshFileSettings& settings) 
     const Vec3 colour = file.materials[i].colour;
     file.materials[i] = found->second;
     file.materials[i].colour = colour;
-    if (const auto pictures = library.pictures.find(found->first); pictures != library.pictures.end()) file.pictures[i] = pictures->second;
+    const auto pictures = library.pictures.find(found->first);
+    if (pictures == library.pictures.end()) continue;
+    file.pictures[i] = pictures->second;
+    pictures->second.append_to(file.files);
   }
 }
 

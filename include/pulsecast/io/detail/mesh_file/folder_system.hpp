@@ -30,6 +30,9 @@ class FolderSystem : public Assimp::IOSystem {
   /// First file that was refused, as it is outside; empty if there is none.
   [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
 
+  /// Files that the importer asked for, there or not.
+  [[nodiscard]] const std::set<std::string>& looked_for() const noexcept { return looked_for_; }
+
   bool Exists(const char* file) const override { return is_open_to(file); }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
@@ -43,6 +46,7 @@ class FolderSystem : public Assimp::IOSystem {
 
  private:
   [[nodiscard]] bool is_open_to(const char* file) const {
+    looked_for_.insert(file);
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) return false;
     if (anywhere_ || is_inside(folder_, file)) return true;
@@ -55,6 +59,7 @@ class FolderSystem : public Assimp::IOSystem {
   bool anywhere_;
   std::function<void(std::uint64_t)> opened_;
   std::set<std::string> known_;  ///< files that were opened
+  mutable std::set<std::string> looked_for_;
   mutable std::string refused_;
 };
 

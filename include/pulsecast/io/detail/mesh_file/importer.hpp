@@ -4,6 +4,7 @@
 #define PULSECAST_IO_DETAIL_MESH_FILE_IMPORTER_HPP
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -24,12 +25,10 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
-#include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/mesh_file/folder_system.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
-#include <pulsecast/io/input_file.hpp>
 
 /// Import of files by assimp.
 namespace PULSECAST_NAMESPACE::io::detail {
@@ -52,7 +51,8 @@ class MeshImport {
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, settings_.up.has_value());
-    const aiScene* const found = importer.ReadFile(std::filesystem::absolute(path_).string(), aiProcess_Triangulate);
+    const std::string main = std::filesystem::absolute(path_).string();
+    const aiScene* const found = importer.ReadFile(main, aiProcess_Triangulate);
     if (!found || !found->mRootNode) fail(importer.GetErrorString());
     if (!system_->refused().empty()) fail_elsewhere();
     format(*found);
@@ -67,6 +67,8 @@ class MeshImport {
     for (unsigned i = 0; i < found->mNumMeshes; ++i) mesh(*found->mMeshes[i]);
     nodes(*found->mRootNode);
     if (left_out_ > 0) warn("points and lines are left out: " + std::to_string(left_out_) + " in all");
+    for (const std::string& file : system_->looked_for())
+      if (file != main) scene_.files.push_back(file);
     scene_.owner = data_;
     return std::move(scene_);
   }
@@ -100,7 +102,8 @@ class MeshImport {
     const bool fbx = word.find("FBX") != word.npos, dae = word.starts_with("Collada");
     const Matrix3 y_up(Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0));
     if (gltf_ || fbx || dae) scene_.upright = y_up;
-    if (dae && settings_.unit) scene_.applied_unit = dae_unit();
+    if (dae && settings_.unit)  // assimp scales the root by the unit, and turns it
+      scene_.applied_unit = std::cbrt(std::fabs(static_cast<double>(found.mRootNode->mTransformation.Determinant())));
     if (!fbx) return;
     const auto whole = [&](const char* key, int otherwise) {
       std::int32_t value = otherwise;
@@ -123,19 +126,6 @@ class MeshImport {
       scene_.unit = static_cast<double>(centimetres) / 100;
     else
       scene_.unit = 0.01;
-  }
-
-  /// Unit of a DAE file, which assimp applies [m].
-  [[nodiscard]] double dae_unit() const {
-    InputFile file(path_, "a DAE file");
-    const std::string_view text = file.take(InputFile::block_size);
-    const std::size_t unit = text.find("<unit"), end = text.find('>', unit);
-    if (unit == text.npos || end == text.npos) return 1;
-    std::string_view words = text.substr(unit, end - unit);
-    const std::size_t at = words.find("meter=\"");
-    if (at == words.npos) return 1;
-    words.remove_prefix(at + 7);
-    return text::number_in<double>(words.substr(0, words.find('"'))).value_or(1);
   }
 
   void mesh(const aiMesh& from) {

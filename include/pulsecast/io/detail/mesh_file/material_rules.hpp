@@ -107,8 +107,10 @@ class MaterialRules {
 /// Pictures of materials as files.
 class PictureFinder {
  public:
-  PictureFinder(const std::filesystem::path& file, const RawScene& scene, bool anywhere, std::vector<std::string>& warnings)
-      : file_(file), scene_(scene), anywhere_(anywhere), warnings_(warnings) {}
+  /// Adds to the warnings, and to the files that were looked for.
+  PictureFinder(const std::filesystem::path& file, const RawScene& scene, bool anywhere, std::vector<std::string>& warnings,
+                std::vector<std::filesystem::path>& files)
+      : file_(file), scene_(scene), anywhere_(anywhere), warnings_(warnings), files_(files) {}
 
   [[nodiscard]] MaterialPictures operator()(const RawMaterial& of) const {
     return {.colour = source(of, of.colour),
@@ -130,8 +132,11 @@ class PictureFinder {
     std::error_code ignored;
     // as named, with the signs of an address, and by the last word alone, for files that were moved
     for (const std::filesystem::path& candidate :
-         {folder / name, folder / unescaped(name), folder / std::filesystem::path(name).filename()})
-      if ((anywhere_ || is_inside(folder, candidate)) && std::filesystem::is_regular_file(candidate, ignored)) return {.file = candidate};
+         {folder / name, folder / unescaped(name), folder / std::filesystem::path(name).filename()}) {
+      if (!anywhere_ && !is_inside(folder, candidate)) continue;
+      files_.push_back(candidate);
+      if (std::filesystem::is_regular_file(candidate, ignored)) return {.file = candidate};
+    }
     warnings_.push_back(file_.string() + ": material '" + of.name + "' has the picture '" + picture.name + "', which is not there" +
                         (is_inside(folder, folder / name) ? "" : " or outside the file's folder") + ": it is left out");
     return {};
@@ -155,6 +160,7 @@ class PictureFinder {
   const RawScene& scene_;
   bool anywhere_;
   std::vector<std::string>& warnings_;
+  std::vector<std::filesystem::path>& files_;
 };
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

@@ -78,6 +78,8 @@ struct MeshFile {
   std::vector<Material> materials{};         ///< materials, in order of first use
   std::vector<MaterialPictures> pictures{};  ///< pictures of the materials, one for each
   std::vector<std::string> warnings{};       ///< oddities that could still be read
+  /// Further files that were looked for, those that are missing, too: buffers, pictures, materials.
+  std::vector<std::filesystem::path> files{};
 
   /// Number of triangles, of all placements.
   [[nodiscard]] std::uint64_t triangle_count() const noexcept {

@@ -84,6 +84,7 @@ struct RawScene {
   std::vector<RawMaterial> materials{};
   std::vector<std::shared_ptr<const std::vector<std::byte>>> embedded{};  ///< pictures, as files
   std::vector<std::string> warnings{};
+  std::vector<std::string> files{};     ///< further files that the importer looked for
   double unit = 1;                      ///< size of a unit by the file [m]
   double applied_unit = 1;              ///< unit by the file that the importer applies already [m]
   Matrix3 upright{1};                   ///< to z up, by the file

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,7 +34,11 @@ namespace detail {
 [[nodiscard]] inline MeshFile file_of(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers) {
   ObjModel model =
       read_obj(path, {.up = settings.up.value_or(UpAxis::z), .spectra = settings.spectra, .texture = settings.texture}, workers);
-  MeshFile file{.materials = std::move(model.materials), .pictures = std::move(model.pictures), .warnings = std::move(model.warnings)};
+  MeshFile file{.materials = std::move(model.materials),
+                .pictures = std::move(model.pictures),
+                .warnings = std::move(model.warnings),
+                .files = std::move(model.files)};
+  for (const MaterialPictures& pictures : file.pictures) pictures.append_to(file.files);
   file.pictures.resize(file.materials.size());
   if (model.mesh.triangles.empty()) return file;
   FileMesh& one = file.meshes.emplace_back();
@@ -58,6 +63,15 @@ inline void read_pictures(MeshFile& file, bool isolated) {
   }
 }
 
+/// Refuses a PLY file whose header has no end, with which assimp takes minutes. Explains a file that is missing or empty.
+inline void require_ply_end(const std::filesystem::path& path) {
+  constexpr std::size_t longest = std::size_t{1} << 16;  // of a header [byte]
+  InputFile file(path, "a mesh file");
+  const std::string_view begin = file.take(longest);
+  if (begin.starts_with("ply") && begin.find("end_header") == begin.npos)
+    file.fail("is no mesh file that can be read: its PLY header has no end_header within 64 KiB");
+}
+
 }  // namespace detail
 
 PULSECAST_INLINE bool is_mesh_file(const std::filesystem::path& path) {
@@ -72,7 +86,7 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
   if (text::lower(path.extension().string()) == ".obj") {
     file = detail::file_of(path, settings, workers);
   } else {
-    (void)InputFile(path, "a mesh file");  // which explains one that is missing or empty
+    detail::require_ply_end(path);
     const auto import = [&](const Workers& by, const auto& opened) { return detail::MeshImport(path, settings, by, opened).read(); };
     const detail::RawScene scene = settings.isolated
                                        ? detail::imported_apart(path, settings.limits, [&](const auto& o) { return import(Workers(1), o); })

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -49,8 +50,10 @@ inline void hand_over(ChildOutput& to, const RawScene& scene) {
   }
   to.value(std::uint64_t{scene.embedded.size()});
   for (const auto& picture : scene.embedded) to.array(std::span<const std::byte>(*picture));
-  to.value(std::uint64_t{scene.warnings.size()});
-  for (const std::string& warning : scene.warnings) to.text(warning);
+  for (const auto* const texts : {&scene.warnings, &scene.files}) {
+    to.value(std::uint64_t{texts->size()});
+    for (const std::string& text : *texts) to.text(text);
+  }
   to.value(scene.unit);
   to.value(scene.applied_unit);
   to.value(scene.upright);
@@ -104,7 +107,8 @@ inline void hand_over(ChildOutput& to, const RawScene& scene) {
     const auto bytes = from.array<std::byte>();
     scene.embedded.push_back(std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end()));
   }
-  for (auto left = from.count(); left > 0; --left) scene.warnings.push_back(from.text());
+  for (auto* const texts : {&scene.warnings, &scene.files})
+    for (auto left = from.count(); left > 0; --left) texts->push_back(from.text());
   scene.unit = from.value<double>();
   scene.applied_unit = from.value<double>();
   scene.upright = from.value<Matrix3>();

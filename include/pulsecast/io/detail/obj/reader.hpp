@@ -125,6 +125,7 @@ class ObjReader {
   void libraries(const ObjPiece::Libraries& statement) {
     std::error_code ignored_error;
     if (std::filesystem::exists(library_path(statement.rest), ignored_error)) return library(statement.rest, statement);
+    model_.files.push_back(library_path(statement.rest));
     for (const std::string& name : statement.names) library(name, statement);
   }
 
@@ -135,6 +136,7 @@ class ObjReader {
 
   void library(const std::string& name, const ObjPiece::Libraries& statement) {
     const std::filesystem::path path = library_path(name);
+    model_.files.push_back(path);
     std::error_code ignored_error;
     if (!std::filesystem::is_regular_file(path, ignored_error)) {
       warn(statement.line, statement.quoted + ": expected an MTL file at " + path.string() + ", but there is none");
