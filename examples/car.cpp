@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   return line.run(argc, argv, [&] {
     const auto scene = street::scene(line.seed);
     const std::vector<Vec2> way{{1.9, -80}, {1.9, -1.9}, {40, -1.9}, {48, -0.6}, {38, 1.9}, {1.9, 1.9}, {1.9, 80}};
-    const auto ground = [&](const Vec2& place) { return scene.ground_height(place); };
+    const auto ground = [&](const Vec2& place, auto... near) { return scene.ground_height(place, near...); };
     const GroundVehicleDrive drive = plan_ground_vehicle(way, ground, {.speed = speed_kmh / 3.6});
     const double pulse_rate = 1e3 * pulse_rate_kHz;
     const Channels both{std::vector{scanner(drive, 45_deg, pulse_rate), scanner(drive, -45_deg, pulse_rate)}};

@@ -61,7 +61,7 @@ concept Ground = requires(const G ground, Vec2 place) {
 /// Pulses by number, in one frame. Slots may be requested in any order, and are empty if an optic blocks the pulse. `duration()` is the
 /// time from the first slot to one past the last. `emitters()` is the table of emitters, at most `max_emitters`, that pulses refer to by
 /// index. Surveys and wrappers ask for it once, when they are made; it may allocate.
-/// Law: pure in i; time does not decrease with i; the pose's rotation is unit; the table is always the same and lists the emitter of each
+/// Law: pure in i; time does not decrease with i, except between `Legs` with starts of their own; the pose's rotation is unit; the table is always the same and lists the emitter of each
 /// pulse; a wrapper of a source keeps its size, ticks and emitters.
 template <class S, class Frame>
 concept PulseSource = std::copyable<S> && requires(const S s, PulseIndex i) {

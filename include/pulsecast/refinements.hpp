@@ -74,6 +74,13 @@ concept Gated = requires(const M m, Tick t) {
 };
 PULSECAST_OPTIONAL_MEMBER(Gated, "bool open(Tick) const noexcept", open, (Tick{}), is_open, opened, gate, transmits)
 
+/// Ground of several levels, such as roads and the bridges above them.
+/// Law: `ground(place, near)` is the level nearest to the height `near` [m]; for infinity the highest, which is `ground(place)`.
+template <class G>
+concept LevelledGround = requires(const G ground, Vec2 place, double near) {
+  { ground(place, near) } -> std::convertible_to<std::optional<double>>;
+};
+
 /// Gated optic or head that foresees its opening, as `PolygonMirror`, so that a run passes over slots without a visit.
 /// Law: `open` is false from t up to, but not at, `next_open(t)`, which is not before t. It may be early, and is t if nothing is foreseen.
 template <class M>

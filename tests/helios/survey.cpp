@@ -192,6 +192,31 @@ TEST_CASE("a vehicle drives over the ground from leg to leg") {
   }
 }
 
+TEST_CASE("a vehicle passes below a bridge from leg to leg, and notes what no vehicle drives over") {
+  const auto bridge = [](const Vec2& p, double near = std::numeric_limits<double>::infinity()) -> std::optional<double> {
+    return p.x > 20 && p.x < 60 && near > 3 ? 6 : 0;
+  };
+  SurveySettings s = survey_of(PlatformKind::ground_vehicle, {{0, 0, 0}, {40, 0, 0}, {40, 0, 0}, {80, 0, 0}, {99, 0, 0}}, 5);
+  s.legs[3].platform.speed = 4;  // a drive of its own
+  const CompiledSurvey compiled = compile_survey(s, bridge);
+  for (const auto& leg : compiled.legs)
+    for (const double t : {0.0, 0.3, 0.6, 1.0}) {
+      const Tick tick = Tick::of_seconds(t * leg.duration.seconds());
+      CHECK(std::fabs(compiled.source.legs()[leg.number].path().at(tick).position.z) < 1e-9);
+    }
+  CHECK(compiled.warnings.empty());
+  const auto notes = [&](const GroundHeight& ground) { return compile_survey(s, ground).warnings; };
+  const auto slit = notes([](const Vec2& p) { return p.x > 10 && p.x < 10.5 ? std::nullopt : std::optional(100.0); });
+  REQUIRE(slit.size() == 1);
+  CHECK(slit[0].find("leg 0: no ground at x = 10") != std::string::npos);
+  const auto wall = notes([](const Vec2& p) -> std::optional<double> { return p.x < 60 ? 0 : 9; });
+  REQUIRE(wall.size() == 1);
+  CHECK(wall[0].find("leg 2: ground steeper than 45 degrees") != std::string::npos);
+  const auto sawtooth = notes([](const Vec2& p) -> std::optional<double> { return std::fmod(p.x + 100, 2) < 1 ? 0 : 5; });
+  CHECK(std::any_of(sawtooth.begin(), sawtooth.end(),
+                    [](const auto& w) { return w.find("leg 0: the vehicle takes ") != std::string::npos; }));
+}
+
 TEST_CASE("a platform that moves stays where the next leg begins at the same place, for as long as it may, and looks as it came") {
   const std::vector<Vec3> places{{0, 0, 40}, {0, 0, 40}, {30, 0, 40}, {30, 0, 40}, {30, 0, 40}, {30, 30, 40}};
   for (const PlatformKind kind : {PlatformKind::linear_path, PlatformKind::multicopter, PlatformKind::ground_vehicle})
@@ -400,6 +425,94 @@ TEST_CASE("legs end before a jump of their file, begin after it, or jump, with a
     CHECK(length(at(0, 2).direction(axis::forward) - axis::right) < 1e-12);  // it looks where it goes, and not where it jumps
     CHECK(length(at(1, 0).direction(axis::forward) - axis::forward) < 1e-12);
   }
+}
+
+TEST_CASE("with the clock of a file, each leg has the time that the file gives its pose") {
+  const TemporaryFolder folder;
+  const double start = 388800.25;
+  std::ofstream file(folder / "way.trj");
+  file.precision(17);
+  for (int i = 0; i <= 2000; ++i) file << start + 0.01 * i << ",0,0,0,0," << 50 * (0.01 * i) << ",9\n";
+  file.close();
+  const auto survey = [&](const std::vector<std::pair<double, double>>& spans, double rate) {
+    SurveySettings s = survey_of(PlatformKind::interpolated, std::vector<Vec3>(spans.size()));
+    s.scanner.pulse_rates = {rate};
+    for (std::size_t k = 0; k < spans.size(); ++k) {
+      TrajectorySettings t{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
+      t.start = start + spans[k].first;
+      t.end = start + spans[k].second;
+      s.legs[k].platform.trajectory = t;
+    }
+    s.legs[0].platform.trajectory->sync_clock = true;
+    return s;
+  };
+  const auto off = [&](const CompiledSurvey& compiled) {  // largest difference of a pulse's time and that of its place in the file [s]
+    double most = 0;
+    for (const auto& leg : compiled.legs) {
+      const auto pulse = compiled.source.pulse(leg.first).value();
+      most = std::fmax(most, std::fabs(*compiled.clock_start + pulse.tick.seconds() - start - pulse.pose.position.y / 50));
+      CHECK(pulse.tick == leg.start);
+    }
+    return most;
+  };
+  CHECK(off(compile_survey(survey({{1, 2}, {5, 6}, {3, 3.5}}, 1000), flat)) < 1e-9);
+  CHECK(off(compile_survey(survey({{5, 6}, {1, 2}}, 1000), flat)) < 1e-9);  // the clock starts with the earliest
+  CHECK(compile_survey(survey({{5, 6}, {1, 2}}, 1000), flat).clock_start == start + 1);
+  std::vector<std::pair<double, double>> strips;
+  for (int i = 0; i < 100; ++i) strips.emplace_back(0.1003 * i, 0.1003 * (i + 1));
+  CHECK(off(compile_survey(survey(strips, 1000), flat)) < 1e-9);
+  SurveySettings own = survey({{1, 2}, {5, 6}}, 1000);
+  own.legs[0].platform.trajectory->sync_clock = false;
+  CHECK_FALSE(compile_survey(own, flat).clock_start.has_value());
+  CHECK(compile_survey(own, flat).legs[1].start == Tick{1, 0});
+}
+
+TEST_CASE("a leg of whole slots has no slot more by the rounding of large times") {
+  const TemporaryFolder folder;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    CAPTURE(seed);
+    support::Generator random(seed);
+    const double rate = 1000.0 * static_cast<double>(1 + random.whole(300)), start = std::round(random.log_uniform(1, 604800) * 10) / 10;
+    const double slots = 100.0 * static_cast<double>(1 + random.whole(30)), extra = random.coin() ? 0.5 : 0;
+    SurveySettings s = survey_of(PlatformKind::interpolated, {{}});
+    s.scanner.pulse_rates = {rate};
+    std::ofstream file(folder / "way.trj");
+    file.precision(17);
+    file << start << ",0,0,0,0,0,9\n" << start + (slots + extra) / rate << ",0,0,0,0,9,9\n";
+    file.close();
+    s.legs[0].platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
+    CHECK(compile_survey(s, flat).source.size() == static_cast<PulseIndex>(slots + (extra > 0 ? 1 : 0)));
+  }
+}
+
+TEST_CASE("a flight or drive goes on in the next leg where it was when the last slot ended") {
+  for (const PlatformKind kind : {PlatformKind::multicopter, PlatformKind::ground_vehicle}) {
+    SurveySettings s = survey_of(kind, {{0, 0, 0}, {20, 0, 0}, {40, 5, 0}, {60, 0, 0}, {80, 5, 0}}, 12);
+    s.scanner.pulse_rates = {130};
+    for (LegSettings& leg : s.legs) leg.platform.smooth_turn = true;
+    const CompiledSurvey compiled = compile_survey(s, flat);
+    for (std::size_t k = 1; k < 4; ++k) {
+      const auto& before = compiled.source.legs()[k - 1].path();
+      const Vec3 end = before.at(compiled.legs[k - 1].duration).position, begin = compiled.source.legs()[k].path().at({}).position;
+      CHECK(length(end - begin) < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("a gap in the rows of a file gets a note, within the legs that fly over it") {
+  const TemporaryFolder folder;
+  std::ofstream file(folder / "way.trj");
+  for (const int start : {0, 100})
+    for (int i = 0; i < 10; ++i) file << start + 0.1 * i << ",0,0,0,0," << i << ",9\n";
+  file.close();
+  SurveySettings s = survey_of(PlatformKind::interpolated, {{}});
+  s.legs[0].platform.trajectory = TrajectorySettings{.file = folder / "way.trj", .columns = TrajectoryIndices{}};
+  const CompiledSurvey compiled = compile_survey(s, flat);
+  REQUIRE(compiled.warnings.size() == 1);
+  CHECK(compiled.warnings[0].find("way.trj: no pose between 0.9 s and 100 s, the longest of 1 gaps") != std::string::npos);
+  CHECK(compiled.warnings[0].find("tStart, tEnd") != std::string::npos);
+  s.legs[0].platform.trajectory->end = 0.9;
+  CHECK(compile_survey(s, flat).warnings.empty());
 }
 
 TEST_CASE("the optic of a leg that teleports starts anew, as after a leg that is not active") {

@@ -214,6 +214,133 @@ TEST_CASE("ten thousand waypoints are driven, be they in a row, in a circle, or 
     CHECK(broken_promise(plan_ground_vehicle(*points, level_ground, s), s, *points) == "");
 }
 
+TEST_CASE("a step in the ground costs its height in way, wherever it is and however finely the ground is asked") {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed);
+    const double height = random.log_uniform(0.01, 0.3), at = random.uniform(50, 450), step = random.log_uniform(0.01, 1);
+    const bool up = random.coin();
+    const auto kerb = [&](Vec2 p) -> std::optional<double> { return (p.x < at) == up ? 0 : height; };
+    const GroundVehicleSettings s{.speed = random.log_uniform(2, 25), .ground_step = step};
+    const double level = 500 / s.speed + s.speed / s.acceleration + s.acceleration / s.jerk;
+    const auto drive = plan_ground_vehicle(Points{{0, 0}, {500, 0}}, kerb, s);
+    CHECK(drive.duration().seconds() >= level);
+    CHECK(drive.duration().seconds() <= level + 1.001 * height / s.speed);
+    CHECK(drive.warnings().empty());
+    const double high = std::fmax(drive.at({}).position.z, drive.at(drive.duration()).position.z);
+    for (const Footing& footing : drive.sections()[0].footings) REQUIRE(std::fabs(footing.height - high / 2) <= high / 2 + 1e-12);
+  }
+}
+
+TEST_CASE("a drive over steps and slopes keeps its limits along the way in space") {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed);
+    const double high = random.uniform(0, 0.3), slope = random.uniform(-0.4, 0.4), wide = random.uniform(0.5, 20);
+    const auto ground = [&](Vec2 p) -> std::optional<double> { return slope * p.y + (std::fmod(p.x + 1e3, 2 * wide) < wide ? high : 0); };
+    Points points(2 + random.whole(5));
+    for (auto& p : points) p = {random.uniform(-60, 60), random.uniform(-60, 60)};
+    const GroundVehicleSettings s{.speed = random.log_uniform(1, 30)};
+    const auto drive = plan_ground_vehicle(points, ground, s);
+    CHECK(broken_promise(drive, s, points) == "");
+    double driven = 0;
+    for (const auto& section : drive.sections()) {
+      CHECK(std::fabs(section.start - driven) < 1e-9);
+      const double step = section.path.length / static_cast<double>(section.footings.size() - 1);
+      for (std::size_t i = 1; i < section.footings.size(); ++i) {
+        const Footing &a = section.footings[i - 1], &b = section.footings[i];
+        REQUIRE(std::fabs(b.along - a.along - std::hypot(step, b.height - a.height)) < 1e-9);
+      }
+      driven += section.footings.back().along;
+    }
+    CHECK(drive.at(drive.duration()).position.z == relative(drive.sections().back().footings.back().height, 1e-12));
+  }
+}
+
+TEST_CASE("a wheel rolls up a kerb along the arc of its axle, and over gaps narrower than it is") {
+  const GroundVehicleSettings s{.ground_step = 0.01};
+  const auto highest_step = [](const GroundVehicleDrive& drive) {
+    double most = 0;
+    const auto& footings = drive.sections()[0].footings;
+    for (std::size_t i = 1; i < footings.size(); ++i) most = std::fmax(most, std::fabs(footings[i].height - footings[i - 1].height));
+    return most;
+  };
+  const auto kerb = [](Vec2 p) -> std::optional<double> { return p.x < 20 ? 0 : 0.15; };
+  const auto drive = plan_ground_vehicle(Points{{0, 0}, {40, 0}}, kerb, s);
+  const double r = s.wheel_radius, reach = std::sqrt(2 * r * 0.15 - 0.15 * 0.15);  // the wheel touches the edge from there on
+  for (const Footing& f : drive.sections()[0].footings) {
+    if (f.along < 20 - reach - 0.03) CHECK(f.height < 1e-12);
+    if (f.along > 20.5) CHECK(f.height == relative(0.15, 1e-12));
+  }
+  CHECK(highest_step(drive) < 0.06);  // the sampling of the wheel by 26 mm, times the slope of its arc
+  for (const double deep : {0.5, 3.0, 100.0}) {
+    CAPTURE(deep);
+    const auto slit = [&](Vec2 p) -> std::optional<double> { return p.x < 20 || p.x > 20.5 ? deep : 0; };
+    const auto over = plan_ground_vehicle(Points{{0, 0}, {40, 0}}, slit, s);
+    double lowest = deep;
+    for (const Footing& f : over.sections()[0].footings) lowest = std::fmin(lowest, f.height);
+    CHECK(std::fabs(deep - lowest - (r - std::sqrt(r * r - 0.25 * 0.25))) < 0.025);
+    CHECK(over.warnings().empty());
+  }
+}
+
+TEST_CASE("gaps in the ground are bridged by a wheel, or driven through at a height that is told, with a note") {
+  double wide = 0.5;
+  const auto gap = [&](Vec2 p) { return p.x < 20 || p.x > 20 + wide ? std::optional(100.0) : std::nullopt; };
+  const Points way{{0, 0}, {40, 0}};
+  const double level = plan_ground_vehicle(way, level_ground, {}).duration().seconds();
+  for (const std::optional<double> below : {std::optional<double>(), std::optional(0.0)}) {
+    const auto drive = plan_ground_vehicle(way, gap, {.height_without_ground = below});
+    CHECK(drive.duration().seconds() < level + 0.05);
+    REQUIRE(drive.warnings().size() == 1);
+    CHECK(drive.warnings()[0].find("no ground at x = 20") != std::string::npos);
+  }
+  wide = 2;
+  CHECK_THROWS_AS((void)plan_ground_vehicle(way, gap, {}), SettingError);
+  const auto drive = plan_ground_vehicle(way, gap, {.height_without_ground = 95});
+  CHECK(drive.duration().seconds() < level + 2);
+  CHECK(drive.warnings().size() == 2);  // of the gap and of its walls
+  const auto nowhere = [](Vec2) -> std::optional<double> { return std::nullopt; };
+  const auto flat = plan_ground_vehicle(way, nowhere, {.height_without_ground = 3});
+  CHECK(flat.warnings().empty());
+  CHECK(flat.at({2, 0}).position.z == 3);
+}
+
+TEST_CASE("ground that is steeper than 45 degrees, and higher than a wheel, gets a note with its place") {
+  double height = 6;
+  const auto wall = [&](Vec2 p) -> std::optional<double> { return p.x < 20 ? 0 : height; };
+  for (const double step : {0.01, 0.1, 1.0}) {
+    CAPTURE(step);
+    height = 6;
+    const auto drive = plan_ground_vehicle(Points{{0, 0}, {40, 0}}, wall, {.ground_step = step});
+    REQUIRE(drive.warnings().size() == 1);
+    CHECK(drive.warnings()[0].find("steeper than 45 degrees") != std::string::npos);
+    CHECK(drive.warnings()[0].find("steps of up to 6 m") != std::string::npos);
+    CHECK(drive.duration().seconds() < plan_ground_vehicle(Points{{0, 0}, {40, 0}}, level_ground, {}).duration().seconds() + 1);
+    height = 0.3;
+    CHECK(plan_ground_vehicle(Points{{0, 0}, {40, 0}}, wall, {.ground_step = step}).warnings().empty());
+  }
+}
+
+TEST_CASE("where the ground has levels, a vehicle keeps to the one that it came on") {
+  const auto bridge = [](Vec2 p, double near = std::numeric_limits<double>::infinity()) -> std::optional<double> {
+    const double road = 0.02 * p.x, deck = 6 + 0.05 * p.x;
+    if (p.x < 45 || p.x > 55) return road;
+    return std::fabs(deck - near) < std::fabs(road - near) || near > 1e300 ? deck : road;
+  };
+  static_assert(LevelledGround<decltype(bridge)> && !LevelledGround<decltype(level_ground)*>);
+  const auto under = plan_ground_vehicle(Points{{0, 0}, {100, 0}}, bridge, {});
+  CHECK(under.at(under.duration()).position.z == relative(2, 1e-9));
+  for (const Footing& footing : under.sections()[0].footings) REQUIRE(footing.ahead == relative(0.02, 1e-9));
+  CHECK(under.warnings().empty());
+  const auto starts_at = [&](double height) {
+    return plan_ground_vehicle(Points{{50, 0}, {51, 0}}, bridge, {.start_height = height}).at({}).position.z;
+  };
+  CHECK(starts_at(std::numeric_limits<double>::infinity()) == relative(8.5, 1e-9));
+  CHECK(starts_at(7) == relative(8.5, 1e-9));
+  CHECK(starts_at(1.5) == relative(1, 1e-9));
+}
+
 TEST_CASE("a drive keeps the laws of a motion, and what it was told about the ground") {
   double sea = 3;
   const auto ground = [&](Vec2 p) -> std::optional<double> { return sea + *hills(p); };
@@ -258,6 +385,7 @@ TEST_CASE("a drive that cannot be is refused") {
   CHECK_THROWS_AS((void)plan_ground_vehicle(Points{}, level_ground, {}), SettingError);
   CHECK_THROWS_AS((void)plan_ground_vehicle(Points{{0, nan}}, level_ground, {}), SettingError);
   CHECK_THROWS_AS((void)plan_ground_vehicle(Points{{0, 0}, {infinite, 0}}, level_ground, {}), SettingError);
+  CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.height_without_ground = nan}), SettingError);
   for (const double bad : {0.0, -1.0, nan, infinite, 1e-300, 1e300}) {
     CAPTURE(bad);
     CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.speed = bad}), SettingError);
@@ -267,5 +395,6 @@ TEST_CASE("a drive that cannot be is refused") {
     CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.wheelbase = bad}), SettingError);
     CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.track = bad}), SettingError);
     CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.ground_step = bad}), SettingError);
+    CHECK_THROWS_AS((void)plan_ground_vehicle(points, level_ground, {.wheel_radius = bad}), SettingError);
   }
 }

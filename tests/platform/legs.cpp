@@ -117,6 +117,20 @@ TEST_CASE("a leg that is not active takes its time and its number, but holds no 
   CHECK(Legs(std::vector<Leg<Pass>>{{set_up(1, 4, 6), false}}).size() == 0);
 }
 
+TEST_CASE("a leg may say when it starts: with a gap, or before the leg listed before it") {
+  std::vector<Leg<Pass>> list;
+  for (const Tick start : {Tick{7, 0.25}, Tick{100, 0}, Tick{0, 0.5}}) list.push_back({.platform = set_up(1, 100, 10), .start = start});
+  list.push_back({.platform = set_up(1, 100, 10)});
+  const Legs legs(list);
+  CHECK(legs.pulse(0)->tick == Tick{7, 0.25});
+  CHECK(legs.pulse(10)->tick == Tick{100, 0});
+  CHECK(legs.pulse(20)->tick == Tick{0, 0.5});
+  CHECK(legs.pulse(30)->tick == Tick{0, 0.5} + legs.legs()[2].duration());
+  CHECK(legs.duration() == Tick{100, 0} + legs.legs()[1].duration());
+  list[0].start = Tick{-1, 0};
+  CHECK_THROWS_AS(Legs{list}, SettingError);
+}
+
 TEST_CASE("legs share equal tables of emitters, and the pulses of each keep their own") {
   const auto pass = [](std::vector<double> wavelengths, PulseIndex pulses = 4) {
     std::vector<Deflector<FixedBeam, Scanner>> channels;

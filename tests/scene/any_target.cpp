@@ -110,6 +110,7 @@ void compare(const Target& target, const Map& any, Generator& random) {
     }
     const Vec3 place = random.point(10);
     CHECK(any.ground_height({place.x, place.y}) == target.ground_height({place.x, place.y}));
+    CHECK(any.ground_height({place.x, place.y}, place.z) == target.ground_height({place.x, place.y}, place.z));
   }
   CHECK(met > 10);
 }

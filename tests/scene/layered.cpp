@@ -119,6 +119,8 @@ TEST_CASE("the ground of layers is the highest of theirs") {
   CHECK(world.ground_height({0, 0}) == 2);
   CHECK(world.ground_height({-0.9, 0}) == 0);
   CHECK(world.ground_height({1.2, 0}) == 2);
+  CHECK(world.ground_height({0, 0}, 0.9) == 0);
+  CHECK(world.ground_height({0, 0}, 1.1) == 2);
   CHECK_FALSE(world.ground_height({9, 9}));
 }
 

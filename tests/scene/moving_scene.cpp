@@ -167,6 +167,7 @@ TEST_CASE("what moves is no ground") {
   car.materials = soil.materials = material_table({{.ground = true}});
   const Discs scene({car, soil}, {.to = 1});
   CHECK(scene.ground_height({0, 0}).value() == 0);
+  CHECK(scene.ground_height({0, 0}, -5).value() == 0);
   CHECK_FALSE(Discs({car}, {.to = 1}).ground_height({0, 0}).has_value());
   CHECK(Discs({car}, {.to = 1}).bounds().min.z == support::relative(1, 1e-5));
 }

@@ -309,6 +309,23 @@ TEST_CASE("the height of the ground is that of the highest ground, whatever grow
   CHECK_FALSE(scene.ground_height({9, 9}).has_value());
 }
 
+TEST_CASE("of several levels of ground, the one nearest to a height is found") {
+  const Material soil{.ground = true}, leaf{};
+  const Scene<LeastGeometry> scene({disc({.translation = {0, 0, 6}}, 1, soil), disc({.translation = {0, 0, 0}}, 2, soil),
+                                    disc({.translation = {0, 0, 3}}, 3, leaf), disc({.translation = {0, 0, -4}}, 4, soil)});
+  const auto near = [&](double height) { return scene.ground_height({0, 0}, height).value(); };
+  CHECK(scene.ground_height({0, 0}).value() == 6);
+  CHECK(near(std::numeric_limits<double>::infinity()) == 6);
+  CHECK(near(100) == 6);
+  CHECK(near(3.1) == 6);
+  CHECK(near(2.9) == 0);
+  CHECK(near(0) == 0);
+  CHECK(near(-1.9) == 0);
+  CHECK(near(-2.1) == -4);
+  CHECK(near(-100) == -4);
+  CHECK_FALSE(scene.ground_height({9, 9}, 0).has_value());
+}
+
 TEST_CASE("the ground of a slope at UTM coordinates is where it should be") {
   const double east = 4.7e5, north = 5.4e6;
   const MeshData slope{.vertices = {{east, north, 100}, {east + 100, north, 110}, {east + 100, north + 100, 130}, {east, north + 100, 120}},

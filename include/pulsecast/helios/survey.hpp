@@ -30,8 +30,8 @@ struct CompiledSurvey {
     double pulse_rate = 0;               ///< pulse rate [Hz]
   };
   Legs<SurveyLeg> source;               ///< source of all pulses; each distinct receiver of the scanner's channels has an index
-  std::vector<Leg> legs;                ///< legs, in order of time
-  std::optional<double> clock_start{};  ///< start time of the survey, if a trajectory gives it [s]
+  std::vector<Leg> legs;                ///< legs, in order of the document
+  std::optional<double> clock_start{};  ///< start time of the survey, that of its earliest leg, if a trajectory gives it [s]
   std::vector<std::string> warnings{};  ///< warnings of the compilation
 };
 

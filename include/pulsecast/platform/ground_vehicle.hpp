@@ -4,9 +4,11 @@
 #define PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,18 +22,22 @@
 #include <pulsecast/platform/heading.hpp>
 #include <pulsecast/platform/piecewise_cubic.hpp>
 #include <pulsecast/platform/speed_profile.hpp>
+#include <pulsecast/refinements.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
 /// Limits and dimensions of a ground vehicle.
 struct GroundVehicleSettings {
-  double speed = 10;         ///< maximum [m/s]
-  double acceleration = 2;   ///< maximum of the acceleration along and across the path combined, as on level ground [m/s^2]
-  double jerk = 2;           ///< maximum change of acceleration along the path [m/s^3]
-  double turn_radius = 5.5;  ///< radius of every curve, at the middle of the rear axle: the vehicle's minimum [m]
-  double wheelbase = 2.7;    ///< distance from the rear to the front axle [m]
-  double track = 1.6;        ///< distance from the left to the right wheels [m]
-  double ground_step = 0.1;  ///< maximum distance between ground queries along the path [m]
+  double speed = 10;            ///< maximum [m/s]
+  double acceleration = 2;      ///< maximum of the acceleration along and across the path combined, as on level ground [m/s^2]
+  double jerk = 2;              ///< maximum change of acceleration along the path [m/s^3]
+  double turn_radius = 5.5;     ///< radius of every curve, at the middle of the rear axle: the vehicle's minimum [m]
+  double wheelbase = 2.7;       ///< distance from the rear to the front axle [m]
+  double track = 1.6;           ///< distance from the left to the right wheels [m]
+  double wheel_radius = 0.316;  ///< [m]; source: tyre 205/55 R16 by ISO 4000-1, half of 16 inches and 55 % of 205 mm
+  double ground_step = 0.1;     ///< maximum distance between footings along the path [m]
+  double start_height = std::numeric_limits<double>::infinity();  ///< the drive begins on the ground nearest to it: on the highest [m]
+  std::optional<double> height_without_ground{};                  ///< height where there is no ground, which is an error if empty [m]
 
   void validate() const {
     require_within("GroundVehicleSettings::speed", speed, 1e-3, 1e3, "m/s");
@@ -40,7 +46,9 @@ struct GroundVehicleSettings {
     require_within("GroundVehicleSettings::turn_radius", turn_radius, 1e-2, 1e6, "m");
     require_within("GroundVehicleSettings::wheelbase", wheelbase, 1e-2, 1e2, "m");
     require_within("GroundVehicleSettings::track", track, 1e-2, 1e2, "m");
+    require_within("GroundVehicleSettings::wheel_radius", wheel_radius, 1e-3, 1e2, "m");
     require_within("GroundVehicleSettings::ground_step", ground_step, 1e-3, 1e2, "m");
+    if (height_without_ground) require_within("GroundVehicleSettings::height_without_ground", *height_without_ground, -1e9, 1e9, "m");
   }
 };
 
@@ -49,6 +57,7 @@ struct Footing {
   double height = 0;  ///< height of the middle of the rear axle, at the foot of the wheels [m]
   double ahead = 0;   ///< slope forwards, positive upwards [m/m]
   double aside = 0;   ///< slope to the right, positive upwards [m/m]
+  double along = 0;   ///< length driven in space since the start of its section [m]
 
   /// Attitude by heading, then pitch, then roll, so that up is normal to the plane.
   /// Source: the up of Rx(pitch) Ry(roll) is (sin r, -sin p cos r, cos p cos r), and the normal is (-aside, -ahead, 1).
@@ -58,32 +67,31 @@ struct Footing {
   }
 };
 
-/// Drive over the ground. The body's origin is the middle of the rear axle, at the height of the wheels' contact. Position, speed and
-/// attitude are continuous; the vehicle stops where it changes gear.
+/// Drive over the ground. The body's origin is the middle of the rear axle, at the height of the wheels' contact. Position, speed in space
+/// and attitude are continuous; the vehicle stops where it changes gear.
 class GroundVehicleDrive {
  public:
-  /// Piece of the path with the footings at equal distances along it, both ends included.
+  /// Piece of the path with the footings at equal distances along it on the map, both ends included.
   struct Section {
     PathPiece path{};                 ///< piece of the path, on the map
-    double start = 0;                 ///< length driven before [m]
+    double start = 0;                 ///< length driven before, in space [m]
     std::vector<Footing> footings{};  ///< footings from its start to its end
   };
 
-  /// `driven` is the length driven over time [m]: see `plan_ground_vehicle`.
-  GroundVehicleDrive(std::vector<Section> sections, PiecewiseCubic<double> driven, Tick duration)
-      : sections_(std::move(sections)), driven_(std::move(driven)), duration_(duration) {}
+  /// `driven` is the length driven in space over time [m]: see `plan_ground_vehicle`.
+  GroundVehicleDrive(std::vector<Section> sections, PiecewiseCubic<double> driven, Tick duration, std::vector<std::string> warnings = {})
+      : sections_(std::move(sections)), driven_(std::move(driven)), duration_(duration), warnings_(std::move(warnings)) {}
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const double driven = driven_.at(t).position;
     const auto starts_before = [&](std::size_t i) noexcept { return !(driven < sections_[i].start); };
     const Section& section = sections_[detail::neighbours(sections_.size(), starts_before).before];
-    const double along = std::clamp(driven - section.start, 0.0, section.path.length);
-    const Stance stance = section.path.after(along);
-    const std::size_t steps = section.footings.size() - 1;
-    const double step = section.path.length > 0 ? along / section.path.length * static_cast<double>(steps) : 0;
-    const std::size_t k = std::min(static_cast<std::size_t>(step), steps - 1);
-    const Footing &a = section.footings[k], &b = section.footings[k + 1];
-    const double part = step - static_cast<double>(k);
+    const double along = driven - section.start, steps = static_cast<double>(section.footings.size() - 1);
+    const auto passed = [&](std::size_t i) noexcept { return !(along < section.footings[i].along); };
+    const auto [k, next] = detail::neighbours(section.footings.size(), passed);
+    const Footing &a = section.footings[k], &b = section.footings[next];
+    const double part = k < next ? (along - a.along) / (b.along - a.along) : 0;
+    const Stance stance = section.path.after(section.path.length * ((static_cast<double>(k) + part) / steps));
     const Footing footing{std::lerp(a.height, b.height, part), std::lerp(a.ahead, b.ahead, part), std::lerp(a.aside, b.aside, part)};
     return {footing.attitude(stance.heading), {stance.position.x, stance.position.y, footing.height}};
   }
@@ -91,12 +99,16 @@ class GroundVehicleDrive {
   [[nodiscard]] Tick duration() const noexcept { return duration_; }
   /// Sections in order of time.
   [[nodiscard]] const std::vector<Section>& sections() const noexcept { return sections_; }
-  [[nodiscard]] const PiecewiseCubic<double>& driven() const noexcept { return driven_; }  ///< length driven, forwards plus backwards [m]
+  /// Length driven in space, forwards plus backwards [m].
+  [[nodiscard]] const PiecewiseCubic<double>& driven() const noexcept { return driven_; }
+  /// Sentences about ground that no vehicle drives over: too steep, or with gaps.
+  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
   std::vector<Section> sections_;
   PiecewiseCubic<double> driven_;
   Tick duration_;
+  std::vector<std::string> warnings_;
 };
 
 static_assert(Trajectory<GroundVehicleDrive>);
@@ -127,55 +139,150 @@ namespace detail {
   return points;
 }
 
-/// Footing at a stance, by least squares of the four wheels. The wheels' contact depends on the attitude, so the plane is iterated; each
-/// round leaves about the square of the slope of the error before. Throws a `SettingError` where there is no ground.
-/// Source: the slopes of a plane through a rectangle's corners are the differences of the means of opposite sides.
-[[nodiscard]] inline Footing footing_at(const Stance& stance, std::size_t waypoint, const GroundVehicleSettings& s,
-                                        const Ground auto& ground) {
-  const auto height = [&](const Vec2& place) {
-    const std::optional<double> h = ground(place);
-    const std::string name = "plan_ground_vehicle: path to waypoints[" + std::to_string(waypoint) + "], ";
-    if (!h) throw SettingError(name + "x", place.x, "m", "over ground; there is none at y = " + to_text(place.y) + " m");
-    require_within(name + "height", *h, -1e9, 1e9, "m");
-    return *h;
-  };
-  Footing footing{height(stance.position), 0, 0};
-  for (int round = 0; round < 6; ++round) {
-    const Rotation attitude = footing.attitude(stance.heading);
-    const auto error = [&](double x, double y) {  // height error of a wheel against the ground
-      const Vec3 wheel = attitude * Vec3{x, y, 0};
-      return height(stance.position + Vec2{wheel.x, wheel.y}) - footing.height - wheel.z;
-    };
-    const double rear_left = error(-s.track / 2, 0), rear_right = error(s.track / 2, 0);
-    const double front_left = error(-s.track / 2, s.wheelbase), front_right = error(s.track / 2, s.wheelbase);
-    const double rear = 0.5 * (rear_left + rear_right), front = 0.5 * (front_left + front_right);
-    footing.height += rear;
-    footing.ahead += (front - rear) / s.wheelbase;
-    footing.aside += 0.5 * (rear_right - rear_left + front_right - front_left) / s.track;
-  }
-  return footing;
-}
+/// Footings of a vehicle along its path, each from the one before.
+template <Ground G>
+class FootingFinder {
+ public:
+  FootingFinder(const G& ground, const GroundVehicleSettings& settings) : ground_(ground), s_(settings), before_{s_.start_height, 0, 0} {}
 
-/// Speed limits on a piece of the path, on the map. In a curve, acceleration along and across have equal shares of the maximum. On a slope
-/// the path is longer than on the map.
-[[nodiscard]] inline SpeedLimits limits_on(const GroundVehicleDrive::Section& section, const GroundVehicleSettings& s) noexcept {
-  double steepest = 0;
-  const auto& footings = section.footings;
-  for (std::size_t k = 0; k + 1 < footings.size() && section.path.length > 0; ++k) {
-    const double step = section.path.length / static_cast<double>(footings.size() - 1);
-    steepest = std::fmax(steepest, std::fabs(footings[k + 1].height - footings[k].height) / step);
+  /// Footing at a stance, `step` metres on the map after the one before, by least squares of the four wheels. The wheels' contact depends
+  /// on the attitude, so the plane is iterated from that of the footing before; each round leaves about the square of the slope of the
+  /// error before. Where the ground has levels, wheels keep to the one that this footing leads to. Throws a `SettingError` where there is
+  /// no ground. Source: the slopes of a plane through a rectangle's corners are the differences of the means of opposite sides.
+  [[nodiscard]] Footing next(const Stance& stance, double step, std::size_t waypoint) {
+    Footing expected = before_;
+    expected.height += step * expected.ahead;
+    if (std::exchange(is_first_, false)) expected.height = height(stance.position, s_.start_height).value_or(s_.start_height);
+    bool gap = false;
+    const auto error = [&](const Footing& footing, double x, double y) {  // height error of a wheel against the ground
+      const Vec3 wheel = footing.attitude(stance.heading) * Vec3{x, y, 0};
+      const Vec2 place = stance.position + Vec2{wheel.x, wheel.y};
+      const double near = expected.height + (expected.attitude(stance.heading) * Vec3{x, y, 0}).z;
+      return standing(place, stance.heading, near, waypoint, gap) - footing.height - wheel.z;
+    };
+    Footing footing = expected;
+    if (!std::isfinite(footing.height)) footing.height = 0;
+    for (int round = 0; round < 6; ++round) {
+      const double rear_left = error(footing, -s_.track / 2, 0), rear_right = error(footing, s_.track / 2, 0);
+      const double front_left = error(footing, -s_.track / 2, s_.wheelbase), front_right = error(footing, s_.track / 2, s_.wheelbase);
+      const double rear = 0.5 * (rear_left + rear_right), pitch = 0.5 * (front_left + front_right) - rear;
+      const double roll = 0.5 * (rear_right - rear_left + front_right - front_left);
+      footing.height += rear;
+      footing.ahead = std::clamp(footing.ahead + pitch / s_.wheelbase, -tilt_max, tilt_max);
+      footing.aside = std::clamp(footing.aside + roll / s_.track, -tilt_max, tilt_max);
+      if (std::fabs(rear) + std::fabs(pitch) + std::fabs(roll) <= 1e-14 * (1 + std::fabs(footing.height))) break;  // rounding errors
+    }
+    gaps_ += gap ? 1 : 0;
+    return before_ = footing;
   }
-  const double map = 1 / std::hypot(1, steepest), bend = std::fabs(section.path.curvature);
-  const double share = bend > 0 ? s.acceleration * std::sqrt(0.5) : s.acceleration;
+
+  /// Sentences about the ground on all sections; none about a drive without any ground.
+  [[nodiscard]] std::vector<std::string> warnings(const std::vector<GroundVehicleDrive::Section>& sections) const {
+    std::vector<std::string> all;
+    if (gaps_ > 0 && any_ground_)
+      all.push_back("no ground at x = " + brief(first_gap_.x) + ", y = " + brief(first_gap_.y) +
+                    " m, under a wheel of the vehicle, nor at " + brief(static_cast<double>(gaps_ - 1)) +
+                    " places of it more: its wheels roll over gaps narrower than they are" +
+                    (s_.height_without_ground ? ", and stand at " + brief(*s_.height_without_ground) + " m in others" : ""));
+    std::size_t steep = 0;
+    double most = 0;
+    Vec2 first{};
+    for (const auto& [path, start, footings] : sections) {
+      const std::size_t steps = footings.size() - 1;
+      const double step = path.length / static_cast<double>(steps);
+      const std::size_t wheel = step < s_.wheel_radius ? std::min(steps, static_cast<std::size_t>(std::ceil(s_.wheel_radius / step))) : 1;
+      for (std::size_t i = 0; i <= steps; ++i) {
+        const double rise = i + wheel <= steps ? std::fabs(footings[i + wheel].height - footings[i].height) : 0;
+        const double tilt = std::fmax(std::fabs(footings[i].ahead), std::fabs(footings[i].aside));
+        most = std::fmax(most, rise);
+        if (std::fmax(rise / std::fmax(s_.wheel_radius, static_cast<double>(wheel) * step), tilt) <= 1 + 1e-9) continue;
+        if (steep++ == 0) first = path.after(step * static_cast<double>(i)).position;
+      }
+    }
+    if (steep > 0)
+      all.push_back("ground steeper than 45 degrees under the vehicle at x = " + brief(first.x) + ", y = " + brief(first.y) +
+                    " m, and at " + brief(static_cast<double>(steep - 1)) + " places of it more, with steps of up to " + brief(most) +
+                    " m: it drives over them at its speed all the same");
+    return all;
+  }
+
+ private:
+  /// Tangent of the largest tilt. Source: Gillespie 1992, table 9.1: cars tip at 1.1 to 1.7 g, on a slope of this tangent.
+  static constexpr double tilt_max = 1.7;
+
+  /// Lengths for messages, rounded to the centimetre.
+  [[nodiscard]] static std::string brief(double x) { return to_text(std::round(x * 100) / 100); }
+
+  [[nodiscard]] std::optional<double> height(const Vec2& place, double near) const {
+    std::optional<double> h;
+    if constexpr (LevelledGround<G>)
+      h = ground_(place, near);
+    else
+      h = ground_(place);
+    if (h) require_within("plan_ground_vehicle: height of the ground", *h, -1e9, 1e9, "m");
+    return h;
+  }
+
+  /// Height of the foot of a wheel.
+  [[nodiscard]] double standing(const Vec2& place, double heading, double near, std::size_t waypoint, bool& gap) {
+    const std::optional<double> below = height(place, near);
+    any_ground_ = any_ground_ || below;
+    if (!below && !std::exchange(gap, true) && gaps_ == 0) first_gap_ = place;
+    const std::optional<double> rolled = roll(place, {std::sin(heading), std::cos(heading)}, near, below);
+    if (!rolled && !s_.height_without_ground)
+      throw SettingError("plan_ground_vehicle: path to waypoints[" + std::to_string(waypoint) + "], x", place.x, "m",
+                         "over ground; there is none at y = " + to_text(place.y) + " m");
+    return rolled ? *rolled : *s_.height_without_ground;
+  }
+
+  /// Lowest point that a wheel rolling ahead reaches at a place: the closing of the ground's profile with the wheel's disc, which is the
+  /// ground itself wherever that bends less than the wheel. Source: ISO 16610-41:2015, closing with a disk.
+  [[nodiscard]] std::optional<double> roll(const Vec2& place, const Vec2& ahead, double near, const std::optional<double>& below) const {
+    const double r = s_.wheel_radius, nothing = -std::numeric_limits<double>::infinity();
+    const auto at = [&](double u) { return height(place + u * ahead, near).value_or(nothing); };
+    if (below) {
+      const std::array<double, 4> places{-0.9 * r, -0.5 * r, 0.5 * r, 0.9 * r},
+          heights{at(places[0]), at(places[1]), at(places[2]), at(places[3])};
+      const double slope = heights[1] > nothing && heights[2] > nothing ? (heights[2] - heights[1]) / r : 0;
+      bool touched = true;  // the ground stays below a parabola of half the wheel's curvature that touches it here
+      for (std::size_t k = 0; k < 4; ++k) touched = touched && heights[k] <= *below + slope * places[k] + places[k] * places[k] / (4 * r);
+      if (touched) return below;
+    }
+    constexpr int n = 12;  // samples of a radius
+    std::array<double, 4 * n + 1> profile{};
+    for (int k = -2 * n; k <= 2 * n; ++k) profile[static_cast<std::size_t>(k + 2 * n)] = k == 0 ? below.value_or(nothing) : at(k * r / n);
+    const auto disc = [&](int k) { return r * std::sqrt(1 - static_cast<double>(k * k) / (n * n)); };
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int axle = -n; axle <= n; ++axle) {
+      double centre = nothing;
+      for (int k = -n; k <= n; ++k) centre = std::fmax(centre, profile[static_cast<std::size_t>(axle + k + 2 * n)] + disc(k));
+      lowest = std::fmin(lowest, centre - disc(axle));
+    }
+    return lowest > nothing ? std::optional(lowest) : below;
+  }
+
+  const G& ground_;
+  const GroundVehicleSettings& s_;
+  Footing before_;
+  bool is_first_ = true, any_ground_ = false;
+  std::size_t gaps_ = 0;  // footings with a wheel over no ground
+  Vec2 first_gap_{};
+};
+
+/// Speed limits on a piece of the path. In a curve, acceleration along and across have equal shares of the maximum.
+[[nodiscard]] inline SpeedLimits limits_on(const PathPiece& path, const GroundVehicleSettings& s) noexcept {
+  const double bend = std::fabs(path.curvature), share = bend > 0 ? s.acceleration * std::sqrt(0.5) : s.acceleration;
   const double speed = bend > 0 ? std::fmin(s.speed, std::sqrt(share / bend)) : s.speed;  // centripetal acceleration v^2 / r
-  return {map * speed, map * share, map * share, map * s.jerk};
+  return {speed, share, share, s.jerk};
 }
 
 }  // namespace detail
 
 /// Plans a drive from the first waypoint to the last along `path_through`, at rest at both ends and at changes of gear. All four wheels
-/// follow the ground as far as a rigid body can. A single waypoint looks north. Waypoints less than a centimetre apart are one. The ground
-/// is queried only during planning. Throws a `SettingError` for invalid settings or waypoints, a path that is too long, or missing ground.
+/// roll over the ground as far as a rigid body can, and speed and acceleration are limited along the way in space. A single waypoint looks
+/// north. Waypoints less than a centimetre apart are one. The ground is queried only during planning: one of several levels, as roads and
+/// bridges, should model `LevelledGround`. Throws a `SettingError` for invalid settings or waypoints, a path that is too long, or missing
+/// ground.
 [[nodiscard]] inline GroundVehicleDrive plan_ground_vehicle(std::span<const Vec2> waypoints, const Ground auto& ground,
                                                             const GroundVehicleSettings& settings = {}) {
   settings.validate();
@@ -186,23 +293,29 @@ namespace detail {
 
   double whole = 0;
   for (const PathPiece& piece : path) whole += piece.length;
-  require_within("plan_ground_vehicle: path (length)", whole, 0, 1e7 * settings.ground_step, "m");  // footings take some 240 MB
+  require_within("plan_ground_vehicle: path (length)", whole, 0, 1e7 * settings.ground_step, "m");  // footings take some 320 MB
 
+  detail::FootingFinder finder(ground, settings);
   std::vector<GroundVehicleDrive::Section> sections;
   std::vector<PathSection> path_sections;
   std::vector<double> joints(path.size() + 1, 0.0);
   double start = 0;
   for (std::size_t k = 0; k < path.size(); ++k) {
     const std::size_t steps = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(path[k].length / settings.ground_step)));
+    const double step = path[k].length / static_cast<double>(steps);
     GroundVehicleDrive::Section section{path[k], start, {}};
+    double climbs = 0;  // length in space beyond that on the map
     for (std::size_t i = 0; i <= steps; ++i) {
       const double along = path[k].length * static_cast<double>(i) / static_cast<double>(steps);
-      section.footings.push_back(detail::footing_at(path[k].after(along), numbers[path[k].waypoint], settings, ground));
+      Footing footing = finder.next(path[k].after(along), i > 0 ? path[k].gear * step : 0, numbers[path[k].waypoint]);
+      if (i > 0) climbs += std::hypot(step, footing.height - section.footings.back().height) - step;
+      footing.along = along + climbs;
+      section.footings.push_back(footing);
     }
-    path_sections.push_back({path[k].length, detail::limits_on(section, settings)});
+    path_sections.push_back({section.footings.back().along, detail::limits_on(path[k], settings)});
     if (k > 0 && path[k].gear == path[k - 1].gear) joints[k] = std::fmin(path_sections[k - 1].limits.speed, path_sections[k].limits.speed);
     sections.push_back(std::move(section));
-    start += path[k].length;
+    start += path_sections.back().length;
   }
   settle_speeds(joints, path_sections);
 
@@ -216,7 +329,8 @@ namespace detail {
     }
   }
   driven.add(now, {.position = start});
-  return {std::move(sections), std::move(driven), now};
+  std::vector<std::string> warnings = finder.warnings(sections);
+  return {std::move(sections), std::move(driven), now, std::move(warnings)};
 }
 
 }  // namespace PULSECAST_NAMESPACE

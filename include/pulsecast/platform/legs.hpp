@@ -19,12 +19,14 @@ namespace PULSECAST_NAMESPACE {
 /// Pass of a platform. An inactive leg takes its time, as a turn between two strips, but has no slots.
 template <WorldSource P>
 struct Leg {
-  P platform;          ///< carrier of the instrument
-  bool active = true;  ///< true if pulses are emitted
+  P platform;                   ///< carrier of the instrument
+  bool active = true;           ///< true if pulses are emitted
+  std::optional<Tick> start{};  ///< start since the survey's start; by default the end of the leg before
 };
 
 /// Passes in sequence, of one type of platform: set-ups of a tripod, strips of a flight. Each leg's own clock starts at zero; the survey's
-/// time continues from leg to leg. Legs with equal tables of emitters share one.
+/// time continues from leg to leg, unless a leg says when it starts: such legs may leave gaps and overlap. Legs with equal tables of
+/// emitters share one.
 template <WorldSource P>
 class Legs {
   static_assert(detail::DrawsByLegCheck<P>::passed);
@@ -34,8 +36,10 @@ class Legs {
   explicit Legs(std::vector<Leg<P>> legs) {
     require_within("Legs::legs (number)", static_cast<double>(legs.size()), 1, 65535, "");
     PulseIndex first = 0;
-    Tick start{};
+    Tick start{}, last{};
     for (Leg<P>& leg : legs) {
+      start = leg.start.value_or(start);
+      require_within("Legs::legs (start)", start.seconds(), 0, 1e15, "s");
       starts_.push_back({first, start});
       if (leg.active && leg.platform.size() > 0) {
         require_within("Legs::legs (slots)", static_cast<double>(first) + static_cast<double>(leg.platform.size()), 0, 0x1p60, "");
@@ -45,9 +49,10 @@ class Legs {
       if constexpr (DrawsByLeg<P>) leg.platform.draw_for_leg(static_cast<std::uint32_t>(legs_.size()));
       start = start + leg.platform.duration();
       require_within("Legs::legs (duration)", start.seconds(), 0, 1e15, "s");
+      last = last < start ? start : last;
       legs_.push_back(std::move(leg.platform));
     }
-    end_ = {first, start};
+    end_ = {first, last};
   }
 
   /// All legs active.

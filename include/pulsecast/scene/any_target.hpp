@@ -92,12 +92,13 @@ class AnyTarget {
     return std::visit([](const auto& target) noexcept -> Box { return target.bounds(); }, target_);
   }
 
-  /// Height of the highest ground of the target at a place [m]; empty if there is none.
-  [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept requires(requires(const First& f, const Others&... o) {
-    f.ground_height(at);
-    (o.ground_height(at), ...);
-  }) {
-    return std::visit([&](const auto& target) noexcept { return target.ground_height(at); }, target_);
+  /// Height of the ground of the target at a place that is nearest to a height; by default of the highest [m]. Empty if there is none.
+  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept
+      requires(requires(const First& f, const Others&... o) {
+        f.ground_height(at, near);
+        (o.ground_height(at, near), ...);
+      }) {
+    return std::visit([&](const auto& target) noexcept { return target.ground_height(at, near); }, target_);
   }
 
  private:

@@ -112,17 +112,21 @@ class Layered {
     return all;
   }
 
-  /// Height of the highest ground of the targets at a place [m]; empty if none has any.
-  [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept requires(requires(const First& f, const Others&... o) {
-    f.ground_height(at);
-    (o.ground_height(at), ...);
-  }) {
-    std::optional<double> highest;
-    const auto raise = [&](const std::optional<double>& height) noexcept {
-      if (height && !(highest >= height)) highest = height;
+  /// Height of the ground of the targets at a place that is nearest to a height; by default of the highest [m]. Empty if none has any.
+  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept
+      requires(requires(const First& f, const Others&... o) {
+        f.ground_height(at, near);
+        (o.ground_height(at, near), ...);
+      }) {
+    std::optional<double> best;
+    const auto is_better = [&](double a, double b) noexcept {
+      return near < std::numeric_limits<double>::infinity() ? std::fabs(a - near) < std::fabs(b - near) : a > b;
     };
-    std::apply([&](const auto*... targets) noexcept { (raise(targets->ground_height(at)), ...); }, targets_);
-    return highest;
+    const auto take = [&](const std::optional<double>& height) noexcept {
+      if (height && (!best || is_better(*height, *best))) best = height;
+    };
+    std::apply([&](const auto*... targets) noexcept { (take(targets->ground_height(at, near)), ...); }, targets_);
+    return best;
   }
 
  private:

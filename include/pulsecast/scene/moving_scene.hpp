@@ -105,7 +105,9 @@ class MovingScene {
   }
 
   /// Height of the ground at a place [m], as of `Scene`; moving parts are no ground.
-  [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept { return scene_.ground_height(at); }
+  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
+    return scene_.ground_height(at, near);
+  }
 
  private:
   /// Moving part.

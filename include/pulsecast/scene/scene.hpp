@@ -155,16 +155,22 @@ class Scene {
     return detail::surface_at(hit, ray, parts_[hit.part], parts_[hit.part].placement);
   }
 
-  /// Height of the highest surface of a ground material at a place [m]; empty if there is none.
-  [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept {
+  /// Height of the surface of a ground material at a place that is nearest to a height; by default of the highest [m]. Empty if there is
+  /// none.
+  [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
     if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
     const double top = bounds().max.z + 1;
     RayBundle down = bundle_of(Ray{.origin = {at.x, at.y, top}, .direction = -axis::up});
+    std::optional<double> above;  // lowest ground above `near` so far
     for (;;) {
       const ClosestHits nearest = this->nearest(down);
-      if (!nearest.met(0)) return std::nullopt;
-      if (material_at(down, nearest).ground) return top - nearest.range[0];
-      down.near = nearest.range[0];  // continues below a surface that is no ground
+      if (!nearest.met(0)) return above;
+      const double height = top - nearest.range[0];
+      if (material_at(down, nearest).ground) {
+        if (height <= near) return above && *above - near < near - height ? above : height;
+        above = height;
+      }
+      down.near = nearest.range[0];  // continues below a surface that is no ground, or too high
     }
   }
 

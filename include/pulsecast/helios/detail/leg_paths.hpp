@@ -8,6 +8,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -36,7 +37,9 @@ namespace PULSECAST_NAMESPACE::helios {
 /// Path and duration of a leg.
 struct LegPath {
   SurveyPath path{};
-  double duration = 0;  ///< travel time [s]
+  double duration = 0;            ///< travel time [s]
+  double rounding = 0;            ///< maximum error of the duration as a difference of two times [s]
+  std::optional<double> clock{};  ///< start time by the clock of a trajectory that sets that of the survey [s]
 };
 
 /// Paths of all legs of a survey. `ground` gives the height of the scene's ground [m]. Throws a `SettingError` with leg and attribute, or a
@@ -54,6 +57,20 @@ class LegPaths {
     return clock_start_;
   }  ///< start time of the survey, if a trajectory gives it [s]
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+  /// Number for messages, rounded to three digits after the point.
+  [[nodiscard]] static std::string brief(double value) { return pulsecast::detail::to_text(std::round(value * 1e3) / 1e3); }
+
+  /// True if a leg goes on along the plan of the leg before.
+  [[nodiscard]] bool continues(std::size_t k) const {
+    const auto shares = [&]<class Plan>(const std::shared_ptr<const Plan>& plan) {
+      const auto* const before = std::get_if<std::shared_ptr<const Plan>>(&paths_[k - 1].path.path);
+      return before && *before == plan;
+    };
+    const auto* const flight = k > 0 ? std::get_if<std::shared_ptr<const MulticopterFlight>>(&paths_[k].path.path) : nullptr;
+    const auto* const drive = k > 0 ? std::get_if<std::shared_ptr<const GroundVehicleDrive>>(&paths_[k].path.path) : nullptr;
+    return (flight && shares(*flight)) || (drive && shares(*drive));
+  }
 
   /// Name of a leg for messages.
   [[nodiscard]] std::string leg_name(std::size_t k) const { return options_.leg_name(k); }
@@ -213,6 +230,7 @@ class LegPaths {
 
   void drive(const GroundHeight& ground) {
     const std::size_t last = places_.size() - 1;
+    double height = std::numeric_limits<double>::infinity();  // that of the last drive's end
     for (std::size_t k = 0; k < last;) {
       if (is_stationary(k)) {
         ++k;
@@ -223,18 +241,27 @@ class LegPaths {
       if (end == last - 1 && !is_stationary(end)) end = last;  // the last leg only gives the end of the path
       std::vector<Vec2> points;
       for (std::size_t i = k; i <= end; ++i) points.push_back({places_[i].x, places_[i].y});
-      const auto solid = [&](const Vec2& at) -> std::optional<double> {
-        if (const std::optional<double> height = ground(at)) return height;
-        return places_[k].z;
-      };
-      const auto way = std::make_shared<const GroundVehicleDrive>(plan_ground_vehicle(points, solid, {.speed = speed_of(k)}));
+      const GroundVehicleSettings settings{.speed = speed_of(k), .start_height = height, .height_without_ground = places_[k].z};
+      const auto way = std::make_shared<const GroundVehicleDrive>(plan_ground_vehicle(points, ground, settings));
+      for (const std::string& warning : way->warnings()) warn(leg_name(k) + ": " + warning);
+      height = way->at(way->duration()).position.z;
       split(k, end, way, way->duration().seconds());
+      for (std::size_t i = k; i < end; ++i) note_slowness(i, settings);
       k = end;
     }
     park(ground);
     if (last == 0) return;
     const auto& before = paths_[last - 1];
     paths_.back().path = {before.path.path, before.path.start + Tick::of_seconds(before.duration)};
+  }
+
+  /// Notes a leg that takes twice as long as its way at its speed, with that for speeding up and braking.
+  void note_slowness(std::size_t k, const GroundVehicleSettings& s) {
+    const double way = std::hypot(places_[k + 1].x - places_[k].x, places_[k + 1].y - places_[k].y);
+    const double expected = way / s.speed + s.speed / s.acceleration + s.acceleration / s.jerk;
+    if (paths_[k].duration > 2 * expected)
+      warn(leg_name(k) + ": the vehicle takes " + brief(paths_[k].duration) + " s for " + brief(way) + " m at up to " + brief(s.speed) +
+           " m/s; turns and steep ground take time");
   }
 
   /// Gives a vehicle at rest the pose of its arrival; that of its departure if it never arrived.
@@ -292,9 +319,13 @@ class LegPaths {
         tables.emplace(key, std::move(table));
       }
       const io::TrajectoryTable& table = tables.at(key);
-      if (k == 0 && t->sync_clock) clock_start_ = table.start_time;
       const auto path = std::make_shared<const Waypoints>(table.poses);
-      paths_[k] = {{path, {}}, path->duration().seconds()};
+      const double duration = path->duration().seconds(),
+                   latest = std::fmax(std::fabs(table.start_time), std::fabs(table.start_time + duration));
+      paths_[k] = {{path, {}}, duration, std::nextafter(latest, max_duration) - latest};
+      if (!survey_.legs.front().platform.trajectory->sync_clock) continue;
+      paths_[k].clock = table.start_time;
+      clock_start_ = std::min(clock_start_.value_or(table.start_time), table.start_time);
     }
   }
 

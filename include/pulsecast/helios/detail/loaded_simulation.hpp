@@ -165,7 +165,7 @@ class LoadedSimulation final : public Simulation {
     std::vector<SurveyPart> all = parts(run);
     all.insert(all.end(), meshes_.begin(), meshes_.end());
     scene_.emplace(all, MovingIndexSettings{.to = 1});
-    const auto ground = [&](const Vec2& at) { return scene_->ground_height(at); };
+    const auto ground = [&](const Vec2& at, auto... near) { return scene_->ground_height(at, near...); };
     const SurveyBuildOptions options{settings_.seed, settings_.platform_noise, settings_.leg_noise, settings_.leg_places};
     compiled_.emplace(compile_survey(survey_, ground, options));
     const double duration = compiled_->source.duration().seconds();

@@ -37,14 +37,18 @@ class SurveyCompiler {
     std::vector<std::string> warnings = paths_.warnings();
     PulseIndex first = 0;
     Tick start{};
+    SurveyPath path;  // of the leg before, and then of the leg
     double optic_time = 0;
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
       const double rate = paths_.of_leg(k, [&] { return pulse_rate_of(survey_.scanner, leg.scanner); });
-      const double duration = duration_of(k), way = paths_[k].duration;
+      if (paths_[k].clock) start = Tick::of_seconds(*paths_[k].clock - *paths_.clock_start());
+      const double late = follow(k, path, compiled), way = std::max(0.0, paths_[k].duration - late);
+      const double duration = in_whole_slots(duration_of(k, way), rate, paths_[k].rounding);
       if (way > 0 && duration > 1.1 * way && leg.scanner.active)
-        warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + brief(way) + " s, and stays for " +
-                           brief(duration - way) + " s until the head has turned; without headRotateStop_deg, the leg ends at its arrival");
+        warnings.push_back(paths_.leg_name(k) + ": the platform arrives after " + LegPaths::brief(way) + " s, and stays for " +
+                           LegPaths::brief(duration - way) +
+                           " s until the head has turned; without headRotateStop_deg, the leg ends at its arrival");
       require_within(paths_.leg_name(k) + " (duration)", duration, 0, 1e15, "s");
       require_within(paths_.leg_name(k) + " (pulses)", duration * rate, 0, 1e15, "");
       const double interval = leg.scanner.active ? leg.scanner.trajectory_interval : 0;
@@ -62,7 +66,7 @@ class SurveyCompiler {
         noise.position = survey_.platform.position_noise;
         noise.attitude = survey_.platform.attitude_noise;
       }
-      legs.push_back({SurveyLeg(paths_[k].path, mount, std::move(instrument), std::move(noise)), leg.scanner.active});
+      legs.push_back({SurveyLeg(path, mount, std::move(instrument), std::move(noise)), leg.scanner.active, start});
       const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
       compiled.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size;
@@ -78,16 +82,32 @@ class SurveyCompiler {
     return survey_.platform.kind == PlatformKind::interpolated && leg.platform.trajectory && leg.platform.trajectory->teleports;
   }
 
-  /// Time for messages, rounded to the millisecond.
-  [[nodiscard]] static std::string brief(double seconds) { return pulsecast::detail::to_text(std::round(seconds * 1e3) / 1e3); }
+  /// Sets the path of a leg. A plan that goes on does so where the whole slots of the leg before ended. Returns the delay by that [s].
+  [[nodiscard]] double follow(std::size_t k, SurveyPath& path, const std::vector<CompiledSurvey::Leg>& before) const {
+    const SurveyPath& planned = paths_[k].path;
+    const Tick ended = k > 0 ? path.start + before[k - 1].duration : Tick{};
+    path = planned;
+    if (!paths_.continues(k)) return 0;
+    const double late = static_cast<double>(ended.second - planned.start.second) + (ended.fraction - planned.start.fraction);
+    if (std::fabs(late) * before[k - 1].pulse_rate >= 1) return 0;  // cut by `duration_max`, or waiting for the head
+    path.start = ended;
+    return late;
+  }
 
-  /// Duration of a leg: until the platform has arrived and the head has turned, but at most `duration_max` [s].
-  [[nodiscard]] double duration_of(std::size_t k) const {
+  /// A duration that is whole slots but for its rounding, without that [s].
+  [[nodiscard]] static double in_whole_slots(double duration, double rate, double rounding) noexcept {
+    const double slots = std::round(duration * rate);
+    return std::fabs(duration - slots / rate) <= rounding ? slots / rate : duration;
+  }
+
+  /// Duration of a leg of a path that takes `way` [s]: until the platform has arrived and the head has turned, but at most `duration_max`
+  /// [s].
+  [[nodiscard]] double duration_of(std::size_t k, double way) const {
     const LegSettings& leg = survey_.legs[k];
     const LegScannerSettings& s = leg.scanner;
     const double turn = s.head_stop - s.head_start, speed = head_rate(survey_.scanner.channels.front(), s);
     const bool stands = paths_[k].duration == 0;
-    double duration = paths_[k].duration;
+    double duration = way;
     if (only_ends(survey_, k)) return 0;
     if (speed != 0 && turn / speed > 0) duration = std::max(duration, turn / speed - s.warm_up);
     if (leg.duration_max) {

@@ -3,14 +3,17 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SURVEY_OPTIONS_HPP
 #define PULSECAST_HELIOS_DETAIL_SURVEY_OPTIONS_HPP
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <pulsecast/base/vector.hpp>
+#include <pulsecast/concepts.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -28,8 +31,27 @@ struct SurveyBuildOptions {
   }
 };
 
-/// Height of the ground at a place [m], none where there is no ground.
-using GroundHeight = std::function<std::optional<double>(const Vec2&)>;
+/// Height of the ground [m] of any type that models `Ground`. One that models `LevelledGround` is asked for the level nearest to a height.
+class GroundHeight {
+ public:
+  template <Ground G>
+  requires(!std::same_as<G, GroundHeight>) GroundHeight(G ground)
+      : height_([ground = std::move(ground)](const Vec2& at, [[maybe_unused]] double near) -> std::optional<double> {
+          if constexpr (LevelledGround<G>)
+            return ground(at, near);
+          else
+            return ground(at);
+        }) {}
+
+  [[nodiscard]] std::optional<double> operator()(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const {
+    return height_(at, near);
+  }
+
+ private:
+  std::function<std::optional<double>(const Vec2&, double)> height_;
+};
+
+static_assert(LevelledGround<GroundHeight>);
 
 }  // namespace PULSECAST_NAMESPACE::helios
 

@@ -249,10 +249,35 @@ class TrajectoryReader {
       result_.poses.push_back(row->pose);
     }
     if (end > start) result_.poses.push_back(behind->pose.time == end ? behind->pose : between(behind, end));
+    note_gaps();
     for (TimedPose& pose : result_.poses) pose.time -= start;
     if (jumps.count > 0)
       warn(jumps.first, "repeats the time of the previous pose at another pose, the first of " + std::to_string(jumps.count) +
                             ": a jump of the platform");
+  }
+
+  /// Notes intervals without poses of more than 20 times the median, from 4 intervals on.
+  void note_gaps() {
+    std::vector<double> intervals;
+    const std::vector<TimedPose>& poses = result_.poses;
+    for (std::size_t i = 1; i < poses.size(); ++i)
+      if (poses[i].time > poses[i - 1].time) intervals.push_back(poses[i].time - poses[i - 1].time);
+    if (intervals.size() < 4) return;
+    const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+    std::nth_element(intervals.begin(), middle, intervals.end());
+    const double median = *middle;
+    std::size_t gaps = 0, longest = 1;
+    const auto length = [&](std::size_t i) { return poses[i].time - poses[i - 1].time; };
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      gaps += length(i) > 20 * median ? 1 : 0;
+      if (length(i) > length(longest)) longest = i;
+    }
+    if (gaps > 0)
+      result_.warnings.push_back(
+          table_.path() + ": no pose between " + seconds(poses[longest - 1].time) + " and " + seconds(poses[longest].time) +
+          ", the longest of " + std::to_string(gaps) +
+          " gaps of more than 20 times the median interval: poses are interpolated across it; windows (tStart, tEnd) "
+          "leave gaps out");
   }
 
   /// Pose at a time between a row and the one before.
