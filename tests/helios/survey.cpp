@@ -197,15 +197,16 @@ TEST_CASE("a vehicle passes below a bridge from leg to leg, and notes what no ve
     return p.x > 20 && p.x < 60 && near > 3 ? 6 : 0;
   };
   SurveySettings s = survey_of(PlatformKind::ground_vehicle, {{0, 0, 0}, {40, 0, 0}, {40, 0, 0}, {80, 0, 0}, {99, 0, 0}}, 5);
-  s.legs[3].platform.speed = 4;  // a drive of its own
-  const CompiledSurvey compiled = compile_survey(s, bridge);
+  s.legs[3].platform.speed = 4;                                                                        // a drive of its own
+  const SurveyBuildOptions read{.leg_places = std::vector<std::string>(s.legs.size(), "survey.xml")};  // whose other notes its reader has
+  const CompiledSurvey compiled = compile_survey(s, bridge, read);
   for (const auto& leg : compiled.legs)
     for (const double t : {0.0, 0.3, 0.6, 1.0}) {
       const Tick tick = Tick::of_seconds(t * leg.duration.seconds());
       CHECK(std::fabs(compiled.source.legs()[leg.number].path().at(tick).position.z) < 1e-9);
     }
   CHECK(compiled.warnings.empty());
-  const auto notes = [&](const GroundHeight& ground) { return compile_survey(s, ground).warnings; };
+  const auto notes = [&](const GroundHeight& ground) { return compile_survey(s, ground, read).warnings; };
   const auto slit = notes([](const Vec2& p) { return p.x > 10 && p.x < 10.5 ? std::nullopt : std::optional(100.0); });
   REQUIRE(slit.size() == 1);
   CHECK(slit[0].find("leg 0: no ground at x = 10") != std::string::npos);
