@@ -4,6 +4,7 @@
 #define PULSECAST_RUN_HPP
 
 #include <algorithm>
+#include <bit>
 #include <condition_variable>  // includes the steady clock: <chrono> would add a calendar, a tenth of this header's cost
 #include <cstddef>
 #include <cstdint>
@@ -81,8 +82,26 @@ struct ResultChunk : ResultBuffer {
       wrong = outcome.shot;
   }
 
+  /// Makes at least as much room as another has.
+  void reserve_as(const ResultChunk& other) {
+    shots.reserve(other.shots.capacity());
+    echoes.reserve(other.echoes.capacity());
+    samples.reserve(other.samples.capacity());
+    subrays.reserve(other.subrays.capacity());
+  }
+
+  /// Memory of the results, and of the room for results [byte].
   [[nodiscard]] std::size_t bytes() const noexcept {
-    return shots.size() * sizeof(Shot) + echoes.size() * sizeof(Echo) + samples.size() * sizeof(float) + subrays.size() * sizeof(SubrayHit);
+    return bytes_of([](const auto& results) { return results.size(); });
+  }
+  [[nodiscard]] std::size_t room() const noexcept {
+    return bytes_of([](const auto& results) { return results.capacity(); });
+  }
+
+ private:
+  template <class Count>
+  [[nodiscard]] std::size_t bytes_of(const Count& count) const noexcept {
+    return count(shots) * sizeof(Shot) + count(echoes) * sizeof(Echo) + count(samples) * sizeof(float) + count(subrays) * sizeof(SubrayHit);
   }
 };
 
@@ -95,16 +114,21 @@ struct ChunkMemory : ScratchItem {
   explicit ChunkMemory(std::size_t count)
       : size(count), chunks(std::make_unique<ResultChunk[]>(count)), finished(std::make_unique<ResultChunk*[]>(count)) {}
   [[nodiscard]] bool fits(std::size_t count) const noexcept { return size >= count; }
+  [[nodiscard]] bool outdated(std::size_t) const noexcept { return true; }  ///< a larger one serves all
 };
 
 /// Workspace of a worker, which an executor may keep for the next run of the same survey.
 template <class Survey>
 struct WorkspaceMemory : ScratchItem {
   decltype(std::declval<const Survey&>().workspace()) workspace;  ///< which need not be movable
-  std::shared_ptr<const void> identity;                           ///< of its survey
+  std::weak_ptr<const void> identity;                             ///< of its survey
 
   explicit WorkspaceMemory(const Survey& survey) : workspace(survey.workspace()), identity(identity_of(survey)) {}
-  [[nodiscard]] bool fits(const Survey& survey) const noexcept { return identity && identity == identity_of(survey); }
+  [[nodiscard]] bool fits(const Survey& survey) const noexcept {
+    const std::shared_ptr<const void> own = identity.lock();
+    return own && own == identity_of(survey);
+  }
+  [[nodiscard]] bool outdated(const Survey&) const noexcept { return identity.expired(); }
 
  private:
   static std::shared_ptr<const void> identity_of(const Survey& survey) noexcept {
@@ -123,7 +147,7 @@ class ReorderBuffer {
  public:
   ReorderBuffer(ScratchMemory* kept, std::uint64_t chunks, PulseIndex slots_per_chunk, std::size_t workers, std::stop_token stop)
       : chunks_(chunks), always_ahead_(2 * workers + 2), max_ahead_(16 * always_ahead_), memory_(kept, max_ahead_), stop_(std::move(stop)) {
-    if (kept) make_room(slots_per_chunk);
+    if (kept) make_room(std::bit_ceil(slots_per_chunk));  // steps of a loop differ by some slots
     for (std::size_t i = max_ahead_; i-- > 0;) memory_->chunks[i].next_free = std::exchange(free_, &memory_->chunks[i]);
     std::fill_n(memory_->finished.get(), max_ahead_, nullptr);
   }
@@ -161,6 +185,16 @@ class ReorderBuffer {
     delivering_ = false;
   }
 
+  /// Makes room for a short run in the chunks that it may need, as much as any had. At the end of a run, the next one over as many results
+  /// then allocates nothing, whichever chunks it takes.
+  void make_room(PulseIndex slots = 0) {
+    ResultChunk& first = memory_->chunks[0];
+    first.reserve(slots);
+    for (std::size_t i = 1; i < max_ahead_; ++i) first.reserve_as(memory_->chunks[i]);
+    const std::uint64_t some = std::min<std::uint64_t>({chunks_, max_ahead_, std::max(always_ahead_, max_bytes / (first.room() + 1))});
+    for (std::size_t i = 1; i < some; ++i) memory_->chunks[i].reserve_as(first);
+  }
+
   /// Ends the run for all workers; the first failure counts.
   void fail(std::exception_ptr failure) noexcept {
     const std::lock_guard lock(mutex_);
@@ -172,13 +206,6 @@ class ReorderBuffer {
 
  private:
   static constexpr std::size_t max_bytes = std::size_t{6} << 20;  // finished but not delivered: some milliseconds of fast work
-
-  /// Makes room for a short run in the chunks that it may need, so that a loop of such runs allocates nothing later.
-  void make_room(PulseIndex slots_per_chunk) {
-    const std::size_t bytes = slots_per_chunk * (sizeof(Shot) + sizeof(Echo));
-    const std::uint64_t some = std::min<std::uint64_t>({chunks_, max_ahead_, max_bytes / bytes});
-    for (std::size_t i = 0; i < some; ++i) memory_->chunks[i].reserve(slots_per_chunk);
-  }
 
   [[nodiscard]] bool may_go_ahead() const noexcept {
     const std::uint64_t ahead = handed_out_ - delivered_;
@@ -254,8 +281,13 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
   const auto began = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
 
+  using Memory = detail::WorkspaceMemory<Survey>;
+  ScratchMemory* const kept = options.executor.memory();
+  ScratchMemory* const workspaces = IdentifiedSurvey<Survey> ? kept : nullptr;
+  if (workspaces)
+    workspaces->provide<Memory>(options.workers().count(), survey);  // for all threads: any may be late, or have its first work later
   const bool empty_shots = (detail::reads_empty_shots(sinks) || ...);
-  detail::ReorderBuffer buffer(options.executor.memory(), chunks, slots_per_chunk, workers, options.stop);
+  detail::ReorderBuffer buffer(kept, chunks, slots_per_chunk, workers, options.stop);
   RunSummary summary;
   const auto deliver = [&](const detail::ResultChunk& chunk) {
     [[maybe_unused]] const EchoBatch batch = chunk.batch(survey.sample_interval());  // there may be no sinks
@@ -268,7 +300,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
     try {
       detail::ResultChunk* chunk = buffer.next();
       if (!chunk) return;
-      const Borrowed<detail::WorkspaceMemory<Survey>> memory(options.executor.memory(), survey);
+      const Borrowed<Memory> memory(workspaces, survey);
       for (; chunk; chunk = buffer.next()) {
         const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots.count);
         detail::simulate(survey, slots, from, to, memory->workspace, empty_shots, *chunk);
@@ -279,6 +311,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
     }
   });
   if (buffer.failure()) std::rethrow_exception(buffer.failure());
+  if (kept) buffer.make_room();
   summary.rays = summary.pulses() * survey.subrays();
   summary.seconds = elapsed();
   summary.complete = summary.slots == slots.count;

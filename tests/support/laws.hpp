@@ -19,7 +19,10 @@
 #include <type_traits>
 #include <vector>
 
+#include <pulsecast/base/scratch_memory.hpp>
+#include <pulsecast/base/thread_pool.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/run.hpp>
 #include <pulsecast/transport/illumination.hpp>
 
 #include "support/checksum.hpp"
@@ -449,5 +452,88 @@ class LawfulSink {
   std::uint64_t echoes_ = 0;
   std::optional<PulseIndex> first_, last_;
 };
+
+namespace detail {
+
+/// Executor of a user's that keeps memory: all tasks on the caller's thread, the last one first.
+struct KeepingExecutor {
+  ScratchMemory kept{};
+  unsigned threads() const { return 3; }
+  void for_each(std::size_t count, const IndexTask& task) {
+    while (count-- > 0) task(count);
+  }
+  ScratchMemory& memory() { return kept; }
+};
+static_assert(MemoryKeepingExecutor<KeepingExecutor>);
+
+/// Checksum of single calls for the slots of a run, `workspace_of()` being the workspace of each.
+template <class Survey, class WorkspaceOf>
+[[nodiscard]] std::string checksum_of_calls(const Survey& survey, const RunSlots& slots, WorkspaceOf&& workspace_of) {
+  Checksum sum;
+  ResultBuffer result;
+  for (PulseIndex n = 0; n < slots.count; ++n) {
+    auto&& workspace = workspace_of();
+    result.clear();
+    result.append(survey(slots[n], workspace));
+    sum.add(result.batch(survey.sample_interval()));
+  }
+  return sum.hex();
+}
+
+}  // namespace detail
+
+/// Results are those of trajectory, map and clock as they are, whatever they were in the calls before: each of these may change between
+/// runs. Memory that is kept, by an executor or in a workspace, gives the bytes that fresh memory gives, for steps of 1, 3 and 1,667 slots:
+/// in order, the same ones twice, backwards, with gaps, and every third one. `change(k)` makes all that the survey refers to other than
+/// with any other k. The survey has at least 13,400 slots, and echoes from the first 10,000.
+template <PulseSurvey Survey, class Change>
+[[nodiscard]] std::string change_laws(const Survey& survey, const Change& change) {
+  ThreadPool pool(2);
+  detail::KeepingExecutor own;
+  auto kept = survey.workspace(), kept_in_order = survey.workspace();
+  std::string first_of_twice;
+  int k = 0;
+  for (const PulseIndex step : {1U, 3U, 1667U})
+    for (const PulseIndex place : {0U, 1U, 2U, 2U, 1U, 0U, 4U, 7U, 0U}) {
+      change(++k);
+      const PulseIndex first = place * step, stride = k % 9 == 0 ? 3 : 1;
+      const RunOptions part{.first = first, .end = first + stride * step, .stride = stride};
+      const RunSlots slots = part.slots(survey.size());
+      const std::string expected = detail::checksum_of_calls(survey, slots, [&] { return survey.workspace(); });
+      const auto differs = [&](const char* what, const std::string& sum) {
+        return sum == expected ? std::string{}
+                               : detail::sentence(step, " slots from ", first, " on, change ", k, ": ", what, " gives what was before");
+      };
+      const auto run_with = [&](ExecutorRef executor, unsigned threads) {
+        RunOptions options = part;
+        options.executor = executor;
+        options.threads = threads;
+        LawfulSink sink;
+        run(survey, options, sink);
+        return sink.broken() + sink.checksum();
+      };
+      for (const std::string& broken : {differs("a run on one thread", run_with({}, 1)), differs("a run on a pool", run_with(pool, 0)),
+                                        differs("a run on an executor of one's own", run_with(own, 0)),
+                                        differs("a kept workspace", detail::checksum_of_calls(
+                                                                        survey, slots, [&]() -> auto& { return kept; }))})
+        if (!broken.empty()) return broken;
+      if constexpr (SimulatesInOrder<Survey>) {
+        Checksum sum;
+        ResultBuffer result;
+        survey.simulate_in_order(first, first + stride * step, kept_in_order, [&](const Outcome& outcome) {
+          result.clear();
+          result.append(outcome);
+          sum.add(result.batch(survey.sample_interval()));
+          return outcome.shot.index + stride;
+        });
+        if (std::string broken = differs("a kept workspace in order", sum.hex()); !broken.empty()) return broken;
+      }
+      if (step == 1667 && place == 2) {
+        if (expected == first_of_twice) return detail::sentence("change ", k, " changes nothing");
+        first_of_twice = expected;
+      }
+    }
+  return {};
+}
 
 }  // namespace pulsecast::support

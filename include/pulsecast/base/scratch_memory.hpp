@@ -3,6 +3,7 @@
 #ifndef PULSECAST_BASE_SCRATCH_MEMORY_HPP
 #define PULSECAST_BASE_SCRATCH_MEMORY_HPP
 
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -25,13 +26,35 @@ class ScratchItem {
   std::unique_ptr<ScratchItem> next_{};
 };
 
-/// Objects that calls leave for later calls, by their type. Several threads may use it at once.
+/// Objects that calls leave for later calls, by their type. Several threads may use it at once. An object of type T tells whether it
+/// `fits(need)`, and if not, whether it is `outdated(need)`: of no use to anyone any more.
 class ScratchMemory {
  public:
-  /// Removes an object of type T; null if there is none.
-  template <class T>
-  [[nodiscard]] std::unique_ptr<T> take() noexcept {
-    return std::unique_ptr<T>(static_cast<T*>(remove(&key<T>).release()));
+  /// Removes an object of type T that fits; null if there is none. Deletes outdated ones that it comes upon.
+  template <class T, class Need>
+  [[nodiscard]] std::unique_ptr<T> take(const Need& need) noexcept {
+    const std::lock_guard lock(mutex_);
+    for (std::unique_ptr<ScratchItem>* place = &items_; *place;) {
+      const T* const item = as<T>(**place);
+      if (item && item->fits(need)) return std::unique_ptr<T>(static_cast<T*>(remove(*place).release()));
+      if (item && item->outdated(need))
+        remove(*place).reset();
+      else
+        place = &(*place)->next_;
+    }
+    return nullptr;
+  }
+
+  /// Makes objects of type T from `need`, until `count` of those that are kept fit.
+  template <class T, class Need>
+  void provide(std::size_t count, const Need& need) {
+    std::size_t kept = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      for (const ScratchItem* item = items_.get(); item; item = item->next_.get())
+        if (const T* const it = as<T>(*item)) kept += it->fits(need) ? 1 : 0;
+    }
+    for (; kept < count; ++kept) give_back(std::make_unique<T>(need));
   }
 
   /// Keeps an object, without allocating.
@@ -54,12 +77,15 @@ class ScratchMemory {
   template <class T>
   static constexpr char key = 0;  // whose address tells types apart
 
-  [[nodiscard]] std::unique_ptr<ScratchItem> remove(const void* type) noexcept {
-    const std::lock_guard lock(mutex_);
-    std::unique_ptr<ScratchItem>* place = &items_;
-    while (*place && (*place)->type_ != type) place = &(*place)->next_;
-    std::unique_ptr<ScratchItem> item = std::move(*place);
-    if (item) *place = std::move(item->next_);
+  /// An object as one of type T; null if it is of another.
+  template <class T>
+  [[nodiscard]] static const T* as(const ScratchItem& item) noexcept {
+    return item.type_ == &key<T> ? static_cast<const T*>(&item) : nullptr;
+  }
+
+  [[nodiscard]] static std::unique_ptr<ScratchItem> remove(std::unique_ptr<ScratchItem>& place) noexcept {
+    std::unique_ptr<ScratchItem> item = std::move(place);
+    place = std::move(item->next_);
     return item;
   }
 
@@ -67,15 +93,15 @@ class ScratchMemory {
   std::unique_ptr<ScratchItem> items_;  // linked list
 };
 
-/// Object of type T for the duration of a call: taken from `memory` if it fits, or else new, and given back to `memory` unless that is
+/// Object of type T for the duration of a call: taken from `memory` if one fits, or else new, and given back to `memory` unless that is
 /// null.
 template <class T>
 class Borrowed {
  public:
-  /// Takes an object for which `fits(need)` is true, or makes one from `need`. Deletes one that does not fit.
+  /// Takes an object that fits, or makes one from `need`.
   template <class Need>
-  Borrowed(ScratchMemory* memory, const Need& need) : memory_(memory), item_(memory ? memory->take<T>() : nullptr) {
-    if (!item_ || !item_->fits(need)) item_ = std::make_unique<T>(need);
+  Borrowed(ScratchMemory* memory, const Need& need) : memory_(memory), item_(memory ? memory->take<T>(need) : nullptr) {
+    if (!item_) item_ = std::make_unique<T>(need);
   }
   Borrowed(const Borrowed&) = delete;
   Borrowed& operator=(const Borrowed&) = delete;
