@@ -80,12 +80,13 @@ class FullWaveform {
   }
 
   /// Calls `visit(k, arrival, detection)` with what a flat target gives without noise, at ten times the threshold, whose pulse arrives at
-  /// the place k of `places` between two samples [s]; the last place is the next sample.
+  /// the place k of `places` between two samples [s]; the last place is the next sample. Records, if any, hold the whole pulse.
   template <class Visit>
   void visit_flat_targets(const Laser& laser, std::size_t places, const Visit& visit) const {
     FullWaveform quiet = *this;
     quiet.receiver_.silence();
     quiet.s_.threshold = s_.threshold > 0 ? s_.threshold : 1;
+    if (s_.record_length > 0) quiet.s_.record_length = std::max(s_.record_length, 1e5 * s_.sample_interval);
     Workspace w = quiet.workspace(1);
     const Emitter emitter{.laser = laser};
     const double first = (8192 + std::floor(100 * laser.pulse_length / s_.sample_interval)) * s_.sample_interval;
