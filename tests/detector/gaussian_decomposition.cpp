@@ -3,8 +3,10 @@
 #include <pulsecast/detector/gaussian_decomposition.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/detector/band_limited_receiver.hpp>
@@ -62,6 +64,102 @@ TEST_CASE("overlapping echoes have the ranges, amplitudes and widths that they h
   const auto of_peaks = echoes(peaks, {{.range = 100.1, .power = power}, {.range = 101.05, .power = power}});
   REQUIRE(of_peaks.size() == 2);
   CHECK(of_peaks[0].range > 100.11);
+}
+
+TEST_CASE("plates that overlap, in the default pulse: each is in its place, of its power and object, also without a peak of its own") {
+  const double length = 0.5 * speed_of_light * laser.pulse_length;
+  const WaveformSettings settings{.threshold = 0.02 * power, .window = 0, .timing = EchoTiming::peak, .record_length = 300e-9};
+  const auto check = [&](const auto& inside, double error) {
+    GaussianDecomposition d{inside};
+    d.prepare(laser);
+    for (const double apart : {1.0, 1.5, 2.0})
+      for (const auto& [first, second] : {std::pair{1.0, 1.0}, {1.0, 0.3}, {0.3, 1.0}}) {
+        INFO(apart, " pulse lengths apart, ", first, " to ", second);
+        const double ranges[]{100.1, 100.1 + apart * length}, powers[]{first * power, second * power};
+        const auto found =
+            echoes(d, {{.range = ranges[0], .power = powers[0], .object = 1}, {.range = ranges[1], .power = powers[1], .object = 2}});
+        REQUIRE(found.size() == 2);
+        for (std::size_t k = 0; k < 2; ++k) {
+          CHECK(std::fabs(found[k].range - ranges[k]) < error);
+          CHECK(found[k].amplitude == doctest::Approx(powers[k]).epsilon(1e-3));
+          CHECK(found[k].number == k + 1);
+        }
+      }
+  };
+  check(FullWaveform{settings}, 2e-5);
+  check(FullWaveform{settings, NoWidth{}, BandLimitedReceiver{}}, 2e-6);
+  check(FullWaveform{settings, NoWidth{}, BandLimitedReceiver{ReceiverChain{.bandwidth = 350e6}}}, 2e-6);
+  check(FullWaveform{settings, NoWidth{}, BandLimitedReceiver{ReceiverChain{.matched_filter = true}}}, 2e-5);
+}
+
+TEST_CASE("a slope of one plane is one echo, of its middle and spread, whatever its length") {
+  GaussianDecomposition d{
+      FullWaveform{WaveformSettings{.threshold = 0.02 * power, .record_length = 300e-9}, NoWidth{}, BandLimitedReceiver{}}};
+  d.prepare(laser);
+  for (const double lengths : {0.05, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0}) {
+    CAPTURE(lengths);
+    const double spread = lengths * 0.5 * speed_of_light * laser.pulse_length;
+    std::vector<Reflection> slope;
+    for (int k = 0; k < 500; ++k) slope.push_back({.range = 110 + spread * ((k + 0.5) / 500 - 0.5), .power = power / 500});
+    const auto found = echoes(d, slope);
+    REQUIRE(found.size() == 1);
+    CHECK(std::fabs(found[0].range - 110) < 1e-3);
+  }
+}
+
+TEST_CASE("ranges do not depend on the length of the record, as long as it holds the echo") {
+  for (const double noise : {0.0, 1e-5})
+    for (const double length : {290e-9, 300e-9, 390e-9, 420e-9, 2e-6}) {
+      CAPTURE(noise);
+      CAPTURE(length);
+      GaussianDecomposition d{FullWaveform{WaveformSettings{.threshold = 0.1 * power, .record_length = length}, NoWidth{},
+                                           BandLimitedReceiver{ReceiverChain{.noise_power = noise * power / std::sqrt(2e9)}}}};
+      d.prepare(laser);
+      auto w = d.workspace(1);
+      std::vector<Reflection> wall{{.range = 500, .power = power}};  // 267 ns after the start of the gate
+      const Detection found = d.detect({emitter, {460, 540}, wall, {.seed = 1}}, w);
+      REQUIRE(found.echoes.size() == 1);
+      CHECK(std::fabs(found.echoes[0].range - 500) < 1e-5);
+      CHECK(found.echoes[0].width > 0);
+    }
+}
+
+TEST_CASE("in noise, overlapping plates are unbiased; those a pulse length apart are two echoes for most pulses, else one") {
+  // samples whose noise is a hundredth of the greater echo
+  const LowPass filter = ReceiverChain{}.filter(laser.pulse_length);
+  const double gain = ReceivedPulse(GammaPulse{}, laser.pulse_length, filter, 0.25e-9).gain();
+  const double noise = 0.01 * power * gain / std::sqrt(filter.noise_bandwidth());
+  GaussianDecomposition d{
+      FullWaveform{WaveformSettings{.threshold = 0.06 * power, .prominence = 0.06 * power, .window = 0, .record_length = 200e-9}, NoWidth{},
+                   BandLimitedReceiver{ReceiverChain{.noise_power = noise}}}};
+  d.prepare(laser);
+  const double length = 0.5 * speed_of_light * laser.pulse_length;
+  constexpr int pulses = 200;
+  for (const double apart : {1.0, 1.5, 2.0})
+    for (const double second : {1.0, 0.3}) {
+      int both = 0;
+      double sums[2]{}, squares[2]{};
+      for (int k = 0; k < pulses; ++k) {
+        const double ranges[]{100 + 0.0375 * k / pulses, 100 + 0.0375 * k / pulses + apart * length};
+        const auto found =
+            echoes(d, {{.range = ranges[0], .power = power}, {.range = ranges[1], .power = second * power}}, static_cast<std::uint64_t>(k));
+        if (found.size() != 2) {
+          CHECK(found.size() == 1);
+          continue;
+        }
+        ++both;
+        for (std::size_t e = 0; e < 2; ++e) {
+          sums[e] += found[e].range - ranges[e];
+          squares[e] += (found[e].range - ranges[e]) * (found[e].range - ranges[e]);
+        }
+      }
+      INFO(apart, " pulse lengths apart, 1 to ", second, ": both in ", both, " of ", pulses);
+      CHECK(both > (apart > 1 ? 0.99 : 0.8) * pulses);
+      for (std::size_t e = 0; e < 2 && apart > 1; ++e) {
+        const double mean = sums[e] / both, deviation = std::sqrt(squares[e] / both - mean * mean);
+        CHECK(std::fabs(mean) < 3.5 * deviation / std::sqrt(static_cast<double>(both)));
+      }
+    }
 }
 
 TEST_CASE("the width of a slope grows by the spread of its ranges") {

@@ -31,6 +31,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// What turns the light at an aperture into samples: a policy of `FullWaveform`. `samples` begins with a pulse's reflections, sorted by
 /// range, and gives them section by section, as `IdealSamples`. It is told of each laser before the first pulse by `prepare`.
+/// `timing_reach` is the time beside a maximum whose samples define its place [s], or 0 for those next to it.
 template <class R>
 concept WaveformReceiver = std::copyable<R> &&
     requires(R& any, const R r, const Laser& laser, const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
@@ -41,6 +42,8 @@ concept WaveformReceiver = std::copyable<R> &&
   { r.samples(s, heard, reflections, width_tail, w).begin_section() }
   noexcept->std::same_as<bool>;
   { r.samples(s, heard, reflections, width_tail, w).power(more) }
+  noexcept->std::same_as<double>;
+  { r.timing_reach(laser) }
   noexcept->std::same_as<double>;
   { R::listens_always } -> std::convertible_to<bool>;
 };
@@ -80,12 +83,13 @@ class FullWaveform {
   }
 
   /// Calls `visit(k, arrival, detection)` with what a flat target gives without noise, at ten times the threshold, whose pulse arrives at
-  /// the place k of `places` between two samples [s]; the last place is the next sample.
+  /// the place k of `places` between two samples [s]; the last place is the next sample. Records, if any, hold the whole pulse.
   template <class Visit>
   void visit_flat_targets(const Laser& laser, std::size_t places, const Visit& visit) const {
     FullWaveform quiet = *this;
     quiet.receiver_.silence();
     quiet.s_.threshold = s_.threshold > 0 ? s_.threshold : 1;
+    if (s_.record_length > 0) quiet.s_.record_length = std::max(s_.record_length, 1e5 * s_.sample_interval);
     Workspace w = quiet.workspace(1);
     const Emitter emitter{.laser = laser};
     const double first = (8192 + std::floor(100 * laser.pulse_length / s_.sample_interval)) * s_.sample_interval;
@@ -140,11 +144,11 @@ class FullWaveform {
       }
     if constexpr (!ideal && std::same_as<Width, NoWidth>)
       if (s_.record_length == 0 && s_.timing == EchoTiming::peak)
-        if (const auto only = receiver_.only_peak(s_, heard)) return detection_of(*only, laser, w.echoes);
+        if (const auto only = receiver_.only_peak(s_, heard, reach_of(laser))) return detection_of(*only, laser, w.echoes);
     const std::span<const Reflection> reflections = in_order_of_range(heard.reflections, s_.sample_interval);
     auto samples = receiver_.samples(s_, heard, reflections, tail(), w.receiver);
-    const typename SampleWindow<Width>::Search search{s_, width_, s_.min_separation(laser.pulse_length), samples.delay(),
-                                                      samples.independent_noise()};
+    const typename SampleWindow<Width>::Search search{
+        s_, width_, s_.min_separation(laser.pulse_length), samples.delay(), samples.independent_noise(), reach_of(laser)};
     while (samples.begin_section()) {
       w.window.clear();
       for (bool more = true; more;) {
@@ -171,6 +175,7 @@ class FullWaveform {
   struct Correction {
     static constexpr std::size_t places = 16;
     std::array<double, places + 1> time{};  ///< at evenly spaced places [s]
+    double reach = 0;                       ///< time beside a maximum whose samples define its place, or 0 [s]
 
     /// Arrival of the flat target that would have an echo at this time [s].
     [[nodiscard]] double arrival(double mark, double interval) const noexcept {
@@ -191,6 +196,11 @@ class FullWaveform {
     return std::fmax(tail_of(width_), of_time);
   }
 
+  [[nodiscard]] double reach_of(const Laser& laser) const noexcept {
+    const Correction* correction = corrections_.find(laser);
+    return correction ? correction->reach : 0;
+  }
+
   /// True for echo times that need a correction: those of samples, but not of an ideal receiver's peak.
   [[nodiscard]] bool reads_samples() const noexcept {
     return s_.timing != EchoTiming::true_range && !(ideal && s_.timing == EchoTiming::peak);
@@ -200,7 +210,8 @@ class FullWaveform {
   [[nodiscard]] Correction correction_for(const Laser& laser) const {
     FullWaveform unrecorded = *this;
     unrecorded.s_.record_length = 0;
-    Correction c;
+    Correction c{.reach = s_.timing == EchoTiming::peak ? receiver_.timing_reach(laser) : 0};
+    unrecorded.corrections_.add(laser, c);
     unrecorded.visit_flat_targets(laser, Correction::places, [&](std::size_t k, double arrival, const Detection& d) {
       if (!d.echoes.empty()) c.time[k] = 2 * d.echoes[0].range / speed_of_light - arrival;
     });

@@ -7,203 +7,181 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
+#include <limits>
+#include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/by_pulse_length.hpp>
+#include <pulsecast/detector/detail/system_waveform.hpp>
+#include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/detector/pulse_sum.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-namespace detail {
-
-/// Sum of up to six Gaussians and a constant, fitted to samples by least squares without weights, as noise of a digitiser is the same for
-/// all samples. Source: Levenberg 1944; Marquardt 1963.
-class GaussianSum {
- public:
-  static constexpr std::size_t most = 6;  ///< Gaussians
-
-  /// One of the Gaussians; times in samples.
-  struct Gaussian {
-    double height = 0, centre = 0, deviation = 1;
-  };
-
-  std::array<Gaussian, most> gaussians{};  ///< estimate, and result
-  std::size_t count = 0;                   ///< number of Gaussians
-  double constant = 0;                     ///< what is added to all samples
-
-  /// Improves the estimate; false if it does not converge to a sum of positive Gaussians.
-  [[nodiscard]] bool fit(std::span<const float> y) noexcept {
-    double error = error_of(*this, y), damping = 1e-3;
-    for (int step = 0; step < 60; ++step) {
-      set_normal_equations(y);
-      GaussianSum next = *this;
-      if (!next.step(damping)) return false;
-      const double then = error_of(next, y);
-      if (!(then < error)) {
-        if (damping > 1e6) break;
-        damping *= 10;
-        continue;
-      }
-      const bool settled = error - then <= 1e-12 * error;
-      *this = next;
-      error = then;
-      damping = std::max(1e-12, 0.1 * damping);
-      if (settled) break;
-    }
-    return std::all_of(gaussians.begin(), gaussians.begin() + static_cast<std::ptrdiff_t>(count), [](const Gaussian& g) {
-      return g.height > 0 && std::isfinite(g.centre) && g.deviation > 0 && std::isfinite(g.deviation);
-    });
-  }
-
- private:
-  static constexpr std::size_t parameters_max = 3 * most + 1;
-
-  [[nodiscard]] std::size_t parameters() const noexcept { return 3 * count + 1; }
-
-  static double error_of(const GaussianSum& sum, std::span<const float> y) noexcept {
-    double squares = 0;
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      double value = sum.constant;
-      for (std::size_t k = 0; k < sum.count; ++k) {
-        const Gaussian& g = sum.gaussians[k];
-        const double u = (static_cast<double>(i) - g.centre) / g.deviation;
-        value += g.height * std::exp(-0.5 * u * u);
-      }
-      squares += (static_cast<double>(y[i]) - value) * (static_cast<double>(y[i]) - value);
-    }
-    return squares;
-  }
-
-  void set_normal_equations(std::span<const float> y) noexcept {
-    matrix_ = {};
-    right_ = {};
-    std::array<double, parameters_max> slopes{};
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      double value = constant;
-      slopes[3 * count] = 1;
-      for (std::size_t k = 0; k < count; ++k) {
-        const Gaussian& g = gaussians[k];
-        const double u = (static_cast<double>(i) - g.centre) / g.deviation, share = std::exp(-0.5 * u * u);
-        value += g.height * share;
-        slopes[3 * k] = share;
-        slopes[3 * k + 1] = g.height * share * u / g.deviation;
-        slopes[3 * k + 2] = slopes[3 * k + 1] * u;
-      }
-      const double residual = static_cast<double>(y[i]) - value;
-      for (std::size_t a = 0; a < parameters(); ++a) {
-        right_[a] += slopes[a] * residual;
-        for (std::size_t b = 0; b <= a; ++b) matrix_[a][b] += slopes[a] * slopes[b];
-      }
-    }
-  }
-
-  /// Solves the damped normal equations by Cholesky's decomposition and takes the step; false if they are singular.
-  [[nodiscard]] bool step(double damping) noexcept {
-    const std::size_t n = parameters();
-    for (std::size_t a = 0; a < n; ++a) matrix_[a][a] *= 1 + damping;
-    for (std::size_t a = 0; a < n; ++a)
-      for (std::size_t b = 0; b <= a; ++b) {
-        double sum = matrix_[a][b];
-        for (std::size_t k = 0; k < b; ++k) sum -= matrix_[a][k] * matrix_[b][k];
-        if (a == b && !(sum > 0)) return false;
-        matrix_[a][b] = a == b ? std::sqrt(sum) : sum / matrix_[b][b];
-      }
-    for (std::size_t a = 0; a < n; ++a) {
-      for (std::size_t k = 0; k < a; ++k) right_[a] -= matrix_[a][k] * right_[k];
-      right_[a] /= matrix_[a][a];
-    }
-    for (std::size_t a = n; a-- > 0;) {
-      for (std::size_t k = a + 1; k < n; ++k) right_[a] -= matrix_[k][a] * right_[k];
-      right_[a] /= matrix_[a][a];
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      gaussians[k].height += right_[3 * k];
-      gaussians[k].centre += right_[3 * k + 1];
-      gaussians[k].deviation = std::fabs(gaussians[k].deviation + right_[3 * k + 2]);
-    }
-    constant += right_[3 * count];
-    return true;
-  }
-
-  std::array<std::array<double, parameters_max>, parameters_max> matrix_{};
-  std::array<double, parameters_max> right_{};
-};
-
-}  // namespace detail
-
-/// Detector that decomposes the waveform of another, which must keep it (`WaveformSettings::record_length`), into Gaussians, one for each
-/// of its echoes: overlapping echoes get the ranges, amplitudes and widths that they have alone, exactly so for Gaussian pulses. Ranges are
-/// less what a flat target has. Echoes outside of the record, more than six that overlap, and fits that fail keep what the other detector
-/// found. Source: Wagner et al. 2006.
-template <SamplesWaveforms Inner>
+/// Detector that decomposes the waveform of a `FullWaveform`, which must keep it (`WaveformSettings::record_length`), into waveforms of
+/// flat targets after the receiver, each widened by a Gaussian: overlapping echoes get the ranges, amplitudes and widths that they have
+/// alone. An echo is parted in two where flat targets a deviation of that waveform apart fit it far better than one that is wide. Echoes
+/// outside the record, more than six that overlap, and fits that fail keep what the other detector found. Source: Wagner et al. 2006, with
+/// the system waveform in place of a Gaussian, as Roncat, Bergauer & Pfeifer 2011.
+template <class Inner>
 class GaussianDecomposition : public DetectorAdaptor<Inner> {
  public:
   /// Takes the detector inside. @throws SettingError
   explicit GaussianDecomposition(Inner inside) : DetectorAdaptor<Inner>{validated(std::move(inside))} {}
 
-  /// Prepares the detector inside, and finds the place of a flat target. @throws SettingError as that does
+  /// Prepares the detector inside, and samples the waveform of a flat target. @throws SettingError as that does
   void prepare(const Laser& laser) {
-    if constexpr (PreparesForLasers<Inner>) this->inner.prepare(laser);
-    if (beyond_.find(laser)) return;
-    double beyond = 0;
-    auto w = this->workspace(1);
-    const Emitter emitter{.laser = laser};
-    Reflection one{.range = 0.5 * speed_of_light * 100 * laser.pulse_length, .power = 1};
-    const double expected = one.range;
-    const Heard heard{emitter, {0, 2 * expected}, {&one, 1}};
-    const Detection d = this->inner.detect(heard, w);
-    if (d.echoes.size() == 1) {
-      decompose(d, laser, d.echoes);
-      beyond = d.echoes[0].range - expected;
-    }
-    beyond_.add(laser, beyond);
+    this->inner.prepare(laser);
+    if (this->inner.settings().record_length > 0 && !waves_.find(laser)) waves_.add(laser, wave_of(laser));
+  }
+
+  /// Scratch memory of one worker.
+  struct Workspace {
+    typename Inner::Workspace inner;  ///< of the detector inside
+    std::vector<Echo> echoes;         ///< echoes of the current pulse
+  };
+  /// Scratch memory for pulses of up to `reflections` reflections.
+  [[nodiscard]] Workspace workspace(std::size_t reflections) const {
+    Workspace w{this->inner.workspace(reflections), {}};
+    w.echoes.reserve(this->inner.settings().returns_max);
+    return w;
   }
 
   /// Echoes of the detector inside, by the decomposition of its waveform.
-  template <class Workspace>
   [[nodiscard]] Detection detect(const Heard& heard, Workspace& w) const noexcept {
-    const Detection d = this->inner.detect(heard, w);
-    const double* beyond = beyond_.find(heard.emitter.laser);
-    const double apart = 2 * speed_of_light * heard.emitter.laser.pulse_length;  // of echoes that do not overlap [m]
+    Detection d = this->inner.detect(heard, w.inner);
+    const auto* wave = waves_.find(heard.emitter.laser);
+    if (!wave || d.waveform.empty()) return d;
+    const double apart = 0.5 * speed_of_light * ((*wave)->fall() - (*wave)->rise());  // of echoes that do not overlap [m]
+    w.echoes.clear();
     for (std::size_t first = 0, last = 0; first < d.echoes.size(); first = last) {
       last = first + 1;
       while (last < d.echoes.size() && d.echoes[last].range - d.echoes[last - 1].range < apart) ++last;
-      if (decompose(d, heard.emitter.laser, d.echoes.subspan(first, last - first)) && beyond)
-        for (Echo& echo : d.echoes.subspan(first, last - first)) echo.range -= *beyond;
+      const std::span<const Echo> group = d.echoes.subspan(first, last - first);
+      const std::size_t room = w.echoes.capacity() - w.echoes.size() - (d.echoes.size() - first);
+      const Section most{first > 0 ? time_of(d.echoes[first - 1]) + (*wave)->fall() : d.waveform_start,
+                         last < d.echoes.size() ? time_of(d.echoes[last]) + (*wave)->rise() : infinity};
+      if (!decompose(d, heard, group, most, **wave, room > 0, w.echoes)) w.echoes.insert(w.echoes.end(), group.begin(), group.end());
     }
-    std::sort(d.echoes.begin(), d.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
-    number_echoes(d.echoes);
+    std::sort(w.echoes.begin(), w.echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
+    number_echoes(w.echoes);
+    d.echoes = w.echoes;
     return d;
   }
 
  private:
-  /// Replaces range, amplitude and width of overlapping echoes; false if there is no fit.
-  bool decompose(const Detection& d, const Laser& laser, std::span<Echo> echoes) const noexcept {
-    if (echoes.empty() || echoes.size() > detail::GaussianSum::most || d.waveform.empty()) return false;
-    const double interval = this->inner.sample_interval(), deviation = laser.pulse_length / (interval * std::sqrt(8 * std::numbers::ln2));
-    const auto place = [&](double range) { return (2 * range / speed_of_light - d.waveform_start) / interval; };
-    const double from = std::max(0.0, std::floor(place(echoes.front().range) - 6 * deviation));
-    const double to = std::min(static_cast<double>(d.waveform.size()), std::ceil(place(echoes.back().range) + 6 * deviation));
-    if (!(place(echoes.back().range) < to - deviation && place(echoes.front().range) > from + deviation)) return false;
-    detail::GaussianSum sum;
-    sum.count = echoes.size();
-    for (std::size_t k = 0; k < sum.count; ++k) sum.gaussians[k] = {echoes[k].amplitude, place(echoes[k].range) - from, deviation};
-    const auto samples = d.waveform.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from));
-    if (!sum.fit(samples)) return false;
+  using Sum = detail::WaveformSum;
+  static constexpr int widenings = 5;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] static double time_of(const Echo& echo) noexcept { return 2 * echo.range / speed_of_light; }
+
+  /// Waveform of a flat target, from samples closer than a fortieth of a pulse.
+  [[nodiscard]] std::shared_ptr<const detail::SystemWaveform> wave_of(const Laser& laser) const {
+    const double interval = this->inner.sample_interval(), fine = laser.pulse_length / 40;
+    const auto places = static_cast<std::size_t>(std::ceil(interval / fine));
+    const auto stride = std::max(std::size_t{1}, static_cast<std::size_t>(fine * static_cast<double>(places) / interval));
+    const double step = interval / static_cast<double>(places);
+    std::vector<std::pair<double, double>> samples;
+    this->inner.visit_flat_targets(laser, places, [&](std::size_t k, double arrival, const Detection& d) {
+      if (k == places || d.echoes.empty()) return;
+      for (std::size_t i = 0; i < d.waveform.size(); ++i)
+        samples.emplace_back(d.waveform_start - arrival + static_cast<double>(i) * interval, d.waveform[i] / d.echoes[0].amplitude);
+    });
+    std::sort(samples.begin(), samples.end());
+    std::vector<double> flat;
+    for (std::size_t i = 0; i < samples.size(); i += stride) flat.push_back(samples[i].second);
+    while (flat.size() > 1 && std::fabs(flat.back()) < 1e-7) flat.pop_back();
+    return std::make_shared<const detail::SystemWaveform>(std::move(flat), samples.front().first, step * static_cast<double>(stride));
+  }
+
+  /// Samples that some echoes may affect, of a record.
+  struct Section {
+    double first = 0, last = 0;  ///< times [s]
+  };
+
+  /// Appends the parts of overlapping echoes, from samples of a section at most; false if there is no fit.
+  bool decompose(const Detection& d, const Heard& heard, std::span<const Echo> group, const Section& most,
+                 const detail::SystemWaveform& wave, bool may_part, std::vector<Echo>& echoes) const noexcept {
+    if (group.size() > Sum::most) return false;
+    const double interval = this->inner.sample_interval();
+    Sum sum;
+    for (const Echo& echo : group) sum.parts[sum.count++] = {echo.amplitude, time_of(echo)};
+    std::span<const float> y;
+    for (int step = 0; step < widenings; ++step) {  // wider echoes reach further
+      Section section{most.last, most.first};
+      for (const Sum::Part& p : std::span(sum.parts).first(sum.count)) {
+        const double beside = 3 * std::sqrt(std::max(p.added, 0.0));
+        section.first = std::max(most.first, std::min(section.first, p.arrival + wave.rise() - beside));
+        section.last = std::min(most.last, std::max(section.last, p.arrival + wave.fall() + beside));
+      }
+      const double from = std::max(0.0, std::floor((section.first - d.waveform_start) / interval) - 1);
+      const double to = std::min(static_cast<double>(d.waveform.size()), std::ceil((section.last - d.waveform_start) / interval) + 2);
+      if (!(to - from > static_cast<double>(y.size()))) break;
+      y = d.waveform.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(to - from));
+      sum.start = d.waveform_start + from * interval;
+      if (!sum.fit(wave, y, interval)) return false;
+    }
+    if (y.empty()) return false;
+    if (may_part) part(sum, wave, y);
     for (std::size_t k = 0; k < sum.count; ++k) {
-      const auto& g = sum.gaussians[k];
-      echoes[k].range = 0.5 * speed_of_light * (d.waveform_start + (from + g.centre) * interval);
-      echoes[k].amplitude = g.height;
-      echoes[k].width = g.deviation * interval;
+      const Sum::Part& p = sum.parts[k];
+      Echo echo = k < group.size() ? group[k] : Echo{};
+      if (sum.count > group.size()) set_labels(echo, heard, wave, p.arrival);
+      echo.range = 0.5 * speed_of_light * p.arrival;
+      echo.amplitude = p.power;
+      echo.width = std::sqrt(wave.variance() + p.added);
+      echoes.push_back(echo);
     }
     return true;
   }
 
-  ByPulseLength<double> beyond_;  ///< range of a flat target beyond the true one [m]
+  /// Parts the widest part into two flat targets, if these leave less than a `better` of the squared residuals, which are not next to none.
+  void part(Sum& sum, const detail::SystemWaveform& wave, std::span<const float> y) const noexcept {
+    constexpr double better = 0.1, none = 1e-3;
+    if (sum.count == Sum::most) return;
+    std::size_t widest = 0;
+    for (std::size_t k = 1; k < sum.count; ++k)
+      if (sum.parts[k].added > sum.parts[widest].added) widest = k;
+    const Sum::Part whole = sum.parts[widest];
+    if (!(sum.squares > none * none * whole.power * whole.power * static_cast<double>(y.size()))) return;
+    const double interval = this->inner.sample_interval(), aside = std::sqrt(std::max(whole.added, 0.0));
+    const Sum::Part left = sum.greatest_residual(wave, y, interval);
+    const std::array<std::array<Sum::Part, 2>, 2> guesses{
+        {{{{0.5 * whole.power, whole.arrival - aside, 0, true}, {0.5 * whole.power, whole.arrival + aside, 0, true}}},  // of its variance
+         {{{whole.power, whole.arrival, 0, true}, left}}}};
+    Sum best = sum;
+    for (const auto& guess : guesses) {
+      Sum two = sum;
+      two.parts[widest] = guess[0];
+      two.parts[two.count++] = guess[1];
+      if (two.fit(wave, y, interval) && two.squares < best.squares) best = two;
+    }
+    const Sum::Part &one = best.parts[widest], &other = best.parts[sum.count];
+    if (best.count > sum.count && best.squares < better * sum.squares &&
+        std::min(one.power, other.power) >= this->inner.settings().threshold &&
+        std::fabs(one.arrival - other.arrival) > std::sqrt(wave.variance()))
+      sum = best;
+  }
+
+  /// Gives an echo the labels of the reflection that is strongest at a time [s].
+  static void set_labels(Echo& echo, const Heard& heard, const detail::SystemWaveform& wave, double time) noexcept {
+    double strongest = 0;
+    const auto flat = wave.blend(0);
+    for (const Reflection& r : heard.reflections) {
+      const double power = r.power * wave.at(time - arrival(r), flat).value;
+      if (!(power > strongest)) continue;
+      strongest = power;
+      echo = echo_from(r, 0, 0);
+    }
+  }
+
+  ByPulseLength<std::shared_ptr<const detail::SystemWaveform>> waves_;  ///< shared by copies
 };
 
 }  // namespace PULSECAST_NAMESPACE

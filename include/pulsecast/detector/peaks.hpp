@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,15 @@ inline bool merge_or_append(const Peak& peak, double min_separation, double prom
   for (std::size_t j = i; ++j < peaks.size() && peaks[j].time - peak.time <= s.window;)
     if (peaks[j].height > peak.height) return true;
   return false;
+}
+
+/// Time from peak i to the nearest one that is not dominated [s].
+[[nodiscard]] inline double distance_of_echoes(std::size_t i, const WaveformSettings& s, const std::vector<Peak>& peaks) noexcept {
+  std::size_t before = i, after = i + 1;
+  while (before > 0 && is_dominated(before - 1, s, peaks)) --before;
+  while (after < peaks.size() && is_dominated(after, s, peaks)) ++after;
+  const double earlier = before > 0 ? peaks[i].time - peaks[before - 1].time : std::numeric_limits<double>::infinity();
+  return after < peaks.size() ? std::fmin(earlier, peaks[after].time - peaks[i].time) : earlier;
 }
 
 /// Keeps the peaks that are echoes by window, dead time and number. Requires order of time.

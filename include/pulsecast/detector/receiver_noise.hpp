@@ -47,6 +47,8 @@ struct ReceiverNoise {
   void silence() noexcept { *this = {}; }
   /// Computes what pulses of a laser need: nothing.
   void prepare(const Laser&, const WaveformSettings&) const noexcept {}
+  /// As the concept WaveformReceiver requires: a maximum is that of the samples about it.
+  [[nodiscard]] double timing_reach(const Laser&) const noexcept { return 0; }
   /// As the concept WaveformReceiver requires.
   [[nodiscard]] IdealSamples samples(const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
                                      double width_tail, Workspace&) const noexcept {

@@ -29,6 +29,7 @@ class SampleWindow {
     double min_separation = 0;         ///< closer peaks merge [s]
     double delay = 0;                  ///< time of a pulse's maximum in the samples since its arrival [s]
     bool by_sample = false;            ///< true if the highest sample must reach the threshold, rather than the maximum between samples
+    double reach = 0;                  ///< time beside a maximum whose samples define its place; 0 for the five about it [s]
   };
 
   static constexpr std::size_t capacity = 262'144;  ///< samples: the longest pulse until it has decayed
@@ -103,11 +104,20 @@ class SampleWindow {
         peak.mark = (start + echo_time(s.timing, y, i, top, s.threshold, s.fraction)) * s.sample_interval - search.delay;
       merge_or_append(peak, search.min_separation, s.prominence, peaks);
     }
+    const auto place = [&](double t) { return (t + search.delay) / s.sample_interval - start; };
+    if (search.reach > 0) {
+      for (std::size_t k = entered; k < peaks.size(); ++k) {
+        Peak& peak = peaks[k];
+        if (is_dominated(k, s, peaks)) continue;
+        const double reach = std::fmin(search.reach, 0.5 * distance_of_echoes(k, s, peaks)) / s.sample_interval;
+        if (reach > 2) peak.mark += (detail::filtered_top(y, place(peak.time), reach) - place(peak.time)) * s.sample_interval;
+      }
+    }
     if constexpr (!std::same_as<Width, NoWidth>) {
       for (; entered < peaks.size(); ++entered) {
         Peak& peak = peaks[entered];
         if (is_dominated(entered, s, peaks)) continue;
-        const auto index = [&](double t) { return static_cast<std::size_t>(std::lround((t + search.delay) / s.sample_interval - start)); };
+        const auto index = [&](double t) { return static_cast<std::size_t>(std::lround(place(t))); };
         const std::size_t from = index(peak.begin), to = index(peak.end);
         peak.width = search.width.width(std::span(y).subspan(from, to - from + 1), s.sample_interval);
       }
