@@ -340,12 +340,14 @@ inline bool is_citygml(const std::filesystem::path& path) {
 
 inline CityGml read_citygml(const std::filesystem::path& path, const CityGmlSettings& settings, const Workers& workers) {
   settings.validate();
-  const auto import = [&](const auto&) { return detail::CityGmlImport(path, settings).read(); };
-  const detail::RawScene scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(0);
-  const MeshFileSettings plain{.materials = settings.materials, .spectra = settings.spectra};
-  CityGml city{.file = detail::MeshFileMaker(path, scene, plain, workers).make(), .epsg = detail::epsg_of(scene.reference)};
-  detail::replace_materials(city.file, plain);
-  return city;
+  return reading(path, [&] {
+    const auto import = [&](const auto&) { return detail::CityGmlImport(path, settings).read(); };
+    const detail::RawScene scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(0);
+    const MeshFileSettings plain{.materials = settings.materials, .spectra = settings.spectra};
+    CityGml city{.file = detail::MeshFileMaker(path, scene, plain, workers).make(), .epsg = detail::epsg_of(scene.reference)};
+    detail::replace_materials(city.file, plain);
+    return city;
+  });
 }
 
 }  // namespace PULSECAST_NAMESPACE::io
