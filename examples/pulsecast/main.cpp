@@ -286,13 +286,13 @@ class Session {
     io::Digest survey;
     survey.add(std::string_view(file_.text));
     std::ostringstream out;
-    out << std::setprecision(17) << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec
-        << " format=" << options_.format << " scale=" << options_.las_scale << " epsg=" << options_.epsg.value_or(0)
+    out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec << " format=" << options_.format
+        << " scale=" << pulsecast::detail::to_text(options_.las_scale) << " epsg=" << options_.epsg.value_or(0)
         << " las10=" << options_.las_1_0 << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width
         << options_.waveform_noise << options_.fixed_incidence << options_.library_physics << options_.light_paths
         << options_.split_by_channel << options_.platform_noise << options_.leg_noise << options_.write_misses << options_.geojson;
     if (options_.colours) out << " colours=" << options_.near_infrared;
-    if (options_.misses_at) out << " misses=" << *options_.misses_at;
+    if (options_.misses_at) out << " misses=" << pulsecast::detail::to_text(*options_.misses_at);
     return out.str();
   }
 
