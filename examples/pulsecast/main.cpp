@@ -17,6 +17,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <new>
 #include <random>
 #include <set>
 #include <sstream>
@@ -286,12 +287,12 @@ class Session {
     survey.add(std::string_view(file_.text));
     std::ostringstream out;
     out << "pulsecast " << PULSECAST_VERSION << " survey=" << std::hex << survey.value().low << std::dec << " format=" << options_.format
-        << " scale=" << options_.las_scale << " epsg=" << options_.epsg.value_or(0) << " las10=" << options_.las_1_0
-        << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width << options_.waveform_noise
-        << options_.fixed_incidence << options_.library_physics << options_.light_paths << options_.split_by_channel
-        << options_.platform_noise << options_.leg_noise << options_.write_misses << options_.geojson;
+        << " scale=" << pulsecast::detail::to_text(options_.las_scale) << " epsg=" << options_.epsg.value_or(0)
+        << " las10=" << options_.las_1_0 << " flags=" << options_.write_waveform << options_.write_pulse << options_.echo_width
+        << options_.waveform_noise << options_.fixed_incidence << options_.library_physics << options_.light_paths
+        << options_.split_by_channel << options_.platform_noise << options_.leg_noise << options_.write_misses << options_.geojson;
     if (options_.colours) out << " colours=" << options_.near_infrared;
-    if (options_.misses_at) out << " misses=" << *options_.misses_at;
+    if (options_.misses_at) out << " misses=" << pulsecast::detail::to_text(*options_.misses_at);
     return out.str();
   }
 
@@ -530,8 +531,14 @@ int pulsecast_main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);  // makes exceeding the file size limit an error with a message
     return naming(options->survey.string(), [&] { return work(*options, *ranks); });  // names the survey in errors of its settings
   } catch (const std::exception& error) {
+    const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
     if (ranks) ranks->complain();
-    std::cerr << (options && simulating && !options->quiet && isatty(STDERR_FILENO) != 0 ? "\n" : "") << "error: " << error.what() << '\n';
+    std::cerr << (options && simulating && !options->quiet && isatty(STDERR_FILENO) != 0 ? "\n" : "") << "error: ";
+    if (no_memory && options)
+      std::cerr << options->survey.string()
+                << ": takes more memory than there is: expected fewer --threads, a smaller scene, or more free memory\n";
+    else
+      std::cerr << error.what() << '\n';
     if (ranks) ranks->abort(bad_input);
     return bad_input;
   }

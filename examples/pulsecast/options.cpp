@@ -4,6 +4,7 @@
 #include "options.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <iterator>
@@ -253,7 +254,8 @@ class CommandLine {
 
   /// Problem with words that are not options; empty if there is none.
   [[nodiscard]] std::string problem_of_words() const {
-    const std::vector<std::string> extras = app_.remaining();
+    std::vector<std::string> extras = app_.remaining();
+    std::erase(extras, "--");  // which ends the options
     for (const std::string& extra : extras)
       if (extra.starts_with('-')) return "unknown option " + extra + nearest_option(app_, extra);
     const std::vector<std::string> commands(std::begin(all_commands), std::end(all_commands));
@@ -295,11 +297,15 @@ class CommandLine {
     if (o_.las_1_0 && o_.format.ends_with("laz")) return "--las10 and --format " + o_.format + ": only LAS 1.4 is compressed";
     if (o_.las_1_0 && zip_ && o_.format == "las") o_.notes.push_back("--zipOutput has no effect on LAS 1.0: it is not compressed");
     o_.colours = o_.colours || o_.near_infrared;
-    const bool has_colours = o_.format == "las" || o_.format.ends_with("laz");
-    if (o_.colours && (!has_colours || o_.las_1_0)) return "--colours need LAS 1.4: expected --format las, laz or copc.laz";
+    const bool is_las_file = o_.format == "las" || o_.format.ends_with("laz");
+    if (o_.colours && (!is_las_file || o_.las_1_0)) return "--colours need LAS 1.4: expected --format las, laz or copc.laz";
     if (o_.colours && o_.format == "las" && o_.write_waveform) return "--colours and --writeWaveform: LAS has no points of both here";
     if (!epsg_.empty()) o_.epsg = text::number_in<std::uint16_t>(epsg_);
     if (!misses_at_.empty()) o_.misses_at = text::number_in<double>(misses_at_);
+    const double farthest = o_.las_scale * (1 << 30);  // so that two points on opposite sides fit 32 bits. Source: LAS 1.4 R15, table 7
+    if (o_.misses_at.value_or(0) > farthest && is_las_file)
+      return "--missesAt: '" + misses_at_ + "': expected at most " + std::to_string(std::llround(farthest)) +
+             " m, as LAS has 32 bits for a coordinate; a greater --lasScale reaches farther";
     if (!seed_.empty() && seed_ != "AUTO") o_.seed = text::number_in<std::uint64_t>(seed_);
     o_.platform_noise = !no_platform_noise_;
     o_.leg_noise = !no_leg_noise_;

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <ctime>
 #include <iomanip>
+#include <iostream>
 #include <random>
 #include <sstream>
 #include <system_error>
@@ -320,7 +321,8 @@ RunLock::RunLock(const fs::path& folder) : path_(folder / name) {
 
 RunLock::~RunLock() {
   if (file_ < 0) return;
-  if (io::stands_at(file_, path_)) ::unlink(path_.c_str());
+  if (io::stands_at(file_, path_) && ::unlink(path_.c_str()) != 0)
+    std::cerr << "note: " << path_.string() << " cannot be removed: " << reason_of(errno) << "; it does no harm\n";
   ::close(file_);
 }
 

@@ -82,6 +82,15 @@ refuses "a start that is none" "gpsStartTime 'yesterday'" --gpsStartTime yesterd
 refuses "another seed" "seed 5.*seed 6" --seed 6
 resumes "the same start" "pulses" --gpsStartTime '2020-01-01 00:00:00'
 
+# Options whose numbers differ in the last digit.
+scaled() { timeout 100 "$program" own/long.xml --threads 2 --format las --output scaled --missesAt "$1" --lasScale "${@:2}" > messages 2>&1; }
+(ulimit -f 1200 && scaled 50.0000001 0.0001234567) && fail "the limit has no effect"
+scaled 50.0000001 0.0001234568 --resume && fail "another scale was taken"
+grep -q 'scale=0.0001234567.*scale=0.0001234568' messages || fail "of another scale it said: $(cat messages)"
+scaled 50.0000002 0.0001234567 --resume && fail "another range was taken"
+scaled 50.0000001 0.0001234567 --resume || fail "with the same options it cannot be resumed: $(cat messages)"
+rm -rf scaled
+
 # Inputs that have changed; with other times alone, they have not.
 again
 mkdir kept

@@ -325,7 +325,8 @@ TEST_CASE("a point without a place is an error; a writer that failed, or is not 
     const std::vector<Echo> echoes(1);
     const std::vector<Shot> shots{{.direction = {0, 0, 1}, .echoes = 1}};
     writer(EchoBatch{shots, echoes, {}, 0});
-    CHECK(std::filesystem::exists(folder / "points.laz.points.part"));
+    CHECK(std::filesystem::exists(folder / "points.laz.part"));
+    CHECK_FALSE(std::filesystem::exists(folder / "points.laz.points.part"));  // has no name that others could take
     CHECK_FALSE(std::filesystem::exists(folder / "points.laz"));
   }
   CHECK(folder.empty());

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -160,6 +161,12 @@ TEST_CASE("what cannot be mapped is an error that says why") {
   CHECK_THROWS_WITH_AS((void)MappedFile("/dev/null"), doctest::Contains("is a directory or device"), FileError);
   REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);  // is not waited for
   CHECK_THROWS_WITH_AS((void)MappedFile(folder / "pipe"), doctest::Contains("is a directory or device"), FileError);
+}
+
+TEST_CASE("too little memory for a file is an error that names it") {
+  CHECK(reading("a.obj", [] { return 3; }) == 3);
+  CHECK_THROWS_WITH_AS(reading("a.obj", [] { throw std::bad_alloc(); }), doctest::Contains("a.obj: takes more memory than there is"),
+                       FileError);
 }
 
 }  // namespace

@@ -353,10 +353,12 @@ TEST_CASE("coordinates use all of 32 bits, and one that needs more is an error t
   const TemporaryFolder folder;
   const Survey survey = Survey::of_points({{1, 2, 3}, {1, -3e5, 3}});
   LasWriter writer(folder / "points.las", settings);
-  CHECK_THROWS_WITH(writer(EchoBatch{survey.shots, survey.echoes, {}, 0}),
-                    ((folder / "points.las").string() + ", point 2: y is -300000 m, which does not fit 32 bits; expected 0 m +- "
-                                                        "214748.3647 m (offset, and 2^31 steps of 0.0001 m)")
-                        .c_str());
+  CHECK_THROWS_WITH(
+      writer(EchoBatch{survey.shots, survey.echoes, {}, 0}),
+      ((folder / "points.las").string() +
+       ", point 2: y is -300000 m, which does not fit 32 bits; expected 0 m +- "
+       "214748.3647 m (offset, and 2^31 steps of 0.0001 m; a greater scale, by LasSettings::scale or --lasScale, reaches farther)")
+          .c_str());
 }
 
 TEST_CASE("a first point without a place is an error, too") {

@@ -4,6 +4,7 @@
 
 #include <clocale>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -22,9 +23,11 @@
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/io/detail/obj/reader.hpp>
+#include "support/allocations.hpp"
 #include "support/data_folder.hpp"
 #include "support/file_errors.hpp"
 #include "support/generators.hpp"
+#include "support/sanitized.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pulsecast;
@@ -491,3 +494,26 @@ TEST_CASE("a file gives the same, or the same error, in pieces of any size and o
   }
   CHECK(whole > 60);
 }
+
+#ifndef PULSECAST_TEST_SANITIZED
+TEST_CASE("an OBJ file for which there is no memory is explained, whichever allocation fails") {
+  const Folder folder;
+  const auto mtl = folder.write("a.mtl", "newmtl a name that is too long for a short string\nKd 1 1 1\n");
+  const auto path =
+      folder.write("a.obj", "mtllib a.mtl\nusemtl a name that is too long for a short string\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  std::size_t explained = 0;
+  for (std::size_t n = 1; n < 10'000; ++n) {
+    CAPTURE(n);
+    try {
+      support::allocations_left = n;
+      const ObjModel model = read_obj(path);
+      if (support::allocations_left > 0) break;
+    } catch (const FileError& error) {
+      explained += contains(error.problem(), "memory") ? 1 : 0;
+      CHECK((error.path() == path.string() || error.path() == mtl.string()));
+    }
+  }
+  support::allocations_left = 0;
+  CHECK(explained > 50);
+}
+#endif

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <new>
 #include <span>
 #include <string>
 #include <utility>
@@ -20,7 +21,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "support/allocations.hpp"
 #include "support/generators.hpp"
+#include "support/sanitized.hpp"
 #include "support/size_limit.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -136,11 +139,48 @@ TEST_CASE("what was written reads back, and writing goes on at the end") {
   CHECK(read(7) == "789");
   file.write("end");
   CHECK(read(2'000'010) == "end");
+  CHECK(read(1'999'999) == "xxx");  // across what is passed on and what is held
   CHECK(file.position() == 2'000'013);
   file.discard();
   CHECK_THROWS_AS(read(0), FileError);
   CHECK(folder.empty());
 }
+
+TEST_CASE("a file without a name reads back, whatever takes its name, and leaves nothing") {
+  const TemporaryFolder folder;
+  {
+    OutputFile file(folder / "a.txt");
+    file.write("0123456789");
+    file.forget_name();
+    CHECK(folder.empty());
+    std::ofstream(OutputFile::temporary_name(folder / "a.txt")) << "not yours";
+    std::string bytes(4, ' ');
+    file.read(3, std::as_writable_bytes(std::span(bytes)));
+    CHECK(bytes == "3456");
+    CHECK_THROWS_AS(file.commit(), FileError);
+  }
+  CHECK(content(OutputFile::temporary_name(folder / "a.txt")) == "not yours");
+}
+
+#ifndef PULSECAST_TEST_SANITIZED
+TEST_CASE("a file for which there is no memory leaves nothing, whichever allocation fails") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "a name that is too long for a short string.txt";
+  bool is_made = false;
+  for (std::size_t n = 1; !is_made && n < 100; ++n) {
+    CAPTURE(n);
+    try {
+      support::allocations_left = n;
+      OutputFile file(path);
+      is_made = true;
+    } catch (const std::bad_alloc&) {
+    }
+    support::allocations_left = 0;
+    CHECK(folder.empty());
+  }
+  CHECK(is_made);
+}
+#endif
 
 TEST_CASE("an encoder gets every byte once and in order, is told the end, and what it makes is the file") {
   struct Doubler final : OutputEncoder {

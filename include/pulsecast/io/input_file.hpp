@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <ios>
+#include <new>
 #include <optional>
 #include <span>
 #include <string>
@@ -174,6 +175,16 @@ class MappedFile {
 
   std::span<const std::byte> bytes_;
 };
+
+/// Calls a function that reads a file. Too little memory for what it holds is a `FileError`.
+template <class Function>
+decltype(auto) reading(const std::filesystem::path& path, const Function& read) {
+  try {
+    return read();
+  } catch (const std::bad_alloc&) {
+    throw FileError(path.string(), "", "takes more memory than there is: expected a smaller file, or more free memory");
+  }
+}
 
 }  // namespace PULSECAST_NAMESPACE::io
 

@@ -127,6 +127,7 @@ class StoredZip {
 /// Columns are held in memory until `close()`, up to twice the size of the points.
 /// Times since a scan's start count from tick 0, except of scans that `add` appends.
 /// Only `close()` completes the file: see `OutputFile`. Throws a `FileError`.
+/// Limits: where memory runs out in `close()`, libarchive ends the process with status 1, and `NAME.part` stays.
 class NpzWriter {
  public:
   /// Opens the file. @throws SettingError for settings out of range @throws FileError

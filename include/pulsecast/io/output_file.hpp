@@ -3,10 +3,11 @@
 #ifndef PULSECAST_IO_OUTPUT_FILE_HPP
 #define PULSECAST_IO_OUTPUT_FILE_HPP
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -56,7 +57,7 @@ class OutputEncoder {
 
 /// File under construction: written beside its final name as `NAME.part`, and renamed by `commit()` when complete. Until then, or if the
 /// program is killed, the final name keeps its former content. Destruction without `commit()` leaves nothing behind.
-/// Throws a `FileError` that names the final path at every failure; afterwards, nothing can be written or committed.
+/// Throws a `FileError` that names the final path at every failure; after one to write, nothing can be written or committed.
 /// With an encoder, bytes pass through it, a megabyte at a time, and cannot be read again or overwritten.
 /// The temporary file is locked: a second `OutputFile` of the same name, in any program, is refused. On a file system without
 /// locks, the second takes the name, and the first fails at its commit.
@@ -69,18 +70,9 @@ class OutputFile {
       : path_(std::move(path)), encoder_(std::move(encoder)) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path_, ignored)) throw FileError(path_.string(), "", "is a folder; expected the name of a file");
-    const std::filesystem::path temporary = temporary_name(path_);
-    const int number = open_alone(temporary);
-    errno = 0;
-    std::FILE* const file = ::fdopen(number, "w+b");
-    if (file == nullptr) {
-      const int error = errno;
-      ::close(number);
-      fail("cannot be created", error, "memory for it");
-    }
-    file_ = {file, Discard{temporary}};
-    std::setvbuf(file, nullptr, _IONBF, 0);  // buffered here instead, so that every error shows where it happens
     buffer_.reserve(capacity);
+    file_ = Temporary(temporary_name(path_));
+    open_alone();
   }
 
   /// Piece of a file that others assemble: bytes are appended to `piece`, and `commit()` ends it. Its name is only for messages.
@@ -107,18 +99,31 @@ class OutputFile {
 
   /// Replaces bytes written before, from `position` [byte] on; writing then continues at the end.
   void overwrite(std::uint64_t position, std::span<const std::byte> bytes) {
-    go_back(position, bytes.size());
-    put(bytes);
-    seek(0, SEEK_END);
+    PULSECAST_ASSERT(!encoder_ && position + bytes.size() <= position_);
+    require_open();
+    flush();
+    while (!bytes.empty()) position += advance(bytes, ::pwrite(file_.number, bytes.data(), bytes.size(), static_cast<off_t>(position)));
   }
 
-  /// Reads bytes written before, from `position` [byte] on; writing then continues at the end.
-  void read(std::uint64_t position, std::span<std::byte> bytes) {
-    go_back(position, bytes.size());
-    errno = 0;
-    if (std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail("cannot be read again", errno, "what was written");
-    seek(0, SEEK_END);
+  /// Reads bytes written before, from `position` [byte] on; on several threads while none writes. It needs no name, see `forget_name`.
+  void read(std::uint64_t position, std::span<std::byte> bytes) const {
+    PULSECAST_ASSERT(!encoder_ && position + bytes.size() <= position_);
+    require_open();
+    const std::uint64_t passed_on = position_ - buffer_.size();
+    while (!bytes.empty() && position < passed_on) {
+      errno = 0;
+      const std::size_t some = static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), passed_on - position));
+      const ssize_t count = ::pread(file_.number, bytes.data(), some, static_cast<off_t>(position));
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) throw error("cannot be read again", errno, "what was written");
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+      position += static_cast<std::uint64_t>(count);
+    }
+    if (!bytes.empty()) std::memcpy(bytes.data(), buffer_.data() + (position - passed_on), bytes.size());
   }
+
+  /// Removes the name of the temporary file, which lives on without one: for what this object alone reads again, and never commits.
+  void forget_name() noexcept { file_.remove(); }
 
   /// Continues behind bytes that others wrote to the temporary file; without an encoder.
   void continue_at(std::uint64_t position) {
@@ -126,7 +131,7 @@ class OutputFile {
     require_open();
     flush();
     position_ = position;
-    seek(static_cast<long>(position), SEEK_SET);
+    if (::lseek(file_.number, static_cast<off_t>(position), SEEK_SET) < 0) fail("cannot be written", errno, "a seekable file");
   }
 
   /// Name until `commit()`.
@@ -143,37 +148,54 @@ class OutputFile {
     if (std::exchange(piece_, nullptr) != nullptr) return;
     require_open();
     flush(true);
-    const std::filesystem::path& temporary = file_.get_deleter().temporary;
-    const int number = ::fileno(file_.get());
-    if (!stands_at(number, temporary)) {
+    if (!stands_at(file_.number, file_.name)) {
       discard();
-      throw FileError(path_.string(), "", "cannot be completed: another program has replaced " + temporary.string());
+      throw FileError(path_.string(), "", "cannot be completed: another program has replaced " + temporary_name(path_).string());
     }
     errno = 0;
-    std::error_code error;
-    if (!sync_to_disk(number)) {
-      error = system_error(errno);
+    std::error_code failed;
+    if (!sync_to_disk(file_.number)) {
+      failed = system_error(errno);
     } else {
-      std::filesystem::rename(temporary, path_, error);
+      std::filesystem::rename(file_.name, path_, failed);
     }
-    if (error)
-      fail("cannot be completed", error.value(),
+    if (failed)
+      fail("cannot be completed", failed.value(),
            pulsecast::detail::joined({"room for ", std::to_string(position_), " bytes and a replaceable name"}));
-    std::fclose(file_.release());  // the lock ends after the renaming; closing reports no error that syncing has not
+    file_.close();  // the lock ends after the renaming; closing reports no error that syncing has not
   }
 
   /// Abandons the file and removes the bytes written: for writers that cannot write the rest.
   void discard() noexcept {
-    file_.reset();
+    file_ = {};
     piece_ = nullptr;
   }
 
  private:
-  struct Discard {
-    std::filesystem::path temporary;
-    void operator()(std::FILE* file) const noexcept {
-      if (stands_at(::fileno(file), temporary)) ::unlink(temporary.c_str());
-      std::fclose(file);
+  /// Open file, and its name. Destruction removes both.
+  struct Temporary {
+    std::filesystem::path name{};
+    int number = -1;  ///< descriptor; negative: closed
+
+    Temporary() = default;
+    explicit Temporary(std::filesystem::path its_name) : name(std::move(its_name)) {}
+    Temporary(Temporary&& other) noexcept : name(std::move(other.name)), number(std::exchange(other.number, -1)) {}
+    Temporary& operator=(Temporary&& other) noexcept {
+      remove();
+      close();
+      name = std::move(other.name);
+      number = std::exchange(other.number, -1);
+      return *this;
+    }
+    ~Temporary() {
+      remove();
+      close();
+    }
+    void remove() const noexcept {
+      if (number >= 0 && stands_at(number, name)) ::unlink(name.c_str());
+    }
+    void close() noexcept {
+      if (number >= 0) ::close(std::exchange(number, -1));
     }
   };
 
@@ -182,41 +204,52 @@ class OutputFile {
   [[nodiscard]] static std::error_code system_error(int number) { return {number != 0 ? number : EIO, std::generic_category()}; }
 
   /// Opens the temporary file exclusively. Remains of a killed program are removed, not truncated: its processes may still write to them.
-  [[nodiscard]] int open_alone(const std::filesystem::path& temporary) {
+  void open_alone() {
+    const char* const name = file_.name.c_str();
     for (int tries = 0; tries < 100; ++tries) {
-      int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      const bool is_new = file >= 0;
+      file_.number = ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      const bool is_new = file_.number >= 0;
       if (!is_new && errno == EEXIST) {
-        file = ::open(temporary.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
-        if (file < 0 && errno == ENOENT) continue;
+        file_.number = ::open(name, O_RDWR | O_CLOEXEC | O_NONBLOCK);
+        if (file_.number < 0 && errno == ENOENT) continue;
       }
-      if (file < 0) fail("cannot be created", errno, "an existing, writable folder");
-      const bool is_alone = lock_alone(file);
+      if (file_.number < 0) fail("cannot be created", errno, "an existing, writable folder");
+      const bool is_alone = lock_alone(file_.number);
       struct stat status {};
-      if (is_alone && stands_at(file, temporary) && ::fstat(file, &status) == 0) {
-        if (is_new || S_ISCHR(status.st_mode)) return file;
-        if (S_ISREG(status.st_mode)) ::unlink(temporary.c_str());
+      if (is_alone && stands_at(file_.number, file_.name) && ::fstat(file_.number, &status) == 0) {
+        if (is_new || S_ISCHR(status.st_mode)) return;
+        if (S_ISREG(status.st_mode)) file_.remove();
       }
-      ::close(file);
-      if (!is_alone)
-        throw FileError(path_.string(), "", pulsecast::detail::joined({"is already being written: ", temporary.string(), " is locked"}));
+      file_.close();  // without its name, which is not ours
+      if (!is_alone) throw FileError(path_.string(), "", pulsecast::detail::joined({"is already being written: ", name, " is locked"}));
     }
-    fail("cannot be created", EEXIST, "no other file " + temporary.string());
+    fail("cannot be created", EEXIST, pulsecast::detail::joined({"no other file ", name}));
   }
 
-  [[noreturn]] void fail(std::string_view what, int error, std::string_view expected) {
+  [[nodiscard]] FileError error(std::string_view what, int number, std::string_view expected) const {
+    return {path_.string(), "", pulsecast::detail::joined({what, ": ", system_error(number).message(), "; expected ", expected})};
+  }
+  [[noreturn]] void fail(std::string_view what, int number, std::string_view expected) {
     discard();
-    throw FileError(path_.string(), "", pulsecast::detail::joined({what, ": ", system_error(error).message(), "; expected ", expected}));
+    throw error(what, number, expected);
   }
 
   void require_open() const {
-    if (!file_) throw FileError(path_.string(), "", "cannot be written: it is already committed or discarded");
+    if (file_.number < 0) throw FileError(path_.string(), "", "cannot be written: it is already committed or discarded");
   }
 
   void put(std::span<const std::byte> bytes) {
-    errno = 0;
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size()) return;
-    fail("cannot be written", errno, pulsecast::detail::joined({"room for ", std::to_string(bytes.size()), " more bytes"}));
+    while (!bytes.empty()) advance(bytes, ::write(file_.number, bytes.data(), bytes.size()));
+  }
+
+  /// Removes from `bytes` what a call has written. Returns the number of bytes.
+  std::size_t advance(std::span<const std::byte>& bytes, ssize_t written) {
+    if (written < 0 && errno == EINTR) return 0;
+    if (written <= 0)
+      fail("cannot be written", written < 0 ? errno : 0,
+           pulsecast::detail::joined({"room for ", std::to_string(bytes.size()), " more bytes"}));
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+    return static_cast<std::size_t>(written);
   }
 
   void hand_over(std::span<const std::byte> bytes, bool last) {
@@ -231,20 +264,8 @@ class OutputFile {
     buffer_.clear();
   }
 
-  void go_back(std::uint64_t position, [[maybe_unused]] std::size_t size) {
-    PULSECAST_ASSERT(!encoder_ && position + size <= position_);
-    require_open();
-    flush();
-    seek(static_cast<long>(position), SEEK_SET);
-  }
-
-  void seek(long offset, int origin) {
-    errno = 0;
-    if (std::fseek(file_.get(), offset, origin) != 0) fail("cannot be written", errno, "a seekable file");
-  }
-
   std::filesystem::path path_;
-  std::unique_ptr<std::FILE, Discard> file_;
+  Temporary file_;
   std::unique_ptr<OutputEncoder> encoder_;
   std::vector<std::byte>* piece_ = nullptr;
   std::vector<std::byte> buffer_, encoded_;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/page/detail/local_server.hpp>
 
+#include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <iterator>
 #include <string>
@@ -9,6 +11,10 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "support/local_client.hpp"
 
@@ -93,6 +99,35 @@ TEST_CASE("of many clients a few are kept, and the newest is answered") {
   for (int k = 0; k < 300; ++k) clients.emplace_back(greeter.port).send("GET /");
   CHECK(greeter.answer(request).ends_with("hello"));
   CHECK(descriptors() <= before + clients.size() + 8);
+}
+
+TEST_CASE("many clients leave half of the descriptors to the program") {
+  rlimit before{};
+  REQUIRE(getrlimit(RLIMIT_NOFILE, &before) == 0);
+  const std::size_t taken = descriptors(), free = 24;
+  rlimit few = before;
+  few.rlim_cur = 2 * taken + free;
+  REQUIRE(setrlimit(RLIMIT_NOFILE, &few) == 0);
+  {
+    const Greeter greeter({.request_time = std::chrono::minutes(10)});
+    const std::size_t with_server = descriptors();
+    const pid_t crowd = fork();
+    if (crowd == 0) {  // clients in another process, which have descriptors of their own
+      setrlimit(RLIMIT_NOFILE, &before);
+      std::vector<Client> clients;
+      for (int k = 0; k < 300; ++k) clients.emplace_back(greeter.port).send("GET /");
+      for (;;) pause();
+    }
+    for (int tries = 0; tries < 500 && descriptors() == with_server; ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::vector<int> files;
+    for (std::size_t k = 0; k < free / 2; ++k) files.push_back(open("/dev/null", O_RDONLY | O_CLOEXEC));
+    CHECK(std::ranges::none_of(files, [](int file) { return file < 0; }));
+    for (const int file : files) close(file);
+    CHECK(greeter.answer(request).ends_with("hello"));
+    kill(crowd, SIGKILL);
+    waitpid(crowd, nullptr, 0);
+  }
+  setrlimit(RLIMIT_NOFILE, &before);
 }
 
 TEST_CASE("headers without an end are refused once they fill their room") {

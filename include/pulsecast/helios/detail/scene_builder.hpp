@@ -18,6 +18,7 @@
 #include <pulsecast/helios/detail/part_motion.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/settings.hpp>
+#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/leaf_angles.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
@@ -98,7 +99,7 @@ PULSECAST_INLINE std::vector<SceneBuilder::Loaded> SceneBuilder::each(const std:
   std::vector<Loaded> all;
   add_files(files);
   for (const std::filesystem::path& file : files) try {
-      load(file, all);
+      io::reading(file, [&] { load(file, all); });
     } catch (const SettingError& error) {
       throw FileError(file.string(), "", error.what());
     }

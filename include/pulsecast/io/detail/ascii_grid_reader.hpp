@@ -228,7 +228,7 @@ class AsciiGridReader {
 }  // namespace detail
 
 PULSECAST_INLINE AsciiGrid read_ascii_grid(const std::filesystem::path& path, const AsciiGridSettings& settings) {
-  return detail::AsciiGridReader(path, settings).read();
+  return reading(path, [&] { return detail::AsciiGridReader(path, settings).read(); });
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

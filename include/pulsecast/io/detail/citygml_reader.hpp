@@ -34,6 +34,7 @@
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
 #include <pulsecast/io/detail/mesh_file/transfer.hpp>
+#include <pulsecast/io/detail/plain_xml.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 /// Reading of CityGML files.
@@ -125,7 +126,7 @@ class CityGmlImport {
 
   /// @throws FileError
   [[nodiscard]] RawScene read() {
-    check_prolog();
+    require_plain_xml(path_);
     citygml::ParserParams params;
     params.maxLOD = settings_.max_lod;
     const auto log = std::make_shared<CityGmlLog>();
@@ -174,45 +175,6 @@ class CityGmlImport {
     for (char& c : text)
       if (c < ' ' || c > '~') c = '?';
     return text;
-  }
-
-  /// Refuses document types, by which XML files open others and grow without end, and encodings that could hide one: its letters must have
-  /// the bytes of ASCII.
-  void check_prolog() const {
-    InputFile file(path_, "a CityGML file");
-    std::string before;
-    bool first = true;
-    for (std::string_view text = file.take(InputFile::block_size / 2); !text.empty(); text = file.take(InputFile::block_size / 2)) {
-      if (std::exchange(first, false)) {
-        const std::string_view begin = text::without_byte_order_mark(text);
-        const std::size_t start = begin.find_first_not_of(" \t\r\n");
-        if (start == begin.npos || begin[start] != '<' || begin.substr(0, 64).find('\0') != begin.npos)
-          fail("it does not begin as XML in UTF-8");
-        check_encoding(begin.substr(start));
-      }
-      before += text;
-      if (before.find("<!DOCTYPE") != before.npos || before.find("<!ENTITY") != before.npos) fail("it has a document type: expected none");
-      before.erase(0, before.size() - std::min<std::size_t>(before.size(), 16));
-    }
-  }
-
-  /// Refuses encodings of an XML declaration but UTF-8, US-ASCII and ISO-8859-1. Source: XML 1.0, 2.8 and 4.3.3.
-  void check_encoding(std::string_view text) const {
-    constexpr std::string_view blanks = " \t\r\n";
-    if (!text.starts_with("<?xml") || text.find_first_of(blanks) != 5) return;
-    text = text.substr(5, text.find("?>") - 5);
-    while (text.find_first_not_of(blanks) != text.npos) {  // name = "value"
-      text.remove_prefix(text.find_first_not_of(blanks));
-      const std::string_view name = text::take_word(text, " \t\r\n=");
-      const std::size_t open = text.find_first_not_of(" \t\r\n=");
-      const std::size_t close = open == text.npos ? open : text.find(text[open], open + 1);
-      if (close == text.npos || (text[open] != '"' && text[open] != '\'')) fail("its XML declaration is malformed");
-      const std::string_view value = text.substr(open + 1, close - open - 1);
-      text.remove_prefix(close + 1);
-      if (name == "encoding" && std::ranges::none_of(std::array{"UTF-8", "US-ASCII", "ISO-8859-1"},
-                                                     [&](const char* one) { return text::is_same_word(value, one); }))
-        fail("its encoding is '" + std::string(value) + "': expected UTF-8, US-ASCII or ISO-8859-1");
-    }
   }
 
   void root(const citygml::CityObject& object) {
@@ -340,12 +302,14 @@ inline bool is_citygml(const std::filesystem::path& path) {
 
 inline CityGml read_citygml(const std::filesystem::path& path, const CityGmlSettings& settings, const Workers& workers) {
   settings.validate();
-  const auto import = [&](const auto&) { return detail::CityGmlImport(path, settings).read(); };
-  const detail::RawScene scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(0);
-  const MeshFileSettings plain{.materials = settings.materials, .spectra = settings.spectra};
-  CityGml city{.file = detail::MeshFileMaker(path, scene, plain, workers).make(), .epsg = detail::epsg_of(scene.reference)};
-  detail::replace_materials(city.file, plain);
-  return city;
+  return reading(path, [&] {
+    const auto import = [&](const auto&) { return detail::CityGmlImport(path, settings).read(); };
+    const detail::RawScene scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(0);
+    const MeshFileSettings plain{.materials = settings.materials, .spectra = settings.spectra};
+    CityGml city{.file = detail::MeshFileMaker(path, scene, plain, workers).make(), .epsg = detail::epsg_of(scene.reference)};
+    detail::replace_materials(city.file, plain);
+    return city;
+  });
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -96,7 +96,7 @@ class PictureShelf {
 }  // namespace detail
 
 PULSECAST_INLINE Image read_picture(const PictureSource& source, const PictureSettings& settings) {
-  if (!settings.isolated) return detail::decoded(source, settings.max_pixels);
+  if (!settings.isolated) return reading(source.file, [&] { return detail::decoded(source, settings.max_pixels); });
   const detail::ChildLimits limits{.memory = 1.5e9, .time = 30};
   detail::ChildResult found = detail::ChildProcess::result(source.file.string(), limits, [&](detail::ChildOutput& output) {
     const Image image = detail::decoded(source, settings.max_pixels);

@@ -126,7 +126,7 @@ class PngHeightReader {
 }  // namespace detail
 
 PULSECAST_INLINE Raster read_png_heights(const std::filesystem::path& path, const PngHeightSettings& settings) {
-  return detail::PngHeightReader(path, settings).read();
+  return reading(path, [&] { return detail::PngHeightReader(path, settings).read(); });
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -268,7 +268,7 @@ class PointCloudReader {
 
 PULSECAST_INLINE PointCloud read_point_cloud(const std::vector<std::filesystem::path>& paths, const PointCloudSettings& settings) {
   if (paths.empty()) throw SettingError("read_point_cloud paths", 0, "", "at least one");
-  return detail::PointCloudReader(paths, settings).result();
+  return reading(paths.front(), [&] { return detail::PointCloudReader(paths, settings).result(); });
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

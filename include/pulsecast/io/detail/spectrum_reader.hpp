@@ -19,6 +19,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
+#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/scene/spectrum.hpp>
 
@@ -204,7 +205,9 @@ class SpectrumReader {
 
 }  // namespace detail
 
-PULSECAST_INLINE SpectrumFile read_spectrum(const std::filesystem::path& path) { return detail::SpectrumReader(path).read(); }
+PULSECAST_INLINE SpectrumFile read_spectrum(const std::filesystem::path& path) {
+  return reading(path, [&] { return detail::SpectrumReader(path).read(); });
+}
 
 PULSECAST_INLINE SpectralLibrary read_spectral_library(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files;

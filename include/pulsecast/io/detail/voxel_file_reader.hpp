@@ -22,6 +22,7 @@
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
+#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/vox.hpp>
 #include <pulsecast/scene/voxel_data.hpp>
 
@@ -260,7 +261,7 @@ class VoxelFileReader {
 }  // namespace detail
 
 PULSECAST_INLINE VoxelFile read_voxel_file(const std::filesystem::path& path, const VoxelFileSettings& settings) {
-  return detail::VoxelFileReader(path, settings).read();
+  return reading(path, [&] { return detail::VoxelFileReader(path, settings).read(); });
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -27,7 +28,7 @@ namespace PULSECAST_NAMESPACE::page {
 
 /// Limits of a `LocalServer` that protect the program's memory, descriptors and time from clients.
 struct LocalServerLimits {
-  std::size_t connections = 32;                     ///< open at once; one more closes the oldest
+  std::size_t connections = 32;                     ///< open at once, in half of the process's descriptors; one more closes the oldest
   std::size_t request_bytes = 65'536;               ///< request line and headers
   std::chrono::milliseconds request_time{2'000};    ///< from the connection to the end of the headers
   std::chrono::milliseconds response_time{10'000};  ///< from there to the last byte sent
@@ -143,12 +144,15 @@ class LocalServer final : public httplib::Server {
 
   /// Accepts one connection only, so that all others are served before the next. Returns false if the system has no descriptor left.
   bool accept_one() {
-    const socket_t socket = accept4(svr_sock_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    socket_t socket = accept4(svr_sock_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (socket == INVALID_SOCKET) return errno != EMFILE && errno != ENFILE && errno != ENOBUFS && errno != ENOMEM;
-    if (open_.size() >= limits_.connections) {
+    // descriptors are given in order: this number tells how many are taken, by the program as well
+    const bool takes_share = static_cast<rlim_t>(socket) >= share_ && !open_.empty();
+    if (open_.size() >= limits_.connections || takes_share) {
       const auto waiting = std::find_if(open_.begin(), open_.end(), [](const Connection& c) { return !c.answered; });
       const auto oldest = waiting != open_.end() ? waiting : open_.begin();
-      close(oldest->socket);
+      // the new one takes the number of the oldest, so that numbers stay low
+      close(dup3(socket, oldest->socket, O_CLOEXEC) >= 0 ? std::exchange(socket, oldest->socket) : oldest->socket);
       open_.erase(oldest);
     }
     open_.push_back({socket, Clock::now() + limits_.request_time});
@@ -197,7 +201,14 @@ class LocalServer final : public httplib::Server {
     std::erase_if(open_, condition);
   }
 
+  /// Half of the descriptors that this process may have.
+  [[nodiscard]] static rlim_t half_of_descriptors() {
+    rlimit limit{};
+    return getrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur / 2 : 0;
+  }
+
   LocalServerLimits limits_;
+  rlim_t share_ = half_of_descriptors();
   std::vector<Connection> open_{};  // oldest first
   std::atomic<bool> ending_ = false;
   std::thread thread_{};

@@ -8,8 +8,6 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <ios>
 #include <limits>
 #include <span>
 #include <string>
@@ -47,7 +45,9 @@ class CopcRuns {
         threads_(threads),
         run_bytes_(run_bytes),
         run_points_(std::max<std::size_t>(run_bytes / record, 256)),
-        most_cells_(most_cells) {}
+        most_cells_(most_cells) {
+    file_.forget_name();
+  }
 
   void add(std::span<const std::byte> record) {
     gathered_.insert(gathered_.end(), record.begin(), record.end());
@@ -60,7 +60,6 @@ class CopcRuns {
     gathered_ = {};
     sorted_ = {};
     ranks_ = {};
-    file_.read(0, {});  // passes on what is buffered
   }
 
   /// Runs of some of the points, in a file of their own, with cells as small as can be. @throws FileError
@@ -88,17 +87,12 @@ class CopcRuns {
     std::uint64_t count = 0;
     for (const CopcExtent& e : extents) count += e.count;
     std::vector<std::byte> bytes(static_cast<std::size_t>(count) * record_);
-    std::ifstream file;
-    file.rdbuf()->pubsetbuf(nullptr, 0);
-    file.open(OutputFile::temporary_name(file_.path()), std::ios::binary);
-    std::size_t at = 0;
+    std::span<std::byte> left(bytes);
     for (const CopcExtent& e : extents) {
       const std::size_t size = static_cast<std::size_t>(e.count) * record_;
-      file.seekg(static_cast<std::streamoff>(e.begin * record_));
-      file.read(reinterpret_cast<char*>(bytes.data() + at), static_cast<std::streamsize>(size));
-      at += size;
+      file_.read(e.begin * record_, left.first(size));
+      left = left.subspan(size);
     }
-    if (!file) throw FileError(file_.path().string(), "", "cannot be read again; expected the points that were written");
     return bytes;
   }
 

@@ -29,6 +29,7 @@
 #include <pulsecast/io/detail/geotiff/samples.hpp>
 #include <pulsecast/io/detail/geotiff/tiff_file.hpp>
 #include <pulsecast/io/geotiff.hpp>
+#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/scene/raster.hpp>
 
 /// Reading of GeoTIFF files.
@@ -248,7 +249,7 @@ class GeoTiffReader {
 }  // namespace detail
 
 PULSECAST_INLINE GeoTiff read_geotiff(const std::filesystem::path& path, const GeoTiffSettings& settings) {
-  return detail::GeoTiffReader(path, settings).read();
+  return reading(path, [&] { return detail::GeoTiffReader(path, settings).read(); });
 }
 
 PULSECAST_INLINE std::optional<std::uint16_t> read_geotiff_epsg(const std::filesystem::path& path) {

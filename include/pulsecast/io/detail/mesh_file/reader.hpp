@@ -82,20 +82,22 @@ PULSECAST_INLINE bool is_mesh_file(const std::filesystem::path& path) {
 
 PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, const MeshFileSettings& settings, const Workers& workers) {
   settings.validate();
-  MeshFile file;
-  if (text::lower(path.extension().string()) == ".obj") {
-    file = detail::file_of(path, settings, workers);
-  } else {
-    detail::require_ply_end(path);
-    const auto import = [&](const Workers& by, const auto& opened) { return detail::MeshImport(path, settings, by, opened).read(); };
-    const detail::RawScene scene = settings.isolated
-                                       ? detail::imported_apart(path, settings.limits, [&](const auto& o) { return import(Workers(1), o); })
-                                       : import(workers, nullptr);
-    file = detail::MeshFileMaker(path, scene, settings, workers).make();
-  }
-  detail::replace_materials(file, settings);
-  if (settings.pictures) detail::read_pictures(file, settings.isolated);
-  return file;
+  return reading(path, [&] {
+    MeshFile file;
+    if (text::lower(path.extension().string()) == ".obj") {
+      file = detail::file_of(path, settings, workers);
+    } else {
+      detail::require_ply_end(path);
+      const auto import = [&](const Workers& by, const auto& opened) { return detail::MeshImport(path, settings, by, opened).read(); };
+      const detail::RawScene scene =
+          settings.isolated ? detail::imported_apart(path, settings.limits, [&](const auto& o) { return import(Workers(1), o); })
+                            : import(workers, nullptr);
+      file = detail::MeshFileMaker(path, scene, settings, workers).make();
+    }
+    detail::replace_materials(file, settings);
+    if (settings.pictures) detail::read_pictures(file, settings.isolated);
+    return file;
+  });
 }
 
 PULSECAST_INLINE std::vector<Part<TriangleMesh<>>> parts_of(MeshFile file, ObjectId first_object, const Workers& workers) {

@@ -241,7 +241,7 @@ class MtlReader : private StatementBuffer {
 }  // namespace detail
 
 PULSECAST_INLINE MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra) {
-  return detail::MtlReader(detail::StatementFile(path), spectra).read();
+  return reading(path, [&] { return detail::MtlReader(detail::StatementFile(path), spectra).read(); });
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

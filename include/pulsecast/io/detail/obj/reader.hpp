@@ -21,6 +21,7 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/io/detail/obj/piece.hpp>
+#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/io/obj.hpp>
 #include <pulsecast/scene/material.hpp>
@@ -192,11 +193,13 @@ class ObjReader {
 }  // namespace detail
 
 PULSECAST_INLINE ObjModel read_obj(const std::filesystem::path& path, const ObjSettings& settings, const Workers& workers) {
-  ObjModel model = detail::ObjReader(path, settings, workers).read();
-  if (model.pictures.empty() || settings.texture) return model;
-  ObjSettings textured = settings;  // few files have pictures, so that the others are not read for them
-  textured.texture = true;
-  return detail::ObjReader(path, textured, workers).read();
+  return reading(path, [&] {
+    ObjModel model = detail::ObjReader(path, settings, workers).read();
+    if (model.pictures.empty() || settings.texture) return model;
+    ObjSettings textured = settings;  // few files have pictures, so that the others are not read for them
+    textured.texture = true;
+    return detail::ObjReader(path, textured, workers).read();
+  });
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -18,6 +18,7 @@
 #include <pulsecast/io/detail/trajectory/attitude.hpp>
 #include <pulsecast/io/detail/trajectory/columns.hpp>
 #include <pulsecast/io/detail/trajectory/format.hpp>
+#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -308,7 +309,7 @@ class TrajectoryReader {
 }  // namespace detail
 
 inline TrajectoryTable read_trajectory(const std::filesystem::path& path, const TrajectoryFormat& format, const TimeWindow& window) {
-  return detail::TrajectoryReader(path, format).read(window);
+  return reading(path, [&] { return detail::TrajectoryReader(path, format).read(window); });
 }
 
 }  // namespace PULSECAST_NAMESPACE::io
