@@ -158,14 +158,13 @@ class Scene {
   /// Height of the highest surface of a ground material at a place [m]; empty if there is none.
   [[nodiscard]] std::optional<double> ground_height(const Vec2& at) const noexcept {
     if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
-    const double top = bounds().max.z + 1;
-    RayBundle down = bundle_of(Ray{.origin = {at.x, at.y, top}, .direction = -axis::up});
-    for (;;) {
-      const ClosestHits nearest = this->nearest(down);
-      if (!nearest.met(0)) return std::nullopt;
-      if (material_at(down, nearest).ground) return top - nearest.range[0];
-      down.near = nearest.range[0];  // continues below a surface that is no ground
-    }
+    const Ray down{.origin = {at.x, at.y, bounds().max.z + 1}, .direction = -axis::up};
+    std::optional<double> height;  // all hits, as another part may lie on the ground, at the same range
+    all_hits(down, [&](const RayHit& hit) noexcept {
+      if (surface(hit, down).material->ground) height = down.origin.z - hit.range;
+      return !height;
+    });
+    return height;
   }
 
  private:
@@ -238,14 +237,6 @@ class Scene {
       closest_in(0, parts_[0].placement, rays, hits);  // shapes test their own bounds
     else
       index_.closest(rays, test, hits);
-  }
-
-  /// Material met by the bundle's only ray.
-  const Material& material_at(const RayBundle& rays, const ClosestHits& nearest) const noexcept {
-    const Part& part = parts_[nearest.part_of(0)];
-    const RayBundle local = part.placement.to_local(rays);
-    const auto material = [&](const auto& shape) noexcept { return shape->surface(nearest.primitive_of(0), local, 0).material; };
-    return (*part.materials)[visit_shape(material, part.geometry)];
   }
 
   template <class Rays, class Hits>
