@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
@@ -151,6 +152,9 @@ class Session {
     const RunSummary all = play_all(*simulation, *inputs, parent, again);
     pages_.finish(all.complete);
     if (all.complete && all.echoes == 0 && all.pulses() > 0) tell_of_nothing(*simulation);
+    if (pulses_cut_ > 0)
+      notes_.say(std::to_string(pulses_cut_) + " pulses have more than " + (options_.las_1_0 ? "5" : "15") +
+                 " returns, the greatest number in LAS, which later ones have, too: maxNOR of the scanner limits them");
     const std::string traffic = ranks_.traffic();
     if (!options_.quiet) tell_summary(all, traffic);
     notes_.require_none();
@@ -196,6 +200,31 @@ class Session {
     const std::optional<double> clock = simulation.compiled().clock_start;
     if (again && !clock && !options_.gps_start_time.empty()) require_same(*again, second_of_week(log_.start_time), second_of_week(asked));
     if (!again && clock) log_.start_time = *clock;
+    settle_clock(simulation);
+  }
+
+  /// Clock of LAS files: that of a GPS week, unless a trajectory begins beyond one. Source: LAS 1.4 R15, Global Encoding, GPS Time Type.
+  void settle_clock(const Simulation& simulation) {
+    constexpr double week = 604'800;
+    const double begin = log_.start_time, end = begin + simulation.runs() * simulation.compiled().source.duration().seconds();
+    options_.adjusted_time = simulation.compiled().clock_start && !(begin >= 0 && begin <= week);
+    if (!options_.format.starts_with("las") && !options_.format.ends_with("laz")) return;
+    std::ostringstream text;
+    text << std::fixed << "times from " << begin << " to " << end << " s ";
+    if (options_.adjusted_time && std::fabs(begin) <= 1e9) {  // up to 2043
+      using namespace std::chrono;
+      const year_month_day day = floor<days>(sys_days{January / 6 / 1980} + seconds(std::llround(1e9 + begin)));
+      text << "are no seconds of a GPS week: LAS says that they are adjusted standard GPS time, which begins here at " << int{day.year()}
+           << '-' << std::setfill('0') << std::setw(2) << unsigned{day.month()} << '-' << std::setw(2) << unsigned{day.day()};
+      notes_.say(text.str());
+    } else if (options_.adjusted_time) {
+      text << "are neither seconds of a GPS week nor adjusted standard GPS time, of which LAS says that they are: expected one of these "
+              "clocks";
+      notes_.odd(text.str());
+    } else if (end > week) {
+      text << "go on beyond the end of the GPS week, 604800 s";
+      notes_.say(text.str());
+    }
   }
 
   /// Removes the log of the previous repetition, a possible remnant of an interrupted run.
@@ -346,6 +375,11 @@ class Session {
     return false;
   }
 
+  void close(LegRun& files) {
+    files.close();
+    pulses_cut_ += files.pulses_cut();
+  }
+
   RunSummary play(const Simulation& simulation, const fs::path& folder, bool again) {
     folders_.push_back(folder.string());
     const double start_time = log_.start_time + log_.run * simulation.compiled().source.duration().seconds();
@@ -395,11 +429,11 @@ class Session {
       before += leg.end - leg.first;
       if (!all.complete) break;
       if (last[prefix] != k) continue;
-      files.close();
+      close(files);
       open.erase(at);
       if (ranks_.first()) log_.add_files(folder, files_of(prefix));
     }
-    for (auto& [prefix, files] : open) files->close();  // of an interrupted run
+    for (auto& [prefix, files] : open) close(*files);  // of an interrupted run
     pages_.end();
     return all;
   }
@@ -409,6 +443,7 @@ class Session {
   const SurveySettings& survey_;
   Ranks& ranks_;
   Pages pages_;
+  std::uint64_t pulses_cut_ = 0;  // as of `LegRun`, of all legs
   RunLog log_;
   std::optional<RunLock> lock_;  // of the output folder, on the first process
   std::vector<std::string> folders_, scene_notes_;

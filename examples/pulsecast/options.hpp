@@ -57,6 +57,7 @@ struct Options {
   ForecastOptions forecast{};
   std::vector<std::string> notes{};  ///< accepted options without effect
 
+  bool adjusted_time = false;                                       ///< times are adjusted standard GPS time; else seconds of a GPS week
   pulsecast::PointColours point_colours{};                          ///< of the scene, once it is loaded; empty unless `colours`
   std::shared_ptr<const pulsecast::ObjectAttributes> attributes{};  ///< of the scene, once it is loaded; null without
 };

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -61,7 +62,8 @@ std::vector<fs::path> leg_files(const fs::path& folder, const std::string& prefi
 }
 
 io::LasSettings las_settings(const Options& o, double start_time) {
-  io::LasSettings settings{.scale = o.las_scale, .gps_time = io::GpsTime::week, .start_time = start_time};
+  io::LasSettings settings{
+      .scale = o.las_scale, .gps_time = o.adjusted_time ? io::GpsTime::adjusted_standard : io::GpsTime::week, .start_time = start_time};
   settings.epsg = o.epsg.value_or(0);
   settings.light_kinds = o.light_paths;
   settings.colours = o.point_colours;
@@ -127,6 +129,17 @@ void LegFiles::close() {
   if (inside_->map) inside_->map->close();
   inside_->trajectory.close();
   for (PointWriter& writer : inside_->points) std::visit([](auto& w) { w.close(); }, writer);
+}
+
+std::uint64_t LegFiles::pulses_cut() const {
+  std::uint64_t sum = 0;
+  for (const PointWriter& writer : inside_->points)
+    std::visit(
+        [&]<class Writer>(const Writer& w) {
+          if constexpr (!std::is_same_v<Writer, io::XyzWriter>) sum += w.pulses_cut();
+        },
+        writer);
+  return sum;
 }
 
 struct Picture::Inside {

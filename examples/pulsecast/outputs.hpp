@@ -40,6 +40,7 @@ class LegFiles {
   [[nodiscard]] bool reads_empty_shots() const noexcept;  ///< as the concept ChoosesShots describes
   void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval);
   void close();
+  [[nodiscard]] std::uint64_t pulses_cut() const;  ///< as of `LasWriter`; 0 for text
 
  private:
   struct Inside;

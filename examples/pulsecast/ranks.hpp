@@ -22,6 +22,8 @@ class LegRun {
   virtual void add_trajectory(const pulsecast::helios::SurveyLeg& leg, pulsecast::Tick start, double interval) = 0;
   virtual pulsecast::RunSummary run(const pulsecast::helios::Simulation& simulation, const pulsecast::RunOptions& options) = 0;
   virtual void close() = 0;
+  /// Pulses with more returns than LAS numbers, once closed, on the first process.
+  [[nodiscard]] virtual std::uint64_t pulses_cut() const = 0;
 };
 
 /// Processes of a survey: one, or those of `mpirun`. All do the same. The first one alone does unique tasks, such as naming a folder, and

@@ -85,6 +85,12 @@ class SharedLegRun final : public LegRun {
     for (auto output = outputs_.rbegin(); output != outputs_.rend(); ++output) (*output)->close();
   }
 
+  [[nodiscard]] std::uint64_t pulses_cut() const override {
+    std::uint64_t sum = 0;
+    for (const auto& output : outputs_) sum += output->pulses_cut();
+    return sum;
+  }
+
  private:
   MpiOutput* add(std::unique_ptr<MpiOutput> output) { return outputs_.emplace_back(std::move(output)).get(); }
 

@@ -29,6 +29,7 @@ class OneLegRun final : public LegRun {
   }
   [[nodiscard]] bool reads_empty_shots() const noexcept { return files_.reads_empty_shots(); }  ///< as the concept ChoosesShots describes
   void close() override { files_.close(); }
+  [[nodiscard]] std::uint64_t pulses_cut() const override { return files_.pulses_cut(); }
 
  private:
   LegFiles files_;

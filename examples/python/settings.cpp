@@ -93,6 +93,7 @@ T value_of(py::handle object, const std::string& where);
 
 template <class T>
 T number_of(py::handle object, const std::string& where) {
+  if (PyBool_Check(object.ptr())) refuse(where, "a number", object);
   if constexpr (std::floating_point<T>) {
     const double number = PyFloat_AsDouble(object.ptr());
     if (number == -1 && PyErr_Occurred()) {
@@ -189,6 +190,30 @@ T value_of(py::handle object, const std::string& where) {
 
 // --------------------------------------------------------------------------------------------------------------- classes
 
+/// `==` of members: an array, a list and a tuple of equal numbers are equal.
+bool equal(py::handle a, py::handle b) {
+  const auto size_of = [](py::handle object) {
+    const bool is_row = PySequence_Check(object.ptr()) && !py::isinstance<py::str>(object);
+    const py::ssize_t size = is_row ? PySequence_Size(object.ptr()) : -1;
+    if (size < 0) PyErr_Clear();  // an array without dimensions
+    return size;
+  };
+  const py::ssize_t size = size_of(a);
+  if (size < 0 || size != size_of(b)) return size < 0 && a.equal(b);
+  for (py::ssize_t i = 0; i < size; ++i)
+    if (!equal(py::object(a[py::int_(i)]), py::object(b[py::int_(i)]))) return false;
+  return true;
+}
+
+template <Struct Settings>
+py::object equal_settings(const py::object& a, const py::object& b) {
+  if (!py::type::of(a).is(py::type::of(b))) return py::reinterpret_borrow<py::object>(Py_NotImplemented);
+  bool same = true;
+  Described<Settings>::members(
+      Settings{}, [&](const char* name, auto&&...) { same = same && equal(py::object(a.attr(name)), py::object(b.attr(name))); });
+  return py::bool_(same);
+}
+
 template <Struct Settings>
 void bind(py::module_& m) {
   const py::module_ dataclasses = py::module_::import("dataclasses"), functools = py::module_::import("functools");
@@ -204,6 +229,7 @@ void bind(py::module_& m) {
   py::dict space;
   space["__doc__"] = doc;
   space["__module__"] = "pulsecast";
+  space["__eq__"] = py::cpp_function(&equal_settings<Settings>, py::is_method(py::none()), py::name("__eq__"));
   const char* name = Described<Settings>::name;
   py::object made = dataclasses.attr("make_dataclass")(name, members, py::arg("namespace") = space, py::arg("slots") = true);
   m.attr(name) = made;

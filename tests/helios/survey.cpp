@@ -570,10 +570,9 @@ TEST_CASE("settings of a program have the limits of a document's") {
           "leg 0: y is 2e+09 m, but must be from -1000000000 to 1000000000");
   refused([&](SurveySettings& o) { device(o).efficiency = 1.5; }, "opticalEfficiency is 1.5, but must be from 0 to 1");
   refused([&](SurveySettings& o) { device(o).range_min = device(o).range_max = 5; }, "rangeMax_m is not beyond rangeMin_m");
-  refused([&](SurveySettings& o) { device(o).scan_frequency_min = 9, device(o).scan_frequency_max = 8; }, "scanFreqMax_Hz is below");
+  refused([&](SurveySettings& o) { device(o).scan_frequency_min = 1 + (device(o).scan_frequency_max = 8); }, "scanFreqMax_Hz is below");
   refused([&](SurveySettings& o) { device(o).errors.range = "1/0*THETA"; }, "expr=\"1/0*THETA\" is not finite for any THETA");
-  refused([&](SurveySettings& o) { o.scanner.channels.push_back(device(o)), o.scanner.channels[1].wavelength = 1; },
-          "channel 1: wavelength_nm is 1e+09 nm");
+  refused([&](SurveySettings& o) { o.scanner.channels.emplace_back(device(o)).wavelength = 1; }, "channel 1: wavelength_nm is 1e+09 nm");
   refused([](SurveySettings& o) { o.platform.position_noise[1] = NoiseSettings{.clipped = true, .clip_low = 2}; },
           "clipMax is below clipMin");
   refused([](SurveySettings& o) { o.leg_offset = LegOffsetSettings{.deviation = -1}; }, "legRandomOffsetStdev is -1 m");

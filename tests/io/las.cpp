@@ -487,9 +487,15 @@ TEST_CASE("points of legacy formats hold what they can, and headers say which th
     std::vector<Echo> echoes(7);
     for (std::uint8_t n = 1; n <= 7; ++n) echoes[n - 1U].number = n;
     survey.add({.direction = {0, 0, 1}}, echoes);
+    echoes.resize(5);
+    survey.add({.direction = {0, 0, 1}}, echoes);
     const LasFile many = survey.written({.format = format});
     CHECK((many.points[6].return_number == 5 && many.points[6].returns == 5));
-    CHECK(many.by_return == std::array<std::uint64_t, 15>{1, 1, 1, 1, 3});
+    CHECK(many.by_return == std::array<std::uint64_t, 15>{2, 2, 2, 2, 4});
+    const TemporaryFolder folder;
+    LasWriter writer(folder / "many.las", {.format = format});
+    writer(survey.batch());
+    CHECK(writer.pulses_cut() == 1);
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/scene/scene.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -324,6 +325,19 @@ TEST_CASE("of several levels of ground, the one nearest to a height is found") {
   CHECK(near(-2.1) == -4);
   CHECK(near(-100) == -4);
   CHECK_FALSE(scene.ground_height({9, 9}, 0).has_value());
+}
+
+TEST_CASE("ground under a part that lies exactly on it is found, whatever the order of the parts") {
+  const auto sheet = [](double z, bool ground) {
+    const MeshData mesh{.vertices = {{-5, -5, z}, {5, -5, z}, {5, 5, z}, {-5, 5, z}}, .triangles = {{0, 1, 2}, {0, 2, 3}}};
+    return Scene<TriangleMesh<>>::Part{.geometry = std::make_shared<const TriangleMesh<>>(mesh),
+                                       .materials = material_table({{.ground = ground}})};
+  };
+  std::vector parts{sheet(1.3, false), sheet(1.3, true), sheet(1.3, false), sheet(4, false)};
+  for (std::size_t turn = 0; turn < parts.size(); ++turn) {
+    std::rotate(parts.begin(), parts.begin() + 1, parts.end());
+    CHECK(Scene<TriangleMesh<>>(parts).ground_height({1, 2}).value() == support::relative(1.3, 1e-14));
+  }
 }
 
 TEST_CASE("the ground of a slope at UTM coordinates is where it should be") {

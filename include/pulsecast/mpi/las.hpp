@@ -148,6 +148,8 @@ class MpiLas final : public MpiOutput {
     return place;
   }
 
+  [[nodiscard]] std::uint64_t pulses_cut() const noexcept override { return whole_ ? whole_->pulses_cut() : 0; }
+
   void close() override {
     points_file_.close();
     packets_file_.close();

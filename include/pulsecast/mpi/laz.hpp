@@ -117,6 +117,8 @@ class MpiLaz final : public MpiOutput {
 
   [[nodiscard]] bool full() const noexcept override { return compressed_.size() + ready_.size() > max_waiting; }
 
+  [[nodiscard]] std::uint64_t pulses_cut() const noexcept override { return whole_ ? whole_->pulses_cut() : 0; }
+
   void close() override {
     if (group().first())
       for (int rank = 0; rank < group().size(); ++rank) send(rank, std::move(MpiMessage().add(MessageKind::all_points).add(points_)));

@@ -58,10 +58,10 @@ struct RunRequest {
 };
 
 /// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps the `extras` of points, of colours only if asked.
-/// Rethrows Python exceptions of callbacks. Throws a `SettingError`, a `TypeError` for a callback that is not callable, or a `ValueError`
-/// for colours of a survey without any.
+/// Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`, with the result. Throws a `SettingError`,
+/// a `TypeError` for a callback that is not callable, or a `ValueError` for colours of a survey without any.
 template <class Run>
-[[nodiscard]] Batch run(const RunRequest& asked, const InterruptWatch& watch, PointExtras extras, const Run& run) {
+[[nodiscard]] Batch run(const RunRequest& asked, PointExtras extras, const Run& run) {
   asked.validate();
   if (asked.colours && !extras.colours) throw pybind11::value_error("run colours: the points of this survey have none");
   if (!asked.colours) extras.colours = {};
@@ -70,13 +70,12 @@ template <class Run>
   const bool hands_over = !asked.callback.is_none(), tells = !asked.progress.is_none();
   std::stop_source stopping;
   RowSink rows({asked.pulses, asked.columns, std::move(extras)});
-  Batch result;
   auto handed_over = Clock::now(), told = handed_over;
 
+  InterruptWatch watch(stopping);
   RunOptions options{.threads = asked.threads, .first = asked.first, .stride = asked.stride, .stop = stopping.get_token()};
   if (asked.end) options.end = *asked.end;
   options.progress = [&](const Progress& p) {
-    if (watch.interrupted()) stopping.request_stop();
     if (!tells || (p.done < p.total && seconds_since(told) < 0.1)) return;
     told = Clock::now();
     const pybind11::gil_scoped_acquire gil;
@@ -93,15 +92,15 @@ template <class Run>
                         (asked.every_seconds > 0 && seconds_since(handed_over) >= asked.every_seconds);
     if (hands_over && is_due) hand_over();
   };
-  {
-    const pybind11::gil_scoped_release free;
-    result.summary = run(options, sink);
-  }
+  RunSummary summary;
+  watch.during([&] { summary = run(options, sink); });
+  const bool interrupted = watch.interrupted();
   if (hands_over && rows.pulses() > 0) hand_over();
-  const RunSummary summary = result.summary;
-  result = rows.take();
+  Batch result = rows.take();
   result.summary = summary;
-  return result;
+  if (!interrupted) return result;
+  raise(Exceptions{}.interrupted, "the survey was stopped", std::pair{"result", pybind11::cast(std::move(result))});
+  throw pybind11::error_already_set();
 }
 
 /// Adds exceptions and result types to a module; further calls do nothing.
@@ -123,13 +122,9 @@ void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
       [runner, extras](const Self& self, unsigned threads, PulseIndex first, std::optional<PulseIndex> end, PulseIndex stride,
                        py::object callback, PulseIndex every_pulses, double every_seconds, py::object progress, bool pulses, bool columns,
                        bool colours) {
-        const InterruptWatch watch;
-        Batch result = python::run(
+        return python::run(
             {threads, first, end, stride, std::move(callback), std::move(progress), every_pulses, every_seconds, pulses, columns, colours},
-            watch, extras(self), runner(self));
-        if (result.summary.complete && !watch.interrupted()) return result;  // an interrupt too late to stop the run is still reported
-        raise(Exceptions{}.interrupted, "the survey was stopped", std::pair{"result", py::cast(std::move(result))});
-        throw py::error_already_set();
+            extras(self), runner(self));
       },
       py::arg("threads") = 0, py::arg("first") = 0, py::arg("end") = py::none(), py::arg("stride") = 1, py::arg("callback") = py::none(),
       py::arg("every_pulses") = 0, py::arg("every_seconds") = 0.0, py::arg("progress") = py::none(), py::arg("pulses") = true,

@@ -159,19 +159,15 @@ class Scene {
   /// none.
   [[nodiscard]] std::optional<double> ground_height(const Vec2& at, double near = std::numeric_limits<double>::infinity()) const noexcept {
     if (!(bounds().min.z <= bounds().max.z)) return std::nullopt;
-    const double top = bounds().max.z + 1;
-    RayBundle down = bundle_of(Ray{.origin = {at.x, at.y, top}, .direction = -axis::up});
-    std::optional<double> above;  // lowest ground above `near` so far
-    for (;;) {
-      const ClosestHits nearest = this->nearest(down);
-      if (!nearest.met(0)) return above;
-      const double height = top - nearest.range[0];
-      if (material_at(down, nearest).ground) {
-        if (height <= near) return above && *above - near < near - height ? above : height;
-        above = height;
-      }
-      down.near = nearest.range[0];  // continues below a surface that is no ground, or too high
-    }
+    const Ray down{.origin = {at.x, at.y, bounds().max.z + 1}, .direction = -axis::up};
+    std::optional<double> height;  // nearest so far; all hits are asked, as another part may lie on the ground, at the same range
+    all_hits(down, [&](const RayHit& hit) noexcept {
+      if (!surface(hit, down).material->ground) return true;
+      const double next = down.origin.z - hit.range;
+      if (!height || !(*height - near < near - next)) height = next;
+      return next > near;
+    });
+    return height;
   }
 
  private:
@@ -244,14 +240,6 @@ class Scene {
       closest_in(0, parts_[0].placement, rays, hits);  // shapes test their own bounds
     else
       index_.closest(rays, test, hits);
-  }
-
-  /// Material met by the bundle's only ray.
-  const Material& material_at(const RayBundle& rays, const ClosestHits& nearest) const noexcept {
-    const Part& part = parts_[nearest.part_of(0)];
-    const RayBundle local = part.placement.to_local(rays);
-    const auto material = [&](const auto& shape) noexcept { return shape->surface(nearest.primitive_of(0), local, 0).material; };
-    return (*part.materials)[visit_shape(material, part.geometry)];
   }
 
   template <class Rays, class Hits>

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """The Python module, as its users meet it."""
 
+import asyncio
 import copy
 import math
 import os
@@ -90,6 +91,7 @@ def test_settings_are_plain_objects(survey):
     (lambda s: setattr(s.platform, "kind", "plane"), "SurveySettings.platform.kind: expected 'stationary' or .*'interpolated', not 'plane'"),
     (lambda s: setattr(s.scanner.channels[0], "optic", 3), "optic: expected OscillatingOptic or .* not 3"),
     (lambda s: setattr(s.legs[0].platform, "position", (1, 2)), "position: expected a list of 3"),
+    (lambda s: setattr(s.legs[0].platform, "speed", True), "speed: expected a number, not True"),
     (lambda s: setattr(s, "seed", -1), "seed: expected a whole number that is not negative"),
     (lambda s: s.legs.__setitem__(0, None), r"legs\[0\]: expected LegSettings, not None"),
     (lambda s: setattr(s, "name", "\udcff"), r"SurveySettings\.name: expected a text, not"),
@@ -149,6 +151,30 @@ def test_numbers_and_truths_of_numpy_are_taken(survey):
     run = simulation(survey)
     assert list(run.legs["active"]) == [False, True, True]
     assert (run.run().points["leg"] > 0).all()
+
+
+def test_settings_with_arrays_are_compared(survey):
+    arrays, lists = copy.deepcopy(survey), copy.deepcopy(survey)
+    arrays.legs[1].platform.position = np.array(survey.legs[1].platform.position)
+    lists.legs[1].platform.position = list(survey.legs[1].platform.position)
+    assert survey == arrays == lists == copy.deepcopy(arrays)
+    arrays.legs[1].platform.position[2] += 1
+    assert survey != arrays != lists
+    assert survey.legs[0] != survey and survey.legs[0] != "leg"
+
+
+def test_settings_have_the_limits_and_notes_of_a_document(survey, tmp_path):
+    survey.legs[0].scanner.pulse_rate, survey.legs[0].scanner.head_speed, survey.legs[0].scanner.head_stop = 123, 30, 360
+    with pytest.warns(UserWarning) as notes:
+        simulation(survey)
+    for says in ("leg 0: pulseFreq_hz of 123 Hz is not one of", "leg 0: headRotatePerSec_deg exceeds the scanner's maximum",
+                 "leg 0: headRotateStop_deg is 20626.480625, 57.29578 turns of the head: given in degrees, not radians?"):
+        assert any(says in str(note.message) for note in notes), says
+    survey.legs[0].scanner.vertical_angle_min, survey.legs[0].scanner.vertical_angle_max = -40, 60
+    for refused in (simulation, pulsecast.xml_text, lambda s: pulsecast.write_survey(tmp_path / "no.xml", s)):
+        with pytest.raises(pulsecast.SettingError, match=r"leg 0: verticalAngleMin_deg is -2291\.8.* from -360 to 360: given in degrees"):
+            refused(survey)
+    assert not (tmp_path / "no.xml").exists()
 
 
 def test_a_survey_is_written_and_read_again(survey, tmp_path):
@@ -465,6 +491,29 @@ def test_ctrl_c_stops_and_leaves_what_is_whole():
     pulses = stopped.value.result.pulses
     assert 0 < len(pulses) == stopped.value.result.slots
     assert (pulses["pulse"] == np.arange(len(pulses))).all()
+
+
+def test_ctrl_c_under_asyncio_stops_at_the_second():
+    async def scan():
+        return own_scanner.RosetteSurvey(2_000_000_000).run(pulses=False)
+
+    for delay in (0.2, 0.6):
+        threading.Timer(delay, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        asyncio.run(scan())
+
+
+def test_a_signal_handler_that_raises_ends_a_run():
+    def leave(*_):
+        raise SystemExit(5)
+
+    before = signal.signal(signal.SIGTERM, leave)
+    try:
+        threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGTERM)).start()
+        with pytest.raises(SystemExit, match="5"):
+            own_scanner.RosetteSurvey(2_000_000_000).run(pulses=False)
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def interrupt(*_):

@@ -122,6 +122,8 @@ class MpiOutput {
 
   /// Writes the rest and gives the file its final name.
   virtual void close() = 0;
+  /// As of `LasWriter`, once closed, on the first process; 0 for other files.
+  [[nodiscard]] virtual std::uint64_t pulses_cut() const noexcept { return 0; }
 
   std::optional<std::uint16_t> channel{};  ///< only emitter whose pulses are wanted; all if empty
 

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include <pulsecast/helios/detail/optics.hpp>
-#include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/number.hpp>
 #include <pulsecast/helios/settings.hpp>
@@ -39,7 +38,6 @@ class LegChecks {
       return;
     }
     if (platform.trajectory) io.warn("trajectory", "trajectory attributes have no effect unless platform=\"interpolated\"");
-    if constexpr (Io::reads) check_ground(io, platform);
     if (survey_.platform.kind != PlatformKind::multicopter) {
       const char* const why = " has no effect with this type of platform";
       if (platform.smooth_turn) io.warn("smoothTurn", std::string("a smooth turn") + why);
@@ -91,13 +89,6 @@ class LegChecks {
     } else if (settings.platform.speed == 0) {
       io.fault("movePerSec_m", "the leg never ends: movePerSec_m is 0; expected a speed");
     }
-  }
-
-  void check_ground(const XmlInput& io, const LegPlatformSettings& platform) const {
-    if (!platform.on_ground) return;
-    if (!has_ground_) has_ground_ = has_ground(survey_.scene);
-    if (!*has_ground_)
-      io.fault("onGround", "nothing in the scene is ground: expected a material with helios_isGround in an MTL file of it");
   }
 
   template <class Io>
@@ -177,7 +168,6 @@ class LegChecks {
   }
 
   const SurveySettings& survey_;
-  mutable std::optional<bool> has_ground_{};
 };
 
 }  // namespace PULSECAST_NAMESPACE::helios

@@ -14,6 +14,7 @@
 #include <pugixml.hpp>
 
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/helios/detail/xml/document.hpp>
 #include <pulsecast/helios/detail/xml/element.hpp>
 #include <pulsecast/helios/detail/xml/file_name.hpp>
@@ -54,6 +55,7 @@ class LegReader {
         return XmlInput(document, own ? own : nodes[i], report_, document_.search());
       };
       const XmlInput platform = in("platformSettings"), scanner = in("scannerSettings");
+      check_ground(platform, survey_.legs[i].platform);
       checks.check_platform(platform, i);
       checks.check_scanner(scanner, i, resolutions[i]);
       if (survey_.platform.kind != PlatformKind::interpolated) survey_.legs[i].platform.trajectory.reset();
@@ -110,6 +112,13 @@ class LegReader {
     settings.scanner = scanner.settings;
     settings.duration_max = duration_max;
     return scanner.vertical_resolution;
+  }
+
+  void check_ground(const XmlInput& io, const LegPlatformSettings& platform) {
+    if (!platform.on_ground || survey_.platform.kind == PlatformKind::interpolated) return;
+    if (!has_ground_) has_ground_ = has_ground(survey_.scene);
+    if (!*has_ground_)
+      io.fault("onGround", "nothing in the scene is ground: expected a material with helios_isGround in an MTL file of it");
   }
 
   /// Reads the template of an element, if it has one, and then the element: `read(XmlInput&)`.
@@ -188,6 +197,7 @@ class LegReader {
   const XmlLibraryDocument& document_;
   XmlReport& report_;
   SurveySettings& survey_;
+  std::optional<bool> has_ground_{};
 };
 
 }  // namespace PULSECAST_NAMESPACE::helios::detail

@@ -36,6 +36,7 @@ struct LasTally {
   std::uint64_t points = 0;                          ///< number of points
   std::array<std::uint64_t, 15> points_by_return{};  ///< number of points by return number, from 1
   float max_amplitude = -200;                        ///< highest amplitude [dB]
+  std::uint64_t pulses_cut = 0;                      ///< pulses with more returns than the format numbers
 
   /// Adds the statistics of another part.
   void add(const LasTally& other) noexcept {
@@ -47,6 +48,7 @@ struct LasTally {
     points += other.points;
     for (std::size_t i = 0; i < points_by_return.size(); ++i) points_by_return[i] += other.points_by_return[i];
     max_amplitude = std::max(max_amplitude, other.max_amplitude);
+    pulses_cut += other.pulses_cut;
   }
 };
 
@@ -76,6 +78,7 @@ class LasEncoder {
     Record& record = record_;
     record.assign(layout_.record(), std::byte{0});
     const std::uint32_t returns = std::min(shot.echoes, layout_.max_returns);
+    if (shot.echoes > returns) ++tally_.pulses_cut;
     const auto source = static_cast<std::uint16_t>(std::min(shot.leg + 1U, 65535U));
     const double time = settings_.start_time + shot.tick.seconds();
     record.put(17, static_cast<std::uint8_t>(std::min<std::uint16_t>(shot.channel, 255)));

@@ -52,7 +52,7 @@ struct LasExtendedRecords {
 /// open:
 /// - coordinates are rounded to the nearest step; one beyond 32 bits, or not finite, is a `FileError`;
 /// - intensity is linear in the quantity of `LasIntensity`; extra bytes Amplitude and Reflectance are levels [dB], -200 for zero;
-/// - return numbers and counts end at 15, or 5, by format: later returns are written as the last;
+/// - return numbers and counts end at 15, or 5, by format: later returns are written as the last, see `pulses_cut`;
 /// - classes end at 255, or 31; point source id is the leg plus 1, at most 65535; user data is the channel, at most 255, and scanner
 /// channel its lowest two bits: pulses of one GPS time differ in them;
 /// - scan angle is that of `Pulse`; GPS time is that of the pulse for all its returns;
@@ -102,6 +102,9 @@ class LasFileWriter {
   /// Offset of `Records` in the file, and size of the waveform file so far [byte].
   [[nodiscard]] std::uint64_t records_at() const noexcept { return records_at_; }
   [[nodiscard]] std::uint64_t packets_at() const noexcept { return packets_ ? packets_->position() : 0; }
+
+  /// Pulses with more than 15 returns, or 5, by format: their later returns have the number of the last that counts.
+  [[nodiscard]] std::uint64_t pulses_cut() const noexcept { return encoder_.tally().pulses_cut; }
 
   [[nodiscard]] Records& records() noexcept { return records_; }
 
