@@ -704,6 +704,21 @@ TEST_CASE("what is wrong with an optic names its leg") {
   CHECK_THROWS_WITH_AS((void)compile_survey(s, flat), doctest::Contains("leg 1: scanFreq_hz is 10 Hz"), SettingError);
 }
 
+TEST_CASE("what a scanner or a drone cannot is noted once") {
+  SurveySettings s = survey_of(PlatformKind::multicopter, {{0, 0, 0}, {20, 0, 0}, {40, 0, 0}, {60, 0, 0}});
+  s.scanner.channels[0].optic = OscillatingOptic{};
+  for (LegSettings& leg : s.legs) leg.scanner.scan_frequency = 400;
+  s.platform.multicopter.yaw_speed = 0;
+  s.platform.multicopter.pitch_offset = pi / 2;
+  const CompiledSurvey compiled = compile_survey(s, flat);
+  REQUIRE(compiled.warnings.size() == 3);
+  CHECK(compiled.warnings[0] == "yaw_speed_deg is taken as 0.057");
+  CHECK(compiled.warnings[1] == "pitch_offset_deg is taken as 85.944");
+  CHECK(compiled.warnings[2].find("leg 0: scanFreq_hz of 400 is taken as 500") != std::string::npos);
+  s.legs[0].scanner.active = false;
+  CHECK(compile_survey(s, flat).warnings[2].find("leg 1: scanFreq_hz") != std::string::npos);
+}
+
 TEST_CASE("a survey of ten thousand legs is planned at once") {
   std::vector<Vec3> places;
   for (int i = 0; i < 10'000; ++i) places.push_back({i * 10.0, 0, 0});

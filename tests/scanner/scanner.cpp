@@ -42,9 +42,18 @@ TEST_CASE("a scanner keeps the laws of a source, of any length") {
   }
 }
 
+TEST_CASE("a scanner of a pulse in a thousand seconds keeps its time") {
+  const Scanner slow{.pulse_rate = 1e-3, .pulses = 5000};
+  CHECK(std::fabs(slow.duration().seconds() - 5e6) < 1e-6);
+  CHECK(std::fabs(slow.pulse(3)->tick.seconds() - 3000) < 1e-9);
+  CHECK(support::source_laws(slow) == "");
+}
+
 TEST_CASE("a scanner refuses what no laser can do") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   CHECK_NOTHROW(Scanner{}.validate());
+  CHECK_NOTHROW(Scanner{.pulse_rate = 1e-3}.validate());
+  CHECK_THROWS_AS(Scanner{.pulse_rate = 0.99e-3}.validate(), SettingError);
   for (const double bad : {0.0, -1.0, nan, infinity}) {
     CAPTURE(bad);
     CHECK_THROWS_AS(Scanner{.pulse_rate = bad}.validate(), SettingError);

@@ -14,7 +14,8 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Rotating polygon mirror: each facet sweeps the beam once from low to high in the plane of forward and up, then the next one takes over.
-/// The beam's angle above forward runs from -sweep to +sweep. Pulses outside the gate are blocked.
+/// The beam's angle above forward runs from -sweep, included, to +sweep, excluded. Pulses outside the gate are blocked; those on its ends
+/// pass, whatever the rounding of their time.
 struct PolygonMirror {
   double lines_per_second = 100;      ///< rate of facets, at most 1e12 [Hz]
   double sweep = 2 * pi / 3;          ///< half angle swept by one facet: a full turn divided by the number of facets [rad]
@@ -39,7 +40,7 @@ struct PolygonMirror {
     if (facet_tilts.size() < 2) return 0;
     const double n = static_cast<double>(facet_tilts.size());
     // whole lines of a turn: rounding in the phase of the turn must not give a line other than the line's own phase does
-    const double line = std::round(n * t.phase(lines_per_second / n) - t.phase(lines_per_second));
+    const double line = std::round(n * t.phase(lines_per_second / n) - phases(TickLanes(t))[0]);
     return static_cast<std::size_t>(line < 0 ? line + n : line) % facet_tilts.size();
   }
 
@@ -50,10 +51,9 @@ struct PolygonMirror {
   [[nodiscard]] Tick next_open(Tick t) const noexcept {
     if (open(t)) return t;
     const double begin = 0.5 * (angle_min / sweep + 1);  // phase at which the gate begins, unless it is there from the start [cycles]
-    const double phase = t.phase(lines_per_second);
+    const double phase = phases(TickLanes(t))[0];
     const double left = angle(t) < angle_min ? begin - phase : 1 - phase + (begin > 0 ? begin : 0);
-    const double rounding = 0x1p-48 * (1 + lines_per_second);  // 16 units in the last place of a phase, and of a fraction of a second
-    const double wait = left < 2 ? left - rounding : 1 - rounding;
+    const double wait = (left < 2 ? left : 1) - 2 * margin();
     const double longest = 1e15 * lines_per_second;  // [cycles]: no survey is longer than 1e15 s
     return wait > 0 ? t + Tick::of_seconds((wait < longest ? wait : longest) / lines_per_second) : t;
   }
@@ -76,8 +76,21 @@ struct PolygonMirror {
   }
 
  private:
-  [[nodiscard]] simd::Doubles angles(const TickLanes& t) const noexcept { return sweep * (2.0 * t.phase(lines_per_second) - 1.0); }
-  [[nodiscard]] simd::Mask gate(const simd::Doubles& angle) const noexcept { return (angle >= angle_min) & (angle <= angle_max); }
+  /// Error of a phase: 16 units in its last place, and in that of a fraction of a second [cycles].
+  [[nodiscard]] double rounding() const noexcept { return 0x1p-48 * (1 + lines_per_second); }
+
+  /// Phases by which a gate is wider, for slots on its ends: rates of decimal digits stay together for 1e6 lines [cycles].
+  [[nodiscard]] double margin() const noexcept { return 0x1p-33 + rounding(); }
+
+  /// Phase of the line; one that rounding leaves just before the end of a line is the begin of the next one [cycles].
+  [[nodiscard]] simd::Doubles phases(const TickLanes& t) const noexcept {
+    const simd::Doubles phase = t.phase(lines_per_second);
+    return phase < 1 - rounding() ? phase : simd::Doubles{};
+  }
+  [[nodiscard]] simd::Doubles angles(const TickLanes& t) const noexcept { return sweep * (2.0 * phases(t) - 1.0); }
+  [[nodiscard]] simd::Mask gate(const simd::Doubles& angle) const noexcept {
+    return (angle >= angle_min - 2 * sweep * margin()) & (angle <= angle_max + 2 * sweep * margin());
+  }
 };
 
 static_assert(Optic<PolygonMirror> && ForeseesOpening<PolygonMirror> && MovesInLanes<PolygonMirror>);

@@ -22,7 +22,6 @@
 #include <pulsecast/platform/heading.hpp>
 #include <pulsecast/platform/piecewise_cubic.hpp>
 #include <pulsecast/platform/speed_profile.hpp>
-#include <pulsecast/refinements.hpp>
 
 namespace PULSECAST_NAMESPACE {
 

@@ -14,7 +14,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Pulsed laser at a constant rate: the innermost stage of every pipeline.
 struct Scanner {
-  double pulse_rate = 100e3;      ///< pulse repetition rate, from 1 to 1e12 [Hz]
+  double pulse_rate = 100e3;      ///< pulse repetition rate, from 1e-3 to 1e12 [Hz]
   PulseIndex pulses = 1'000'000;  ///< number of slots, at most 2^52, and no longer than 1e15 s
   double delay = 0;               ///< delay of every pulse after the begin of its slot; less than one slot [s]
   Laser laser{};                  ///< laser of every pulse
@@ -22,7 +22,7 @@ struct Scanner {
   std::uint16_t receiver = 0;     ///< as in `Emitter`
 
   void validate() const {
-    require_within("Scanner::pulse_rate", pulse_rate, 1, 1e12, "Hz");
+    require_within("Scanner::pulse_rate", pulse_rate, 1e-3, 1e12, "Hz");
     require_within("Scanner::pulses", static_cast<double>(pulses), 0, 0x1p52, "");  // limit of the counts in `Tick` and `step_in_cycle`
     require_within("Scanner::pulses (duration)", static_cast<double>(pulses) / pulse_rate, 0, 1e15, "s");
     if (!(delay >= 0 && delay < 1 / pulse_rate))

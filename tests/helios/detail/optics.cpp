@@ -73,6 +73,44 @@ TEST_CASE("an oscillating mirror makes cycles of whole pulses, from its lower en
   SUBCASE("it must swing") { CHECK_THROWS_AS((void)survey_optic(c, {.scan_frequency = 0}, rate), SettingError); }
 }
 
+TEST_CASE("rates and gates that a device rounds or cuts get a note, in any channel") {
+  const auto notes = [](const OpticSettings& optic, const LegScannerSettings& leg, double pulse_rate) {
+    ScannerSettings scanner;
+    scanner.channels = {channel(optic, 50)};
+    return detail::limit_notes(scanner, 0, leg, pulse_rate);
+  };
+  const auto swings = [&](double f, double pulse_rate) { return notes(OscillatingOptic{}, {.scan_frequency = f}, pulse_rate); };
+  CHECK(swings(50, 100e3).empty());
+  CHECK(swings(100, 33e3).empty());
+  REQUIRE(swings(400, 1000).size() == 1);
+  CHECK(swings(400, 1000)[0].find("scanFreq_hz of 400 is taken as 500, for a cycle is a whole number of pulses, here 2") !=
+        std::string::npos);
+  CHECK(swings(70, 33e3)[0].find("is taken as 70.064") != std::string::npos);
+  CHECK(swings(3e3, 10e3)[0].find("is taken as 3333.333") != std::string::npos);
+  const OscillatingOptic heavy{.scan_product_max = radians(500)};
+  CHECK(notes(heavy, {.scan_frequency = 20}, 1000)[0].find("is taken as 10, for the scanner's scanProduct") != std::string::npos);
+
+  const auto gate = [&](double low, double high) {
+    return notes(RotatingOptic{}, {.scan_frequency = 10, .vertical_angle_min = radians(low), .vertical_angle_max = radians(high)}, 1000);
+  };
+  CHECK(gate(-50, 50).empty());
+  CHECK(gate(-10, 20).empty());
+  REQUIRE(gate(-40, 60).size() == 1);
+  CHECK(gate(-40, 60)[0].find("beyond the mirror's sweep, -50 to 50 deg: pulses leave from -40 to 50 deg") != std::string::npos);
+  CHECK(gate(-70, 0)[0].find("from -50 to 0 deg") != std::string::npos);
+  CHECK(gate(-90, 90).empty());  // the document tells of a gate that is too wide
+
+  ScannerSettings two;
+  two.channels = {channel(RotatingOptic{}, 120), channel(RotatingOptic{}, 30)};
+  two.channels[1].head_speed_max = radians(10);
+  const std::vector<std::string> second = detail::limit_notes(
+      two, 1, {.scan_frequency = 10, .scan_angle = radians(40), .vertical_angle_min = -1, .vertical_angle_max = 1, .head_speed = 1}, 1000);
+  REQUIRE(second.size() == 3);
+  CHECK(second[0] == "channel 1: verticalAngleMin_deg and verticalAngleMax_deg are limited to -30 to 30 deg");
+  CHECK(second[1] == "channel 1: scanAngle_deg is limited to 30");
+  CHECK(second[2] == "channel 1: headRotatePerSec_deg is limited to 10, unlike that of the first channel");
+}
+
 TEST_CASE("fibres stand at the lower ends of equal shares of the scan angle") {
   const SurveyOptic optic = survey_optic(channel(LineOptic{.fibers = 64}, 20), {.scan_frequency = 10, .scan_angle = radians(15)}, rate);
   for (const PulseIndex i : {0U, 1U, 31U, 63U, 64U, 1000U})

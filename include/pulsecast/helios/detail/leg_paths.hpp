@@ -196,36 +196,18 @@ class LegPaths {
       s.turn = p.smooth_turn ? MulticopterTurn::smooth : MulticopterTurn::stop_and_turn;
       s.yaw_rate = std::clamp(d.yaw_speed, 1e-3, 1e3);
       s.bank_max = std::clamp(d.pitch_offset, 1e-3, 1.5);
+      if (s.yaw_rate != d.yaw_speed) warn("yaw_speed_deg is taken as " + brief(degrees(s.yaw_rate)));
+      if (s.bank_max != d.pitch_offset) warn("pitch_offset_deg is taken as " + brief(degrees(s.bank_max)));
       s.departure_heading = heading;
       heading = heading_from(end - 1, heading);
       s.arrival_heading = heading_from(end, heading);
       if (end < last) s.arrival_heading = departure_of(end, *s.arrival_heading);
-      const auto flight = std::make_shared<const MulticopterFlight>(over(points, s));
+      const auto flight = std::make_shared<const MulticopterFlight>(detail::flight_over(points, s));
       split(k, end, flight, flight->duration().seconds());
       heading = *s.arrival_heading;
       k = end;
     }
     paths_.back().path.path = Tripod{places_.back(), heading};
-  }
-
-  /// Flight over its waypoints. Smooth turns cut corners: up to 8 rounds move the waypoints outwards until all misses are below 1 cm.
-  [[nodiscard]] static MulticopterFlight over(std::vector<FlightPoint> points, const MulticopterSettings& s) {
-    const std::vector<FlightPoint> wanted = points;
-    MulticopterFlight flight = plan_multicopter(points, s);
-    if (s.turn != MulticopterTurn::smooth) return flight;
-    for (int round = 0; round < 8; ++round) {
-      double from = 0, most = 0;
-      const double whole = flight.duration().seconds();
-      for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-        from = detail::nearest_moment(flight, i, wanted[i].position, from, whole);
-        const Vec3 miss = wanted[i].position - flight.at(Tick::of_seconds(from)).position;
-        points[i].position += miss;
-        most = std::max(most, length(miss));
-      }
-      if (most < 0.01) break;
-      flight = plan_multicopter(points, s);
-    }
-    return flight;
   }
 
   void drive(const GroundHeight& ground) {

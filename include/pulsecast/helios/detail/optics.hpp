@@ -55,6 +55,7 @@ namespace detail {
 struct MirrorGate {
   double low = 0, high = 0;
   bool is_limited = false;  ///< the leg asks for a wider gate than the device has
+  bool is_cut = false;      ///< the leg asks for a gate beyond the sweep of the mirror
 };
 
 /// Gate of a leg. A gate that is too wide is first cut to the sweep of the mirror. If it is still too wide, it gets the width of the device
@@ -64,6 +65,7 @@ struct MirrorGate {
   const double half = std::min(effective, scan_angle_of(channel, leg));
   MirrorGate gate{leg.vertical_angle_min.value_or(-half), leg.vertical_angle_max.value_or(half)};
   gate.is_limited = gate.high - gate.low > 2 * effective + 1e-9;
+  gate.is_cut = gate.low < -sweep - 1e-9 || gate.high > sweep + 1e-9;
   if (!gate.is_limited) return gate;
   gate.low = std::max(gate.low, -sweep);
   gate.high = std::min(gate.high, sweep);
@@ -91,6 +93,47 @@ inline void require_scan_frequency(const ChannelSettings& channel, const LegScan
                            (most > 0 ? pulsecast::detail::to_text(most) : "any") + " Hz");
 }
 
+/// Rate of an oscillating mirror: within the device's product of angle and rate, and then in cycles of whole pulses [Hz].
+[[nodiscard]] inline double oscillation_rate(const ChannelSettings& channel, const OscillatingOptic& optic, const LegScannerSettings& leg,
+                                             double pulse_rate) {
+  const double angle = scan_angle_of(channel, leg);
+  const double f = angle * leg.scan_frequency > optic.scan_product_max ? optic.scan_product_max / angle : leg.scan_frequency;
+  const double pulses = std::floor(pulse_rate / f);
+  return pulses >= 2 ? pulse_rate / pulses : f;
+}
+
+/// Sentences about rates and angles of a leg that channel `c` rounds or cuts. Plain limits of the first channel are those of the document.
+[[nodiscard]] inline std::vector<std::string> limit_notes(const ScannerSettings& scanner, std::size_t c, const LegScannerSettings& leg,
+                                                          double pulse_rate) {
+  const ChannelSettings& channel = scanner.channels[c];
+  std::vector<std::string> notes;
+  const auto brief = [](double x) { return pulsecast::detail::to_text(std::round(x * 1e3) / 1e3); };
+  const auto note = [&](const std::string& text) { notes.push_back((c > 0 ? "channel " + std::to_string(c) + ": " : "") + text); };
+  if (const auto* const mirror = std::get_if<OscillatingOptic>(&channel.optic); mirror && leg.scan_frequency > 0) {
+    const double asked = leg.scan_frequency, f = oscillation_rate(channel, *mirror, leg, pulse_rate);
+    if (std::fabs(f - asked) > 1e-4 * asked)
+      note("scanFreq_hz of " + brief(asked) + " is taken as " + brief(f) +
+           (scan_angle_of(channel, leg) * asked > mirror->scan_product_max ? ", for the scanner's scanProduct, and" : ",") +
+           " for a cycle is a whole number of pulses, here " + brief(pulse_rate / f));
+  }
+  if (const auto* const mirror = std::get_if<RotatingOptic>(&channel.optic);
+      mirror && leg.scan_frequency > 0 && channel.scan_angle_max > 0) {
+    const MirrorGate gate = mirror_gate(channel, *mirror, leg);
+    const double sweep = channel.scan_angle_max;
+    const std::string within = brief(degrees(std::max(gate.low, -sweep))) + " to " + brief(degrees(std::min(gate.high, sweep))) + " deg";
+    if (gate.is_cut && !gate.is_limited)
+      note("verticalAngleMin_deg and verticalAngleMax_deg reach beyond the mirror's sweep, -" + brief(degrees(sweep)) + " to " +
+           brief(degrees(sweep)) + " deg: pulses leave from " + within);
+    if (gate.is_limited && c > 0) note("verticalAngleMin_deg and verticalAngleMax_deg are limited to " + within);
+  }
+  if (c == 0) return notes;
+  if (leg.scan_angle && scan_angle_of(channel, leg) < *leg.scan_angle)
+    note("scanAngle_deg is limited to " + brief(degrees(channel.scan_angle_max)));
+  if (head_rate(channel, leg) != head_rate(scanner.channels[0], leg))
+    note("headRotatePerSec_deg is limited to " + brief(degrees(channel.head_speed_max)) + ", unlike that of the first channel");
+  return notes;
+}
+
 /// Builds the optic of a channel. `tilt` is added to the mount of the channel.
 struct OpticBuilder {
   const ChannelSettings& channel;
@@ -102,20 +145,18 @@ struct OpticBuilder {
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const OscillatingOptic& optic) {
     ahead = active;
-    const double angle = scan_angle_of(channel, leg);
-    double f = leg.scan_frequency;
-    if (!(f > 0)) throw SettingError("scanFreq_hz", f, "Hz", "greater than 0 for an oscillating mirror");
-    if (angle * f > optic.scan_product_max) f = optic.scan_product_max / angle;
-    // The cycle is rounded to whole pulses. The mirror turns round in 100 pulses at most.
-    const double pulses = std::floor(pulse_rate / f);
-    if (pulses >= 2) f = pulse_rate / pulses;
-    return OscillatingMirror{.cycles_per_second = f, .half_angle = angle, .turning_time = std::min(100 / pulse_rate, 0.5 / f)};
+    if (!(leg.scan_frequency > 0)) throw SettingError("scanFreq_hz", leg.scan_frequency, "Hz", "greater than 0 for an oscillating mirror");
+    const double f = oscillation_rate(channel, optic, leg, pulse_rate);
+    return OscillatingMirror{// that turns round in 100 pulses at most
+                             .cycles_per_second = f,
+                             .half_angle = scan_angle_of(channel, leg),
+                             .turning_time = std::min(100 / pulse_rate, 0.5 / f)};
   }
 
   [[nodiscard]] SurveyOptic::AnyOptic operator()(const RotatingOptic& optic) {
     const double sweep = channel.scan_angle_max, f = leg.scan_frequency;
     if (!(f > 0) || !(sweep > 0)) return FixedBeam{};  // sensors that scan by their head
-    const auto [low, high, is_limited] = mirror_gate(channel, optic, leg);
+    const auto [low, high, is_limited, is_cut] = mirror_gate(channel, optic, leg);
     if (high < low) throw SettingError("verticalAngleMax_deg", degrees(high), "deg", "at least verticalAngleMin_deg");
     ahead = 0.5 / f;  // a leg begins in the middle of a facet
     return PolygonMirror{

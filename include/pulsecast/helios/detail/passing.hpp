@@ -7,6 +7,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <vector>
 
 #include <pulsecast/base/tick.hpp>
 #include <pulsecast/base/units.hpp>
@@ -56,6 +57,26 @@ template <class Plan>
     (first_is_nearer ? high : low) = first_is_nearer ? b : a;
   }
   return 0.5 * (low + high);
+}
+
+/// Flight over its waypoints. Smooth turns cut corners: up to 8 rounds move the waypoints outwards until all misses are below 1 cm.
+[[nodiscard]] inline MulticopterFlight flight_over(std::vector<FlightPoint> points, const MulticopterSettings& s) {
+  const std::vector<FlightPoint> wanted = points;
+  MulticopterFlight flight = plan_multicopter(points, s);
+  if (s.turn != MulticopterTurn::smooth) return flight;
+  for (int round = 0; round < 8; ++round) {
+    double from = 0, most = 0;
+    const double whole = flight.duration().seconds();
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+      from = nearest_moment(flight, i, wanted[i].position, from, whole);
+      const Vec3 miss = wanted[i].position - flight.at(Tick::of_seconds(from)).position;
+      points[i].position += miss;
+      most = std::max(most, length(miss));
+    }
+    if (most < 0.01) break;
+    flight = plan_multicopter(points, s);
+  }
+  return flight;
 }
 
 /// First time in `from` to `until` at which a flight heads for `place` within 1 degree; `from` if there is none [s].

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,7 @@ class SurveyCompiler {
     Tick start{};
     SurveyPath path;  // of the leg before, and then of the leg
     double optic_time = 0;
+    std::unordered_set<std::string> noted;  // limits that a leg before met
     for (std::size_t k = 0; k < survey_.legs.size(); ++k) {
       const LegSettings& leg = survey_.legs[k];
       const double rate = paths_.of_leg(k, [&] { return pulse_rate_of(survey_.scanner, leg.scanner); });
@@ -54,6 +56,9 @@ class SurveyCompiler {
       const double interval = leg.scanner.active ? leg.scanner.trajectory_interval : 0;
       if (interval > 0)
         require_within(paths_.leg_name(k) + ": trajectoryTimeInterval_s (records)", duration / interval, 0, max_records, "");
+      for (std::size_t c = 0; c < survey_.scanner.channels.size() && leg.scanner.active && !only_ends(survey_, k); ++c)
+        for (const std::string& note : limit_notes(survey_.scanner, c, leg.scanner, rate))
+          if (noted.insert(note).second) warnings.push_back(paths_.leg_name(k) + ": " + note);
       if (!leg.scanner.active || teleports(leg)) optic_time = 0;
       const Mount mount{.lever_arm = survey_.platform.mount.position, .boresight = survey_.platform.mount.rotation.rotation()};
       Instrument instrument = paths_.of_leg(k, [&] {

@@ -125,7 +125,7 @@ class LegChecks {
         io.warn("verticalAngleMin_deg", "verticalAngleMin_deg and verticalAngleMax_deg have no effect with these optics");
       return;
     }
-    const auto [low, high, is_limited] = detail::mirror_gate(device, *rotating, s);
+    const auto [low, high, is_limited, is_cut] = detail::mirror_gate(device, *rotating, s);
     const auto in_degrees = [](double angle) { return brief(degrees(angle)); };
     if (s.scan_frequency > 0 && !(low < high))
       io.fault("verticalAngleMin_deg", "no pulse is emitted between " + xml_number(units::degree.number(low)) + " and " +
