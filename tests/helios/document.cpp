@@ -631,6 +631,34 @@ TEST_CASE("a survey may have ten thousand legs") {
   CHECK(document.survey.legs[9'999].scanner.scan_angle == radians(1 + 9'999 % 30));
 }
 
+TEST_CASE("documents in windows-1252 and ISO-8859-1 become UTF-8, those of other encodings are refused") {
+  const auto read = [](const std::string& encoding, const std::string& name) {
+    std::string text = survey_text("name=\"" + name + "\"", leg(""));
+    text.erase(0, text.find("?>") + 2);
+    return read_text((encoding.empty() ? "" : "<?xml version='1.0' encoding='" + encoding + "'?>") + text);
+  };
+  const std::size_t usual = read("UTF-8", "munich").warnings.size();
+  const auto is = [&](const std::string& encoding, const std::string& name, const std::string& expected, const std::string& note = "") {
+    CAPTURE(encoding);
+    const SurveyDocument document = read(encoding, name);
+    CHECK(document.survey.name == expected);
+    CHECK(document.warnings.size() == usual + (note.empty() ? 0 : 1));
+    if (!note.empty()) CHECK(contains(document.warnings.front(), note));
+  };
+  for (const char* encoding : {"ISO-8859-1", "iso-8859-1", "windows-1252", "Windows-1252"}) {
+    is(encoding, "m\xFCnchen", "m\xC3\xBCnchen");
+    is(encoding, "\x80 5", "\xE2\x82\xAC 5");  // euro
+    is(encoding, "m\xC3\xBCnchen", "m\xC3\xBCnchen", "and is UTF-8, as which it is taken");
+  }
+  for (const char* encoding : {"UTF-8", "", "us-ascii"}) {
+    is(encoding, "m\xC3\xBCnchen", "m\xC3\xBCnchen");
+    is(encoding, "m\xFCnchen", "m\xC3\xBCnchen", "is no UTF-8, and is taken as windows-1252");
+    is(encoding, "\xED\xA0\x80", "\xC3\xAD\xC2\xA0\xE2\x82\xAC", "is no UTF-8");  // a surrogate
+  }
+  is("Shift_JIS", "munich", "munich");  // in ASCII
+  CHECK(contains(support::file_error([&] { (void)read("Shift_JIS", "m\xFCnchen"); }).problem(), "has the encoding 'shift_jis': expected"));
+}
+
 TEST_CASE("hostile documents are refused at once") {
   const auto refuses = [](const std::string& text, const std::string& part) {
     const std::string faults = faults_of(text);

@@ -464,6 +464,137 @@ TEST_CASE("files outside the folder of a mesh are refused, unless allowed") {
   }
 }
 
+TEST_CASE("a required extension of glTF is known, or the file is refused; others that move meshes are noted") {
+  const Folder folder;
+  const auto uses = [](const std::string& list, const std::string& name) {
+    Gltf gltf = triangle_file();
+    gltf.more = "\"extensionsUsed\":[\"KHR_materials_ior\",\"" + name + "\"]," + list;
+    return gltf;
+  };
+  const auto required = [&](const std::string& name) { return uses("\"extensionsRequired\" : [ \"" + name + "\" ],", name); };
+  for (const char* known : {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual"})
+    CHECK(read_mesh_file(folder.write("a.gltf", required(known).text())).triangle_count() == 1);
+  for (const char* unknown : {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "SOME_thing", "\\u004bHR"}) {
+    CAPTURE(unknown);
+    for (const bool isolated : {false, true})
+      for (const auto& path : {folder.write("a.gltf", required(unknown).text()), folder.write("b.glb", required(unknown).binary())})
+        CHECK(contains(support::file_error([&] { (void)read_mesh_file(path, {.isolated = isolated}); }).problem(),
+                       std::string("requires the glTF extension '") + unknown + "', which is not supported: expected"));
+  }
+  for (const char* moving : {"EXT_mesh_gpu_instancing", "CESIUM_RTC"})
+    CHECK(warns(read_mesh_file(folder.write("a.gltf", uses("", moving).text())), std::string(moving) + ", which has no effect"));
+  CHECK(read_mesh_file(folder.write("a.gltf", uses("", "KHR_texture_transform").text())).warnings.empty());
+  Gltf hidden = triangle_file();
+  hidden.more = R"("extensions\u0052equired":["SOME_thing"],)";
+  CHECK(contains(support::file_error([&] { (void)read_mesh_file(folder.write("a.gltf", hidden.text())); }).problem(), "without escapes"));
+}
+
+TEST_CASE("a mesh compressed by Draco is read, where assimp can") {
+  const Folder folder;
+  const std::string code =
+      "445241434f02020100000001030100010201010009030000000000803f00000040000040400000004000000040000040400000803f0000804000004040";
+  std::string bytes;
+  for (std::size_t i = 0; i < code.size(); i += 2) bytes += static_cast<char>(std::stoi(code.substr(i, 2), nullptr, 16));
+  folder.write("a.bin", bytes);
+  const auto path = folder.write("a.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_draco_mesh_compression"],
+    "extensionsRequired":["KHR_draco_mesh_compression"],"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[
+    {"attributes":{"POSITION":0},"indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}}}]}],
+    "accessors":[{"componentType":5126,"type":"VEC3","count":3},{"componentType":5123,"type":"SCALAR","count":3}],
+    "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":61}],"buffers":[{"byteLength":61,"uri":"a.bin"}]})");
+  try {
+    CHECK(distance(world_corners(read_mesh_file(path)), {{1, -3, 2}, {2, -3, 2}, {1, -3, 4}}) < 1e-14);
+  } catch (const FileError& refused) {
+    CHECK(contains(refused.problem(), "raco"));  // built without it
+  }
+}
+
+TEST_CASE("positions that are whole numbers, strips, and meshes without an area are refused or noted") {
+  const Folder folder;
+  std::string whole = triangle_file().text();
+  whole.replace(whole.find("5126"), 4, "5125");
+  CHECK(contains(support::file_error([&] { (void)read_mesh_file(folder.write("a.gltf", whole)); }).problem(),
+                 "has positions of the component type 5125 (accessor 0)"));
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string strips =
+      head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n";
+  CHECK(contains(support::file_error([&] { (void)read_mesh_file(folder.write("a.ply", strips)); }).problem(), "has triangle strips"));
+  const std::string points =
+      head + "element face 2\nproperty list uchar int vertex_indices\nend_header\n5 5 5\n5 5 5\n5 5 5\n5 5 5\n3 0 1 2\n3 1 2 3\n";
+  CHECK(warns(read_mesh_file(folder.write("a.ply", points)), "1 meshes have triangles, and none with an area"));
+}
+
+TEST_CASE("polygons of any corner first fill what they enclose") {
+  const Folder folder;
+  const std::vector<std::array<double, 2>> notched{{-5, -5}, {5, -5}, {5, 5}, {0, 0}, {-5, 5}}, arrow{{0, 0}, {4, -4}, {0, 4}, {-4, -4}},
+      square{{0, 0}, {3, 0}, {3, 2}, {0, 2}}, bow{{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+  struct Case {
+    std::vector<std::array<double, 2>> outline;
+    double area;
+    bool crosses = false;
+  };
+  for (const Case& c : {Case{notched, 75}, {arrow, 16}, {square, 6}, {bow, 0, true}})
+    for (std::size_t first = 0; first < c.outline.size(); ++first) {
+      CAPTURE(first);
+      const std::string count = std::to_string(c.outline.size());
+      std::string text = "ply\nformat ascii 1.0\nelement vertex " + count + "\nproperty float x\nproperty float y\nproperty float z\n" +
+                         "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+      for (const auto& [x, y] : c.outline) text += std::to_string(x) + " " + std::to_string(y) + " 7\n";
+      text += count;
+      for (std::size_t k = 0; k < c.outline.size(); ++k) text += " " + std::to_string((first + k) % c.outline.size());
+      const MeshFile file = read_mesh_file(folder.write("a.ply", text + "\n"));
+      CHECK(warns(file, "1 polygons cross themselves") == c.crosses);
+      if (c.crosses) continue;
+      CHECK(file.warnings.empty());
+      const std::vector<Vec3> all = world_corners(file);
+      double area = 0, turned = 0;
+      for (std::size_t k = 0; k + 2 < all.size(); k += 3) {
+        const double one = cross(all[k + 1] - all[k], all[k + 2] - all[k]).z / 2;
+        area += one;
+        turned += one < 0 ? 1 : 0;
+      }
+      CHECK(area == doctest::Approx(c.area));
+      CHECK(turned == 0);
+    }
+}
+
+TEST_CASE("coordinates that single precision rounds by more than a millimetre are noted") {
+  const Folder folder;
+  const auto notes = [&](double x, double unit = 1) {
+    const std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+        std::to_string(x) + " 0 0\n" + std::to_string(x + 9) + " 0 0\n" + std::to_string(x) + " 9 0\n3 0 1 2\n";
+    return warns(read_mesh_file(folder.write("a.ply", text), {.unit = unit}), "are read in single precision, to");
+  };
+  CHECK(notes(500000.13));
+  CHECK(notes(-5.4e6));
+  CHECK(notes(17000));
+  CHECK_FALSE(notes(16000));
+  CHECK_FALSE(notes(500000, 0.001));
+  CHECK(notes(16000, 2));
+  Gltf far = triangle_file(",\"translation\":[500000,0,0]");
+  CHECK(warns(read_mesh_file(folder.write("a.gltf", far.text())),
+              "coordinates up to 500004 m, which are read in single precision, to 0.03 m"));
+  const auto precise = folder.write("a.obj", "v 500000.13 0 0\nv 500009 0 0\nv 500000 9 0\nf 1 2 3\n");
+  CHECK(read_mesh_file(precise).warnings.empty());
+}
+
+TEST_CASE("names of files in glTF may have percent codes, and stay in the folder") {
+  const Folder folder;
+  Gltf gltf = triangle_file();
+  std::filesystem::create_directory(folder / "inner");
+  folder.write("inner/my sc\xC3\xA4ne.bin", gltf.buffer());
+  folder.write("inner/50%25.bin", gltf.buffer());
+  folder.write("a.bin", gltf.buffer());
+  for (const bool isolated : {false, true}) {
+    for (const char* name : {"my%20sc%C3%A4ne.bin", "my%20sc%c3%a4ne.bin", "my sc\xC3\xA4ne.bin", "50%25.bin"})
+      CHECK(read_mesh_file(folder.write("inner/a.gltf", gltf.text(name)), {.isolated = isolated}).triangle_count() == 1);
+    const auto outside = folder.write("inner/b.gltf", gltf.text("%2E%2E/a.bin"));
+    CHECK(contains(support::file_error([&] { (void)read_mesh_file(outside, {.isolated = isolated}); }).problem(),
+                   "expected files in its own folder"));
+  }
+}
+
 TEST_CASE("a mesh file that is missing, empty or unknown is explained, and so are settings") {
   const Folder folder;
   const auto error = [&](const std::filesystem::path& path) { return support::file_error([&] { (void)read_mesh_file(path); }); };

@@ -378,6 +378,8 @@ TEST_CASE("a cloud is read in blocks without a seam") {
 }
 
 TEST_CASE("clouds that cannot be are refused") {
+  CHECK(error("ply\nformat ascii 1.0\n").problem().starts_with("is a PLY file, which is loaded as a mesh if it has faces: expected"));
+  CHECK(error("# .PCD v0.7\nVERSION 0.7\n").problem().starts_with("is a PCD file"));
   CHECK(error("").problem() == "is empty: expected a point cloud");
   CHECK(error("# x y z\n").problem() == "holds no point: expected at least one");
   CHECK(error("1 2 3\n1 nan 3\n").place() == "line 2, column 2");

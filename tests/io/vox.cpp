@@ -91,6 +91,8 @@ TEST_CASE("the greatest density is the file's own where nobody names one") {
   const VoxelFile file = read(plain + "0 0 0 1 0\n0 0 1 4 1\n0 0 2 NaN 0\n", scaled);  // 4, though it is not opaque
   CHECK(file.density_max == 4);
   CHECK(file.voxels.scales == std::vector<float>{0.5f});
+  REQUIRE(file.warnings.size() == 2);  // beside that about NaN
+  CHECK(file.warnings[0].ends_with("has no key 'max_pad': the largest density of its rows, 4 m^2/m^3, is that of whole cubes"));
   CHECK(error(plain + "0 0 0 0 0\n", scaled).problem() == "has no occupied voxel: expected at least one");
 }
 

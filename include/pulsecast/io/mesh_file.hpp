@@ -21,7 +21,9 @@ namespace PULSECAST_NAMESPACE::io {
 /// Materials: colour and opacity by the base colour; a reflectance of 0.5; opacity and transmission as of glass with the index of the file;
 /// specular colour as `read_mtl`; metals of a roughness up to 0.1 are mirrors, other surfaces of glTF have facets of that roughness.
 /// Throws a `FileError` for a file that is missing or damaged, or has a coordinate beyond 1e12; a `SettingError` for settings out of range.
-/// Limits: nodes are nested at most 1000 deep; EXT_mesh_gpu_instancing and transforms of texture coordinates are ignored.
+/// Limits: nodes are nested at most 1000 deep. A file is refused that has strips (PLY), or requires an extension of glTF other than those
+/// for materials, lights, transforms of texture coordinates and Draco. Warnings tell of other extensions that move meshes, of bones and
+/// morph targets, and of coordinates that single precision rounds by more than a millimetre.
 [[nodiscard]] MeshFile read_mesh_file(const std::filesystem::path& path, const MeshFileSettings& settings = {},
                                       const Workers& workers = {});
 

@@ -33,6 +33,24 @@ namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
 
+/// Refuses a file of another kind by its first bytes.
+inline void refuse_other_kinds(InputFile& file) {
+  struct Kind {
+    std::string_view begin, name;
+  };
+  static constexpr std::array<Kind, 6> kinds{{{"ply", "a PLY file, which is loaded as a mesh if it has faces"},
+                                              {"# .PCD", "a PCD file"},
+                                              {"ASTM-E57", "an E57 file"},
+                                              {"PK\x03\x04", "a ZIP file"},
+                                              {"\x1F\x8B", "compressed by gzip"},
+                                              {"\x89HDF", "an HDF file"}}};
+  const std::string_view head = file.take(16);
+  for (const Kind& kind : kinds)
+    if (head.starts_with(kind.begin) && (kind.begin != "ply" || head.size() < 4 || head[3] == '\n' || head[3] == '\r'))
+      file.fail("is " + std::string(kind.name) + ": expected a point cloud as text or LAS; CloudCompare and pdal translate convert to LAS");
+  file.seek(0);
+}
+
 /// Calls a function with the reader for the format of a file.
 template <class Function>
 void with_points(const std::filesystem::path& path, const PointCloudSettings& settings, Function function) {
@@ -41,6 +59,7 @@ void with_points(const std::filesystem::path& path, const PointCloudSettings& se
     LasPoints points(std::move(file));
     function(points);
   } else {
+    refuse_other_kinds(file);
     PointColumns columns = settings.columns;
     if (settings.normals != VoxelNormals::mean && settings.normals != VoxelNormals::nearest) columns.normal.reset();
     if (!settings.colours) columns.colour.reset();

@@ -193,6 +193,9 @@ class VoxelFileReader {
 
   void finish() {
     file_.density_max = settings_.density_max.value_or(max_pad_.value_or(density_max_));
+    if (settings_.use == VoxelUse::scaled && !settings_.density_max && !max_pad_)
+      file_.warnings.push_back(table_.path() + ": has no key 'max_pad': the largest density of its rows, " +
+                               pulsecast::detail::to_text(density_max_) + " m^2/m^3, is that of whole cubes");
     if (settings_.use == VoxelUse::scaled) scale();
     if (settings_.use == VoxelUse::transmissive) file_.voxels.densities = std::move(densities_);
     file_.voxels.cells = std::move(kept_);

@@ -96,6 +96,30 @@ TEST_CASE("the first row decides whether there are normals and colours") {
   CHECK(e.problem() == "has 5 columns: expected at least 6");
 }
 
+TEST_CASE("one first row of names or a count is skipped with a warning, unless it names other columns") {
+  const auto skipped = [](const std::string& head, const std::string& what) {
+    CAPTURE(head);
+    const Read found = read(head + "1;2;3\n-4.5;5e3;.25\n");
+    CHECK(found.positions == two);
+    REQUIRE(found.warnings.size() == 1);
+    CHECK(found.warnings[0].find("a.xyz, line " + what) != std::string::npos);
+  };
+  skipped("75\n", "1: '75' is skipped, as a count of points");
+  skipped("//X;Y;Z;Intensity\n75\n", "2: '75' is skipped");
+  skipped("X;Y;Z\n", "1: 'X;Y;Z' is skipped, as names of columns");
+  skipped("\"x\" \"y\" \"z\"\n", "1: ");
+  skipped("east,north,height\n", "1: ");
+  skipped("# time x y z\n", "1: names x, y and z of other columns");
+  CHECK(read("# x y z\n1 2 3\n").warnings.empty());
+  CHECK(read("# by x\n1 2 3\n").warnings.empty());
+  CHECK(error("time,x,y,z\n9,1,2,3\n").problem() == "names x, y and z of other columns than those that are read: expected these first");
+  CHECK(read("time,x,y,z\n9,1,2,3\n", {.position = {1, 2, 3}}).positions == Points{{1, 2, 3}});
+  for (const char* bad : {"x y z\nx y z\n1 2 3\n", "2\n2\n1 2 3\n", "x 2 z\n1 2 3\n", "x y\n1 2 3\n", "2.5\n1 2 3\n"}) {
+    CAPTURE(bad);
+    CHECK_THROWS_AS((void)read(bad), FileError);
+  }
+}
+
 TEST_CASE("rows that cannot be right are refused, with line and column") {
   const auto problem = [](const char* cell) {
     return std::string("'") + cell + "': expected a finite number, with a decimal point, within 1e12";
@@ -108,7 +132,7 @@ TEST_CASE("rows that cannot be right are refused, with line and column") {
   }
   CHECK(error("1 2 3 0 nan 1\n").place() == "line 1, column 5");
   CHECK(error("1 2 3 0 0 1 0 y 0\n").place() == "line 1, column 8");
-  CHECK(error("x y z\n").place() == "line 1, column 1");
+  CHECK(error("1 2 3\nx y z\n").place() == "line 2, column 1");
   CHECK(error("1 2\n").problem() == "has 2 columns: expected at least 3");
   CHECK(error("1 2 3\n4 5\n").place() == "line 2");
   CHECK(error("1,2 3,4 5,6\n").problem() == problem("2 3"));

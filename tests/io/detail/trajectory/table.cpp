@@ -352,6 +352,23 @@ TEST_CASE("columns that are no matter may be left out by name") {
   CHECK(table.poses[0].position == Vec3{1, 2, 3});
 }
 
+TEST_CASE("a name that ends in height is a height, and columns that were not understood are told") {
+  const std::string row = "\n400000,1,2,50,0,0,90\n";
+  for (const char* name : {"ELLIPSOID HEIGHT", "Ellipsoid Height (m)", "orthometric_height"}) {
+    CAPTURE(name);
+    const auto table = read("TIME,EASTING,NORTHING," + std::string(name) + ",ROLL,PITCH,HEADING" + row, helios_format());
+    CHECK(table.warnings.empty());
+    REQUIRE(table.poses.size() == 1);
+    CHECK(table.poses[0].position == Vec3{1, 2, 50});
+  }
+  CHECK(error("TIME,EASTING,NORTHING,H-ELL,ROLL,PITCH,HEADING" + row, helios_format())
+            .problem()
+            .ends_with("up or down; not understood: 'H-ELL'; a survey may give columns by number, as with zIndex"));
+  CHECK(contains(error("TIME,EASTING,NORTHING,ELLIPSOID HEIGHT (ft),ROLL,PITCH,HEADING" + row, helios_format()).problem(),
+                 "not understood: 'ELLIPSOID HEIGHT (ft)'"));
+  CHECK(contains(error("t,east,north,ellipsoid height,height,x" + row).problem(), "duplicates column 4"));
+}
+
 TEST_CASE("further columns do not count where the file or the format says which ones are which, if the format allows for them") {
   const std::string named = "#HEADER: \"t\", \"quality\", \"roll\", \"pitch\", \"yaw\", \"x\", \"y\", \"z\"\n";
   const TrajectoryTable table = read(named + "7,good,1,2,3,4,5,6,more,and more\n", helios_format());

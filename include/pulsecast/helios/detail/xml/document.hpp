@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +17,7 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/text.hpp>
+#include <pulsecast/helios/detail/xml/encoding.hpp>
 #include <pulsecast/io/input_file.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
@@ -129,9 +131,9 @@ class XmlDocument {
     io::InputFile file(path, "an XML document");
     if (file.size() > max_file_size) file.fail("is longer than " + std::to_string(max_file_size) + " bytes: expected an XML document");
     text_ = file.take_rest();
-    for (std::size_t i = 0; i < text_.size(); ++i)
-      if (text_[i] == '\n') line_ends_.push_back(i);
+    find_line_ends();
     if (const std::size_t zero = text_.find('\0'); zero != std::string::npos) fail_at(zero, "holds binary data: expected an XML document");
+    decode();
     const auto status = document_.load_buffer(text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
     if (!status)
       fail_at(static_cast<std::size_t>(status.offset),
@@ -146,6 +148,8 @@ class XmlDocument {
   }
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  /// Oddity of the encoding and its place; empty without.
+  [[nodiscard]] const std::optional<XmlFault>& oddity() const noexcept { return oddity_; }
   [[nodiscard]] pugi::xml_node root() const noexcept { return root_; }
 
   /// Position of the whole file.
@@ -165,6 +169,30 @@ class XmlDocument {
   }
 
  private:
+  /// Makes the text UTF-8. Lines stay.
+  void decode() {
+    const std::string declared = xml::declared_encoding(text_);
+    const std::size_t odd = xml::first_not_utf8(text_);
+    const bool is_utf8 = declared.empty() || declared == "utf-8" || declared == "utf8" || declared == "us-ascii" || declared == "ascii";
+    const bool is_ascii = std::none_of(text_.begin(), text_.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
+    if (is_ascii || (is_utf8 && odd == text_.size())) return;
+    if (!is_utf8 && declared != "iso-8859-1" && declared != "latin1" && declared != "windows-1252" && declared != "cp1252")
+      fail_at(0, "has the encoding " + text::quoted(declared) + ": expected UTF-8, ISO-8859-1 or windows-1252");
+    if (is_utf8)
+      oddity_ = {place_of(odd), "is no UTF-8, and is taken as windows-1252; the first line may tell, as in encoding=\"windows-1252\""};
+    else if (odd == text_.size())
+      oddity_ = {place(), "names the encoding " + text::quoted(declared) + ", and is UTF-8, as which it is taken"};
+    if (odd == text_.size()) return;
+    text_ = xml::utf8_of_windows_1252(text_);
+    find_line_ends();
+  }
+
+  void find_line_ends() {
+    line_ends_.clear();
+    for (std::size_t i = 0; i < text_.size(); ++i)
+      if (text_[i] == '\n') line_ends_.push_back(i);
+  }
+
   [[nodiscard]] static const char* hint(pugi::xml_parse_status status) {
     switch (status) {
       case pugi::status_end_element_mismatch:
@@ -242,6 +270,7 @@ class XmlDocument {
   }
 
   std::string path_, text_;
+  std::optional<XmlFault> oddity_;
   std::vector<std::size_t> line_ends_;
   pugi::xml_document document_;
   pugi::xml_node root_;

@@ -29,6 +29,7 @@ class XmlLibraryDocument {
  public:
   XmlLibraryDocument(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders, XmlReport& report)
       : document_(path), search_(with_own(folders, path)) {
+    if (document_.oddity()) report.warn(document_.oddity()->place, document_.oddity()->problem);
     if (std::string_view(document_.root().name()) != "document")
       report.fault(document_.place(document_.root()),
                    "the root element is <" + std::string(document_.root().name()).substr(0, 80) + ">: expected <document>");

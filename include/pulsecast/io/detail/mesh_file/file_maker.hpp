@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -45,6 +46,8 @@ class MeshFileMaker {
       warn(std::to_string(reshaped_) + " nodes shear, mirror or stretch their meshes, which become " + std::to_string(shaped_.size()) +
            " meshes of their own");
     if (flattened_ > 0) warn(std::to_string(flattened_) + " nodes whose transforms flatten their meshes are left out");
+    if (empty_ > 0) warn(std::to_string(empty_) + " meshes have triangles, and none with an area: all their vertices may coincide");
+    note_precision();
     if (file_.placements.empty()) warn("holds no triangle with an area");
     describe();
     return std::move(file_);
@@ -61,11 +64,35 @@ class MeshFileMaker {
     }
     const std::optional<std::size_t> mesh = split->is_similarity ? plain(node.meshes) : shaped(node.meshes, split->shape);
     if (!mesh) return;
+    measure(node, transform);
     reshaped_ += split->is_similarity ? 0 : 1;
     std::string name = node.name;
     if (name.empty() || name.ends_with('/')) name += scene_.meshes[node.meshes.front()].name;
     if (name.empty()) name = path_.stem().string();
     file_.placements.push_back({*mesh, split->placement, std::move(name)});
+  }
+
+  /// Notes the place of a node and its meshes for the precision, unless they are of double precision.
+  void measure(const RawNode& node, const Affine& transform) {
+    for (const std::uint32_t mesh : node.meshes) {
+      const RawMesh& one = scene_.meshes[mesh];
+      if (!one.precise.empty()) continue;
+      const auto [extent, is_new] = extents_.try_emplace(mesh, 0.0F);
+      for (std::size_t i = 0; is_new && i < one.vertices.size(); ++i) {
+        const Float3& v = one.vertices[i];
+        extent->second = std::max({extent->second, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+      }
+      farthest_ = std::max(farthest_, static_cast<double>(extent->second) * greatest(transform.linear) + max_norm(transform.shift));
+    }
+  }
+
+  /// Notes coordinates that single precision rounds by more than a millimetre. Source: IEEE 754-2019, binary32, half a unit of 24 bits.
+  void note_precision() {
+    const double rounding = farthest_ * 0x1p-24;
+    if (rounding > 1e-3)
+      warn("has coordinates up to " + std::to_string(std::llround(farthest_)) + " m, which are read in single precision, to " +
+           pulsecast::detail::to_text(std::ceil(rounding * 1e3) / 1e3) +
+           " m; OBJ files are read in double precision, and small coordinates with a translation of the part keep all digits");
   }
 
   [[nodiscard]] std::optional<std::size_t> plain(const std::vector<std::uint32_t>& meshes) {
@@ -97,7 +124,10 @@ class MeshFileMaker {
       if (place == one.materials.end()) one.materials.push_back(number->second);
     }
     one.mesh = maker_(shown, materials, shape);
-    if (one.mesh.triangles.empty()) return std::nullopt;
+    if (one.mesh.triangles.empty()) {
+      empty_ += shown.size();
+      return std::nullopt;
+    }
     file_.meshes.push_back(std::move(one));
     return file_.meshes.size() - 1;
   }
@@ -121,7 +151,9 @@ class MeshFileMaker {
   std::vector<std::uint32_t> used_;
   std::map<std::vector<std::uint32_t>, std::optional<std::size_t>> plain_;  ///< meshes by what they are made of
   std::map<std::pair<std::vector<std::uint32_t>, std::array<std::int64_t, 9>>, std::optional<std::size_t>> shaped_;
-  std::uint64_t reshaped_ = 0, flattened_ = 0;
+  std::uint64_t reshaped_ = 0, flattened_ = 0, empty_ = 0;
+  std::map<std::uint32_t, float> extents_;  ///< greatest coordinate of each mesh in use
+  double farthest_ = 0;                     ///< greatest coordinate of single precision [m]
 };
 
 /// Replaces materials, and their pictures, by those of the same names in an MTL file.

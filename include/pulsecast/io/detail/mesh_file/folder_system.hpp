@@ -33,19 +33,26 @@ class FolderSystem : public Assimp::IOSystem {
   /// Files that the importer asked for, there or not.
   [[nodiscard]] const std::set<std::string>& looked_for() const noexcept { return looked_for_; }
 
-  bool Exists(const char* file) const override { return is_open_to(file); }
+  bool Exists(const char* file) const override { return is_open_to(found(file)); }
   char getOsSeparator() const override { return '/'; }
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
+  Assimp::IOStream* Open(const char* named, const char* mode) override {
+    const std::string file = found(named);
     if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos || !is_open_to(file)) return nullptr;
     std::error_code ignored;
     const auto size = std::filesystem::file_size(file, ignored);
     if (!ignored && opened_ && known_.insert(file).second) opened_(size);
-    return files_.Open(file, mode);
+    return files_.Open(file.c_str(), mode);
   }
   void Close(Assimp::IOStream* stream) override { files_.Close(stream); }
 
  private:
-  [[nodiscard]] bool is_open_to(const char* file) const {
+  /// Name as it is, or with its percent codes as what they stand for, if there is no such file. Source: glTF 2.0, 3.6.1.1 (URIs).
+  [[nodiscard]] std::string found(const char* file) const {
+    looked_for_.insert(file);
+    std::error_code ignored;
+    return std::filesystem::exists(file, ignored) ? file : unescaped(file);
+  }
+  [[nodiscard]] bool is_open_to(const std::string& file) const {
     looked_for_.insert(file);
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) return false;

@@ -18,7 +18,6 @@
 
 #include <assimp/commonMetaData.h>
 #include <assimp/config.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
@@ -26,9 +25,11 @@
 #include <pulsecast/base/parallel.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/io/detail/mesh_file/folder_system.hpp>
+#include <pulsecast/io/detail/mesh_file/gltf_check.hpp>
 #include <pulsecast/io/detail/mesh_file/model.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
+#include <pulsecast/io/detail/obj/polygon.hpp>
 
 /// Import of files by assimp.
 namespace PULSECAST_NAMESPACE::io::detail {
@@ -44,6 +45,8 @@ class MeshImport {
 
   /// @throws FileError
   [[nodiscard]] RawScene read() {
+    check_ply(path_);
+    check_gltf(path_, scene_.warnings);
     Assimp::Importer& importer = data_->importer;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
@@ -52,7 +55,7 @@ class MeshImport {
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, settings_.up.has_value());
     const std::string main = std::filesystem::absolute(path_).string();
-    const aiScene* const found = importer.ReadFile(main, aiProcess_Triangulate);
+    const aiScene* const found = importer.ReadFile(main, 0);
     if (!found || !found->mRootNode) fail(importer.GetErrorString());
     if (!system_->refused().empty()) fail_elsewhere();
     format(*found);
@@ -66,6 +69,8 @@ class MeshImport {
       scene_.embedded.push_back(std::make_shared<const std::vector<std::byte>>(embedded_picture(*found->mTextures[i])));
     for (unsigned i = 0; i < found->mNumMeshes; ++i) mesh(*found->mMeshes[i]);
     nodes(*found->mRootNode);
+    if (posed_ > 0) warn(std::to_string(posed_) + " meshes have bones or morph targets, which are not applied");
+    if (crossings_ > 0) warn(std::to_string(crossings_) + " polygons cross themselves, and become fans about their first corners");
     if (left_out_ > 0) warn("points and lines are left out: " + std::to_string(left_out_) + " in all");
     for (const std::string& file : system_->looked_for())
       if (file != main) scene_.files.push_back(file);
@@ -131,30 +136,14 @@ class MeshImport {
   void mesh(const aiMesh& from) {
     static_assert(sizeof(aiVector3D) == sizeof(Float3) && sizeof(ai_real) == sizeof(float));
     RawMesh made{.name = from.mName.C_Str(), .material = from.mMaterialIndex};
+    const bool is_morphed = std::any_of(from.mAnimMeshes, from.mAnimMeshes + (from.mAnimMeshes ? from.mNumAnimMeshes : 0),
+                                        [](const aiAnimMesh* target) { return target && target->mWeight != 0; });
+    posed_ += from.mNumBones > 0 || is_morphed ? 1 : 0;
     if (from.mMaterialIndex >= materials_.size()) fail("a mesh has a material that is not there");
     made.vertices = {reinterpret_cast<const Float3*>(from.mVertices), from.mVertices ? from.mNumVertices : 0};
-    SharedBuffer<Corners3> triangles(from.mNumFaces);
-    constexpr std::size_t chunk = std::size_t{1} << 16;
-    const std::size_t chunks = (from.mNumFaces + chunk - 1) / chunk;
-    std::vector<unsigned char> has_others(chunks, 0);
-    for_each_index(chunks, workers_, [&](std::size_t c) {
-      const std::size_t end = std::min<std::size_t>((c + 1) * chunk, from.mNumFaces);
-      for (std::size_t i = c * chunk; i < end; ++i) {
-        if (from.mFaces[i].mNumIndices == 3)
-          copy(from.mFaces[i], from.mNumVertices, triangles[i]);
-        else
-          has_others[c] = 1;
-      }
-    });
-    std::size_t count = from.mNumFaces;
-    if (std::find(has_others.begin(), has_others.end(), 1) != has_others.end()) {
-      count = 0;
-      for (std::size_t i = 0; i < from.mNumFaces; ++i)
-        if (from.mFaces[i].mNumIndices == 3) triangles[count++] = triangles[i];
-      left_out_ += from.mNumFaces - count;
-    }
+    SharedBuffer<Corners3> triangles = triangles_of(from);
+    made.triangles = {triangles.data(), triangles.size()};
     if (from.mNumFaces == 0) left_out_ += from.mNumVertices;
-    made.triangles = {triangles.data(), count};
     data_->triangles.push_back(std::move(triangles));
     const ImportedMaterial& material = materials_[from.mMaterialIndex];
     const bool pictured = settings_.texture || !settings_.materials.empty() || !material.material.colour.name.empty() ||
@@ -166,13 +155,76 @@ class MeshImport {
     scene_.meshes.push_back(std::move(made));
   }
 
-  void copy(const aiFace& face, std::uint32_t vertices, Corners3& to) const {
-    for (unsigned k = 0; k < 3; ++k) {
-      to[k] = face.mIndices[k];
-      if (to[k] >= vertices)
-        fail("a triangle has the vertex " + std::to_string(to[k]) + ", expected less than the number of vertices, " +
-             std::to_string(vertices));
+  /// Triangles of all faces: n - 2 of one with n corners.
+  [[nodiscard]] SharedBuffer<Corners3> triangles_of(const aiMesh& from) {
+    constexpr std::size_t chunk = std::size_t{1} << 16;
+    struct Chunk {
+      std::size_t first = 0, left_out = 0, crossings = 0;  // number of triangles before it, of points and lines, and of polygons
+    };
+    std::vector<Chunk> chunks((from.mNumFaces + chunk - 1) / chunk);
+    const auto each = [&](std::size_t c, const auto& work) {
+      const std::size_t end = std::min<std::size_t>((c + 1) * chunk, from.mNumFaces);
+      for (std::size_t i = c * chunk; i < end; ++i) work(from.mFaces[i], from.mFaces[i].mNumIndices);
+    };
+    for_each_index(chunks.size(), workers_, [&](std::size_t c) {
+      each(c, [&](const aiFace&, std::size_t corners) {
+        chunks[c].first += corners < 3 ? 0 : corners - 2;
+        chunks[c].left_out += corners < 3 ? 1 : 0;
+      });
+    });
+    std::size_t count = 0;
+    for (Chunk& one : chunks) {
+      count += std::exchange(one.first, count);
+      left_out_ += one.left_out;
     }
+    SharedBuffer<Corners3> triangles(count);
+    for_each_index(chunks.size(), workers_, [&](std::size_t c) {
+      Corners3* to = triangles.data() + chunks[c].first;
+      each(c, [&](const aiFace& face, std::size_t corners) {
+        if (corners < 3) return;
+        check(face, from.mNumVertices);
+        chunks[c].crossings += cut(face, from.mVertices, to) ? 0 : 1;
+        to += corners - 2;
+      });
+    });
+    for (const Chunk& one : chunks) crossings_ += one.crossings;
+    return triangles;
+  }
+
+  void check(const aiFace& face, std::uint32_t vertices) const {
+    if (face.mNumIndices > max_polygon_corners)
+      fail("a polygon has " + std::to_string(face.mNumIndices) + " corners, expected at most " + std::to_string(max_polygon_corners));
+    for (unsigned k = 0; k < face.mNumIndices; ++k)
+      if (face.mIndices[k] >= vertices)
+        fail("a face has the vertex " + std::to_string(face.mIndices[k]) + ", expected less than the number of vertices, " +
+             std::to_string(vertices));
+  }
+
+  /// Writes the n - 2 triangles of a face; those that it does not need have no area. False for a fan, as its outline crosses itself.
+  [[nodiscard]] static bool cut(const aiFace& face, const aiVector3D* vertices, Corners3* to) {
+    const unsigned* const c = face.mIndices;
+    const auto fan = [&] {
+      for (unsigned k = 2; k < face.mNumIndices; ++k) to[k - 2] = {c[0], c[k - 1], c[k]};
+    };
+    fan();
+    if (face.mNumIndices == 3) return true;
+    std::vector<Vec3> corners;
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      const aiVector3D& v = vertices[c[k]];
+      corners.emplace_back(v.x, v.y, v.z);
+    }
+    if (corners.size() == 4) {  // the fan of a convex one without a search, as most polygons are such
+      const Vec3 normal = cross(corners[2] - corners[0], corners[3] - corners[1]);
+      const auto turns_left = [&](std::size_t k) {
+        const Vec3 &a = corners[k], &b = corners[(k + 1) % 4], &after = corners[(k + 2) % 4];
+        return dot(cross(b - a, after - b), normal) > 0;
+      };
+      if (turns_left(0) && turns_left(1) && turns_left(2) && turns_left(3)) return true;
+    }
+    const auto cuts = triangulated(corners);
+    for (std::size_t k = 0; k + 2 < corners.size() && !cuts.empty(); ++k)
+      to[k] = k < cuts.size() ? Corners3{c[cuts[k][0]], c[cuts[k][1]], c[cuts[k][2]]} : Corners3{c[0], c[0], c[0]};
+    return !cuts.empty();
   }
 
   /// Name of a node with those above it. The root is often one that assimp makes, or one without a meaning.
@@ -217,7 +269,7 @@ class MeshImport {
   RawScene scene_;
   std::vector<ImportedMaterial> materials_;
   bool gltf_ = false;
-  std::uint64_t left_out_ = 0;
+  std::uint64_t left_out_ = 0, posed_ = 0, crossings_ = 0;
 };
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

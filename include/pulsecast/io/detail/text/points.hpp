@@ -21,9 +21,10 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are skipped. Default separators are semicolons
-/// if the first row has any, else commas, else blanks. Blanks and tabs around a cell are ignored; as separators, several count as one. The
-/// first row decides on normals and colours; others need the columns in use. Throws a `FileError` with path, line and column.
+/// Reader of a text of points, one a row. Blank rows, and those that begin with `//` or `#`, are skipped; so is a first row that is one
+/// whole number, as a count, or has no number, as the names of columns, with a warning. Default separators are semicolons if the first row
+/// has any, else commas, else blanks. Blanks and tabs around a cell are ignored; as separators, several count as one. The first row decides
+/// on normals and colours; others need the columns in use. Throws a `FileError` with path, line and column.
 class TextPoints {
  public:
   TextPoints(InputFile file, PointColumns columns) : file_(std::move(file)), columns_(validated(std::move(columns))) {}
@@ -32,7 +33,13 @@ class TextPoints {
   [[nodiscard]] bool next() {
     while (const std::optional<std::string_view> line = file_.take_line()) {
       const std::string_view text = text::trimmed(*line);
-      if (text.empty() || text.front() == '#' || text.starts_with("//")) continue;
+      if (text.empty()) continue;
+      if (text.front() == '#' || text.starts_with("//")) {
+        if (names_other_columns(text.substr(std::min(text.find_first_not_of("#/ \t"), text.size()))))
+          note("names x, y and z of other columns than those that are read");
+        continue;
+      }
+      if (!begun_ && is_heading(text)) continue;
       if (!begun_) {
         begin(text);
       } else {
@@ -54,8 +61,9 @@ class TextPoints {
 
   /// Oddities that could still be read; complete after the last point.
   [[nodiscard]] std::vector<std::string> warnings() const {
-    if (!cut_) return {};
-    return {file_.path() + ": the last line has no line end: the file may be truncated"};
+    std::vector<std::string> all = notes_;
+    if (cut_) all.push_back(file_.path() + ": the last line has no line end: the file may be truncated");
+    return all;
   }
 
   [[noreturn]] void fail_here(const std::string& problem) const { file_.fail_at_line(problem); }
@@ -66,16 +74,55 @@ class TextPoints {
 
   [[nodiscard]] const std::vector<std::string_view>& cells() const noexcept { return cells_.cells(); }  ///< of the current row
 
-  /// Detects the separators and columns from the first row.
-  void begin(std::string_view text) {
+  void note(const std::string& oddity) {
+    notes_.push_back(pulsecast::detail::joined({file_.path(), ", line ", std::to_string(file_.line()), ": ", oddity}));
+  }
+
+  /// Splits a row by the separators of the settings, or those that it has.
+  void split(std::string_view text) {
     std::string separators = columns_.separators;
     if (separators.empty()) {
       const auto has = [&](char c) { return text.find(c) != text.npos; };
       separators = has(';') ? ";" : has(',') ? "," : text::blanks;
     }
     cells_ = RowCells(separators, true);
-    const auto last = [](const Columns& columns) { return *std::max_element(columns.begin(), columns.end()) + 1; };
     cells_.split(text, PointColumns::max_column + 1);
+  }
+
+  /// True if a row of names has x, y and z, and one of them in another column than that which is read.
+  [[nodiscard]] bool names_other_columns(std::string_view text) {
+    split(text);
+    bool is_other = false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto named = std::find_if(cells().begin(), cells().end(), [&](std::string_view cell) {
+        if (cell.size() == 3 && cell.front() == '"') cell = cell.substr(1, 1);
+        return text::is_same_word(cell, std::string_view("xyz").substr(axis, 1));
+      });
+      if (named == cells().end()) return false;
+      is_other = is_other || static_cast<std::size_t>(named - cells().begin()) != columns_.position[axis];
+    }
+    return is_other;
+  }
+
+  /// True for a first row that is a count of points or has the names of columns. Notes it.
+  [[nodiscard]] bool is_heading(std::string_view text) {
+    if (std::exchange(has_heading_, true)) return false;
+    if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' && c != '\t'; })) return false;
+    split(text);
+    const bool is_count = cells().size() == 1 && text::number_in<std::uint64_t>(text);
+    const bool has_number =
+        std::any_of(cells().begin(), cells().end(), [](auto cell) { return text::number_in<double>(cell) || cell == "nan"; });
+    if (!is_count && (has_number || cells().size() < 3)) return false;
+    if (!is_count && names_other_columns(text))
+      fail_here("names x, y and z of other columns than those that are read: expected these first");
+    note(text::quoted(text) + (is_count ? " is skipped, as a count of points" : " is skipped, as names of columns"));
+    return true;
+  }
+
+  /// Detects the separators and columns from the first row.
+  void begin(std::string_view text) {
+    split(text);
+    const auto last = [](const Columns& columns) { return *std::max_element(columns.begin(), columns.end()) + 1; };
     needed_ = last(columns_.position);
     if (cells().size() < needed_) too_few();
     for (std::optional<Columns>* columns : {&columns_.normal, &columns_.colour}) {
@@ -103,7 +150,8 @@ class TextPoints {
   PointColumns columns_;
   RowCells cells_;
   std::size_t needed_ = 0;  // columns in use
-  bool begun_ = false, cut_ = false;
+  std::vector<std::string> notes_;
+  bool begun_ = false, has_heading_ = false, cut_ = false;  // `has_heading_`: the first row has been looked at
 };
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -98,7 +98,7 @@ inline constexpr auto units = std::to_array<Unit>({
 }  // namespace detail
 
 /// Column of a name; empty if unknown. A unit may follow: `time_s`, `x_mm`, `Roll [deg]`; without one, times are in seconds and lengths in
-/// metres. Case does not matter.
+/// metres. A word may precede a height: `Ellipsoid height`. Case does not matter.
 [[nodiscard]] inline std::optional<TrajectoryColumn> trajectory_column(std::string_view name, AngleUnit angles) {
   const std::string whole = detail::plain(name);
   for (const auto& [known, quantity] : detail::quantity_names) {
@@ -112,7 +112,8 @@ inline constexpr auto units = std::to_array<Unit>({
     for (const detail::Unit& u : detail::units)
       if (u.dimension == dimension && u.name == unit) return TrajectoryColumn{quantity, u.per_si};
   }
-  return std::nullopt;
+  const std::size_t height = whole.rfind("_height");
+  return height == whole.npos ? std::nullopt : trajectory_column(std::string_view(whole).substr(height + 1), angles);
 }
 
 /// Known column name nearest to an unknown one.

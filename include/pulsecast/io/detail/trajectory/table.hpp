@@ -151,8 +151,16 @@ class TrajectoryReader {
     if (may_have_more()) leave_out_unknown();
     columns_.emplace(names_, format_.left_out, format_.angle_unit);
     if (columns_->problem().empty()) return;
-    if (!columns_->culprit()) table_.fail_here(columns_->problem());
+    if (!columns_->culprit()) table_.fail_here(columns_->problem() + unknown_names());
     table_.fail_here(*columns_->culprit(), text::quoted(names_[*columns_->culprit()]) + " " + columns_->problem());
+  }
+
+  /// Names that are not those of columns, to end a message.
+  [[nodiscard]] std::string unknown_names() const {
+    std::string all;
+    for (const std::string& name : names_)
+      if (!trajectory_column(name, format_.angle_unit)) all += (all.empty() ? "" : ", ") + text::quoted(name);
+    return all.empty() ? all : "; not understood: " + all + "; a survey may give columns by number, as with zIndex";
   }
 
   /// True if extra columns are allowed: the file or the format names the others.

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_IO_DETAIL_MESH_FILE_GLTF_CHECK_HPP
+#define PULSECAST_IO_DETAIL_MESH_FILE_GLTF_CHECK_HPP
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/text.hpp>
+#include <pulsecast/io/input_file.hpp>
+
+/// What changes a mesh and is not read by assimp: extensions and numbers of glTF, strips of PLY.
+namespace PULSECAST_NAMESPACE::io::detail {
+
+/// Removes the first value from JSON text. Returns its text; empty if there is none. Source: RFC 8259.
+[[nodiscard]] inline std::string_view take_json(std::string_view& text) {
+  std::size_t end = 0, depth = 0;
+  bool in_string = false;
+  const auto is_end = [&] { return depth == 0 && std::string_view(",:]} \t\r\n").find(text[end]) != std::string_view::npos; };
+  for (; end < text.size() && (in_string || !is_end()); ++end) {
+    const char c = text[end];
+    if (in_string && c == '\\')
+      ++end;
+    else if (c == '"')
+      in_string = !in_string;
+    else if (!in_string && (c == '{' || c == '['))
+      ++depth;
+    else if (!in_string && (c == '}' || c == ']') && --depth == 0)
+      return std::exchange(text, text.substr(end + 1)).substr(0, end + 1);
+  }
+  end = std::min(end, text.size());
+  return std::exchange(text, text.substr(end)).substr(0, end);
+}
+
+/// Calls `visit` with the name and value of each member of an object, and each element of an array without a name.
+template <class Visit>
+void each_json(std::string_view value, const Visit& visit) {
+  const bool is_object = value.starts_with('{');
+  if (!is_object && !value.starts_with('[')) return;
+  value.remove_prefix(1);
+  const auto skip = [&](std::string_view signs) { value.remove_prefix(std::min(value.find_first_not_of(signs), value.size())); };
+  for (;;) {
+    skip(", \t\r\n");
+    std::string_view name = is_object ? take_json(value) : std::string_view();
+    if (is_object) skip(": \t\r\n");
+    const std::string_view item = take_json(value);
+    if (item.empty()) return;
+    if (name.size() >= 2) name = name.substr(1, name.size() - 2);
+    visit(name, item);
+  }
+}
+
+/// Value of a member of an object; empty without.
+[[nodiscard]] inline std::string_view json_member(std::string_view object, std::string_view wanted) {
+  std::string_view found;
+  each_json(object, [&](std::string_view name, std::string_view value) {
+    if (found.empty() && name == wanted) found = value;
+  });
+  return found;
+}
+
+/// JSON text of a glTF or GLB file; empty for another file. Source: glTF 2.0, 4.4 (binary glTF layout).
+[[nodiscard]] inline std::string gltf_text(const std::filesystem::path& path) {
+  InputFile file(path, "a mesh file");
+  const std::string head(file.take(20));
+  if (head.size() == 20 && head.starts_with("glTF")) {
+    std::uint32_t left = 0;
+    for (int k = 3; k >= 0; --k) left = left << 8 | static_cast<unsigned char>(head[static_cast<std::size_t>(12 + k)]);
+    std::string text;
+    while (text.size() < left) {
+      const std::string_view more = file.take(std::min<std::size_t>(left - text.size(), InputFile::block_size));
+      if (more.empty()) break;
+      text += more;
+    }
+    return text;
+  }
+  const std::string_view plain = text::without_byte_order_mark(head);
+  const std::size_t first = plain.find_first_not_of(" \t\r\n");
+  if (first == plain.npos || plain[first] != '{') return {};
+  file.seek(0);
+  std::string text = file.take_rest();
+  return text.substr(text.find('{'));
+}
+
+/// Refuses a glTF file that requires an extension which assimp does not read, or has positions that are not floating-point numbers, which
+/// it takes for such; notes extensions without effect that move or hide meshes. Source: glTF 2.0, 3.12 (a required extension must be
+/// supported) and 3.7.2.1 (meshes: positions are `float`); Khronos registry of extensions.
+inline void check_gltf(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  // tested, with those for materials, which move nothing
+  static constexpr std::array<std::string_view, 3> known{"KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_texture_transform"};
+  static constexpr std::array<std::string_view, 3> moving{"EXT_mesh_gpu_instancing", "CESIUM_RTC", "KHR_node_visibility"};
+  const std::string text = gltf_text(path);
+  const auto fail = [&](const std::string& problem) { throw FileError(path.string(), "", problem); };
+  const auto extension = [](std::string_view value) { return value.size() >= 2 ? value.substr(1, value.size() - 2) : value; };
+  each_json(text, [&](std::string_view name, std::string_view) {
+    if (name.find('\\') != name.npos) fail("has the member " + text::quoted(name) + ": expected a name without escapes");
+  });
+  each_json(json_member(text, "extensionsRequired"), [&](std::string_view, std::string_view value) {
+    const std::string_view one = extension(value);
+    if (!one.starts_with("KHR_materials_") && std::find(known.begin(), known.end(), one) == known.end())
+      fail("requires the glTF extension " + text::quoted(one) +
+           ", which is not supported: expected a file without it, as Blender exports it, or gltfpack with -noq");
+  });
+  each_json(json_member(text, "extensionsUsed"), [&](std::string_view, std::string_view value) {
+    if (const std::string_view one = extension(value); std::find(moving.begin(), moving.end(), one) != moving.end())
+      warnings.push_back(path.string() + ": uses the glTF extension " + std::string(one) + ", which has no effect");
+  });
+  std::vector<std::string_view> types;
+  each_json(json_member(text, "accessors"),
+            [&](std::string_view, std::string_view accessor) { types.push_back(json_member(accessor, "componentType")); });
+  each_json(json_member(text, "meshes"), [&](std::string_view, std::string_view mesh) {
+    each_json(json_member(mesh, "primitives"), [&](std::string_view, std::string_view primitive) {
+      const auto number = text::number_in<std::size_t>(json_member(json_member(primitive, "attributes"), "POSITION"));
+      if (number && *number < types.size() && types[*number] != "5126")
+        fail("has positions of the component type " + std::string(types[*number]) + " (accessor " + std::to_string(*number) +
+             "): expected 5126, floating-point numbers");
+    });
+  });
+}
+
+/// Refuses a PLY file of strips, of which assimp reads half. Source: Turk 1994, The PLY polygon file format (header of elements).
+inline void check_ply(const std::filesystem::path& path) {
+  InputFile file(path, "a mesh file");
+  const std::string_view head = file.take(std::size_t{1} << 16);
+  if (!head.starts_with("ply")) return;
+  if (head.substr(0, head.find("end_header")).find("element tristrips") != head.npos)
+    throw FileError(path.string(), "", "has triangle strips: expected faces, as most programs write them (element face)");
+}
+
+}  // namespace PULSECAST_NAMESPACE::io::detail
+
+#endif
