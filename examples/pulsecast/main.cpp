@@ -155,6 +155,10 @@ class Session {
     if (pulses_cut_ > 0)
       notes_.say(std::to_string(pulses_cut_) + " pulses have more than " + (options_.las_1_0 ? "5" : "15") +
                  " returns, the greatest number in LAS, which later ones have, too: maxNOR of the scanner limits them");
+    if (all.complete && all.echoes > 0 && !empty_legs_.empty())
+      notes_.odd("no points from leg " + empty_legs_ + ": a leg without pulses, as the last of a platform that moves, may be inactive");
+    if (all.count(Fate::blocked) > all.slots / 20 * 19)
+      notes_.say("more than 95 % of the pulses are blocked by the field of view: are its angles in degrees?");
     const std::string traffic = ranks_.traffic();
     if (!options_.quiet) tell_summary(all, traffic);
     notes_.require_none();
@@ -425,7 +429,9 @@ class Session {
         pages_.tell(so_far);
       };
       if (signals > 0) stopping.request_stop();
-      all.add(files.run(simulation, run));
+      const RunSummary part = files.run(simulation, run);
+      if (part.complete && part.echoes == 0) empty_legs_ += (empty_legs_.empty() ? "" : ", ") + std::to_string(leg.number);
+      all.add(part);
       before += leg.end - leg.first;
       if (!all.complete) break;
       if (last[prefix] != k) continue;
@@ -447,6 +453,7 @@ class Session {
   RunLog log_;
   std::optional<RunLock> lock_;  // of the output folder, on the first process
   std::vector<std::string> folders_, scene_notes_;
+  std::string empty_legs_;  // numbers of active legs without points
   Notes& notes_;
 };
 

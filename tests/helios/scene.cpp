@@ -465,8 +465,15 @@ TEST_CASE("the colour table of a raster of classes colours the ground, if it is 
   std::get<GeoTiffSource>(scene.parts[0].source).classes = folder / "dem.asc";
   SceneBuilder told(scene, {});
   CHECK(told.parts().size() == 1);
-  CHECK(std::any_of(told.warnings().begin(), told.warnings().end(),
-                    [](const std::string& text) { return text.find("has no colour table: classcolours has no effect") != text.npos; }));
+  const auto tells = [](const SceneBuilder& builder, const std::string& what) {
+    return std::any_of(builder.warnings().begin(), builder.warnings().end(),
+                       [&](const std::string& text) { return text.find(what) != text.npos; });
+  };
+  CHECK(tells(told, "has no colour table: classcolours has no effect"));
+  std::get<GeoTiffSource>(scene.parts[0].source).files = {folder / "land.tif"};
+  SceneBuilder mistaken(scene, {});
+  CHECK(mistaken.parts().size() == 1);
+  CHECK(tells(mistaken, "land.tif: has a colour table, as a map of classes; its numbers are taken as heights"));
 }
 
 TEST_CASE("what a file comes to, and cannot be, is told with the file; what a part is asked for, with the part") {
