@@ -30,6 +30,37 @@ bool names(const std::string& law, const char* what) { return law.find(what) != 
 
 const std::array<Tick, 4> ticks{Tick{0, 0}, Tick{0, 0.5}, Tick{3, 0.25}, Tick{1000000, 0.75}};
 
+// ------------------------------------------------------------------------------------------------------------ bad surveys
+
+/// What a survey remembers in its workspace.
+enum class Memo { nothing, slot, neighbours };
+
+/// Pulses that leave from where the program is.
+struct Placed {
+  Memo memo = Memo::nothing;
+  const double* place;
+  struct Workspace {
+    PulseIndex first = 0, count = 0;
+    double place = 0;
+  };
+  std::shared_ptr<const void> self = std::make_shared<int>();
+  PulseIndex size() const noexcept { return 14'000; }
+  std::size_t subrays() const noexcept { return 1; }
+  std::size_t recorded_subrays() const noexcept { return 0; }
+  double sample_interval() const noexcept { return 0; }
+  const std::shared_ptr<const void>& identity() const noexcept { return self; }
+  Workspace workspace() const { return {}; }
+  Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
+    if (memo == Memo::nothing || i < w.first || i >= w.first + w.count) w = {i, memo == Memo::neighbours ? PulseIndex{4} : 1, *place};
+    Outcome out;
+    out.shot.index = i;
+    out.shot.fate = Fate::missed;
+    out.shot.direction = axis::forward;
+    out.shot.origin.x = w.place;
+    return out;
+  }
+};
+
 // ------------------------------------------------------------------------------------------------------------ bad motions
 
 using BeamPose = Pose<frame::Beam, frame::Instrument>;
@@ -433,6 +464,15 @@ TEST_CASE("transports that keep the law pass, and those that break it do not") {
               }),
               "a fate"));
   CHECK(names(transport_flaw_found([](R&, Found found, Record, int uses) { found[0].range += uses; }), "another answer"));
+}
+
+TEST_CASE("surveys that keep the law of changes pass, and those that remember do not") {
+  double place = 0;
+  const auto change = [&](int k) { place = k; };
+  CHECK(change_laws(Placed{{}, &place}, change) == "");
+  CHECK(names(change_laws(Placed{Memo::slot, &place}, change), "gives what was before"));
+  CHECK(names(change_laws(Placed{Memo::neighbours, &place}, change), "gives what was before"));
+  CHECK(names(change_laws(Placed{{}, &place}, [](int) {}), "changes nothing"));
 }
 
 TEST_CASE("detectors that keep the law pass, and those that break it do not") {

@@ -283,9 +283,9 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
 
   using Memory = detail::WorkspaceMemory<Survey>;
   ScratchMemory* const kept = options.executor.memory();
-  ScratchMemory* const workspaces = IdentifiedSurvey<Survey> ? kept : nullptr;
-  if (workspaces)
-    workspaces->provide<Memory>(options.workers().count(), survey);  // for all threads: any may be late, or have its first work later
+  if constexpr (IdentifiedSurvey<Survey>)
+    if (kept)
+      kept->provide<Memory>(options.workers().count(), survey);  // for all threads, as some may have their first work in a later run
   const bool empty_shots = (detail::reads_empty_shots(sinks) || ...);
   detail::ReorderBuffer buffer(kept, chunks, slots_per_chunk, workers, options.stop);
   RunSummary summary;
@@ -300,7 +300,7 @@ RunSummary run(const Survey& survey, const RunOptions& options, Sinks&&... sinks
     try {
       detail::ResultChunk* chunk = buffer.next();
       if (!chunk) return;
-      const Borrowed<Memory> memory(workspaces, survey);
+      const Borrowed<Memory> memory(IdentifiedSurvey<Survey> ? kept : nullptr, survey);
       for (; chunk; chunk = buffer.next()) {
         const PulseIndex from = chunk->number * slots_per_chunk, to = std::min(from + slots_per_chunk, slots.count);
         detail::simulate(survey, slots, from, to, memory->workspace, empty_shots, *chunk);

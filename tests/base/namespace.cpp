@@ -5,25 +5,38 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include <doctest/doctest.h>
 
-#if defined(PULSECAST_MIXED_INSTRUCTIONS) && !defined(__FMA__)  // there is a file for AVX2, and others contract nothing
 #include "support/mixed_instructions.hpp"
 
 using namespace pulsecast;
 
-TEST_CASE("files compiled for different instruction sets have functions of their own, and give the same bits") {
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return;
-  const support::AnswerOfFile own = support::answer_of_this_file(), avx2 = support::answer_of_avx2();
-  CHECK(own.function != avx2.function);
-  REQUIRE(own.numbers.size() > 1000);
-  REQUIRE(own.numbers.size() == avx2.numbers.size());
-  for (std::size_t i = 0; i < own.numbers.size(); ++i) {
+namespace {
+
+/// Two files of a program share no function of the library and no name of a type, and give the same bits.
+void check_apart(const support::AnswerOfFile& own, const support::AnswerOfFile& other) {
+  CHECK(own.function != other.function);
+  CHECK(std::string(own.pose) != other.pose);
+  REQUIRE(own.count > 1000);
+  REQUIRE(own.count == other.count);
+  for (std::size_t i = 0; i < own.count; ++i) {
     CAPTURE(i);
-    REQUIRE(std::bit_cast<std::uint64_t>(own.numbers[i]) == std::bit_cast<std::uint64_t>(avx2.numbers[i]));
+    REQUIRE(std::bit_cast<std::uint64_t>(own.numbers[i]) == std::bit_cast<std::uint64_t>(other.numbers[i]));
   }
 }
-#else
-TEST_CASE("a program for one instruction set has one namespace") {}
+
+}  // namespace
+
+TEST_CASE(
+    "files compiled with other settings of GLM and of the standard library have functions and types of their own, and the same bits") {
+  check_apart(support::answer_of_this_file(), support::answer_of_other_settings());
+}
+
+#if defined(PULSECAST_MIXED_INSTRUCTIONS) && !defined(__FMA__)  // there is a file for AVX2, and others contract nothing
+TEST_CASE("files compiled for different instruction sets have functions and types of their own, and give the same bits") {
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return;
+  check_apart(support::answer_of_this_file(), support::answer_of_avx2());
+}
 #endif

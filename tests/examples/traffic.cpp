@@ -37,7 +37,8 @@ struct Loop {
   io::PointBuffer scan{io::layouts::velodyne(), {.sensor = [this](Tick t) { return platform.instrument_at(t); }}};
   PulseIndex slot = 0;
 
-  void do_step(std::size_t step, bool moves, ThreadPool& pool) {
+  void do_step(std::size_t step, bool moves, ThreadPool& pool) { do_step(step, moves, pool, {.executor = pool}); }
+  void do_step(std::size_t step, bool moves, ThreadPool& pool, RunOptions options) {
     const Tick start = Tick::of(step, 60), end = Tick::of(step + 1, 60);
     if (moves) {
       robot.begin_step(start.seconds());
@@ -47,8 +48,9 @@ struct Loop {
       unused = std::exchange(moving, std::move(next));
     }
     if (step % 6 == 0) scan.begin_scan(start);
-    run(survey, {.executor = pool, .first = slot, .end = sensor.slot_from(end)}, scan);
-    slot = sensor.slot_from(end);
+    options.first = slot;
+    options.end = slot = sensor.slot_from(end);
+    run(survey, options, scan);
   }
 };
 
@@ -74,6 +76,25 @@ TEST_CASE("a sensor spins on between steps: the points of six steps are those of
   loop.scan.begin_scan(Tick::of(6, 60));
   run(loop.survey, {.first = loop.sensor.slot_from(Tick::of(6, 60)), .end = loop.sensor.slot_from(Tick::of(12, 60))}, loop.scan);
   CHECK(std::equal(records.begin(), records.end(), loop.scan.records().begin(), loop.scan.records().end()));
+}
+
+TEST_CASE("the scans of a robot that drives, brakes and is set back are the same with and without a pool, to the byte") {
+  const auto scans = [](const auto& in_step) {
+    Loop loop;
+    std::vector<std::byte> all;
+    for (std::size_t step = 0; step < 60; ++step) {
+      loop.robot.speed = step % 4 == 3 ? 0 : 8.0 + static_cast<double>(step);
+      if (step % 10 == 9) loop.robot.way = 7;
+      in_step(loop, step);
+      if (step % 6 == 5) all.insert(all.end(), loop.scan.records().begin(), loop.scan.records().end());
+    }
+    return all;
+  };
+  ThreadPool pool(2), builder(1);
+  const auto with_pool = scans([&](Loop& loop, std::size_t step) { loop.do_step(step, true, pool); });
+  const auto without = scans([&](Loop& loop, std::size_t step) { loop.do_step(step, true, builder, {.threads = 1}); });
+  CHECK(with_pool.size() > 4'000'000);
+  CHECK(with_pool == without);
 }
 
 TEST_CASE("the loop of a robot allocates nothing after its first second") {

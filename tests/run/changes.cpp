@@ -115,3 +115,72 @@ TEST_CASE("a scene that moves by itself is met from where the pose has jumped, w
   CHECK(support::change_laws(Survey{Platform{Live{&pose}, downwards, mirror}, SunflowerFootprint{7}, scene, Receiver{}, FullWaveform{}},
                              [&](int k) { pose = jump(k); }) == "");
 }
+
+namespace {
+
+/// Rangefinder at 100 Hz that looks along x towards a wall at 100 m, from where the program has driven it.
+struct Rangefinder {
+  BodyPose pose{rotation_about(axis::up, -90_deg), {}};
+  Scene<TriangleMesh<>> wall{{{.geometry = std::make_shared<const TriangleMesh<>>(
+                                   MeshData{.vertices = {{100, -9, -9}, {100, 9, -9}, {100, 0, 9}}, .triangles = {{0, 1, 2}}})}}};
+  Platform<Live, Deflector<FixedBeam, Scanner>> platform{Live{&pose}, Mount{}, {FixedBeam{}, {.pulse_rate = 100_Hz, .pulses = 1000}}};
+  Survey<decltype(platform), SingleRay, Scene<TriangleMesh<>>, FirstHit> survey{platform, SingleRay{}, wall, Receiver{}, FirstHit{}};
+};
+
+/// A survey of a user's: only what a run requires.
+template <class Of>
+struct LeastSurvey {
+  const Of& of;
+  PulseIndex size() const noexcept { return of.size(); }
+  std::size_t subrays() const noexcept { return of.subrays(); }
+  std::size_t recorded_subrays() const noexcept { return 0; }
+  double sample_interval() const noexcept { return 0; }
+  auto workspace() const { return of.workspace(); }
+  Outcome operator()(PulseIndex i, typename Of::Workspace& w) const noexcept { return of(i, w); }
+};
+
+}  // namespace
+
+TEST_CASE("a rangefinder that drives 2 m a step reads 100, 98, 96 and so on, by runs and by single calls, step by step or slot 0 again") {
+  Rangefinder r;
+  const LeastSurvey least{r.survey};
+  static_assert(PulseSurvey<decltype(least)> && !SimulatesInOrder<decltype(least)> && SimulatesInOrder<decltype(r.survey)>);
+  ThreadPool pool(2);
+  auto workspace = r.survey.workspace();
+  for (int time = 0; time < 5; ++time)
+    for (const bool again : {false, true})
+      for (PulseIndex step = 0; step < 45; ++step) {
+        const PulseIndex slot = again ? 0 : step;
+        r.pose.position.x = 2 * static_cast<double>(step);
+        std::vector<double> read;
+        const auto add = [&](const EchoBatch& batch) {
+          for (const Echo& echo : batch.echoes) read.push_back(echo.range);
+        };
+        run(r.survey, {.executor = pool, .first = slot, .end = slot + 1}, add);
+        run(r.survey, {.threads = 1, .first = slot, .end = slot + 1}, add);
+        run(least, {.executor = pool, .first = slot, .end = slot + 1}, add);
+        read.push_back(r.survey(slot, workspace).echoes[0].range);
+        REQUIRE(read.size() == 4);
+        for (const double range : read) REQUIRE(range == doctest::Approx(100 - 2 * static_cast<double>(step)).epsilon(1e-12));
+      }
+}
+
+TEST_CASE("no pulse of a VLP-16 that jumps between 600 runs leaves from an older place") {
+  const SpinningSensor sensor = velodyne_vlp_16();
+  BodyPose pose;
+  const Platform platform{Live{&pose}, Mount{}, sensor.source(600 / 60.0 + 1)};
+  const Survey survey{platform, SingleRay{}, ground, sensor.receiver(), FirstHit{}};
+  ThreadPool pool(2);
+  PulseIndex slot = 0;
+  std::size_t pulses = 0, stale = 0;
+  for (std::size_t step = 0; step < 600; ++step) {
+    pose.position = {50.0 * static_cast<double>(step % 7), 0, 2};
+    const PulseIndex end = sensor.slot_from(Tick::of(step + 1, 60));
+    run(survey, {.executor = pool, .first = std::exchange(slot, end), .end = end}, [&](const EchoBatch& batch) {
+      pulses += batch.shots.size();
+      for (const Shot& shot : batch.shots) stale += length(shot.origin - pose.position) > 1;
+    });
+  }
+  CHECK(pulses > 2'800'000);
+  CHECK(stale == 0);
+}

@@ -2,24 +2,31 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <typeinfo>
 #include <vector>
 
+#include <pulsecast/deflector/aim.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
 #include <pulsecast/pulsecast.hpp>
 
-/// The same survey from files that are compiled with other flags, in one program.
+/// The same survey from files that are compiled with other flags or macros, in one program.
 namespace pulsecast::support {
 
-/// Answer of a file: what must be equal, and what must not.
+/// Answer of a file: what must be equal, and what must not. Without containers, which files may have in other layouts.
 struct AnswerOfFile {
-  std::vector<double> numbers;  ///< of all echoes
-  const void* function;         ///< address of a function that the library's headers define
+  std::unique_ptr<double[]> numbers{};  ///< of all echoes, and of rotations
+  std::size_t count = 0;                ///< of the numbers
+  const void* function = nullptr;       ///< address of a function that the library's headers define
+  const char* pose = nullptr;           ///< name of a type of the library, for the linker
 };
 
 [[nodiscard]] AnswerOfFile answer_of_avx2();
+[[nodiscard]] AnswerOfFile answer_of_other_settings();
 
 namespace {
 
@@ -41,12 +48,19 @@ namespace {
                           Mount{.boresight = rotation_about(axis::right, -1.4)},
                           Deflector{OscillatingMirror{.cycles_per_second = 20, .half_angle = 0.3},
                                     Scanner{.pulse_rate = 1000, .pulses = 2000, .laser = laser}}};
-  AnswerOfFile answer{{}, reinterpret_cast<const void*>(static_cast<Intersect*>(&intersect<RayBundle, ClosestHits, SolidEverywhere>))};
+  std::vector<double> numbers;
   const Survey survey{airplane, SunflowerFootprint{19}, scene, Receiver{}, FullWaveform{WaveformSettings{}, GaussianFit{}}};
   run(survey, {.threads = 1}, [&](const EchoBatch& batch) {
     for (const Echo& echo : batch.echoes)
-      answer.numbers.insert(answer.numbers.end(), {echo.range, echo.amplitude, echo.width, echo.reflectance, echo.cos_incidence});
+      numbers.insert(numbers.end(), {echo.range, echo.amplitude, echo.width, echo.reflectance, echo.cos_incidence});
   });
+  const Pose<frame::Instrument, frame::World> pose{extrinsic({{axis::up, 0.3}, {axis::right, -1.1}}), {1, 2, 3}};
+  for (const Rotation& r : {pose.rotation, no_rotation, aimed_at(0.4, 0.2).rotation, rotation_of(matrix_of(pose.rotation))})
+    numbers.insert(numbers.end(), {r.w, r.x, r.y, r.z, (r * axis::forward).x, (r * axis::forward).z});
+  AnswerOfFile answer{std::make_unique<double[]>(numbers.size()), numbers.size(),
+                      reinterpret_cast<const void*>(static_cast<Intersect*>(&intersect<RayBundle, ClosestHits, SolidEverywhere>)),
+                      typeid(pose).name()};
+  std::copy(numbers.begin(), numbers.end(), answer.numbers.get());
   return answer;
 }
 

@@ -40,15 +40,11 @@ namespace PULSECAST_NAMESPACE::detail {
 }  // namespace PULSECAST_NAMESPACE::detail
 
 #if defined(PULSECAST_COMPILED)
-#include <cstddef>
-
-#include <pulsecast/base/simd.hpp>
-
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Marks a build of the library by what a program must have in common with it, as sizes or code in headers depend on it. A program of
-/// another build does not link, for want of this function.
-template <unsigned version, std::size_t register_bytes, bool fma, bool checked_containers>
+/// Marks a build of the library by what a program must have in common with it: its version here, and all else in the namespace. A program
+/// of another build does not link, for want of this function.
+template <unsigned version>
 void compiled_library_of_this_build()
 #if defined(PULSECAST_COMPILED_SOURCE)
     {}
@@ -56,20 +52,8 @@ void compiled_library_of_this_build()
     ;
 #endif
 
-#if defined(__FMA__)
-inline constexpr bool has_fma = true;
-#else
-inline constexpr bool has_fma = false;
-#endif
-#if defined(_GLIBCXX_DEBUG)
-inline constexpr bool has_checked_containers = true;
-#else
-inline constexpr bool has_checked_containers = false;
-#endif
-
 namespace {
-[[gnu::used]] void (*const reference_to_the_compiled_library)() =
-    &compiled_library_of_this_build<version_number(), simd::register_bytes, has_fma, has_checked_containers>;
+  [[gnu::used]] void (*const reference_to_the_compiled_library)() = &compiled_library_of_this_build<version_number()>;
 }
 
 }  // namespace PULSECAST_NAMESPACE::detail

@@ -150,7 +150,7 @@ struct RotationLanes {
     return {half.cos, axis.x * half.sin, axis.y * half.sin, axis.z * half.sin};
   }
 
-  [[nodiscard]] Rotation operator[](std::size_t lane) const noexcept { return {w[lane], x[lane], y[lane], z[lane]}; }
+  [[nodiscard]] Rotation operator[](std::size_t lane) const noexcept { return detail::rotation_wxyz(w[lane], x[lane], y[lane], z[lane]); }
   /// Sets the rotation of a lane.
   void set(std::size_t lane, const Rotation& r) noexcept {
     w[lane] = r.w;

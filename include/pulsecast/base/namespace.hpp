@@ -3,9 +3,12 @@
 #ifndef PULSECAST_BASE_NAMESPACE_HPP
 #define PULSECAST_BASE_NAMESPACE_HPP
 
-/// Namespace of the library, with an inline namespace by the instruction set of the compiler's flags. Files of one program may thus be
-/// compiled for different processors: their functions have different names, so that the linker never takes one for another.
-/// `pulsecast::Scene` names that of the file's own flags.
+#include <cstddef>  // with the macros of the standard library
+
+/// Namespace of the library, with an inline namespace by the instruction set of the compiler's flags, and further ones by macros that
+/// change the layout of types or the meaning of their constructors. Files of one program may thus be compiled for different processors, and
+/// with different settings of GLM and of the standard library: their functions and types have different names, so that the linker never
+/// takes one for another. What passes between such files does not link. `pulsecast::Scene` names that of the file's own flags.
 #if defined(__AVX512F__)
 #define PULSECAST_INSTRUCTIONS avx512
 #elif defined(__AVX2__)
@@ -17,6 +20,35 @@
 #else
 #define PULSECAST_INSTRUCTIONS baseline
 #endif
-#define PULSECAST_NAMESPACE pulsecast::inline PULSECAST_INSTRUCTIONS
+#if defined(__FMA__)
+#define PULSECAST_FUSED ::inline fma
+#else
+#define PULSECAST_FUSED
+#endif
+#if defined(GLM_FORCE_QUAT_DATA_WXYZ) || defined(GLM_FORCE_QUAT_DATA_XYZW)  // of GLM 0.9.9 and 1.0: the other order than by default
+#define PULSECAST_QUATERNIONS ::inline other_quaternions
+#else
+#define PULSECAST_QUATERNIONS
+#endif
+#if defined(GLM_FORCE_QUAT_CTOR_XYZW)  // of GLM 1.0
+#define PULSECAST_CONSTRUCTORS ::inline constructors_xyzw
+#else
+#define PULSECAST_CONSTRUCTORS
+#endif
+#if defined(_GLIBCXX_DEBUG) || (defined(_LIBCPP_DEBUG) && _LIBCPP_DEBUG > 0) || defined(_LIBCPP_ENABLE_DEBUG_MODE)
+#define PULSECAST_CONTAINERS ::inline checked_containers
+#else
+#define PULSECAST_CONTAINERS
+#endif
+#if defined(_LIBCPP_VERSION)
+#define PULSECAST_LIBRARY ::inline libcpp
+#elif defined(_GLIBCXX_USE_CXX11_ABI) && !_GLIBCXX_USE_CXX11_ABI
+#define PULSECAST_LIBRARY ::inline old_strings
+#else
+#define PULSECAST_LIBRARY
+#endif
+#define PULSECAST_NAMESPACE                                                                                                  \
+  pulsecast::inline PULSECAST_INSTRUCTIONS PULSECAST_FUSED PULSECAST_QUATERNIONS PULSECAST_CONSTRUCTORS PULSECAST_CONTAINERS \
+      PULSECAST_LIBRARY
 
 #endif

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 #include <glm/ext/matrix_double3x3.hpp>
 #include <glm/ext/quaternion_double.hpp>
@@ -28,6 +29,10 @@ using Vec3 = glm::vec<3, double, glm::packed_highp>;  ///< vector in three dimen
 /// Rotation as a unit quaternion; `rotation * vector` rotates the vector.
 using Rotation = glm::qua<double, glm::packed_highp>;
 
+static_assert(
+    std::is_trivially_copyable_v<Vec3> && std::is_trivially_copyable_v<Rotation>,
+    "vectors must be copied as memory: compile without GLM_FORCE_CTOR_INIT, GLM_FORCE_CXX98, GLM_FORCE_CXX03, GLM_FORCE_CXX_UNKNOWN");
+
 using glm::conjugate;
 using glm::cross;
 using glm::dot;
@@ -41,7 +46,19 @@ inline GLM_CONSTEXPR const Vec3 forward{0, 1, 0};  ///< +y: north in the world, 
 inline GLM_CONSTEXPR const Vec3 up{0, 0, 1};       ///< +z
 }  // namespace axis
 
-inline const Rotation no_rotation{1, 0, 0, 0};  ///< identity rotation
+namespace detail {
+/// Rotation of a unit quaternion. Constructors of GLM take the parts in another order with GLM_FORCE_QUAT_CTOR_XYZW.
+[[nodiscard]] inline GLM_CONSTEXPR Rotation rotation_wxyz(double w, double x, double y, double z) noexcept {
+  Rotation rotation{};
+  rotation.w = w;
+  rotation.x = x;
+  rotation.y = y;
+  rotation.z = z;
+  return rotation;
+}
+}  // namespace detail
+
+inline const Rotation no_rotation = detail::rotation_wxyz(1, 0, 0, 0);  ///< identity rotation
 
 /// Right-handed rotation about an axis of any length but zero, by an angle [rad].
 [[nodiscard]] inline Rotation rotation_about(const Vec3& axis, double angle) noexcept { return glm::angleAxis(angle, normalize(axis)); }

@@ -14,7 +14,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Pose of a beam at an elevation [rad]: rotated from forward towards up, about the right axis.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_above(double angle) noexcept {
-  return {Rotation{std::cos(0.5 * angle), std::sin(0.5 * angle), 0, 0}, {}};
+  return {detail::rotation_wxyz(std::cos(0.5 * angle), std::sin(0.5 * angle), 0, 0), {}};
 }
 
 /// Poses of beams at elevations [rad], as above.
@@ -24,16 +24,16 @@ namespace PULSECAST_NAMESPACE {
 
 /// Pose of a beam from `origin` [m]: elevated, then turned from forward to the right by the azimuth [rad]. Its right axis stays level.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_at(double azimuth, double elevation, const Vec3& origin = {}) noexcept {
-  return {Rotation{std::cos(0.5 * azimuth), 0, 0, -std::sin(0.5 * azimuth)} * aimed_above(elevation).rotation, origin};
+  return {detail::rotation_wxyz(std::cos(0.5 * azimuth), 0, 0, -std::sin(0.5 * azimuth)) * aimed_above(elevation).rotation, origin};
 }
 
 /// Pose of a beam along a unit direction, by the shortest rotation from forward, so that its up axis turns least.
 [[nodiscard]] inline Pose<frame::Beam, frame::Instrument> aimed_along(const Vec3& direction) noexcept {
   const double x = direction.x, y = direction.y, z = direction.z;
   const double aside_squared = x * x + z * z;
-  if (y < 0 && aside_squared < 1e-300) return {Rotation{0, 0, 0, 1}, {}};  // straight back: about up
+  if (y < 0 && aside_squared < 1e-300) return {detail::rotation_wxyz(0, 0, 0, 1), {}};  // straight back: about up
   const double w = y < 0 ? aside_squared / (1 - y) : 1 + y;  // 1 + y in both cases; near -1 only the first form does not cancel
-  return {normalize(Rotation{w, z, 0, -x}), {}};
+  return {normalize(detail::rotation_wxyz(w, z, 0, -x)), {}};
 }
 
 /// Poses of beams along unit directions, as above.

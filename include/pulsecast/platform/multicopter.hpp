@@ -68,7 +68,8 @@ class MulticopterFlight {
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
     const CubicPiece<Vec3> state = motion_.at(t);
     const Vec3 thrust = normalize(state.acceleration + standard_gravity * axis::up);
-    const Rotation lean = normalize(Rotation{1 + thrust.z, -thrust.y, thrust.x, 0});  // shortest rotation from up to the thrust
+    const Rotation lean =
+        normalize(detail::rotation_wxyz(1 + thrust.z, -thrust.y, thrust.x, 0));  // shortest rotation from up to the thrust
     return {lean * level(heading_.at(t).position), state.position};
   }
 

@@ -31,6 +31,18 @@ class AnySurvey {
   [[nodiscard]] virtual double sample_interval() const noexcept = 0;
   [[nodiscard]] virtual PulseIndex next_pulse(PulseIndex i) const noexcept = 0;
   [[nodiscard]] virtual Outcome operator()(PulseIndex i, Workspace& w) const noexcept = 0;
+
+  /// As the concept SimulatesInOrder requires.
+  template <class Next>
+  void simulate_in_order(PulseIndex i, PulseIndex end, Workspace& w, const Next& next) const {
+    simulate(
+        i, end, w, [](const void* n, const Outcome& outcome) { return (*static_cast<const Next*>(n))(outcome); }, &next);
+  }
+
+ protected:
+  /// Calls `next`, of which it is given the address.
+  using CallNext = PulseIndex (*)(const void*, const Outcome&);
+  virtual void simulate(PulseIndex i, PulseIndex end, Workspace& w, CallNext call, const void* next) const = 0;
 };
 
 /// Wraps a `Survey` of one kind as an `AnySurvey`.
@@ -45,6 +57,11 @@ class SurveyOf final : public AnySurvey {
   [[nodiscard]] double sample_interval() const noexcept override { return survey_.sample_interval(); }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept override { return survey_.next_pulse(i); }
   [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept override { return survey_(i, static_cast<Own&>(*w).own); }
+
+ protected:
+  void simulate(PulseIndex i, PulseIndex end, Workspace& w, CallNext call, const void* next) const override {
+    survey_.simulate_in_order(i, end, static_cast<Own&>(*w).own, [&](const Outcome& outcome) { return call(next, outcome); });
+  }
 
  private:
   struct Own : Scratch {

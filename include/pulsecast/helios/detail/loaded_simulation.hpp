@@ -217,11 +217,15 @@ class LoadedSimulation final : public Simulation {
       for (std::size_t k = task * at_once; k < std::min((task + 1) * at_once, blocks.size()); ++k) {
         const SampleBlock& block = blocks[k];
         Sample& sample = all[k];
+        const auto add = [&](const Outcome& outcome) {
+          room.append(outcome, block.empty_shots);
+          return outcome.shot.index + 1;
+        };
         room.clear();
-        for (PulseIndex i = block.first; i < block.from; ++i) room.append(survey(i, workspace), block.empty_shots);
+        survey.simulate_in_order(block.first, block.from, workspace, add);
         room.clear();
         const double start = processor_seconds();
-        for (PulseIndex i = block.from; i < block.end; ++i) room.append(survey(i, workspace), block.empty_shots);
+        survey.simulate_in_order(block.from, block.end, workspace, add);
         sample.seconds = processor_seconds() - start;
         sample.sample_interval = survey.sample_interval();
         static_cast<ResultBuffer&>(sample) = room;

@@ -205,7 +205,7 @@ class TrajectoryReader {
   [[nodiscard]] Rotation rotation(const QuantityValues& values) {
     using enum Quantity;
     if (!columns_->has(qw)) return rotation_of({values[roll], values[pitch], values[yaw]}, format_.angles);
-    const Rotation given(values[qw], values[qx], values[qy], values[qz]);
+    const Rotation given = pulsecast::detail::rotation_wxyz(values[qw], values[qx], values[qy], values[qz]);
     const double error = std::fabs(length(given) - 1);
     if (!(error <= 1e-3))
       table_.fail_here("the quaternion has the norm " + pulsecast::detail::to_text(length(given)) + ": expected 1, within 1e-3");
