@@ -209,8 +209,9 @@ template <Struct Settings>
 py::object equal_settings(const py::object& a, const py::object& b) {
   if (!py::type::of(a).is(py::type::of(b))) return py::reinterpret_borrow<py::object>(Py_NotImplemented);
   bool same = true;
+  const Settings described{};
   Described<Settings>::members(
-      Settings{}, [&](const char* name, auto&&...) { same = same && equal(py::object(a.attr(name)), py::object(b.attr(name))); });
+      described, [&](const char* name, auto&&...) { same = same && equal(py::object(a.attr(name)), py::object(b.attr(name))); });
   return py::bool_(same);
 }
 

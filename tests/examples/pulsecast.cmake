@@ -292,3 +292,50 @@ foreach(options "" "--fullwaveNoise" "--fullwaveNoise;--calcEchowidth;--writeWav
   endif()
   set(points_before "${points_of_library}")
 endforeach()
+
+# LAS tells the clock of a trajectory: bit 0 of its global encoding, after which bit 4 says that there is no reference system by keys.
+string(REGEX MATCH "<scanner .*</scene>" devices "${text}")
+string(REGEX REPLACE "<platform .*</platform>" "" devices "${devices}")
+file(COPY ${folder}/plane.obj ${folder}/plane.mtl DESTINATION ${FOLDER}/clock)
+foreach(case "3000;1000;clock" "400000000;1100;from 400000000.* adjusted standard GPS time, which begins here at 2024-05-17"
+             "1700000000;1100;are neither seconds of a GPS week nor adjusted standard")
+  list(GET case 0 begin)
+  list(GET case 1 expected)
+  list(GET case 2 says)
+  math(EXPR end "${begin} + 1")
+  file(WRITE ${FOLDER}/clock/clock.trj "${begin}, 0, 0, 0, 0, 0, 5\n${end}, 0, 0, 0, 5, 0, 5\n")
+  file(WRITE ${FOLDER}/clock/clock.xml "<document>${devices}<survey name=\"clock\" scene=\"#plane\" platform=\"interpolated\" scanner=\"#mirror\"><leg>"
+       "<platformSettings trajectory=\"clock.trj\" syncGPSTime=\"true\"/><scannerSettings scanFreq_hz=\"20\"/></leg></survey></document>")
+  expect(0 "${says}" clock/clock.xml --format las --output clock/${begin})
+  file(GLOB_RECURSE file ${FOLDER}/clock/${begin}/*.las)
+  file(READ ${file} encoding OFFSET 6 LIMIT 2 HEX)
+  if(NOT encoding STREQUAL expected)
+    message(SEND_ERROR "times from ${begin} s leave a global encoding of 0x${encoding}, expected 0x${expected}")
+  endif()
+endforeach()
+
+# Pulses with more returns than LAS numbers are noted: a beam straight down on a flight of 20 steps.
+set(steps)
+foreach(step RANGE 1 20)
+  math(EXPR left "${step} - 11")
+  math(EXPR right "${step} - 10")
+  math(EXPR height "40 - ${step}")
+  string(APPEND steps "v ${left} -100 ${height}\nv ${right} -100 ${height}\nv ${right} 100 ${height}\nv ${left} 100 ${height}\nf -4 -3 -2 -1\n")
+endforeach()
+file(WRITE ${FOLDER}/clock/steps.obj "${steps}")
+foreach(limit "" " maxNOR=\"15\"")
+  file(WRITE ${FOLDER}/clock/steps.xml "<document><scene id=\"w\"><part id=\"1\"><filter type=\"objloader\"><param type=\"string\" key=\"filepath\" "
+       "value=\"steps.obj\"/></filter></part></scene><scanner id=\"s\" optics=\"rotating\" pulseFreqs_Hz=\"1000\" beamDivergence_rad=\"0.3\" "
+       "pulseLength_ns=\"1\" receivedEnergyMin_W=\"0\"${limit}><FWFSettings beamSampleQuality=\"40\" binSize_ns=\"0.1\"/></scanner>"
+       "<platform id=\"p\" type=\"static\"><scannerMount><rot axis=\"x\" angle_deg=\"-90\"/></scannerMount></platform>"
+       "<survey name=\"steps\" seed=\"5\" scene=\"#w\" platform=\"#p\" scanner=\"#s\"><leg maxDuration_s=\"0.01\"><platformSettings z=\"90\"/>"
+       "<scannerSettings/></leg></survey></document>")
+  if(limit)
+    execute_process(COMMAND ${PROGRAM} steps.xml --format las WORKING_DIRECTORY ${FOLDER}/clock ERROR_VARIABLE notes OUTPUT_QUIET)
+    if(notes MATCHES "returns")
+      message(SEND_ERROR "with maxNOR=15: ${notes}")
+    endif()
+  else()
+    expect(0 "10 pulses have more than 15 returns" clock/steps.xml --format las)
+  endif()
+endforeach()

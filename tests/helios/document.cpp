@@ -3,6 +3,7 @@
 #include <pulsecast/helios/document.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -285,6 +286,9 @@ TEST_CASE("a survey is never written that would not be read") {
     CHECK_THROWS_WITH_AS(write_survey(folder / "no.xml", other), doctest::Contains(says), SettingError);
     CHECK_FALSE(std::filesystem::exists(folder / "no.xml"));
   };
+  survey.legs[0].scanner.vertical_angle_max = std::nextafter(2 * pi, 7);  // 360 degrees but for rounding
+  CHECK_NOTHROW(write_survey(folder / "own.xml", survey));
+  CHECK_NOTHROW((void)read_survey(folder / "own.xml"));
   refused([](SurveySettings& s) { s.legs[0].scanner.vertical_angle_min = -40; }, "leg 0: verticalAngleMin_deg");
   refused([](SurveySettings& s) { s.legs[0].duration_max.reset(); }, "leg 0: maxDuration_s");
   refused([](SurveySettings& s) { s.legs.clear(); }, "legs (number)");

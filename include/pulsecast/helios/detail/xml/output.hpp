@@ -3,6 +3,7 @@
 #ifndef PULSECAST_HELIOS_DETAIL_XML_OUTPUT_HPP
 #define PULSECAST_HELIOS_DETAIL_XML_OUTPUT_HPP
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -39,7 +40,9 @@ class XmlOutput {
 
   /// Writes a number. Infinity is left out: no attribute means no limit.
   void number(const char* name, const double& value, const XmlUnit& unit, double low, double high) {
-    const double number = unit.number(value);
+    double number = unit.number(value);
+    if (const double limit = std::clamp(number, low, high); std::fabs(number - limit) <= 1e-12 * std::fabs(limit))
+      number = limit;  // beyond it by the rounding of the unit
     if (!(number >= low && number <= high)) refuse(name, value, number, unit, low, high);
     if (std::isfinite(value)) put(name, "double", xml_number(number));
   }
@@ -120,7 +123,8 @@ class XmlOutput {
     const std::string allowed = low > std::numeric_limits<double>::lowest() ? "from " + xml_number(low) + bound : "a number";
     throw SettingError(
         name, number, unit.symbol,
-        allowed + (unit.symbol == units::degree.symbol && looks_like_degrees(value) ? ": given in degrees, not radians?" : ""));
+        allowed +
+            (std::string_view(unit.symbol) == units::degree.symbol && looks_like_degrees(value) ? ": given in degrees, not radians?" : ""));
   }
 
   void put(const char* name, const char* type, const std::string& value) {
