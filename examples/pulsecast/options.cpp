@@ -250,6 +250,9 @@ class CommandLine {
     std::erase(words, "-vt");
     for (std::string& word : words)
       if (word == "-v2" || word == "-vv") word = "-v";
+    // names after the end of options: CLI11 takes that as the end of a list, too, and what follows for options
+    for (auto word = std::find(words.begin(), words.end(), "--"); word != words.end(); ++word)
+      if (word->starts_with('-') && *word != "--") word->insert(0, "./");
   }
 
   /// Problem with words that are not options; empty if there is none.

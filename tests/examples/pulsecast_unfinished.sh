@@ -135,7 +135,7 @@ fly "${start[@]}" --resume || fail "a flight by the clock of its trajectory cann
 cp "$(dirname "$survey")/survey.xml" own/lids.xml
 sed -i 's| onGround="true"||; s|</part>|</part><part id="8"><filter type="meshloader"><param type="string" key="filepath" value="lid.gltf"/></filter></part>|' own/lids.xml
 { cat kept/plane.obj; yes '# nothing to see here, but many bytes of it' | head -n 400000; } > own/plane.obj
-lids() { timeout 100 "$program" own/lids.xml --threads 2 --format xyz --output lids "$@" > messages 2>&1; }
+lids() { timeout 100 "$program" own/lids.xml "${start[@]}" --threads 2 --format xyz --output lids "$@" > messages 2>&1; }
 lay() { # lay FILE HEIGHT: corners of a triangle at that height, 32 bits each, as for printf
   local far='\x00\x00\xc8\x42' near='\x00\x00\xc8\xc2' none='\x00\x00\x00\x00'
   printf "$near$2$far$far$2$far$none$2$near" > "own/$1"
