@@ -200,8 +200,8 @@ class Survey {
       if (constants.errs) echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
       all_inside &= heard.gate.contains(echo.range);
     }
-    const std::span<Echo> echoes = all_inside ? detection.echoes : inside(heard.gate, detection.echoes);
-    if (constants.errs) sort_by_range(echoes);
+    const std::span<Echo> echoes = all_inside ? detection.echoes : detail::inside(heard.gate, detection.echoes);
+    if (constants.errs) detail::sort_by_range(echoes);
     out.echoes = echoes;
     out.waveform = detection.waveform;
     out.shot.waveform_start = detection.waveform_start;
@@ -275,29 +275,6 @@ class Survey {
       ++alike;
     *constants = {emitter, LinkBudget(unit.receiver, emitter.laser),
                   alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam, !unit.receiver.range_errors.none()};
-  }
-
-  /// Echoes whose reported range is inside the gate, in order: a device gates what it measures. Numbers stay in place.
-  static std::span<Echo> inside(const RangeGate& gate, std::span<Echo> echoes) noexcept {
-    std::size_t kept = 0;
-    for (std::size_t e = 0; e < echoes.size(); ++e) {
-      if (!gate.contains(echoes[e].range)) continue;
-      if (e != kept) {
-        std::swap(echoes[e], echoes[kept]);
-        std::swap(echoes[e].number, echoes[kept].number);
-      }
-      ++kept;
-    }
-    return echoes.first(kept);
-  }
-
-  /// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are renumbered in order.
-  static void sort_by_range(std::span<Echo> echoes) noexcept {
-    for (std::size_t unsorted = 1; unsorted < echoes.size(); ++unsorted)  // insertion sort: a pulse has few echoes, most of them in order
-      for (std::size_t e = unsorted; e > 0 && echoes[e].range < echoes[e - 1].range; --e) {
-        std::swap(echoes[e - 1], echoes[e]);
-        std::swap(echoes[e - 1].number, echoes[e].number);
-      }
   }
 
   static_assert(detail::SurveyMembers<Pattern, Instrument>::checked);

@@ -63,7 +63,7 @@ const WaveformSettings all_peaks{.threshold = 0, .window = 0, .returns_max = 255
 
 TEST_CASE("one hit gives one echo, exact to rounding, wherever it is") {
   for (const EchoTiming timing : {EchoTiming::true_range, EchoTiming::peak}) {
-    const AnalyticWaveform<MomentWidth> detector(WaveformSettings{.timing = timing});
+    const AnalyticWaveform<MomentWidth> detector(WaveformSettings{.threshold = 1e-12, .timing = timing});
     for (std::uint64_t seed = 0; seed < 500; ++seed) {
       CAPTURE(seed);
       support::Generator any(seed);
@@ -159,7 +159,7 @@ TEST_CASE("the echo of a group, found directly, is what the pass over its edges 
     return std::pair(directly, echoes_of(detector, reflections));
   };
   for (const EchoTiming timing : {EchoTiming::true_range, EchoTiming::peak}) {
-    const AnalyticWaveform<MomentWidth> detector(WaveformSettings{.timing = timing});
+    const AnalyticWaveform<MomentWidth> detector(WaveformSettings{.threshold = 1e-12, .timing = timing});
     for (std::uint64_t seed = 0; seed < 4000; ++seed) {
       CAPTURE(seed);
       support::Generator any(seed);

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/detector/radiometry.hpp>
+
 using namespace pulsecast;
 
 TEST_CASE("settings of a waveform that cannot be are refused") {
@@ -39,4 +41,13 @@ TEST_CASE("peaks are one if they are closer than the separation, or than window 
   CHECK(WaveformSettings{.separation = 3, .window = 9}.min_separation(4) == 4);
   CHECK(WaveformSettings{.window = 1}.min_separation(4) == 1);
   CHECK(WaveformSettings{.window = 0}.min_separation(4) == 0);
+}
+
+TEST_CASE("the default threshold is of more than ten photons of a default laser: a target of 20 % is found at 1 km, and not at 3 km") {
+  const Laser laser;
+  const LinkBudget budget(Receiver{}, laser);
+  const double photon = 6.62607015e-34 * 299'792'458 / laser.wavelength;
+  CHECK(WaveformSettings{}.threshold * laser.pulse_length > 10 * photon);
+  CHECK(budget.power(1, 0.2, 1000) > WaveformSettings{}.threshold);
+  CHECK(budget.power(1, 0.2, 3000) < WaveformSettings{}.threshold);
 }

@@ -96,3 +96,11 @@ TEST_CASE("a pane's light is that of all ways between its faces, summed one by o
     CHECK(split.transmitted == doctest::Approx(transmitted).epsilon(1e-12));
   }
 }
+
+TEST_CASE("all of the light that grazes a pane is reflected, down to the least cosine") {
+  for (const double cosine : {1e-15, 1e-16, 1e-17, 1e-300, 0.0}) {
+    const PaneSplit split = pane_split(cosine, SmoothInterface::pane(0.004));
+    CHECK(split.reflected == doctest::Approx(1));
+    CHECK(split.transmitted < 1e-12);
+  }
+}

@@ -17,7 +17,7 @@ enum class AerosolModel : std::uint8_t {
 };
 
 /// Extinction coefficient of aerosols [1/m] for a wavelength, from 0.4 to 1.6 um [m], and a visibility [m]; 0 for an infinite visibility:
-/// 3.91/V (lambda / 0.55 um)^-q per km, V in km.
+/// 3.91/V (lambda / 0.55 um)^-q per km, V in km. As published, both models jump at 50 km: by -27 % at 1,550 nm, by -14 % at 905 nm.
 [[nodiscard]] inline double extinction(double wavelength, double visibility, AerosolModel model = AerosolModel::kim) noexcept {
   const double v = visibility * 1e-3;
   const double haze = v > 1 ? 0.16 * v + 0.34 : v > 0.5 ? v - 0.5 : 0;

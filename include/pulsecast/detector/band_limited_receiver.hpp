@@ -265,18 +265,9 @@ class BandLimitedReceiver {
     chain_.shot_noise = false;
   }
 
-  /// As the concept WaveformReceiver requires: 0.6 of the width at half maximum of the received pulse, where noise or steps are finer than
-  /// it. A maximum after the filter of that reach errs by 1.3 times the Cramer-Rao bound of white noise, and parts closer echoes than the
-  /// best one, of 0.75. Source: integrals of slope and filter for the gamma pulse.
+  /// As the concept WaveformReceiver requires: for `filtered_top`, where noise or steps may be finer than the pulse.
   [[nodiscard]] double timing_reach(const Laser& laser) const noexcept {
-    const auto* pulses = known_.find(laser);
-    if (!pulses || chain_.matched_filter || (chain_.bandwidth == 0 && chain_.full_scale == 0)) return 0;
-    const ReceivedPulse& pulse = (*pulses)->pulse;
-    constexpr int steps = 4096;
-    const double step = (pulse.end() - pulse.begin()) / steps;
-    int above = 0;
-    for (int i = 0; i < steps; ++i) above += pulse(pulse.begin() + i * step) >= 0.5;
-    return 0.6 * above * step;
+    return chain_.matched_filter || (chain_.bandwidth == 0 && chain_.full_scale == 0) ? 0 : 0.6 * (*known_.find(laser))->pulse.width();
   }
 
   /// Scratch memory for the pulses that were prepared.
@@ -292,7 +283,7 @@ class BandLimitedReceiver {
   }
 
   /// Maximum of the samples, if there is only one, from those near it: as full sampling gives it. Empty for reflections that are none or
-  /// too far apart, and for receivers whose samples are more than the sum of the pulses.
+  /// too far apart, and for receivers whose samples are more than the sum of the pulses. `reach` is that of `timing_reach`.
   [[nodiscard]] std::optional<OnlyPeak> only_peak(const WaveformSettings& s, const Heard& heard, double reach) const noexcept {
     if (!is_linear() || heard.reflections.empty()) return {};
     const ReceivedPulse& pulse = (*known_.find(heard.emitter.laser))->pulse;
@@ -324,9 +315,8 @@ class BandLimitedReceiver {
         static_cast<std::size_t>(std::max_element(y.begin() + 2, y.begin() + static_cast<std::ptrdiff_t>(count) - 2) - y.begin());
     const Vertex between = vertex(&y[top]);
     const double place = static_cast<double>(top) + between.offset, time = (from + place) * s.sample_interval;
-    OnlyPeak only{time - pulse.peak(), between.height};
-    if (reach > 2 * s.sample_interval)
-      only.time += (detail::filtered_top(std::span(y).first(count), place, reach / s.sample_interval) - place) * s.sample_interval;
+    const double mark = detail::filtered_top(std::span(y).first(count), place, reach / s.sample_interval);
+    OnlyPeak only{(from + mark) * s.sample_interval - pulse.peak(), between.height};
     double strongest = 0;
     for (const Reflection& r : heard.reflections)
       if (const double power = r.power * pulse(time - arrival(r)); power > strongest) {

@@ -25,9 +25,10 @@ namespace PULSECAST_NAMESPACE {
 
 /// Detector that decomposes the waveform of a `FullWaveform`, which must keep it (`WaveformSettings::record_length`), into waveforms of
 /// flat targets after the receiver, each widened by a Gaussian: overlapping echoes get the ranges, amplitudes and widths that they have
-/// alone. An echo is parted in two where flat targets a deviation of that waveform apart fit it far better than one that is wide. Echoes
-/// outside the record, more than six that overlap, and fits that fail keep what the other detector found. Source: Wagner et al. 2006, with
-/// the system waveform in place of a Gaussian, as Roncat, Bergauer & Pfeifer 2011.
+/// alone. The simplest fit is taken unless the next leaves less than a tenth of the squared residuals: flat targets, then wide ones, then
+/// two flat ones, at least a deviation of that waveform apart, in place of the widest. Widths are those of the wide ones. Echoes outside
+/// the record, more than six that overlap, and fits that fail keep what the other detector found. Source: Wagner et al. 2006, with the
+/// system waveform in place of a Gaussian, as Roncat, Bergauer & Pfeifer 2011.
 template <class Inner>
 class GaussianDecomposition : public DetectorAdaptor<Inner> {
  public:
@@ -77,6 +78,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
  private:
   using Sum = detail::WaveformSum;
   static constexpr int widenings = 5;
+  static constexpr double better = 0.1;  ///< squared residuals of a better fit, by those of a simpler one
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] static double time_of(const Echo& echo) noexcept { return 2 * echo.range / speed_of_light; }
@@ -128,6 +130,7 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
       if (!sum.fit(wave, y, interval)) return false;
     }
     if (y.empty()) return false;
+    if (Sum flat = sum.flattened(); flat.fit(wave, y, interval) && !(sum.squares < better * flat.squares)) sum = flat;
     if (may_part) part(sum, wave, y);
     for (std::size_t k = 0; k < sum.count; ++k) {
       const Sum::Part& p = sum.parts[k];
@@ -135,22 +138,22 @@ class GaussianDecomposition : public DetectorAdaptor<Inner> {
       if (sum.count > group.size()) set_labels(echo, heard, wave, p.arrival);
       echo.range = 0.5 * speed_of_light * p.arrival;
       echo.amplitude = p.power;
-      echo.width = std::sqrt(wave.variance() + p.added);
+      echo.width = std::sqrt(wave.variance() + p.spread);
       echoes.push_back(echo);
     }
     return true;
   }
 
-  /// Parts the widest part into two flat targets, if these leave less than a `better` of the squared residuals, which are not next to none.
+  /// Parts the widest part into two flat targets, if these fit better, and the residuals are not next to none.
   void part(Sum& sum, const detail::SystemWaveform& wave, std::span<const float> y) const noexcept {
-    constexpr double better = 0.1, none = 1e-3;
+    constexpr double none = 1e-3;  // of the peak
     if (sum.count == Sum::most) return;
     std::size_t widest = 0;
     for (std::size_t k = 1; k < sum.count; ++k)
-      if (sum.parts[k].added > sum.parts[widest].added) widest = k;
+      if (sum.parts[k].spread > sum.parts[widest].spread) widest = k;
     const Sum::Part whole = sum.parts[widest];
     if (!(sum.squares > none * none * whole.power * whole.power * static_cast<double>(y.size()))) return;
-    const double interval = this->inner.sample_interval(), aside = std::sqrt(std::max(whole.added, 0.0));
+    const double interval = this->inner.sample_interval(), aside = std::sqrt(std::max(whole.spread, 0.0));
     const Sum::Part left = sum.greatest_residual(wave, y, interval);
     const std::array<std::array<Sum::Part, 2>, 2> guesses{
         {{{{0.5 * whole.power, whole.arrival - aside, 0, true}, {0.5 * whole.power, whole.arrival + aside, 0, true}}},  // of its variance

@@ -57,9 +57,10 @@ struct PhotonCountingSettings {
 
 /// Detector that draws single photons. Photoelectrons of each reflection, of sunlight and of dark counts are Poisson processes. Detections
 /// of all shots make a histogram; each of its peaks is an echo, whose range is the mean time of the detections in the bin and its
-/// neighbours. The amplitude is the power that would give as many counts without dead time. With one shot and a threshold of 1, each
-/// isolated detection is an echo. Nothing is detected outside the gate, but a gate without an end has neither sunlight nor dark counts
-/// after the last reflection.
+/// neighbours. The energy of a reflection is its power times the full width at half maximum,
+/// as in `EnergyLedger`: 8 % less than in the gamma pulse of that peak. The amplitude is the power that would give as many counts without
+/// dead time. With one shot and a threshold of 1, each isolated detection is an echo. Nothing is detected outside the gate, but a gate
+/// without an end has neither sunlight nor dark counts after the last reflection.
 ///
 /// At most 65,536 detections of a pulse are kept. Source: Gatt, Johnson & Nichols 2009 (detection statistics).
 template <PulseForm Form = GammaPulse>

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include <pulsecast/base/exponential.hpp>
 #include <pulsecast/base/extinction.hpp>
@@ -74,6 +76,33 @@ struct RangeErrors {
     return bias + of_channel + scale * echo.range + draw * (deviation_at(echo.range) + by_power) / slant;
   }
 };
+
+namespace detail {
+
+/// Echoes whose reported range is inside the gate, in order: a device gates what it measures. Numbers stay in place.
+[[nodiscard]] inline std::span<Echo> inside(const RangeGate& gate, std::span<Echo> echoes) noexcept {
+  std::size_t kept = 0;
+  for (std::size_t e = 0; e < echoes.size(); ++e) {
+    if (!gate.contains(echoes[e].range)) continue;
+    if (e != kept) {
+      std::swap(echoes[e], echoes[kept]);
+      std::swap(echoes[e].number, echoes[kept].number);
+    }
+    ++kept;
+  }
+  return echoes.first(kept);
+}
+
+/// Sorts echoes by reported range, in which errors may have reordered them. Numbers stay in place: echoes are renumbered in order.
+inline void sort_by_range(std::span<Echo> echoes) noexcept {
+  for (std::size_t unsorted = 1; unsorted < echoes.size(); ++unsorted)  // insertion sort: a pulse has few echoes, most of them in order
+    for (std::size_t e = unsorted; e > 0 && echoes[e].range < echoes[e - 1].range; --e) {
+      std::swap(echoes[e - 1], echoes[e]);
+      std::swap(echoes[e - 1].number, echoes[e].number);
+    }
+}
+
+}  // namespace detail
 
 /// Row of a table of overlap.
 struct OverlapAtRange {

@@ -37,6 +37,7 @@ class ReceivedPulse {
     gain_ = value(top) + 0.5 * slope * beyond;
     peak_ = start + (static_cast<double>(top) + beyond) * step_;
     concave_ = concave_about(values, top) * step_;
+    width_ = step_ * static_cast<double>(std::count_if(values.begin(), values.end(), [&](double v) { return v >= 0.5 * gain_; }));
     begin_ = start;
     while (size > top && values[size - 1] < negligible * gain_) --size;
     values.resize(size);
@@ -57,6 +58,8 @@ class ReceivedPulse {
   /// Time on either side of the maximum, within which the pulse is concave, less a sample of the table; 0 for a pulse with another maximum.
   /// Pulses no further apart than this have a sum with a single maximum: it falls, bends down and rises where all of them do [s].
   [[nodiscard]] double concave() const noexcept { return concave_; }
+  /// Full width at half maximum [s].
+  [[nodiscard]] double width() const noexcept { return width_; }
   /// Value at a time since the peak before the low-pass [s], between the two nearest of the table.
   [[nodiscard]] double operator()(double time) const noexcept {
     const double place = (time - begin_) / step_;
@@ -120,7 +123,7 @@ class ReceivedPulse {
 
   static constexpr double negligible = 1e-8;  ///< share of the peak at which the table ends
 
-  double interval_, step_ = 0, begin_ = 0, gain_ = 1, peak_ = 0, concave_ = 0;
+  double interval_, step_ = 0, begin_ = 0, gain_ = 1, peak_ = 0, concave_ = 0, width_ = 0;
   std::size_t phases_ = 1, count_ = 0, stride_ = 0;
   std::vector<double> rows_;  ///< value i of the table, from -1 on, is number (i + 1) / phases of row (i + 1) % phases, and of later rows
 };

@@ -110,7 +110,7 @@ class SampleWindow {
         Peak& peak = peaks[k];
         if (is_dominated(k, s, peaks)) continue;
         const double reach = std::fmin(search.reach, 0.5 * distance_of_echoes(k, s, peaks)) / s.sample_interval;
-        if (reach > 2) peak.mark += (detail::filtered_top(y, place(peak.time), reach) - place(peak.time)) * s.sample_interval;
+        peak.mark += (detail::filtered_top(y, place(peak.time), reach) - place(peak.time)) * s.sample_interval;
       }
     }
     if constexpr (!std::same_as<Width, NoWidth>) {

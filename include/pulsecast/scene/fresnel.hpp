@@ -62,7 +62,7 @@ struct PaneSplit {
   const FresnelSplit face = fresnel_split(cos_incidence, n);
   const double inside = face.cos_refracted;
   const double pass = std::exp(-pane.inside.absorption * d / inside);
-  const auto through = [&](double r) noexcept { return (1 - r) * (1 - r) * pass / (1 - r * r * pass * pass); };
+  const auto through = [&](double r) noexcept { return r < 1 ? (1 - r) * (1 - r) * pass / (1 - r * r * pass * pass) : 0; };
   const auto back = [&](double r) noexcept { return r * (1 + pass * through(r)); };
   return {.reflected = (back(face.perpendicular) + back(face.parallel)) / 2,
           .transmitted = (through(face.perpendicular) + through(face.parallel)) / 2,

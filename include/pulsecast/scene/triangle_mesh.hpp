@@ -39,10 +39,10 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 };
 }  // namespace detail
 
-/// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are never hit. Triangles
-/// keep their numbers but are stored in the index's order, in blocks with vertices of their own for 16-bit indices. A triangle takes 10
-/// bytes plus its index and its vertices of 24 bytes each, and one byte more for several materials. A ray that comes to a hole of a mask
-/// goes on; meshes without masks pay nothing for them.
+/// Indexed triangle mesh; vertices equal to the last bit are merged per block. Two-sided; triangles without area are never hit, nor those
+/// so small that their area is no normal number, of edges below 1e-150 m. Triangles keep their numbers but are stored in the index's order,
+/// in blocks with vertices of their own for 16-bit indices. A triangle takes 10 bytes plus its index and its vertices of 24 bytes each, and
+/// one byte more for several materials. A ray that comes to a hole of a mask goes on; meshes without masks pay nothing for them.
 /// `Bvh<float>` is Pareto-optimal in docs/tradeoff.md: it finds the hits of `Bvh<double>` in less time and memory, since triangles are
 /// tested in double.
 template <Accelerator Index = Bvh<float>>

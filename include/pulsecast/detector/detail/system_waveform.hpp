@@ -135,7 +135,8 @@ class WaveformSum {
   struct Part {
     double power = 0, arrival = 0;  ///< power of a flat target [W], and arrival [s]
     double added = 0;               ///< variance beyond that of a flat target [s^2]
-    bool flat = false;              ///< true for a part that is as wide as a flat target
+    bool flat = false;              ///< true if that is 0 and not fitted
+    double spread = 0;              ///< that variance, as measured aside for a part that is flat [s^2]
   };
 
   std::array<Part, most> parts{};  ///< estimate, and result
@@ -163,9 +164,21 @@ class WaveformSum {
       if (settled) break;
     }
     squares = here.squares;
+    for (Part& p : parts)
+      if (!p.flat) p.spread = p.added;
     const double end = start + static_cast<double>(y.size()) * interval;
     return std::all_of(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count),
                        [&](const Part& p) { return p.power > 0 && p.arrival > start && p.arrival < end && p.added < wave.most_added(); });
+  }
+
+  /// The same sum of flat parts.
+  [[nodiscard]] WaveformSum flattened() const noexcept {
+    WaveformSum sum = *this;
+    for (Part& p : sum.parts) {
+      p.added = 0;
+      p.flat = true;
+    }
+    return sum;
   }
 
   /// Flat part of the greatest residual.

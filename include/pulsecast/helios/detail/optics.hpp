@@ -297,12 +297,13 @@ namespace detail {
 /// Waveform settings of a channel; `record_length` is the length kept [s]. `winSize_ns` and `maxFullwaveRange_ns` are one-way times of
 /// light and count twice. `binSize_ns` is two-way time, as in a digitiser. Echoes are timed by true ranges. By the library's
 /// physics they are timed by their peaks, and where light goes on: between the surface of water and its bottom a mean range says nothing.
+/// Its threshold is that of `WaveformSettings`, unless the scanner has another than that of HELIOS++, which is less than a photon.
 [[nodiscard]] inline WaveformSettings survey_waveform(const ChannelSettings& channel, double record_length = 0,
                                                       bool library_physics = false, bool follows_light = false) {
   const FullWaveformSettings& s = channel.waveform;
   WaveformSettings out;
   out.sample_interval = detail::limited_bin(channel);
-  out.threshold = channel.received_power_min;
+  if (!library_physics || channel.received_power_min != ChannelSettings{}.received_power_min) out.threshold = channel.received_power_min;
   if (!library_physics) {
     if (!follows_light) out.timing = EchoTiming::true_range;
     out.shape_divisor = 3.5;

@@ -78,7 +78,7 @@ template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(const ChannelSettings& channel,
                                                                                             const WaveformSettings& waveform, bool noisy) {
   ReceiverChain chain;
-  if (noisy) chain.noise_power = channel.received_power_min / 6 / std::sqrt(chain.filter(channel.pulse_length).noise_bandwidth());
+  if (noisy) chain.noise_power = waveform.threshold / 6 / std::sqrt(chain.filter(channel.pulse_length).noise_bandwidth());
   return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)), RingMoments::whole), survey_receiver(channel, true),
           BandLimitedWaveform<Width>(waveform, {}, BandLimitedReceiver<>(chain))};
 }

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_SCATTERED_PATHS_HPP
 #define PULSECAST_TRANSPORT_DETAIL_SCATTERED_PATHS_HPP
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -116,14 +117,18 @@ class ScatteredPaths {
     const Vec3 back = light_.pulse.origin() - at.place, axis = light_.pulse.pose.rotation * axis::forward;
     const double distance = length(back);
     const Vec3 direction = back / distance;
-    if (!(-dot(axis, direction) >= std::cos(settings_.field_of_view / 2))) return;
+    const double cosine = -dot(axis, direction);  // of the incidence at the aperture, which is flat
+    const Divergence& beam = light_.emitter.laser.divergence;
+    const double view = std::max({settings_.field_of_view, beam.across, beam.up});
+    if (!(cosine > 0 && cosine >= std::cos(view / 2))) return;
     const double scattered = at.material->scattered(-at.direction, direction, at.normal, light_.emitter.laser.wavelength, at.texture);
     if (!(scattered > 0)) return;
     Ray ray{.origin = at.place, .direction = direction, .near = apart, .tick = light_.pulse.tick};
     name(ray);
     if (map_.occluded(ray, distance)) return;
     const double both_ways = (at.way + distance) / 2;
-    const double power = light_.budget.power_through(at.share * left(at.place, direction, distance), scattered, distance, both_ways);
+    const double share = cosine * at.share * left(at.place, direction, distance);
+    const double power = light_.budget.power_through(share, scattered, distance, both_ways);
     if (!(power > 0) || !light_.gate.contains(both_ways)) return;
     const Hit hit{.range = both_ways,
                   .cos_incidence = at.normal == Vec3{} ? 1 : dot(at.normal, direction),

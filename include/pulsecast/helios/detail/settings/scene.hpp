@@ -144,11 +144,11 @@ struct PartSettings {
 
 /// Light that goes on from smooth surfaces: `<light>`, of this library. As `LightPaths`.
 struct LightSettings {
-  int passages = 8;           ///< greatest number of surfaces that pass light on; `passages`
-  double least_share = 1e-4;  ///< least share of a subray that is followed; `leastShare`
-  int orders = 1;             ///< greatest number of surfaces that scatter it; `orders`
-  int paths = 8;              ///< random paths of a pulse, for more than one order; `paths`
-  double field_of_view = pi;  ///< full angle that the receiver sees, for more than one order; `fieldOfView_deg` [rad]
+  int passages = 8;             ///< greatest number of surfaces that pass light on; `passages`
+  double least_share = 1e-4;    ///< least share of a subray that is followed; `leastShare`
+  int orders = 1;               ///< greatest number of surfaces that scatter it; `orders`
+  int paths = 8;                ///< random paths of a pulse, for more than one order; `paths`
+  double field_of_view = 2e-3;  ///< full angle that the receiver sees, for more than one order; `fieldOfView_deg` [rad]
 
   /// @throws SettingError for values out of range
   void validate() const {
