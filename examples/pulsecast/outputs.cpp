@@ -119,7 +119,7 @@ void LegFiles::operator()(const EchoBatch& batch) {
 bool LegFiles::reads_empty_shots() const noexcept { return inside_->pulses || inside_->misses || inside_->miss_points || inside_->map; }
 
 void LegFiles::add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) {
-  if (interval > 0) inside_->trajectory.add(leg.path(), start, leg.duration(), interval);
+  if (interval > 0) inside_->trajectory.add(leg.path(), start, leg.recorded(), interval);
 }
 
 void LegFiles::close() {

@@ -66,7 +66,7 @@ class SharedLegRun final : public LegRun {
   }
 
   void add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) override {
-    if (trajectory_ && interval > 0) trajectory_->add(leg.path(), start, leg.duration(), interval);
+    if (trajectory_ && interval > 0) trajectory_->add(leg.path(), start, leg.recorded(), interval);
   }
 
   RunSummary run(const helios::Simulation& simulation, const RunOptions& options) override {

@@ -32,7 +32,7 @@ expected=$(sums whole)
 log=$(cd limited && find . -name unfinished.txt)
 [ -n "$log" ] || fail "no run to resume"
 results=$(dirname "$log")
-grep -q "^file 872495 leg000_points.las$" "limited/$log" || fail "the log does not know what is whole: $(cat "limited/$log")"
+grep -q "^file 872557 leg000_points.las$" "limited/$log" || fail "the log does not know what is whole: $(cat "limited/$log")"
 [ -z "$(find limited -name '*.part' -o -name .lock)" ] || fail "it left $(find limited -name '*.part' -o -name .lock)"
 
 again() { # begins anew from what was left
@@ -195,9 +195,9 @@ hostile 5 '4s/$/\ninput 00 plane.obj/'
 hostile 5 '4s/$/\nhow else/'
 hostile '[0-9]*' 's/^end$/before 2026-01-01_00-00-00\nbefore 2026-01-01_00-00-00\nend/'
 hostile '[0-9]*' 's/^end$/end\nend/'
-hostile '[0-9]*' 's/^file 872495 /file -1 /'
-hostile '[0-9]*' 's/^file 872495 .*/file 872495 ..\/x/'
-hostile '[0-9]*' 's/^file 872495 .*/file 872495/'
+hostile '[0-9]*' 's/^file 872557 /file -1 /'
+hostile '[0-9]*' 's/^file 872557 .*/file 872495 ..\/x/'
+hostile '[0-9]*' 's/^file 872557 .*/file 872495/'
 [ "$(cat victim/unfinished.txt)" = precious ] || fail "a log led to something being removed"
 again
 : > "again/$log"

@@ -453,6 +453,9 @@ TEST_CASE("with the clock of a file, each leg has the time that the file gives i
       const auto pulse = compiled.source.pulse(leg.first).value();
       most = std::fmax(most, std::fabs(*compiled.clock_start + pulse.tick.seconds() - start - pulse.pose.position.y / 50));
       CHECK(pulse.tick == leg.start);
+      const auto& source = compiled.source.legs()[leg.number];
+      const double end = source.path().at(source.recorded()).position.y / 50;  // also of the last record of a trajectory
+      most = std::fmax(most, std::fabs(*compiled.clock_start + (leg.start + source.recorded()).seconds() - start - end));
     }
     return most;
   };

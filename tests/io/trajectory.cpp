@@ -127,7 +127,7 @@ std::vector<TimedPose> poses(std::uint64_t seed, const AngleConvention& conventi
   support::Generator random(seed);
   std::vector<TimedPose> result;
   double time = 0;
-  for (int i = 0; i < 40; ++i, time += random.log_uniform(1e-3, 10)) {
+  for (int i = 0; i < 40; ++i, time += random.log_uniform(0.5, 10)) {
     Rotation rotation = random.rotation();
     if (i % 2 == 1) {
       RollPitchYaw angles{random.uniform(-pi, pi), random.uniform(-pi, pi), random.uniform(-pi, pi)};
@@ -137,6 +137,23 @@ std::vector<TimedPose> poses(std::uint64_t seed, const AngleConvention& conventi
     result.push_back({time, random.point(6e6), rotation});
   }
   return result;
+}
+
+TEST_CASE("a gap of more than 20 times the median interval gets a note, with its times") {
+  const TemporaryFolder folder;
+  const auto warnings = [&](const std::vector<double>& times, const TimeWindow& window = {}) {
+    std::vector<TimedPose> written;
+    for (const double time : times) written.push_back({time, {time, 0, 0}, no_rotation});
+    write_trajectory(folder / "t.csv", written);
+    return read_trajectory(folder / "t.csv", csv_format(), window).warnings;
+  };
+  CHECK(warnings({0, 1, 2, 3, 23}).empty());
+  CHECK(warnings({0, 1, 100}).empty());  // too few for a median
+  const std::vector<std::string> two = warnings({0, 1, 2, 3, 30, 31, 32, 33, 90, 91});
+  REQUIRE(two.size() == 1);
+  CHECK(two[0].find("t.csv: no pose between 33 s and 90 s, the longest of 2 gaps of more than 20 times the median") != std::string::npos);
+  CHECK(warnings({0, 1, 2, 3, 30, 31, 32, 33, 90, 91}, {4, 29}).empty());
+  CHECK(warnings({0, 1, 2, 3, 30, 31, 32, 33, 90, 91}, {30, 33}).empty());
 }
 
 TEST_CASE("what is written is read: every format, convention, axis and separator") {

@@ -214,6 +214,28 @@ TEST_CASE("ten thousand waypoints are driven, be they in a row, in a circle, or 
     CHECK(broken_promise(plan_ground_vehicle(*points, level_ground, s), s, *points) == "");
 }
 
+TEST_CASE("on any plane the pose is exact, and a straight drive takes L / v + v / a + a / j of its way in space") {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed);
+    const double east = random.uniform(-0.4, 0.4), north = random.uniform(-0.4, 0.4), heading = random.uniform(-pi, pi);
+    const auto plane = [&](Vec2 p) -> std::optional<double> { return 20 + east * p.x + north * p.y; };
+    const GroundVehicleSettings s{.speed = random.uniform(2, 20), .ground_step = random.log_uniform(0.05, 2)};
+    const Vec2 ahead{std::sin(heading), std::cos(heading)}, end = random.uniform(250, 400) * ahead;
+    const auto drive = plan_ground_vehicle(Points{{0, 0}, end}, plane, s);
+    const double slope = east * ahead.x + north * ahead.y, way = length(end) * std::hypot(1, slope);
+    CHECK(drive.duration().seconds() == relative(way / s.speed + s.speed / s.acceleration + s.acceleration / s.jerk, 1e-13));
+    CHECK(drive.warnings().empty());
+    for (int i = 0; i <= 20; ++i) {
+      const auto pose = drive.at(Tick::of_seconds(drive.duration().seconds() * i / 20));
+      const Vec3 forward = pose.direction(axis::forward);
+      CHECK(std::fabs(pose.position.z - *plane({pose.position.x, pose.position.y})) < 1e-13);
+      CHECK(length(pose.direction(axis::up) - normalize(Vec3{-east, -north, 1})) < 2e-14);
+      CHECK(std::fabs(forward.x * ahead.y - forward.y * ahead.x) < 1e-14);
+    }
+  }
+}
+
 TEST_CASE("a step in the ground costs its height in way, wherever it is and however finely the ground is asked") {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);

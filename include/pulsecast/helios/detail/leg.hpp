@@ -93,8 +93,12 @@ struct SurveyNoise {
 /// slot, which `PoseErrors` has not.
 class SurveyLeg {
  public:
-  SurveyLeg(SurveyPath path, const Mount& mount, Instrument instrument, SurveyNoise noise)
-      : truth_(std::move(path), mount, std::move(instrument)), noise_(std::move(noise)), noisy_(!noise_.none()) {}
+  /// `known` is the time for which the path is known, if that ends within the last slot.
+  SurveyLeg(SurveyPath path, const Mount& mount, Instrument instrument, SurveyNoise noise, std::optional<Tick> known = {})
+      : truth_(std::move(path), mount, std::move(instrument)),
+        noise_(std::move(noise)),
+        noisy_(!noise_.none()),
+        known_(std::min(known.value_or(truth_.duration()), truth_.duration())) {}
 
   [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
@@ -122,11 +126,13 @@ class SurveyLeg {
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return truth_.next_pulse(i); }
 
   [[nodiscard]] const SurveyPath& path() const noexcept { return truth_.trajectory(); }
+  [[nodiscard]] Tick recorded() const noexcept { return known_; }  ///< duration of the records of its path
 
  private:
   Platform<SurveyPath, Instrument> truth_;
   SurveyNoise noise_;
   bool noisy_;
+  Tick known_;
 };
 
 static_assert(WorldSource<SurveyLeg> && SkipsBlocked<SurveyLeg>);

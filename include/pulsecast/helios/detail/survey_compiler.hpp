@@ -71,7 +71,8 @@ class SurveyCompiler {
         noise.position = survey_.platform.position_noise;
         noise.attitude = survey_.platform.attitude_noise;
       }
-      legs.push_back({SurveyLeg(path, mount, std::move(instrument), std::move(noise)), leg.scanner.active, start});
+      const auto known = paths_[k].clock ? std::optional(Tick::of_seconds(duration)) : std::nullopt;
+      legs.push_back({SurveyLeg(path, mount, std::move(instrument), std::move(noise), known), leg.scanner.active, start});
       const PulseIndex size = leg.scanner.active ? legs.back().platform.size() : 0;
       compiled.push_back({k, leg.scanner.active, leg.strip, first, first + size, start, time, leg.scanner.trajectory_interval, rate});
       first += size;
