@@ -44,6 +44,7 @@ struct DirectLight {
   [[nodiscard, gnu::always_inline]] TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
                                                           std::span<Reflection> reflections) const noexcept {
     TransportResult result;
+    const bool may_spread = !with_velocity && spreads(light.subrays);  // asked first, where one subray is known to be one
     if (w.met_nothing && light.subrays > 1 && light.beam.from_a_point() && light.record.empty() && misses(map, light)) {
       result.energy.sent = light.energy();
       result.energy.missed = light.beam.share_sum * result.energy.sent;
@@ -51,7 +52,7 @@ struct DirectLight {
     }
     trace_subrays<with_velocity>(map, light, w, reflections, result);
     w.met_nothing = result.fate == Fate::missed;
-    if (!with_velocity && spreads(light.subrays))
+    if (may_spread)
       if (const double span = span_of_ranges(light, reflections.first(result.reflections)); span > 1) [[unlikely]]
         spread(map, light, span, w, reflections, result);
     return result;
