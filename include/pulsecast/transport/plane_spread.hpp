@@ -12,70 +12,70 @@
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/scanner/beam.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/transport/illumination.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Plane that all subrays of a beam met. The inverse of the range along the beam's axis is linear in the tangents of a subray's angles,
-/// whatever the plane: exactly for a beam from a point, and nearly so for one that is narrow against the range.
+/// Plane that all subrays of a beam met, in the frame of the beam.
 class MetPlane {
  public:
-  /// Fits a plane to the reflections of all subrays, in their order, by least squares.
+  /// Fits a plane to the reflections of all subrays, in their order, by least squares along the beam.
   MetPlane(const SubrayDirections& beam, std::span<const Reflection> reflections) noexcept {
     const double n = static_cast<double>(reflections.size());
-    double across = 0, up = 0, inverse = 0;
+    Vec3 mean{};
+    for (std::size_t j = 0; j < reflections.size(); ++j) mean += point(beam, reflections, j) / n;
+    double xx = 0, zz = 0, xz = 0, xy = 0, zy = 0;
     for (std::size_t j = 0; j < reflections.size(); ++j) {
-      across += beam.x[j] / beam.y[j] / n;
-      up += beam.z[j] / beam.y[j] / n;
-      inverse += inverse_at(beam, reflections, j) / n;
+      const Vec3 p = point(beam, reflections, j) - mean;
+      xx += p.x * p.x;
+      zz += p.z * p.z;
+      xz += p.x * p.z;
+      xy += p.x * p.y;
+      zy += p.z * p.y;
     }
-    double aa = 0, bb = 0, ab = 0, ai = 0, bi = 0;
-    for (std::size_t j = 0; j < reflections.size(); ++j) {
-      const double a = beam.x[j] / beam.y[j] - across, b = beam.z[j] / beam.y[j] - up, i = inverse_at(beam, reflections, j) - inverse;
-      aa += a * a;
-      bb += b * b;
-      ab += a * b;
-      ai += a * i;
-      bi += b * i;
-    }
-    const double determinant = aa * bb - ab * ab;
-    across_ = (bb * ai - ab * bi) / determinant;
-    up_ = (aa * bi - ab * ai) / determinant;
-    middle_ = inverse - across_ * across - up_ * up;
+    const double determinant = xx * zz - xz * xz;
+    across_ = (zz * xy - xz * zy) / determinant;
+    up_ = (xx * zy - xz * xy) / determinant;
+    ahead_ = mean.y - across_ * mean.x - up_ * mean.z;
   }
 
   /// Greatest distance of a reflection from the plane, along its ray [m]; NaN without a plane.
   [[nodiscard]] double farthest_from(const SubrayDirections& beam, std::span<const Reflection> reflections) const noexcept {
     double most = 0;
     for (std::size_t j = 0; j < reflections.size(); ++j) {
-      const double inverse = beam.y[j] * middle_ + beam.x[j] * across_ + beam.z[j] * up_,
-                   off = std::fabs(1 / inverse - reflections[j].range);
+      const double off = std::fabs(range_of(exit_of(beam, j), {beam.x[j], beam.y[j], beam.z[j]}) - reflections[j].range);
       if (!(off <= most)) most = off;
     }
     return most;
   }
 
-  /// Direction across the footprint in which ranges grow, as a unit offset; across, if they do not.
+  /// Range of a subray [m], by its offset in the footprint; negative if it does not meet the plane.
+  [[nodiscard]] double range_at(const Vec2& offset, const Emitter& emitter) const noexcept {
+    const Vec2 scaled = emitter.footprint_scale * offset;
+    return range_of(subray_exit(scaled, emitter.laser), subray_direction(scaled, emitter.laser.divergence));
+  }
+
+  /// Direction in the footprint in which ranges grow, as a unit offset; across, if they do not.
   [[nodiscard]] Vec2 farther(const Emitter& emitter) const noexcept {
-    const Vec2 way{-emitter.laser.divergence.across * across_, -emitter.laser.divergence.up * up_};
+    constexpr double small = 1e-3;
+    const Vec2 way{range_at({small, 0}, emitter) - range_at({-small, 0}, emitter),
+                   range_at({0, small}, emitter) - range_at({0, -small}, emitter)};
     const double size = std::hypot(way.x, way.y);
     return size > 0 ? way / size : Vec2{1, 0};
   }
 
-  /// Range of the Gaussian beam's light that meets the plane at so many standard deviations towards its far end [m]; negative if none does.
-  [[nodiscard]] double range_at(double deviations, const Emitter& emitter) const noexcept {
-    const double across = 0.25 * emitter.footprint_scale * emitter.laser.divergence.across * across_;
-    const double up = 0.25 * emitter.footprint_scale * emitter.laser.divergence.up * up_;
-    return 1 / (middle_ - deviations * std::hypot(across, up));
-  }
-
  private:
-  static double inverse_at(const SubrayDirections& beam, std::span<const Reflection> reflections, std::size_t j) noexcept {
-    return 1 / (reflections[j].range * beam.y[j]);
+  static Vec3 exit_of(const SubrayDirections& beam, std::size_t j) noexcept { return beam.from_a_point() ? Vec3{} : beam.exits[j]; }
+  static Vec3 point(const SubrayDirections& beam, std::span<const Reflection> reflections, std::size_t j) noexcept {
+    return exit_of(beam, j) + reflections[j].range * Vec3{beam.x[j], beam.y[j], beam.z[j]};
+  }
+  [[nodiscard]] double range_of(const Vec3& exit, const Vec3& direction) const noexcept {
+    return (ahead_ + across_ * exit.x + up_ * exit.z - exit.y) / (direction.y - across_ * direction.x - up_ * direction.z);
   }
 
-  double middle_ = 0, across_ = 0, up_ = 0;  ///< inverse of the range on the axis, and its slopes [1/m]
+  double ahead_ = 0, across_ = 0, up_ = 0;  ///< place on the axis [m], and its slopes
 };
 
 inline constexpr std::size_t slope_subrays_max = 32'768;  ///< greatest number of subrays that light is spread to
@@ -84,11 +84,6 @@ namespace detail {
 
 /// Time constant of a pulse, as of a `PulseShape`, in metres of range.
 [[nodiscard]] inline double pulse_constant(const Laser& laser) noexcept { return 0.5 * speed_of_light * laser.pulse_length / 3.4; }
-
-/// Standard deviations of a beam's light, across and up [rad]: half the radius at 1/e^2.
-[[nodiscard]] inline Vec2 beam_deviation(const Emitter& emitter) noexcept {
-  return 0.25 * emitter.footprint_scale * Vec2{emitter.laser.divergence.across, emitter.laser.divergence.up};
-}
 
 /// First reflections of a pulse, from surfaces that the beam met directly.
 [[nodiscard]] inline std::span<const Reflection> direct_ones(std::span<const Reflection> reflections) noexcept {
@@ -109,21 +104,23 @@ struct Slope {
   if (met.size() != light.subrays) return {};
   const MetPlane plane(light.beam, met);
   if (!(plane.farthest_from(light.beam, met) < 0.1 * std::sqrt(3.0) * pulse_constant(light.emitter.laser))) return {};
-  const double begin = plane.range_at(-4, light.emitter), end = plane.range_at(4, light.emitter);
+  const Vec2 farther = plane.farther(light.emitter);
+  const double begin = plane.range_at(-2.0 * farther, light.emitter), end = plane.range_at(2.0 * farther, light.emitter);  // 4 deviations
   if (!(begin > 0 && end > begin)) return {};
-  return {(end - begin) / 8, plane.farther(light.emitter), plane.range_at(0, light.emitter)};
+  return {(end - begin) / 8, farther, plane.range_at({}, light.emitter)};
 }
 
 /// Smooth surface of several planes, or one that ends in the beam. Of the subrays that met something so obliquely that one plane of that
 /// incidence would spread their light by more than the pulse's time constant, successive ones met it alike: a tenth of all subrays or more.
 [[nodiscard]] inline Slope met_facets(const Illumination& light, std::span<const Reflection> met) noexcept {
-  const Vec2 deviation = beam_deviation(light.emitter);
-  const double tau = pulse_constant(light.emitter.laser), wider = std::max(deviation.x, deviation.y);
+  const double tau = pulse_constant(light.emitter.laser);
   std::size_t pairs = 0;
   const Reflection* last = nullptr;
   Slope slope;
   for (const Reflection& r : met) {
-    const double cosine = r.cos_incidence, spread = wider * r.range * std::sqrt(1 - cosine * cosine) / cosine;
+    const Vec2 radius = beam_radius(light.emitter.laser, r.range);  // twice the deviation
+    const double cosine = r.cos_incidence, wide = 0.5 * light.emitter.footprint_scale * std::max(radius.x, radius.y),
+                 spread = wide * std::sqrt(1 - cosine * cosine) / cosine;
     if (!(spread > tau)) continue;
     if (last && std::fabs(cosine - last->cos_incidence) < 2 * light.beam.spread && std::fabs(r.range - last->range) < 8 * spread) {
       ++pairs;
@@ -155,7 +152,8 @@ struct RowPlace {
 /// lie anywhere. Those off the row are longer ways off: on a plane, they lie as much nearer along it.
 template <class Place>
 void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, const Slope& slope, const Place& place) noexcept {
-  const Vec2 deviation = beam_deviation(emitter), farther = slope.farther, aside{-farther.y, farther.x};
+  const Vec2 deviation = 0.25 * emitter.footprint_scale * Vec2{emitter.laser.divergence.across, emitter.laser.divergence.up};
+  const Vec2 farther = slope.farther, aside{-farther.y, farther.x};
   const auto square = [&](const Vec2& at) noexcept { return dot(at * deviation, at * deviation); };
   const auto share = [&](const RowPlace& at) noexcept { return std::exp(-0.5 * at.along * at.along) * at.width; };
   double sum = 0;
@@ -226,7 +224,8 @@ template <class Trace>
 void spread_over_plane(const Illumination& light, double span, std::span<const Reflection> reflections, SubrayDirections& row,
                        TransportResult& result, const Trace& trace) noexcept {
   const double tau = detail::pulse_constant(light.emitter.laser);
-  const bool part = span > 2;
+  // two pulses are two echoes if they are 2 tau apart, or 1.15 deviations: few subrays may be that far apart
+  const bool part = span > std::min(2.0, 0.38 * static_cast<double>(light.subrays - 1));
   const auto met = [&] { return detail::direct_ones(reflections.first(result.reflections)); };
   detail::Slope slope = detail::met_plane(light, met());
   const bool plane = slope.spread > 0;
@@ -250,7 +249,7 @@ void spread_over_plane(const Illumination& light, double span, std::span<const R
   };
   if (plane && part) {
     std::size_t size = 0;
-    const bool room = detail::set_even_row(row, size, slope, light.emitter) < slope_subrays_max;
+    const bool room = detail::set_even_row(row, size, slope, light.emitter) < 1.27 * slope_subrays_max;  // the factor 0.55 becomes 0.7
     trace_row(size);
     result.unresolved = !room || 16 * slope.spread > slope.range;
     if (detail::sends_evenly(row, size, met(), std::min(0.1, 0.5 / (s * std::sqrt(s))))) return;
