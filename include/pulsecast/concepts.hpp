@@ -243,7 +243,8 @@ struct TransportResult {
   std::size_t reflections = 0;  ///< number of reflections
   Fate fate = Fate::missed;     ///< fate of a pulse without reflections: `missed`, `out_of_range` or `absorbed`
   bool nan = false;             ///< true if the map answered with NaN: an error of the run
-  bool spread = false;          ///< true if the light was spread over a plane: `spread_over_plane`
+  bool spread = false;          ///< true if the light was spread over a smooth surface: `spread_over_plane`
+  bool unresolved = false;      ///< true if more subrays would have been needed for that than there is room for
 };
 
 /// Paths of light from the beam to surfaces and back. Sets the first of `reflections`, in any order. There is room for

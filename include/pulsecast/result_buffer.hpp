@@ -20,7 +20,8 @@ struct RunSummary {
   EnergyLedger energy{};                          ///< energy by the end of its paths [J]
   std::uint64_t echoes = 0;                       ///< echoes found
   std::uint64_t rays = 0;                         ///< subrays traced
-  std::uint64_t spread = 0;                       ///< pulses whose light was spread over a plane: `spread_over_plane`
+  std::uint64_t spread = 0;                       ///< pulses whose light was spread over a smooth surface: `spread_over_plane`
+  std::uint64_t unresolved = 0;                   ///< of these, pulses that may have false echoes nevertheless
   double seconds = 0;                             ///< duration [s]
   bool complete = true;                           ///< false if stopped
 
@@ -30,6 +31,7 @@ struct RunSummary {
     echoes += other.echoes;
     rays += other.rays;
     spread += other.spread;
+    unresolved += other.unresolved;
     energy.add(other.energy);
     seconds += other.seconds;
     for (std::size_t f = 0; f < fate_count; ++f) fates[f] += other.fates[f];
@@ -71,6 +73,7 @@ struct ResultBuffer {
     if (outcome.shot.fate == Fate::blocked) return;
     counts.energy.add(outcome.energy);
     counts.spread += outcome.spread ? 1 : 0;
+    counts.unresolved += outcome.unresolved ? 1 : 0;
     if (!empty_shots && outcome.echoes.empty() && outcome.waveform.empty() && outcome.subrays.empty()) return;
     Shot& shot = shots.emplace_back(outcome.shot);
     shot.first_echo = static_cast<std::uint32_t>(echoes.size());

@@ -13,6 +13,7 @@
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/scanner/footprint.hpp>
@@ -35,7 +36,8 @@ struct Outcome {
   std::span<const Echo> echoes;          ///< echoes, sorted by reported range
   std::span<const float> waveform;       ///< received power [W]; empty if not kept
   EnergyLedger energy{};                 ///< energy by the end of its paths; zero if nothing was sent [J]
-  bool spread = false;                   ///< true if the light was spread over a plane: `spread_over_plane`
+  bool spread = false;                   ///< as in `TransportResult`
+  bool unresolved = false;               ///< as in `TransportResult`
   std::span<const SubrayHit> subrays{};  ///< all subrays, if the footprint is `WithSubrayRecord`
   PulseError error = PulseError::none;   ///< makes the other members worthless, unless `none`
 };
@@ -97,12 +99,12 @@ class Survey {
     /// Workspace of the transport.
     using OfTransport = decltype(std::declval<const Light&>().workspace(0));
 
-    OfTransport transport;                ///< workspace of the transport
-    std::vector<Reflection> reflections;  ///< reflections of a pulse, with room for all
-    std::vector<SubrayHit> subrays;       ///< all of a pulse, if recorded
-    std::vector<OfDetector> detectors;    ///< workspace of each receiver's detector
-    std::uint16_t emitter = 0;            ///< emitter of the last pulse
-    WhiteTarget white_target{};           ///< white target of that emitter
+    OfTransport transport;                 ///< workspace of the transport
+    SharedBuffer<Reflection> reflections;  ///< reflections of a pulse, with room for all
+    std::vector<SubrayHit> subrays;        ///< all of a pulse, if recorded
+    std::vector<OfDetector> detectors;     ///< workspace of each receiver's detector
+    std::uint16_t emitter = 0;             ///< emitter of the last pulse
+    WhiteTarget white_target{};            ///< white target of that emitter
   };
 
   /// Scratch memory for one worker.
@@ -110,7 +112,7 @@ class Survey {
     std::size_t most = 0;
     for (const Unit& unit : receivers_) most = std::max(most, unit.footprint.size());
     Workspace w{
-        transport_.workspace(most), std::vector<Reflection>(transport_.reflections(most)), std::vector<SubrayHit>(recorded_subrays()), {}};
+        transport_.workspace(most), SharedBuffer<Reflection>(transport_.reflections(most)), std::vector<SubrayHit>(recorded_subrays()), {}};
     for (const Unit& unit : receivers_) w.detectors.push_back(unit.detector.workspace(transport_.reflections(unit.footprint.size())));
     return w;
   }
@@ -185,6 +187,7 @@ class Survey {
     }();
     out.energy = result.energy;
     out.spread = result.spread;
+    out.unresolved = result.unresolved;
     out.subrays = w.subrays;
     if (result.reflections == 0 || result.nan || pulse->reported) out.error = error_of(*pulse, result.nan);
     out.shot.fate = result.reflections == 0 ? result.fate : Fate::below_threshold;

@@ -268,8 +268,28 @@ class SubrayDirections {
   /// Takes a valid footprint and emitter.
   template <Footprint Pattern>
   SubrayDirections(const Pattern& footprint, const Emitter& emitter) : SubrayDirections(footprint.size(), emitter.laser) {
-    for (std::size_t j = 0; j < footprint.size(); ++j)
-      set(j, emitter.footprint_scale * footprint.offset(j), footprint.share(j), emitter.laser);
+    assign(footprint.size(), emitter, [&](std::size_t j) noexcept { return Subray{footprint.offset(j), footprint.share(j)}; });
+  }
+  /// Room for up to `size` subrays of any laser, which `assign` sets.
+  [[nodiscard]] static SubrayDirections room(std::size_t size) { return {size, Laser{.waist_diameter = 1}}; }
+
+  /// Offset of a subray and its share of the energy, as of a `Footprint`.
+  struct Subray {
+    Vec2 offset;
+    double share;
+  };
+  /// Replaces the subrays by `subray(j)`, of which there must be room for `size`. Changes all copies.
+  template <class SubrayOf>
+  void assign(std::size_t size, const Emitter& emitter, const SubrayOf& subray) noexcept {
+    PULSECAST_ASSERT(size + RayBundle::lanes <= padded_);
+    exits = emitter.laser.from_a_point() ? nullptr : exits_.data();
+    spread = share_sum = 0;
+    for (std::size_t j = 0; j < size; ++j) {
+      const Subray s = subray(j);
+      set(j, emitter.footprint_scale * s.offset, s.share, emitter.laser);
+    }
+    for (std::size_t column = 0; column < 4; ++column)
+      for (std::size_t j = size; j < size + RayBundle::lanes; ++j) columns_[column * padded_ + j] = 0;
   }
 
   /// True if the beam leaves through a point.
@@ -297,12 +317,10 @@ class SubrayDirections {
  private:
   SubrayDirections(std::size_t size, const Laser& laser)
       : padded_(size + RayBundle::lanes), columns_(4 * padded_), exits_(laser.from_a_point() ? 0 : size) {
-    std::fill(columns_.begin(), columns_.end(), 0.0);
     x = columns_.data();
     y = x + padded_;
     z = y + padded_;
     shares = z + padded_;
-    exits = exits_.empty() ? nullptr : exits_.data();
   }
 
   void set(std::size_t j, const Vec2& offset, double share, const Laser& laser) noexcept {

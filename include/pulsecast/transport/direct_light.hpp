@@ -19,19 +19,22 @@ namespace PULSECAST_NAMESPACE {
 
 /// Transport of light that each subray's first surface scatters straight back. The rest of the light is not followed.
 struct DirectLight {
-  bool spread_planes = true;  ///< spreads light over smooth planes whose subrays would be echoes of their own: `spread_over_plane`
+  bool spread_planes = true;  ///< spreads light over smooth surfaces whose subrays would be echoes of their own: `spread_over_plane`
 
   /// Scratch memory of one worker.
   struct Workspace {
     std::array<Hit, RayBundle::capacity> hits;  ///< hits of a bundle
     bool met_nothing = false;                   ///< true if the last pulse met nothing
+    SubrayDirections slope{};                   ///< subrays for a smooth surface
   };
 
   /// Room for the reflections of a pulse of so many subrays.
   [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
-    return spread_planes && subrays > 2 ? std::max(subrays, plane_reflections_max) : subrays;
+    return spreads(subrays) ? std::max(subrays, slope_subrays_max) : subrays;
   }
-  [[nodiscard]] Workspace workspace(std::size_t) const { return {}; }
+  [[nodiscard]] Workspace workspace(std::size_t subrays) const {
+    return {.hits = {}, .slope = spreads(subrays) ? SubrayDirections::room(slope_subrays_max) : SubrayDirections()};
+  }
 
   /// Traces all subrays. After a pulse that met nothing, the beam's cone is tested first: the next one often meets nothing, too. Others pay
   /// no test, nor do single rays, which cost as little. Sets velocities, too, if `with_velocity`: the rays that return are then asked again
@@ -41,6 +44,7 @@ struct DirectLight {
   [[nodiscard, gnu::always_inline]] TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
                                                           std::span<Reflection> reflections) const noexcept {
     TransportResult result;
+    const bool may_spread = !with_velocity && spreads(light.subrays);  // asked first, where one subray is known to be one
     if (w.met_nothing && light.subrays > 1 && light.beam.from_a_point() && light.record.empty() && misses(map, light)) {
       result.energy.sent = light.energy();
       result.energy.missed = light.beam.share_sum * result.energy.sent;
@@ -48,12 +52,25 @@ struct DirectLight {
     }
     trace_subrays<with_velocity>(map, light, w, reflections, result);
     w.met_nothing = result.fate == Fate::missed;
-    if (!with_velocity && spread_planes && light.subrays > 2 && result.reflections == light.subrays && light.beam.from_a_point())
-      result.spread = spread_over_plane(light, reflections, result.reflections);
+    if (may_spread)
+      if (const double span = span_of_ranges(light, reflections.first(result.reflections)); span > 0.5) [[unlikely]]
+        spread(map, light, span, w, reflections, result);
     return result;
   }
 
  private:
+  [[nodiscard]] bool spreads(std::size_t subrays) const noexcept { return spread_planes && subrays > 2; }
+
+  template <Target Map>
+  [[gnu::noinline]] static void spread(const Map& map, const Illumination& light, double span, Workspace& w,
+                                       std::span<Reflection> reflections, TransportResult& result) noexcept {
+    spread_over_plane(light, span, reflections, w.slope, result, [&](const Illumination& again) noexcept {
+      TransportResult other;
+      trace_subrays<false>(map, again, w, reflections, other);
+      return other;
+    });
+  }
+
   template <bool with_velocity, Target Map>
   [[gnu::always_inline]] static void trace_subrays(const Map& map, const Illumination& light, Workspace& w,
                                                    std::span<Reflection> reflections, TransportResult& result) noexcept {

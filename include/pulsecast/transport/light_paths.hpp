@@ -49,24 +49,33 @@ struct LightPaths {
     const std::size_t particles =
         air.has_particles() ? static_cast<std::size_t>(1.2 * detail::BeamParticles::most) : 0;  // six deviations more
     const std::size_t most = subrays * (2 * passages + 1) + 2 * volume_cells + scattering.reflections() + particles;
-    return spread_planes && subrays > 2 ? std::max(most, plane_reflections_max) : most;
+    return spreads(subrays) ? most + slope_subrays_max : most;
   }
-  [[nodiscard]] Workspace workspace(std::size_t) const {
-    return {std::vector<detail::PencilHits>(passages + 1), detail::VolumeBins(volume_cells), detail::VolumeBins(volume_cells)};
+  [[nodiscard]] Workspace workspace(std::size_t subrays) const {
+    return {std::vector<detail::PencilHits>(passages + 1), detail::VolumeBins(volume_cells), detail::VolumeBins(volume_cells),
+            spreads(subrays) ? SubrayDirections::room(slope_subrays_max) : SubrayDirections()};
   }
 
   /// Follows all subrays. Sets velocities, too, if `with_velocity`.
   template <bool with_velocity = false, OpticalTarget Map>
   [[nodiscard]] TransportResult trace(const Map& map, const Illumination& light, Workspace& w,
                                       std::span<Reflection> reflections) const noexcept {
+    const detail::PathSettings settings{passages, least_share, air, scattering};
     TransportResult result;
-    detail::PathTracer<with_velocity, Map> tracer(map, light, {passages, least_share, air, scattering}, w, reflections, result);
+    detail::PathTracer<with_velocity, Map> tracer(map, light, settings, w, reflections, result);
     tracer.trace();
-    if (!with_velocity && spread_planes && !tracer.passed_on() && light.subrays > 2 && result.reflections == light.subrays &&
-        light.beam.from_a_point())
-      result.spread = spread_over_plane(light, reflections, result.reflections);
+    if (!with_velocity && spreads(light.subrays) && !tracer.passed_on())
+      if (const double span = span_of_ranges(light, reflections.first(result.reflections)); span > 0.5)
+        spread_over_plane(light, span, reflections, w.slope, result, [&](const Illumination& again) noexcept {
+          TransportResult other;
+          detail::PathTracer<with_velocity, Map>(map, again, settings, w, reflections, other).trace();
+          return other;
+        });
     return result;
   }
+
+ private:
+  [[nodiscard]] bool spreads(std::size_t subrays) const noexcept { return spread_planes && subrays > 2; }
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -6,118 +6,261 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 
+#include <pulsecast/base/random.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/scanner/beam.hpp>
+#include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/transport/illumination.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
-/// Plane that all subrays of a beam from a point met. The inverse of the range along the beam's axis is linear in the tangents of a
-/// subray's angles, whatever the plane.
+/// Plane that all subrays of a beam met, in the frame of the beam.
 class MetPlane {
  public:
-  /// Fits a plane to the reflections of all subrays, in their order, by least squares.
+  /// Fits a plane to the reflections of all subrays, in their order, by least squares along the beam.
   MetPlane(const SubrayDirections& beam, std::span<const Reflection> reflections) noexcept {
     const double n = static_cast<double>(reflections.size());
-    double across = 0, up = 0, inverse = 0;
+    Vec3 mean{};
+    for (std::size_t j = 0; j < reflections.size(); ++j) mean += point(beam, reflections, j) / n;
+    double xx = 0, zz = 0, xz = 0, xy = 0, zy = 0;
     for (std::size_t j = 0; j < reflections.size(); ++j) {
-      across += beam.x[j] / beam.y[j] / n;
-      up += beam.z[j] / beam.y[j] / n;
-      inverse += inverse_at(beam, reflections, j) / n;
+      const Vec3 p = point(beam, reflections, j) - mean;
+      xx += p.x * p.x;
+      zz += p.z * p.z;
+      xz += p.x * p.z;
+      xy += p.x * p.y;
+      zy += p.z * p.y;
     }
-    double aa = 0, bb = 0, ab = 0, ai = 0, bi = 0;
-    for (std::size_t j = 0; j < reflections.size(); ++j) {
-      const double a = beam.x[j] / beam.y[j] - across, b = beam.z[j] / beam.y[j] - up, i = inverse_at(beam, reflections, j) - inverse;
-      aa += a * a;
-      bb += b * b;
-      ab += a * b;
-      ai += a * i;
-      bi += b * i;
-    }
-    const double determinant = aa * bb - ab * ab;
-    across_ = (bb * ai - ab * bi) / determinant;
-    up_ = (aa * bi - ab * ai) / determinant;
-    middle_ = inverse - across_ * across - up_ * up;
+    const double determinant = xx * zz - xz * xz;
+    across_ = (zz * xy - xz * zy) / determinant;
+    up_ = (xx * zy - xz * xy) / determinant;
+    ahead_ = mean.y - across_ * mean.x - up_ * mean.z;
   }
 
   /// Greatest distance of a reflection from the plane, along its ray [m]; NaN without a plane.
   [[nodiscard]] double farthest_from(const SubrayDirections& beam, std::span<const Reflection> reflections) const noexcept {
     double most = 0;
     for (std::size_t j = 0; j < reflections.size(); ++j) {
-      const double inverse = beam.y[j] * middle_ + beam.x[j] * across_ + beam.z[j] * up_,
-                   off = std::fabs(1 / inverse - reflections[j].range);
+      const double off = std::fabs(range_of(exit_of(beam, j), {beam.x[j], beam.y[j], beam.z[j]}) - reflections[j].range);
       if (!(off <= most)) most = off;
     }
     return most;
   }
 
-  /// Range of the Gaussian beam's light that meets the plane at so many standard deviations towards its far end [m]; negative if none does.
-  [[nodiscard]] double range_at(double deviations, const Emitter& emitter) const noexcept {
-    const double across = 0.25 * emitter.footprint_scale * emitter.laser.divergence.across * across_;
-    const double up = 0.25 * emitter.footprint_scale * emitter.laser.divergence.up * up_;
-    return 1 / (middle_ - deviations * std::hypot(across, up));
+  /// Range of a subray [m], by its offset in the footprint; negative if it does not meet the plane.
+  [[nodiscard]] double range_at(const Vec2& offset, const Emitter& emitter) const noexcept {
+    const Vec2 scaled = emitter.footprint_scale * offset;
+    return range_of(subray_exit(scaled, emitter.laser), subray_direction(scaled, emitter.laser.divergence));
+  }
+
+  /// Direction in the footprint in which ranges grow, as a unit offset; across, if they do not.
+  [[nodiscard]] Vec2 farther(const Emitter& emitter) const noexcept {
+    constexpr double small = 1e-3;
+    const Vec2 way{range_at({small, 0}, emitter) - range_at({-small, 0}, emitter),
+                   range_at({0, small}, emitter) - range_at({0, -small}, emitter)};
+    const double size = std::hypot(way.x, way.y);
+    return size > 0 ? way / size : Vec2{1, 0};
   }
 
  private:
-  static double inverse_at(const SubrayDirections& beam, std::span<const Reflection> reflections, std::size_t j) noexcept {
-    return 1 / (reflections[j].range * beam.y[j]);
+  static Vec3 exit_of(const SubrayDirections& beam, std::size_t j) noexcept { return beam.from_a_point() ? Vec3{} : beam.exits[j]; }
+  static Vec3 point(const SubrayDirections& beam, std::span<const Reflection> reflections, std::size_t j) noexcept {
+    return exit_of(beam, j) + reflections[j].range * Vec3{beam.x[j], beam.y[j], beam.z[j]};
+  }
+  [[nodiscard]] double range_of(const Vec3& exit, const Vec3& direction) const noexcept {
+    return (ahead_ + across_ * exit.x + up_ * exit.z - exit.y) / (direction.y - across_ * direction.x - up_ * direction.z);
   }
 
-  double middle_ = 0, across_ = 0, up_ = 0;  ///< inverse of the range on the axis, and its slopes [1/m]
+  double ahead_ = 0, across_ = 0, up_ = 0;  ///< place on the axis [m], and its slopes
 };
 
-inline constexpr std::size_t plane_reflections_max = 2048;  ///< greatest number of reflections that light is spread to
+inline constexpr std::size_t slope_subrays_max = 32'768;  ///< greatest number of subrays that light is spread to
 
-/// Spreads the light of a pulse over a smooth plane that is met so obliquely that its subrays may be echoes of their own: if their ranges
-/// part by more than two deviations of the pulse, other reflections take their place, with the power of a Gaussian beam over the plane.
-/// Without another ray, a plane then gives one echo, of the place and width that the beam's has.
-///
-/// They are so near to each other that their sum has a single maximum. Derived for pulses of a `PulseShape`, whose spectrum falls as the
-/// cube of the frequency: the ripple of a comb of spacing d is 2 (d / 2 pi tau)^3, and its curvature is less than that of the whole echo,
-/// of a deviation s, if d is below pi tau^3 / s^2, with all in metres of range. Four times as many subrays are dense enough themselves.
-///
-/// `reflections` begins with those of all subrays, in their order, of which there are `count`; its size is the room for others. Returns
-/// true if it was done, with their number in `count`.
-[[nodiscard]] inline bool spread_over_plane(const Illumination& light, std::span<Reflection> reflections, std::size_t& count) noexcept {
-  const std::span<Reflection> met = reflections.first(count);
-  const double tau = 0.5 * speed_of_light * light.emitter.laser.pulse_length / 3.4, deviation = std::sqrt(3.0) * tau;  // of the pulse [m]
-  double nearest = met[0].range, farthest = met[0].range;
+namespace detail {
+
+/// Time constant of a pulse, as of a `PulseShape`, in metres of range.
+[[nodiscard]] inline double pulse_constant(const Laser& laser) noexcept { return 0.5 * speed_of_light * laser.pulse_length / 3.4; }
+
+/// First reflections of a pulse, from surfaces that the beam met directly.
+[[nodiscard]] inline std::span<const Reflection> direct_ones(std::span<const Reflection> reflections) noexcept {
+  std::size_t n = 0;
+  while (n < reflections.size() && reflections[n].kind == ReflectionKind::surface) ++n;
+  return reflections.first(n);
+}
+
+/// Smooth surface that a pulse met obliquely.
+struct Slope {
+  double spread = 0;   ///< deviation of the ranges at which it scatters the light of a Gaussian beam; 0 if there is none [m]
+  Vec2 farther{1, 0};  ///< direction across the footprint in which ranges grow, as a unit offset
+  double range = 0;    ///< range on the axis of a plane; 0 for another surface [m]
+};
+
+/// Plane that all subrays met, within a tenth of the pulse's deviation.
+[[nodiscard]] inline Slope met_plane(const Illumination& light, std::span<const Reflection> met) noexcept {
+  if (met.size() != light.subrays) return {};
+  const MetPlane plane(light.beam, met);
+  if (!(plane.farthest_from(light.beam, met) < 0.1 * std::sqrt(3.0) * pulse_constant(light.emitter.laser))) return {};
+  const Vec2 farther = plane.farther(light.emitter);
+  const double begin = plane.range_at(-2.0 * farther, light.emitter), end = plane.range_at(2.0 * farther, light.emitter);  // 4 deviations
+  if (!(begin > 0 && end > begin)) return {};
+  return {(end - begin) / 8, farther, plane.range_at({}, light.emitter)};
+}
+
+/// Smooth surface of several planes, or one that ends in the beam. Of the subrays that met something so obliquely that one plane of that
+/// incidence would spread their light by more than the pulse's time constant, successive ones met it alike: a tenth of all subrays or more.
+[[nodiscard]] inline Slope met_facets(const Illumination& light, std::span<const Reflection> met) noexcept {
+  const double tau = pulse_constant(light.emitter.laser);
+  std::size_t pairs = 0;
+  const Reflection* last = nullptr;
+  Slope slope;
   for (const Reflection& r : met) {
+    const Vec2 radius = beam_radius(light.emitter.laser, r.range);  // twice the deviation
+    const double cosine = r.cos_incidence, wide = 0.5 * light.emitter.footprint_scale * std::max(radius.x, radius.y),
+                 spread = wide * std::sqrt(1 - cosine * cosine) / cosine;
+    if (!(spread > tau)) continue;
+    if (last && std::fabs(cosine - last->cos_incidence) < 2 * light.beam.spread && std::fabs(r.range - last->range) < 8 * spread) {
+      ++pairs;
+      slope.spread = std::max(slope.spread, spread);
+    }
+    last = &r;
+  }
+  return pairs < 2 || 10 * pairs < light.subrays ? Slope{} : slope;
+}
+
+/// True if subrays on a plane send back alike: the same labels, and powers within a tenth for the same share of the light.
+[[nodiscard]] inline bool alike(const Illumination& light, std::span<const Reflection> met) noexcept {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (std::size_t j = 0; j < met.size(); ++j) {
+    if (met[j].object != met[0].object || met[j].classification != met[0].classification) return false;
+    const double strength = met[j].power * met[j].range * met[j].range * met[j].range / light.beam.shares[j];
+    least = std::min(least, strength);
+    most = std::max(most, strength);
+  }
+  return most < 1.1 * least;
+}
+
+/// Place of a subray in a row [deviations], and the width of the beam that it stands for.
+struct RowPlace {
+  double along, width;
+};
+
+/// Sets subrays in a row along a slope, at the places `place(j)`; across, they follow the multiples of the golden ratio, so that neighbours
+/// lie anywhere. Those off the row are longer ways off: on a plane, they lie as much nearer along it.
+template <class Place>
+void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, const Slope& slope, const Place& place) noexcept {
+  const Vec2 deviation = 0.25 * emitter.footprint_scale * Vec2{emitter.laser.divergence.across, emitter.laser.divergence.up};
+  const Vec2 farther = slope.farther, aside{-farther.y, farther.x};
+  const auto square = [&](const Vec2& at) noexcept { return dot(at * deviation, at * deviation); };
+  const auto share = [&](const RowPlace& at) noexcept { return std::exp(-0.5 * at.along * at.along) * at.width; };
+  double sum = 0;
+  for (std::size_t j = 0; j < size; ++j) sum += share(place(static_cast<double>(j)));
+  row.assign(size, emitter, [&](std::size_t j) noexcept -> SubrayDirections::Subray {
+    const RowPlace at = place(static_cast<double>(j));
+    const double m = (static_cast<double>(j) + 0.5) * 0.5 * (std::sqrt(5.0) - 1), across = normal_quantile(m - std::floor(m));
+    const Vec2 on = at.along * farther, off = on + across * aside;
+    const double longer = 0.5 * slope.range * (square(off) - square(on));
+    return {0.5 * (off - longer / slope.spread * farther), share(at) / sum};
+  });
+}
+
+/// Sets subrays for an even plane, nearest to each other where the waveform has its maximum, and `number` of them; returns how many there
+/// should be.
+[[nodiscard]] inline double set_even_row(SubrayDirections& row, std::size_t& number, const Slope& plane, const Emitter& emitter) noexcept {
+  constexpr double reach = 4, smooth = 2;                                         // deviations; places over which the distances settle
+  const double r = plane.spread / pulse_constant(emitter.laser), ss = r * r + 3;  // variances [tau^2]
+  const double most = (3 - 3 / ss) / r - 5 * plane.spread / plane.range;          // place whose pulse begins at the maximum [deviations]
+  const double half = reach + std::fabs(most), wanted = std::sqrt(half * ss * r / (3 * 0.55 * 0.55));
+  const double side = std::floor(std::clamp(wanted, 128.0, 0.5 * slope_subrays_max - 1)), step = half / (side * side);
+  number = static_cast<std::size_t>(2 * side + 1);
+  set_row(row, number, emitter, plane, [&](double j) noexcept -> RowPlace {
+    const double n = j - side, q = std::sqrt(n * n + smooth * smooth);
+    return {most + step * n * q, step * (q + n * n / q)};
+  });
+  return 2 * wanted;
+}
+
+/// True if neighbours in a row of subrays send back alike: the same labels, and powers on a curve without noise.
+[[nodiscard]] inline bool sends_evenly(const SubrayDirections& row, std::size_t size, std::span<const Reflection> met,
+                                       double noise) noexcept {
+  if (met.size() < size) return false;
+  for (std::size_t j = 1; j < size; ++j)
+    if (met[j].object != met[0].object || met[j].classification != met[0].classification) return false;
+  const auto strength = [&](std::size_t j) noexcept { return met[j].power / row.shares[j]; };
+  for (std::size_t j = 2; j < size; ++j)
+    if (!(std::fabs(strength(j - 2) - 2 * strength(j - 1) + strength(j)) < 2 * noise * strength(j - 1))) return false;
+  return true;
+}
+
+}  // namespace detail
+
+/// Span of the ranges at which subrays met surfaces directly, in deviations of the pulse.
+[[nodiscard]] inline double span_of_ranges(const Illumination& light, std::span<const Reflection> reflections) noexcept {
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  for (const Reflection& r : reflections) {
+    if (r.kind != ReflectionKind::surface) break;
     nearest = r.range < nearest ? r.range : nearest;
     farthest = r.range > farthest ? r.range : farthest;
   }
-  if (!(farthest - nearest > 2 * deviation)) return false;
-  const MetPlane plane(light.beam, met);
-  if (!(plane.farthest_from(light.beam, met) < 0.1 * deviation)) return false;
+  return (farthest - nearest) / (std::sqrt(3.0) * detail::pulse_constant(light.emitter.laser));
+}
 
-  constexpr double reach = 4;  // deviations of the beam
-  const double begin = plane.range_at(-reach, light.emitter), end = plane.range_at(reach, light.emitter);
-  if (!(begin > 0 && end > begin)) return false;
-  const double spread = (end - begin) / (2 * reach),
-               spacing = std::min(tau, 0.5 * pi * tau * tau * tau / (spread * spread + deviation * deviation));
-  const double parts = std::min(std::ceil((end - begin) / spacing) + 1, static_cast<double>(reflections.size()));
-
-  if (static_cast<double>(count) >= 4 * parts) return false;  // dense enough
-
-  double power = 0;
-  for (const Reflection& r : met) power += r.power;
-  Reflection like = met[count / 2];
-  double weights = 0;
-  std::size_t made = 0;
-  for (double k = 0; k < parts; ++k) {
-    const double at = reach * (2 * k / (parts - 1) - 1), range = plane.range_at(at, light.emitter);
-    if (!light.gate.contains(range)) continue;
-    like.range = range;
-    like.power = std::exp(-0.5 * at * at) / (range * range);
-    weights += like.power;
-    reflections[made++] = like;
+/// Spreads the light of a pulse over the smooth surface that its subrays met obliquely, if they did: the pulse is traced again, by as many
+/// subrays as make one echo of a plane. `span` is that of the ranges. `trace(light)` sets the reflections anew, and returns their result;
+/// `row` is memory.
+///
+/// On a plane, only the place of a subray along the slope matters. The subrays are in a row along it, and anywhere across. Derived for
+/// pulses of a `PulseShape`, with lengths in units of its tau, and s the echo's deviation. Each pulse begins as the square of time, so the
+/// slope of a sum of pulses a distance d apart errs by up to d^2 / 12 of its height (Source: formula of Euler and Maclaurin). The slope of
+/// the echo is x / s^2 of its height at a distance x from its maximum. If d grows as the root of 12 x / s^2, there is no other maximum.
+///
+/// Where neighbours in the row send back other powers or labels, or the surface is not one plane, the row is even, and longer, as the paint
+/// across the slope is then a sum over neighbours. Its errors were measured: docs/physics.md. Beyond its room, false echoes are left, and
+/// the pulse is unresolved.
+template <class Trace>
+void spread_over_plane(const Illumination& light, double span, std::span<const Reflection> reflections, SubrayDirections& row,
+                       TransportResult& result, const Trace& trace) noexcept {
+  const double tau = detail::pulse_constant(light.emitter.laser);
+  // two pulses are two echoes if they are 2 tau apart, or 1.15 deviations: few subrays may be that far apart
+  const bool part = span > std::min(2.0, 0.38 * static_cast<double>(light.subrays - 1));
+  const auto met = [&] { return detail::direct_ones(reflections.first(result.reflections)); };
+  detail::Slope slope = detail::met_plane(light, met());
+  const bool plane = slope.spread > 0;
+  if (!plane && part) slope = detail::met_facets(light, met());
+  if (!(slope.spread > 0) || (!part && detail::alike(light, met()))) return;
+  const double r = slope.spread / tau, s = std::sqrt(r * r + 3);
+  if (static_cast<double>(light.subrays) >= 20 * s * s * s) return;  // dense enough
+  const auto trace_row = [&](std::size_t size) noexcept {
+    result = trace(Illumination{light.pulse,
+                                light.index,
+                                light.seed,
+                                light.emitter,
+                                row,
+                                size,
+                                light.budget,
+                                light.white_target,
+                                light.gate,
+                                {},
+                                light.sample_interval});
+    result.spread = true;
+  };
+  if (plane && part) {
+    std::size_t size = 0;
+    const bool room = detail::set_even_row(row, size, slope, light.emitter) < 1.27 * slope_subrays_max;  // the factor 0.55 becomes 0.7
+    trace_row(size);
+    result.unresolved = !room || 16 * slope.spread > slope.range;
+    if (detail::sends_evenly(row, size, met(), std::min(0.1, 0.5 / (s * std::sqrt(s))))) return;
   }
-  if (made == 0) return false;
-  for (Reflection& r : reflections.first(made)) r.power *= power / weights;
-  count = made;
-  return true;
+  constexpr double most = slope_subrays_max;
+  const double size = std::ceil(std::min(1024 * r * s, most)), width = 8 / size;
+  detail::set_row(row, static_cast<std::size_t>(size), light.emitter, slope, [&](double j) noexcept -> detail::RowPlace {
+    return {width * (j + 0.5) - 4, width};
+  });
+  trace_row(static_cast<std::size_t>(size));
+  result.unresolved = s > 16;
 }
 
 }  // namespace PULSECAST_NAMESPACE

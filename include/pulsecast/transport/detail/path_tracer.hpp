@@ -46,6 +46,7 @@ struct PathSettings {
 struct PathWorkspace {
   std::vector<PencilHits> levels;  ///< by number of surfaces that passed light on
   VolumeBins in_air, in_water;     ///< light that media scatter back
+  SubrayDirections slope{};        ///< subrays for a smooth surface
 };
 
 /// Follows the light of one pulse.
