@@ -19,6 +19,21 @@
 #include <pulsecast/base/arithmetic.hpp>
 #include <pulsecast/base/namespace.hpp>
 
+// GLM's own functions have one name for all orders of a quaternion's parts: files that differ in it must not be linked. Linkers accept an
+// absolute symbol many times if it has one value.
+#if defined(__ELF__)
+#if defined(GLM_FORCE_QUAT_DATA_WXYZ) || defined(GLM_FORCE_QUAT_DATA_XYZW)
+__asm__(".globl pulsecast_order_of_quaternion_data\n.set pulsecast_order_of_quaternion_data, 1");
+#else
+__asm__(".globl pulsecast_order_of_quaternion_data\n.set pulsecast_order_of_quaternion_data, 0");
+#endif
+#if defined(GLM_FORCE_QUAT_CTOR_XYZW)
+__asm__(".globl pulsecast_order_of_quaternion_constructors\n.set pulsecast_order_of_quaternion_constructors, 1");
+#else
+__asm__(".globl pulsecast_order_of_quaternion_constructors\n.set pulsecast_order_of_quaternion_constructors, 0");
+#endif
+#endif
+
 /// Vectors and rotations. GLM is named in this header only.
 namespace PULSECAST_NAMESPACE {
 
