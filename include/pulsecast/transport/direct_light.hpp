@@ -53,7 +53,7 @@ struct DirectLight {
     trace_subrays<with_velocity>(map, light, w, reflections, result);
     w.met_nothing = result.fate == Fate::missed;
     if (may_spread)
-      if (const double span = span_of_ranges(light, reflections.first(result.reflections)); span > 0.5) [[unlikely]]
+      if (const double span = span_of_ranges(light, reflections.first(result.reflections)); span > 1) [[unlikely]]
         spread(map, light, span, w, reflections, result);
     return result;
   }
