@@ -111,7 +111,7 @@ class Survey {
   [[nodiscard]] Workspace workspace() const {
     std::size_t most = 0;
     for (const Unit& unit : receivers_) most = std::max(most, unit.footprint.size());
-    Workspace w{transport_.workspace(most), room_for(transport_.reflections(most)), std::vector<SubrayHit>(recorded_subrays()), {}};
+    Workspace w{transport_.workspace(most), room_for(transport_.reflections(most), most), std::vector<SubrayHit>(recorded_subrays()), {}};
     for (const Unit& unit : receivers_) w.detectors.push_back(unit.detector.workspace(transport_.reflections(unit.footprint.size())));
     return w;
   }

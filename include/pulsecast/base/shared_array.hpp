@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <new>
 #include <span>
@@ -54,15 +53,6 @@ class SharedBuffer {
       : memory_(detail::allocate_shared(size * sizeof(T), std::align_val_t{alignof(T)})),
         elements_(static_cast<T*>(memory_.get())),
         size_(size) {}
-  /// Zero bytes, which take no memory before they are written to. Errors: std::bad_alloc.
-  [[nodiscard]] static SharedBuffer zeros(std::size_t size) {
-    SharedBuffer made;
-    made.memory_ = std::shared_ptr<void>(std::calloc(size, sizeof(T)), &std::free);
-    if (!made.memory_ && size > 0) throw std::bad_alloc();
-    made.elements_ = static_cast<T*>(made.memory_.get());
-    made.size_ = size;
-    return made;
-  }
 
   [[nodiscard]] T& operator[](std::size_t i) const noexcept { return elements_[i]; }
   [[nodiscard]] T* data() const noexcept { return elements_; }

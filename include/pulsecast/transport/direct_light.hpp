@@ -66,6 +66,7 @@ struct DirectLight {
                                        std::span<Reflection> reflections, TransportResult& result) noexcept {
     spread_over_plane(light, span, reflections, w.slope, result, [&](const Illumination& again) noexcept {
       TransportResult other;
+      for (Reflection& r : reflections.first(again.subrays)) r.velocity = 0;
       trace_subrays<false>(map, again, w, reflections, other);
       return other;
     });

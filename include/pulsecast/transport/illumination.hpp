@@ -37,10 +37,10 @@ struct Illumination {
   [[nodiscard]] const Pose<frame::Beam, frame::World>& reported() const noexcept { return pulse.reported ? *pulse.reported : pulse.pose; }
 };
 
-/// Memory for the reflections of a pulse. Most pulses have few: beyond 2048, they are zero bytes.
-[[nodiscard]] inline SharedBuffer<Reflection> room_for(std::size_t reflections) {
-  const auto room = SharedBuffer<Reflection>::zeros(reflections);
-  std::fill_n(room.begin(), std::min<std::size_t>(reflections, 2048), Reflection{});
+/// Memory for the reflections of a pulse of so many subrays. Those that pulses seldom reach are not initialized.
+[[nodiscard]] inline SharedBuffer<Reflection> room_for(std::size_t reflections, std::size_t subrays) {
+  const SharedBuffer<Reflection> room(reflections);
+  std::fill_n(room.begin(), std::min(reflections, std::max<std::size_t>(2048, 20 * subrays)), Reflection{});
   return room;
 }
 
