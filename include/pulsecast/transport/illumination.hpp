@@ -40,7 +40,7 @@ struct Illumination {
 /// Memory for the reflections of a pulse of so many subrays. Those that pulses seldom reach are not initialized.
 [[nodiscard]] inline SharedBuffer<Reflection> room_for(std::size_t reflections, std::size_t subrays) {
   const SharedBuffer<Reflection> room(reflections);
-  std::fill_n(room.begin(), std::min(reflections, std::max<std::size_t>(2048, 20 * subrays)), Reflection{});
+  std::fill_n(room.begin(), std::min(reflections, 20 * subrays), Reflection{});
   return room;
 }
 
