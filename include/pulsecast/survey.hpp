@@ -13,9 +13,7 @@
 
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/base/require.hpp>
-#include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/concepts.hpp>
-#include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/stage_arguments.hpp>
 #include <pulsecast/transport/direct_light.hpp>
@@ -111,8 +109,7 @@ class Survey {
   [[nodiscard]] Workspace workspace() const {
     std::size_t most = 0;
     for (const Unit& unit : receivers_) most = std::max(most, unit.footprint.size());
-    Workspace w{
-        transport_.workspace(most), SharedBuffer<Reflection>(transport_.reflections(most)), std::vector<SubrayHit>(recorded_subrays()), {}};
+    Workspace w{transport_.workspace(most), room_for(transport_.reflections(most), most), std::vector<SubrayHit>(recorded_subrays()), {}};
     for (const Unit& unit : receivers_) w.detectors.push_back(unit.detector.workspace(transport_.reflections(unit.footprint.size())));
     return w;
   }

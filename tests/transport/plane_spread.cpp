@@ -296,9 +296,10 @@ TEST_CASE("whatever the paint on a slope, its echo is where a hundred thousand r
     if (truth.maxima != 1 || e.seen.outcome.unresolved) continue;
     ++checked;
     spread += e.seen.outcome.spread ? 1 : 0;
-    CHECK(e.mean < 1);
-    CHECK(e.centroid < 1);
-    CHECK(e.peak < 1);
+    const double allowed = e.seen.outcome.spread ? 1 : 2;  // the subrays of the footprint alone err by more
+    CHECK(e.mean < allowed);
+    CHECK(e.centroid < allowed);
+    CHECK(e.peak < allowed);
   }
   CHECK(checked > 140);
   CHECK(spread > 80);

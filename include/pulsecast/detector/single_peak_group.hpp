@@ -32,8 +32,8 @@ class SinglePeakGroup {
   /// Ages and weights, one per reflection, padded to whole SIMD vectors.
   struct Workspace {
     std::vector<double> ages, weights;  ///< one per reflection: age [tau], weight [W]
-    /// Allocates memory for `reflections` reflections, at most 4096: more are rarely within 2 tau.
-    explicit Workspace(std::size_t reflections) : ages(std::min<std::size_t>(reflections, 4096) + simd::lane_count), weights(ages) {}
+    /// Allocates memory for `reflections` reflections, at most 2048: more are rarely within 2 tau.
+    explicit Workspace(std::size_t reflections) : ages(std::min<std::size_t>(reflections, 2048) + simd::lane_count), weights(ages) {}
   };
 
   /// Computes ages and weights in a workspace that must outlive the group. `one()` is false for reflections that are none, too far apart,

@@ -53,7 +53,7 @@ struct DirectLight {
     trace_subrays<with_velocity>(map, light, w, reflections, result);
     w.met_nothing = result.fate == Fate::missed;
     if (may_spread)
-      if (const double span = span_of_ranges(light, reflections.first(result.reflections)); span > 0.5) [[unlikely]]
+      if (const double span = span_of_ranges(light, reflections.first(result.reflections)); span > 1) [[unlikely]]
         spread(map, light, span, w, reflections, result);
     return result;
   }
@@ -66,6 +66,7 @@ struct DirectLight {
                                        std::span<Reflection> reflections, TransportResult& result) noexcept {
     spread_over_plane(light, span, reflections, w.slope, result, [&](const Illumination& again) noexcept {
       TransportResult other;
+      for (Reflection& r : reflections.first(again.subrays)) r.velocity = 0;
       trace_subrays<false>(map, again, w, reflections, other);
       return other;
     });

@@ -3,10 +3,13 @@
 #ifndef PULSECAST_TRANSPORT_ILLUMINATION_HPP
 #define PULSECAST_TRANSPORT_ILLUMINATION_HPP
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include <pulsecast/base/shared_array.hpp>
+#include <pulsecast/concepts.hpp>
 #include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/echo.hpp>
 #include <pulsecast/pulse.hpp>
@@ -33,6 +36,13 @@ struct Illumination {
   /// Pose of the beam as known to the instrument.
   [[nodiscard]] const Pose<frame::Beam, frame::World>& reported() const noexcept { return pulse.reported ? *pulse.reported : pulse.pose; }
 };
+
+/// Memory for the reflections of a pulse of so many subrays. Those that pulses seldom reach are not initialized.
+[[nodiscard]] inline SharedBuffer<Reflection> room_for(std::size_t reflections, std::size_t subrays) {
+  const SharedBuffer<Reflection> room(reflections);
+  std::fill_n(room.begin(), std::min(reflections, 20 * subrays), Reflection{});
+  return room;
+}
 
 }  // namespace PULSECAST_NAMESPACE
 

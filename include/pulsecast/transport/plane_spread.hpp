@@ -52,7 +52,7 @@ class MetPlane {
   }
 
   /// Range of a subray [m], by its offset in the footprint; negative if it does not meet the plane.
-  [[nodiscard]] double range_at(const Vec2& offset, const Emitter& emitter) const noexcept {
+  [[nodiscard, gnu::noinline]] double range_at(const Vec2& offset, const Emitter& emitter) const noexcept {
     const Vec2 scaled = emitter.footprint_scale * offset;
     return range_of(subray_exit(scaled, emitter.laser), subray_direction(scaled, emitter.laser.divergence));
   }
@@ -100,7 +100,7 @@ struct Slope {
 };
 
 /// Plane that all subrays met, within a tenth of the pulse's deviation.
-[[nodiscard]] inline Slope met_plane(const Illumination& light, std::span<const Reflection> met) noexcept {
+[[nodiscard, gnu::noinline]] inline Slope met_plane(const Illumination& light, std::span<const Reflection> met) noexcept {
   if (met.size() != light.subrays) return {};
   const MetPlane plane(light.beam, met);
   if (!(plane.farthest_from(light.beam, met) < 0.1 * std::sqrt(3.0) * pulse_constant(light.emitter.laser))) return {};
@@ -112,7 +112,7 @@ struct Slope {
 
 /// Smooth surface of several planes, or one that ends in the beam. Of the subrays that met something so obliquely that one plane of that
 /// incidence would spread their light by more than the pulse's time constant, successive ones met it alike: a tenth of all subrays or more.
-[[nodiscard]] inline Slope met_facets(const Illumination& light, std::span<const Reflection> met) noexcept {
+[[nodiscard, gnu::noinline]] inline Slope met_facets(const Illumination& light, std::span<const Reflection> met) noexcept {
   const double tau = pulse_constant(light.emitter.laser);
   std::size_t pairs = 0;
   const Reflection* last = nullptr;
@@ -132,7 +132,7 @@ struct Slope {
 }
 
 /// True if subrays on a plane send back alike: the same labels, and powers within a tenth for the same share of the light.
-[[nodiscard]] inline bool alike(const Illumination& light, std::span<const Reflection> met) noexcept {
+[[nodiscard, gnu::noinline]] inline bool alike(const Illumination& light, std::span<const Reflection> met) noexcept {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t j = 0; j < met.size(); ++j) {
     if (met[j].object != met[0].object || met[j].classification != met[0].classification) return false;
@@ -169,7 +169,8 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
 
 /// Sets subrays for an even plane, nearest to each other where the waveform has its maximum, and `number` of them; returns how many there
 /// should be.
-[[nodiscard]] inline double set_even_row(SubrayDirections& row, std::size_t& number, const Slope& plane, const Emitter& emitter) noexcept {
+[[nodiscard, gnu::noinline]] inline double set_even_row(SubrayDirections& row, std::size_t& number, const Slope& plane,
+                                                        const Emitter& emitter) noexcept {
   constexpr double reach = 4, smooth = 2;                                         // deviations; places over which the distances settle
   const double r = plane.spread / pulse_constant(emitter.laser), ss = r * r + 3;  // variances [tau^2]
   const double most = (3 - 3 / ss) / r - 5 * plane.spread / plane.range;          // place whose pulse begins at the maximum [deviations]
@@ -227,10 +228,11 @@ void spread_over_plane(const Illumination& light, double span, std::span<const R
   // two pulses are two echoes if they are 2 tau apart, or 1.15 deviations: few subrays may be that far apart
   const bool part = span > std::min(2.0, 0.38 * static_cast<double>(light.subrays - 1));
   const auto met = [&] { return detail::direct_ones(reflections.first(result.reflections)); };
+  if (!part && (met().size() != light.subrays || detail::alike(light, met()))) return;
   detail::Slope slope = detail::met_plane(light, met());
   const bool plane = slope.spread > 0;
   if (!plane && part) slope = detail::met_facets(light, met());
-  if (!(slope.spread > 0) || (!part && detail::alike(light, met()))) return;
+  if (!(slope.spread > 0)) return;
   const double r = slope.spread / tau, s = std::sqrt(r * r + 3);
   if (static_cast<double>(light.subrays) >= 20 * s * s * s) return;  // dense enough
   const auto trace_row = [&](std::size_t size) noexcept {
