@@ -23,6 +23,7 @@ namespace pulsecast::support {
 struct Traced {
   TransportResult result;
   std::vector<Reflection> reflections;
+  std::vector<ContinuousReturn> continuous;
 
   /// The reflections of one kind.
   [[nodiscard]] std::vector<Reflection> of(ReflectionKind kind) const {
@@ -85,6 +86,8 @@ template <bool with_velocity = false, class Light, class Map, class Pattern>
   else
     all.result = transport.trace(map, light, w, all.reflections);
   all.reflections.resize(all.result.reflections);
+  all.continuous.assign(all.result.continuous.begin(), all.result.continuous.end());
+  all.result.continuous = all.continuous;
   return all;
 }
 

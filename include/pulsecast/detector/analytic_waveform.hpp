@@ -156,7 +156,7 @@ class AnalyticWaveform {
     keep_echoes(s_, w.peaks);
     for (Peak& peak : w.peaks) {
       if constexpr (by_samples) peak.width = sampled_width(peak, reflections, shape, w.samples);
-      w.echoes.push_back(echo_of(peak, reflections, shape, s_.timing, w.echoes.size() + 1));
+      w.echoes.push_back(echo_of(peak, reflections, shape, s_.timing));
     }
     const double start = SampledSum::first_sample(reflections.front(), shape, s_.sample_interval);
     SampledSum sum(reflections, shape, s_.sample_interval, 0, start);

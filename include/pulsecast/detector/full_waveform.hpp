@@ -16,6 +16,7 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/by_pulse_length.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
@@ -119,7 +120,7 @@ class FullWaveform {
       if constexpr (ideal) return receiver_.none();
       return false;
     }();
-    w.peaks.reserve(noiseless ? reflections : std::max(reflections, max_peaks));
+    w.peaks.reserve(noiseless ? reflections + continuous_peaks : std::max(reflections, max_peaks));
     w.echoes.reserve(std::min(w.peaks.capacity(), s_.returns_max));
     w.record.reserve(s_.record_capacity());
     return w;
@@ -133,13 +134,14 @@ class FullWaveform {
     w.echoes.clear();
     w.record.clear();
     if constexpr (ideal)
-      if (std::same_as<Width, NoWidth> && s_.record_length == 0 && receiver_.none() && s_.timing <= EchoTiming::peak) {
+      if (std::same_as<Width, NoWidth> && s_.record_length == 0 && receiver_.none() && s_.timing <= EchoTiming::peak &&
+          heard.continuous.empty()) {
         const PulseShape shape(laser.pulse_length, s_.shape_divisor);
         const SinglePeakGroup group(heard.reflections, shape, s_.sample_interval, w.group);
         if (group.one() && detect(group, shape, w.echoes)) return {w.echoes, {}, 0};
       }
     if constexpr (!ideal && std::same_as<Width, NoWidth>)
-      if (s_.record_length == 0 && s_.timing == EchoTiming::peak)
+      if (s_.record_length == 0 && s_.timing == EchoTiming::peak && heard.continuous.empty())
         if (const auto only = receiver_.only_peak(s_, heard)) return detection_of(*only, laser, w.echoes);
     const std::span<const Reflection> reflections = in_order_of_range(heard.reflections, s_.sample_interval);
     auto samples = receiver_.samples(s_, heard, reflections, tail(), w.receiver);
@@ -165,14 +167,17 @@ class FullWaveform {
     const Correction* correction = corrections_.find(laser);
     for (Peak& peak : w.peaks) {
       if (correction) peak.mark = correction->arrival(peak.mark, s_.sample_interval);
-      w.echoes.push_back(echo_of(peak, reflections, samples.shape(), timing, w.echoes.size() + 1));
+      keep_return(echo_of(peak, reflections, samples.shape(), timing, samples.continuous_share(peak)), s_.returns_kept, s_.returns_max,
+                  w.echoes);
     }
+    number_echoes(w.echoes);
     return {w.echoes, w.record, samples.start() * s_.sample_interval};
   }
 
  private:
   static constexpr bool ideal = std::same_as<Receiver, ReceiverNoise>;
   static constexpr std::size_t max_peaks = 4096;  ///< peaks of noise
+  static constexpr std::size_t continuous_peaks = 64;
 
   /// Time of the echo of a flat target less its arrival, by the place of the arrival between two samples.
   struct Correction {

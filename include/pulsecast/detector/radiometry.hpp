@@ -150,6 +150,8 @@ class LinkBudget {
   [[nodiscard]] double power_captured(double share, double air) const noexcept {
     return near_ > 0 ? gain_ / near_ * share * std::exp(both_ways_ * air / 2) : 0;
   }
+  /// Share of the received power that the air takes away on a short way, both ways [1/m].
+  [[nodiscard]] double loss() const noexcept { return -both_ways_; }
   /// Radius of the aperture [m].
   [[nodiscard]] double aperture_radius() const noexcept { return std::sqrt(near_); }
 
