@@ -32,13 +32,6 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// The only maximum of the samples of a pulse.
-struct OnlyPeak {
-  double time;                            ///< less the receiver's delay [s]
-  double height;                          ///< power [W]
-  const Reflection* strongest = nullptr;  ///< reflection with the greatest share of it
-};
-
 /// Receiver of finite bandwidth, as real ones are: a policy of `FullWaveform`, by the settings of a `ReceiverChain` and the form of the
 /// laser's pulse. Results do not depend on the sample interval once it resolves the bandwidth. Noise makes it listen to the whole gate.
 template <PulseForm Form = GammaPulse>
@@ -95,7 +88,7 @@ class BandLimitedReceiver {
   }
 
   /// Maximum of the samples, if there is only one, from those near it: as full sampling gives it. Empty for reflections that are none or
-  /// too far apart, and for receivers whose samples are more than the sum of the pulses.
+  /// too far apart, or where continuous returns may rise, and for receivers whose samples are more than the sum of the pulses.
   [[nodiscard]] std::optional<OnlyPeak> only_peak(const WaveformSettings& s, const Heard& heard) const noexcept {
     if (!is_linear() || heard.reflections.empty()) return {};
     const ReceivedPulse& pulse = (*known_.find(heard.emitter.laser))->pulse;
@@ -123,8 +116,16 @@ class BandLimitedReceiver {
         simd::store(simd::Doubles(simd::load<simd::Doubles>(y[k]) + r.power * sum), y[k]);
       }
     }
+    if (!heard.continuous.empty()) {
+      detail::ContinuousRises<const ReceivedPulse&> continuous(heard.continuous, pulse);
+      continuous.pass((from + static_cast<double>(count)) * s.sample_interval);
+      if (!(continuous.until() <= from * s.sample_interval - pulse.end() && continuous.next() >= to * s.sample_interval + pulse.end()))
+        return {};
+      for (std::size_t k = 0; k < count; ++k) y[k] += continuous.power((from + static_cast<double>(k)) * s.sample_interval);
+    }
     const auto top =
         static_cast<std::size_t>(std::max_element(y.begin() + 2, y.begin() + static_cast<std::ptrdiff_t>(count) - 2) - y.begin());
+    if (!heard.continuous.empty() && !(y[top] > y[top - 1] && y[top] >= y[top + 1])) return {};  // on the flank of continuous returns
     const Vertex between = vertex(&y[top]);
     const double time = (from + static_cast<double>(top) + between.offset) * s.sample_interval;
     OnlyPeak only{time - pulse.peak(), between.height};
@@ -139,10 +140,10 @@ class BandLimitedReceiver {
 
   /// As the concept WaveformReceiver requires; for pulses that were prepared.
   [[nodiscard]] BandLimitedSamples samples(const WaveformSettings& s, const Heard& heard, std::span<const Reflection> reflections,
-                                           double /*width_tail*/, Workspace& w) const noexcept {
+                                           double width_tail, Workspace& w) const noexcept {
     const auto* pulses = known_.find(heard.emitter.laser);
     PULSECAST_ASSERT(pulses != nullptr);
-    return {chain_, **pulses, s, heard, reflections, w};
+    return {chain_, **pulses, s, heard, reflections, width_tail == 0, w};
   }
 
  private:

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -140,10 +141,16 @@ class FullWaveform {
         const SinglePeakGroup group(heard.reflections, shape, s_.sample_interval, w.group);
         if (group.one() && detect(group, shape, w.echoes)) return {w.echoes, {}, 0};
       }
-    if constexpr (!ideal && std::same_as<Width, NoWidth>)
-      if (s_.record_length == 0 && s_.timing == EchoTiming::peak && heard.continuous.empty())
-        if (const auto only = receiver_.only_peak(s_, heard)) return detection_of(*only, laser, w.echoes);
-    const std::span<const Reflection> reflections = in_order_of_range(heard.reflections, s_.sample_interval);
+    std::optional<OnlyPeak> only;
+    if constexpr (!ideal && std::same_as<Width, NoWidth>) {
+      if (s_.record_length == 0 && s_.timing == EchoTiming::peak) only = receiver_.only_peak(s_, heard);
+      if (only && heard.continuous.empty()) {
+        keep_only(only, laser, w.echoes);
+        return {w.echoes, {}, 0};
+      }
+    }
+    const std::span<const Reflection> reflections =
+        only ? std::span<Reflection>{} : in_order_of_range(heard.reflections, s_.sample_interval);
     auto samples = receiver_.samples(s_, heard, reflections, tail(), w.receiver);
     const typename SampleWindow<Width>::Search search{s_, width_, s_.min_separation(laser.pulse_length), samples.delay(),
                                                       samples.independent_noise()};
@@ -166,10 +173,11 @@ class FullWaveform {
     const EchoTiming timing = samples.independent_noise() && s_.timing == EchoTiming::true_range ? EchoTiming::peak : s_.timing;
     const Correction* correction = corrections_.find(laser);
     for (Peak& peak : w.peaks) {
+      if (only && peak.time > only->time) keep_only(only, laser, w.echoes);
       if (correction) peak.mark = correction->arrival(peak.mark, s_.sample_interval);
-      keep_return(echo_of(peak, reflections, samples.shape(), timing, samples.continuous_share(peak)), s_.returns_kept, s_.returns_max,
-                  w.echoes);
+      keep_return(echo_of(peak, reflections, samples.shape(), timing, samples.continuous()), s_.returns_kept, s_.returns_max, w.echoes);
     }
+    if (only) keep_only(only, laser, w.echoes);
     number_echoes(w.echoes);
     return {w.echoes, w.record, samples.start() * s_.sample_interval};
   }
@@ -219,14 +227,13 @@ class FullWaveform {
     return c;
   }
 
-  /// The only echo of a pulse, if it reaches the threshold.
-  template <class Only>
-  [[nodiscard]] Detection detection_of(const Only& only, const Laser& laser, std::vector<Echo>& echoes) const noexcept {
-    if (only.height < s_.threshold) return {};
+  /// Keeps the only echo of reflections, if it reaches the threshold.
+  void keep_only(std::optional<OnlyPeak>& only, const Laser& laser, std::vector<Echo>& echoes) const noexcept {
     const Correction* correction = corrections_.find(laser);
-    const double time = correction ? correction->arrival(only.time, s_.sample_interval) : only.time;
-    echoes.push_back(echo_from(*only.strongest, 0.5 * speed_of_light * time, only.height));
-    return {echoes, {}, 0};
+    const double time = correction ? correction->arrival(only->time, s_.sample_interval) : only->time;
+    if (only->height >= s_.threshold)
+      keep_return(echo_from(*only->strongest, 0.5 * speed_of_light * time, only->height), s_.returns_kept, s_.returns_max, echoes);
+    only.reset();
   }
 
   /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its peak. False if these

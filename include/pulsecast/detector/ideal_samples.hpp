@@ -30,7 +30,8 @@ class IdealSamples {
                double width_tail) noexcept
       : reflections_(reflections),
         shape_(heard.emitter.laser.pulse_length, s.shape_divisor),
-        continuous_(heard.continuous, detail::GammaIntegrals(shape_)),
+        continuous_(heard.continuous, shape_),
+        rises_(heard.continuous, detail::GammaIntegrals(shape_)),
         key_(heard.key),
         interval_(s.sample_interval),
         record_size_(static_cast<double>(s.record_capacity())),
@@ -40,8 +41,9 @@ class IdealSamples {
     if (reflections.empty() && continuous_.empty()) return;
     died_away_ = SampledSum::negligible * shape_.tau;
     tail_ = noisy() || record_size_ > 0 ? died_away_ : std::fmax(3 * interval_, width_tail * shape_.tau);
-    start_ = std::fmin(reflections.empty() ? infinity : first_sample(0), before(continuous_.start()));
-    if ((noisy() || record_size_ > 0) && !continuous_.empty()) heard_until_ = continuous_.end();
+    start_ = std::fmin(reflections.empty() ? infinity : first_sample(0), before(rises_.start()));
+    if ((noisy() || record_size_ > 0) && !continuous_.empty()) heard_until_ = rises_.end();
+    peaks_only_ = !noisy() && record_size_ == 0 && width_tail == 0 && s.timing <= EchoTiming::peak;
   }
 
   /// Shape of a reflection's pulse in the samples, about its peak.
@@ -55,17 +57,16 @@ class IdealSamples {
 
   /// Begins the next section; false if there is none.
   [[nodiscard]] bool begin_section() noexcept {
-    const double first = std::fmin(next_ == reflections_.size() ? infinity : first_sample(next_), before(continuous_.next_rise()));
+    const double solid = next_ == reflections_.size() ? infinity : first_sample(next_), late = before(rises_.first_peak());
+    const double first = std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, before(rises_.next())) : before(rises_.next()));
     if (!(first < infinity)) return false;
     sum_.emplace(reflections_, shape_, interval_, next_, first);
     falling_ = 0;
     return true;
   }
 
-  /// Part of a peak of the samples that is of continuous returns.
-  [[nodiscard]] ContinuousShare continuous_share(const Peak& peak) const noexcept {
-    return continuous_.empty() ? ContinuousShare{} : continuous_.share(peak, 0);
-  }
+  /// Continuous returns in a peak, as `echo_of` takes them.
+  [[nodiscard]] auto continuous() const noexcept { return rises_.sources(0); }
 
   /// Number of the next sample of the section.
   [[nodiscard]] double number() const noexcept { return sum_->sample(); }
@@ -94,13 +95,14 @@ class IdealSamples {
 
   /// Adds the continuous returns at a time [s]; true if samples are needed behind it.
   bool add_continuous(double t, double& power) noexcept {
-    continuous_.pass(t);
-    const double now = continuous_.next(t).power;
+    rises_.pass(t);
+    continuous_.advance(t);
+    const double now = continuous_.power();
     falling_ = now <= last_ ? falling_ + 1 : 0;
     last_ = now;
     power += now;
     const double number = sum_->sample() - start_;  // of the next sample
-    return falling_ < fallen || t <= continuous_.risen() + tail_ || before(continuous_.next_rise()) <= sum_->sample() ||
+    return falling_ < fallen || t <= rises_.until() + tail_ || before(rises_.next()) <= sum_->sample() ||
            (t < heard_until_ && (noisy() || number < record_size_));
   }
 
@@ -112,12 +114,14 @@ class IdealSamples {
 
   std::span<const Reflection> reflections_;
   PulseShape shape_;
-  detail::ContinuousWaveform<detail::GammaIntegrals> continuous_;
+  detail::ContinuousSum continuous_;
+  detail::ContinuousRises<detail::GammaIntegrals> rises_;
   RandomKey key_;
   double interval_, record_size_, deviation_, background_;
   double died_away_ = 0, tail_ = 0, start_ = 0;
   double heard_until_ = 0, last_ = 0;  ///< time up to which continuous returns are sampled everywhere [s]; their last sample [W]
   int falling_ = 0;                    ///< samples since they rose
+  bool peaks_only_ = false;            ///< true if nothing but maxima is of interest
   std::size_t next_ = 0;
   std::optional<SampledSum> sum_;
 };

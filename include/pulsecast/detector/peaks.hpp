@@ -90,39 +90,49 @@ inline void keep_return(const Echo& echo, KeptReturns kept, std::size_t most, st
   echoes.push_back(echo);
 }
 
-/// Part of a peak that is of continuous returns.
-struct ContinuousShare {
-  const ContinuousReturn* strongest = nullptr;  ///< stretch with the greatest share of it; none if it is of reflections alone
-  bool all = false;                             ///< true if it would not rise without them: its labels are theirs
+/// The only maximum of the samples of a pulse.
+struct OnlyPeak {
+  double time;                            ///< less the receiver's delay [s]
+  double height;                          ///< power [W]
+  const Reflection* strongest = nullptr;  ///< reflection with the greatest share of it
+};
+
+/// No continuous returns, for `echo_of`.
+struct NoContinuous {
+  [[nodiscard]] static bool needs_sum() noexcept { return false; }
+  [[nodiscard]] const ContinuousReturn* operator()(const Peak&, double, bool) const noexcept { return nullptr; }
 };
 
 /// Echo of a peak of the sum of a pulse's reflections, sorted by range. `shape(t)` is the pulse at a time t since its peak, from
-/// `shape.begin()` to `shape.end()` [s].
-template <class Shape>
+/// `shape.begin()` to `shape.end()` [s]. `continuous(peak, solid, met)` gives the continuous return that the peak is of, if it is of one,
+/// for the power of reflections in it [W]; `met` is true if there are any.
+template <class Shape, class Continuous = NoContinuous>
 [[nodiscard]] Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const Shape& shape, EchoTiming timing,
-                           const ContinuousShare& continuous = {}) noexcept {
+                           const Continuous& continuous = NoContinuous{}) noexcept {
   const Reflection* const end = reflections.data() + reflections.size();
   const auto from = [&](double time) noexcept {
     return reflections.data() + detail::first_not(reflections.size(), [&](std::size_t i) { return arrival(reflections[i]) < time; });
   };
 
   Echo echo{.range = 0.5 * speed_of_light * peak.mark, .amplitude = peak.height, .width = peak.width};
-  if (const ContinuousReturn* const r = continuous.strongest) {
-    echo.object = r->object;
-    echo.classification = r->classification;
-    echo.kind = r->kind;
-    if (continuous.all) return echo;
-  }
-  double strongest = 0;
+  double strongest = 0, solid = 0;
   for (auto r = from(peak.time - shape.end()); r != end && arrival(*r) < peak.time - shape.begin(); ++r) {
-    if (!(r->power > strongest)) continue;  // its share at this time is at most its power
+    if (!continuous.needs_sum() && !(r->power > strongest)) continue;  // its share at this time is at most its power
     const double power = r->power * shape(peak.time - arrival(*r));
+    solid += power;
     if (!(power > strongest)) continue;
     strongest = power;
     echo.cos_incidence = r->cos_incidence;
     echo.object = r->object;
     echo.classification = r->classification;
     echo.kind = r->kind;
+  }
+  if (const ContinuousReturn* const r = continuous(peak, solid, strongest > 0)) {
+    echo.cos_incidence = 1;
+    echo.object = r->object;
+    echo.classification = r->classification;
+    echo.kind = r->kind;
+    return echo;
   }
   if (timing == EchoTiming::true_range) {
     const auto first = from(peak.begin);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -50,9 +51,9 @@ class BandLimitedSamples {
     std::vector<double> before;  ///< last samples before the matched filter, in a ring
   };
 
-  /// For reflections sorted by range.
+  /// For reflections sorted by range. `peaks_only`: no width is taken.
   BandLimitedSamples(const ReceiverChain& chain, const detail::ReceivedPulses& pulses, const WaveformSettings& s, const Heard& heard,
-                     std::span<const Reflection> reflections, Workspace& w) noexcept
+                     std::span<const Reflection> reflections, bool peaks_only, Workspace& w) noexcept
       : chain_(chain),
         pulses_(pulses),
         reflections_(reflections),
@@ -61,7 +62,8 @@ class BandLimitedSamples {
         interval_(s.sample_interval),
         wavelength_(heard.emitter.laser.wavelength),
         noise_(pulses.filter, noise_key(heard.key)),
-        noisy_(chain.noisy()) {
+        noisy_(chain.noisy()),
+        peaks_only_(peaks_only && !noisy_ && pulses.taps.empty() && s.record_length == 0 && s.timing == EchoTiming::peak) {
     std::fill(w_.sums.begin(), w_.sums.end(), 0.0);
     if (chain_.noise_power > 0 || chain_.shot_noise) deviation_ = deviation(0);
     held_decay_ = chain_.recovery > 0 ? std::exp(-interval_ / chain_.recovery) : 0;
@@ -124,12 +126,11 @@ class BandLimitedSamples {
     return power;
   }
 
-  /// Part of a peak of the samples that is of continuous returns.
-  [[nodiscard]] ContinuousShare continuous_share(const Peak& peak) const noexcept {
-    return continuous_.empty() ? ContinuousShare{} : continuous_.share(peak, pulses_.pulse.peak());
-  }
+  /// Continuous returns in a peak, as `echo_of` takes them.
+  [[nodiscard]] auto continuous() const noexcept { return continuous_.sources(pulses_.pulse.peak()); }
 
  private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr double margin = 2;         ///< samples beside a pulse, so that a peak has neighbours
   static constexpr double samples_max = 1e7;  ///< of a gate
   static constexpr std::size_t fallen = 4;    ///< falling samples behind a maximum
@@ -152,13 +153,14 @@ class BandLimitedSamples {
   [[nodiscard]] double first_of(std::size_t r) const noexcept { return before(pulses_.pulse.first_sample(arrival(reflections_[r]))); }
   /// Number of the first sample of the next section; infinite if there is none.
   [[nodiscard]] double first_of_section() const noexcept {
-    const double rise = before(std::ceil(continuous_.next_rise() / interval_));
-    return next_ < reflections_.size() ? std::fmin(first_of(next_), rise) : rise;
+    const double rise = before(std::ceil(continuous_.next() / interval_)), solid = next_ < reflections_.size() ? first_of(next_) : infinity;
+    const double late = before(std::floor(continuous_.first_peak() / interval_));
+    return std::fmin(solid, peaks_only_ && late < solid ? std::fmax(late, rise) : rise);
   }
   /// True if continuous returns may rise in the next samples.
   [[nodiscard]] bool may_rise() noexcept {
     continuous_.pass((number_ + margin) * interval_);
-    const double settled = (continuous_.risen() + pulses_.pulse.end()) / interval_ + margin - static_cast<double>(pulses_.first_tap);
+    const double settled = continuous_.until() / interval_ + margin - static_cast<double>(pulses_.first_tap);
     return falling_ < fallen + pulses_.taps.size() || number_ <= settled || first_of_section() <= number_;
   }
 
@@ -206,7 +208,7 @@ class BandLimitedSamples {
     double& sum = w_.sums[static_cast<std::size_t>(raw_) & mask];
     double power = std::exchange(sum, 0.0);
     if (!continuous_.empty()) {
-      const double now = continuous_.next(static_cast<double>(raw_) * interval_).power;
+      const double now = continuous_.power(static_cast<double>(raw_) * interval_);
       falling_ = now <= last_ ? falling_ + 1 : 0;
       last_ = now;
       power += now;
@@ -224,11 +226,11 @@ class BandLimitedSamples {
   const ReceiverChain& chain_;
   const detail::ReceivedPulses& pulses_;
   std::span<const Reflection> reflections_;
-  detail::ContinuousWaveform<const ReceivedPulse&> continuous_;
+  detail::ContinuousRises<const ReceivedPulse&> continuous_;
   Workspace& w_;
   double interval_, wavelength_;
   FilteredNoise noise_;
-  bool noisy_, begun_ = false;
+  bool noisy_, peaks_only_, begun_ = false;
   double deviation_ = 0, held_decay_ = 0, held_ = 0, last_ = 0;
   double number_ = 0, end_ = -1, start_ = 0;
   std::int64_t raw_ = 0;

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/scene/media.hpp>
 #include <pulsecast/transport/detail/beam_particles.hpp>
@@ -36,9 +37,10 @@ class MediaPassage {
         in_air_(in_air),
         in_water_(in_water),
         returns_(returns),
+        pulse_(speed_of_light / 2 * light.emitter.laser.pulse_length),
         particles_(light, ledger) {
-    in_air_.begin(light.budget.aperture_radius(), light.gate);
-    in_water_.begin(light.budget.aperture_radius(), light.gate);
+    in_air_.begin(light.budget.aperture_radius(), pulse_, light.gate);
+    in_water_.begin(light.budget.aperture_radius(), pulse_, light.gate);
     returns_.clear();
   }
 
@@ -64,7 +66,7 @@ class MediaPassage {
       together += p.both[j];
     }
     std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(size), [](const End& a, const End& b) { return a.range < b.range; });
-    const double resolution = speed_of_light / 2 * light_.emitter.laser.pulse_length / 32;
+    const double resolution = pulse_ / 32;
     for (std::size_t j = 0, next = 0; j < size; j = next) {  // rays that end together end at their mean
       double both = 0, moment = 0;
       for (next = j; next < size && ends[next].range - ends[j].range < resolution; ++next) {
@@ -88,7 +90,8 @@ class MediaPassage {
         if (ended == size) return;
         double end = std::min(to, ends[ended].range);
         if (at < grains) end = std::min(end, grains);
-        const VolumeWay way{at, end, together * passed, least, loss, density * medium.backscatter, at + p.delay[middle]};
+        const bool straight = of_beam && at == 0 && p.rays.begin[middle] == 0;
+        const VolumeWay way{at, end, together * passed, least, loss, density * medium.backscatter, at + p.delay[middle], 1, straight};
         if (medium.backscatter > 0 && !(at < grains)) add_volume(in_air_, way, same, same);
         passed *= std::exp(-2 * loss * (end - at));
         at = end;
@@ -165,6 +168,7 @@ class MediaPassage {
     double backscatter = 0;   ///< of the medium [1/(m sr)]
     double optical = 0;       ///< optical path up to its beginning [m]
     double delay = 1;         ///< optical path by way
+    bool straight = false;    ///< true if it began at the instrument, and all of the way so far was through the medium
   };
   /// Adds what returns from a stretch. `spread(s)` is the range by which light spreads up to s, `air(s)` the way in air [m].
   ///
@@ -176,7 +180,7 @@ class MediaPassage {
     const double loss = 2 * way.extinction + light_.budget.loss(), most = loss > 0 ? loss_step / loss : infinity;
     const auto density_at = [&](double at, double both) noexcept {
       const double s = spread(at), square = s * s + aperture2, wide = std::sqrt(square);
-      const double h = std::min(VolumeProfile::step * wide, most), x = loss * h, y = h / wide;
+      const double h = std::min(VolumeProfile::step(wide, pulse_), most), x = loss * h, y = h / wide;
       const double bend = x * x + 4 * x * y * s / wide + y * y * (8 * s * s / square - 2);
       return light_.budget.power_through(both, white, s, air(at)) * (1 - bend / 12);
     };
@@ -188,8 +192,9 @@ class MediaPassage {
     std::size_t cell = profile.cell_of(range_at(begin));
     bool at_node = range_at(begin) == 0;
     for (double at = begin; at < end && both > way.least;) {
+      if (at_node && way.straight && add_straight(profile, way, end, most, density_at, cell, at, both, density)) continue;
       const double node = cell + 1 < VolumeProfile::cells ? place_of(profile.end_of(cell)) : infinity, to = std::min(node, end);
-      const double s = spread(at), widest = std::min(most, 1.2 * VolumeProfile::step * std::sqrt(s * s + aperture2));
+      const double s = spread(at), widest = std::min(most, 1.2 * VolumeProfile::step(std::sqrt(s * s + aperture2), pulse_));
       const bool whole = to - at <= widest;
       const double next = whole ? to : to < infinity ? at + (to - at) / std::ceil((to - at) / widest) : at + widest;
       both *= std::exp(-2 * way.extinction * (next - at));
@@ -204,12 +209,36 @@ class MediaPassage {
       density = then;
     }
   }
+  /// Adds the next whole cells of a way that is straight, from a node on, up to an end [m], as long as they are no wider than `most` [m];
+  /// false if there are none.
+  template <class DensityAt>
+  bool add_straight(VolumeProfile& profile, const VolumeWay& way, double end, double most, const DensityAt& density_at, std::size_t& cell,
+                    double& at, double& both, double& density) noexcept {
+    VolumeProfile::Straight& known = profile.straight(light_.budget, way.extinction, way.backscatter);
+    const auto node = [&](std::size_t k) noexcept { return k > 0 ? profile.end_of(k - 1) : 0; };
+    std::size_t to = profile.cell_of(end);
+    if (node(to + 1) <= end) ++to;  // beyond the last node
+    for (; known.known <= to; ++known.known) {
+      const std::size_t k = known.known;
+      known.left[k] = std::exp(-2 * way.extinction * node(k));
+      known.density[k] = density_at(node(k), known.left[k]);
+      known.power[k] = k > 0 ? known.power[k - 1] + 0.5 * (known.density[k - 1] + known.density[k]) * (node(k) - node(k - 1)) : 0;
+    }
+    to = first_not(to, [&](std::size_t k) { return way.both * known.left[k] > way.least && node(k + 1) - node(k) <= most; });
+    if (!(to > cell)) return false;
+    ledger_.receive(profile.add(cell, to, way.both, known));
+    cell = to;
+    at = profile.end_of(cell - 1);
+    both = way.both * known.left[cell];
+    density = way.both * known.density[cell];
+    return true;
+  }
   /// Share of light to and fro, of that with which it begins a way, below which what media send back is left out.
   [[nodiscard]] double least_return() const noexcept { return std::max(1e-9, least_share_ * least_share_); }
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr double loss_step =
-      0.08;  ///< greatest loss of power between nodes; with `VolumeProfile::step`, power by range is linear to 0.4 %
+      0.08;  ///< greatest loss of power between nodes; with that of `VolumeProfile`, power by range is linear to 0.4 %
 
   const Illumination& light_;
   const Media& air_;
@@ -217,6 +246,7 @@ class MediaPassage {
   LightLedger& ledger_;
   VolumeProfile &in_air_, &in_water_;
   std::vector<ContinuousReturn>& returns_;
+  double pulse_;  ///< length of the pulse in range [m]
   BeamParticles particles_;
 };
 

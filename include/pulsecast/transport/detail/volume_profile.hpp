@@ -8,35 +8,65 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/radiometry.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Light that a medium scatters back, by range. Stretches between neighbours of the nodes, which are `a sinh(k / 16)` for an aperture of a
-/// radius a, are added up; others are kept apart as long as there is room.
+/// Light that a medium scatters back, by range. Stretches between neighbouring nodes are added up; others are kept apart as long as there
+/// is room.
 class VolumeProfile {
  public:
   ObjectId object = 0;               ///< label of the returns
   std::uint16_t classification = 0;  ///< label of the returns
 
-  /// Distance of the nodes by the root of the squares of range and aperture: power by their inverse square is linear between them to 0.2 %.
-  static constexpr double step = 0.0625;
-  static constexpr std::size_t cells = 512;  ///< to 10^13 times the aperture
+  static constexpr std::size_t cells = 512;
+
+  /// Distance from a node to the next [m], where light has spread by `wide`, the root of the squares of range and aperture [m]: power by
+  /// its inverse square is linear to 0.35 % there. Closer than a sixteenth of a pulse, of a length in range [m], only the mean counts.
+  [[nodiscard]] static double step(double wide, double pulse) noexcept { return std::max(wide / 12, std::min(wide / 2, pulse / 16)); }
 
   /// Room for `capacity` other stretches.
   explicit VolumeProfile(std::size_t capacity) { parts_.reserve(capacity); }
 
   /// Greatest number of returns.
-  [[nodiscard]] std::size_t size_max() const noexcept { return cells + parts_.capacity(); }
+  [[nodiscard]] std::size_t size_max() const noexcept { return cells + parts_.capacity() + 1; }
 
-  /// Empties the profile; `aperture` is the radius [m]. All returns are within the gate.
-  void begin(double aperture, const RangeGate& gate) noexcept {
+  /// Densities at the nodes of light that leaves the instrument with a share of 1 through a medium, by a link budget: the same for all
+  /// pulses.
+  struct Straight {
+    LinkBudget budget{};
+    double extinction = 0, backscatter = 0;
+    std::size_t known = 0;                  ///< number of nodes
+    std::array<double, cells + 1> density;  ///< [W/m]
+    std::array<double, cells + 1> left;     ///< share that is there, on both ways
+    std::array<double, cells + 1> power;    ///< of all cells before [W]
+  };
+  /// Those of a medium; none are known of another than before.
+  [[nodiscard]] Straight& straight(const LinkBudget& budget, double extinction, double backscatter) noexcept {
+    Straight& s = straight_;
+    if (!(s.extinction == extinction && s.backscatter == backscatter && s.budget == budget)) {
+      s.budget = budget;
+      s.extinction = extinction;
+      s.backscatter = backscatter;
+      s.known = 0;
+    }
+    return s;
+  }
+
+  /// Empties the profile, for an aperture of a radius [m] and a pulse of a length [m]. All returns are within the gate.
+  void begin(double aperture, double pulse, const RangeGate& gate) noexcept {
     gate_ = gate;
-    if (aperture != aperture_)
-      for (std::size_t k = 0; k <= cells; ++k) nodes_[k] = aperture * std::sinh(step * static_cast<double>(k));
+    if (aperture != aperture_ || pulse != pulse_) {
+      for (std::size_t k = 0; k < cells; ++k) nodes_[k + 1] = nodes_[k] + step(std::hypot(nodes_[k], aperture), pulse);
+      straight_.known = 0;
+    }
     aperture_ = aperture;
+    pulse_ = pulse;
     parts_.clear();
     crowded_ = false;
     first_ = cells;
@@ -45,10 +75,7 @@ class VolumeProfile {
 
   /// Number of the cell that a range is in.
   [[nodiscard]] std::size_t cell_of(double range) const noexcept {
-    const double place = range > 0 ? std::floor(std::asinh(range / aperture_) / step) : 0;
-    auto k = static_cast<std::size_t>(std::min(place, static_cast<double>(cells - 1)));
-    while (k + 1 < cells && nodes_[k + 1] <= range) ++k;
-    return k;
+    return std::min(first_not(cells, [&](std::size_t k) { return nodes_[k + 1] <= range; }), cells - 1);
   }
   /// Range at which a cell ends [m].
   [[nodiscard]] double end_of(std::size_t cell) const noexcept { return nodes_[cell + 1]; }
@@ -56,15 +83,23 @@ class VolumeProfile {
   /// Adds to a whole cell; densities of power in [W/m]. Returns the power [W].
   double add(std::size_t cell, double at_begin, double at_end) noexcept {
     if (first_ >= end_) first_ = end_ = cell;
-    for (; end_ <= cell; ++end_) densities_[end_] = {};
-    for (; first_ > cell;) densities_[--first_] = {};
-    densities_[cell].begin += at_begin;
-    densities_[cell].end += at_end;
+    for (; end_ <= cell; ++end_) begins_[end_] = ends_[end_] = 0;
+    for (; first_ > cell; --first_) begins_[first_ - 1] = ends_[first_ - 1] = 0;
+    begins_[cell] += at_begin;
+    ends_[cell] += at_end;
     return 0.5 * (at_begin + at_end) * (nodes_[cell + 1] - nodes_[cell]);
+  }
+  /// Adds to whole cells a share of known light. Returns the power [W].
+  double add(std::size_t first, std::size_t end, double share, const Straight& light) noexcept {
+    add(first, 0, 0);
+    add(end - 1, 0, 0);
+    for (std::size_t k = first; k < end; ++k) begins_[k] += share * light.density[k];
+    for (std::size_t k = first; k < end; ++k) ends_[k] += share * light.density[k + 1];
+    return share * (light.power[end] - light.power[first]);
   }
   /// Adds a stretch of ranges within a cell [m]. Returns the power [W]. If there is no room, cells take the light of all such stretches.
   double add(double begin, double end, double at_begin, double at_end) noexcept {
-    const Part part{begin, end, {at_begin, at_end}};
+    const Part part{begin, end, at_begin, at_end};
     if (parts_.size() == parts_.capacity()) {
       for (const Part& other : parts_) spread(other);
       parts_.clear();
@@ -77,31 +112,40 @@ class VolumeProfile {
     return part.power();
   }
 
-  /// Appends the returns in order of range.
+  /// Appends the returns in order of range; there is room for `size_max()`.
   void append_to(std::vector<ContinuousReturn>& returns, ReflectionKind kind) noexcept {
     const auto nearer = [](const Part& a, const Part& b) { return a.from < b.from; };
     if (!std::is_sorted(parts_.begin(), parts_.end(), nearer)) std::sort(parts_.begin(), parts_.end(), nearer);
+    std::size_t count = returns.size();
+    returns.resize(count + parts_.size() + (end_ > first_ ? end_ - first_ : 0) + 1);
+    const auto append = [&](double from, double to, double at_begin, double at_end) noexcept {
+      returns[count] = {from, to, at_begin, at_end, object, classification, kind};
+      count += from < to && at_begin + at_end > 0 ? 1 : 0;
+    };
     auto part = parts_.begin();
-    const auto append = [&](double from, double to, const Densities& by_range) {
-      if (from < to && (by_range.begin > 0 || by_range.end > 0))
-        returns.push_back({from, to, by_range.begin, by_range.end, object, classification, kind});
+    const auto append_parts = [&](double before) noexcept {
+      for (; part != parts_.end() && part->from < before; ++part) append(part->from, part->to, part->at_begin, part->at_end);
     };
     for (std::size_t k = first_; k < end_; ++k) {
-      for (; part != parts_.end() && part->from < nodes_[k]; ++part) append(part->from, part->to, part->densities);
-      const double from = std::max(nodes_[k], gate_.near), to = std::min(nodes_[k + 1], gate_.far), all = nodes_[k + 1] - nodes_[k];
-      append(from, to, {densities_[k].begin * all / (to - from), densities_[k].end * all / (to - from)});
+      append_parts(nodes_[k]);
+      if (nodes_[k] >= gate_.near && nodes_[k + 1] <= gate_.far) {
+        append(nodes_[k], nodes_[k + 1], begins_[k], ends_[k]);
+        continue;
+      }
+      const double from = std::max(nodes_[k], gate_.near), to = std::min(nodes_[k + 1], gate_.far);
+      const double denser = (nodes_[k + 1] - nodes_[k]) / (to - from);
+      append(from, to, denser * begins_[k], denser * ends_[k]);
     }
-    for (; part != parts_.end(); ++part) append(part->from, part->to, part->densities);
+    append_parts(infinity);
+    returns.resize(count);
   }
 
  private:
-  struct Densities {
-    double begin = 0, end = 0;
-  };
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
   struct Part {
-    double from, to;
-    Densities densities;
-    [[nodiscard]] double power() const noexcept { return 0.5 * (densities.begin + densities.end) * (to - from); }
+    double from, to, at_begin, at_end;
+    [[nodiscard]] double power() const noexcept { return 0.5 * (at_begin + at_end) * (to - from); }
   };
 
   /// Spreads the light of a stretch over its cell.
@@ -111,11 +155,12 @@ class VolumeProfile {
     add(k, density, density);
   }
 
-  double aperture_ = 0;
+  double aperture_ = 0, pulse_ = 0;
   RangeGate gate_{};
   std::array<double, cells + 1> nodes_{};
-  std::array<Densities, cells> densities_{};
-  std::size_t first_ = cells, end_ = 0;  ///< cells in use
+  std::array<double, cells> begins_{}, ends_{};  ///< densities at the ends of cells [W/m]
+  std::size_t first_ = cells, end_ = 0;          ///< cells in use
+  Straight straight_{};
   std::vector<Part> parts_;
   bool crowded_ = false;
 };
