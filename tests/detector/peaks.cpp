@@ -110,7 +110,7 @@ TEST_CASE("an echo is made of the reflections between its valleys, and has the l
   const std::vector<Reflection> reflections{
       {10, 9, 1, 1, {}, 0.1}, {20, 1, 2, 2, {}, 0.2}, {20.1, 3, 3, 3, {}, 0.3}, {21, 2, 4, 4, {}, 0.4}};
   const Peak peak{.time = 20.15 * metre, .height = 3.5, .begin = 19 * metre, .end = 20.9 * metre, .mark = 20.15 * metre, .width = 7};
-  const Echo e = echo_of(peak, reflections, shape, EchoTiming::true_range, 2);
+  const Echo e = echo_of(peak, reflections, shape, EchoTiming::true_range);
   CHECK(e.range == support::relative(20.075, 1e-12));
   CHECK(e.amplitude == 3.5);
   CHECK(e.width == 7);
@@ -118,7 +118,7 @@ TEST_CASE("an echo is made of the reflections between its valleys, and has the l
   CHECK(e.classification == 3);
   CHECK(e.cos_incidence == 0.3);
   CHECK(e.number == 2);
-  CHECK(echo_of(peak, reflections, shape, EchoTiming::peak, 2).range == support::relative(20.15, 1e-12));
+  CHECK(echo_of(peak, reflections, shape, EchoTiming::peak).range == support::relative(20.15, 1e-12));
   // a peak of noise alone is nobody's
   const Echo nobody = echo_of({.time = 15 * metre, .begin = 14.9 * metre, .end = 15.1 * metre, .mark = 15 * metre},
                               std::span(reflections).subspan(1), shape, EchoTiming::true_range, 1);

@@ -186,12 +186,14 @@ class MediaPassage {
     };
     const auto range_at = [&](double at) noexcept { return way.optical + way.delay * (at - way.from); };
     const auto place_of = [&](double range) noexcept { return way.from + (range - way.optical) / way.delay; };
-    const double begin = std::max(way.from, place_of(light_.gate.near)), end = std::min(way.to, place_of(light_.gate.far));
+    const double begin = std::max(way.from, place_of(light_.gate.near));
+    double end = std::min(way.to, place_of(light_.gate.far));
+    if (way.extinction > 0 && way.least > 0) end = std::min(end, way.from + std::log(way.both / way.least) / (2 * way.extinction));
     if (!(begin < end)) return;
     double both = way.both * std::exp(-2 * way.extinction * (begin - way.from)), density = density_at(begin, both);
     std::size_t cell = profile.cell_of(range_at(begin));
     bool at_node = range_at(begin) == 0;
-    for (double at = begin; at < end && both > way.least;) {
+    for (double at = begin; at < end;) {
       if (at_node && way.straight && add_straight(profile, way, end, most, density_at, cell, at, both, density)) continue;
       const double node = cell + 1 < VolumeProfile::cells ? place_of(profile.end_of(cell)) : infinity, to = std::min(node, end);
       const double s = spread(at), widest = std::min(most, 1.2 * VolumeProfile::step(std::sqrt(s * s + aperture2), pulse_));
@@ -224,7 +226,7 @@ class MediaPassage {
       known.density[k] = density_at(node(k), known.left[k]);
       known.power[k] = k > 0 ? known.power[k - 1] + 0.5 * (known.density[k - 1] + known.density[k]) * (node(k) - node(k - 1)) : 0;
     }
-    to = first_not(to, [&](std::size_t k) { return way.both * known.left[k] > way.least && node(k + 1) - node(k) <= most; });
+    to = first_not(to, [&](std::size_t k) { return node(k + 1) - node(k) <= most; });
     if (!(to > cell)) return false;
     ledger_.receive(profile.add(cell, to, way.both, known));
     cell = to;
