@@ -96,8 +96,7 @@ TEST_CASE("windows are kept to by all that stay, whatever there is") {
     std::vector<Peak> all(any.whole(100));
     double t = 0;
     for (Peak& p : all) p = {t += any.uniform(), any.uniform()};
-    const WaveformSettings s{
-        .separation = any.uniform(0, 1), .window = any.uniform(0, 3), .dead_time = any.uniform(0, 3), .returns_max = 20};
+    const WaveformSettings s{.separation = any.uniform(0, 1), .window = any.uniform(0, 3), .dead_time = any.uniform(0, 3)};
     const auto stay = kept(s, all);
     for (std::size_t i = 1; i < stay.size(); ++i) {
       CHECK(stay[i].time - stay[i - 1].time >= s.dead_time);
