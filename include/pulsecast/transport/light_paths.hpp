@@ -33,7 +33,7 @@ struct LightPaths {
   MultipleScattering scattering{};  ///< light that surfaces scatter to and fro
   Media air{};                      ///< media in the air
   /// Number of stretches, beside whole cells, by which what media in the air send back is told exactly, and that of bodies, from 4 to 1e6:
-  /// where there are more, their ends are blurred by a sixteenth of their range.
+  /// where there are more, their ends are blurred by a twelfth of their range.
   std::size_t volume_cells = 8192;
 
   void validate() const {
