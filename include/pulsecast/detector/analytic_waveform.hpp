@@ -253,7 +253,10 @@ class AnalyticWaveform {
       const double to_edge = PulseShape::peak * shape.tau;
       std::size_t next = 0;
       const auto next_edge = [&] { return next < reflections.size() ? arrival(reflections[next]) - to_edge : infinity; };
-      double time = std::fmin(next_edge(), rises.next()), rising_until = time;
+      double time = std::fmin(next_edge(), rises.next());
+      const double only_rises = rises.first_peak() - 0.25 * shape.tau;  // up to here, if no reflection comes
+      if (only_rises > time && next_edge() > only_rises + to_edge) time = only_rises;
+      double rising_until = time;
       Sum sum{{}, detail::ContinuousSum(continuous, shape), time};
       while (time < infinity) {
         for (; next_edge() <= time; ++next) {
