@@ -265,9 +265,9 @@ inline std::string continuous_laws(std::span<const ContinuousReturn> returns, co
 }
 }  // namespace detail
 
-/// The terms of the ledger sum to what was sent, none is negative; what is received is that of reflections and continuous returns, which are
-/// inside the gate and of positive power, no more than there is room for; every subray is recorded if asked for; the answer depends neither on the record
-/// nor on what the workspace was used for before. Pulses of a wide beam leave with each of the poses.
+/// The terms of the ledger sum to what was sent, none is negative; what is received is that of reflections and continuous returns, which
+/// are inside the gate and of positive power, no more than there is room for; every subray is recorded if asked for; the answer depends
+/// neither on the record nor on what the workspace was used for before. Pulses of a wide beam leave with each of the poses.
 template <class T, class Map>
 [[nodiscard]] std::string transport_laws(const T& transport, const Map& map, std::span<const Pose<frame::Beam, frame::World>> poses,
                                          const Receiver& receiver = {}) {

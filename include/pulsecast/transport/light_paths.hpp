@@ -53,9 +53,7 @@ struct LightPaths {
     const std::size_t most = subrays * (2 * passages + 1) + scattering.reflections() + particles;
     return spread_planes && subrays > 2 ? std::max(most, plane_reflections_max) : most;
   }
-  [[nodiscard]] Workspace workspace(std::size_t) const {
-    return {passages, volume_cells};
-  }
+  [[nodiscard]] Workspace workspace(std::size_t) const { return {passages, volume_cells}; }
 
   /// Follows all subrays. Sets velocities, too, if `with_velocity`.
   template <bool with_velocity = false, OpticalTarget Map>
