@@ -234,6 +234,19 @@ struct Reflection {
   double velocity = 0;                            ///< velocity of the surface along the ray, positive away; set for `ReadsVelocity` [m/s]
 };
 
+/// Light that returned from all ranges of a stretch, as from haze or water: a power by range that is linear from end to end. It is no
+/// echo by itself, as its waveform has a maximum only where it begins or grows.
+struct ContinuousReturn {
+  double begin = 0, end = 0;                  ///< ends of the stretch, as `Reflection::range` [m]
+  double at_begin = 0, at_end = 0;            ///< received power by range there, for a pulse of zero length; not negative [W/m]
+  ObjectId object = 0;                        ///< as in `Hit`
+  std::uint16_t classification = 0;           ///< as in `Hit`
+  ReflectionKind kind = ReflectionKind::air;  ///< way of the light
+
+  /// Power of the whole stretch [W].
+  [[nodiscard]] double power() const noexcept { return 0.5 * (at_begin + at_end) * (end - begin); }
+};
+
 /// Light of one pulse, as a transport takes it: `transport/illumination.hpp`.
 struct Illumination;
 
@@ -241,16 +254,22 @@ struct Illumination;
 struct TransportResult {
   EnergyLedger energy{};        ///< energy of the pulse by the end of its paths
   std::size_t reflections = 0;  ///< number of reflections
-  Fate fate = Fate::missed;     ///< fate of a pulse without reflections: `missed`, `out_of_range` or `absorbed`
+  Fate fate = Fate::missed;     ///< fate of a pulse of which no light returned: `missed`, `out_of_range` or `absorbed`
   bool nan = false;             ///< true if the map answered with NaN: an error of the run
   bool spread = false;          ///< true if the light was spread over a smooth surface: `spread_over_plane`
   bool unresolved = false;      ///< true if more subrays would have been needed for that than there is room for
+  /// What returned from no one place, by ascending begin; stretches may overlap. In the workspace, until that is used again.
+  std::span<const ContinuousReturn> continuous{};
+
+  /// True if no light returned.
+  [[nodiscard]] bool dark() const noexcept { return reflections == 0 && continuous.empty(); }
 };
 
 /// Paths of light from the beam to surfaces and back. Sets the first of `reflections`, in any order. There is room for
 /// `reflections(n)` of a pulse of n subrays. Its only writable memory is a `Workspace`, made once per worker by `workspace(subrays)`.
-/// Law: pure; the terms of the ledger sum to the energy sent to 1e-6; `received` is the sum of the reflections' powers, times the pulse
-/// length, and at most `scattered`; reflections are of positive power, from inside the gate; each of `Illumination::record` is set.
+/// Law: pure; the terms of the ledger sum to the energy sent to 1e-6; `received` is the sum of the powers of reflections and continuous
+/// returns, times the pulse length, and at most `scattered`; both are of positive power, from inside the gate; each of
+/// `Illumination::record` is set.
 /// Not required: `trace<true>(...)`, which also sets velocities: `TracesVelocity`.
 template <class T, class Map>
 concept Transport = std::copyable<T> && requires(const T t, const Map& map, const Illumination& light, std::size_t subrays,
@@ -272,6 +291,8 @@ struct Heard {
   RangeGate gate{};                     ///< range gate of the receiver
   std::span<Reflection> reflections{};  ///< all reflections, in any order; a detector may reorder and change them
   RandomKey key{};                      ///< seed of the survey, and index of the pulse
+  /// As in `TransportResult`. A detector that does not read them hears the surfaces alone, dimmed by what is between.
+  std::span<const ContinuousReturn> continuous{};
 };
 
 /// Result of a detector for one pulse; the spans stay valid until the workspace is used again.

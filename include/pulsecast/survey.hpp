@@ -187,11 +187,12 @@ class Survey {
     out.unresolved = result.unresolved;
     out.subrays = w.subrays;
     if (result.reflections == 0 || result.nan || pulse->reported) out.error = error_of(*pulse, result.nan);
-    out.shot.fate = result.reflections == 0 ? result.fate : Fate::below_threshold;
+    out.shot.fate = result.dark() ? result.fate : Fate::below_threshold;
     if constexpr (!ListensAlways<Instrument>)
-      if (result.reflections == 0) return out;
+      if (result.dark()) return out;
 
-    const Heard heard{emitter, unit.receiver.gate(), {w.reflections.data(), result.reflections}, {.seed = seed_, .pulse = i}};
+    const std::span<Reflection> reflections(w.reflections.data(), result.reflections);
+    const Heard heard{emitter, unit.receiver.gate(), reflections, {.seed = seed_, .pulse = i}, result.continuous};
     const Detection detection = unit.detector.detect(heard, w.detectors[emitter.receiver]);
     const RangeErrors& errors = unit.receiver.range_errors;
     bool all_inside = true;
@@ -300,8 +301,7 @@ class Survey {
                              constants.budget,
                              w.white_target,
                              unit.receiver.gate(),
-                             recorded ? std::span(w.subrays) : std::span<SubrayHit>{},
-                             interval_of(unit)};
+                             recorded ? std::span(w.subrays) : std::span<SubrayHit>{}};
     if constexpr (ReadsVelocity<Instrument>)
       return transport_.template trace<true>(*map_, light, w.transport, w.reflections);
     else

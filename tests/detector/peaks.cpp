@@ -56,10 +56,28 @@ TEST_CASE("after an echo, the receiver is blind for its dead time, whatever come
   CHECK(times(kept({.window = 1, .dead_time = 3}, {{10, 1}, {11, 2}, {13.5, 1}, {15, 1}})) == Times{11, 15});
 }
 
-TEST_CASE("the first so many are kept") {
-  CHECK(times(kept({.window = 0, .returns_max = 2}, {{10, 1}, {20, 5}, {30, 9}})) == Times{10, 20});
-  CHECK(times(kept({.window = 0, .dead_time = 15, .returns_max = 2}, {{10, 1}, {20, 5}, {30, 9}})) == Times{10, 30});
-  CHECK(kept({}, {}).empty());
+TEST_CASE("of too many echoes, the first are kept, and those of the air only where there is room; or the strongest") {
+  const auto kept_of = [](KeptReturns which, std::size_t most, const std::vector<Echo>& all) {
+    std::vector<Echo> echoes;
+    for (const Echo& echo : all) keep_return(echo, which, most, echoes);
+    std::vector<double> ranges;
+    for (const Echo& echo : echoes) ranges.push_back(echo.range);
+    return ranges;
+  };
+  const auto air = ReflectionKind::air;
+  const std::vector<Echo> solid{{.range = 10, .amplitude = 1}, {.range = 20, .amplitude = 5}, {.range = 30, .amplitude = 9}};
+  CHECK(kept_of(KeptReturns::first, 2, solid) == Times{10, 20});
+  CHECK(kept_of(KeptReturns::strongest, 2, solid) == Times{20, 30});
+  const std::vector<Echo> rainy{{.range = 1, .amplitude = 9, .kind = air},
+                                {.range = 2, .amplitude = 8, .kind = air},
+                                {.range = 10, .amplitude = 1},
+                                {.range = 11, .amplitude = 3, .kind = air},
+                                {.range = 20, .amplitude = 2}};
+  CHECK(kept_of(KeptReturns::first, 5, rainy) == Times{1, 2, 10, 11, 20});
+  CHECK(kept_of(KeptReturns::first, 3, rainy) == Times{1, 10, 20});
+  CHECK(kept_of(KeptReturns::first, 2, rainy) == Times{10, 20});
+  CHECK(kept_of(KeptReturns::first, 1, rainy) == Times{10});
+  CHECK(kept_of(KeptReturns::strongest, 2, rainy) == Times{1, 2});
 }
 
 TEST_CASE("peaks for which there is no room are lost") {
@@ -78,10 +96,8 @@ TEST_CASE("windows are kept to by all that stay, whatever there is") {
     std::vector<Peak> all(any.whole(100));
     double t = 0;
     for (Peak& p : all) p = {t += any.uniform(), any.uniform()};
-    const WaveformSettings s{
-        .separation = any.uniform(0, 1), .window = any.uniform(0, 3), .dead_time = any.uniform(0, 3), .returns_max = 20};
+    const WaveformSettings s{.separation = any.uniform(0, 1), .window = any.uniform(0, 3), .dead_time = any.uniform(0, 3)};
     const auto stay = kept(s, all);
-    CHECK(stay.size() <= 20);
     for (std::size_t i = 1; i < stay.size(); ++i) {
       CHECK(stay[i].time - stay[i - 1].time >= s.dead_time);
       CHECK(stay[i].time - stay[i - 1].time > s.window);
@@ -110,18 +126,17 @@ TEST_CASE("an echo is made of the reflections between its valleys, and has the l
   const std::vector<Reflection> reflections{
       {10, 9, 1, 1, {}, 0.1}, {20, 1, 2, 2, {}, 0.2}, {20.1, 3, 3, 3, {}, 0.3}, {21, 2, 4, 4, {}, 0.4}};
   const Peak peak{.time = 20.15 * metre, .height = 3.5, .begin = 19 * metre, .end = 20.9 * metre, .mark = 20.15 * metre, .width = 7};
-  const Echo e = echo_of(peak, reflections, shape, EchoTiming::true_range, 2);
+  const Echo e = echo_of(peak, reflections, shape, EchoTiming::true_range);
   CHECK(e.range == support::relative(20.075, 1e-12));
   CHECK(e.amplitude == 3.5);
   CHECK(e.width == 7);
   CHECK(e.object == 3);
   CHECK(e.classification == 3);
   CHECK(e.cos_incidence == 0.3);
-  CHECK(e.number == 2);
-  CHECK(echo_of(peak, reflections, shape, EchoTiming::peak, 2).range == support::relative(20.15, 1e-12));
+  CHECK(echo_of(peak, reflections, shape, EchoTiming::peak).range == support::relative(20.15, 1e-12));
   // a peak of noise alone is nobody's
   const Echo nobody = echo_of({.time = 15 * metre, .begin = 14.9 * metre, .end = 15.1 * metre, .mark = 15 * metre},
-                              std::span(reflections).subspan(1), shape, EchoTiming::true_range, 1);
+                              std::span(reflections).subspan(1), shape, EchoTiming::true_range);
   CHECK(nobody.range == support::relative(15, 1e-12));
   CHECK(nobody.object == 0);
 }

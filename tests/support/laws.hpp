@@ -253,9 +253,24 @@ template <class F>
   return {};
 }
 
-/// The terms of the ledger sum to what was sent, none is negative; what is received is that of the reflections, which are inside the gate
-/// and of positive power, no more than there is room for; every subray is recorded if asked for; the answer depends neither on the record
-/// nor on what the workspace was used for before. Pulses of a wide beam leave with each of the poses.
+namespace detail {
+/// Continuous returns ascend, are of positive power and inside the gate; adds their power to `received` [W].
+inline std::string continuous_laws(std::span<const ContinuousReturn> returns, const RangeGate& gate, double& received) {
+  double before = 0;
+  for (const ContinuousReturn& c : returns) {
+    if (!(c.begin >= before)) return "continuous returns are not in order";
+    if (!(c.begin < c.end && c.at_begin >= 0 && c.at_end >= 0 && c.power() > 0)) return "a continuous return without light";
+    if (!(c.begin >= gate.near * (1 - 1e-12) && c.end <= gate.far * (1 + 1e-12))) return "a continuous return outside the gate";
+    before = c.begin;
+    received += c.power();
+  }
+  return {};
+}
+}  // namespace detail
+
+/// The terms of the ledger sum to what was sent, none is negative; what is received is that of reflections and continuous returns, which
+/// are inside the gate and of positive power, no more than there is room for; every subray is recorded if asked for; the answer depends
+/// neither on the record nor on what the workspace was used for before. Pulses of a wide beam leave with each of the poses.
 template <class T, class Map>
 [[nodiscard]] std::string transport_laws(const T& transport, const Map& map, std::span<const Pose<frame::Beam, frame::World>> poses,
                                          const Receiver& receiver = {}) {
@@ -294,11 +309,14 @@ template <class T, class Map>
     for (const Reflection& reflection : std::span(reflections).first(r.reflections)) {
       if (!(reflection.power > 0)) return detail::sentence("pulse ", k, ": a reflection of ", reflection.power, " W");
       if (!receiver.gate().contains(reflection.range)) return detail::sentence("pulse ", k, ": a reflection outside the gate");
-      received += reflection.power * emitter.laser.pulse_length;
+      received += reflection.power;
     }
+    const std::string of_continuous = detail::continuous_laws(r.continuous, receiver.gate(), received);
+    if (!of_continuous.empty()) return detail::sentence("pulse ", k, ": ", of_continuous);
+    received *= emitter.laser.pulse_length;
     if (!(std::fabs(received - e.received) <= 1e-6 * received))
       return detail::sentence("pulse ", k, ": the reflections are ", received, " J");
-    if (r.reflections == 0 && r.fate != Fate::missed && r.fate != Fate::out_of_range && r.fate != Fate::absorbed)
+    if (r.dark() && r.fate != Fate::missed && r.fate != Fate::out_of_range && r.fate != Fate::absorbed)
       return detail::sentence("pulse ", k, ": a fate that asks for reflections");
     for (const SubrayHit& subray : record)
       if (!(subray.power >= 0)) return detail::sentence("pulse ", k, ": a subray is not recorded");

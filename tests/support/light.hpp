@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -23,6 +26,7 @@ namespace pulsecast::support {
 struct Traced {
   TransportResult result;
   std::vector<Reflection> reflections;
+  std::vector<ContinuousReturn> continuous;
 
   /// The reflections of one kind.
   [[nodiscard]] std::vector<Reflection> of(ReflectionKind kind) const {
@@ -30,6 +34,24 @@ struct Traced {
     for (const Reflection& r : reflections)
       if (r.kind == kind) all.push_back(r);
     return all;
+  }
+  /// Power of the continuous returns of a kind between two ranges [m], and their mean range.
+  struct Continuous {
+    double power = 0;  ///< [W]
+    double mean = 0;   ///< [m]
+  };
+  [[nodiscard]] Continuous between(double from, double to, ReflectionKind kind) const {
+    Continuous sum;
+    for (const ContinuousReturn& r : continuous) {
+      const double begin = std::max(from, r.begin), end = std::min(to, r.end);
+      if (r.kind != kind || !(begin < end)) continue;
+      const auto density = [&](double range) { return r.at_begin + (range - r.begin) / (r.end - r.begin) * (r.at_end - r.at_begin); };
+      const double a = density(begin), b = density(end), power = 0.5 * (a + b) * (end - begin);
+      sum.power += power;
+      sum.mean += power * (begin + (end - begin) * (a + 2 * b) / (3 * (a + b)));
+    }
+    sum.mean /= sum.power;
+    return sum;
   }
   /// Difference between the energy sent and the terms of the ledger, by the energy sent.
   [[nodiscard]] double imbalance() const {
@@ -85,6 +107,8 @@ template <bool with_velocity = false, class Light, class Map, class Pattern>
   else
     all.result = transport.trace(map, light, w, all.reflections);
   all.reflections.resize(all.result.reflections);
+  all.continuous.assign(all.result.continuous.begin(), all.result.continuous.end());
+  all.result.continuous = all.continuous;
   return all;
 }
 

@@ -117,12 +117,8 @@ TEST_CASE("water") {
                  clear = traced(LightPaths{}, lake({1.34, 1.37}), pose, SingleRay{});
       balance = std::max(balance, std::fabs(pulse.imbalance()));
       const double above = height / std::cos(a), below = depth / std::cos(b), clear_power = power_of(clear.of(ReflectionKind::water));
-      double column = 0;
+      const double column = pulse.between(0, 999, ReflectionKind::water).power;
       for (const Reflection& r : pulse.of(ReflectionKind::water)) {
-        if (r.object == 1) {
-          column += r.power;
-          continue;
-        }
         worst = std::max(worst, std::fabs(r.range / (above + 1.37 * below) - 1));
         dimmed = std::max(dimmed, std::fabs(r.power / clear_power / std::exp(-2 * 0.12 * below) - 1));
       }

@@ -47,17 +47,10 @@ Found found_in_air(const Medium& medium, double wavelength) {
   const auto seen = traced(LightPaths{.air = Media({{.medium = medium}})}, wall, pose, SingleRay{}, lamp),
              clear = traced(LightPaths{}, wall, pose, SingleRay{}, lamp);
   const double extinction = std::log(power_of(clear.of(ReflectionKind::surface)) / power_of(seen.of(ReflectionKind::surface))) / (2 * 40);
-  double back = 0, first = 40, last = 0;
-  for (const Reflection& r : seen.of(ReflectionKind::air)) {
-    if (r.range < 20 || r.range > 30) continue;
-    back += r.power;
-    first = std::min(first, r.range);
-    last = std::max(last, r.range);
-  }
-  const double half = speed_of_light / 2 * lamp.laser.pulse_length / 16 / 2;  // of the distance of reflections
+  const double back = seen.between(20, 30, ReflectionKind::air).power;
   const LinkBudget budget(lamp.receiver, lamp.laser);
   const auto even = [&](double s) { return budget.power(1, pi, s) * std::exp(-2 * extinction * s); };
-  return {extinction, extinction * integral(even, first - half, last + half, 4000) / back};
+  return {extinction, extinction * integral(even, 20, 30, 4000) / back};
 }
 
 /// Diffuse attenuation [1/m] of water over a bottom at 2 m, from the bottom's echo.

@@ -17,7 +17,11 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/adaptor.hpp>
+#include <pulsecast/detector/detail/continuous_waveform.hpp>
+#include <pulsecast/detector/detail/edge_age_moments.hpp>
 #include <pulsecast/detector/echo_width.hpp>
+#include <pulsecast/detector/ideal_samples.hpp>
 #include <pulsecast/detector/peaks.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
@@ -26,58 +30,14 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Sum of the pulse shapes of all reflections whose leading edges have passed, in closed form until the next edge.
-///
-/// An edge of age u [tau] contributes P u^2 e^-u. Weight each age by P e^-u; let W be the sum of the weights, m the mean and v the variance
-/// of the ages. The sum of pulses is W (m^2 + v), and W e^-x ((m + x)^2 + v) a time x later. Its slope is zero at the ages m + x = 1 -
-/// sqrt(1 - v), a valley, and 1 + sqrt(1 - v), a peak; nowhere for v > 1. Derived from `PulseShape`.
-class EdgeAgeMoments {
- public:
-  /// Adds a pulse whose leading edge arrives now.
-  void add(double power) noexcept {
-    const double sum = weight_ + power, share = power / sum;
-    variance_ = (1 - share) * (variance_ + share * mean_ * mean_);
-    mean_ *= 1 - share;
-    weight_ = sum;
-  }
-
-  /// Advances by a time [tau].
-  void advance(double x) noexcept {
-    weight_ *= std::exp(-x);
-    mean_ += x;
-  }
-
-  /// True if the slope of the sum has zeros, passed or to come.
-  [[nodiscard]] bool can_turn() const noexcept { return variance_ < 1; }
-  [[nodiscard]] double until_valley() const noexcept { return 1 - std::sqrt(1 - variance_) - mean_; }  ///< negative if passed [tau]
-  [[nodiscard]] double until_peak() const noexcept { return 1 + std::sqrt(1 - variance_) - mean_; }    ///< negative if passed [tau]
-
-  /// Sum of pulses now [W].
-  [[nodiscard]] double power() const noexcept { return weight_ * (mean_ * mean_ + variance_) * PulseShape::to_unit_peak; }
-
-  /// Moments of the sum over a time x from now on, about now [tau].
-  [[nodiscard]] WaveformMoments until(double x) const noexcept {
-    std::array<double, 5> g{};  // integrals of t^k e^-t from 0 to x, by parts
-    const double rest = std::exp(-x);
-    double term = rest;  // x^k e^-x
-    g[0] = 1 - rest;
-    for (std::size_t k = 1; k < g.size(); ++k) {
-      if (term > 0) term *= x;  // 0 for an infinite x
-      g[k] = static_cast<double>(k) * g[k - 1] - term;
-    }
-    const double c0 = mean_ * mean_ + variance_, c1 = 2 * mean_, w = weight_ * PulseShape::to_unit_peak;
-    return {w * (c0 * g[0] + c1 * g[1] + g[2]), w * (c0 * g[1] + c1 * g[2] + g[3]), w * (c0 * g[2] + c1 * g[3] + g[4])};
-  }
-
- private:
-  double weight_ = 0, mean_ = 0, variance_ = 0;
-};
-
 /// Peak detector on the sum of the pulse shapes of all reflections, without sampling: times and heights are exact. Between two leading
 /// edges the sum is a quadratic polynomial times one exponential, so its extrema are roots of a quadratic. One pass over the reflections
 /// finds them all. A `SinglePeakGroup` is evaluated without sorting.
 /// Pareto-optimal in docs/tradeoff.md: takes less time than `FullWaveform`, and is as exact or more so. `FullWaveform` models the
 /// digitiser's bins and the receiver's noise.
+///
+/// Continuous returns are exact, too: between the edges of reflections, and of theirs, the sum is a quadratic polynomial times an
+/// exponential, and a linear one. Its extrema are bracketed in steps of a quarter of tau, where it may rise. They have no part in widths.
 ///
 /// `WaveformSettings::sample_interval` is that of the record, and of the grid on which a fitted width samples the sum; moments are exact.
 template <EchoWidth Width = NoWidth>
@@ -128,9 +88,9 @@ class AnalyticWaveform {
   /// Scratch memory for pulses of up to `reflections` reflections.
   [[nodiscard]] Workspace workspace(std::size_t reflections) const {
     Workspace w{{}, {}, {}, {}, SinglePeakGroup::Workspace(reflections)};
-    w.peaks.reserve(reflections);
+    w.peaks.reserve(reflections + 64);  // some of continuous returns
     if constexpr (by_samples) w.samples.reserve(max_samples);
-    w.echoes.reserve(std::min(reflections, s_.returns_max));
+    w.echoes.reserve(std::min(w.peaks.capacity(), s_.returns_max));
     w.record.reserve(s_.record_capacity());
     return w;
   }
@@ -143,7 +103,7 @@ class AnalyticWaveform {
     w.echoes.clear();
     w.record.clear();
     const PulseShape shape(laser.pulse_length, s_.shape_divisor);
-    if (!by_samples && s_.record_length == 0) {
+    if (!by_samples && s_.record_length == 0 && heard.continuous.empty()) {
       const SinglePeakGroup group(all, shape, s_.sample_interval, w.group);
       if (group.one()) {
         detect(group, shape, w.echoes);
@@ -151,13 +111,21 @@ class AnalyticWaveform {
       }
     }
     const std::span<const Reflection> reflections = in_order_of_range(all, s_.sample_interval);
-    if (reflections.empty()) return {};
-    find_peaks(reflections, shape, s_.min_separation(laser.pulse_length), w);
+    const std::span<const ContinuousReturn> continuous = heard.continuous;
+    if (reflections.empty() && continuous.empty()) return {};
+    Finder finder{*this, shape, s_.min_separation(laser.pulse_length), w.peaks};
+    if (continuous.empty())
+      finder.find(reflections);
+    else
+      finder.find(reflections, continuous);
     keep_echoes(s_, w.peaks);
+    const detail::ContinuousRises rises(continuous, detail::GammaIntegrals(shape));
     for (Peak& peak : w.peaks) {
       if constexpr (by_samples) peak.width = sampled_width(peak, reflections, shape, w.samples);
-      w.echoes.push_back(echo_of(peak, reflections, shape, s_.timing, w.echoes.size() + 1));
+      keep_return(echo_of(peak, reflections, shape, s_.timing, rises.sources(0)), s_.returns_kept, s_.returns_max, w.echoes);
     }
+    number_echoes(w.echoes);
+    if (!continuous.empty()) return {w.echoes, w.record, record(heard, reflections, w.record)};
     const double start = SampledSum::first_sample(reflections.front(), shape, s_.sample_interval);
     SampledSum sum(reflections, shape, s_.sample_interval, 0, start);
     while (w.record.size() < w.record.capacity() && (!sum.all_in() || sum.time() < sum.last_peak() + SampledSum::negligible * shape.tau))
@@ -180,59 +148,158 @@ class AnalyticWaveform {
     if constexpr (by_moments) echoes.back().width = shape.tau * width_.width(group.moments());
   }
 
-  void find_peaks(std::span<const Reflection> reflections, const PulseShape& shape, double min_separation, Workspace& w) const noexcept {
-    const double per_metre = 2 / (speed_of_light * shape.tau);
-    EdgeAgeMoments ages;
-    Peak peak;             // current peak
-    WaveformMoments m;     // moments since its valley
-    WaveformMoments last;  // moments of the last peak entered
-    double since = 0;      // time from its valley to the current edge [tau]
+  /// Search for the maxima of a waveform.
+  struct Finder {
+    const AnalyticWaveform& detector;
+    const PulseShape& shape;
+    double min_separation;     ///< as of `merge_or_append` [s]
+    std::vector<Peak>& peaks;  ///< those found
+
+    EdgeAgeMoments ages{};        ///< reflections
+    Peak peak{};                  ///< current peak
+    WaveformMoments m{}, last{};  ///< moments since its valley, and of the last peak entered
+    double since = 0;             ///< time from its valley to the current edge [tau]
     bool rising = false, met = false;
-    const auto finish = [&](double end) {
+
+    /// Ends the current peak.
+    void finish(double end) noexcept {
       peak.end = end;
-      if (!met || peak.height < s_.threshold) return;
-      if (!merge_or_append(peak, min_separation, 0, w.peaks)) last = {};
-      last.add(m, (peak.begin - w.peaks.back().begin) / shape.tau);
-      if constexpr (by_moments) w.peaks.back().width = shape.tau * width_.width(last);
-    };
-    for (std::size_t k = 0; k < reflections.size(); ++k) {
-      ages.add(reflections[k].power);
-      const double next = k + 1 == reflections.size() ? infinity : (reflections[k + 1].range - reflections[k].range) * per_metre;
-      if (next == 0) continue;
-      const double edge = arrival(reflections[k]) - PulseShape::peak * shape.tau;
-      double x = 0;  // time since the edge [tau]
-      // An extremum that rounding puts just before the edge is moved to it, so that peaks and valleys alternate.
-      if (!rising && ages.can_turn() && ages.until_valley() < next && ages.until_peak() > 0) {
-        x = std::fmax(ages.until_valley(), 0);
-        if constexpr (by_moments) m.add(ages.until(x), since);
-        finish(edge + x * shape.tau);
-        peak = {.begin = peak.end};
-        m = {};
-        since = 0;
-        met = false;
-        rising = true;
-        ages.advance(x);
-      }
-      const double rest = next - x;
-      if (rising && (!ages.can_turn() || ages.until_peak() < rest)) {
-        const double ahead = ages.can_turn() ? std::fmax(ages.until_peak(), 0) : 0;
-        EdgeAgeMoments then = ages;
-        then.advance(ahead);
-        peak.time = peak.mark = edge + (x + ahead) * shape.tau;
-        peak.height = then.power();
-        met = true;
-        rising = false;
-      }
-      if constexpr (by_moments) m.add(ages.until(rest), since);
-      since += rest;
-      ages.advance(rest);
+      if (!met || peak.height < detector.s_.threshold) return;
+      if (!merge_or_append(peak, min_separation, 0, peaks)) last = {};
+      last.add(m, (peak.begin - peaks.back().begin) / shape.tau);
+      if constexpr (by_moments) peaks.back().width = shape.tau * detector.width_.width(last);
     }
-    finish(infinity);
+    /// Begins the next peak at a valley.
+    void begin(double valley) noexcept {
+      finish(valley);
+      peak = {.begin = valley};
+      m = {};
+      since = 0;
+      met = false;
+      rising = true;
+    }
+    /// Enters the maximum of the current peak.
+    void enter(double time, double height) noexcept {
+      peak.time = peak.mark = time;
+      peak.height = height;
+      met = true;
+      rising = false;
+    }
+
+    /// Finds the maxima of reflections.
+    void find(std::span<const Reflection> reflections) noexcept {
+      const double per_metre = 2 / (speed_of_light * shape.tau);
+      for (std::size_t k = 0; k < reflections.size(); ++k) {
+        ages.add(reflections[k].power);
+        const double next = k + 1 == reflections.size() ? infinity : (reflections[k + 1].range - reflections[k].range) * per_metre;
+        if (next == 0) continue;
+        const double edge = arrival(reflections[k]) - PulseShape::peak * shape.tau;
+        double x = 0;  // time since the edge [tau]
+        // An extremum that rounding puts just before the edge is moved to it, so that peaks and valleys alternate.
+        if (!rising && ages.can_turn() && ages.until_valley() < next && ages.until_peak() > 0) {
+          x = std::fmax(ages.until_valley(), 0);
+          if constexpr (by_moments) m.add(ages.until(x), since);
+          begin(edge + x * shape.tau);
+          ages.advance(x);
+        }
+        const double rest = next - x;
+        if (rising && (!ages.can_turn() || ages.until_peak() < rest)) {
+          const double ahead = ages.can_turn() ? std::fmax(ages.until_peak(), 0) : 0;
+          EdgeAgeMoments then = ages;
+          then.advance(ahead);
+          enter(edge + (x + ahead) * shape.tau, then.power());
+        }
+        if constexpr (by_moments) m.add(ages.until(rest), since);
+        since += rest;
+        ages.advance(rest);
+      }
+      finish(infinity);
+    }
+
+    /// Reflections and continuous returns at a time.
+    struct Sum {
+      EdgeAgeMoments ages;
+      detail::ContinuousSum continuous;
+      double time;  ///< [s]
+
+      void advance(double to, double tau) noexcept {
+        ages.advance((to - time) / tau);
+        continuous.advance(to);
+        time = to;
+      }
+      [[nodiscard]] double slope() const noexcept { return ages.slope() + continuous.slope(); }
+      /// The sum at the zero of its slope up to another time [s]: false position, after Dowell & Jarratt 1971.
+      [[nodiscard]] Sum at_extremum(double to, double tau) const noexcept {
+        Sum middle = *this;
+        middle.advance(to, tau);
+        double low = time, high = to, below = slope(), above = middle.slope();
+        for (double last = low; std::fabs(middle.time - last) > 1e-9 * tau;) {
+          last = middle.time;
+          middle = *this;
+          middle.advance(low + (high - low) * below / (below - above), tau);
+          const double there = middle.slope();
+          const bool same = (there > 0) == (below > 0);
+          (same ? low : high) = middle.time;
+          (same ? below : above) = there;
+          (same ? above : below) *= 0.5;
+        }
+        return middle;
+      }
+    };
+
+    /// Finds the maxima of reflections and continuous returns.
+    void find(std::span<const Reflection> reflections, std::span<const ContinuousReturn> continuous) noexcept {
+      detail::ContinuousRises rises(continuous, detail::GammaIntegrals(shape));
+      const double to_edge = PulseShape::peak * shape.tau;
+      std::size_t next = 0;
+      const auto next_edge = [&] { return next < reflections.size() ? arrival(reflections[next]) - to_edge : infinity; };
+      double time = std::fmin(next_edge(), rises.next());
+      const double only_rises = rises.first_peak() - 0.25 * shape.tau;  // up to here, if no reflection comes
+      if (only_rises > time && next_edge() > only_rises + to_edge) time = only_rises;
+      double rising_until = time;
+      Sum sum{{}, detail::ContinuousSum(continuous, shape), time};
+      while (time < infinity) {
+        for (; next_edge() <= time; ++next) {
+          sum.ages.add(reflections[next].power);
+          rising_until = time + to_edge;
+        }
+        rises.pass(time);
+        const bool falls = !rising && time > rising_until && time >= rises.until();
+        const double soon = std::fmin(next_edge(), rises.next()), to = falls ? soon : std::fmin(soon, time + 0.25 * shape.tau);
+        if (!(to < infinity)) break;
+        Sum then = sum;
+        then.advance(to, shape.tau);
+        if (!falls && !rising && then.slope() > 0)
+          begin(sum.slope() < 0 ? sum.at_extremum(to, shape.tau).time : time);
+        else if (rising && then.slope() <= 0) {
+          const Sum top = sum.at_extremum(to, shape.tau);
+          enter(top.time, top.ages.power() + top.continuous.power());
+        }
+        if constexpr (by_moments) m.add(sum.ages.until((to - time) / shape.tau), since);
+        since += (to - time) / shape.tau;
+        sum = then;
+        time = to;
+      }
+      if constexpr (by_moments) m.add(sum.ages.until(infinity), since);
+      finish(infinity);
+    }
+  };
+
+  /// Keeps the record of a pulse with continuous returns. Returns the time of its first sample [s].
+  double record(const Heard& heard, std::span<const Reflection> reflections, std::vector<float>& record) const noexcept {
+    IdealSamples samples(0, 0, s_, heard, reflections, 0);
+    while (record.size() < record.capacity() && samples.begin_section())
+      for (bool more = true; more && record.size() < record.capacity();) {
+        record.resize(std::min(record.capacity(), static_cast<std::size_t>(samples.number() - samples.start()) + 1));
+        record.back() = static_cast<float>(samples.power(more));
+      }
+    return samples.start() * s_.sample_interval;
   }
 
   /// Width of a peak from samples of the sum between its valleys [s].
   double sampled_width(const Peak& peak, std::span<const Reflection> reflections, const PulseShape& shape,
                        std::vector<double>& samples) const noexcept {
+    if (reflections.empty()) return std::numeric_limits<double>::quiet_NaN();
     const auto before = [](double limit) { return [limit](const Reflection& r) { return arrival(r) < limit; }; };
     const auto last = std::partition_point(reflections.begin() + 1, reflections.end(), before(peak.end)) - 1;
     const double end = std::fmin(peak.end, arrival(*last) + tail_of(width_) * shape.tau);

@@ -19,7 +19,7 @@ namespace PULSECAST_NAMESPACE {
 /// comparison); Jutzi & Stilla 2006.
 enum class EchoTiming : std::uint8_t {
   /// Power-weighted mean of the true ranges of the subrays between the echo's valleys, which no instrument knows: unbiased for an echo of
-  /// any length. What media send back counts, too: not for light through water or fog.
+  /// any length. What media send back does not count; an echo that is theirs has the range of its peak.
   true_range,
   /// Maximum: on a slope later than the mean, as pulses rise faster than they fall. Of a receiver with a bandwidth or the steps of a
   /// digitiser

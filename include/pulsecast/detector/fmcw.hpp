@@ -55,9 +55,9 @@ struct FmcwSettings {
 /// for peaks. The sweeps' peaks are paired in order of power, and in order of frequency where powers are alike: the latter are wrong if
 /// surfaces of different velocities overtake each other in a spectrum, and are flagged as `Echo::ambiguous`. So are pairs of different
 /// powers, as where two peaks are one in the other sweep. Surfaces do not move from one sweep to the next. The range is that in the middle.
-/// The laser's peak power is its power while it measures. Amplitudes are the powers of both sweeps' peaks, in the mean. It needs a target
-/// that knows velocities, as `Scene` and `MovingScene`. Source: Amann, Bosch, Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu &
-/// Boser 2017.
+/// The laser's peak power is its power while it measures. Amplitudes are the powers of both sweeps' peaks, in the mean. Continuous returns,
+/// which stand still, are in the spectrum, of which only what is near to surfaces is searched. It needs a target that knows velocities,
+/// such as `Scene` and `MovingScene`. Source: Amann, Bosch, Lescure, Myllyla & Rioux 2001; Behroozpour, Sandborn, Wu & Boser 2017.
 class Fmcw {
  public:
   /// @throws SettingError for settings out of range
@@ -101,7 +101,7 @@ class Fmcw {
     const double wavelength = heard.emitter.laser.wavelength, metres = s_.resolution(), speed = s_.velocity_resolution(wavelength);
     for (const std::size_t sweep : {std::size_t{0}, std::size_t{1}}) {
       set_lines(heard, sweep == 0 ? 1 / speed : -1 / speed, w);
-      find_peaks(w.lines, noise_of(heard, sweep), w.peaks[sweep]);
+      find_peaks(heard, w.lines, noise_of(heard, sweep), w.peaks[sweep]);
     }
     const auto& [up, down] = w.peaks;
     const std::size_t pairs = std::min(up.size(), down.size());
@@ -204,8 +204,43 @@ class Fmcw {
     std::sort(w.lines.begin(), w.lines.end(), [](const Line& a, const Line& b) { return a.beat < b.beat; });
   }
 
+  /// Power of continuous returns by whole periods in the sweep. Their sum through the window has no ripple, as the square of Hann's window
+  /// has no higher harmonics than its own.
+  struct Haze {
+    std::span<const ContinuousReturn> returns;  ///< those that matter
+    double resolution;                          ///< of `FmcwSettings` [m]
+    RandomKey key;                              ///< of the speckle
+
+    /// Calls `visit(period, power)` for the periods within 8 of a frequency that have power [W].
+    template <class Visit>
+    void visit_near(double beat, const Visit& visit) const noexcept {
+      if (returns.empty()) return;
+      for (double period = std::ceil(beat - 8); period <= beat + 8; ++period) {
+        const double from = (period - 0.5) * resolution, to = (period + 0.5) * resolution;
+        double power = 0;
+        for (const ContinuousReturn& r : returns) {
+          const double begin = std::max(from, r.begin), end = std::min(to, r.end);
+          if (!(begin < end)) continue;
+          const double middle = (0.5 * (begin + end) - r.begin) / (r.end - r.begin);
+          power += (end - begin) * (r.at_begin + middle * (r.at_end - r.at_begin));
+        }
+        if (power > 0) visit(period, power);
+      }
+    }
+  };
+
+  /// Continuous returns within 9 periods of some frequencies.
+  [[nodiscard]] Haze haze_of(const Heard& heard, double first, double last) const noexcept {
+    std::size_t begin = 0, end = heard.continuous.size();
+    while (begin < end && heard.continuous[begin].end < (first - 9) * s_.resolution()) ++begin;
+    while (end > begin && heard.continuous[end - 1].begin > (last + 9) * s_.resolution()) --end;
+    RandomKey key = heard.key;
+    key.purpose = Purpose::speckle;
+    return {heard.continuous.subspan(begin, end - begin), s_.resolution(), key};
+  }
+
   /// Power of the spectrum of a sweep at a frequency [W]. Only lines within 8 periods matter.
-  [[nodiscard]] double power_at(std::span<const Line> lines, const Noise& noise, double beat) const noexcept {
+  [[nodiscard]] double power_at(std::span<const Line> lines, const Haze& haze, const Noise& noise, double beat) const noexcept {
     double real = 0, imaginary = 0, power = 0;
     for (const Line& line : lines) {
       if (std::fabs(line.beat - beat) > 8) continue;
@@ -218,21 +253,36 @@ class Fmcw {
         power += line.power * h * h;
       }
     }
+    haze.visit_near(beat, [&](double period, double of_haze) noexcept {
+      const double h = window(beat - period);
+      if (!s_.speckle) {
+        power += of_haze * h * h;
+        return;
+      }
+      RandomKey key = haze.key;  // fields of many drops: normal, and independent of each other
+      key.part = static_cast<std::uint32_t>(static_cast<std::int64_t>(period)) & 0x3FFFFFU;
+      key.subray = 0x80000000U;
+      const double amplitude = std::sqrt(0.5 * of_haze) * h;
+      real += amplitude * normal(key);
+      ++key.subray;
+      imaginary += amplitude * normal(key);
+    });
     if (!s_.speckle) real = std::sqrt(power);
     noise.add(beat, real, imaginary);
     return real * real + imaginary * imaginary;
   }
 
   /// Peaks of a sweep's spectrum, in descending order of power: the strongest ones of at least the threshold, near lines.
-  void find_peaks(std::span<const Line> lines, const Noise& noise, std::vector<Peak>& peaks) const noexcept {
+  void find_peaks(const Heard& heard, std::span<const Line> lines, const Noise& noise, std::vector<Peak>& peaks) const noexcept {
     peaks.clear();
     for (std::size_t first = 0, last = 0; first < lines.size(); first = last) {
       for (last = first + 1; last < lines.size() && lines[last].beat - lines[last - 1].beat < 2 * reach;) ++last;
       const double begin = std::floor((lines[first].beat - reach) / grid), end = std::ceil((lines[last - 1].beat + reach) / grid);
+      const Haze haze = haze_of(heard, lines[first].beat - reach, lines[last - 1].beat + reach);
       std::array<double, 5> y{};  // the last five powers, about the one that may be a peak
       for (double g = begin; g <= end; ++g) {
         std::shift_left(y.begin(), y.end(), 1);
-        y[4] = power_at(lines, noise, g * grid);
+        y[4] = power_at(lines, haze, noise, g * grid);
         if (g < begin + 4 || !(y[2] >= s_.threshold && y[2] > y[1] && y[2] >= y[3])) continue;
         const Vertex top = vertex(&y[2]);
         keep({(g - 2 + top.offset) * grid, top.height, nullptr}, lines, peaks);

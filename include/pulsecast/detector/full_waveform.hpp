@@ -8,6 +8,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include <pulsecast/base/simd.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/by_pulse_length.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/echo_width.hpp>
@@ -123,7 +125,7 @@ class FullWaveform {
       if constexpr (ideal) return receiver_.none();
       return false;
     }();
-    w.peaks.reserve(noiseless ? reflections : std::max(reflections, max_peaks));
+    w.peaks.reserve(noiseless ? reflections + continuous_peaks : std::max(reflections, max_peaks));
     w.echoes.reserve(std::min(w.peaks.capacity(), s_.returns_max));
     w.record.reserve(s_.record_capacity());
     return w;
@@ -137,15 +139,22 @@ class FullWaveform {
     w.echoes.clear();
     w.record.clear();
     if constexpr (ideal)
-      if (std::same_as<Width, NoWidth> && s_.record_length == 0 && receiver_.none() && s_.timing <= EchoTiming::peak) {
+      if (std::same_as<Width, NoWidth> && s_.record_length == 0 && receiver_.none() && s_.timing <= EchoTiming::peak &&
+          heard.continuous.empty()) {
         const PulseShape shape(laser.pulse_length, s_.shape_divisor);
         const SinglePeakGroup group(heard.reflections, shape, s_.sample_interval, w.group);
         if (group.one() && detect(group, shape, w.echoes)) return {w.echoes, {}, 0};
       }
-    if constexpr (!ideal && std::same_as<Width, NoWidth>)
-      if (s_.record_length == 0 && s_.timing == EchoTiming::peak)
-        if (const auto only = receiver_.only_peak(s_, heard, reach_of(laser))) return detection_of(*only, laser, w.echoes);
-    const std::span<const Reflection> reflections = in_order_of_range(heard.reflections, s_.sample_interval);
+    std::optional<OnlyPeak> only;
+    if constexpr (!ideal && std::same_as<Width, NoWidth>) {
+      if (s_.record_length == 0 && s_.timing == EchoTiming::peak) only = receiver_.only_peak(s_, heard, reach_of(laser));
+      if (only && heard.continuous.empty()) {
+        keep_only(only, laser, w.echoes);
+        return {w.echoes, {}, 0};
+      }
+    }
+    const std::span<const Reflection> reflections =
+        only ? std::span<Reflection>{} : in_order_of_range(heard.reflections, s_.sample_interval);
     auto samples = receiver_.samples(s_, heard, reflections, tail(), w.receiver);
     const typename SampleWindow<Width>::Search search{
         s_, width_, s_.min_separation(laser.pulse_length), samples.delay(), samples.independent_noise(), reach_of(laser)};
@@ -163,13 +172,19 @@ class FullWaveform {
       std::erase_if(w.peaks, [&](const Peak& peak) { return !heard.gate.contains(0.5 * speed_of_light * peak.mark); });
     keep_echoes(s_, w.peaks);
     const EchoTiming timing = samples.independent_noise() && s_.timing == EchoTiming::true_range ? EchoTiming::peak : s_.timing;
-    for (const Peak& peak : w.peaks) w.echoes.push_back(echo_of(peak, reflections, samples.shape(), timing, w.echoes.size() + 1));
+    for (const Peak& peak : w.peaks) {
+      if (only && peak.time > only->time) keep_only(only, laser, w.echoes);
+      keep_return(echo_of(peak, reflections, samples.shape(), timing, samples.continuous()), s_.returns_kept, s_.returns_max, w.echoes);
+    }
+    if (only) keep_only(only, laser, w.echoes);
+    number_echoes(w.echoes);
     return {w.echoes, w.record, samples.start() * s_.sample_interval};
   }
 
  private:
   static constexpr bool ideal = std::same_as<Receiver, ReceiverNoise>;
   static constexpr std::size_t max_peaks = 4096;  ///< peaks of noise
+  static constexpr std::size_t continuous_peaks = 64;
 
   /// Time of the echo of a flat target less its arrival, by the place of the arrival between two samples.
   struct Correction {
@@ -218,14 +233,13 @@ class FullWaveform {
     return c;
   }
 
-  /// The only echo of a pulse, if it reaches the threshold.
-  template <class Only>
-  [[nodiscard]] Detection detection_of(const Only& only, const Laser& laser, std::vector<Echo>& echoes) const noexcept {
-    if (only.height < s_.threshold) return {};
+  /// Keeps the only echo of reflections, if it reaches the threshold.
+  void keep_only(std::optional<OnlyPeak>& only, const Laser& laser, std::vector<Echo>& echoes) const noexcept {
     const Correction* correction = corrections_.find(laser);
-    const double time = correction ? correction->arrival(only.time, s_.sample_interval) : only.time;
-    echoes.push_back(echo_from(*only.strongest, 0.5 * speed_of_light * time, only.height));
-    return {echoes, {}, 0};
+    const double time = correction ? correction->arrival(only->time, s_.sample_interval) : only->time;
+    if (only->height >= s_.threshold)
+      keep_return(echo_from(*only->strongest, 0.5 * speed_of_light * time, only->height), s_.returns_kept, s_.returns_max, echoes);
+    only.reset();
   }
 
   /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its peak. False if these

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_DETECTOR_PEAKS_HPP
 #define PULSECAST_DETECTOR_PEAKS_HPP
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -71,42 +72,77 @@ inline bool merge_or_append(const Peak& peak, double min_separation, double prom
   return after < peaks.size() ? std::fmin(earlier, peaks[after].time - peaks[i].time) : earlier;
 }
 
-/// Keeps the peaks that are echoes by window, dead time and number. Requires order of time.
+/// Keeps the peaks that are echoes by window and dead time. Requires order of time.
 inline void keep_echoes(const WaveformSettings& s, std::vector<Peak>& peaks) noexcept {
   for (std::size_t i = 0; i < peaks.size(); ++i) peaks[i].dominated = is_dominated(i, s, peaks);
   std::size_t kept = 0;
   for (const Peak& peak : peaks) {
-    if (peak.dominated || kept == s.returns_max) continue;
+    if (peak.dominated) continue;
     if (kept > 0 && peak.time - peaks[kept - 1].time < s.dead_time) continue;
     peaks[kept++] = peak;
   }
   peaks.resize(kept);
 }
 
+/// Keeps an echo, the farthest so far, unless `most` others go before.
+inline void keep_return(const Echo& echo, KeptReturns kept, std::size_t most, std::vector<Echo>& echoes) noexcept {
+  if (echoes.size() == most) {
+    const auto of_air = [](const Echo& e) { return e.kind == ReflectionKind::air; };
+    auto out = echoes.end();
+    if (kept == KeptReturns::strongest)
+      out = std::min_element(echoes.begin(), echoes.end(), [](const Echo& a, const Echo& b) { return a.amplitude < b.amplitude; });
+    else if (!of_air(echo))
+      while (out != echoes.begin() && !of_air(*--out)) {
+      }
+    if (out == echoes.end() || (kept == KeptReturns::strongest ? !(out->amplitude < echo.amplitude) : !of_air(*out))) return;
+    echoes.erase(out);
+  }
+  echoes.push_back(echo);
+}
+
+/// The only maximum of the samples of a pulse.
+struct OnlyPeak {
+  double time;                            ///< less the receiver's delay [s]
+  double height;                          ///< power [W]
+  const Reflection* strongest = nullptr;  ///< reflection with the greatest share of it
+};
+
+/// No continuous returns, for `echo_of`.
+struct NoContinuous {
+  [[nodiscard]] static bool needs_sum() noexcept { return false; }
+  [[nodiscard]] const ContinuousReturn* operator()(const Peak&, double, bool) const noexcept { return nullptr; }
+};
+
 /// Echo of a peak of the sum of a pulse's reflections, sorted by range. `shape(t)` is the pulse at a time t since its peak, from
-/// `shape.begin()` to `shape.end()` [s].
-template <class Shape>
+/// `shape.begin()` to `shape.end()` [s]. `continuous(peak, solid, met)` gives the continuous return that the peak is of, if it is of one,
+/// for the power of reflections in it [W]; `met` is true if there are any.
+template <class Shape, class Continuous = NoContinuous>
 [[nodiscard]] Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const Shape& shape, EchoTiming timing,
-                           std::size_t number) noexcept {
+                           const Continuous& continuous = NoContinuous{}) noexcept {
   const Reflection* const end = reflections.data() + reflections.size();
   const auto from = [&](double time) noexcept {
     return reflections.data() + detail::first_not(reflections.size(), [&](std::size_t i) { return arrival(reflections[i]) < time; });
   };
 
-  Echo echo{.range = 0.5 * speed_of_light * peak.mark,
-            .amplitude = peak.height,
-            .width = peak.width,
-            .number = static_cast<std::uint8_t>(number)};
-  double strongest = 0;
+  Echo echo{.range = 0.5 * speed_of_light * peak.mark, .amplitude = peak.height, .width = peak.width};
+  double strongest = 0, solid = 0;
   for (auto r = from(peak.time - shape.end()); r != end && arrival(*r) < peak.time - shape.begin(); ++r) {
-    if (!(r->power > strongest)) continue;  // its share at this time is at most its power
+    if (!continuous.needs_sum() && !(r->power > strongest)) continue;  // its share at this time is at most its power
     const double power = r->power * shape(peak.time - arrival(*r));
+    solid += power;
     if (!(power > strongest)) continue;
     strongest = power;
     echo.cos_incidence = r->cos_incidence;
     echo.object = r->object;
     echo.classification = r->classification;
     echo.kind = r->kind;
+  }
+  if (const ContinuousReturn* const r = continuous(peak, solid, strongest > 0)) {
+    echo.cos_incidence = 1;
+    echo.object = r->object;
+    echo.classification = r->classification;
+    echo.kind = r->kind;
+    return echo;
   }
   if (timing == EchoTiming::true_range) {
     const auto first = from(peak.begin);

@@ -47,8 +47,9 @@ struct PhaseShiftSettings {
 
 /// Detector of a scanner with a continuous laser whose power is modulated by sines. It measures the phase of the sum of all reflections at
 /// each frequency, and gives one range: at an edge, one between or beyond the surfaces (mixed pixels); beyond the ambiguity, one that is
-/// folded. The laser's peak power is its mean power while it measures. Reflections have the labels of the strongest.
-/// Source: Payne, Jongenelen, Dorrington, Cree & Carnegie 2009; phasors of a sum of sines.
+/// folded. Fog and haze draw it towards the scanner. The laser's peak power is its mean power while it measures. The echo has the labels of
+/// the strongest reflection, or those of continuous returns, if these have more power than all reflections. Source: Payne, Jongenelen,
+/// Dorrington, Cree & Carnegie 2009; phasors of a sum of sines.
 class PhaseShift {
  public:
   /// @throws SettingError for settings out of range
@@ -69,7 +70,14 @@ class PhaseShift {
     const Reflection* strongest = nullptr;
     for (const Reflection& r : heard.reflections)
       if (r.power > 0 && (!strongest || r.power > strongest->power)) strongest = &r;
-    if (!strongest) return {};
+    const ContinuousReturn* air = nullptr;
+    double of_air = 0, solid = 0;
+    for (const ContinuousReturn& r : heard.continuous) {
+      of_air += r.power();
+      if (!air || r.power() > air->power()) air = &r;
+    }
+    for (const Reflection& r : heard.reflections) solid += r.power > 0 ? r.power : 0;
+    if (!strongest && !air) return {};
     RandomKey key = heard.key;
     key.purpose = Purpose::receiver_noise;
     double range = 0, amplitude = 0;
@@ -81,6 +89,11 @@ class PhaseShift {
         const auto phase = simd::sincos(2 * pi * (turns - std::floor(turns)));
         in_phase += r.power * phase.cos;
         quadrature += r.power * phase.sin;
+      }
+      for (const ContinuousReturn& r : heard.continuous) {
+        const Phasor phasor = phasor_of(r, period);
+        in_phase += phasor.in_phase;
+        quadrature += phasor.quadrature;
       }
       in_phase *= s_.contrast;
       quadrature *= s_.contrast;
@@ -95,11 +108,36 @@ class PhaseShift {
       amplitude = std::hypot(in_phase, quadrature);
     }
     if (!(amplitude >= s_.threshold) || range < 0) return {};
-    w.echo = echo_from(*strongest, range, amplitude);
+    const bool of_continuous = of_air > solid;
+    w.echo =
+        echo_from(of_continuous ? Reflection{.object = air->object, .classification = air->classification, .kind = air->kind} : *strongest,
+                  range, amplitude);
     return {{&w.echo, 1}, {}, 0};
   }
 
  private:
+  /// Sums of power by cosine and sine of a phase [W].
+  struct Phasor {
+    double in_phase, quadrature;
+  };
+  /// Phasor of a continuous return, for a period in range [m]: by parts, or at the centre of one that is short.
+  [[nodiscard]] static Phasor phasor_of(const ContinuousReturn& r, double period) noexcept {
+    const auto turned = [&](double range) noexcept {
+      const double turns = range / period;
+      return simd::sincos(2 * pi * (turns - std::floor(turns)));
+    };
+    const double length = r.end - r.begin, k = 2 * pi / period, power = r.power();
+    if (k * length < 1e-3) {
+      const double share = power > 0 ? (r.at_begin + 2 * r.at_end) / (3 * (r.at_begin + r.at_end)) : 0;
+      const auto middle = turned(r.begin + share * length);
+      return {power * middle.cos, power * middle.sin};
+    }
+    const auto begin = turned(r.begin), end = turned(r.end);
+    const double bend = (r.at_end - r.at_begin) / (length * k * k);
+    return {(r.at_end * end.sin - r.at_begin * begin.sin) / k + bend * (end.cos - begin.cos),
+            (r.at_begin * begin.cos - r.at_end * end.cos) / k + bend * (end.sin - begin.sin)};
+  }
+
   PhaseShiftSettings s_;
 };
 

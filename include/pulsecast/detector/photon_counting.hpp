@@ -16,7 +16,9 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/detector/adaptor.hpp>
 #include <pulsecast/detector/by_pulse_length.hpp>
+#include <pulsecast/detector/peaks.hpp>
 #include <pulsecast/detector/pulse_form.hpp>
 #include <pulsecast/detector/pulse_sum.hpp>
 
@@ -35,7 +37,8 @@ struct PhotonCountingSettings {
   std::size_t shots = 1;          ///< pulses of the laser for one histogram, at most 10,000
   double bin = 1e-9;              ///< width of the histogram's bins [s]
   std::size_t threshold = 1;      ///< least count of a peak of the histogram
-  std::size_t returns_max = 15;   ///< first echoes kept, in order of range; from 1 to 255
+  std::size_t returns_max = 15;   ///< number of echoes kept, in order of range; from 1 to 255
+  KeptReturns returns_kept = KeptReturns::first;  ///< which ones, of more
 
   /// @throws SettingError
   void validate() const {
@@ -55,12 +58,12 @@ struct PhotonCountingSettings {
   }
 };
 
-/// Detector that draws single photons. Photoelectrons of each reflection, of sunlight and of dark counts are Poisson processes. Detections
-/// of all shots make a histogram; each of its peaks is an echo, whose range is the mean time of the detections in the bin and its
-/// neighbours. The energy of a reflection is its power times the full width at half maximum,
-/// as in `EnergyLedger`: 8 % less than in the gamma pulse of that peak. The amplitude is the power that would give as many counts without
-/// dead time. With one shot and a threshold of 1, each isolated detection is an echo. Nothing is detected outside the gate, but a gate
-/// without an end has neither sunlight nor dark counts after the last reflection.
+/// Detector that draws single photons. Photoelectrons of each reflection, of continuous returns, of sunlight and of dark counts are Poisson
+/// processes. Detections of all shots make a histogram; each of its peaks is an echo, whose range is the mean time of the detections in the
+/// bin and its neighbours. The energy of a reflection is its power times the full width at half maximum, as in `EnergyLedger`: 8 % less
+/// than in the gamma pulse of that peak. The amplitude is the power that would give as many counts without dead time. With one shot and a
+/// threshold of 1, each isolated detection is an echo. Nothing is detected outside the gate, but a gate without an end has neither sunlight
+/// nor dark counts after the last reflection.
 ///
 /// At most 65,536 detections of a pulse are kept. Source: Gatt, Johnson & Nichols 2009 (detection statistics).
 template <PulseForm Form = GammaPulse>
@@ -83,7 +86,7 @@ class PhotonCounting {
   struct Count {
     double time;          ///< since the laser's pulse [s]
     std::uint32_t pixel;  ///< number of the pixel
-    std::uint32_t label;  ///< index of the reflection, or `none`
+    std::uint32_t label;  ///< index of the reflection, that of the continuous return behind all reflections, or `none`
   };
   /// Scratch memory of one worker.
   struct Workspace {
@@ -116,6 +119,7 @@ class PhotonCounting {
     const auto earlier = [](const Count& a, const Count& b) { return a.time < b.time; };
     std::sort(w.counts.begin(), w.counts.end(), earlier);
     find_echoes(heard, w);
+    number_echoes(w.echoes);
     return {w.echoes, {}, 0};
   }
 
@@ -171,15 +175,24 @@ class PhotonCounting {
       const auto pixel = static_cast<std::uint32_t>(draws.uniform() * static_cast<double>(s_.pixels));
       if (shot.size() < counts_max) shot.push_back({time, pixel, static_cast<std::uint32_t>(label)});
     };
+    const auto spread = [&] {  // time of a photon about the mean of its pulse
+      const double place = draws.uniform() * quantile_count;
+      const auto q = std::min(static_cast<std::size_t>(place), quantile_count - 1);
+      return quantiles[q] + (place - static_cast<double>(q)) * (quantiles[q + 1] - quantiles[q]);
+    };
     for (std::size_t r = 0; r < heard.reflections.size(); ++r) {
       const double mean = heard.reflections[r].power * per_watt, at = arrival(heard.reflections[r]);
       last = std::max(last, at + quantiles.back());
       for (double gone = draws.exponential(); gone < mean && shot.size() < counts_max; gone += draws.exponential()) {
-        const double place = draws.uniform() * quantile_count;
-        const auto q = std::min(static_cast<std::size_t>(place), quantile_count - 1);
-        enter(at + quantiles[q] + (place - static_cast<double>(q)) * (quantiles[q + 1] - quantiles[q]), r);
+        enter(at + spread(), r);
       }
     }
+    const auto enter_continuous = [&](double at, std::size_t label) {
+      last = std::max(last, at + quantiles.back());
+      enter(at + spread(), label);
+      return shot.size() < counts_max;
+    };
+    draw_continuous(heard, per_watt, enter_continuous, draws);
     const double rate = s_.dark_rate + s_.background / energy_per_count(laser);
     const double begin = 2 * heard.gate.near / speed_of_light, end = 2 * heard.gate.far / speed_of_light;
     if (rate > 0)
@@ -187,6 +200,23 @@ class PhotonCounting {
            t += draws.exponential() / rate)
         enter(t, none);
     std::sort(shot.begin(), shot.end(), [](const Count& a, const Count& b) { return a.time < b.time; });
+  }
+
+  /// Calls `enter(arrival, label)`, while that is true, for the photons of a shot that continuous returns send back: one Poisson process
+  /// along all of them, whose place in a return is that of the quantile of its density.
+  template <class Enter>
+  static void draw_continuous(const Heard& heard, double per_watt, const Enter& enter, Draws& draws) noexcept {
+    if (heard.continuous.empty()) return;
+    double next = draws.exponential();
+    for (std::size_t k = 0; k < heard.continuous.size(); ++k) {
+      const ContinuousReturn& r = heard.continuous[k];
+      const double mean = r.power() * per_watt, a = r.at_begin, b = r.at_end;
+      for (; next < mean; next += draws.exponential()) {
+        const double share = next / mean, place = share * (a + b) / (a + std::sqrt(a * a + share * (b * b - a * a)));
+        if (!enter(2 / speed_of_light * (r.begin + place * (r.end - r.begin)), heard.reflections.size() + k)) return;
+      }
+      next -= mean;
+    }
   }
 
   /// Appends the photoelectrons of a shot that pixels detect, with afterpulses and jitter. Pixels are armed during the gate alone, and the
@@ -221,9 +251,9 @@ class PhotonCounting {
     const auto count_of = [](const Bin& next, const Bin& to, double step) { return next.number == to.number + step ? next.count() : 0; };
     const auto finish = [&](const Bin& behind) {
       const std::size_t left = count_of(before, bin, -1), right = count_of(behind, bin, 1);
-      if (bin.count() < s_.threshold || bin.count() <= left || bin.count() < right || w.echoes.size() == s_.returns_max) return;
-      w.echoes.push_back(echo_of(heard, std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right), watts));
-      w.echoes.back().number = static_cast<std::uint8_t>(w.echoes.size());
+      if (bin.count() < s_.threshold || bin.count() <= left || bin.count() < right) return;
+      keep_return(echo_of(heard, std::span(w.counts).subspan(bin.begin - left, left + bin.count() + right), watts), s_.returns_kept,
+                  s_.returns_max, w.echoes);
     };
     for (std::size_t i = 0; i <= w.counts.size(); ++i) {
       const double number = i < w.counts.size() ? std::floor(w.counts[i].time / s_.bin) : std::numeric_limits<double>::infinity();
@@ -241,16 +271,29 @@ class PhotonCounting {
     }
   }
 
-  /// Echo of some detections: their mean time, and the labels of the first reflection among them.
+  /// Echo of some detections: their mean time, and the labels of the first reflection among them, or of the first continuous return, if
+  /// more of them are of such.
   [[nodiscard]] static Echo echo_of(const Heard& heard, std::span<const Count> counts, double watts) noexcept {
     double beyond = 0;
-    const Reflection* source = nullptr;
+    std::ptrdiff_t continuous = 0;  // more detections of continuous returns than of reflections
+    const Count *solid = nullptr, *air = nullptr;
     for (const Count& count : counts) {
       beyond += count.time - counts.front().time;
-      if (!source && count.label != none) source = &heard.reflections[count.label];
+      if (count.label == none) continue;
+      const bool of_air = count.label >= heard.reflections.size();
+      continuous += of_air ? 1 : -1;
+      const Count*& first = of_air ? air : solid;
+      if (!first) first = &count;
+    }
+    Reflection source;
+    if (continuous > 0) {
+      const ContinuousReturn& r = heard.continuous[air->label - heard.reflections.size()];
+      source = {.object = r.object, .classification = r.classification, .kind = r.kind};
+    } else if (solid) {
+      source = heard.reflections[solid->label];
     }
     const double number = static_cast<double>(counts.size());
-    return echo_from(source ? *source : Reflection{}, 0.5 * speed_of_light * (counts.front().time + beyond / number), number * watts);
+    return echo_from(source, 0.5 * speed_of_light * (counts.front().time + beyond / number), number * watts);
   }
 
   PhotonCountingSettings s_;

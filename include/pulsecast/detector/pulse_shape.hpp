@@ -40,6 +40,15 @@ struct PulseShape {
   }
 };
 
+namespace detail {
+
+/// Integrals over a pulse of peak 1 up to a time since its arrival: of the pulse [s], and of the pulse times that time [s^2].
+struct PulseIntegrals {
+  double zeroth = 0, first = 0;
+};
+
+}  // namespace detail
+
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -157,6 +157,11 @@ class LinkBudget {
         both_ways_(-2 * (extinction(laser.wavelength, receiver.visibility, receiver.aerosols) + receiver.absorption)),
         overlap_(receiver.overlap) {}
 
+  /// True for budgets of the same numbers, and the same table of overlap.
+  [[nodiscard]] friend bool operator==(const LinkBudget& a, const LinkBudget& b) noexcept {
+    return a.gain_ == b.gain_ && a.near_ == b.near_ && a.both_ways_ == b.both_ways_ && a.overlap_.data() == b.overlap_.data();
+  }
+
   /// Received power [W] of a subray with this share of the pulse's energy, from a surface of this backscatter (as in `Hit`) at a range [m].
   /// At range 0 all the scattered power is received.
   [[nodiscard]] double power(double share, double backscatter, double range) const noexcept {
@@ -179,6 +184,8 @@ class LinkBudget {
   [[nodiscard]] double power_captured(double share, double air) const noexcept {
     return near_ > 0 ? gain_ / near_ * share * std::exp(both_ways_ * air / 2) : 0;
   }
+  /// Share of the received power that the air takes away on a short way, both ways [1/m].
+  [[nodiscard]] double loss() const noexcept { return -both_ways_; }
   /// Radius of the aperture [m].
   [[nodiscard]] double aperture_radius() const noexcept { return std::sqrt(near_); }
 

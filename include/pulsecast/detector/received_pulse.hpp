@@ -47,6 +47,8 @@ class ReceivedPulse {
     for (std::size_t q = 0; q < phases_ + 3; ++q)
       for (std::size_t k = 0; k < stride_; ++k)
         if (const std::size_t i = k * phases_ + q; i > 0) rows_[q * stride_ + k] = value(i - 1) / gain_;
+    integrals_.resize(count_ * phases_ + 1);
+    for (std::size_t i = 0; i + 1 < integrals_.size(); ++i) integrals_[i + 1] = until(i, 1);
   }
 
   /// Time of the table's first value since the peak of the pulse before the low-pass [s].
@@ -67,6 +69,14 @@ class ReceivedPulse {
     const auto i = static_cast<std::size_t>(place);
     const double* const value = rows_.data() + (i % phases_ + 1) * stride_ + i / phases_;
     return value[0] + (place - static_cast<double>(i)) * (value[stride_] - value[0]);
+  }
+  /// Integrals up to a time since the peak before the low-pass [s].
+  [[nodiscard]] detail::PulseIntegrals until(double time) const noexcept {
+    const double place = (time - begin_) / step_;
+    if (!(place > 0)) return {};
+    if (!(place < static_cast<double>(count_ * phases_))) return integrals_.back();
+    const auto i = static_cast<std::size_t>(place);
+    return until(i, place - static_cast<double>(i));
   }
   /// Number of samples of a pulse, at most.
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
@@ -95,6 +105,14 @@ class ReceivedPulse {
   }
 
  private:
+  /// Integrals up to a share x of the way from value i to the next.
+  [[nodiscard]] detail::PulseIntegrals until(std::size_t i, double x) const noexcept {
+    const double* const value = rows_.data() + (i % phases_ + 1) * stride_ + i / phases_;
+    const double from = value[0], rise = value[stride_] - from, time = begin_ + static_cast<double>(i) * step_;
+    const double zeroth = step_ * x * (from + 0.5 * x * rise), first = step_ * step_ * x * x * (0.5 * from + x / 3 * rise);
+    return {integrals_[i].zeroth + zeroth, integrals_[i].first + time * zeroth + first};
+  }
+
   static double concave_about(const std::vector<double>& values, std::size_t top) noexcept {
     for (std::size_t i = 1; i < values.size(); ++i)
       if (i <= top ? values[i] < values[i - 1] : values[i] > values[i - 1]) return 0;
@@ -125,6 +143,7 @@ class ReceivedPulse {
 
   double interval_, step_ = 0, begin_ = 0, gain_ = 1, peak_ = 0, concave_ = 0, width_ = 0;
   std::size_t phases_ = 1, count_ = 0, stride_ = 0;
+  std::vector<detail::PulseIntegrals> integrals_;  ///< up to each value of the table
   std::vector<double> rows_;  ///< value i of the table, from -1 on, is number (i + 1) / phases of row (i + 1) % phases, and of later rows
 };
 

@@ -5,12 +5,19 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE {
+
+/// Returns that are kept where a pulse has more than an instrument reports.
+enum class KeptReturns : std::uint8_t {
+  first,      ///< the nearest; those of the air only where there is room, so that no target is lost to fog or rain
+  strongest,  ///< those of the greatest amplitude; the nearest of equals
+};
 
 /// Settings of the waveform detectors. All times are two-way.
 ///
@@ -20,23 +27,24 @@ namespace PULSECAST_NAMESPACE {
 ///   merge;
 /// - it is the highest within the window;
 /// - it is later than the dead time of the echo before it;
-/// - it is among the first `returns_max`.
+/// - it is among the `returns_max` that are kept.
 ///
 /// The default bin is Pareto-optimal in docs/tradeoff.md to within a few percent. At 1/16 of a pulse, bins cost hardly more than wider
 /// ones, which lose close echoes; narrower bins gain little. Widths cost more than any other setting, except for moments of
 /// `AnalyticWaveform`, so there are none by default.
 struct WaveformSettings {
-  double sample_interval = 0.25e-9;      ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
-  double threshold = 1e-9;               ///< least power of an echo's peak: by default 21 photons of 1064 nm in 4 ns [W]
-  double separation = 0;                 ///< closer peaks merge, with the greater height [s]
-  double prominence = 0;                 ///< least rise of the lower of two peaks above the valley between them [W]
-  double window = 1e-9;                  ///< an echo is the highest peak within this time before and after it [s]
-  double dead_time = 0;                  ///< no other echo within this time after an echo's peak [s]
-  std::size_t returns_max = 15;          ///< first echoes kept, in order of range; from 1 to 255
-  EchoTiming timing = EchoTiming::peak;  ///< definition of an echo's range
-  double fraction = 0.5;                 ///< share of the maximum, for `EchoTiming::constant_fraction`; from 0.01 to 0.99
-  double record_length = 0;              ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
-  double shape_divisor = PulseShape::divisor;  ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
+  double sample_interval = 0.25e-9;  ///< bin of the digitiser, from 1e-16 to 1; at most the pulse length where samples are taken [s]
+  double threshold = 1e-9;           ///< least power of an echo's peak: by default 21 photons of 1064 nm in 4 ns [W]
+  double separation = 0;             ///< closer peaks merge, with the greater height [s]
+  double prominence = 0;             ///< least rise of the lower of two peaks above the valley between them [W]
+  double window = 1e-9;              ///< an echo is the highest peak within this time before and after it [s]
+  double dead_time = 0;              ///< no other echo within this time after an echo's peak [s]
+  std::size_t returns_max = 15;      ///< number of echoes kept, in order of range; from 1 to 255
+  KeptReturns returns_kept = KeptReturns::first;  ///< which ones, of more
+  EchoTiming timing = EchoTiming::peak;           ///< definition of an echo's range
+  double fraction = 0.5;                          ///< share of the maximum, for `EchoTiming::constant_fraction`; from 0.01 to 0.99
+  double record_length = 0;                       ///< length of waveform kept, from its first sample on, at most 1e7 bins; 0 for none [s]
+  double shape_divisor = PulseShape::divisor;     ///< full width at half maximum of the pulse by its tau, see `PulseShape`; from 1 to 10
 
   void validate() const {
     require_within("WaveformSettings::sample_interval", sample_interval, 1e-16, 1, "s");

@@ -69,6 +69,8 @@ class Media {
       for (std::size_t k = 0; k < i; ++k) require_nested(regions[k].bounds, regions[i].bounds, i);
     }
     outermost_first(regions);
+    uniform_ = regions.size() == 1 && regions[0].densities.empty() && regions[0].bounds.min == everywhere().min &&
+               regions[0].bounds.max == everywhere().max;
     regions_ = std::make_shared<const std::vector<MediumRegion>>(std::move(regions));
   }
 
@@ -84,6 +86,7 @@ class Media {
   template <class Visitor>
   void along(const Vec3& origin, const Vec3& direction, double near, double far, const Visitor& visit) const noexcept {
     if (empty()) return;
+    if (uniform_) return near < far ? visit(near, far, regions_->front(), 1.0) : void();
     for (double from = near; from < far;) {
       const MediumRegion* innermost = nullptr;
       double to = far;
@@ -190,6 +193,7 @@ class Media {
   }
 
   std::shared_ptr<const std::vector<MediumRegion>> regions_{};
+  bool uniform_ = false;  ///< true if a single medium is everywhere
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -29,7 +29,6 @@ struct Illumination {
   WhiteTarget& white_target;         ///< memory of that budget's last result
   RangeGate gate{};                  ///< range gate of the receiver
   std::span<SubrayHit> record{};     ///< first surface of each subray, to be set; empty unless subrays are recorded
-  double sample_interval = 0;        ///< sample spacing of the detector; 0 if it has none [s]
 
   /// Energy of the pulse [J].
   [[nodiscard]] double energy() const noexcept { return emitter.laser.energy(); }

@@ -32,7 +32,9 @@ struct LightPaths {
   bool spread_planes = true;        ///< as in `DirectLight`
   MultipleScattering scattering{};  ///< light that surfaces scatter to and fro
   Media air{};                      ///< media in the air
-  std::size_t volume_cells = 8192;  ///< greatest number of reflections of the media in the air, and of those of bodies, from 4 to 1e6
+  /// Number of stretches, beside whole cells, by which what media in the air send back is told exactly, and that of bodies, from 4 to 1e6:
+  /// where there are more, their ends are blurred by a twelfth of their range.
+  std::size_t volume_cells = 8192;
 
   void validate() const {
     require_within("LightPaths::passages", static_cast<double>(passages), 0, 32, "");
@@ -48,12 +50,11 @@ struct LightPaths {
   [[nodiscard]] std::size_t reflections(std::size_t subrays) const noexcept {
     const std::size_t particles =
         air.has_particles() ? static_cast<std::size_t>(1.2 * detail::BeamParticles::most) : 0;  // six deviations more
-    const std::size_t most = subrays * (2 * passages + 1) + 2 * volume_cells + scattering.reflections() + particles;
+    const std::size_t most = subrays * (2 * passages + 1) + scattering.reflections() + particles;
     return spreads(subrays) ? most + slope_subrays_max : most;
   }
   [[nodiscard]] Workspace workspace(std::size_t subrays) const {
-    return {std::vector<detail::PencilHits>(passages + 1), detail::VolumeBins(volume_cells), detail::VolumeBins(volume_cells),
-            spreads(subrays) ? SubrayDirections::room(slope_subrays_max) : SubrayDirections()};
+    return {passages, volume_cells, spreads(subrays) ? SubrayDirections::room(slope_subrays_max) : SubrayDirections()};
   }
 
   /// Follows all subrays. Sets velocities, too, if `with_velocity`.

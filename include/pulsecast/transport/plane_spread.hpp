@@ -236,17 +236,8 @@ void spread_over_plane(const Illumination& light, double span, std::span<const R
   const double r = slope.spread / tau, s = std::sqrt(r * r + 3);
   if (static_cast<double>(light.subrays) >= 20 * s * s * s) return;  // dense enough
   const auto trace_row = [&](std::size_t size) noexcept {
-    result = trace(Illumination{light.pulse,
-                                light.index,
-                                light.seed,
-                                light.emitter,
-                                row,
-                                size,
-                                light.budget,
-                                light.white_target,
-                                light.gate,
-                                {},
-                                light.sample_interval});
+    result = trace(
+        Illumination{light.pulse, light.index, light.seed, light.emitter, row, size, light.budget, light.white_target, light.gate, {}});
     result.spread = true;
   };
   if (plane && part) {

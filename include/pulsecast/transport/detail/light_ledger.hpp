@@ -80,8 +80,12 @@ class LightLedger {
     reflection.velocity = way.velocity;
   }
 
-  /// Enters the sums into the result.
-  void close() noexcept {
+  /// Adds the power of a continuous return from inside the gate [W].
+  void receive(double power) noexcept { received_ += power; }
+
+  /// Enters the sums and the continuous returns into the result.
+  void close(std::span<const ContinuousReturn> continuous) noexcept {
+    result_.continuous = continuous;
     const double sent = light_.energy();
     result_.fate = in_gate_ ? Fate::absorbed : met_ ? Fate::out_of_range : Fate::missed;
     result_.energy = shares.times(sent);

@@ -10,13 +10,15 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
+#include <pulsecast/base/search.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/scene/media.hpp>
 #include <pulsecast/transport/detail/beam_particles.hpp>
 #include <pulsecast/transport/detail/light_ledger.hpp>
 #include <pulsecast/transport/detail/light_path.hpp>
-#include <pulsecast/transport/detail/volume_bins.hpp>
+#include <pulsecast/transport/detail/volume_profile.hpp>
 #include <pulsecast/transport/illumination.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
@@ -25,19 +27,21 @@ namespace PULSECAST_NAMESPACE::detail {
 class MediaPassage {
  public:
   /// `air`: media between the surfaces; `least_share` as in `LightPaths`; `in_air`, `in_water`: memory for what media in the air and bodies
-  /// send back.
-  MediaPassage(const Illumination& light, const Media& air, double least_share, LightLedger& ledger, VolumeBins& in_air,
-               VolumeBins& in_water) noexcept
+  /// send back; `returns`: memory for both.
+  MediaPassage(const Illumination& light, const Media& air, double least_share, LightLedger& ledger, VolumeProfile& in_air,
+               VolumeProfile& in_water, std::vector<ContinuousReturn>& returns) noexcept
       : light_(light),
         air_(air),
         least_share_(least_share),
         ledger_(ledger),
         in_air_(in_air),
         in_water_(in_water),
+        returns_(returns),
+        pulse_(speed_of_light / 2 * light.emitter.laser.pulse_length),
         particles_(light, ledger) {
-    const double interval = light.sample_interval > 0 ? light.sample_interval : light.emitter.laser.pulse_length / 16;
-    in_air_.begin(speed_of_light / 2 * interval);
-    in_water_.begin(speed_of_light / 2 * interval);
+    in_air_.begin(light.budget.aperture_radius(), pulse_, light.gate);
+    in_water_.begin(light.budget.aperture_radius(), pulse_, light.gate);
+    returns_.clear();
   }
 
   /// Names the body that light enters.
@@ -62,6 +66,17 @@ class MediaPassage {
       together += p.both[j];
     }
     std::sort(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(size), [](const End& a, const End& b) { return a.range < b.range; });
+    const double resolution = pulse_ / 32;
+    for (std::size_t j = 0, next = 0; j < size; j = next) {  // rays that end together end at their mean
+      double both = 0, moment = 0;
+      for (next = j; next < size && ends[next].range - ends[j].range < resolution; ++next) {
+        both += ends[next].both;
+        moment += ends[next].both * (ends[next].range - ends[j].range);
+      }
+      const double mean = both > 0 ? ends[j].range + moment / both : ends[j].range;
+      for (std::size_t k = j; k < next; ++k) ends[k].range = mean;
+      next = std::max(next, j + 1);  // of rays without end
+    }
     const bool of_beam = p.passages == 0, meets_particles = of_beam && p.rays.first_subray == 0;
     const double least = least_return() * together;
     std::size_t ended = 0;
@@ -75,7 +90,8 @@ class MediaPassage {
         if (ended == size) return;
         double end = std::min(to, ends[ended].range);
         if (at < grains) end = std::min(end, grains);
-        const VolumeWay way{at, end, together * passed, least, loss, density * medium.backscatter, at + p.delay[middle]};
+        const bool straight = of_beam && at == 0 && p.rays.begin[middle] == 0;
+        const VolumeWay way{at, end, together * passed, least, loss, density * medium.backscatter, at + p.delay[middle], 1, straight};
         if (medium.backscatter > 0 && !(at < grains)) add_volume(in_air_, way, same, same);
         passed *= std::exp(-2 * loss * (end - at));
         at = end;
@@ -94,7 +110,7 @@ class MediaPassage {
   /// Takes a path through the media up to its next surface, at a range [m].
   void pass(LightPath& path, double range) noexcept {
     const double least = least_return() * path.both;
-    const auto stretch = [&](double from, double to, const Medium& medium, double density, VolumeBins& bins) noexcept {
+    const auto stretch = [&](double from, double to, const Medium& medium, double density, VolumeProfile& bins) noexcept {
       if (medium.backscatter > 0) {
         const VolumeWay way{from,
                             to,
@@ -119,10 +135,16 @@ class MediaPassage {
       stretch(0, range, path.medium(), 1, in_water_);
   }
 
-  /// Turns what media sent back into reflections.
-  void close() noexcept {
-    return_volume(in_air_, ReflectionKind::air);
-    return_volume(in_water_, ReflectionKind::water);
+  /// Puts what media sent back in order of range.
+  [[nodiscard]] std::span<const ContinuousReturn> close() noexcept {
+    in_air_.append_to(returns_, ReflectionKind::air);
+    const std::size_t from_air = returns_.size();
+    in_water_.append_to(returns_, ReflectionKind::water);
+    if (from_air > 0 && returns_.size() > from_air)
+      std::sort(returns_.begin(), returns_.end(), [](const ContinuousReturn& one, const ContinuousReturn& other) {
+        return one.begin != other.begin ? one.begin < other.begin : one.end < other.end;
+      });
+    return returns_;
   }
 
  private:
@@ -146,44 +168,87 @@ class MediaPassage {
     double backscatter = 0;   ///< of the medium [1/(m sr)]
     double optical = 0;       ///< optical path up to its beginning [m]
     double delay = 1;         ///< optical path by way
+    bool straight = false;    ///< true if it began at the instrument, and all of the way so far was through the medium
   };
   /// Adds what returns from a stretch. `spread(s)` is the range by which light spreads up to s, `air(s)` the way in air [m].
+  ///
+  /// Between nodes, power by range is a chord, which is above the curve by 1/12 of its bend in the mean. Nodes are lowered by that: f'' h^2
+  /// / 12, for f as exp(-k s) / (s^2 + a^2).
   template <class Spread, class Air>
-  void add_volume(VolumeBins& bins, const VolumeWay& way, const Spread& spread, const Air& air) noexcept {
-    const double white = pi * way.backscatter, tooth = bins.spacing() / way.delay, aperture = light_.budget.aperture_radius();
-    double both = way.both;
-    double step = 0, left = 1, length = 0;
-    for (double at = way.from; at < way.to && both > way.least;) {
-      const double wide2 = spread(at) * spread(at) + aperture * aperture;
-      const double next = std::min(way.to - at, wide2 < 100 * tooth * tooth ? 0.1 * std::sqrt(wide2) : tooth);
-      if (next != step) {
-        step = next;
-        left = std::exp(-2 * way.extinction * step);
-        length = way.extinction > 0 ? (1 - left) / (2 * way.extinction) : step;
-      }
-      const double middle = at + step / 2;
-      const double range = way.optical + way.delay * (middle - way.from);
-      if (range > light_.gate.far) return;
-      if (light_.gate.contains(range)) bins.add(range, light_.budget.power_through(both, white * length, spread(middle), air(middle)));
-      both *= left;
-      at += step;
+  void add_volume(VolumeProfile& profile, const VolumeWay& way, const Spread& spread, const Air& air) noexcept {
+    const double aperture2 = light_.budget.aperture_radius() * light_.budget.aperture_radius(), white = pi * way.backscatter / way.delay;
+    const double loss = 2 * way.extinction + light_.budget.loss(), most = loss > 0 ? loss_step / loss : infinity;
+    const auto density_at = [&](double at, double both) noexcept {
+      const double s = spread(at), square = s * s + aperture2, wide = std::sqrt(square);
+      const double h = std::min(VolumeProfile::step(wide, pulse_), most), x = loss * h, y = h / wide;
+      const double bend = x * x + 4 * x * y * s / wide + y * y * (8 * s * s / square - 2);
+      return light_.budget.power_through(both, white, s, air(at)) * (1 - bend / 12);
+    };
+    const auto range_at = [&](double at) noexcept { return way.optical + way.delay * (at - way.from); };
+    const auto place_of = [&](double range) noexcept { return way.from + (range - way.optical) / way.delay; };
+    const double begin = std::max(way.from, place_of(light_.gate.near));
+    double end = std::min(way.to, place_of(light_.gate.far));
+    if (way.extinction > 0 && way.least > 0) end = std::min(end, way.from + std::log(way.both / way.least) / (2 * way.extinction));
+    if (!(begin < end)) return;
+    double both = way.both * std::exp(-2 * way.extinction * (begin - way.from)), density = density_at(begin, both);
+    std::size_t cell = profile.cell_of(range_at(begin));
+    bool at_node = range_at(begin) == 0;
+    for (double at = begin; at < end;) {
+      if (at_node && way.straight && add_straight(profile, way, end, most, density_at, cell, at, both, density)) continue;
+      const double node = cell + 1 < VolumeProfile::cells ? place_of(profile.end_of(cell)) : infinity, to = std::min(node, end);
+      const double s = spread(at), widest = std::min(most, 1.2 * VolumeProfile::step(std::sqrt(s * s + aperture2), pulse_));
+      const bool whole = to - at <= widest;
+      const double next = whole ? to : to < infinity ? at + (to - at) / std::ceil((to - at) / widest) : at + widest;
+      both *= std::exp(-2 * way.extinction * (next - at));
+      const double then = density_at(next, both);
+      if (at_node && whole && to == node)
+        ledger_.receive(profile.add(cell, density, then));
+      else if (next > at)
+        ledger_.receive(profile.add(range_at(at), range_at(next), density, then));
+      at_node = next == node;
+      if (at_node) ++cell;
+      at = next;
+      density = then;
     }
+  }
+  /// Adds the next whole cells of a way that is straight, from a node on, up to an end [m], as long as they are no wider than `most` [m];
+  /// false if there are none.
+  template <class DensityAt>
+  bool add_straight(VolumeProfile& profile, const VolumeWay& way, double end, double most, const DensityAt& density_at, std::size_t& cell,
+                    double& at, double& both, double& density) noexcept {
+    VolumeProfile::Straight& known = profile.straight(light_.budget, way.extinction, way.backscatter);
+    const auto node = [&](std::size_t k) noexcept { return k > 0 ? profile.end_of(k - 1) : 0; };
+    std::size_t to = profile.cell_of(end);
+    if (node(to + 1) <= end) ++to;  // beyond the last node
+    for (; known.known <= to; ++known.known) {
+      const std::size_t k = known.known;
+      known.left[k] = std::exp(-2 * way.extinction * node(k));
+      known.density[k] = density_at(node(k), known.left[k]);
+      known.power[k] = k > 0 ? known.power[k - 1] + 0.5 * (known.density[k - 1] + known.density[k]) * (node(k) - node(k - 1)) : 0;
+    }
+    to = first_not(to, [&](std::size_t k) { return node(k + 1) - node(k) <= most; });
+    if (!(to > cell)) return false;
+    ledger_.receive(profile.add(cell, to, way.both, known));
+    cell = to;
+    at = profile.end_of(cell - 1);
+    both = way.both * known.left[cell];
+    density = way.both * known.density[cell];
+    return true;
   }
   /// Share of light to and fro, of that with which it begins a way, below which what media send back is left out.
   [[nodiscard]] double least_return() const noexcept { return std::max(1e-9, least_share_ * least_share_); }
 
-  /// Turns what a medium sent back into reflections.
-  void return_volume(const VolumeBins& bins, ReflectionKind kind) noexcept {
-    bins.visit([&](double range, double power) noexcept {
-      ledger_.reflect({.range = range, .object = bins.object, .classification = bins.classification}, power, {kind});
-    });
-  }
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  static constexpr double loss_step =
+      0.08;  ///< greatest loss of power between nodes; with that of `VolumeProfile`, power by range is linear to 0.4 %
 
   const Illumination& light_;
   const Media& air_;
   double least_share_;
   LightLedger& ledger_;
-  VolumeBins &in_air_, &in_water_;
+  VolumeProfile &in_air_, &in_water_;
+  std::vector<ContinuousReturn>& returns_;
+  double pulse_;  ///< length of the pulse in range [m]
   BeamParticles particles_;
 };
 

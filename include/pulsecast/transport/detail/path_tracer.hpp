@@ -21,7 +21,7 @@
 #include <pulsecast/transport/detail/refracted_paths.hpp>
 #include <pulsecast/transport/detail/returned_light.hpp>
 #include <pulsecast/transport/detail/scattered_paths.hpp>
-#include <pulsecast/transport/detail/volume_bins.hpp>
+#include <pulsecast/transport/detail/volume_profile.hpp>
 #include <pulsecast/transport/illumination.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
@@ -44,9 +44,15 @@ struct PathSettings {
 
 /// Scratch memory of a `PathTracer`.
 struct PathWorkspace {
-  std::vector<PencilHits> levels;  ///< by number of surfaces that passed light on
-  VolumeBins in_air, in_water;     ///< light that media scatter back
-  SubrayDirections slope{};        ///< subrays for a smooth surface
+  std::vector<PencilHits> levels;           ///< by number of surfaces that passed light on
+  VolumeProfile in_air, in_water;           ///< light that media scatter back
+  std::vector<ContinuousReturn> returns{};  ///< of both
+  SubrayDirections slope;                   ///< subrays for a smooth surface
+
+  PathWorkspace(std::size_t passages, std::size_t cells, SubrayDirections subrays)
+      : levels(passages + 1), in_air(cells), in_water(cells), slope(std::move(subrays)) {
+    returns.reserve(in_air.size_max() + in_water.size_max());
+  }
 };
 
 /// Follows the light of one pulse.
@@ -60,7 +66,7 @@ class PathTracer {
         least_share_(settings.least_share),
         w_(w),
         ledger_(light, reflections, result),
-        media_(light, settings.air, settings.least_share, ledger_, w.in_air, w.in_water),
+        media_(light, settings.air, settings.least_share, ledger_, w.in_air, w.in_water, w.returns),
         bodies_(map, light, settings.least_share, settings.passages, ledger_, media_),
         scattered_(map, light, settings.air, settings.scattering, ledger_) {}
 
@@ -87,8 +93,7 @@ class PathTracer {
       follow(0);
       scattered_.start(p, w_.levels[0].hits, w_.levels[0].surfaces);
     }
-    media_.close();
-    ledger_.close();
+    ledger_.close(media_.close());
   }
 
   /// True if a surface passed light on.
