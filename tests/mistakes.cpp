@@ -45,11 +45,11 @@ std::string refusal(const std::function<void()>& make) {
 TEST_CASE("a period in place of a pulse rate is refused when a stage is made") {
   CHECK(refusal([] {
           Deflector{PolygonMirror{}, Scanner{.pulse_rate = 10_us}};
-        }) == "Scanner::pulse_rate is 1e-05 Hz, but must be from 1 to 1e+12: a period?");
+        }) == "Scanner::pulse_rate is 1e-05 Hz, but must be from 0.001 to 1e+12: a period?");
   CHECK(refusal([] { Deflector{PolygonMirror{}, Scanner{.pulse_rate = 1_Hz}}; }) == "");
   CHECK(refusal([] {
           Deflector{PolygonMirror{}, Scanner{.pulse_rate = 0}};
-        }) == "Scanner::pulse_rate is 0 Hz, but must be from 1 to 1e+12");
+        }) == "Scanner::pulse_rate is 0 Hz, but must be from 0.001 to 1e+12");
   CHECK(refusal([] { Deflector{PolygonMirror{.lines_per_second = 1 / 60.0}, Scanner{}}; }) == "");
 }
 

@@ -133,10 +133,10 @@ TEST_CASE("an airplane in haze keeps its ground, and has one echo of the air") {
         true_range.timing = EchoTiming::true_range;
         check_ground("true range", FullWaveform(true_range), flight, threshold);
       }
-      const WaveformSettings recorded{.record_length = 3e-5};
+      const WaveformSettings recorded{.threshold = 1e-12, .record_length = 3e-5};
       check_ground("GaussianDecomposition", GaussianDecomposition(FullWaveform(recorded)), flight, recorded.threshold);
       const BandLimitedReceiver matched(ReceiverChain{.matched_filter = true});
-      check_ground("matched filter", FullWaveform(WaveformSettings{}, NoWidth{}, matched), flight, 1e-12);
+      check_ground("matched filter", FullWaveform(WaveformSettings{.threshold = 1e-12}, NoWidth{}, matched), flight, 1e-12);
     }
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("haze has one echo for any number of cells, and any samples") {
     for (const double interval : {0.05e-9, 0.4e-9, 1e-9}) {
       Flight flight{.height = 1000, .visibility = 10e3};
       flight.cells = cells;
-      check_ground("FullWaveform", FullWaveform(WaveformSettings{.sample_interval = interval}), flight, 1e-12);
+      check_ground("FullWaveform", FullWaveform(WaveformSettings{.sample_interval = interval, .threshold = 1e-12}), flight, 1e-12);
     }
 }
 
@@ -316,9 +316,10 @@ TEST_CASE("a cloud beyond a wall's edge is an echo of its own") {
     CHECK(d.echoes[1].range > 50.3);
     CHECK(d.echoes[1].range < 51.5);
   };
-  check(FullWaveform{});
-  check(AnalyticWaveform{});
-  FullWaveform band(WaveformSettings{}, NoWidth{}, BandLimitedReceiver{});
+  const WaveformSettings s{.threshold = 1e-12};
+  check(FullWaveform(s));
+  check(AnalyticWaveform(s));
+  FullWaveform band(s, NoWidth{}, BandLimitedReceiver{});
   band.prepare(emitter.laser);
   check(band);
 }
