@@ -13,6 +13,7 @@ tried=0
 fresh() {
   rm -rf "$copy/tree" && mkdir "$copy/tree" && cd "$copy/tree" || exit 2
   cp -R "$root/include" "$root/examples" "$root/tests" "$root/bench" "$root/.ci" "$root/CMakeLists.txt" . || exit 2
+  mkdir docs && cp -R "$root/docs/packaging" docs || exit 2
   cp "$root"/*.md "$root"/*.json . 2> /dev/null
 }
 
