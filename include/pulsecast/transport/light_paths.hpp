@@ -66,7 +66,7 @@ struct LightPaths {
     detail::PathTracer<with_velocity, Map> tracer(map, light, settings, w, reflections, result);
     tracer.trace();
     if (!with_velocity && spreads(light.subrays) && !tracer.passed_on())
-      if (const double span = span_of_ranges(light, reflections.first(result.reflections)); span > 1)
+      if (const double span = span_of_ranges(light, detail::direct_ones(reflections.first(result.reflections))); span > 1)
         spread_over_plane(light, span, reflections, w.slope, result, [&](const Illumination& again) noexcept {
           TransportResult other;
           detail::PathTracer<with_velocity, Map>(map, again, settings, w, reflections, other).trace();

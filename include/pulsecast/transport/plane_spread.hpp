@@ -198,11 +198,10 @@ void set_row(SubrayDirections& row, std::size_t size, const Emitter& emitter, co
 
 }  // namespace detail
 
-/// Span of the ranges at which subrays met surfaces directly, in deviations of the pulse.
+/// Span of the ranges of reflections from surfaces that subrays met directly, in deviations of the pulse.
 [[nodiscard]] inline double span_of_ranges(const Illumination& light, std::span<const Reflection> reflections) noexcept {
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
   for (const Reflection& r : reflections) {
-    if (r.kind != ReflectionKind::surface) break;
     nearest = r.range < nearest ? r.range : nearest;
     farthest = r.range > farthest ? r.range : farthest;
   }
