@@ -73,7 +73,8 @@ TEST_CASE("plates that overlap, in the default pulse: each is in its place, of i
     GaussianDecomposition d{inside};
     d.prepare(laser);
     for (const double apart : {1.0, 1.5, 2.0})
-      for (const auto& [first, second] : {std::pair{1.0, 1.0}, {1.0, 0.3}, {0.3, 1.0}}) {
+      for (const auto& shares : {std::pair{1.0, 1.0}, {1.0, 0.3}, {0.3, 1.0}}) {
+        const double first = shares.first, second = shares.second;
         INFO(apart, " pulse lengths apart, ", first, " to ", second);
         const double ranges[]{100.1, 100.1 + apart * length}, powers[]{first * power, second * power};
         const auto found =

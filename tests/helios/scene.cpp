@@ -388,10 +388,10 @@ TEST_CASE("a builder tells each file that it looked for, by whatever name, and t
   gltf.mesh("lid");
   gltf.material(R"("name":"wall","pbrMetallicRoughness":{"baseColorTexture":{"index":0}})");
   gltf.node(R"("mesh":0)");
-  for (const auto& [uri, buffer] :
-       {std::pair("b.bin", "b.bin"), std::pair("b.dat", "b.dat"), std::pair("b", "b"), std::pair("b.buffer", "b.buffer"),
-        std::pair("b'c.bin", "b'c.bin"), std::pair("b\\u00e4.bin", "b\xC3\xA4.bin")})
+  for (const auto& names : {std::pair("b.bin", "b.bin"), std::pair("b.dat", "b.dat"), std::pair("b", "b"),
+                            std::pair("b.buffer", "b.buffer"), std::pair("b'c.bin", "b'c.bin"), std::pair("b\\u00e4.bin", "b\xC3\xA4.bin")})
     for (const std::string picture : {"sky.hdr", "sky.pic", "sky.jfif", "sky"}) {
+      const char *const uri = names.first, *const buffer = names.second;
       CAPTURE(uri);
       put(buffer, gltf.buffer());
       gltf.more = R"("images":[{"uri":")" + picture + R"("}],"textures":[{"source":0}],)";

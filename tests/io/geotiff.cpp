@@ -579,7 +579,7 @@ TEST_CASE("a strip with more rows than the raster needs gives the raster's heigh
   const File file;
   for (const std::uint16_t compression : Codes{COMPRESSION_NONE, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_DEFLATE, COMPRESSION_LZW})
     for (const std::uint16_t format : Codes{SAMPLEFORMAT_INT, SAMPLEFORMAT_IEEEFP})
-      for (const std::uint32_t padding : {1, 2}) {
+      for (const std::uint32_t padding : {1U, 2U}) {
         CAPTURE(compression);
         const Form form{.format = format, .compression = compression, .padding = padding};
         CHECK(wrong(file.read(form, {}, steps).raster, steps) == 0);

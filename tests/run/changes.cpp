@@ -143,7 +143,7 @@ struct LeastSurvey {
 
 TEST_CASE("a rangefinder that drives 2 m a step reads 100, 98, 96 and so on, by runs and by single calls, step by step or slot 0 again") {
   Rangefinder r;
-  const LeastSurvey least{r.survey};
+  const LeastSurvey<decltype(r.survey)> least{r.survey};
   static_assert(PulseSurvey<decltype(least)> && !SimulatesInOrder<decltype(least)> && SimulatesInOrder<decltype(r.survey)>);
   ThreadPool pool(2);
   auto workspace = r.survey.workspace();

@@ -233,8 +233,8 @@ class AnalyticWaveform {
         Sum middle = *this;
         middle.advance(to, tau);
         double low = time, high = to, below = slope(), above = middle.slope();
-        for (double last = low; std::fabs(middle.time - last) > 1e-9 * tau;) {
-          last = middle.time;
+        for (double before = low; std::fabs(middle.time - before) > 1e-9 * tau;) {
+          before = middle.time;
           middle = *this;
           middle.advance(low + (high - low) * below / (below - above), tau);
           const double there = middle.slope();
