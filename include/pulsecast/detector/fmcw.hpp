@@ -165,7 +165,8 @@ class Fmcw {
   /// Pairs the peaks from `first` on, both in descending order of power, up to `last`, the first of less power in both sweeps. True if
   /// there is one pair, of one power.
   static bool pair_next(std::size_t first, std::size_t& last, double deviation, std::array<std::vector<Peak>, 2>& peaks) noexcept {
-    std::vector<Peak>&up = peaks[0], &down = peaks[1];
+    std::vector<Peak>& up = peaks[0];
+    std::vector<Peak>& down = peaks[1];
     const std::size_t pairs = std::min(up.size(), down.size());
     const auto amplitude = [](const std::vector<Peak>& of, std::size_t k) { return k < of.size() ? std::sqrt(of[k].power) : 0; };
     // Powers of a surface differ by side lobes of the window, of -32 dB (source: Harris 1978), and by three deviations of the difference of
