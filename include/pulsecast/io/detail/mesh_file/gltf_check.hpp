@@ -125,15 +125,6 @@ inline void check_gltf(const std::filesystem::path& path, std::vector<std::strin
   });
 }
 
-/// Refuses a PLY file of strips, of which assimp reads half. Source: Turk 1994, The PLY polygon file format (header of elements).
-inline void check_ply(const std::filesystem::path& path) {
-  InputFile file(path, "a mesh file");
-  const std::string_view head = file.take(std::size_t{1} << 16);
-  if (!head.starts_with("ply")) return;
-  if (head.substr(0, head.find("end_header")).find("element tristrips") != head.npos)
-    throw FileError(path.string(), "", "has triangle strips: expected faces, as most programs write them (element face)");
-}
-
 }  // namespace PULSECAST_NAMESPACE::io::detail
 
 #endif

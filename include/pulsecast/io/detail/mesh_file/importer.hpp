@@ -45,7 +45,6 @@ class MeshImport {
 
   /// @throws FileError
   [[nodiscard]] RawScene read() {
-    check_ply(path_);
     check_gltf(path_, scene_.warnings);
     Assimp::Importer& importer = data_->importer;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);

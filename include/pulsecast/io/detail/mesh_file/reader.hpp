@@ -63,13 +63,17 @@ inline void read_pictures(MeshFile& file, bool isolated) {
   }
 }
 
-/// Refuses a PLY file whose header has no end, with which assimp takes minutes. Explains a file that is missing or empty.
-inline void require_ply_end(const std::filesystem::path& path) {
+/// Refuses a PLY file whose header has no end, with which assimp takes minutes, or that has strips, of which it reads half. Explains a file
+/// that is missing or empty. Source: Turk 1994, The PLY polygon file format (header of elements).
+inline void check_ply(const std::filesystem::path& path) {
   constexpr std::size_t longest = std::size_t{1} << 16;  // of a header [byte]
   InputFile file(path, "a mesh file");
   const std::string_view begin = file.take(longest);
-  if (begin.starts_with("ply") && begin.find("end_header") == begin.npos)
-    file.fail("is no mesh file that can be read: its PLY header has no end_header within 64 KiB");
+  if (!begin.starts_with("ply")) return;
+  const std::size_t end = begin.find("end_header");
+  if (end == begin.npos) file.fail("is no mesh file that can be read: its PLY header has no end_header within 64 KiB");
+  if (begin.substr(0, end).find("element tristrips") != begin.npos)
+    throw FileError(path.string(), "", "has triangle strips: expected faces, as most programs write them (element face)");
 }
 
 }  // namespace detail
@@ -87,7 +91,7 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
     if (text::lower(path.extension().string()) == ".obj") {
       file = detail::file_of(path, settings, workers);
     } else {
-      detail::require_ply_end(path);
+      detail::check_ply(path);
       const auto import = [&](const Workers& by, const auto& opened) { return detail::MeshImport(path, settings, by, opened).read(); };
       const detail::RawScene scene =
           settings.isolated ? detail::imported_apart(path, settings.limits, [&](const auto& o) { return import(Workers(1), o); })
