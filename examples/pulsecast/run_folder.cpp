@@ -29,6 +29,8 @@
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/output_file.hpp>
 
+#include "survey_inputs.hpp"
+
 namespace fs = std::filesystem;
 using namespace pulsecast;
 
@@ -67,31 +69,6 @@ bool is_later(const fs::path& a, const fs::path& b) {
 }
 
 }  // namespace
-
-std::string written_name(const std::string& name) {
-  constexpr const char* digits = "0123456789abcdef";
-  std::string text;
-  for (const char letter : name) {
-    const auto c = static_cast<unsigned char>(letter);
-    if (c >= ' ' && c != 0x7f && c != '\\')
-      text += letter;
-    else
-      text.append("\\x").append({digits[c >> 4], digits[c & 15]});
-  }
-  return text;
-}
-
-std::string name_written(std::string_view text) {
-  std::string name;
-  for (; !text.empty(); text.remove_prefix(1)) {
-    unsigned c = 0;
-    const bool is_escape =
-        text.starts_with("\\x") && text.size() >= 4 && std::from_chars(text.data() + 2, text.data() + 4, c, 16).ptr == text.data() + 4;
-    name += is_escape ? static_cast<char>(c) : text.front();
-    if (is_escape) text.remove_prefix(3);
-  }
-  return name;
-}
 
 std::string RunLog::text() const {
   std::ostringstream text;

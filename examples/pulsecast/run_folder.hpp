@@ -40,11 +40,6 @@ struct RunLog {
   static void remove(const std::filesystem::path& folder);
 };
 
-/// Name in the notation of a log: `\x` and two digits for each control character and backslash.
-[[nodiscard]] std::string written_name(const std::string& name);
-/// Name in that notation, as it was.
-[[nodiscard]] std::string name_written(std::string_view text);
-
 /// Exclusive right to write to a run folder: a system lock on a file there. It ends with the process in any case. File systems without
 /// locks give no protection. The destructor removes the file.
 class RunLock {

@@ -20,7 +20,6 @@
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/io/scene_cache.hpp>
 
-#include "run_folder.hpp"
 #include "survey_inputs.hpp"
 
 namespace fs = std::filesystem;
