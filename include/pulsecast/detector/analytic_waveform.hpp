@@ -218,15 +218,17 @@ class AnalyticWaveform {
 
     /// Reflections and continuous returns at a time.
     struct Sum {
-      EdgeAgeMoments ages;
-      detail::ContinuousSum continuous;
-      double time;  ///< [s]
+      EdgeAgeMoments ages;               ///< of the reflections
+      detail::ContinuousSum continuous;  ///< of the continuous returns
+      double time;                       ///< [s]
 
+      /// Moves on to a later time `to` [s].
       void advance(double to, double tau) noexcept {
         ages.advance((to - time) / tau);
         continuous.advance(to);
         time = to;
       }
+      /// Slope of both; its zeros are those of the power.
       [[nodiscard]] double slope() const noexcept { return ages.slope() + continuous.slope(); }
       /// The sum at the zero of its slope up to another time [s]: false position, after Dowell & Jarratt 1971.
       [[nodiscard]] Sum at_extremum(double to, double tau) const noexcept {

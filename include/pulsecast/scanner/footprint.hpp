@@ -275,8 +275,8 @@ class SubrayDirections {
 
   /// Offset of a subray and its share of the energy, as of a `Footprint`.
   struct Subray {
-    Vec2 offset;
-    double share;
+    Vec2 offset;   ///< in units of the 1/e^2 radius, as of a `Footprint`
+    double share;  ///< of the pulse's energy, without unit
   };
   /// Replaces the subrays by `subray(j)`, of which there must be room for `size`. Changes all copies.
   template <class SubrayOf>
