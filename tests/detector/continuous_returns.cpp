@@ -16,6 +16,8 @@
 #include <pulsecast/detector/gaussian_decomposition.hpp>
 #include <pulsecast/detector/phase_shift.hpp>
 #include <pulsecast/detector/photon_counting.hpp>
+#include <pulsecast/detector/returns.hpp>
+#include <pulsecast/detector/shape_deviation.hpp>
 #include <pulsecast/scene/weather.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
@@ -322,4 +324,84 @@ TEST_CASE("a cloud beyond a wall's edge is an echo of its own") {
   FullWaveform band(s, NoWidth{}, BandLimitedReceiver{});
   band.prepare(emitter.laser);
   check(band);
+}
+
+TEST_CASE("the shape of a wall's echo in haze deviates as by quadrature") {
+  const Emitter emitter;
+  std::vector<ContinuousReturn> even{{.begin = 40, .end = 60, .at_begin = 2e-8, .at_end = 1e-8}};
+  std::vector<Reflection> wall{{.range = 60, .power = 1e-7, .object = 4}};
+  ShapeDeviation detector(FullWaveform(WaveformSettings{.record_length = 200e-9}));
+  detector.prepare(emitter.laser);
+  auto w = detector.workspace(1);
+  const Detection d = detector.detect({emitter, {}, wall, {}, even}, w);
+  REQUIRE(d.echoes.size() == 2);
+
+  const double pulse_length = emitter.laser.pulse_length;
+  const PulseShape shape(pulse_length);
+  const auto sum = [&](double t) {  // at a time since the wall's maximum
+    double all = wall[0].power * shape(t);
+    const int steps = 2000;
+    for (int k = 0; k < steps; ++k) {
+      const double before = 8.0 * (k + 0.5) / steps;  // the wall [m]
+      all += (1e-8 + before * 5e-10) * shape(t + 2 * before / speed_of_light) * 8 / steps;
+    }
+    return all;
+  };
+  double top = 0, at = 0;
+  for (double t = -1e-9; t < 1e-9; t += 2e-12)
+    if (sum(t) > top) {
+      top = sum(t);
+      at = t;
+    }
+  double mean = 0;
+  const int n = 400;
+  for (int i = 0; i < n; ++i) {
+    const double t = pulse_length * (2 * (i + 0.5) / n - 1);
+    mean += std::fabs(sum(at + t) / top - shape(t)) / n;
+  }
+  CHECK(1000 * mean > 15);
+  CHECK(static_cast<double>(d.echoes[1].shape_deviation) == doctest::Approx(1000 * mean).epsilon(0.05));
+  CHECK(d.echoes[0].shape_deviation > 100);  // the air begins, but does not end
+}
+
+TEST_CASE("the strongest return in haze is that of the greater integral, the last is the ground") {
+  for (const double near : {0.0, 200.0}) {
+    CAPTURE(near);
+    Flight flight{.height = 1000, .visibility = 10e3};
+    flight.lamp.receiver.range_min = near;
+    const auto pulse = flight.pulse();
+    const PulseShape shape(flight.lamp.laser.pulse_length);
+    double air = 0;
+    for (double range = near; range < near + 3; range += 0.01) air = std::max(air, flight.of_haze(2 * range / speed_of_light, shape));
+    const auto kinds = [&](ReturnMode mode) {
+      std::vector<ReflectionKind> all;
+      for (const Echo& e : echoes_of(SelectedReturns(mode, FullWaveform(WaveformSettings{.threshold = 1e-12})), flight, pulse))
+        all.push_back(e.kind);
+      return all;
+    };
+    using Kinds = std::vector<ReflectionKind>;
+    const ReflectionKind stronger = air > flight.ground() ? ReflectionKind::air : ReflectionKind::surface;
+    CHECK(stronger == (near > 0 ? ReflectionKind::surface : ReflectionKind::air));
+    CHECK(kinds(ReturnMode::strongest) == Kinds{stronger});
+    CHECK(kinds(ReturnMode::first) == Kinds{ReflectionKind::air});
+    CHECK(kinds(ReturnMode::last) == Kinds{ReflectionKind::surface});
+    for (const ReturnMode both : {ReturnMode::first_and_last, ReturnMode::strongest_and_last, ReturnMode::n_strongest})
+      CHECK(kinds(both) == Kinds{ReflectionKind::air, ReflectionKind::surface});
+  }
+}
+
+TEST_CASE("with several pulses in the air, haze is lost where the instrument is blind, and the ground is folded") {
+  const Flight flight{.height = 1000, .visibility = 10e3};
+  const auto pulse = flight.pulse();
+  const FullWaveform inside(WaveformSettings{.threshold = 1e-12});
+  const MultiplePulsesInAir folded(400e3, inside);
+  const auto both = echoes_of(folded, flight, pulse);
+  REQUIRE(both.size() == 2);
+  CHECK(both[0].kind == ReflectionKind::air);
+  CHECK(both[1].object == 7);
+  CHECK(both[1].range == doctest::Approx(std::fmod(1000, folded.ambiguity())).epsilon(1e-5));
+  const auto ground = echoes_of(MultiplePulsesInAir(400e3, inside, 5), flight, pulse);
+  REQUIRE(ground.size() == 1);
+  CHECK(ground[0].number == 1);
+  CHECK(ground[0].range == both[1].range);
 }
