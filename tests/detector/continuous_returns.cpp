@@ -326,6 +326,22 @@ TEST_CASE("a cloud beyond a wall's edge is an echo of its own") {
   check(band);
 }
 
+TEST_CASE("after an echo of the air, a wall within the dead time or the window is none") {
+  const Flight flight{.height = 30, .visibility = 2e3};
+  const auto pulse = flight.pulse();
+  const auto check = [&](const WaveformSettings& s, std::size_t expected) {
+    for (const auto& echoes : {echoes_of(FullWaveform(s), flight, pulse), echoes_of(AnalyticWaveform(s), flight, pulse),
+                               echoes_of(FullWaveform(s, NoWidth{}, BandLimitedReceiver{}), flight, pulse)}) {
+      REQUIRE(echoes.size() == expected);
+      CHECK(echoes[0].kind == ReflectionKind::air);
+    }
+  };
+  check({.threshold = 1e-12, .dead_time = 100e-9}, 2);
+  check({.threshold = 1e-12, .dead_time = 300e-9}, 1);
+  check({.threshold = 1e-12, .window = 300e-9}, 1);  // the air is brighter
+  check({.threshold = 1e-12, .separation = 300e-9}, 1);
+}
+
 TEST_CASE("the shape of a wall's echo in haze deviates as by quadrature") {
   const Emitter emitter;
   std::vector<ContinuousReturn> even{{.begin = 40, .end = 60, .at_begin = 2e-8, .at_end = 1e-8}};
