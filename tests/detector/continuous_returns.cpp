@@ -326,6 +326,38 @@ TEST_CASE("a cloud beyond a wall's edge is an echo of its own") {
   check(band);
 }
 
+TEST_CASE("echoes in haze are the same with and without a record") {
+  const auto check = [](const char* name, const Flight& flight, const auto& with, const auto& without) {
+    CAPTURE(name);
+    const auto pulse = flight.pulse();
+    const auto expected = echoes_of(with, flight, pulse), seen = echoes_of(without, flight, pulse);
+    REQUIRE(seen.size() == expected.size());
+    for (std::size_t e = 0; e < seen.size(); ++e) {
+      CHECK(seen[e].kind == expected[e].kind);
+      CHECK(seen[e].object == expected[e].object);
+      CHECK(std::fabs(seen[e].range - expected[e].range) < 1e-6);
+      CHECK(std::fabs(seen[e].amplitude - expected[e].amplitude) < 1e-6 * expected[e].amplitude);
+    }
+  };
+  for (const double height : {3.0, 7.123, 30.0, 199.87, 1000.0})
+    for (const double visibility : {1e3, 23e3})
+      for (const double near : {0.0, 2.5}) {
+        CAPTURE(height);
+        CAPTURE(visibility);
+        CAPTURE(near);
+        Flight flight{.height = height, .visibility = visibility};
+        flight.lamp.receiver.range_min = near;
+        for (const EchoTiming timing : {EchoTiming::peak, EchoTiming::true_range}) {
+          const WaveformSettings s{.threshold = 1e-12, .timing = timing};
+          WaveformSettings recorded = s;
+          recorded.record_length = 7e-6;
+          check("ideal", flight, FullWaveform(recorded), FullWaveform(s));
+          check("band-limited", flight, FullWaveform(recorded, NoWidth{}, BandLimitedReceiver{}),
+                FullWaveform(s, NoWidth{}, BandLimitedReceiver{}));
+        }
+      }
+}
+
 TEST_CASE("after an echo of the air, a wall within the dead time or the window is none") {
   const Flight flight{.height = 30, .visibility = 2e3};
   const auto pulse = flight.pulse();

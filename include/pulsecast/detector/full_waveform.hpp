@@ -252,39 +252,39 @@ class FullWaveform {
 
   /// Samples near the peak of a group, from two before it on.
   struct TopSamples {
-    double first = 0;           ///< number of the first sample
-    std::array<double, 8> y{};  ///< [W]
+    double first;             ///< number of the first sample
+    std::array<double, 8> y;  ///< [W]
   };
-  /// Those of a group; none if they reach back before the last edge.
-  [[nodiscard]] std::optional<TopSamples> top_of(const SinglePeakGroup& group, const PulseShape& shape) const noexcept {
+  /// Takes those of a group; false if they reach back before the last edge.
+  [[nodiscard, gnu::always_inline]] bool sample(const SinglePeakGroup& group, const PulseShape& shape, TopSamples& top) const noexcept {
     const double per_tau = 1 / shape.tau;
     const double before = std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // last sample before the peak
     const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau, step = s_.sample_interval * per_tau;
-    if (!(first >= 0)) return {};
-    TopSamples top{before - 2};
+    if (!(first >= 0)) return false;
+    top.first = before - 2;
     for (std::size_t j = 0; j < top.y.size(); j += simd::lane_count)
       simd::store(group.power(simd::generate([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), top.y[j]);
-    return top;
+    return true;
   }
 
   /// Maximum of a group among continuous returns that only fall near it; none if they may rise there, or if it is on their flank.
   [[nodiscard]] std::optional<OnlyPeak> only_peak(const SinglePeakGroup& group, const PulseShape& shape,
                                                   std::span<const ContinuousReturn> continuous) const noexcept {
-    std::optional<TopSamples> top = top_of(group, shape);
-    if (!top) return {};
+    TopSamples top;
+    if (!sample(group, shape, top)) return {};
     const detail::GammaIntegrals pulse(shape);
     detail::ContinuousRises rises(continuous, pulse);
-    const auto time = [&](double j) { return (top->first + j) * s_.sample_interval; };
+    const auto time = [&](double j) { return (top.first + j) * s_.sample_interval; };
     rises.pass(time(8));
     if (!(rises.until() <= time(0) - pulse.end() && rises.next() >= time(8) + pulse.end())) return {};
     detail::ContinuousSum sum(continuous, shape);
-    for (std::size_t j = 0; j < 5; ++j) {
+    for (std::size_t j = 0; j < 6; ++j) {  // those that `vertex` may read
       sum.advance(time(static_cast<double>(j)));
-      top->y[j] += sum.power();
+      top.y[j] += sum.power();
     }
-    const std::size_t k = top->y[3] > top->y[2] ? 3 : 2;
-    if (!(top->y[k] > top->y[k - 1] && top->y[k] >= top->y[k + 1])) return {};
-    const Vertex at = vertex(&top->y[k]);
+    const std::size_t k = top.y[3] > top.y[2] ? 3 : 2;
+    if (!(top.y[k] > top.y[k - 1] && top.y[k] >= top.y[k + 1])) return {};
+    const Vertex at = vertex(&top.y[k]);
     const double peak = time(static_cast<double>(k) + at.offset);
     const double mark = s_.timing == EchoTiming::true_range ? 2 * group.mean_range() / speed_of_light : peak;
     return OnlyPeak{mark, at.height, &group.strongest((peak - group.last_edge()) / shape.tau)};
@@ -293,13 +293,13 @@ class FullWaveform {
   /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its peak. False if these
   /// reach back before the last edge.
   bool detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
-    const std::optional<TopSamples> samples = top_of(group, shape);
-    if (!samples) return false;
-    const auto& y = samples->y;
+    TopSamples samples;
+    if (!sample(group, shape, samples)) return false;
+    const auto& y = samples.y;
     const std::size_t top = y[3] > y[2] ? 3 : 2;
     const auto [offset, height] = vertex(&y[top]);
     if (height < s_.threshold) return true;
-    const double time = (samples->first + static_cast<double>(top) + offset) * s_.sample_interval;
+    const double time = (samples.first + static_cast<double>(top) + offset) * s_.sample_interval;
     const Echo echo = group.echo(time, height, s_.timing);
     echoes.push_back(echo);
     return true;
