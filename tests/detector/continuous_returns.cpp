@@ -16,6 +16,8 @@
 #include <pulsecast/detector/gaussian_decomposition.hpp>
 #include <pulsecast/detector/phase_shift.hpp>
 #include <pulsecast/detector/photon_counting.hpp>
+#include <pulsecast/detector/returns.hpp>
+#include <pulsecast/detector/shape_deviation.hpp>
 #include <pulsecast/scene/weather.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
@@ -322,4 +324,132 @@ TEST_CASE("a cloud beyond a wall's edge is an echo of its own") {
   FullWaveform band(s, NoWidth{}, BandLimitedReceiver{});
   band.prepare(emitter.laser);
   check(band);
+}
+
+TEST_CASE("echoes in haze are the same with and without a record") {
+  const auto check = [](const char* name, const Flight& flight, const auto& with, const auto& without) {
+    CAPTURE(name);
+    const auto pulse = flight.pulse();
+    const auto expected = echoes_of(with, flight, pulse), seen = echoes_of(without, flight, pulse);
+    REQUIRE(seen.size() == expected.size());
+    for (std::size_t e = 0; e < seen.size(); ++e) {
+      CHECK(seen[e].kind == expected[e].kind);
+      CHECK(seen[e].object == expected[e].object);
+      CHECK(std::fabs(seen[e].range - expected[e].range) < 1e-6);
+      CHECK(std::fabs(seen[e].amplitude - expected[e].amplitude) < 1e-6 * expected[e].amplitude);
+    }
+  };
+  for (const double height : {3.0, 7.123, 30.0, 199.87, 1000.0})
+    for (const double visibility : {1e3, 23e3})
+      for (const double near : {0.0, 2.5}) {
+        CAPTURE(height);
+        CAPTURE(visibility);
+        CAPTURE(near);
+        Flight flight{.height = height, .visibility = visibility};
+        flight.lamp.receiver.range_min = near;
+        for (const EchoTiming timing : {EchoTiming::peak, EchoTiming::true_range}) {
+          const WaveformSettings s{.threshold = 1e-12, .timing = timing};
+          WaveformSettings recorded = s;
+          recorded.record_length = 7e-6;
+          check("ideal", flight, FullWaveform(recorded), FullWaveform(s));
+          check("band-limited", flight, FullWaveform(recorded, NoWidth{}, BandLimitedReceiver{}),
+                FullWaveform(s, NoWidth{}, BandLimitedReceiver{}));
+        }
+      }
+}
+
+TEST_CASE("after an echo of the air, a wall within the dead time or the window is none") {
+  const Flight flight{.height = 30, .visibility = 2e3};
+  const auto pulse = flight.pulse();
+  const auto check = [&](const WaveformSettings& s, std::size_t expected) {
+    for (const auto& echoes : {echoes_of(FullWaveform(s), flight, pulse), echoes_of(AnalyticWaveform(s), flight, pulse),
+                               echoes_of(FullWaveform(s, NoWidth{}, BandLimitedReceiver{}), flight, pulse)}) {
+      REQUIRE(echoes.size() == expected);
+      CHECK(echoes[0].kind == ReflectionKind::air);
+    }
+  };
+  check({.threshold = 1e-12, .dead_time = 100e-9}, 2);
+  check({.threshold = 1e-12, .dead_time = 300e-9}, 1);
+  check({.threshold = 1e-12, .window = 300e-9}, 1);  // the air is brighter
+  check({.threshold = 1e-12, .separation = 300e-9}, 1);
+}
+
+TEST_CASE("the shape of a wall's echo in haze deviates as by quadrature") {
+  const Emitter emitter;
+  std::vector<ContinuousReturn> even{{.begin = 40, .end = 60, .at_begin = 2e-8, .at_end = 1e-8}};
+  std::vector<Reflection> wall{{.range = 60, .power = 1e-7, .object = 4}};
+  ShapeDeviation detector(FullWaveform(WaveformSettings{.record_length = 200e-9}));
+  detector.prepare(emitter.laser);
+  auto w = detector.workspace(1);
+  const Detection d = detector.detect({emitter, {}, wall, {}, even}, w);
+  REQUIRE(d.echoes.size() == 2);
+
+  const double pulse_length = emitter.laser.pulse_length;
+  const PulseShape shape(pulse_length);
+  const auto sum = [&](double t) {  // at a time since the wall's maximum
+    double all = wall[0].power * shape(t);
+    const int steps = 2000;
+    for (int k = 0; k < steps; ++k) {
+      const double before = 8.0 * (k + 0.5) / steps;  // the wall [m]
+      all += (1e-8 + before * 5e-10) * shape(t + 2 * before / speed_of_light) * 8 / steps;
+    }
+    return all;
+  };
+  double top = 0, at = 0;
+  for (double t = -1e-9; t < 1e-9; t += 2e-12)
+    if (sum(t) > top) {
+      top = sum(t);
+      at = t;
+    }
+  double mean = 0;
+  const int n = 400;
+  for (int i = 0; i < n; ++i) {
+    const double t = pulse_length * (2 * (i + 0.5) / n - 1);
+    mean += std::fabs(sum(at + t) / top - shape(t)) / n;
+  }
+  CHECK(1000 * mean > 15);
+  CHECK(static_cast<double>(d.echoes[1].shape_deviation) == doctest::Approx(1000 * mean).epsilon(0.05));
+  CHECK(d.echoes[0].shape_deviation > 100);  // the air begins, but does not end
+}
+
+TEST_CASE("the strongest return in haze is that of the greater integral, the last is the ground") {
+  for (const double near : {0.0, 200.0}) {
+    CAPTURE(near);
+    Flight flight{.height = 1000, .visibility = 10e3};
+    flight.lamp.receiver.range_min = near;
+    const auto pulse = flight.pulse();
+    const PulseShape shape(flight.lamp.laser.pulse_length);
+    double air = 0;
+    for (double range = near; range < near + 3; range += 0.01) air = std::max(air, flight.of_haze(2 * range / speed_of_light, shape));
+    const auto kinds = [&](ReturnMode mode) {
+      std::vector<ReflectionKind> all;
+      for (const Echo& e : echoes_of(SelectedReturns(mode, FullWaveform(WaveformSettings{.threshold = 1e-12})), flight, pulse))
+        all.push_back(e.kind);
+      return all;
+    };
+    using Kinds = std::vector<ReflectionKind>;
+    const ReflectionKind stronger = air > flight.ground() ? ReflectionKind::air : ReflectionKind::surface;
+    CHECK(stronger == (near > 0 ? ReflectionKind::surface : ReflectionKind::air));
+    CHECK(kinds(ReturnMode::strongest) == Kinds{stronger});
+    CHECK(kinds(ReturnMode::first) == Kinds{ReflectionKind::air});
+    CHECK(kinds(ReturnMode::last) == Kinds{ReflectionKind::surface});
+    for (const ReturnMode both : {ReturnMode::first_and_last, ReturnMode::strongest_and_last, ReturnMode::n_strongest})
+      CHECK(kinds(both) == Kinds{ReflectionKind::air, ReflectionKind::surface});
+  }
+}
+
+TEST_CASE("with several pulses in the air, haze is lost where the instrument is blind, and the ground is folded") {
+  const Flight flight{.height = 1000, .visibility = 10e3};
+  const auto pulse = flight.pulse();
+  const FullWaveform inside(WaveformSettings{.threshold = 1e-12});
+  const MultiplePulsesInAir folded(400e3, inside);
+  const auto both = echoes_of(folded, flight, pulse);
+  REQUIRE(both.size() == 2);
+  CHECK(both[0].kind == ReflectionKind::air);
+  CHECK(both[1].object == 7);
+  CHECK(both[1].range == doctest::Approx(std::fmod(1000, folded.ambiguity())).epsilon(1e-5));
+  const auto ground = echoes_of(MultiplePulsesInAir(400e3, inside, 5), flight, pulse);
+  REQUIRE(ground.size() == 1);
+  CHECK(ground[0].number == 1);
+  CHECK(ground[0].range == both[1].range);
 }

@@ -250,7 +250,10 @@ TEST_CASE("settings that a program makes are written and read") {
   SurveySettings survey;
   survey.name = "study <&> \"1\"";
   survey.seed = std::numeric_limits<std::uint64_t>::max();
-  survey.scanner = {.id = "s", .name = "of our own", .pulse_rates = {1000}, .channels = {{.optic = RotatingOptic{}, .scan_angle_max = 1}}};
+  survey.scanner = {.id = "s",
+                    .name = "of our own",
+                    .pulse_rates = {1000},
+                    .channels = {{.optic = RotatingOptic{}, .scan_angle_max = 1, .returns_kept = KeptReturns::strongest}}};
   survey.platform.id = "p";
   survey.scene.id = "c";
   survey.scene.parts = {{.id = "a b", .source = ObjSource{.files = {data / "materials.obj", data / "surveys" / "points.xyz"}}}};
@@ -270,6 +273,7 @@ TEST_CASE("settings that a program makes are written and read") {
   CHECK(again.seed == survey.seed);
   CHECK(again.legs[0].scanner.scan_angle.value() == support::relative(0.3, 1e-15));
   CHECK(again.scanner.channels[0].optic == survey.scanner.channels[0].optic);
+  CHECK(again.scanner.channels[0].returns_kept == KeptReturns::strongest);
 }
 
 TEST_CASE("a survey is never written that would not be read") {

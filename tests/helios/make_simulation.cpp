@@ -16,7 +16,10 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/cloud.hpp>
+#include <pulsecast/scene/weather.hpp>
 
+#include "support/laws.hpp"
+#include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace pulsecast::helios {
@@ -234,6 +237,50 @@ TEST_CASE("light goes on from what passes it on, if the scene or the program say
   CHECK(run(*make_simulation(foggy, {.meshes = {plane()}})).size() < 2000);
   foggy.scene.media.push_back({.absorption = 2});
   CHECK_THROWS_AS((void)make_simulation(foggy, {.meshes = {plane()}}), SettingError);
+}
+
+TEST_CASE("haze dims the ground by its transmittance and hides none of it, with one echo of the air at most, on any number of threads") {
+  // an airplane's height: farther than an atmosphere of a few thousand samples
+  SurveySettings clear = survey();
+  clear.legs[0].platform.position.z = 1000;
+  clear.scanner.channels[0].returns_max = 4;
+  clear.scene.light = {{}};
+  SurveySettings hazy = clear;
+  hazy.scene.media = {{.preset = MediumPreset::haze, .visibility = 23e3}};
+  Simulation::Mesh ground = plane();
+  for (Vec3& vertex : ground.data.vertices) vertex *= 20;
+  const double extinction = haze(23e3, clear.scanner.channels[0].wavelength).extinction();
+  for (const double range_min : {0.0, 200.0}) {
+    CAPTURE(range_min);
+    clear.scanner.channels[0].range_min = hazy.scanner.channels[0].range_min = range_min;
+    const Cloud expected = run(*make_simulation(clear, {.meshes = {ground}}));
+    REQUIRE(expected.size() == 2000);
+    const auto simulation = make_simulation(hazy, {.meshes = {ground}});
+    const Cloud cloud = run(*simulation);
+    std::size_t on_ground = 0, of_air = 0;
+    for (const Echo& echo : cloud.echoes) {
+      if (echo.kind == ReflectionKind::air) {
+        ++of_air;
+        CHECK(echo.range < range_min + 2);  // where the whole pulse is in the haze
+        continue;
+      }
+      const Echo& without = expected.echoes[std::min<std::size_t>(on_ground++, 1999)];
+      CHECK(echo.object == 7);
+      CHECK(std::fabs(echo.range - without.range) < 1e-3);
+      CHECK(echo.amplitude == support::relative(without.amplitude * std::exp(-2 * extinction * without.range), 1e-3));
+    }
+    CHECK(on_ground == 2000);
+    CHECK(of_air <= 2000);
+    CHECK(run(*make_simulation(hazy, {.light_paths = true})).size() <= 2000);  // into the sky
+    std::string first;
+    for (const unsigned threads : {1U, 2U, 3U}) {
+      support::LawfulSink sink;
+      simulation->run({.threads = threads}, [&](const EchoBatch& batch) { sink(batch); });
+      CHECK(sink.broken() == "");
+      if (first.empty()) first = sink.checksum();
+      CHECK(sink.checksum() == first);
+    }
+  }
 }
 
 }  // namespace

@@ -87,10 +87,10 @@ struct Lamp {
   return {turn, from};
 }
 
-/// One pulse through a transport.
+/// One pulse through a transport, with a workspace of it.
 template <bool with_velocity = false, class Light, class Map, class Pattern>
 [[nodiscard]] Traced traced(const Light& transport, const Map& map, const Pose<frame::Beam, frame::World>& pose, const Pattern& footprint,
-                            const Lamp& lamp = {}) {
+                            const Lamp& lamp, typename Light::Workspace& w) {
   const Emitter emitter{.laser = lamp.laser};
   const SubrayDirections beam(footprint, emitter);
   const LinkBudget budget(lamp.receiver, lamp.laser);
@@ -98,7 +98,6 @@ template <bool with_velocity = false, class Light, class Map, class Pattern>
   pulse.pose = pose;
   pulse.tick = lamp.tick;
   WhiteTarget white;
-  auto w = transport.workspace(footprint.size());
   Traced all;
   all.reflections.resize(transport.reflections(footprint.size()));
   const Illumination light{pulse, lamp.index, lamp.seed, emitter, beam, footprint.size(), budget, white, lamp.receiver.gate()};
@@ -110,6 +109,13 @@ template <bool with_velocity = false, class Light, class Map, class Pattern>
   all.continuous.assign(all.result.continuous.begin(), all.result.continuous.end());
   all.result.continuous = all.continuous;
   return all;
+}
+/// As above, with a workspace of its own.
+template <bool with_velocity = false, class Light, class Map, class Pattern>
+[[nodiscard]] Traced traced(const Light& transport, const Map& map, const Pose<frame::Beam, frame::World>& pose, const Pattern& footprint,
+                            const Lamp& lamp = {}) {
+  auto w = transport.workspace(footprint.size());
+  return traced<with_velocity>(transport, map, pose, footprint, lamp, w);
 }
 
 using LightScene = Scene<TriangleMesh<>>;

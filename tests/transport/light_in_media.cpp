@@ -150,12 +150,46 @@ TEST_CASE("stretches for which there is no room go into cells, which keep their 
       const double begin = any.uniform(3, 39.9), density = any.uniform(0, 2);
       sum += profile.add(begin, begin + any.uniform(0.01, 0.1), density, any.uniform(0, density));
     }
-    profile.append_to(returns, ReflectionKind::air);
+    returns.resize(profile.write_to(returns, 0, ReflectionKind::air));
     CHECK(returns.size() <= profile.size_max());
     double seen = 0;
     CHECK(support::detail::continuous_laws(returns, gate, seen) == "");
     CHECK(seen == doctest::Approx(sum).epsilon(1e-12));
   }
+}
+
+TEST_CASE("a kept workspace returns what a fresh one does, of air and of water") {
+  const Medium inside{.index = 1.33, .absorption = 0.1, .scattering = 0.1, .backscatter = 0.01};
+  const World lake({rectangle({}, 500.0 * axis::right, 500.0 * axis::forward,
+                              Material{.reflectance = 0, .smooth = {.kind = InterfaceKind::water, .inside = inside}}),
+                    rectangle({0, 0, -4}, 500.0 * axis::right, 500.0 * axis::forward, Material{.reflectance = 0.1}),
+                    rectangle({40, 0, 30}, 20.0 * axis::right, 20.0 * axis::forward, Material{.reflectance = 0.1})});
+  const LightPaths light{.least_share = 0.05, .air = Media({{.medium = {.scattering = 1e-3, .backscatter = 1e-4}}})};
+  support::Lamp lamp;
+  lamp.laser.divergence = 1e-3;
+  lamp.receiver.range_min = 20.5;  // the air up to there is not heard
+  const LatticeFootprint pattern(19);
+  auto kept = light.workspace(pattern.size());
+  support::Generator any(11);
+  std::size_t only_water = 0;
+  for (int k = 0; k < 100; ++k) {
+    CAPTURE(k);
+    // to the board, into the water, to the board, and anywhere
+    const Vec3 from = k % 4 == 1 ? Vec3{0, 0, 20} : Vec3{k % 4 == 3 ? any.uniform(0, 60) : 40.0, 0, any.uniform(55, 100)};
+    const auto pose = from_to(from, {from.x + any.uniform(-3, 3), 0, 0});
+    const auto seen = traced(light, lake, pose, pattern, lamp, kept), expected = traced(light, lake, pose, pattern, lamp);
+    only_water += !seen.continuous.empty() && seen.continuous[0].kind == ReflectionKind::water ? 1 : 0;
+    REQUIRE(seen.continuous.size() == expected.continuous.size());
+    for (std::size_t i = 0; i < seen.continuous.size(); ++i) {
+      const ContinuousReturn &a = seen.continuous[i], &b = expected.continuous[i];
+      REQUIRE(a.begin == b.begin);
+      REQUIRE(a.end == b.end);
+      REQUIRE(a.at_begin == b.at_begin);
+      REQUIRE(a.at_end == b.at_end);
+      REQUIRE(a.kind == b.kind);
+    }
+  }
+  CHECK(only_water > 20);
 }
 
 TEST_CASE("drops in the beam are Poisson in number, and give back the mean of their medium") {

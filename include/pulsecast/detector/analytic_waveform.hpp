@@ -235,6 +235,7 @@ class AnalyticWaveform {
         Sum middle = *this;
         middle.advance(to, tau);
         double low = time, high = to, below = slope(), above = middle.slope();
+        int side = 0;  // end that was moved last
         for (double before = low; std::fabs(middle.time - before) > 1e-9 * tau;) {
           before = middle.time;
           middle = *this;
@@ -243,7 +244,8 @@ class AnalyticWaveform {
           const bool same = (there > 0) == (below > 0);
           (same ? low : high) = middle.time;
           (same ? below : above) = there;
-          (same ? above : below) *= 0.5;
+          if (side == (same ? 1 : 2)) (same ? above : below) *= 0.5;
+          side = same ? 1 : 2;
         }
         return middle;
       }

@@ -138,16 +138,18 @@ class FullWaveform {
     w.peaks.clear();
     w.echoes.clear();
     w.record.clear();
-    if constexpr (ideal)
-      if (std::same_as<Width, NoWidth> && s_.record_length == 0 && receiver_.none() && s_.timing <= EchoTiming::peak &&
-          heard.continuous.empty()) {
+    std::optional<OnlyPeak> only;
+    if constexpr (ideal) {
+      if (std::same_as<Width, NoWidth> && s_.record_length == 0 && receiver_.none() && s_.timing <= EchoTiming::peak && is_apart(heard)) {
         const PulseShape shape(laser.pulse_length, s_.shape_divisor);
         const SinglePeakGroup group(heard.reflections, shape, s_.sample_interval, w.group);
-        if (group.one() && detect(group, shape, w.echoes)) return {w.echoes, {}, 0};
+        if (group.one() && !heard.continuous.empty())
+          only = only_peak(group, shape, heard.continuous);
+        else if (group.one() && detect(group, shape, w.echoes))
+          return {w.echoes, {}, 0};
       }
-    std::optional<OnlyPeak> only;
-    if constexpr (!ideal && std::same_as<Width, NoWidth>) {
-      if (s_.record_length == 0 && s_.timing == EchoTiming::peak) only = receiver_.only_peak(s_, heard, reach_of(laser));
+    } else if constexpr (std::same_as<Width, NoWidth>) {
+      if (s_.record_length == 0 && s_.timing == EchoTiming::peak && is_apart(heard)) only = receiver_.only_peak(s_, heard, reach_of(laser));
       if (only && heard.continuous.empty()) {
         keep_only(only, laser, w.echoes);
         return {w.echoes, {}, 0};
@@ -242,20 +244,62 @@ class FullWaveform {
     only.reset();
   }
 
-  /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its peak. False if these
-  /// reach back before the last edge.
-  bool detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
+  /// True if a maximum of reflections that is farther from those of continuous returns than a pulse is an echo whatever these are.
+  [[nodiscard]] bool is_apart(const Heard& heard) const noexcept {
+    return heard.continuous.empty() ||
+           (s_.dead_time == 0 && s_.prominence == 0 && std::fmax(s_.window, s_.separation) <= heard.emitter.laser.pulse_length);
+  }
+
+  /// Samples near the peak of a group, from two before it on.
+  struct TopSamples {
+    double first;             ///< number of the first sample
+    std::array<double, 8> y;  ///< [W]
+  };
+  /// Takes those of a group; false if they reach back before the last edge.
+  [[nodiscard, gnu::always_inline]] bool sample(const SinglePeakGroup& group, const PulseShape& shape, TopSamples& top) const noexcept {
     const double per_tau = 1 / shape.tau;
     const double before = std::floor((group.last_edge() + group.peak() * shape.tau) / s_.sample_interval);  // last sample before the peak
     const double first = ((before - 2) * s_.sample_interval - group.last_edge()) * per_tau, step = s_.sample_interval * per_tau;
     if (!(first >= 0)) return false;
-    std::array<double, 8> y;  // samples from two before it on
-    for (std::size_t j = 0; j < y.size(); j += simd::lane_count)
-      simd::store(group.power(simd::generate([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), y[j]);
+    top.first = before - 2;
+    for (std::size_t j = 0; j < top.y.size(); j += simd::lane_count)
+      simd::store(group.power(simd::generate([&](std::size_t lane) { return first + static_cast<double>(j + lane) * step; })), top.y[j]);
+    return true;
+  }
+
+  /// Maximum of a group among continuous returns that only fall near it; none if they may rise there, or if it is on their flank.
+  [[nodiscard]] std::optional<OnlyPeak> only_peak(const SinglePeakGroup& group, const PulseShape& shape,
+                                                  std::span<const ContinuousReturn> continuous) const noexcept {
+    TopSamples top;
+    if (!sample(group, shape, top)) return {};
+    const detail::GammaIntegrals pulse(shape);
+    detail::ContinuousRises rises(continuous, pulse);
+    const auto time = [&](double j) { return (top.first + j) * s_.sample_interval; };
+    rises.pass(time(8));
+    if (!(rises.until() <= time(0) - pulse.end() && rises.next() >= time(8) + pulse.end())) return {};
+    detail::ContinuousSum sum(continuous, shape);
+    for (std::size_t j = 0; j < 6; ++j) {  // those that `vertex` may read
+      sum.advance(time(static_cast<double>(j)));
+      top.y[j] += sum.power();
+    }
+    const std::size_t k = top.y[3] > top.y[2] ? 3 : 2;
+    if (!(top.y[k] > top.y[k - 1] && top.y[k] >= top.y[k + 1])) return {};
+    const Vertex at = vertex(&top.y[k]);
+    const double peak = time(static_cast<double>(k) + at.offset);
+    const double mark = s_.timing == EchoTiming::true_range ? 2 * group.mean_range() / speed_of_light : peak;
+    return OnlyPeak{mark, at.height, &group.strongest((peak - group.last_edge()) / shape.tau)};
+  }
+
+  /// Appends the only echo of a group, if it reaches the threshold: equal to full sampling, from the samples near its peak. False if these
+  /// reach back before the last edge.
+  bool detect(const SinglePeakGroup& group, const PulseShape& shape, std::vector<Echo>& echoes) const noexcept {
+    TopSamples samples;
+    if (!sample(group, shape, samples)) return false;
+    const auto& y = samples.y;
     const std::size_t top = y[3] > y[2] ? 3 : 2;
     const auto [offset, height] = vertex(&y[top]);
     if (height < s_.threshold) return true;
-    const double time = (before - 2 + static_cast<double>(top) + offset) * s_.sample_interval;
+    const double time = (samples.first + static_cast<double>(top) + offset) * s_.sample_interval;
     const Echo echo = group.echo(time, height, s_.timing);
     echoes.push_back(echo);
     return true;

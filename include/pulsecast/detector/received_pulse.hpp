@@ -47,8 +47,9 @@ class ReceivedPulse {
     for (std::size_t q = 0; q < phases_ + 3; ++q)
       for (std::size_t k = 0; k < stride_; ++k)
         if (const std::size_t i = k * phases_ + q; i > 0) rows_[q * stride_ + k] = value(i - 1) / gain_;
-    integrals_.resize(count_ * phases_ + 1);
-    for (std::size_t i = 0; i + 1 < integrals_.size(); ++i) integrals_[i + 1] = until(i, 1);
+    points_.resize(count_ * phases_ + 1);
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i].value = value(i) / gain_;
+    for (std::size_t i = 0; i + 1 < points_.size(); ++i) points_[i + 1].integrals = until(i, 1);
   }
 
   /// Time of the table's first value since the peak of the pulse before the low-pass [s].
@@ -74,7 +75,7 @@ class ReceivedPulse {
   [[nodiscard]] detail::PulseIntegrals until(double time) const noexcept {
     const double place = (time - begin_) / step_;
     if (!(place > 0)) return {};
-    if (!(place < static_cast<double>(count_ * phases_))) return integrals_.back();
+    if (!(place < static_cast<double>(count_ * phases_))) return points_.back().integrals;
     const auto i = static_cast<std::size_t>(place);
     return until(i, place - static_cast<double>(i));
   }
@@ -107,10 +108,10 @@ class ReceivedPulse {
  private:
   /// Integrals up to a share x of the way from value i to the next.
   [[nodiscard]] detail::PulseIntegrals until(std::size_t i, double x) const noexcept {
-    const double* const value = rows_.data() + (i % phases_ + 1) * stride_ + i / phases_;
-    const double from = value[0], rise = value[stride_] - from, time = begin_ + static_cast<double>(i) * step_;
-    const double zeroth = step_ * x * (from + 0.5 * x * rise), first = step_ * step_ * x * x * (0.5 * from + x / 3 * rise);
-    return {integrals_[i].zeroth + zeroth, integrals_[i].first + time * zeroth + first};
+    const auto& [before, from] = points_[i];
+    const double rise = points_[i + 1].value - from, time = begin_ + static_cast<double>(i) * step_, way = step_ * x;
+    const double zeroth = way * (from + 0.5 * x * rise), first = way * way * (0.5 * from + 1.0 / 3 * x * rise);
+    return {before.zeroth + zeroth, before.first + time * zeroth + first};
   }
 
   static double concave_about(const std::vector<double>& values, std::size_t top) noexcept {
@@ -143,7 +144,12 @@ class ReceivedPulse {
 
   double interval_, step_ = 0, begin_ = 0, gain_ = 1, peak_ = 0, concave_ = 0, width_ = 0;
   std::size_t phases_ = 1, count_ = 0, stride_ = 0;
-  std::vector<detail::PulseIntegrals> integrals_;  ///< up to each value of the table
+  /// Value of the table.
+  struct Point {
+    detail::PulseIntegrals integrals{};  ///< up to there
+    double value = 0;
+  };
+  std::vector<Point> points_;
   std::vector<double> rows_;  ///< value i of the table, from -1 on, is number (i + 1) / phases of row (i + 1) % phases, and of later rows
 };
 

@@ -5,19 +5,13 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 
 #include <pulsecast/base/require.hpp>
+#include <pulsecast/detector/detail/kept_returns.hpp>
 #include <pulsecast/detector/echo_timing.hpp>
 #include <pulsecast/detector/pulse_shape.hpp>
 
 namespace PULSECAST_NAMESPACE {
-
-/// Returns that are kept where a pulse has more than an instrument reports.
-enum class KeptReturns : std::uint8_t {
-  first,      ///< the nearest; those of the air only where there is room, so that no target is lost to fog or rain
-  strongest,  ///< those of the greatest amplitude; the nearest of equals
-};
 
 /// Settings of the waveform detectors. All times are two-way.
 ///

@@ -89,6 +89,7 @@ def test_settings_are_plain_objects(survey):
 @pytest.mark.parametrize(("spoil", "says"), [
     (lambda s: setattr(s.legs[1].platform, "speed", "fast"), r"SurveySettings\.legs\[1\]\.platform\.speed: expected a number, not 'fast'"),
     (lambda s: setattr(s.platform, "kind", "plane"), "SurveySettings.platform.kind: expected 'stationary' or .*'interpolated', not 'plane'"),
+    (lambda s: setattr(s.scanner.channels[0], "returns_kept", "last"), "returns_kept: expected 'first' or 'strongest', not 'last'"),
     (lambda s: setattr(s.scanner.channels[0], "optic", 3), "optic: expected OscillatingOptic or .* not 3"),
     (lambda s: setattr(s.legs[0].platform, "position", (1, 2)), "position: expected a list of 3"),
     (lambda s: setattr(s.legs[0].platform, "speed", True), "speed: expected a number, not True"),

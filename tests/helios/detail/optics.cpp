@@ -290,6 +290,9 @@ TEST_CASE("echoes are sought in both ways of light, as documents count one") {
   CHECK(survey_waveform(c, 1e-6).record_length == relative(20e-9, 1e-9));
   CHECK(survey_waveform(c, 0).record_length == 0);
   CHECK(survey_waveform(c).returns_max == 4);
+  CHECK(survey_waveform(c).returns_kept == KeptReturns::first);
+  c.returns_kept = KeptReturns::strongest;
+  CHECK(survey_waveform(c).returns_kept == KeptReturns::strongest);
 }
 
 }  // namespace

@@ -142,6 +142,7 @@ TEST_CASE("channels that differ in any property of their receivers share none") 
   CHECK_FALSE(share([](ChannelSettings& c) { c.range_min += 1; }));
   CHECK_FALSE(share([](ChannelSettings& c) { c.range_max = 7; }));
   CHECK_FALSE(share([](ChannelSettings& c) { c.returns_max += 1; }));
+  CHECK_FALSE(share([](ChannelSettings& c) { c.returns_kept = KeptReturns::strongest; }));
   CHECK_FALSE(share([](ChannelSettings& c) { c.received_power_min += 1; }));
   CHECK_FALSE(share([](ChannelSettings& c) { c.pulse_length *= 2; }));
   CHECK_FALSE(share([](ChannelSettings& c) { c.waveform.rings += 1; }));

@@ -147,8 +147,9 @@ class ContinuousRises {
       const ContinuousReturn& r = returns_[next_];
       const double late = next_ == 0 ? pulse_.peak() : pulse_.end() / 3;  // after others, as their light may fall faster
       until_ = std::max(until_, time_of(r.at_end > r.at_begin ? r.end : r.begin) + late);
-      do ++next_;
-      while (next_ < returns_.size() && goes_on(returns_[next_ - 1], returns_[next_]));
+      const ContinuousReturn *last = &r, *const end = returns_.data() + returns_.size();
+      while (last + 1 != end && goes_on(last[0], last[1])) ++last;
+      next_ = static_cast<std::size_t>(last - returns_.data()) + 1;
     }
   }
 
@@ -198,16 +199,17 @@ class ContinuousRises {
   /// Waveform at a time [s], of the returns from a number on [W].
   [[nodiscard]] double at(double time, std::size_t from) const noexcept {
     const double begun = 0.5 * speed_of_light * (time - pulse_.begin()), passed = 0.5 * speed_of_light * (time - pulse_.end());
-    double sum = 0, known = -infinity;
-    PulseIntegrals of_known;  // the end of a return is mostly the begin of the next
+    const double negligible = 1e-6 * pulse_.end() * speed_of_light;
+    double sum = 0, known = -infinity;  // range
+    PulseIntegrals of_known;            // the end of a return is mostly the begin of the next
     for (const ContinuousReturn& r : returns_.subspan(from)) {
       if (r.begin >= begun) break;
       if (r.end <= passed) continue;
-      const double age = time - time_of(r.begin), young = time - time_of(r.end);
-      const PulseIntegrals old = age == known ? of_known : pulse_.until(age);
-      known = young;
+      const PulseIntegrals old = r.begin == known ? of_known : pulse_.until(time - time_of(r.begin));
+      const double young = time - time_of(r.end);
+      known = r.end;
       of_known = pulse_.until(young);
-      const double slope = -slope_of(r, 1e-6 * pulse_.end() * speed_of_light) * 0.5 * speed_of_light;  // by the age of the light
+      const double slope = -slope_of(r, negligible) * 0.5 * speed_of_light;  // by the age of the light
       const double origin = slope != 0 ? r.at_end - slope * young : 0.5 * (r.at_begin + r.at_end);
       sum += origin * (old.zeroth - of_known.zeroth) + slope * (old.first - of_known.first);
     }

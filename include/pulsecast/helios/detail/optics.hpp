@@ -310,6 +310,7 @@ namespace detail {
   }
   out.window = 2 * s.window.value_or(channel.pulse_length / 4);
   out.returns_max = channel.returns_max > 0 ? static_cast<std::size_t>(std::min(channel.returns_max, 255)) : 255;
+  out.returns_kept = channel.returns_kept;
   out.record_length = s.duration_max > 0 ? std::min(record_length, 2 * s.duration_max) : record_length;
   return out;
 }

@@ -23,8 +23,8 @@ namespace PULSECAST_NAMESPACE::helios {
 [[nodiscard]] inline bool same_receiver(const ChannelSettings& a, const ChannelSettings& b) {
   return a.receiver_diameter == b.receiver_diameter && a.efficiency == b.efficiency && a.visibility == b.visibility &&
          a.accuracy == b.accuracy && a.errors.range_noise == b.errors.range_noise && a.range_min == b.range_min &&
-         a.range_max == b.range_max && a.returns_max == b.returns_max && a.received_power_min == b.received_power_min &&
-         a.pulse_length == b.pulse_length && a.waveform == b.waveform;
+         a.range_max == b.range_max && a.returns_max == b.returns_max && a.returns_kept == b.returns_kept &&
+         a.received_power_min == b.received_power_min && a.pulse_length == b.pulse_length && a.waveform == b.waveform;
 }
 
 /// Groups of channels with equal receivers. Their indices are those in `Emitter::receiver`.

@@ -41,7 +41,6 @@ class MediaPassage {
         particles_(light, ledger) {
     in_air_.begin(light.budget.aperture_radius(), pulse_, light.gate);
     in_water_.begin(light.budget.aperture_radius(), pulse_, light.gate);
-    returns_.clear();
   }
 
   /// Names the body that light enters.
@@ -137,14 +136,16 @@ class MediaPassage {
 
   /// Puts what media sent back in order of range.
   [[nodiscard]] std::span<const ContinuousReturn> close() noexcept {
-    in_air_.append_to(returns_, ReflectionKind::air);
-    const std::size_t from_air = returns_.size();
-    in_water_.append_to(returns_, ReflectionKind::water);
-    if (from_air > 0 && returns_.size() > from_air)
-      std::sort(returns_.begin(), returns_.end(), [](const ContinuousReturn& one, const ContinuousReturn& other) {
+    const std::size_t from_air = in_air_.write_to(returns_, 0, ReflectionKind::air);
+    const std::size_t count = in_water_.write_to(returns_, from_air, ReflectionKind::water);
+    const std::span<ContinuousReturn> all = std::span(returns_).first(count);
+    if (count == from_air) return all;
+    in_air_.forget();
+    if (from_air > 0)
+      std::sort(all.begin(), all.end(), [](const ContinuousReturn& one, const ContinuousReturn& other) {
         return one.begin != other.begin ? one.begin < other.begin : one.end < other.end;
       });
-    return returns_;
+    return all;
   }
 
  private:
@@ -228,7 +229,7 @@ class MediaPassage {
     }
     to = first_not(to, [&](std::size_t k) { return node(k + 1) - node(k) <= most; });
     if (!(to > cell)) return false;
-    ledger_.receive(profile.add(cell, to, way.both, known));
+    ledger_.receive(profile.add(cell, to, way.both));
     cell = to;
     at = profile.end_of(cell - 1);
     both = way.both * known.left[cell];

@@ -50,6 +50,8 @@ class VolumeProfile {
   [[nodiscard]] Straight& straight(const LinkBudget& budget, double extinction, double backscatter) noexcept {
     Straight& s = straight_;
     if (!(s.extinction == extinction && s.backscatter == backscatter && s.budget == budget)) {
+      part_lit();
+      forget();
       s.budget = budget;
       s.extinction = extinction;
       s.backscatter = backscatter;
@@ -64,6 +66,7 @@ class VolumeProfile {
     if (aperture != aperture_ || pulse != pulse_) {
       for (std::size_t k = 0; k < cells; ++k) nodes_[k + 1] = nodes_[k] + step(std::hypot(nodes_[k], aperture), pulse);
       straight_.known = 0;
+      forget();
     }
     aperture_ = aperture;
     pulse_ = pulse;
@@ -71,6 +74,7 @@ class VolumeProfile {
     crowded_ = false;
     first_ = cells;
     end_ = 0;
+    lit_ = {};
   }
 
   /// Number of the cell that a range is in.
@@ -89,13 +93,19 @@ class VolumeProfile {
     ends_[cell] += at_end;
     return 0.5 * (at_begin + at_end) * (nodes_[cell + 1] - nodes_[cell]);
   }
-  /// Adds to whole cells a share of known light. Returns the power [W].
-  double add(std::size_t first, std::size_t end, double share, const Straight& light) noexcept {
-    add(first, 0, 0);
-    add(end - 1, 0, 0);
-    for (std::size_t k = first; k < end; ++k) begins_[k] += share * light.density[k];
-    for (std::size_t k = first; k < end; ++k) ends_[k] += share * light.density[k + 1];
-    return share * (light.power[end] - light.power[first]);
+  /// Adds to whole cells a share of light that is known. Returns the power [W].
+  double add(std::size_t first, std::size_t end, double share) noexcept {
+    while (first < end && !(straight_.power[first + 1] > straight_.power[first])) ++first;
+    if (!(first < end && share > 0)) return 0;
+    if (lit_.share == 0) lit_ = {first, end, 0};
+    if (first != lit_.first) {
+      add_known(first, end, share);
+    } else {
+      add_known(end, lit_.end, lit_.share);
+      add_known(lit_.end, end, share);
+      lit_ = {first, std::min(end, lit_.end), lit_.share + share};
+    }
+    return share * (straight_.power[end] - straight_.power[first]);
   }
   /// Adds a stretch of ranges within a cell [m]. Returns the power [W]. If there is no room, cells take the light of all such stretches.
   double add(double begin, double end, double at_begin, double at_end) noexcept {
@@ -112,12 +122,16 @@ class VolumeProfile {
     return part.power();
   }
 
-  /// Appends the returns in order of range; there is room for `size_max()`.
-  void append_to(std::vector<ContinuousReturn>& returns, ReflectionKind kind) noexcept {
+  /// Writes the returns in order of range, from a number on; there is room for `size_max()` more. Returns the number after the last. Those
+  /// of known light are there already if the last pulse had as much of it, and nothing else wrote to them.
+  std::size_t write_to(std::vector<ContinuousReturn>& returns, std::size_t count, ReflectionKind kind) noexcept {
+    if (parts_.empty() && first_ >= end_ && lit_.share == 0) return count;
     const auto nearer = [](const Part& a, const Part& b) { return a.from < b.from; };
     if (!std::is_sorted(parts_.begin(), parts_.end(), nearer)) std::sort(parts_.begin(), parts_.end(), nearer);
-    std::size_t count = returns.size();
-    returns.resize(count + parts_.size() + (end_ > first_ ? end_ - first_ : 0) + 1);
+    const auto parts_from = [&](double range) { return std::lower_bound(parts_.begin(), parts_.end(), Part{range, 0, 0, 0}, nearer); };
+    if ((first_ < end_ && first_ < lit_.end) || parts_from(nodes_[lit_.first]) != parts_from(nodes_[lit_.end])) part_lit();
+    const std::size_t most = count + parts_.size() + (end_ > first_ ? end_ - first_ : 0) + lit_.end - lit_.first + 1;
+    if (returns.size() < most) returns.resize(most);
     const auto append = [&](double from, double to, double at_begin, double at_end) noexcept {
       returns[count] = {from, to, at_begin, at_end, object, classification, kind};
       count += from < to && at_begin + at_end > 0 ? 1 : 0;
@@ -126,6 +140,18 @@ class VolumeProfile {
     const auto append_parts = [&](double before) noexcept {
       for (; part != parts_.end() && part->from < before; ++part) append(part->from, part->to, part->at_begin, part->at_end);
     };
+    if (lit_.share > 0) {
+      append_parts(nodes_[lit_.first]);
+      if (count != written_at_ || lit_.first != written_.first || lit_.share != written_.share) written_.end = lit_.first;
+      written_at_ = count;
+      const auto density = [&](std::size_t k) noexcept { return lit_.share * straight_.density[k]; };
+      for (std::size_t k = written_.end; k < lit_.end; ++k)
+        returns[count + k - lit_.first] = {nodes_[k], nodes_[k + 1], density(k), density(k + 1), object, classification, kind};
+      written_ = lit_;
+      count += lit_.end - lit_.first;
+    } else {
+      forget();
+    }
     for (std::size_t k = first_; k < end_; ++k) {
       append_parts(nodes_[k]);
       if (nodes_[k] >= gate_.near && nodes_[k + 1] <= gate_.far) {
@@ -137,8 +163,10 @@ class VolumeProfile {
       append(from, to, denser * begins_[k], denser * ends_[k]);
     }
     append_parts(infinity);
-    returns.resize(count);
+    return count;
   }
+  /// Returns that were written are no longer there.
+  void forget() noexcept { written_ = {}; }
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -147,6 +175,22 @@ class VolumeProfile {
     double from, to, at_begin, at_end;
     [[nodiscard]] double power() const noexcept { return 0.5 * (at_begin + at_end) * (to - from); }
   };
+
+  /// Known light in whole cells, of a share.
+  struct Lit {
+    std::size_t first = 0, end = 0;
+    double share = 0;
+  };
+
+  /// Adds a share of known light to cells, one by one.
+  void add_known(std::size_t first, std::size_t end, double share) noexcept {
+    for (std::size_t k = first; k < end; ++k) add(k, share * straight_.density[k], share * straight_.density[k + 1]);
+  }
+  /// Adds the known light to its cells.
+  void part_lit() noexcept {
+    add_known(lit_.first, lit_.end, lit_.share);
+    lit_ = {};
+  }
 
   /// Spreads the light of a stretch over its cell.
   void spread(const Part& part) noexcept {
@@ -161,6 +205,8 @@ class VolumeProfile {
   std::array<double, cells> begins_{}, ends_{};  ///< densities at the ends of cells [W/m]
   std::size_t first_ = cells, end_ = 0;          ///< cells in use
   Straight straight_{};
+  Lit lit_{}, written_{};       ///< of this pulse, beside the densities; as the returns were written last
+  std::size_t written_at_ = 0;  ///< number of the first return that was written so
   std::vector<Part> parts_;
   bool crowded_ = false;
 };

@@ -150,6 +150,14 @@ TEST_CASE("a beam quality of 1 says nothing, and another one holds for all chann
   CHECK_FALSE(settings.channels.at(1).beam_quality);
 }
 
+TEST_CASE("which returns are kept is a word of the scanner, or of a channel") {
+  const ScannerSettings settings = from<ScannerSettings>(
+      scanner("optics=\"line\" keptReturns=\"Strongest\"", "<channels><channel/><channel keptReturns=\"first\"/></channels>"));
+  CHECK(settings.channels.at(0).returns_kept == KeptReturns::strongest);
+  CHECK(settings.channels.at(1).returns_kept == KeptReturns::first);
+  CHECK(contains(told<ScannerSettings>(scanner("optics=\"line\" keptReturns=\"strong\"")), "did you mean 'strongest'?"));
+}
+
 TEST_CASE("a channel with other optics than its scanner begins anew") {
   const ScannerSettings settings =
       from<ScannerSettings>(scanner("optics=\"risley\" angle1_deg=\"5\"", "<channels><channel optics=\"line\"/><channel/></channels>"));

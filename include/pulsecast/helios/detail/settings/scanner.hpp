@@ -13,9 +13,12 @@
 #include <pulsecast/base/require.hpp>
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/base/vector.hpp>
+#include <pulsecast/detector/waveform_settings.hpp>
 #include <pulsecast/helios/detail/settings/mount.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
+
+using pulsecast::KeptReturns;
 
 /// Oscillating mirror: `optics="oscillating"`.
 struct OscillatingOptic {
@@ -114,6 +117,7 @@ struct ChannelSettings {
   double range_min = 0;                                        ///< `rangeMin_m` [m]
   double range_max = std::numeric_limits<double>::infinity();  ///< `rangeMax_m` [m]
   int returns_max = 0;                                         ///< per pulse; 0: no limit. `maxNOR`
+  KeptReturns returns_kept = KeptReturns::first;               ///< which ones, of more; `keptReturns`
   double received_power_min = 1e-4 / 1e9;                      ///< per echo; `receivedEnergyMin_W`, which is in nW [W]
   FullWaveformSettings waveform{};                             ///< `<FWFSettings>`
   ErrorFormulas errors{};                                      ///< `<deflectionError>`...

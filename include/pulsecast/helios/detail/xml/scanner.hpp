@@ -188,6 +188,7 @@ void fields(Io& io, Of<Io, ChannelSettings>& channel) {
   io.number("atmosphericVisibility_km", channel.visibility, units::kilometre, 1e-3, 1e5);
   detector_fields(io, channel);
   io.whole("maxNOR", channel.returns_max, 0, 65535);
+  io.choice("keptReturns", channel.returns_kept, {{"first", KeptReturns::first}, {"strongest", KeptReturns::strongest}});
   io.number("receivedEnergyMin_W", channel.received_power_min, units::nanowatt, 0, 1e12);
   io.child("FWFSettings", [&](auto& inner) { fields(inner, channel.waveform); });
   fields(io, channel.errors);
