@@ -130,8 +130,8 @@ double student_t(double freedom) {
   return x + g1 / freedom + g2 / (freedom * freedom);
 }
 
-/// Regression of costs on the numbers of points and of lines: weighted least squares, so that the sum of the costs is met. Source:
-/// Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, section 7.3, and 6.6 for the variance.
+/// Regression of costs on the numbers of points and of pulses that count: weighted least squares, which meets the sum of the costs. Source:
+/// Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, chapter 6, the regression estimator.
 WritingCost regression(std::span<const Written> all, double Written::*cost, double fixed) {
   double pp = 0, pl = 0, ll = 0, pc = 0, lc = 0;
   for (const Written& w : all) {
@@ -330,5 +330,5 @@ Estimate TrialRun::memory(double of_run, const Options& options) const {
   const auto memory = [&](double all, double grown, double pages) {
     return std::max(all * loading, all * base + grown * later * growth + pages * after.file);
   };
-  return {memory(1, 1, 0.1), memory(0.98, alone ? 0.93 : 0.75, 0), memory(1.03, (alone ? 1.07 : 1.35) * some, 0.25)};
+  return {memory(1, 1, 0.1), memory(0.98, alone ? 0.93 : 0.65, 0), memory(1.03, (alone ? 1.07 : 1.35) * some, 0.25)};
 }
