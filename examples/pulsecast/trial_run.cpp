@@ -321,7 +321,8 @@ TrialRun trial_run(const Simulation& simulation, const Options& options, const s
 Estimate TrialRun::memory(double of_run, const Options& options) const {
   if (!(after.most > 0)) return {loading, loading, std::numeric_limits<double>::infinity()};
   const double growth = after.most - after.file - before.own, base = before.own + before.file;
-  const double some = !complete && most_points > 0 ? std::max(1.0, std::min(of_run, static_cast<double>(filling)) / most_points) : 1;
+  // With buffers that are not full yet, memory grows at most as the points do.
+  const double more = !complete && most_points > 0 ? std::max(1.0, std::min(of_run, static_cast<double>(filling)) / most_points) : 1;
   // Runs differ in the pages of libraries in use, the order of work of their threads and what the heap of each thread keeps, which grows
   // with longer runs. Source of the figures: 37 surveys of 200 to 6 million points by bench/forecast.sh, in LAS, LAZ, COPC and text, on 1
   // to 8 threads.
@@ -330,5 +331,7 @@ Estimate TrialRun::memory(double of_run, const Options& options) const {
   const auto memory = [&](double all, double grown, double pages) {
     return std::max(all * loading, all * base + grown * later * growth + pages * after.file);
   };
-  return {memory(1, 1, 0.1), memory(0.98, alone ? 0.93 : 0.65, 0), memory(1.03, (alone ? 1.07 : 1.35) * some, 0.25)};
+  const double middle = std::sqrt(more);
+  return {memory(1, middle, 0.1), memory(0.98, alone ? 0.93 : 0.65 * std::min(middle, 1.4), 0),
+          memory(1.03, std::max(alone ? 1.1 : 1.35, 1.1 * more), 0.25)};
 }
