@@ -3,21 +3,12 @@
 
 #include "forecast.hpp"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <optional>
-#include <random>
-#include <set>
 #include <span>
-#include <thread>
 #include <utility>
 
 #include <pulsecast/base/parallel.hpp>
@@ -25,7 +16,6 @@
 
 #include "outputs.hpp"
 
-namespace fs = std::filesystem;
 using namespace pulsecast;
 using helios::CompiledSurvey;
 using helios::Receiving;
@@ -43,31 +33,36 @@ constexpr std::size_t kinds = 3;
 
 Kind kind_of(Fate fate) { return fate == Fate::blocked ? blocked : fate == Fate::missed ? missed : met; }
 
-/// Budget of processor time. Samples thus do not depend on other load.
-class Allowance {
- public:
-  Allowance(double seconds, double workers) : ticks_(seconds * workers * CLOCKS_PER_SEC) {}
-  [[nodiscard]] bool left() const { return static_cast<double>(std::clock() - start_) < ticks_; }
-
- private:
-  std::clock_t start_ = std::clock();
-  double ticks_;
-};
-
 // ------------------------------------------------------------------------------------------------------------------ slots
 
 /// Results of single slots, spread over the whole survey.
 struct Census {
   std::array<double, kinds> slots{};  ///< number of slots in the survey, by kind
   Estimate points{};
-  double empty = 0;                                    ///< pulses of the survey without a point
+  Estimate lines{};                                    ///< pulses that count beside the points
   std::array<std::vector<PulseIndex>, kinds> found{};  ///< sampled slots in order
   std::uint64_t sampled = 0;
 };
 
+/// Total over a survey of `size` slots from a sample in order. The variance is from differences of neighbours. Source: Cochran 1977,
+/// sections 5.3 and 5A.12.
+Estimate total_of(const std::vector<double>& sample, std::uint64_t size) {
+  if (sample.empty()) return {};
+  double sum = 0, differences = 0;
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    sum += sample[i];
+    if (i > 0) differences += std::pow(sample[i] - sample[i - 1], 2);
+  }
+  const double n = static_cast<double>(sample.size()), all = static_cast<double>(size), each = all / n, value = sum * each;
+  const double deviation = n < 2 ? 0 : each * std::sqrt((1 - n / all) * n * differences / (2 * (n - 1)));
+  // Upper limit after n trials without success: 3 in n. Source: Hanley & Lippman-Hand 1983.
+  const double none = sample.size() == size ? 0 : 3 * each;
+  return {value, std::max(sum, value - 2 * deviation), sum > 0 ? value + 2 * deviation : none};
+}
+
 /// Stratified random sample: one slot from each of many equal strata. Rounds visit the strata, each spread over the whole survey. A small
-/// survey is counted in full. The variance is from differences of neighbours. Source: Cochran 1977, sections 5.3 and 5A.12.
-Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned threads, double workers) {
+/// survey is counted in full.
+Census take_census(const Simulation& simulation, PulseLines counted, std::uint64_t seed, unsigned threads, double workers) {
   constexpr std::uint64_t rounds = 64, most = rounds << 12;
   const std::uint64_t size = simulation.compiled().source.size(), strata = std::min(size, most),
                       each_round = (strata + rounds - 1) / rounds;
@@ -94,29 +89,20 @@ Census take_census(const Simulation& simulation, std::uint64_t seed, unsigned th
     }
   }
   Census census;
-  double sum = 0, differences = 0, before = 0;
-  std::array<double, kinds> of_kind{};
+  std::vector<double> echoes, lines;  // of the sampled slots in order
   for (std::uint64_t i = 0; i < strata; ++i) {
     if (!counts[i]) continue;
-    const double echoes = counts[i]->echoes;
     const Kind kind = kind_of(counts[i]->fate);
-    if (census.sampled > 0) differences += (echoes - before) * (echoes - before);
-    before = echoes;
-    sum += echoes;
-    if (kind != blocked && counts[i]->echoes == 0) ++census.empty;
-    ++census.sampled;
-    ++of_kind[kind];
+    echoes.push_back(counts[i]->echoes);
+    const bool counts_beside = counted == PulseLines::all || (counted == PulseLines::empty && counts[i]->echoes == 0);
+    lines.push_back(kind != blocked && counts_beside ? 1 : 0);
     census.found[kind].push_back(places[i]);
   }
-  if (census.sampled == 0) return census;
-  const double n = static_cast<double>(census.sampled), all = static_cast<double>(size), per_slot = all / n;
-  for (std::size_t k = 0; k < kinds; ++k) census.slots[k] = of_kind[k] * per_slot;
-  census.empty *= per_slot;
-  const double deviation = n < 2 ? 0 : per_slot * std::sqrt((1 - n / all) * n * differences / (2 * (n - 1)));
-  const double value = sum * per_slot;
-  // Upper limit after n trials without success: 3 in n. Source: Hanley & Lippman-Hand 1983.
-  const double none = census.sampled == size ? 0 : 3 * per_slot;
-  census.points = {value, std::max(sum, value - 2 * deviation), sum > 0 ? value + 2 * deviation : none};
+  census.sampled = echoes.size();
+  census.points = total_of(echoes, size);
+  census.lines = total_of(lines, size);
+  for (std::size_t k = 0; k < kinds && census.sampled > 0; ++k)
+    census.slots[k] = static_cast<double>(census.found[k].size()) * static_cast<double>(size) / static_cast<double>(census.sampled);
   return census;
 }
 
@@ -174,10 +160,6 @@ std::array<double, kinds> cost_of_kinds(std::span<const Sample> kinds_of, std::s
   return cost;
 }
 
-double bytes_of(const Sample& s) {
-  return static_cast<double>(std::span(s.shots).size_bytes() + std::span(s.echoes).size_bytes() + std::span(s.samples).size_bytes());
-}
-
 /// Sampling weights: number of blocks of the survey per block of a sample, by the kind of its first slot. Source: Horvitz & Thompson 1952.
 std::vector<double> weights_of(const Census& census, std::span<const Kind> begin_at) {
   std::array<double, kinds> number{};
@@ -191,135 +173,6 @@ double dot(const std::array<double, kinds>& a, const std::array<double, kinds>& 
   double sum = 0;
   for (std::size_t i = 0; i < kinds; ++i) sum += a[i] * b[i];
   return sum;
-}
-
-// ---------------------------------------------------------------------------------------------------------------- writing
-
-/// Cost of writing.
-struct Writing {
-  struct Cost {
-    double seconds = 0, bytes = 0;  ///< [s], [byte]
-  };
-  Cost point{};   ///< including its attributes
-  Cost empty{};   ///< pulse without a point; nothing if no sink reads it
-  Cost leg{};     ///< set of files, without points
-  Cost record{};  ///< record of a trajectory
-};
-
-/// Temporary folder; the destructor removes it.
-struct TemporaryFolder {
-  fs::path path =
-      fs::temp_directory_path() / ("pulsecast_forecast_" + std::to_string(getpid()) + '_' + std::to_string(std::random_device{}()));
-  TemporaryFolder() { fs::create_directories(path); }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
-
-/// True if the files of a leg have a place for pulses without points.
-bool writes_empty_shots(const Options& options) {
-  const TemporaryFolder folder;
-  return LegFiles(folder.path, "leg", options, 0, {}).reads_empty_shots();
-}
-
-/// Pulses of a sample with echoes, or those without.
-Sample only(const Sample& sample, bool with_echoes) {
-  Sample some;
-  some.echoes = sample.echoes;
-  some.samples = sample.samples;
-  some.sample_interval = sample.sample_interval;
-  for (const Shot& shot : sample.shots)
-    if ((shot.echoes > 0) == with_echoes) some.shots.push_back(shot);
-  return some;
-}
-
-Writing measure_writing(std::span<const Sample> samples, const CompiledSurvey& compiled, const Options& options) {
-  const auto processor = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
-  const double start_time = compiled.clock_start.value_or(302'400);  // half a GPS week, whose seconds have as many digits as most
-  // `what` returns its time of preparation [s], which does not count.
-  const auto write = [&](const auto& what) {
-    const TemporaryFolder folder;
-    const double start = processor();
-    LegFiles files(folder.path, "leg", options, start_time, {});
-    const double readying = what(files);
-    files.close();
-    Writing::Cost cost{processor() - start - readying, 0};
-    for (const auto& file : fs::directory_iterator(folder.path)) cost.bytes += static_cast<double>(file.file_size());
-    return cost;
-  };
-  const auto nothing = [](LegFiles&) { return 0.0; };
-  Writing w;
-  write(nothing);  // one-time costs
-  w.leg = write(nothing);
-  const auto each = [&](const Writing::Cost& all, std::uint64_t number) -> Writing::Cost {
-    if (number == 0) return {};
-    const double n = static_cast<double>(number);
-    return {std::max(0.0, all.seconds - w.leg.seconds) / n, std::max(0.0, all.bytes - w.leg.bytes) / n};
-  };
-  for (const bool with_echoes : {true, false}) {
-    std::uint64_t number = 0;
-    const Allowance allowance(0.4, 1);  // samples come in rounds, each spread over the survey
-    const Writing::Cost all = write([&](LegFiles& files) {
-      double readying = 0;
-      for (std::size_t k = 0; k < samples.size() && allowance.left(); ++k) {
-        const double start = processor();
-        const Sample some = only(samples[k], with_echoes);
-        readying += processor() - start;
-        number += with_echoes ? samples[k].echoes.size() : some.shots.size();
-        files(some.batch());
-      }
-      return readying;
-    });
-    (with_echoes ? w.point : w.empty) = each(all, number);
-  }
-  for (std::size_t k = 0; k < compiled.legs.size(); ++k) {
-    const CompiledSurvey::Leg& leg = compiled.legs[k];
-    if (!leg.active || !(leg.trajectory_interval > 0)) continue;
-    constexpr double some = 1000;
-    const double records = std::min(some, std::ceil(leg.duration.seconds() / leg.trajectory_interval));
-    const Writing::Cost all = write([&](LegFiles& files) {
-      files.add_trajectory(compiled.source.legs()[k], leg.start, leg.duration.seconds() / std::max(1.0, records));
-      return 0.0;
-    });
-    w.record = each(all, static_cast<std::uint64_t>(records) + 1);
-    break;
-  }
-  return w;
-}
-
-/// Number of records in all trajectories.
-double records_of(const CompiledSurvey& compiled) {
-  double sum = 0;
-  for (const auto& leg : compiled.legs)
-    if (leg.active && leg.trajectory_interval > 0) sum += std::ceil(leg.duration.seconds() / leg.trajectory_interval) + 1;
-  return sum;
-}
-
-/// Number of sets of files: one per leg or strip.
-double files_of(const CompiledSurvey& compiled) {
-  std::set<std::string> strips;
-  double legs = 0;
-  for (const auto& leg : compiled.legs)
-    if (leg.active && !(leg.strip && !strips.insert(*leg.strip).second)) ++legs;
-  return legs;
-}
-
-// ----------------------------------------------------------------------------------------------------------------- memory
-
-double resident_now() {
-  std::ifstream in("/proc/self/statm");
-  double pages = 0, resident = 0;
-  in >> pages >> resident;
-  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
-double resident_at_most() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024;  // KiB on Linux. Source: getrusage(2)
 }
 
 // ----------------------------------------------------------------------------------------------------------------- errors
@@ -383,13 +236,18 @@ class Forecaster {
         threads_(thread_count(options.threads)),
         workers_(std::min(threads_, thread_count(0))),
         loading_(loading),
-        resident_(resident_now()),
-        peak_(resident_at_most()),
-        census_(take_census(simulation, seed, threads_, workers_)) {
+        channels_(file_channels(options, survey)),
+        lines_(pulse_lines(options, channels_)),
+        trial_(trial_run(simulation, options, channels_)),
+        census_(take_census(simulation, lines_, seed, threads_, workers_)) {
     for (const helios::ChannelSettings& channel : survey_.scanner.channels) {
       pulse_length_ = std::min(pulse_length_, channel.pulse_length);
       rings_ = std::max(rings_, channel.waveform.rings);
       bin_size_ = std::min(bin_size_, channel.waveform.bin_size);
+    }
+    if (trial_.complete) {
+      census_.points = {trial_.points, trial_.points, trial_.points};
+      census_.lines = {trial_.lines, trial_.lines, trial_.lines};
     }
     finest_ = {.rings = std::clamp(2 * rings_, 26, 100), .bin_size = pulse_length_ / 128, .ideal = true};
   }
@@ -417,13 +275,12 @@ class Forecaster {
     constexpr std::uint64_t max_rounds = 48;
     std::vector<Sample> samples;
     std::vector<Kind> begin_at;
-    const bool empty_shots = writes_empty_shots(options_);
     const Allowance allowance(1.0, workers_);
     for (std::uint64_t round = 0; round < max_rounds && (round == 0 || allowance.left()); ++round)
       for (const Kind kind : {met, missed, blocked}) {
         const std::uint64_t each = kind == met ? 16 : 4;
         std::vector<SampleBlock> some = blocks(kind, round * each, (round + 1) * each, 128, 896);
-        for (SampleBlock& block : some) block.empty_shots = empty_shots;
+        for (SampleBlock& block : some) block.empty_shots = lines_ != PulseLines::none;
         for (Sample& sample : simulation_.sample(some, threads_)) {
           samples.push_back(std::move(sample));
           begin_at.push_back(kind);
@@ -431,22 +288,30 @@ class Forecaster {
       }
     const std::vector<double> weights = weights_of(census_, begin_at);
     const ByKind cost = cost_of_kinds(samples, samples, weights);
-    double rest = 0, sum = 0, bytes = 0, squares = 0;
+    double rest = 0, sum = 0;
     sampled_ = census_.sampled;
     for (std::size_t b = 0; b < samples.size(); ++b) {
       const Sample& sample = samples[b];
       rest += std::pow(weights[b] * (sample.seconds - dot(kinds_in(sample), cost)), 2);
       sum += weights[b] * sample.seconds;
-      const double chunk = bytes_of(sample) * 2048 / static_cast<double>(sample.counts.slots);
-      bytes += weights[b] * chunk;
-      squares += weights[b] * chunk * chunk;
       sampled_ += sample.counts.slots;
     }
-    chunk_ = bytes > 0 ? squares / bytes : 0;
     computing_ = std::max(0.0, dot(census_.slots, cost));
     met_cost_ = std::max({cost[met], cost[missed], 1e-8});
     unsure_ = sum > 0 ? 2 * std::sqrt(rest) / sum : 0;
-    writing_ = measure_writing(samples, compiled_, options_);
+    measure_writing();
+  }
+
+  /// Measures the cost of writing stretches that are spread over all results.
+  void measure_writing() {
+    std::vector<PulseIndex> results = census_.found[met], starts;
+    if (lines_ != PulseLines::none || results.empty())
+      results.insert(results.end(), census_.found[missed].begin(), census_.found[missed].end());
+    if (results.empty()) results = census_.found[blocked];
+    std::sort(results.begin(), results.end());
+    for (std::uint64_t k = 0; k < 24; ++k) starts.push_back(spread_over(results, k, uniform({.seed = seed_, .subray = 4})));
+    writing_ = writing_costs(simulation_, options_, channels_, starts);
+    if (trial_.complete) writing_.bytes.meet(trial_.bytes, trial_.points, trial_.lines);
   }
 
   /// Prepares the reference for other settings, with few enough pulses to try all settings in about a second.
@@ -533,29 +398,23 @@ class Forecaster {
 
   /// Estimates time, memory and files from the measurements.
   void entire(Forecast& f, double computing) const {
-    const double repetitions = simulation_.runs(), legs = files_of(compiled_), records = records_of(compiled_);
-    const auto bytes = [&](double points, double unsure) {
-      return repetitions * (unsure * (points * writing_.point.bytes + census_.empty * writing_.empty.bytes) + legs * writing_.leg.bytes +
-                            records * writing_.record.bytes);
-    };
+    const double repetitions = simulation_.runs();
     const auto seconds = [&](double points, double unsure) {
-      const double writing = points * writing_.point.seconds + census_.empty * writing_.empty.seconds;
-      const double alone = legs * writing_.leg.seconds + records * writing_.record.seconds;
+      const double writing = writing_.seconds.growing(points, census_.lines.value);
       // One thread writes at a time, while the others compute.
-      return repetitions * (loading_ + unsure * (alone + std::max(writing, (computing + writing) / workers_)));
+      return repetitions * (loading_ + unsure * (writing_.seconds.fixed + std::max(writing, (computing + writing) / workers_)));
     };
     const double unsure = std::hypot(0.1, unsure_);  // sampling misses some effects: 10 % uncertainty
     f.seconds = {seconds(f.points.value, 1), seconds(f.points.low, 1 - unsure), seconds(f.points.high, 1 + unsure)};
-    f.bytes = {bytes(f.points.value, 1), bytes(f.points.low, 0.99), bytes(f.points.high, 1.01)};
-    // Threads run ahead of the writer within the limits of `ReorderBuffer`, further if the writer is the bottleneck. Vectors grow to twice
-    // the needed capacity and keep it.
-    const double chunk = chunk_ + 1, always = 2 * threads_ + 2;
-    const double ahead = std::clamp(6.3e6 / chunk + threads_ + 1, always, 16 * always);
-    const double busy = computing > 0 ? writing_.point.seconds * f.points.value * workers_ / computing : 1;
-    const auto memory = [&](double chunks, double room) { return std::max(peak_, resident_ + chunks * chunk * room + 3e6); };
-    // A single thread writes before it continues.
-    const double few = threads_ == 1 ? 1 : threads_ + 2, waiting = threads_ == 1 ? 0 : std::clamp(busy - 0.5, 0.0, 1.0);
-    f.memory = {memory(few + waiting * (ahead - few), 1 + 0.75 * waiting), memory(few, 0.5), memory(threads_ == 1 ? 1 : ahead, 3)};
+    const WritingCost& bytes = writing_.bytes;
+    const double growing = bytes.growing(f.points.value, census_.lines.value), value = bytes.fixed + growing;
+    const auto margin = [&](double points, double lines) {
+      return std::sqrt(std::pow(bytes.unsure * growing, 2) + std::pow(bytes.point * (points - f.points.value), 2) +
+                       std::pow(bytes.line * (lines - census_.lines.value), 2));
+    };
+    f.bytes = {repetitions * value, repetitions * std::max(bytes.fixed, value - margin(f.points.low, census_.lines.low)),
+               repetitions * (value + margin(f.points.high, census_.lines.high))};
+    f.memory = trial_.memory(f.points.high, options_);
     for (double* end : {&f.points.value, &f.points.low, &f.points.high}) *end *= repetitions;
   }
 
@@ -579,16 +438,18 @@ class Forecaster {
   std::uint64_t seed_;
   unsigned threads_;
   double workers_;  ///< threads that run at the same time
-  double loading_, resident_, peak_;
+  double loading_;
+  std::vector<std::string> channels_;  ///< as of `file_channels`
+  PulseLines lines_;
+  TrialRun trial_;
   Census census_;
   double pulse_length_ = std::numeric_limits<double>::infinity(), bin_size_ = std::numeric_limits<double>::infinity();
   int rings_ = 1;
   Receiving finest_{};
   // with the survey's own settings
   double computing_ = 0, met_cost_ = 0, unsure_ = 0;
-  double chunk_ = 0;  ///< chunk of 2048 slots that an average byte belongs to [byte]
   std::uint64_t sampled_ = 0;
-  Writing writing_{};
+  WritingCosts writing_{};
   // reference for other settings
   std::vector<SampleBlock> blocks_, compared_;
   std::vector<Kind> kind_of_block_;

@@ -10,11 +10,7 @@
 #include <pulsecast/helios/simulation.hpp>
 
 #include "options.hpp"
-
-/// Estimate with limits that contain the true value 19 times in 20.
-struct Estimate {
-  double value = 0, low = 0, high = 0;
-};
+#include "trial_run.hpp"
 
 /// Forecast of a survey with certain settings.
 struct Forecast {

@@ -18,15 +18,17 @@
 #include <pulsecast/base/parallel.hpp>
 
 #include "forecast.hpp"
+#include "outputs.hpp"
 
 namespace {
 
 /// Three significant digits, without an exponent.
-std::string digits(double x) {
+std::string digits(double x, double (*rounded)(double) = std::nearbyint) {
   if (!std::isfinite(x)) return "unknown";
-  const int before = x == 0 ? 3 : static_cast<int>(std::floor(std::log10(std::fabs(x)))) + 1;
+  const int before = x == 0 ? 3 : static_cast<int>(std::floor(std::log10(std::fabs(x)))) + 1, after = std::clamp(3 - before, 0, 9);
+  const double unit = std::pow(10.0, after);
   std::ostringstream out;
-  out << std::fixed << std::setprecision(std::clamp(3 - before, 0, 9)) << x;
+  out << std::fixed << std::setprecision(after) << rounded(x * unit) / unit;
   return out.str();
 }
 
@@ -48,11 +50,11 @@ Unit bytes_unit(double x) { return unit_of(x, {{1e3, "kB"}, {1e6, "MB"}, {1e9, "
 Unit length_unit(double x) { return unit_of(x, {{1e-3, "mm"}, {1, "m"}}); }
 constexpr Unit one{1, ""}, percent{1e-2, "%"};
 
-/// `12.3 s (11.0 to 13.5)`
+/// `12.3 s (11.0 to 13.5)`; the interval is rounded outwards.
 std::string told(const Estimate& e, const Unit& unit) {
   if (!std::isfinite(e.high)) return "unknown";
-  return digits(e.value / unit.size) + (*unit.name ? " " : "") + unit.name + " (" + digits(e.low / unit.size) + " to " +
-         digits(e.high / unit.size) + ')';
+  return digits(e.value / unit.size) + (*unit.name ? " " : "") + unit.name + " (" + digits(e.low / unit.size, std::floor) + " to " +
+         digits(e.high / unit.size, std::ceil) + ')';
 }
 
 /// Chooses settings, with reasons.
@@ -196,7 +198,9 @@ bool forecast(const Options& options, const SurveyFile& file, const Loading& how
     std::cerr << "error: no leg is active: a forecast needs a leg with pulses\n";
     return false;
   }
-  const Forecasts found = forecasts_of(*simulation, file.survey, options, how.settings.seed, loading);
+  Options all = options;
+  take_columns(all, *simulation);
+  const Forecasts found = forecasts_of(*simulation, file.survey, all, how.settings.seed, loading);
   const SettingsChooser chooser(options, file.survey, found);
   chooser.print();
   if (options.verbose)

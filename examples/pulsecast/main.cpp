@@ -90,12 +90,6 @@ std::int64_t unix_time_of(const std::string& text) {
   return moment;
 }
 
-std::string prefix_of(const CompiledSurvey::Leg& leg) {
-  if (leg.strip) return "strip" + std::string(3 - std::min<std::size_t>(3, leg.strip->size()), '0') + *leg.strip;
-  const std::string number = std::to_string(leg.number);
-  return "leg" + std::string(3 - std::min<std::size_t>(3, number.size()), '0') + number;
-}
-
 Loading loading_of(const Options& o, const SurveyFile& file, std::uint64_t seed) {
   return {.settings = {.seed = seed,
                        .echo_width = o.echo_width,
@@ -126,7 +120,6 @@ class Session {
         pages_(options, file.survey),
         log_{.seed = seed},
         notes_(notes) {
-    options_.light_paths = options_.light_paths || survey_.scene.follows_light();
     if (options_.page && options_.resume) notes_.say("--page shows only the legs simulated now, not those of the earlier run");
   }
 
@@ -249,7 +242,7 @@ class Session {
         if (note_inputs(inputs)) log_.write(folder);
         tell_notes(simulation);
       }
-      take_columns(simulation);
+      take_columns(options_, simulation);
       all.add(play(simulation, folder, std::exchange(again, std::nullopt).has_value()));
       const fs::path done = folder;
       if (!all.complete) break;
@@ -261,13 +254,6 @@ class Session {
       if (ranks_.first()) RunLog::remove(done);
     }
     return all;
-  }
-
-  /// Takes what writers ask a scene for.
-  void take_columns(const Simulation& simulation) {
-    if (options_.colours) options_.point_colours = simulation.colours();
-    options_.attributes = std::make_shared<const ObjectAttributes>(simulation.attributes());
-    if (options_.attributes->empty()) options_.attributes.reset();
   }
 
   void tell_summary(const RunSummary& all, const std::string& traffic) const {
@@ -388,9 +374,7 @@ class Session {
     folders_.push_back(folder.string());
     const double start_time = log_.start_time + log_.run * simulation.compiled().source.duration().seconds();
     const CompiledSurvey& compiled = simulation.compiled();
-    std::vector<std::string> channels;
-    if (options_.split_by_channel && survey_.scanner.channels.size() > 1)
-      for (const auto& c : survey_.scanner.channels) channels.push_back(c.id.empty() ? std::to_string(channels.size()) : c.id);
+    const std::vector<std::string> channels = file_channels(options_, survey_);
 
     simulating = true;
     std::map<std::string, std::size_t> last;  // last leg of each prefix
@@ -508,6 +492,14 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
     std::cout << "1 pulse in " << stride << " of " << slots << ", " << summary.echoes << " points: " << path.string() << '\n';
 }
 
+/// Options of a run, with what the survey adds to them.
+Options settled_by(const SurveyFile& file, Options options) {
+  const bool has_reference = options.geojson || options.format == "las" || options.format.ends_with("laz");
+  if (!options.epsg && has_reference) options.epsg = reference_system_of(file.survey.scene);
+  options.light_paths = options.light_paths || file.survey.scene.follows_light();
+  return options;
+}
+
 int work(const Options& options, Ranks& ranks) {
   if (options.command != "run" && !ranks.first()) return success;  // other commands use one process
   Notes notes(options);
@@ -533,12 +525,10 @@ int work(const Options& options, Ranks& ranks) {
     preview(options, file, *seed, notes);
   } else if (options.command == "forecast") {
     (void)helios::check_without_scene(file.survey, file.leg_places);
-    return forecast(options, file, loading_of(options, file, *seed), notes) ? success : bad_input;
+    return forecast(settled_by(file, options), file, loading_of(options, file, *seed), notes) ? success : bad_input;
   } else {
     (void)helios::check_without_scene(file.survey, file.leg_places);  // before expensive work
-    Options settled = options;
-    const bool has_reference = options.geojson || options.format == "las" || options.format.ends_with("laz");
-    if (!options.epsg && has_reference) settled.epsg = reference_system_of(file.survey.scene);
+    Options settled = settled_by(file, options);
     if (ranks.count() > 1 && (options.page || options.live)) {
       settled.page = settled.live = false;
       if (ranks.first()) notes.say("--page and --live have no effect under mpirun: they need all points in one process");

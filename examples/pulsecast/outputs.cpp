@@ -3,6 +3,7 @@
 
 #include "outputs.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <system_error>
 #include <type_traits>
@@ -37,6 +38,25 @@ PointWriter point_writer(const fs::path& path, const Options& o, double start_ti
 }
 
 }  // namespace
+
+void take_columns(Options& o, const helios::Simulation& simulation) {
+  if (o.colours) o.point_colours = simulation.colours();
+  o.attributes = std::make_shared<const ObjectAttributes>(simulation.attributes());
+  if (o.attributes->empty()) o.attributes.reset();
+}
+
+std::vector<std::string> file_channels(const Options& o, const helios::SurveySettings& survey) {
+  std::vector<std::string> ids;
+  if (o.split_by_channel && survey.scanner.channels.size() > 1)
+    for (const auto& channel : survey.scanner.channels) ids.push_back(channel.id.empty() ? std::to_string(ids.size()) : channel.id);
+  return ids;
+}
+
+std::string prefix_of(const helios::CompiledSurvey::Leg& leg) {
+  if (leg.strip) return "strip" + std::string(3 - std::min<std::size_t>(3, leg.strip->size()), '0') + *leg.strip;
+  const std::string number = std::to_string(leg.number);
+  return "leg" + std::string(3 - std::min<std::size_t>(3, number.size()), '0') + number;
+}
 
 std::vector<fs::path> point_files(const fs::path& folder, const std::string& prefix, const Options& o,
                                   const std::vector<std::string>& channels) {

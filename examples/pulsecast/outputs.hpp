@@ -8,12 +8,21 @@
 #include <vector>
 
 #include <pulsecast/echo.hpp>
-#include <pulsecast/helios/survey.hpp>
+#include <pulsecast/helios/simulation.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/scene/raster.hpp>
 
 #include "options.hpp"
+
+/// Adds what the writers need to know of a loaded scene.
+void take_columns(Options& options, const pulsecast::helios::Simulation& simulation);
+
+/// Ids of the channels that have point files of their own; empty for one file.
+std::vector<std::string> file_channels(const Options& options, const pulsecast::helios::SurveySettings& survey);
+
+/// Prefix of the files of a leg, such as `leg000`, or of its strip.
+std::string prefix_of(const pulsecast::helios::CompiledSurvey::Leg& leg);
 
 /// Names of the point files of a prefix: one, or one per channel.
 std::vector<std::filesystem::path> point_files(const std::filesystem::path& folder, const std::string& prefix, const Options& options,

@@ -91,6 +91,22 @@ if(points EQUAL 0 OR value LESS least OR value GREATER most OR low GREATER value
   message(SEND_ERROR "a long survey has ${points} points, and was planned to have ${value} (${low} to ${high})")
 endif()
 
+# Points, memory and files of a run are within their intervals: with compressors on many threads, with an octree of points that waits on the
+# disk, and with a line of text for each pulse.
+file(READ ${FOLDER}/long.xml text)
+string(REGEX REPLACE "<swap>.*</swap>" "" text "${text}")  # the same scene in each run
+file(WRITE ${FOLDER}/alike.xml "${text}")
+set(table ${CMAKE_CURRENT_LIST_DIR}/../../bench/forecast.sh)
+foreach(how "laz;-j;8" "copc.laz;-j;2;--writePulse")
+  execute_process(COMMAND bash ${table} ${PROGRAM} alike.xml -- --assets ${folder} --seed 1 --format ${how}
+                  WORKING_DIRECTORY ${FOLDER} OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  string(REGEX MATCHALL ", in\\)" within "${text}")
+  list(LENGTH within number)
+  if(NOT number EQUAL 3)
+    message(SEND_ERROR "a forecast of ${how} is wrong:\n${text}")
+  endif()
+endforeach()
+
 # Applies the cheapest settings there are, and sets `out` to the rings of subrays that were chosen: by time, so it may be others each time.
 function(applied out)
   execute_process(COMMAND ${PROGRAM} forecast ${ARGN} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
