@@ -43,6 +43,7 @@
 #include "run_folder.hpp"
 #include "survey_files.hpp"
 #include "survey_inputs.hpp"
+#include "written_name.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -29,7 +28,7 @@
 #include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/output_file.hpp>
 
-#include "survey_inputs.hpp"
+#include "written_name.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;

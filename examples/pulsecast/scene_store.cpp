@@ -21,6 +21,7 @@
 #include <pulsecast/io/scene_cache.hpp>
 
 #include "survey_inputs.hpp"
+#include "written_name.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;

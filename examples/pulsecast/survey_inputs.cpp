@@ -65,28 +65,3 @@ std::string hex(std::uint64_t number) {
 }
 
 std::string hex(const Fingerprint& fingerprint) { return hex(fingerprint.high) + hex(fingerprint.low); }
-
-std::string written_name(const std::string& name) {
-  constexpr const char* digits = "0123456789abcdef";
-  std::string text;
-  for (const char letter : name) {
-    const auto c = static_cast<unsigned char>(letter);
-    if (c >= ' ' && c != 0x7f && c != '\\')
-      text += letter;
-    else
-      text.append("\\x").append({digits[c >> 4], digits[c & 15]});
-  }
-  return text;
-}
-
-std::string name_written(std::string_view text) {
-  std::string name;
-  for (; !text.empty(); text.remove_prefix(1)) {
-    unsigned c = 0;
-    const bool is_escape =
-        text.starts_with("\\x") && text.size() >= 4 && std::from_chars(text.data() + 2, text.data() + 4, c, 16).ptr == text.data() + 4;
-    name += is_escape ? static_cast<char>(c) : text.front();
-    if (is_escape) text.remove_prefix(3);
-  }
-  return name;
-}

@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -45,8 +44,3 @@ class SurveyInputs {
 [[nodiscard]] std::string hex(const pulsecast::io::Fingerprint& fingerprint);
 /// 16 digits.
 [[nodiscard]] std::string hex(std::uint64_t number);
-
-/// Name in the notation of logs and lists: `\x` and two digits for each control character and backslash.
-[[nodiscard]] std::string written_name(const std::string& name);
-/// Name in that notation, as it was.
-[[nodiscard]] std::string name_written(std::string_view text);
