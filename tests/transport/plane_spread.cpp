@@ -287,7 +287,10 @@ TEST_CASE("whatever the paint on a slope, its echo is where a hundred thousand r
   for (int k = 0; k < 150; ++k) {
     const Laser laser{.pulse_length = any.log_uniform(1e-9, 8e-9), .divergence = any.log_uniform(0.2e-3, 1e-3)};
     Slope slope{any.log_uniform(300, 3000), any.uniform(0, 80_deg), any.uniform(0, 2 * pi)};
-    slope.paint = edge(laser, any.uniform(0, 2 * pi), any.uniform(-1, 1), {any.uniform(0.1, 0.9), 2}, {any.uniform(0.02, 0.5), 11});
+    const Coat dark{any.uniform(0.02, 0.5), 11};  // one by one: compilers draw arguments in orders of their own
+    const Coat bright{any.uniform(0.1, 0.9), 2};
+    const double offset = any.uniform(-1, 1);
+    slope.paint = edge(laser, any.uniform(0, 2 * pi), offset, bright, dark);
     const Truth truth = truth_of(slope, laser);
     const Errors e =
         k % 2 == 0 ? errors_on(slope, laser, LatticeFootprint(19), truth) : errors_on(slope, laser, SunflowerFootprint(37), truth);
