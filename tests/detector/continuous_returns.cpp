@@ -21,6 +21,7 @@
 #include <pulsecast/scene/weather.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
+#include "support/detect.hpp"
 #include "support/light.hpp"
 
 /// Detectors that hear haze and the ground, against integrals of the lidar equation.
@@ -395,18 +396,7 @@ TEST_CASE("the shape of a wall's echo in haze deviates as by quadrature") {
     }
     return all;
   };
-  double top = 0, at = 0;
-  for (double t = -1e-9; t < 1e-9; t += 2e-12)
-    if (sum(t) > top) {
-      top = sum(t);
-      at = t;
-    }
-  double mean = 0;
-  const int n = 400;
-  for (int i = 0; i < n; ++i) {
-    const double t = pulse_length * (2 * (i + 0.5) / n - 1);
-    mean += std::fabs(sum(at + t) / top - shape(t)) / n;
-  }
+  const double mean = support::mean_distance(sum, shape, pulse_length, {.reach = 1e-9, .step = 2e-12, .count = 400});
   CHECK(1000 * mean > 15);
   CHECK(static_cast<double>(d.echoes[1].shape_deviation) == doctest::Approx(1000 * mean).epsilon(0.05));
   CHECK(d.echoes[0].shape_deviation > 100);  // the air begins, but does not end

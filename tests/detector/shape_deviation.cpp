@@ -47,19 +47,7 @@ double by_quadrature(double length) {
     for (int i = 0; i <= 40; ++i) all += pulse(t - 2 * length * (i / 40.0 - 0.5) / 299'792'458);
     return all;
   };
-  double top = 0, at = 0;
-  for (double t = -5e-9; t < 5e-9; t += 1e-13)
-    if (sum(t) > top) {
-      top = sum(t);
-      at = t;
-    }
-  double mean = 0;
-  constexpr int n = 4000;
-  for (int i = 0; i < n; ++i) {
-    const double t = 4e-9 * (2 * (i + 0.5) / n - 1);
-    mean += std::fabs(sum(at + t) / top - pulse(t)) / n;
-  }
-  return 1000 * mean;
+  return 1000 * support::mean_distance(sum, pulse, 4e-9, {.reach = 5e-9, .step = 1e-13, .count = 4000});
 }
 
 }  // namespace
