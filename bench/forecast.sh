@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: MIT
 
 # Holds what `pulsecast forecast` says against what runs come to, one after the other, in a table: points, memory and files with whether they
-# are `in` the interval or `OUT` of it. Times are without loading, and those of
-# runs are of the processors, by thread: they hardly depend on what else the machine does. Where writing takes longer than all else, as with
-# waveforms, threads wait for the one that writes, and that figure says too little: ask for one thread.
+# are `in` the interval or `OUT` of it. Times are without loading, and those of runs are of the processors, by thread: they hardly depend on
+# what else the machine does. Where writing takes longer than all else, as with waveforms, threads wait for the one that writes, and that
+# figure says too little: ask for one thread.
 # Usage: forecast.sh PROGRAM SURVEY.xml ... [-- OPTIONS], as in
 #   bench/forecast.sh build/release/examples/pulsecast benchmark/surveys/*.xml -- --assets . --format las --seed 1 --threads 2
 set -euo pipefail

@@ -238,7 +238,7 @@ class Forecaster {
         loading_(loading),
         channels_(file_channels(options, survey)),
         lines_(pulse_lines(options, channels_)),
-        trial_(trial_run(simulation, options, channels_)),
+        trial_(trial_run(simulation, options, channels_, lines_)),
         census_(take_census(simulation, lines_, seed, threads_, workers_)) {
     for (const helios::ChannelSettings& channel : survey_.scanner.channels) {
       pulse_length_ = std::min(pulse_length_, channel.pulse_length);
@@ -310,7 +310,7 @@ class Forecaster {
     if (results.empty()) results = census_.found[blocked];
     std::sort(results.begin(), results.end());
     for (std::uint64_t k = 0; k < 24; ++k) starts.push_back(spread_over(results, k, uniform({.seed = seed_, .subray = 4})));
-    writing_ = writing_costs(simulation_, options_, channels_, starts);
+    writing_ = writing_costs(simulation_, options_, channels_, lines_, starts);
     if (trial_.complete) writing_.bytes.meet(trial_.bytes, trial_.points, trial_.lines);
   }
 

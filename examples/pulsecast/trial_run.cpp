@@ -3,7 +3,6 @@
 
 #include "trial_run.hpp"
 
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -81,8 +80,8 @@ struct Written {
 /// Writes parts of a survey, each to files of its own.
 class TrialWriter {
  public:
-  TrialWriter(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels)
-      : simulation_(simulation), options_(options), channels_(channels), counted_(pulse_lines(options, channels)) {}
+  TrialWriter(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels, PulseLines counted)
+      : simulation_(simulation), options_(options), channels_(channels), counted_(counted) {}
 
   /// Writes what `add` adds.
   template <class Add>
@@ -200,9 +199,8 @@ struct TrialFiles {
 };
 
 /// Simulates and writes as much of each leg as matters.
-void play(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels, const fs::path& folder,
-          TrialRun& trial) {
-  const PulseLines counted = pulse_lines(options, channels);
+void play(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels, PulseLines counted,
+          const fs::path& folder, TrialRun& trial) {
   const CompiledSurvey& compiled = simulation.compiled();
   const Allowance allowance(3, std::min(thread_count(options.threads), thread_count(0)));
   // Compressors take more memory when they fill their buffers again, by what the heap leaves between.
@@ -251,9 +249,9 @@ PulseLines pulse_lines(const Options& options, const std::vector<std::string>& c
 }
 
 WritingCosts writing_costs(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels,
-                           std::span<const PulseIndex> starts) {
+                           PulseLines counted, std::span<const PulseIndex> starts) {
   const CompiledSurvey& compiled = simulation.compiled();
-  const TrialWriter writer(simulation, options, channels);
+  const TrialWriter writer(simulation, options, channels, counted);
   const auto nothing = [](LegFiles&, Written&) {};
   (void)writer.write(nothing);  // one-time costs
   const Written without = writer.write(nothing);
@@ -292,19 +290,15 @@ WritingCosts writing_costs(const Simulation& simulation, const Options& options,
   return costs;
 }
 
-TrialRun trial_run(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
+TrialRun trial_run(const Simulation& simulation, const Options& options, const std::vector<std::string>& channels, PulseLines counted) {
   const TemporaryFolder folder;
   std::array<int, 2> pipe_ends{};
-  TrialRun trial{.loading = static_cast<double>(usage.ru_maxrss) * 1024,  // KiB on Linux. Source: getrusage(2)
-                 .filling = filling_points(options),
-                 .before = resident_now()};
+  TrialRun trial{.filling = filling_points(options), .before = resident_now()};
   if (pipe(pipe_ends.data()) != 0) return trial;
   const pid_t child = fork();
   if (child == 0) {
     try {
-      play(simulation, options, channels, folder.path, trial);
+      play(simulation, options, channels, counted, folder.path, trial);
       if (write(pipe_ends[1], &trial, sizeof trial) == sizeof trial) _exit(0);
     } catch (const std::exception&) {  // a fault of the survey or the disk: the process that waits will meet it
     }
@@ -319,7 +313,7 @@ TrialRun trial_run(const Simulation& simulation, const Options& options, const s
 }
 
 Estimate TrialRun::memory(double of_run, const Options& options) const {
-  if (!(after.most > 0)) return {loading, loading, std::numeric_limits<double>::infinity()};
+  if (!(after.most > 0)) return {before.most, before.most, std::numeric_limits<double>::infinity()};
   const double growth = after.most - after.file - before.own, base = before.own + before.file;
   // With buffers that are not full yet, memory grows at most as the points do.
   const double more = !complete && most_points > 0 ? std::max(1.0, std::min(of_run, static_cast<double>(filling)) / most_points) : 1;
@@ -329,7 +323,7 @@ Estimate TrialRun::memory(double of_run, const Options& options) const {
   const bool alone = thread_count(options.threads) == 1;
   const double later = alone || options.format == "copc.laz" ? 1 : complete ? 1.05 : 1.2;
   const auto memory = [&](double all, double grown, double pages) {
-    return std::max(all * loading, all * base + grown * later * growth + pages * after.file);
+    return std::max(all * before.most, all * base + grown * later * growth + pages * after.file);
   };
   const double middle = std::sqrt(more);
   return {memory(1, middle, 0.1), memory(0.98, alone ? 0.93 : 0.65 * std::min(middle, 1.4), 0),

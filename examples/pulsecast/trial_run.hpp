@@ -50,7 +50,7 @@ PulseLines pulse_lines(const Options& options, const std::vector<std::string>& c
 
 /// Writes stretches of a survey by the writers of a run: those that begin at `starts`, until their number and processor time suffice.
 WritingCosts writing_costs(const pulsecast::helios::Simulation& simulation, const Options& options,
-                           const std::vector<std::string>& channels, std::span<const pulsecast::PulseIndex> starts);
+                           const std::vector<std::string>& channels, PulseLines counted, std::span<const pulsecast::PulseIndex> starts);
 
 /// Resident memory of a process [byte].
 struct Resident {
@@ -59,7 +59,6 @@ struct Resident {
 
 /// Trial of a run: each leg was simulated and written until more points would take no more memory, or processor time ran out.
 struct TrialRun {
-  double loading = 0;            ///< peak memory until the trial [byte]
   std::uint64_t filling = 0;     ///< points that fill the buffers of the writers
   Resident before{}, after{};    ///< memory before the trial, and after it in the process of its own that it had
   bool complete = false;         ///< the whole survey was written:
@@ -72,4 +71,5 @@ struct TrialRun {
 };
 
 /// Tries a run in a child process. The simulation must be new, as in a run.
-TrialRun trial_run(const pulsecast::helios::Simulation& simulation, const Options& options, const std::vector<std::string>& channels);
+TrialRun trial_run(const pulsecast::helios::Simulation& simulation, const Options& options, const std::vector<std::string>& channels,
+                   PulseLines counted);
