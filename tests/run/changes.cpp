@@ -57,7 +57,7 @@ std::shared_ptr<const TriangleMesh<>> wall_mesh() {
 }
 const Scene<TriangleMesh<>> ground({{.geometry = floor_mesh()}, {.geometry = wall_mesh()}});
 
-constexpr PulseIndex slots = 14'000;
+constexpr PulseIndex slots = 5002;
 const Scanner scanner{.pulse_rate = 10_kHz, .pulses = slots, .laser = {.divergence = 3_mrad}};
 const Mount downwards{.lever_arm = {0.1, 0.2, 0.3}, .boresight = rotation_about(axis::right, -40_deg)};
 const Deflector mirror{PolygonMirror{.lines_per_second = 50, .sweep = 60_deg, .angle_min = -50_deg, .angle_max = 40_deg}, scanner};

@@ -503,7 +503,7 @@ template <class Survey, class WorkspaceOf>
 /// Results are those of trajectory, map and clock as they are, whatever they were in the calls before: each of these may change between
 /// runs. Memory that is kept, by an executor or in a workspace, gives the bytes that fresh memory gives, for steps of 1, 3 and 1,667 slots:
 /// in order, the same ones twice, backwards, with gaps, and every third one. `change(k)` makes all that the survey refers to other than
-/// with any other k. The survey has at least 13,400 slots, and echoes from the first 10,000.
+/// with any other k. The survey has at least 5,001 slots, and echoes from all of them.
 template <PulseSurvey Survey, class Change>
 [[nodiscard]] std::string change_laws(const Survey& survey, const Change& change) {
   ThreadPool pool(2);
@@ -511,10 +511,14 @@ template <PulseSurvey Survey, class Change>
   auto kept = survey.workspace(), kept_in_order = survey.workspace();
   std::string first_of_twice;
   int k = 0;
+  struct Place {
+    PulseIndex place, stride;
+  };
+  constexpr std::array places = std::to_array<Place>({{0, 1}, {2, 1}, {2, 1}, {1, 1}, {0, 3}, {1, 1}, {0, 1}, {4, 1}, {7, 1}});
   for (const PulseIndex step : {1U, 3U, 1667U})
-    for (const PulseIndex place : {0U, 1U, 2U, 2U, 1U, 0U, 4U, 7U, 0U}) {
+    for (const auto [place, stride] : std::span(places).first(step == 1667 ? 5 : places.size())) {
       change(++k);
-      const PulseIndex first = place * step, stride = k % 9 == 0 ? 3 : 1;
+      const PulseIndex first = place * step;
       const RunOptions part{.first = first, .end = first + stride * step, .stride = stride};
       const RunSlots slots = part.slots(survey.size());
       const std::string expected = detail::checksum_of_calls(survey, slots, [&] { return survey.workspace(); });
