@@ -102,8 +102,11 @@ Message read(Reader& from) {
   Message m;
   std::uint32_t count = 0;
   from >> m.seconds >> m.nanoseconds >> m.frame_id >> m.height >> m.width >> count;
-  m.fields.resize(count);
-  for (Field& field : m.fields) from >> field.name >> field.offset >> field.type >> field.count;
+  while (m.fields.size() < count) {  // a wrong number ends with the bytes, and takes no memory before
+    Field field;
+    from >> field.name >> field.offset >> field.type >> field.count;
+    m.fields.push_back(field);
+  }
   from >> m.is_bigendian >> m.point_step >> m.row_step >> m.data >> m.is_dense;
   return m;
 }

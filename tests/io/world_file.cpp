@@ -72,7 +72,7 @@ TEST_CASE("a world file is found beside its picture by each of its names") {
 TEST_CASE("a spoilt world file is refused with its place, or gives a placement that a raster takes") {
   support::Generator random(8531);
   std::size_t refused = 0, read_all = 0;
-  for (int time = 0; time < 2000; ++time) {
+  for (int time = 0; time < 400; ++time) {
     const std::string text = support::spoilt("0.5\n0\n0\n-0.5\n4650000.25\n5400000.75\n", 1 + random.whole(3),
                                              std::array{"nan", "1e999", "\n", "-", "0x1"}, random);
     INFO("seed 8531, ", text);
@@ -85,6 +85,6 @@ TEST_CASE("a spoilt world file is refused with its place, or gives a placement t
       ++refused;
     }
   }
-  CHECK(refused > 500);
-  CHECK(read_all > 100);
+  CHECK(refused > 100);
+  CHECK(read_all > 20);
 }
