@@ -247,7 +247,7 @@ rule 'the README shows examples/embed.cpp' embed_without_block
 # Whoever asks for an older minor version gets none: the package's version file refuses it.
 other_versions() {
   version=$(sed -nE 's/^#define PULSECAST_VERSION "(.*)"$/\1/p' include/pulsecast/version.hpp)
-  grep -HnoE 'find_package\(pulsecast [0-9.]+' README.md docs/*.md docs/packaging/* 2> /dev/null | grep -vF "pulsecast ${version%.*}"
+  grep -HnoE 'find_package\(pulsecast [0-9.]+' README.md docs/*.md docs/packaging/* tests/package/*.txt 2> /dev/null | grep -vF "pulsecast ${version%.*}"
   sed -nE 's/^## ([0-9.]+).*/CHANGELOG.md: \1/p' CHANGELOG.md | head -n 1 | grep -vxF "CHANGELOG.md: $version"
   grep -HnE '"?version"?[ =:]+"' docs/packaging/*/*.py docs/packaging/*/*/*.json | grep -vF "\"$version\""
 }

@@ -93,6 +93,7 @@ notices 'the code in the README is compiled' "printf '\140\140\140cpp\nint x;\n\
 notices 'the README shows examples/embed.cpp' 'echo "// more" >> examples/embed.cpp'
 versions='every page and recipe states the version of version.hpp'
 notices "$versions" 'sed -i "s/find_package(pulsecast [0-9.]*/find_package(pulsecast 0.0/" README.md'
+notices "$versions" 'sed -i "s/find_package(pulsecast [0-9.]*/find_package(pulsecast 0.0/" tests/package/CMakeLists.txt'
 notices "$versions" 'sed -i "0,/^## [0-9.]*/s//## 0.0.1/" CHANGELOG.md'
 notices "$versions" 'sed -i "s/version = .*/version = \"0.0.1\"/" docs/packaging/conan/conanfile.py'
 

@@ -516,8 +516,9 @@ template <PulseSurvey Survey, class Change>
   };
   constexpr std::array places = std::to_array<Place>({{0, 1}, {2, 1}, {2, 1}, {1, 1}, {0, 3}, {1, 1}, {0, 1}, {4, 1}, {7, 1}});
   for (const PulseIndex step : {1U, 3U, 1667U})
-    for (const auto [place, stride] : std::span(places).first(step == 1667 ? 5 : places.size())) {
+    for (const Place at : std::span(places).first(step == 1667 ? 5 : places.size())) {
       change(++k);
+      const PulseIndex place = at.place, stride = at.stride;
       const PulseIndex first = place * step;
       const RunOptions part{.first = first, .end = first + stride * step, .stride = stride};
       const RunSlots slots = part.slots(survey.size());
