@@ -189,7 +189,8 @@ class FootingFinder {
     for (const auto& [path, start, footings] : sections) {
       const std::size_t steps = footings.size() - 1;
       const double step = path.length / static_cast<double>(steps);
-      const std::size_t wheel = step < s_.wheel_radius ? std::min(steps, static_cast<std::size_t>(std::ceil(s_.wheel_radius / step))) : 1;
+      // a section may have no length
+      const auto wheel = static_cast<std::size_t>(std::fmin(std::ceil(s_.wheel_radius / step), static_cast<double>(steps)));
       for (std::size_t i = 0; i <= steps; ++i) {
         const double rise = i + wheel <= steps ? std::fabs(footings[i + wheel].height - footings[i].height) : 0;
         const double tilt = std::fmax(std::fabs(footings[i].ahead), std::fabs(footings[i].aside));
