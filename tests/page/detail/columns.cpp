@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -52,29 +53,30 @@ Decoded decoded(const std::string& bytes, std::size_t count) {
   for (auto at = out.text.find("{\"name\""); at != std::string::npos; at = out.text.find("{\"name\"", at + 1)) {
     const std::string column = out.text.substr(at, out.text.find('}', at) + 1 - at), kind = field(column, "kind");
     const std::string name = field(column, "name").substr(1, field(column, "name").size() - 2);
+    const std::size_t planes_of = std::stoul(field(column, "planes"));
+    const bool differences = field(column, "differences") == "true";
+    const auto number = [&](const char* of) { return field(column, of).empty() ? 0 : std::stod(field(column, of)); };
+    const double offset = number("offset"), step = number("step"), each = number("per_pulse");
+    std::vector<double> listed;
+    if (kind == "\"listed\"") {
+      std::istringstream list(field(column, "values").substr(1));
+      for (std::string one; std::getline(list, one, ',');) listed.push_back(std::stod(one));
+    }
     std::vector<double>& values = out.columns[name];
     std::int64_t before = 0;
     for (std::size_t i = 0; i < count; ++i) {
       std::uint64_t code = 0;
-      for (std::size_t k = 0; k < std::stoul(field(column, "planes")); ++k) code |= std::uint64_t{planes[(plane + k) * count + i]} << 8 * k;
+      for (std::size_t k = 0; k < planes_of; ++k) code |= std::uint64_t{planes[(plane + k) * count + i]} << 8 * k;
       auto now = static_cast<std::int64_t>(code);
-      if (field(column, "differences") == "true")
-        now = before += code % 2 == 1 ? -static_cast<std::int64_t>(code / 2) - 1 : static_cast<std::int64_t>(code / 2);
+      if (differences) now = before += code % 2 == 1 ? -static_cast<std::int64_t>(code / 2) - 1 : static_cast<std::int64_t>(code / 2);
       double value = std::numeric_limits<double>::quiet_NaN();
-      if (now > 0 && kind == "\"linear\"")
-        value = std::stod(field(column, "offset")) + static_cast<double>(now - 1) * std::stod(field(column, "step"));
-      if (now > 0 && kind == "\"logarithmic\"")
-        value = std::stod(field(column, "offset")) * std::exp(static_cast<double>(now - 1) * std::stod(field(column, "step")));
-      if (now > 0 && kind == "\"listed\"") {
-        std::string list = field(column, "values").substr(1) + ',';
-        for (std::int64_t k = 1; k < now; ++k) list = list.substr(list.find(',') + 1);
-        value = std::stod(list);
-      }
-      const std::string each = field(column, "per_pulse");
-      if (!each.empty()) value += std::stod(each) * out.columns["pulse"][i];
+      if (now > 0 && kind == "\"linear\"") value = offset + static_cast<double>(now - 1) * step;
+      if (now > 0 && kind == "\"logarithmic\"") value = offset * std::exp(static_cast<double>(now - 1) * step);
+      if (now > 0 && kind == "\"listed\"") value = listed.at(static_cast<std::size_t>(now - 1));
+      if (each != 0) value += each * out.columns["pulse"][i];
       values.push_back(value);
     }
-    plane += std::stoul(field(column, "planes"));
+    plane += planes_of;
   }
   CHECK(plane * count == whole);
   return out;
