@@ -55,8 +55,10 @@ Decoded decoded(const std::string& bytes, std::size_t count) {
     const std::string name = field(column, "name").substr(1, field(column, "name").size() - 2);
     const std::size_t planes_of = std::stoul(field(column, "planes"));
     const bool differences = field(column, "differences") == "true";
-    const auto number = [&](const char* of) { return field(column, of).empty() ? 0 : std::stod(field(column, of)); };
-    const double offset = number("offset"), step = number("step"), each = number("per_pulse");
+    const bool scaled = kind == "\"linear\"" || kind == "\"logarithmic\"";
+    const double offset = scaled ? std::stod(field(column, "offset")) : 0, step = scaled ? std::stod(field(column, "step")) : 0;
+    const std::string per_pulse = field(column, "per_pulse");
+    const double each = per_pulse.empty() ? 0 : std::stod(per_pulse);
     std::vector<double> listed;
     if (kind == "\"listed\"") {
       std::istringstream list(field(column, "values").substr(1));
